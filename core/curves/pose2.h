@@ -1,0 +1,65 @@
+// Rigid motions of the plane, SE(2). No reflection is ever applied: chirality is part of a shape.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <numbers>
+
+namespace palpate {
+
+using Vec2 = Eigen::Vector2d;
+
+inline constexpr double kPi = std::numbers::pi;
+
+/// Wraps an angle to (-pi, pi]. [rad]
+inline double wrap_angle(double angle) {
+  const double wrapped = std::remainder(angle, 2.0 * kPi);
+  return wrapped <= -kPi ? kPi : wrapped;
+}
+
+/// The vector turned by +90 degrees: the left normal of a tangent.
+inline Vec2 left_of(const Vec2& v) { return {-v.y(), v.x()}; }
+
+/// z component of the cross product of two plane vectors.
+inline double cross(const Vec2& u, const Vec2& v) { return u.x() * v.y() - u.y() * v.x(); }
+
+/// A pose A_T_B: takes coordinates in frame B to frame A, p_A = R(theta) p_B + (x, y).
+struct Pose2 {
+  double x = 0.0;      ///< [m]
+  double y = 0.0;      ///< [m]
+  double theta = 0.0;  ///< [rad]
+
+  Vec2 translation() const { return {x, y}; }
+
+  /// R(theta) v: for directions and differences.
+  Vec2 rotate(const Vec2& v) const {
+    const double c = std::cos(theta);
+    const double s = std::sin(theta);
+    return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+  }
+
+  /// R(-theta) v.
+  Vec2 rotate_back(const Vec2& v) const {
+    const double c = std::cos(theta);
+    const double s = std::sin(theta);
+    return {c * v.x() + s * v.y(), -s * v.x() + c * v.y()};
+  }
+
+  Vec2 operator*(const Vec2& p) const { return rotate(p) + translation(); }
+
+  /// A_T_C = A_T_B * B_T_C, theta wrapped.
+  Pose2 operator*(const Pose2& other) const {
+    const Vec2 t = *this * other.translation();
+    return {t.x(), t.y(), wrap_angle(theta + other.theta)};
+  }
+
+  /// Coordinates in frame B of a point given in frame A, without forming the inverse pose.
+  Vec2 to_local(const Vec2& p) const { return rotate_back(p - translation()); }
+
+  Pose2 inverse() const {
+    const Vec2 t = rotate_back(-translation());
+    return {t.x(), t.y(), -theta};
+  }
+};
+
+}  // namespace palpate

@@ -1,0 +1,71 @@
+// The answer: class, shape, pose and contacts, each with its uncertainty.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "core/curves/curve_class.h"
+#include "core/curves/pose2.h"
+#include "core/local/local_estimate.h"
+
+namespace palpate {
+
+enum class RecognitionStatus {
+  Collecting,  ///< too little data yet
+  Ambiguous,   ///< several classes remain plausible, or the shape is not determined
+  Recognized,  ///< one class stands out and its shape is determined
+};
+
+/// Shape parameters in the order of parameter_letters(class); unused entries are 0.
+struct ShapeParameters {
+  CurveClass curve_class = CurveClass::Unclassified;
+  Eigen::Vector3d values = Eigen::Vector3d::Zero();
+};
+
+/// Covariance of [shape parameters; x; y; theta]; at most 6 x 6, no heap.
+using ShapePoseCovariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
+
+/// One class refined on all samples, whether it won or not.
+struct Hypothesis {
+  ShapeParameters shape;
+  Pose2 world_T_curve;
+  ShapePoseCovariance covariance;
+  double probability = 0.0;  ///< posterior among all hypotheses, "unclassified" included
+  double chi2 = 0.0;         ///< sum of squared normalised residuals of the samples in use
+  int dof = 0;
+};
+
+/// A local estimate and its place on the recognised curve.
+struct LocalizedContact {
+  std::uint32_t probe = 0;
+  std::uint32_t patch = 0;
+  double t = 0.0;  ///< curve parameter; 0 when nothing is recognised
+  LocalEstimate estimate;
+};
+
+/// One query of the recognition tree (section 5.2).
+struct Decision {
+  std::string_view test;  ///< e.g. "conic line"; static storage
+  double value = 0.0;
+  double threshold = 0.0;
+  bool passed = false;
+};
+
+struct Recognition {
+  RecognitionStatus status = RecognitionStatus::Collecting;
+  ShapeParameters shape;
+  Pose2 world_T_curve;
+  ShapePoseCovariance covariance;
+  std::vector<Hypothesis> hypotheses;  ///< most probable first
+  std::vector<LocalizedContact> contacts;
+  std::vector<Decision> decisions;
+  std::size_t sample_count = 0;      ///< samples that the answer rests on
+  std::size_t outlier_count = 0;     ///< samples set aside as spikes
+  double sigma_m = 0.0;              ///< noise used, given or estimated [m]
+  double noise_correlation_m = 0.0;  ///< correlation length of the residuals; 0 = white [m]
+};
+
+}  // namespace palpate

@@ -1,0 +1,44 @@
+#include "tests/support/test_rng.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+namespace palpate::test {
+namespace {
+
+std::uint64_t environment_number(const char* name, std::uint64_t fallback) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? fallback : std::strtoull(text, nullptr, 10);
+}
+
+}  // namespace
+
+std::uint64_t test_seed() {
+  std::string name = "none";
+  if (const auto* info = ::testing::UnitTest::GetInstance()->current_test_info()) {
+    name = std::string(info->test_suite_name()) + "." + info->name();
+  }
+  std::uint64_t hash = 14695981039346656037ULL;  // FNV-1a: the same on every platform
+  for (const char c : name) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  }
+  const std::uint64_t seed = hash + environment_number("PALPATE_TEST_SEED", 0);
+  ::testing::Test::RecordProperty("seed", std::to_string(seed));
+  return seed;
+}
+
+std::mt19937_64 test_rng(std::uint64_t stream) {
+  const std::uint64_t seed = test_seed();
+  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+                         static_cast<std::uint32_t>(stream),
+                         static_cast<std::uint32_t>(stream >> 32)};
+  return std::mt19937_64(sequence);
+}
+
+int stress_count(int base) {
+  return base * static_cast<int>(environment_number("PALPATE_TEST_STRESS", 1));
+}
+
+}  // namespace palpate::test
