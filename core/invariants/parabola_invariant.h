@@ -1,0 +1,28 @@
+// The differential invariant Ip of a parabola, (19).
+#pragma once
+
+#include <cmath>
+
+namespace palpate {
+
+/// |kappa|^(2/3), the form in which every conic invariant meets the curvature.
+/// Erratum: the paper prints kappa^(2/3) in (14), (18), (26), (28) and (31), where kappa is
+/// negative in its own parametrisations; the absolute value is meant.
+template <typename T>
+T curvature_two_thirds(const T& kappa) {
+  using std::cbrt;
+  const T root = cbrt(kappa);
+  return root * root;
+}
+
+/// Ip = |kappa|^(2/3) (kappa_s^2 / (9 kappa^4) + 1), (19) [m^(-2/3)]. Constant, (2a)^(-2/3), along
+/// a parabola y^2 = 4 a x. Precondition: kappa != 0.
+template <typename T>
+T parabola_invariant(const T& kappa, const T& kappa_s) {
+  // tau is the canonical parameter t of a parabola's point (section 5.3): of size one, so that
+  // neither kappa^4 nor kappa_s^2 is ever formed.
+  const T tau = kappa_s / (3.0 * kappa * kappa);
+  return curvature_two_thirds(kappa) * (1.0 + tau * tau);
+}
+
+}  // namespace palpate
