@@ -1,0 +1,154 @@
+// The canonical curves as templates, for automatic differentiation by shape and parameter. The
+// classes of core/curves/ are the reference; these carry only what fits on local geometry need.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+namespace palpate {
+
+template <typename T>
+struct PlanePoint {
+  T x;
+  T y;
+};
+
+/// First three derivatives of a curve with respect to its parameter.
+template <typename T>
+struct ModelDerivatives {
+  PlanePoint<T> first;
+  PlanePoint<T> second;
+  PlanePoint<T> third;
+};
+
+template <typename T>
+struct ModelGeometry {
+  T tangent_angle;  ///< in the canonical frame, for increasing t [rad]
+  T kappa;          ///< (1)
+  T kappa_s;        ///< (2)
+};
+
+/// (1) and (2). Regular wherever the first derivative is not zero.
+template <typename T>
+ModelGeometry<T> geometry_of(const ModelDerivatives<T>& d) {
+  using std::atan2;
+  using std::sqrt;
+  const T speed2 = d.first.x * d.first.x + d.first.y * d.first.y;
+  const T turn = d.first.x * d.second.y - d.second.x * d.first.y;
+  const T turn_by_t = d.first.x * d.third.y - d.third.x * d.first.y;
+  const T stretch = d.first.x * d.second.x + d.first.y * d.second.y;
+  return {atan2(d.first.y, d.first.x), turn / (speed2 * sqrt(speed2)),
+          (turn_by_t * speed2 - 3.0 * turn * stretch) / (speed2 * speed2 * speed2)};
+}
+
+/// (a cos t, b sin t)
+struct EllipseModel {
+  static constexpr int kParameters = 2;
+
+  template <typename T>
+  static PlanePoint<T> position(const T* p, const T& t) {
+    using std::cos;
+    using std::sin;
+    return {p[0] * cos(t), p[1] * sin(t)};
+  }
+
+  template <typename T>
+  static ModelDerivatives<T> derivatives(const T* p, const T& t) {
+    using std::cos;
+    using std::sin;
+    const T ac = p[0] * cos(t);
+    const T as = p[0] * sin(t);
+    const T bc = p[1] * cos(t);
+    const T bs = p[1] * sin(t);
+    return {{-as, bc}, {-ac, -bs}, {as, -bc}};
+  }
+};
+
+/// (a cosh t, b sinh t)
+struct HyperbolaModel {
+  static constexpr int kParameters = 2;
+
+  template <typename T>
+  static PlanePoint<T> position(const T* p, const T& t) {
+    using std::cosh;
+    using std::sinh;
+    return {p[0] * cosh(t), p[1] * sinh(t)};
+  }
+
+  template <typename T>
+  static ModelDerivatives<T> derivatives(const T* p, const T& t) {
+    using std::cosh;
+    using std::sinh;
+    const T ac = p[0] * cosh(t);
+    const T as = p[0] * sinh(t);
+    const T bc = p[1] * cosh(t);
+    const T bs = p[1] * sinh(t);
+    return {{as, bc}, {ac, bs}, {as, bc}};
+  }
+};
+
+/// (a t^2, 2 a t)
+struct ParabolaModel {
+  static constexpr int kParameters = 1;
+
+  template <typename T>
+  static PlanePoint<T> position(const T* p, const T& t) {
+    return {p[0] * t * t, 2.0 * p[0] * t};
+  }
+
+  template <typename T>
+  static ModelDerivatives<T> derivatives(const T* p, const T& t) {
+    return {{2.0 * p[0] * t, 2.0 * p[0]}, {2.0 * p[0], T(0.0)}, {T(0.0), T(0.0)}};
+  }
+};
+
+/// (t, a t^3 + c t)
+struct CubicalParabolaModel {
+  static constexpr int kParameters = 2;
+
+  template <typename T>
+  static PlanePoint<T> position(const T* p, const T& t) {
+    return {t, (p[0] * t * t + p[1]) * t};
+  }
+
+  template <typename T>
+  static ModelDerivatives<T> derivatives(const T* p, const T& t) {
+    return {{T(1.0), 3.0 * p[0] * t * t + p[1]}, {T(0.0), 6.0 * p[0] * t}, {T(0.0), 6.0 * p[0]}};
+  }
+};
+
+/// (t^2, a t^3 + b t^2 + c t)
+struct CubicSplineModel {
+  static constexpr int kParameters = 3;
+
+  template <typename T>
+  static PlanePoint<T> position(const T* p, const T& t) {
+    return {t * t, ((p[0] * t + p[1]) * t + p[2]) * t};
+  }
+
+  template <typename T>
+  static ModelDerivatives<T> derivatives(const T* p, const T& t) {
+    return {{2.0 * t, (3.0 * p[0] * t + 2.0 * p[1]) * t + p[2]},
+            {T(2.0), 6.0 * p[0] * t + 2.0 * p[1]},
+            {T(0.0), 6.0 * p[0]}};
+  }
+};
+
+/// (t^2, a t^3 + b t^2)
+struct SemiCubicalParabolaModel {
+  static constexpr int kParameters = 2;
+
+  template <typename T>
+  static PlanePoint<T> position(const T* p, const T& t) {
+    return {t * t, (p[0] * t + p[1]) * t * t};
+  }
+
+  template <typename T>
+  static ModelDerivatives<T> derivatives(const T* p, const T& t) {
+    return {{2.0 * t, (3.0 * p[0] * t + 2.0 * p[1]) * t},
+            {T(2.0), 6.0 * p[0] * t + 2.0 * p[1]},
+            {T(0.0), 6.0 * p[0]}};
+  }
+};
+
+}  // namespace palpate
