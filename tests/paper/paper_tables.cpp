@@ -1,0 +1,83 @@
+// Prints the paper's noise-free tables and figure 7 beside ours, as Markdown:
+//     paper_tables > tables.md
+#include <cstdio>
+
+#include "tests/paper/paper_experiments.h"
+
+namespace palpate::paper {
+namespace {
+
+void print_table1(const char* title, Measurement how) {
+  std::printf("\n## Table 1: invariants on their own curves, %s\n\n", title);
+  std::printf("| invariant | real | min | max | mean | paper: real | min | max | mean |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|\n");
+  for (const InvariantColumn& c : table1(how)) {
+    std::printf("| %s | %.4f | %.4f | %.4f | %.4f | %.4f | %.4f | %.4f | %.4f |\n", c.name.data(),
+                c.real, c.ours.min, c.ours.max, c.ours.mean, c.paper_real, c.paper.min, c.paper.max,
+                c.paper.mean);
+  }
+}
+
+void print_table2() {
+  std::printf("\n## Table 2: invariants on curves of other classes\n\n");
+  std::printf(
+      "| invariant | data | min | max | mean | stdev | paper: min | max | mean | stdev |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const WrongInvariant& c : table2()) {
+    std::printf("| %s | %s | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n",
+                c.invariant.data(), c.data.data(), c.ours.min, c.ours.max, c.ours.mean,
+                c.ours.stdev, c.paper.min, c.paper.max, c.paper.mean, c.paper.stdev);
+  }
+}
+
+void print_table3() {
+  std::printf("\n## Table 3: relative error of the recovered parameters [%%]\n\n");
+  std::printf(
+      "| class | curves | min | max | mean | paper: min | max | mean | mean, exact kappa, kappa_s "
+      "|\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|\n");
+  const auto exact = table3(Measurement::Exact);
+  std::size_t i = 0;
+  for (const RecoveryColumn& c : table3()) {
+    std::printf("| %s | %d | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.1e |\n", c.name.data(),
+                c.curves, c.ours.min, c.ours.max, c.ours.mean, c.paper.min, c.paper.max,
+                c.paper.mean, exact[i++].ours.mean);
+  }
+}
+
+void print_figure7() {
+  const FigureEllipse ellipse = figure7_ellipse();
+  std::printf("\n## Figure 7 (a): ellipse at t = 0.36, 1.86, 4.23\n\n");
+  std::printf("| value | ours | paper |\n|---|---|---|\n");
+  std::printf("| Ic1 (1,2), (1,3), (2,3) | %.4f %.4f %.4f | 0.3447 0.3446 0.3449 |\n",
+              ellipse.ic1[0], ellipse.ic1[1], ellipse.ic1[2]);
+  std::printf("| Ip at 1, 2 | %.4f %.4f | 0.8971 0.4030 |\n", ellipse.ip[0], ellipse.ip[1]);
+  std::printf("\n## Figure 7: recognised shapes\n\n");
+  std::printf("| shape | recognised as | ours | real | paper |\n|---|---|---|---|---|\n");
+  for (const FigureShape& s : figure7()) {
+    const auto& v = s.ours.shape.values;
+    std::printf("| %s | %s | %.4f %.4f %.4f | %.4f %.4f %.4f | %.4f %.4f %.4f |\n", s.name.data(),
+                name_of(s.ours.shape.curve_class).data(), v[0], v[1], v[2], s.real[0], s.real[1],
+                s.real[2], s.paper[0], s.paper[1], s.paper[2]);
+    for (const Decision& d : s.ours.decisions) {
+      std::printf("|  | %s: %s | %.4g of %.4g | | |\n", d.test.data(), d.passed ? "yes" : "no",
+                  d.value, d.threshold);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate::paper
+
+int main() {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  using namespace palpate::paper;
+  std::printf("# The paper's noise-free simulations, ours beside the printed values\n\n");
+  std::printf("kappa and kappa_s by finite differences (51), chords for arc lengths.\n");
+  print_table1("finite differences", Measurement::FiniteDifferences);
+  print_table1("exact kappa and kappa_s", Measurement::Exact);
+  print_table2();
+  print_table3();
+  print_figure7();
+  return 0;
+}
