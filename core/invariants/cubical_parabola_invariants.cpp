@@ -25,7 +25,7 @@ struct CubicalParabolaFamily {
   static bool accept(PairSolution& solution, double unit) {
     const Eigen::Vector2d factor(1.0 / (unit * unit), 1.0);
     solution.parameters = factor.asDiagonal() * solution.parameters;
-    solution.covariance = factor.asDiagonal() * solution.covariance * factor.asDiagonal();
+    solution.covariance.array() *= (factor * factor.transpose()).array();
     return solution.parameters[0] != 0.0 && solution.parameters.allFinite();
   }
 };

@@ -18,6 +18,9 @@ inline constexpr double kCoefficientRounding = 64.0 * std::numeric_limits<double
 /// A discriminant this close to zero is a double root: its rounding is that of the coefficients.
 inline constexpr double kDiscriminantRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
+/// Variance of what the data cannot tell.
+inline constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
 /// `Family`: quadratic(k1, ks1, k2, ks2, rotation), signed_invariant(CanonicalPoint) (Icp1 or
 /// Iscp1), parameters(CanonicalPoint) -> array of 2, and
 /// accept(angle, parameters, unit): brings both to the class's convention and units, false if
@@ -79,7 +82,6 @@ PairSolutions solve_pair(const MeasuredGeometry& measured1, const MeasuredGeomet
     if (double_root) {
       const auto outputs = evaluate(inputs, result.nearest_angle);
       value << outputs[0], outputs[1], outputs[2], outputs[3];
-      value_covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
     } else {
       const auto propagated = propagate<4, 6>(inputs, [&](const auto& x) {
         return evaluate(
@@ -88,12 +90,18 @@ PairSolutions solve_pair(const MeasuredGeometry& measured1, const MeasuredGeomet
       value = propagated.value;
       value_covariance = propagated.covariance(covariance);
     }
+    if (double_root || !value_covariance.allFinite()) {  // the first order says nothing
+      value_covariance = Eigen::Vector4d::Constant(kUnknown).asDiagonal();
+    }
     solution.angle = value[0];
     solution.parameters = value.segment<2>(1);
     solution.covariance = value_covariance.block<2, 2>(1, 1);
     solution.mismatch = value[3];
     solution.mismatch_variance = value_covariance(3, 3);
     if (value.allFinite() && Family::accept(solution, unit)) {
+      if (solution.covariance.hasNaN()) {  // 0 times a power of the unit that has overflowed
+        solution.covariance = Eigen::Vector2d::Constant(kUnknown).asDiagonal();
+      }
       result.solutions[static_cast<std::size_t>(result.count++)] = solution;
     }
     if (double_root) {

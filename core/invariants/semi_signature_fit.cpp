@@ -359,10 +359,18 @@ void fit_model(const std::vector<WhitePoint>& points, double unit, int max_itera
       fit.covariance(i, j) = covariance(i, j) * (back[i] * back[j]);
     }
   }
+  if (fit.covariance.hasNaN()) {  // 0 times a power of the unit that has overflowed
+    fit.covariance.setZero();
+    fit.covariance.diagonal().head<kShape + 1>().setConstant(
+        std::numeric_limits<double>::infinity());
+  }
   for (LocalParameter& place : fit.places) {
     place.t *= t_unit;
   }
   canonicalise(fit);
+  if (!fit.parameters.allFinite()) {
+    fit.status = InvariantStatus::NotFinite;
+  }
   if (fit.status == InvariantStatus::Ok && !in_class(fit.curve_class, fit.parameters)) {
     fit.status = InvariantStatus::NotThisClass;
   }
