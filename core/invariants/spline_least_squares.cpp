@@ -24,6 +24,10 @@ constexpr double kGradientTolerance = 1e-15;
 constexpr double kStepTolerance = 1e-13;
 constexpr int kMaxIterations = 30;
 
+/// A fit whose chi-square exceeds its mean by more than this many standard deviations is suspected
+/// of a wrong minimum: more starts are tried.
+constexpr double kPlausibleSigmas = 3.0;
+
 /// The points of (50), at most kLargestPointCount, in normalised lengths.
 struct SplineData {
   int count = 0;
@@ -180,18 +184,38 @@ SemiSignatureFit fit_cubic_spline(std::span<const MeasuredGeometry> points,
   }
   best.status = InvariantStatus::NoRealRoot;
   best.chi2 = std::numeric_limits<double>::infinity();
+  const auto refine = [&](const Eigen::Vector3d& parameters, double orientation) {
+    SemiSignatureFit fit = fit_semi_signature(CurveClass::CubicSpline, points, parameters,
+                                              orientation, options.refinement);
+    const bool fit_ok = fit.status == InvariantStatus::Ok;
+    const bool best_ok = best.status == InvariantStatus::Ok;
+    if (fit.status != InvariantStatus::NotFinite &&
+        (fit_ok == best_ok ? fit.chi2 < best.chi2 : fit_ok)) {
+      best = std::move(fit);
+    }
+  };
+  const auto explained = [&] {
+    return best.status == InvariantStatus::Ok &&
+           best.chi2 <= best.dof + kPlausibleSigmas * std::sqrt(2.0 * best.dof);
+  };
   const std::vector<SplineSolution> solutions = spline_least_squares(points, options);
   const auto refined = std::min(solutions.size(), static_cast<std::size_t>(options.refined));
   for (std::size_t i = 0; i < refined; ++i) {
-    const SplineSolution& seed = solutions[i];
-    SemiSignatureFit fit = fit_semi_signature(CurveClass::CubicSpline, points, seed.parameters,
-                                              seed.orientation, options.refinement);
-    const bool better = fit.status == InvariantStatus::Ok
-                            ? best.status != InvariantStatus::Ok || fit.chi2 < best.chi2
-                            : best.status != InvariantStatus::Ok && fit.chi2 < best.chi2 &&
-                                  fit.status != InvariantStatus::NotFinite;
-    if (better) {
-      best = std::move(fit);
+    refine(solutions[i].parameters, solutions[i].orientation);
+  }
+  // (50) weighs all residuals alike: noise can carry it away from the curve. The cubics through
+  // single pairs of points are then the better starts.
+  const double scale = curvature_scale(points);
+  if (!explained() && scale > 0.0) {
+    const double unit = 1.0 / scale;
+    for (const SplineSeed& seed :
+         spline_seeds(selected_points(points, unit), options.fallback_starts)) {
+      refine({seed.parameters[0] / std::sqrt(unit), seed.parameters[1],
+              seed.parameters[2] * std::sqrt(unit)},
+             seed.orientation);
+      if (explained()) {
+        break;
+      }
     }
   }
   return best;

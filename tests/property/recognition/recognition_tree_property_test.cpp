@@ -1,0 +1,99 @@
+// Laws of the recognition tree over random curves of every class.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/recognition/recognition_tree.h"
+#include "tests/support/canonical_points.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+using test::PlacedCurve;
+
+/// Adds independent Gaussian errors to angle, kappa and kappa_s, relative to each point's size, and
+/// the covariance that tells of them.
+void add_noise(std::vector<TreePoint>& points, double relative, std::mt19937_64& rng) {
+  std::normal_distribution<double> normal;
+  for (TreePoint& point : points) {
+    LocalEstimate& e = point.estimate;
+    const double size = std::max(std::abs(e.kappa), std::sqrt(std::abs(e.kappa_s)));
+    const Eigen::Vector3d sd = relative * Eigen::Vector3d(0.3, size, 3.0 * size * size);
+    e.covariance.diagonal() << 1e-12, sd[0] * sd[0], sd[1] * sd[1], sd[2] * sd[2];
+    e.tangent_angle += sd[0] * normal(rng);
+    e.kappa += sd[1] * normal(rng);
+    e.kappa_s += sd[2] * normal(rng);
+  }
+}
+
+class TreeOfEveryClass : public testing::TestWithParam<CurveClass> {};
+
+INSTANTIATE_TEST_SUITE_P(RecognitionTree, TreeOfEveryClass,
+                         testing::ValuesIn(test::invariant_classes().begin(),
+                                           test::invariant_classes().end()),
+                         [](const auto& param_info) {
+                           return std::string(name_of(param_info.param));
+                         });
+
+TEST_P(TreeOfEveryClass, NoiseThatTheCovarianceTellsOfIsNoReasonToRejectIt) {
+  auto rng = test::test_rng();
+  const int cases = test::stress_count(300);
+  for (const double noise : {1e-5, 1e-3, 1e-2}) {
+    int right = 0;
+    int within = 0;
+    for (int i = 0; i < cases; ++i) {
+      const PlacedCurve curve = test::random_curve(GetParam(), rng);
+      auto points = test::exact_points(curve, test::random_places(curve, 6, rng), rng);
+      add_noise(points, noise, rng);
+      const TreeResult result = recognise_by_tree(points);
+      if (result.shape.curve_class == GetParam()) {
+        ++right;
+        within += std::abs(result.shape.values[0] - curve.parameters[0]) <
+                          2.0 * std::sqrt(result.covariance(0, 0))
+                      ? 1
+                      : 0;
+      }
+    }
+    // A path of at most three tests at 0.1 % each may lose 0.3 %; 2 % covers chance and curves that
+    // a simpler class explains as well.
+    EXPECT_GE(right, cases * 98 / 100) << noise;
+    // 95.4 % of a Gaussian's; binomial standard deviation 1.2 %.
+    EXPECT_NEAR(static_cast<double>(within) / right, 0.954, 0.045) << noise;
+  }
+}
+
+TEST_P(TreeOfEveryClass, ClassAndShapeDoNotDependOnUnitPlaceOrOrder) {
+  auto rng = test::test_rng();
+  for (int i = 0; i < test::stress_count(30); ++i) {
+    const PlacedCurve curve = test::random_curve(GetParam(), rng);
+    auto points = test::exact_points(curve, test::random_places(curve, 6, rng), rng);
+    add_noise(points, 1e-3, rng);
+    const TreeResult result = recognise_by_tree(points);
+    for (const double factor : {1e-6, 1.0, 1e6}) {
+      auto changed = points;
+      std::shuffle(changed.begin(), changed.end(), rng);
+      for (TreePoint& point : changed) {
+        LocalEstimate& e = point.estimate;
+        e.position = factor * e.position + Vec2(1e6, -1e6) * factor;
+        e.kappa /= factor;
+        e.kappa_s /= factor * factor;
+        const Eigen::Vector4d units(factor, 1.0, 1.0 / factor, 1.0 / (factor * factor));
+        e.covariance = units.asDiagonal() * e.covariance * units.asDiagonal();
+      }
+      const TreeResult other = recognise_by_tree(changed);
+      ASSERT_EQ(other.shape.curve_class, result.shape.curve_class) << factor;
+      const Eigen::Vector3d powers = test::length_powers(GetParam());
+      for (int k = 0; k < 3; ++k) {
+        const double back = other.shape.values[k] * std::pow(factor, -powers[k]);
+        // Both are the same minimum, each found to far less than its standard deviation.
+        EXPECT_NEAR(back, result.shape.values[k], 1e-2 * std::sqrt(result.covariance(k, k)) + 1e-12)
+            << factor;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate
