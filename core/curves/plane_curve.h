@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <concepts>
+#include <optional>
 
 #include "core/curves/curve_class.h"
 #include "core/curves/pose2.h"
@@ -32,6 +33,12 @@ struct FootPoint {
   double distance = 0.0;  ///< signed: positive to the left of increasing t [m]
 };
 
+/// A place on a curve, and how it was travelled.
+struct Localisation {
+  double t = 0.0;
+  bool along_increasing_t = true;
+};
+
 /// Closed range of the curve parameter over which a class is defined; infinite where unbounded.
 struct ParameterDomain {
   double lower = 0.0;
@@ -58,6 +65,8 @@ concept PlaneCurve = requires(const C& curve, double t, const Vec2& point,
   { curve.arc_length(t, t) } -> std::same_as<double>;
   { curve.parameter_at_arc_length(t, t) } -> std::same_as<double>;
   { curve.domain() } -> std::same_as<ParameterDomain>;
+  { curve.localise(LocalGeometry{}) } -> std::same_as<std::optional<Localisation>>;
+  { curve.is_valid() } -> std::same_as<bool>;
 };
 
 }  // namespace palpate

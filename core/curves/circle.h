@@ -1,0 +1,45 @@
+// Circle.
+#pragma once
+
+#include "core/curves/plane_curve.h"
+
+namespace palpate {
+
+/// A circle (a cos t, a sin t), a > 0.
+struct Circle {
+  static constexpr CurveClass curve_class = CurveClass::Circle;
+  static constexpr int parameter_count = 1;
+  using Parameters = Eigen::Matrix<double, 1, 1>;
+
+  double a = 1.0;  ///< radius [m]
+
+  static Circle from_parameters(const Parameters& p) { return {p[0]}; }
+  Parameters parameters() const { return Parameters(a); }
+
+  /// Whether the parameters are finite and in the range of the canonical form.
+  bool is_valid() const;
+
+  Vec2 position(double t) const;
+  CurveDerivatives derivatives(double t) const;
+  LocalGeometry geometry(double t) const;
+  /// Derivative of the position by the shape parameters at fixed t; 2 x 1.
+  Eigen::Matrix<double, 2, 1> position_by_parameters(double t) const;
+
+  /// Nearest point of the whole curve. `point` finite. The centre has all points nearest: t = 0.
+  FootPoint foot_point(const Vec2& point) const;
+
+  /// Arc length from t0 to t1, negative if t1 < t0. [m]
+  double arc_length(double t0, double t1) const;
+  /// The t at signed arc length s from t0.
+  double parameter_at_arc_length(double t0, double s) const;
+
+  ParameterDomain domain() const;
+
+  /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
+  /// found (section 5.3). Anywhere: t = 0; nullopt if kappa = 0. The canonical tangent angle is not used.
+  std::optional<Localisation> localise(const LocalGeometry& local) const;
+};
+
+static_assert(PlaneCurve<Circle>);
+
+}  // namespace palpate

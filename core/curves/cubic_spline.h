@@ -1,0 +1,48 @@
+// Cubic spline segment: section 4.3, (38).
+#pragma once
+
+#include "core/curves/plane_curve.h"
+
+namespace palpate {
+
+/// A cubic spline segment (t^2, a t^3 + b t^2 + c t), a > 0, c != 0.
+struct CubicSpline {
+  static constexpr CurveClass curve_class = CurveClass::CubicSpline;
+  static constexpr int parameter_count = 3;
+  using Parameters = Eigen::Matrix<double, 3, 1>;
+
+  double a = 1.0;  ///< [1/sqrt(m)]
+  double b = 0.0;  ///< slope term
+  double c = 1.0;  ///< [sqrt(m)]
+
+  static CubicSpline from_parameters(const Parameters& p) { return {p[0], p[1], p[2]}; }
+  Parameters parameters() const { return {a, b, c}; }
+
+  /// Whether the parameters are finite and in the range of the canonical form.
+  bool is_valid() const;
+
+  Vec2 position(double t) const;
+  CurveDerivatives derivatives(double t) const;
+  LocalGeometry geometry(double t) const;
+  /// Derivative of the position by the shape parameters at fixed t; 2 x 3.
+  Eigen::Matrix<double, 2, 3> position_by_parameters(double t) const;
+
+  /// Nearest point of the whole curve. `point` finite. 
+  FootPoint foot_point(const Vec2& point) const;
+
+  /// Arc length from t0 to t1, negative if t1 < t0. [m]
+  double arc_length(double t0, double t1) const;
+  /// The t at signed arc length s from t0.
+  double parameter_at_arc_length(double t0, double s) const;
+
+  ParameterDomain domain() const;
+
+  /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
+  /// found (section 5.3). From the canonical tangent angle, and kappa and kappa_s to choose between the two
+  /// places of that slope; nullopt where there is none.
+  std::optional<Localisation> localise(const LocalGeometry& local) const;
+};
+
+static_assert(PlaneCurve<CubicSpline>);
+
+}  // namespace palpate

@@ -1,0 +1,71 @@
+#include "core/curves/cubical_parabola.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/curves/arc_length.h"
+#include "core/curves/polynomial_foot_point.h"
+
+namespace palpate {
+
+bool CubicalParabola::is_valid() const {
+  return std::isfinite(a) && std::isfinite(c) && a != 0.0;
+}
+
+Vec2 CubicalParabola::position(double t) const { return {t, (a * t * t + c) * t}; }
+
+CurveDerivatives CubicalParabola::derivatives(double t) const {
+  return {position(t), {1.0, 3.0 * a * t * t + c}, {0.0, 6.0 * a * t}, {0.0, 6.0 * a}};
+}
+
+LocalGeometry CubicalParabola::geometry(double t) const {
+  const double slope = 3.0 * a * t * t + c;
+  const double q = 1.0 + slope * slope;
+  return {std::atan(slope), 6.0 * a * t / (q * std::sqrt(q)),
+          6.0 * a * (q - 18.0 * a * t * t * slope) / (q * q * q)};
+}
+
+Eigen::Matrix<double, 2, 2> CubicalParabola::position_by_parameters(double t) const {
+  Eigen::Matrix<double, 2, 2> m;
+  m << 0.0, 0.0, t * t * t, t;
+  return m;
+}
+
+FootPoint CubicalParabola::foot_point(const Vec2& point) const {
+  // (t - x) + (a t^3 + c t - y)(3 a t^2 + c) = 0.
+  Eigen::Matrix<double, 6, 1> condition;
+  condition << -point.x() - c * point.y(), 1.0 + c * c, -3.0 * a * point.y(), 4.0 * a * c, 0.0,
+      3.0 * a * a;
+  return nearest_foot_point(*this, point,
+                            [&](const auto& visit) { visit_roots<5>(condition, visit); });
+}
+
+double CubicalParabola::arc_length(double t0, double t1) const {
+  return integrate_speed([this](double t) { return std::hypot(1.0, 3.0 * a * t * t + c); }, t0,
+                         t1);
+}
+
+double CubicalParabola::parameter_at_arc_length(double t0, double s) const {
+  const auto speed = [this](double t) { return std::hypot(1.0, 3.0 * a * t * t + c); };
+  return invert_arc_length([this](double u, double v) { return arc_length(u, v); }, speed, t0, s,
+                           std::abs(s) / speed(t0));
+}
+
+ParameterDomain CubicalParabola::domain() const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {-kInfinity, kInfinity, 0.0};
+}
+
+std::optional<Localisation> CubicalParabola::localise(const LocalGeometry& local) const {
+  const double cosine = std::cos(local.tangent_angle);
+  if (cosine == 0.0) {
+    return std::nullopt;
+  }
+  const bool along = cosine > 0.0;
+  const double slope = std::tan(local.tangent_angle);
+  const double q = 1.0 + slope * slope;
+  const double kappa = along ? local.kappa : -local.kappa;
+  return Localisation{kappa * q * std::sqrt(q) / (6.0 * a), along};
+}
+
+}  // namespace palpate

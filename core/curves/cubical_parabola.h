@@ -1,0 +1,47 @@
+// Cubical parabola: section 4.1, (36).
+#pragma once
+
+#include "core/curves/plane_curve.h"
+
+namespace palpate {
+
+/// A cubical parabola (t, a t^3 + c t), a != 0.
+struct CubicalParabola {
+  static constexpr CurveClass curve_class = CurveClass::CubicalParabola;
+  static constexpr int parameter_count = 2;
+  using Parameters = Eigen::Matrix<double, 2, 1>;
+
+  double a = 1.0;  ///< [1/m^2]
+  double c = 0.0;  ///< slope at the inflection
+
+  static CubicalParabola from_parameters(const Parameters& p) { return {p[0], p[1]}; }
+  Parameters parameters() const { return {a, c}; }
+
+  /// Whether the parameters are finite and in the range of the canonical form.
+  bool is_valid() const;
+
+  Vec2 position(double t) const;
+  CurveDerivatives derivatives(double t) const;
+  LocalGeometry geometry(double t) const;
+  /// Derivative of the position by the shape parameters at fixed t; 2 x 2.
+  Eigen::Matrix<double, 2, 2> position_by_parameters(double t) const;
+
+  /// Nearest point of the whole curve. `point` finite. 
+  FootPoint foot_point(const Vec2& point) const;
+
+  /// Arc length from t0 to t1, negative if t1 < t0. [m]
+  double arc_length(double t0, double t1) const;
+  /// The t at signed arc length s from t0.
+  double parameter_at_arc_length(double t0, double s) const;
+
+  ParameterDomain domain() const;
+
+  /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
+  /// found (section 5.3). From kappa and the canonical tangent angle; nullopt where the canonical tangent is
+  /// vertical (nowhere on the curve).
+  std::optional<Localisation> localise(const LocalGeometry& local) const;
+};
+
+static_assert(PlaneCurve<CubicalParabola>);
+
+}  // namespace palpate

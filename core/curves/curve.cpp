@@ -1,0 +1,109 @@
+#include "core/curves/curve.h"
+
+namespace palpate {
+namespace {
+
+template <typename C>
+std::optional<Curve> make(const Eigen::Vector3d& values) {
+  const C curve = C::from_parameters(values.head<C::parameter_count>());
+  if (!curve.is_valid()) {
+    return std::nullopt;
+  }
+  return curve;
+}
+
+}  // namespace
+
+std::optional<Curve> make_curve(CurveClass curve_class, const Eigen::Vector3d& values) {
+  switch (curve_class) {
+    case CurveClass::Unclassified:
+      return std::nullopt;
+    case CurveClass::Line:
+      return make<Line>(values);
+    case CurveClass::Circle:
+      return make<Circle>(values);
+    case CurveClass::Ellipse:
+      return make<Ellipse>(values);
+    case CurveClass::Parabola:
+      return make<Parabola>(values);
+    case CurveClass::Hyperbola:
+      return make<Hyperbola>(values);
+    case CurveClass::CubicalParabola:
+      return make<CubicalParabola>(values);
+    case CurveClass::SemiCubicalParabola:
+      return make<SemiCubicalParabola>(values);
+    case CurveClass::CubicSpline:
+      return make<CubicSpline>(values);
+  }
+  return std::nullopt;
+}
+
+CurveClass class_of(const Curve& curve) {
+  return std::visit([](const auto& c) { return c.curve_class; }, curve);
+}
+
+Eigen::Vector3d parameters(const Curve& curve) {
+  return std::visit(
+      [](const auto& c) {
+        Eigen::Vector3d values = Eigen::Vector3d::Zero();
+        values.head<std::decay_t<decltype(c)>::parameter_count>() = c.parameters();
+        return values;
+      },
+      curve);
+}
+
+Vec2 position(const Curve& curve, double t) {
+  return std::visit([t](const auto& c) { return c.position(t); }, curve);
+}
+
+CurveDerivatives derivatives(const Curve& curve, double t) {
+  return std::visit([t](const auto& c) { return c.derivatives(t); }, curve);
+}
+
+LocalGeometry geometry(const Curve& curve, double t) {
+  return std::visit([t](const auto& c) { return c.geometry(t); }, curve);
+}
+
+Eigen::Matrix<double, 2, 3> position_by_parameters(const Curve& curve, double t) {
+  return std::visit(
+      [t](const auto& c) {
+        Eigen::Matrix<double, 2, 3> m = Eigen::Matrix<double, 2, 3>::Zero();
+        m.leftCols<std::decay_t<decltype(c)>::parameter_count>() = c.position_by_parameters(t);
+        return m;
+      },
+      curve);
+}
+
+FootPoint foot_point(const Curve& curve, const Vec2& point) {
+  return std::visit([&point](const auto& c) { return c.foot_point(point); }, curve);
+}
+
+double arc_length(const Curve& curve, double t0, double t1) {
+  return std::visit([=](const auto& c) { return c.arc_length(t0, t1); }, curve);
+}
+
+double parameter_at_arc_length(const Curve& curve, double t0, double s) {
+  return std::visit([=](const auto& c) { return c.parameter_at_arc_length(t0, s); }, curve);
+}
+
+ParameterDomain domain(const Curve& curve) {
+  return std::visit([](const auto& c) { return c.domain(); }, curve);
+}
+
+std::optional<Localisation> localise(const Curve& curve, const LocalGeometry& local) {
+  return std::visit([&local](const auto& c) { return c.localise(local); }, curve);
+}
+
+Pose2 pose_from_contact(const Curve& curve, const Localisation& place, const Vec2& world_point,
+                        double world_tangent_angle) {
+  const double travel = place.along_increasing_t ? 0.0 : kPi;
+  Pose2 pose;
+  pose.theta =
+      wrap_angle(world_tangent_angle - geometry(curve, place.t).tangent_angle - travel);
+  const Vec2 origin = world_point - pose.rotate(position(curve, place.t));
+  pose.x = origin.x();
+  pose.y = origin.y();
+  return pose;
+}
+
+}  // namespace palpate

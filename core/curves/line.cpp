@@ -1,0 +1,39 @@
+#include "core/curves/line.h"
+
+#include <limits>
+
+namespace palpate {
+
+bool Line::is_valid() const { return true; }
+
+Vec2 Line::position(double t) const { return {t, 0.0}; }
+
+CurveDerivatives Line::derivatives(double t) const {
+  return {{t, 0.0}, {1.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}};
+}
+
+LocalGeometry Line::geometry(double) const { return {0.0, 0.0, 0.0}; }
+
+Eigen::Matrix<double, 2, 0> Line::position_by_parameters(double) const { return {}; }
+
+FootPoint Line::foot_point(const Vec2& point) const {
+  return {point.x(), {point.x(), 0.0}, point.y()};
+}
+
+double Line::arc_length(double t0, double t1) const { return t1 - t0; }
+
+double Line::parameter_at_arc_length(double t0, double s) const { return t0 + s; }
+
+ParameterDomain Line::domain() const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {-kInfinity, kInfinity, 0.0};
+}
+
+std::optional<Localisation> Line::localise(const LocalGeometry& local) const {
+  if (local.kappa != 0.0 || local.kappa_s != 0.0) {
+    return std::nullopt;
+  }
+  return Localisation{0.0, true};
+}
+
+}  // namespace palpate

@@ -1,0 +1,48 @@
+// Semi-cubical parabola: section 4.2, (37).
+#pragma once
+
+#include "core/curves/plane_curve.h"
+
+namespace palpate {
+
+/// A semi-cubical parabola (t^2, a t^3 + b t^2), a > 0, with its cusp at t = 0.
+struct SemiCubicalParabola {
+  static constexpr CurveClass curve_class = CurveClass::SemiCubicalParabola;
+  static constexpr int parameter_count = 2;
+  using Parameters = Eigen::Matrix<double, 2, 1>;
+
+  double a = 1.0;  ///< [1/sqrt(m)]
+  double b = 0.0;  ///< slope at the cusp
+
+  static SemiCubicalParabola from_parameters(const Parameters& p) { return {p[0], p[1]}; }
+  Parameters parameters() const { return {a, b}; }
+
+  /// Whether the parameters are finite and in the range of the canonical form.
+  bool is_valid() const;
+
+  Vec2 position(double t) const;
+  CurveDerivatives derivatives(double t) const;
+  LocalGeometry geometry(double t) const;
+  /// Derivative of the position by the shape parameters at fixed t; 2 x 2.
+  Eigen::Matrix<double, 2, 2> position_by_parameters(double t) const;
+
+  /// Nearest point of the whole curve. `point` finite. At the cusp the distance is the true one, with the
+  /// sign of the side on which the nearer arm has the point.
+  FootPoint foot_point(const Vec2& point) const;
+
+  /// Arc length from t0 to t1, negative if t1 < t0. [m]
+  double arc_length(double t0, double t1) const;
+  /// The t at signed arc length s from t0.
+  double parameter_at_arc_length(double t0, double s) const;
+
+  ParameterDomain domain() const;
+
+  /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
+  /// found (section 5.3). From the canonical tangent angle; nullopt where the canonical tangent is vertical
+  /// (nowhere on the curve) and at the cusp.
+  std::optional<Localisation> localise(const LocalGeometry& local) const;
+};
+
+static_assert(PlaneCurve<SemiCubicalParabola>);
+
+}  // namespace palpate

@@ -1,0 +1,112 @@
+// Each hard case of the curves by name, with its defined outcome.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <new>
+
+#include "core/curves/curve.h"
+
+namespace palpate {
+namespace {
+
+TEST(CurveHardCases, EllipseWithinOnePartInTenMillionOfACircle) {
+  const Ellipse ellipse{1.0 + 1e-7, 1.0};
+  const LocalGeometry g = ellipse.geometry(0.3);
+  // kappa_s = -3 ab (a^2 - b^2) s c / D^3, all factors without cancellation.
+  const double expected = -3.0 * (2e-7 + 1e-14) * std::sin(0.3) * std::cos(0.3);
+  EXPECT_NEAR(g.kappa_s / expected, 1.0, 1e-6);  // D = 1 + O(1e-7)
+  const auto place = ellipse.localise(g);
+  ASSERT_TRUE(place.has_value());
+  // (a^2 + b^2 - 2 D) loses 1e-7 of its digits: t to 1e-9 or so.
+  EXPECT_NEAR(place->t, 0.3, 1e-8);
+}
+
+TEST(CurveHardCases, EllipseAHundredTimesLongerThanWide) {
+  const Ellipse ellipse{100.0, 1.0};
+  EXPECT_NEAR(ellipse.geometry(0.0).kappa, 100.0, 1e-12);
+  for (const double t : {0.0, 1e-3, 0.5, 1.5, 3.1}) {
+    const Vec2 normal = left_of(ellipse.derivatives(t).first).normalized();
+    // 0.003 inside: less than the vertex's radius of curvature 0.01.
+    const FootPoint foot = ellipse.foot_point(ellipse.position(t) + 0.003 * normal);
+    EXPECT_NEAR(std::abs(foot.distance), 0.003, 1e-12);
+  }
+  // The full turn of a/b = 100: complete elliptic integral, 400.1098329722651.
+  EXPECT_NEAR(ellipse.arc_length(-kPi, kPi), 400.1098329722651, 1e-9);
+}
+
+TEST(CurveHardCases, VerticesHaveVanishingDerivativeAndKnownPlace) {
+  const Ellipse ellipse{2.0, 1.0};
+  for (const double t : {0.0, 0.5 * kPi}) {
+    const auto place = ellipse.localise(ellipse.geometry(t));
+    ASSERT_TRUE(place.has_value());
+    EXPECT_NEAR(std::remainder(place->t - t, kPi), 0.0, 1e-14);
+  }
+}
+
+TEST(CurveHardCases, InflectionIsLocalised) {
+  const CubicalParabola cubic{0.7, -0.3};
+  const auto place = cubic.localise(cubic.geometry(0.0));
+  ASSERT_TRUE(place.has_value());
+  EXPECT_EQ(place->t, 0.0);
+}
+
+TEST(CurveHardCases, NearACuspCurvatureGrowsWithoutBoundAndStaysOrdered) {
+  const SemiCubicalParabola cusp{1.2, -0.8};
+  double before = 0.0;
+  for (double t = 1.0; t > 1e-150; t *= 0.1) {
+    const LocalGeometry g = cusp.geometry(t);
+    EXPECT_TRUE(std::isfinite(g.kappa));
+    EXPECT_GT(g.kappa, before);
+    before = g.kappa;
+  }
+  const LocalGeometry at = cusp.geometry(0.0);
+  EXPECT_TRUE(std::isinf(at.kappa));
+  EXPECT_FALSE(std::isnan(at.kappa_s));
+  EXPECT_NEAR(cusp.parameter_at_arc_length(0.0, cusp.arc_length(0.0, -0.5)), -0.5, 1e-12);
+}
+
+TEST(CurveHardCases, PointsOnTheEvoluteHaveAFootPoint) {
+  const Ellipse ellipse{2.0, 1.0};
+  const Parabola parabola{1.0};
+  for (const double t : {0.0, 0.4, 1.2, -0.9}) {
+    for (const Curve& curve : {Curve(ellipse), Curve(parabola)}) {
+      const double radius = 1.0 / geometry(curve, t).kappa;
+      const Vec2 centre =
+          position(curve, t) + radius * left_of(derivatives(curve, t).first).normalized();
+      const FootPoint foot = foot_point(curve, centre);
+      EXPECT_TRUE(std::isfinite(foot.t));
+      EXPECT_LE(std::abs(foot.distance), std::abs(radius) * (1.0 + 1e-12));
+    }
+  }
+}
+
+TEST(CurveHardCases, FarAwayPoints) {
+  for (const CurveClass curve_class : kCurveClasses) {
+    const Curve curve = *make_curve(curve_class, {1.0, 0.5, 0.3});
+    for (const Vec2& point : {Vec2(1e6, 1e6), Vec2(-1e6, 3.0), Vec2(1e6, -1e3)}) {
+      const FootPoint foot = foot_point(curve, point);
+      ASSERT_TRUE(std::isfinite(foot.t)) << name_of(curve_class);
+      const Vec2 tangent = derivatives(curve, foot.t).first.normalized();
+      // Perpendicular to 1e-8 rad, or at a cusp.
+      const double along = (point - foot.position).normalized().dot(tangent);
+      EXPECT_TRUE(std::abs(along) < 1e-8 || derivatives(curve, foot.t).first.norm() < 1e-6)
+          << name_of(curve_class) << " " << point.transpose() << " t " << foot.t << " " << along;
+    }
+  }
+}
+
+TEST(CurveHardCases, SplineTowardsTheSemiCubicalParabola) {
+  const SemiCubicalParabola limit{1.5, 0.4};
+  for (const double c : {1e-3, 1e-6, 1e-12, 1e-100}) {
+    const CubicSpline spline{1.5, 0.4, c};
+    for (const double t : {-1.0, -0.3, 0.3, 1.0}) {
+      EXPECT_LE((spline.position(t) - limit.position(t)).norm(), 2.0 * c);
+      EXPECT_NEAR(spline.geometry(t).kappa, limit.geometry(t).kappa, 100.0 * c + 1e-12);
+    }
+    EXPECT_TRUE(std::isfinite(spline.arc_length(-1.0, 1.0)));
+  }
+}
+
+}  // namespace
+}  // namespace palpate
