@@ -376,7 +376,7 @@ std::vector<FigureShape> figure7(Measurement how) {
        {0.3, 0.55, -0.75}},
       {"(c) semi-cubical parabola",
        curve_of(CurveClass::SemiCubicalParabola, 2.5683, 1.4102),
-       {2.5683, 1.4102, 0.0},
+       Eigen::Vector3d::Zero(),
        {0.5, 0.9, -0.6}},
       {"(d) cubic spline",
        curve_of(CurveClass::CubicSpline, 2.76866, -1.26705, -2.32763),

@@ -64,9 +64,9 @@ std::vector<RecoveryColumn> table3(Measurement measurement = Measurement::Finite
 struct FigureShape {
   std::string_view name;
   CurveClass curve_class;
-  Eigen::Vector3d real;  ///< (a, b), (a, c) or (a, b, c)
-  Eigen::Vector3d
-      paper;  ///< as printed: recovered; the first test's values where there are several
+  Eigen::Vector3d real;   ///< (a, b), (a, c) or (a, b, c)
+  Eigen::Vector3d paper;  ///< as printed: recovered; the first test's values where there are
+                          ///< several, zero where the paper prints none
   TreeResult ours;
 };
 

@@ -56,9 +56,14 @@ void print_figure7() {
   std::printf("| shape | recognised as | ours | real | paper |\n|---|---|---|---|---|\n");
   for (const FigureShape& s : figure7()) {
     const auto& v = s.ours.shape.values;
-    std::printf("| %s | %s | %.4f %.4f %.4f | %.4f %.4f %.4f | %.4f %.4f %.4f |\n", s.name.data(),
+    std::printf("| %s | %s | %.4f %.4f %.4f | %.4f %.4f %.4f |", s.name.data(),
                 name_of(s.ours.shape.curve_class).data(), v[0], v[1], v[2], s.real[0], s.real[1],
-                s.real[2], s.paper[0], s.paper[1], s.paper[2]);
+                s.real[2]);
+    if (s.paper.isZero()) {
+      std::printf(" not printed |\n");
+    } else {
+      std::printf(" %.4f %.4f %.4f |\n", s.paper[0], s.paper[1], s.paper[2]);
+    }
     for (const Decision& d : s.ours.decisions) {
       std::printf("|  | %s: %s | %.4g of %.4g | | |\n", d.test.data(), d.passed ? "yes" : "no",
                   d.value, d.threshold);
