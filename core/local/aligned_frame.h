@@ -11,13 +11,13 @@ namespace palpate {
 
 /// Dimensionless coordinates along and across a window: `to_frame` maps the samples to |u| <= 1.
 struct AlignedFrame {
-  Vec2 origin = Vec2::Zero();       ///< world point at u = v = 0 [m]
-  Vec2 axis = Vec2::UnitX();        ///< unit vector of u, along the travel
-  double half_extent_m = 0.0;       ///< world length of one unit of u and v [m]
-  double first_u = -1.0;            ///< abscissa of the first sample
-  double last_u = 1.0;              ///< abscissa of the last sample
-  double backtrack = 0.0;           ///< largest fall of u below an earlier sample's
-  double rounding = 0.0;            ///< bound of the rounding error of u and v
+  Vec2 origin = Vec2::Zero();  ///< world point at u = v = 0 [m]
+  Vec2 axis = Vec2::UnitX();   ///< unit vector of u, along the travel
+  double half_extent_m = 0.0;  ///< world length of one unit of u and v [m]
+  double first_u = -1.0;       ///< abscissa of the first sample
+  double last_u = 1.0;         ///< abscissa of the last sample
+  double backtrack = 0.0;      ///< largest fall of u below an earlier sample's
+  double rounding = 0.0;       ///< bound of the rounding error of u and v
 
   Vec2 to_frame(const Vec2& world) const {
     const Vec2 d = (world - origin) / half_extent_m;
