@@ -1,0 +1,17 @@
+// How a probe or a planner reaches the recognizer.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <zmq.hpp>
+
+#include "node/result.h"
+#include "node/socket.h"
+
+namespace palpate::client {
+
+/// Keys of a CURVE connection, from files: our secret key file and the recognizer's public one.
+Result<CurveClient> read_curve_client(const std::string& own_secret_path,
+                                      const std::string& recognizer_public_path);
+
+}  // namespace palpate::client

@@ -1,0 +1,74 @@
+#include "node/client/contact_publisher.h"
+
+#include <stdexcept>
+#include <vector>
+
+#include "node/clock.h"
+#include "node/topics.h"
+
+namespace palpate::client {
+namespace {
+
+SocketSettings settings_of(const ContactPublisherOptions& options) {
+  SocketSettings settings;
+  settings.send_high_water_mark = options.high_water_mark;
+  settings.curve_client = options.curve;
+  return settings;
+}
+
+}  // namespace
+
+ContactPublisher::ContactPublisher(const ContactPublisherOptions& options)
+    : context_(1),
+      // XPUB: the recognizer's subscription arrives as a message and says that it listens.
+      socket_(make_socket(context_, zmq::socket_type::xpub, settings_of(options))),
+      epoch_(random_epoch()) {
+  const Result<Endpoint> endpoint = parse_endpoint(options.endpoint, /*bind_by_default=*/false);
+  if (!endpoint) throw std::invalid_argument(endpoint.error);
+  if (const std::string error = attach(socket_, *endpoint.value); !error.empty()) {
+    throw std::runtime_error(error);
+  }
+}
+
+void ContactPublisher::take_subscriptions() {
+  TwoFrames message;
+  while (receive_now(socket_, message)) {
+    if (message.topic.size() == 0) continue;
+    // First byte 1: the first subscriber of a prefix has come; 0: its last one has gone.
+    const char kind = *message.topic.data<char>();
+    if (kind == 1) ++listeners_;
+    if (kind == 0 && listeners_ > 0) --listeners_;
+  }
+}
+
+bool ContactPublisher::wait_for_recognizer(std::chrono::milliseconds timeout) {
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  std::vector<zmq::pollitem_t> items{{socket_.handle(), 0, ZMQ_POLLIN, 0}};
+  for (;;) {
+    take_subscriptions();
+    if (listeners_ > 0) return true;
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+        deadline - std::chrono::steady_clock::now());
+    if (left.count() <= 0) return false;
+    poll(items, static_cast<int>(left.count()));
+  }
+}
+
+bool ContactPublisher::publish(std::string_view probe, v1::ContactBatch& batch) {
+  auto found = probes_.find(probe);
+  if (found == probes_.end()) {
+    if (!is_valid_name(probe)) return false;
+    found = probes_.emplace(probe, Probe{make_topic(TopicKind::Contact, probe)}).first;
+  }
+  take_subscriptions();
+  Probe& state = found->second;
+  v1::Header& header = *batch.mutable_header();
+  header.set_source(found->first);
+  header.set_epoch(epoch_);
+  header.set_seq(state.next_seq++);
+  header.set_stamp_ns(unix_time_ns());
+  batch.SerializeToString(&buffer_);
+  return send_now(socket_, state.topic, buffer_);
+}
+
+}  // namespace palpate::client

@@ -1,0 +1,52 @@
+#include "node/reconnect_guard.h"
+
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+
+namespace palpate {
+namespace {
+
+// Longer than the longest pause before libzmq's own retry, which also is announced at once.
+constexpr std::chrono::milliseconds kPatience{100};
+
+std::string unique_monitor_address() {
+  static std::atomic<std::uint64_t> count{0};
+  return "inproc://palpate-reconnect-guard-" + std::to_string(count.fetch_add(1));
+}
+
+}  // namespace
+
+ReconnectGuard::ReconnectGuard(zmq::context_t& context, zmq::socket_t& socket, std::string address)
+    : socket_(socket), address_(std::move(address)), events_(context, zmq::socket_type::pair) {
+  const std::string monitor = unique_monitor_address();
+  const int events = ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_CONNECT_RETRIED |
+                     ZMQ_EVENT_CONNECT_DELAYED | ZMQ_EVENT_CONNECTED;
+  if (zmq_socket_monitor(socket_.handle(), monitor.c_str(), events) != 0) throw zmq::error_t();
+  events_.set(zmq::sockopt::linger, 0);
+  events_.connect(monitor);
+}
+
+ReconnectGuard::~ReconnectGuard() { zmq_socket_monitor(socket_.handle(), nullptr, 0); }
+
+bool ReconnectGuard::tend(std::chrono::steady_clock::time_point now) {
+  // Each event is two frames: number and value, then the address.
+  zmq::message_t frame;
+  while (zmq_msg_recv(frame.handle(), events_.handle(), ZMQ_DONTWAIT) >= 0) {
+    std::uint16_t event = 0;
+    if (frame.size() < sizeof(event)) continue;
+    std::memcpy(&event, frame.data(), sizeof(event));
+    if (frame.more()) (void)zmq_msg_recv(frame.handle(), events_.handle(), ZMQ_DONTWAIT);
+    if (event == ZMQ_EVENT_DISCONNECTED) {
+      given_up_since_ = now;
+    } else {
+      given_up_since_.reset();
+    }
+  }
+  if (!given_up_since_ || now - *given_up_since_ < kPatience) return false;
+  given_up_since_.reset();
+  (void)zmq_disconnect(socket_.handle(), address_.c_str());
+  return zmq_connect(socket_.handle(), address_.c_str()) == 0;
+}
+
+}  // namespace palpate

@@ -1,0 +1,58 @@
+// ZeroMQ sockets with this project's settings, and the two-frame message.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+#include <zmq.hpp>
+
+#include "node/curve_keys.h"
+#include "node/endpoint.h"
+
+namespace palpate {
+
+/// ZAP domain of the recognizer's sockets; a fixed name, as there is one domain.
+inline constexpr const char* kZapDomain = "palpate";
+
+struct CurveClient {
+  CurveKeyPair keys;
+  std::string server_public_key;  ///< Z85
+};
+
+struct SocketSettings {
+  int send_high_water_mark = 1000;     ///< messages waiting for one peer
+  int receive_high_water_mark = 1000;  ///< messages waiting from one peer
+  /// Longest frame accepted; a longer one costs its sender the connection. -1 = any. [bytes]
+  std::int64_t max_message_bytes = -1;
+  std::optional<CurveKeyPair> curve_server;  ///< set on the recognizer's side: needs a ZapHandler
+  std::optional<CurveClient> curve_client;   ///< set on the other side
+};
+
+/// A socket with heartbeats, quick reconnects, no lingering at exit, and those settings; not yet
+/// bound or connected.
+zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
+                          const SocketSettings& settings);
+
+/// Binds or connects. Returns an empty string, or what went wrong.
+std::string attach(zmq::socket_t& socket, const Endpoint& endpoint);
+
+/// What one receive brought. Frames beyond the second are dropped and counted only.
+struct TwoFrames {
+  zmq::message_t topic;
+  zmq::message_t payload;
+  std::size_t frame_count = 0;
+};
+
+/// Takes one waiting message; false where none waits. Never blocks, never throws on a signal.
+bool receive_now(zmq::socket_t& socket, TwoFrames& message);
+
+/// Sends without blocking; false where the peer's high-water mark (or no peer) drops it.
+bool send_now(zmq::socket_t& socket, std::string_view topic, std::string_view payload);
+
+/// Polls for at most `timeout_ms`; a signal ends it early like a timeout.
+void poll(std::vector<zmq::pollitem_t>& items, int timeout_ms);
+
+}  // namespace palpate
