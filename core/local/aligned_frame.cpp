@@ -11,7 +11,7 @@ namespace {
 /// sqrt(2) sigma; at 6 of its standard deviations one in 10^9 neighbours is refused by chance.
 constexpr double kBacktrackSigmas = 6.0;
 
-/// backtrack < kMaxBacktrack (of the half extent), whatever the noise: beyond it the abscissae's
+/// backtrack <= kMaxBacktrack (of the half extent), whatever the noise: beyond it the abscissae's
 /// noise is no small perturbation of the window.
 constexpr double kMaxBacktrack = 0.1;
 
@@ -95,11 +95,15 @@ AlignedFrameResult aligned_frame(std::span<const Vec2> samples) {
   return result;
 }
 
-LocalStatus check_backtrack(const AlignedFrame& frame, double sigma) {
-  const double allowed =
-      kBacktrackSigmas * std::numbers::sqrt2 * sigma + kExtentRounding * frame.rounding;
-  return frame.backtrack <= std::min(allowed, kMaxBacktrack) ? LocalStatus::Ok
-                                                             : LocalStatus::DoublesBack;
+LocalStatus check_backtrack(const AlignedFrame& frame, double sigma_given, double sigma_seen) {
+  const auto explains = [&](double sigma) {
+    return frame.backtrack <=
+           kBacktrackSigmas * std::numbers::sqrt2 * sigma + kExtentRounding * frame.rounding;
+  };
+  if (explains(std::max(sigma_given, sigma_seen)) && frame.backtrack <= kMaxBacktrack) {
+    return LocalStatus::Ok;
+  }
+  return explains(sigma_given) ? LocalStatus::Unresolved : LocalStatus::DoublesBack;
 }
 
 }  // namespace palpate

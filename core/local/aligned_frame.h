@@ -36,8 +36,9 @@ struct AlignedFrameResult {
 };
 AlignedFrameResult aligned_frame(std::span<const Vec2> samples);
 
-/// Is the window a graph over its axis? Ok where abscissae run back by no more than noise explains
-/// and by less than a tenth of the half extent, else DoublesBack. `sigma` in units of u.
-LocalStatus check_backtrack(const AlignedFrame& frame, double sigma);
+/// Ok where abscissae run back by no more than noise explains and by at most a tenth of the half
+/// extent. Else Unresolved where the noise given explains it (0 = not known), DoublesBack where it
+/// does not. Noise in units of u; `sigma_seen` is what the residuals show.
+LocalStatus check_backtrack(const AlignedFrame& frame, double sigma_given, double sigma_seen);
 
 }  // namespace palpate

@@ -109,7 +109,7 @@ LocalResult estimate(std::span<const Vec2> samples, const JetOptions& options) {
         return result;
       }
     }
-    if (const LocalStatus order = check_backtrack(frame, std::max(sigma, sigma_seen));
+    if (const LocalStatus order = check_backtrack(frame, options.sigma_m / unit, sigma_seen);
         order != LocalStatus::Ok) {
       result.status = order;
       return result;
@@ -151,10 +151,8 @@ LocalResult jet_estimate(std::span<const Vec2> samples, const JetOptions& option
       return estimate<3>(samples, options);
     case 4:
       return estimate<4>(samples, options);
-    case 5:
-      return estimate<5>(samples, options);
     default:
-      return estimate<6>(samples, options);
+      return estimate<5>(samples, options);
   }
 }
 

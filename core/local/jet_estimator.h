@@ -9,7 +9,7 @@
 namespace palpate {
 
 inline constexpr int kMinJetDegree = 3;
-inline constexpr int kMaxJetDegree = 6;
+inline constexpr int kMaxJetDegree = 5;
 
 struct JetOptions {
   /// Degree of the polynomial, clamped to [kMinJetDegree, kMaxJetDegree]. An odd degree adds

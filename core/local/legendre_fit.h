@@ -107,6 +107,13 @@ class LegendreFit {
         .solve(rows.transpose());
   }
 
+  /// (normal matrix)^-1 gradient: its product with (P_0(u_i) ... P_Degree(u_i)) w_i is what a unit
+  /// error of v_i does to the function of the coefficients that has this gradient.
+  Vector influence(const Vector& gradient) const {
+    const auto lower = factor_.template triangularView<Eigen::Lower>();
+    return lower.transpose().solve(lower.solve(gradient));
+  }
+
   /// Coefficients in the orthonormal basis: independent, each with the samples' variance (for
   /// weights relative to it). Score k is what degree k adds.
   const Vector& scores() const { return scores_; }

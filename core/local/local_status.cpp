@@ -16,6 +16,8 @@ std::string_view name_of(LocalStatus status) {
       return "unresolved";
     case LocalStatus::DoublesBack:
       return "doubles_back";
+    case LocalStatus::TurnsTooFar:
+      return "turns_too_far";
   }
   return "unknown";
 }

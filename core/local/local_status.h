@@ -15,7 +15,8 @@ enum class LocalStatus {
   NoExtent,       ///< all samples in one place, or the window is no longer than its noise
   Unresolved,     ///< too few distinct places along the window for the polynomial: dwelling samples
   DoublesBack,    ///< abscissae run back by more than the noise: samples out of order, or a window
-                  ///< that turns too far to be a graph over its axis
+                  ///< that turns by more than a right angle from its axis
+  TurnsTooFar,    ///< the window turns too far for this test
 };
 
 /// Lower-case name with underscores ("too_few_samples").

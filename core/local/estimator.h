@@ -1,0 +1,70 @@
+// All local estimators behind one interface: over a window, over a whole patch, over a stream.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/local/local_status.h"
+#include "core/local/ring_buffer.h"
+#include "core/local/two_round_estimator.h"
+
+namespace palpate {
+
+enum class EstimatorKind { FiniteDifference, Circle, TwoRound, Jet };
+
+/// "finite-difference", "circle", "two-round", "jet".
+std::string_view name_of(EstimatorKind kind);
+std::optional<EstimatorKind> estimator_kind_from_name(std::string_view name);
+
+struct EstimatorOptions {
+  EstimatorKind kind = EstimatorKind::Jet;
+  /// Samples of a window; the two-round fit: of each of its first-round windows (the paper's n).
+  int window = 75;
+  /// Samples from one estimate to the next, and from one first-round window to the next (the
+  /// paper's l).
+  int shift = 4;
+  double sigma_m = 0.0;     ///< noise; 0 = estimate it from each window [m]
+  int jet_degree = 4;       ///< of the jet's polynomial
+  int two_round_fits = 10;  ///< the paper's m
+  FitFrame two_round_frame = FitFrame::Aligned;
+};
+
+/// Samples that one estimate takes: `window`, or n + (m - 1) l of the two-round fit.
+std::size_t samples_per_estimate(const EstimatorOptions& options);
+
+/// One estimate, at the middle of the window. `samples` holds samples_per_estimate(options).
+LocalResult estimate_window(std::span<const Vec2> samples, const EstimatorOptions& options);
+
+struct WindowResult {
+  std::size_t first_sample = 0;  ///< index of the window's first sample
+  LocalResult result;
+};
+
+/// Estimates along a patch, `shift` samples apart; empty if the patch is shorter than a window.
+std::vector<WindowResult> estimate_all(std::span<const Vec2> samples,
+                                       const EstimatorOptions& options);
+
+/// Estimates along a stream, as soon as their last sample is in. The same estimates as
+/// estimate_all. A sample costs O(1), every `shift`-th one O(window) more (two-round:
+/// O(window * fits)), whatever has come before; nothing is allocated after construction. Each
+/// window's sums are formed afresh: running sums of powers would gather rounding errors.
+class StreamingEstimator {
+ public:
+  explicit StreamingEstimator(const EstimatorOptions& options);
+
+  /// The window that this sample completes, if any.
+  std::optional<WindowResult> add(const Vec2& sample_m);
+
+  /// Forgets the samples: a new patch.
+  void reset();
+
+ private:
+  EstimatorOptions options_;
+  RingBuffer<Vec2> samples_;
+  std::size_t count_ = 0;  ///< samples since the start of the patch
+};
+
+}  // namespace palpate

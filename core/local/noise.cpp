@@ -1,0 +1,139 @@
+#include "core/local/noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/local/residual_block.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kUnknowns = ResidualBlock::kDegree + 1;
+constexpr std::size_t kLongBlock = 16;
+constexpr std::size_t kShortBlock = 8;  // the unknowns and three residuals
+
+/// Median of |normal variable| in standard deviations.
+constexpr double kMedianOfNormal = 0.6744897501960817;
+
+/// Residuals with |r| <= kCut * (median / kMedianOfNormal) are kept: 6 in 10^5 of a normal law are
+/// not, nearly all spikes that matter are not.
+constexpr double kCut = 4.0;
+
+/// The shorter blocks are used where the longer ones' variance exceeds theirs by more than
+/// kExcess standard deviations of the ratio (one-sided 1 %).
+constexpr double kExcess = 2.33;
+
+/// Mean square of a standard normal variable given |x| <= kCut.
+double mean_square_within_cut() {
+  const double density = std::exp(-0.5 * kCut * kCut) / std::sqrt(2.0 * std::numbers::pi);
+  return 1.0 - 2.0 * kCut * density / std::erf(kCut / std::numbers::sqrt2);
+}
+
+double robust_sigma(std::vector<double>& sizes) {
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  const double scale = *middle / kMedianOfNormal;
+  // More than half of the residuals exactly zero (quantised samples): no scale to cut by.
+  const double limit = scale > 0.0 ? kCut * scale : std::numeric_limits<double>::infinity();
+  double sum = 0.0;
+  int kept = 0;
+  for (const double size : sizes) {
+    if (size <= limit) {
+      sum += size * size;
+      ++kept;
+    }
+  }
+  const double within = scale > 0.0 ? mean_square_within_cut() : 1.0;
+  return std::sqrt(sum / (kept * within));
+}
+
+struct BlockNoise {
+  NoiseEstimate noise;
+  double mean_extent_m = 0.0;
+};
+
+/// Blocks of at least `block` samples, as even as may be.
+BlockNoise from_blocks(std::span<const Vec2> samples, std::size_t block) {
+  BlockNoise result;
+  const std::size_t blocks = samples.size() / block;
+  std::vector<double> sizes;
+  sizes.reserve(samples.size());
+  ResidualBlock residuals;
+  int fitted = 0;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t first = b * samples.size() / blocks;
+    const std::size_t count = (b + 1) * samples.size() / blocks - first;
+    LocalStatus status = residuals.fit(samples.subspan(first, count));
+    if (status == LocalStatus::Ok && residuals.steepest() > ResidualBlock::kMaxSlope) {
+      status = LocalStatus::TurnsTooFar;
+    }
+    if (status != LocalStatus::Ok) {
+      result.noise.status = status;
+      continue;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      sizes.push_back(std::abs(residuals.studentised(i)));
+    }
+    result.noise.dof += static_cast<int>(count) - kUnknowns;
+    result.mean_extent_m += residuals.extent_m();
+    ++fitted;
+  }
+  if (fitted > 0) {
+    result.mean_extent_m /= fitted;
+    result.noise.status = LocalStatus::Ok;
+    result.noise.sigma_m = robust_sigma(sizes);
+  }
+  return result;
+}
+
+/// Blocks of at least `block` samples, longer where these are too short against the noise.
+NoiseEstimate from_resolved_blocks(std::span<const Vec2> samples, std::size_t block) {
+  BlockNoise result = from_blocks(samples, block);
+  const auto unresolved = [&] {
+    return result.noise.status == LocalStatus::Unresolved ||
+           result.mean_extent_m <= ResidualBlock::kMinExtentSigmas * result.noise.sigma_m;
+  };
+  while (unresolved() && 2 * block <= samples.size()) {
+    block *= 2;
+    result = from_blocks(samples, block);
+  }
+  if (result.noise.status == LocalStatus::Ok && unresolved()) {
+    return {LocalStatus::Unresolved, 0.0, 0};
+  }
+  return result.noise;
+}
+
+}  // namespace
+
+NoiseEstimate estimate_noise(std::span<const Vec2> samples) {
+  std::vector<Vec2> distinct;
+  distinct.reserve(samples.size());
+  for (const Vec2& p : samples) {
+    if (!p.allFinite()) {
+      return {LocalStatus::NotFinite, 0.0, 0};
+    }
+    if (distinct.empty() || p != distinct.back()) {
+      distinct.push_back(p);
+    }
+  }
+  if (distinct.size() < kShortBlock) {
+    return {distinct.size() < 2 && samples.size() >= kShortBlock ? LocalStatus::NoExtent
+                                                                 : LocalStatus::TooFewSamples,
+            0.0, 0};
+  }
+  const NoiseEstimate fine = from_resolved_blocks(distinct, kShortBlock);
+  if (distinct.size() < kLongBlock) {
+    return fine;
+  }
+  const NoiseEstimate coarse = from_resolved_blocks(distinct, kLongBlock);
+  if (coarse.status != LocalStatus::Ok || fine.status != LocalStatus::Ok) {
+    return coarse.status == LocalStatus::Ok ? coarse : fine;
+  }
+  const double ratio_sd = std::sqrt(2.0 / coarse.dof + 2.0 / fine.dof);
+  const double limit = fine.sigma_m * std::sqrt(1.0 + kExcess * ratio_sd);
+  return coarse.sigma_m > limit ? fine : coarse;
+}
+
+}  // namespace palpate

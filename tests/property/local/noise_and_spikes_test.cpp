@@ -1,0 +1,139 @@
+// Noise estimate and spike test against Gaussian noise, on every class.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/local/noise.h"
+#include "core/local/normal_law.h"
+#include "core/local/spikes.h"
+#include "tests/support/test_rng.h"
+#include "tests/support/touched_arc.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kTrials = 1000;
+constexpr double kSigma = 5e-5;
+
+class OnEveryClass : public testing::TestWithParam<std::size_t> {
+ protected:
+  const test::TouchedArc& arc() const { return test::touched_arcs()[GetParam()]; }
+};
+
+using NoiseEstimateOf = OnEveryClass;
+using SpikesOf = OnEveryClass;
+
+const auto kArcs = testing::Range(std::size_t{0}, test::touched_arcs().size());
+const auto kName = [](const auto& param_info) {
+  return test::touched_arcs()[param_info.param].name;
+};
+INSTANTIATE_TEST_SUITE_P(AllClasses, NoiseEstimateOf, kArcs, kName);
+INSTANTIATE_TEST_SUITE_P(AllClasses, SpikesOf, kArcs, kName);
+
+TEST_P(NoiseEstimateOf, IsUnbiasedForWhiteNoise) {
+  for (const int count : {30, 111, 400}) {
+    const std::vector<Vec2> exact = test::samples_of(arc(), count);
+    auto rng = test::test_rng(static_cast<std::uint64_t>(count));
+    double sum = 0.0;
+    double squares = 0.0;
+    double expected_variance = 0.0;
+    for (int i = 0; i < kTrials; ++i) {
+      const NoiseEstimate noise = estimate_noise(test::with_noise(exact, kSigma, rng));
+      ASSERT_EQ(noise.status, LocalStatus::Ok);
+      const double variance = std::pow(noise.sigma_m / kSigma, 2);
+      sum += variance;
+      squares += variance * variance;
+      expected_variance += 2.0 / noise.dof / kTrials;
+    }
+    const double mean = sum / kTrials;
+    const double sd = std::sqrt(squares / kTrials - mean * mean);
+    // 5 standard deviations of the mean, and 3 %: the cut at four robust standard deviations and
+    // the choice between the block lengths each look at the data.
+    EXPECT_NEAR(mean, 1.0, 0.03 + 5.0 * sd / std::sqrt(kTrials)) << count;
+    // dof residuals of white noise: a relative standard deviation of sqrt(2 / dof), and a quarter
+    // for the same looks.
+    EXPECT_LT(sd, 1.25 * std::sqrt(expected_variance)) << count;
+  }
+}
+
+TEST_P(NoiseEstimateOf, IsTheNoiseOfDenseSamplesToo) {
+  // 2,000 samples a hundredth of a millimetre apart: a fifth of the noise.
+  const std::vector<Vec2> exact = test::samples_of(arc(), 2000);
+  auto rng = test::test_rng();
+  const NoiseEstimate noise = estimate_noise(test::with_noise(exact, kSigma, rng));
+  ASSERT_EQ(noise.status, LocalStatus::Ok);
+  // 1,900 degrees of freedom: five standard deviations of sigma are 8 %.
+  EXPECT_NEAR(noise.sigma_m / kSigma, 1.0, 0.08 + 0.02);
+}
+
+TEST_P(NoiseEstimateOf, HardlySeesSpikes) {
+  const std::vector<Vec2> exact = test::samples_of(arc(), 111);
+  auto rng = test::test_rng();
+  double sum = 0.0;
+  for (int i = 0; i < kTrials; ++i) {
+    std::vector<Vec2> samples = test::with_noise(exact, kSigma, rng);
+    for (std::size_t k = 10; k < samples.size(); k += 20) {  // 6 of 111
+      samples[k] += 40.0 * kSigma * left_of((exact[k + 1] - exact[k]).normalized());
+    }
+    sum += estimate_noise(samples).sigma_m / kSigma / kTrials;
+  }
+  // A spike of 40 sigma spoils its block of 16: with a spike in six of seven blocks the median
+  // holds within a factor of two, where the root mean square would be 8.
+  EXPECT_LT(sum, 2.5);
+}
+
+TEST_P(SpikesOf, FalseAlarmsComeAtTheStatedRate) {
+  const std::vector<Vec2> exact = test::samples_of(arc(), 111);
+  auto rng = test::test_rng();
+  int patches = 0;
+  for (int i = 0; i < kTrials; ++i) {
+    const Spikes spikes = find_spikes(test::with_noise(exact, kSigma, rng),
+                                      {.sigma_m = kSigma, .false_alarms_per_patch = 0.05});
+    ASSERT_EQ(spikes.status, LocalStatus::Ok);
+    patches += spikes.indices.empty() ? 0 : 1;
+  }
+  // 0.05 is Bonferroni's bound. Five standard deviations of a binomial of 1,000 are 0.034.
+  EXPECT_LT(static_cast<double>(patches) / kTrials, 0.05 + 0.034);
+  EXPECT_GT(static_cast<double>(patches) / kTrials, 0.05 - 0.034);
+}
+
+TEST_P(SpikesOf, AreFoundAndTheirNeighboursSpared) {
+  const std::vector<Vec2> exact = test::samples_of(arc(), 111);
+  auto rng = test::test_rng();
+  int found = 0;
+  int others = 0;
+  for (int i = 0; i < kTrials; ++i) {
+    std::vector<Vec2> samples = test::with_noise(exact, kSigma, rng);
+    const std::size_t k = 6 + rng() % (samples.size() - 12);  // not at an end: see the next test
+    samples[k] += 12.0 * kSigma * left_of((exact[k + 1] - exact[k]).normalized());
+    for (const std::size_t index : find_spikes(samples, {.sigma_m = kSigma}).indices) {
+      found += index == k ? 1 : 0;
+      others += index == k ? 0 : 1;
+    }
+  }
+  // 12 sigma less at most a third for the leverage in the middle of a block leave 8, against a
+  // threshold of 3.9 and noise of 1: missed once in 10^4.
+  EXPECT_GT(found, kTrials - 10);
+  // False alarms at 1 % of patches, and where the spike lies at the end of the next block.
+  EXPECT_LT(others, 0.05 * kTrials);
+}
+
+TEST_P(SpikesOf, NoneOnNoiselessCurves) {
+  for (const int count : {20, 50, 111, 400}) {
+    const Spikes spikes = find_spikes(test::samples_of(arc(), count));
+    EXPECT_TRUE(spikes.indices.empty()) << count;
+  }
+}
+
+TEST(NormalQuantile, InvertsTheTail) {
+  for (double z = 0.05; z < 30.0; z *= 1.3) {
+    const double tail = std::erfc(z / std::sqrt(2.0));
+    // The tail is rounded to 1.1e-16 relative, which is 1.1e-16 / z / z of z in the far tail and
+    // 1.1e-16 * tail / (0.8 z) near the middle.
+    EXPECT_NEAR(two_sided_normal_quantile(tail) / z, 1.0, 1e-13);
+  }
+}
+
+}  // namespace
+}  // namespace palpate
