@@ -11,8 +11,8 @@ namespace {
 /// sqrt(2) sigma; at 6 of its standard deviations one in 10^9 neighbours is refused by chance.
 constexpr double kBacktrackSigmas = 6.0;
 
-/// backtrack <= kMaxBacktrack (of the half extent), whatever the noise: beyond it the abscissae's
-/// noise is no small perturbation of the window.
+/// backtrack <= kMaxBacktrack (of the half extent) where the noise is judged by the residuals:
+/// those of a window that turns back on itself are large too, and must not excuse it.
 constexpr double kMaxBacktrack = 0.1;
 
 /// extent > kExtentRounding * rounding: below, rounding alone decides the axis.
@@ -100,10 +100,9 @@ LocalStatus check_backtrack(const AlignedFrame& frame, double sigma_given, doubl
     return frame.backtrack <=
            kBacktrackSigmas * std::numbers::sqrt2 * sigma + kExtentRounding * frame.rounding;
   };
-  if (explains(std::max(sigma_given, sigma_seen)) && frame.backtrack <= kMaxBacktrack) {
-    return LocalStatus::Ok;
-  }
-  return explains(sigma_given) ? LocalStatus::Unresolved : LocalStatus::DoublesBack;
+  const bool ok =
+      explains(sigma_given) || (explains(sigma_seen) && frame.backtrack <= kMaxBacktrack);
+  return ok ? LocalStatus::Ok : LocalStatus::DoublesBack;
 }
 
 }  // namespace palpate

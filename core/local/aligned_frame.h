@@ -36,9 +36,9 @@ struct AlignedFrameResult {
 };
 AlignedFrameResult aligned_frame(std::span<const Vec2> samples);
 
-/// Ok where abscissae run back by no more than noise explains and by at most a tenth of the half
-/// extent. Else Unresolved where the noise given explains it (0 = not known), DoublesBack where it
-/// does not. Noise in units of u; `sigma_seen` is what the residuals show.
+/// Ok where abscissae run back by no more than the noise given explains (0 = not known), or by no
+/// more than the noise that the residuals show and a tenth of the half extent; else DoublesBack.
+/// Noise in units of u.
 LocalStatus check_backtrack(const AlignedFrame& frame, double sigma_given, double sigma_seen);
 
 }  // namespace palpate

@@ -1,11 +1,11 @@
 #include "core/local/jet_estimator.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/local/aligned_frame.h"
 #include "core/local/graph_geometry.h"
+#include "core/local/legendre_curve.h"
 #include "core/local/legendre_fit.h"
 
 namespace palpate {
@@ -14,46 +14,6 @@ namespace {
 /// Residuals beyond the unknowns that an estimate of the noise needs: four leave it a relative
 /// standard deviation of 1/sqrt(2 * 4) = 35 %.
 constexpr std::size_t kSpareResiduals = 4;
-
-/// Gauss-Legendre nodes and weights on [-1, 1].
-constexpr std::array<double, 5> kGaussNodes = {-0.906179845938663993, -0.538469310105683091, 0.0,
-                                               0.538469310105683091, 0.906179845938663993};
-constexpr std::array<double, 5> kGaussWeights = {0.236926885056189088, 0.478628670499366468,
-                                                 0.568888888888888889, 0.478628670499366468,
-                                                 0.236926885056189088};
-
-/// Slope at u of the polynomial with Legendre coefficients c.
-template <int Size>
-double slope(const LegendreVector<Size>& c, double u) {
-  // P'_{k+1} = P'_{k-1} + (2k + 1) P_k
-  double before = 0.0;
-  double p = 1.0;
-  double d_before = 0.0;
-  double d = 0.0;
-  double sum = 0.0;
-  for (int k = 0; k + 1 < Size; ++k) {
-    const double next = ((2 * k + 1) * u * p - k * before) / (k + 1);
-    const double d_next = d_before + (2 * k + 1) * p;
-    before = p;
-    p = next;
-    d_before = d;
-    d = d_next;
-    sum += c[k + 1] * d;
-  }
-  return sum;
-}
-
-/// Arc length of the polynomial from u0 to u1.
-template <int Size>
-double arc_length(const LegendreVector<Size>& c, double u0, double u1) {
-  const double middle = 0.5 * (u0 + u1);
-  const double half = 0.5 * (u1 - u0);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < kGaussNodes.size(); ++i) {
-    sum += kGaussWeights[i] * std::hypot(1.0, slope<Size>(c, middle + half * kGaussNodes[i]));
-  }
-  return half * sum;
-}
 
 template <int Degree>
 LocalResult estimate(std::span<const Vec2> samples, const JetOptions& options) {

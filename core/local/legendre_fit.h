@@ -114,6 +114,9 @@ class LegendreFit {
     return lower.transpose().solve(lower.solve(gradient));
   }
 
+  /// The normal matrix's Cholesky factor, lower triangular.
+  const Matrix& factor() const { return factor_; }
+
   /// Coefficients in the orthonormal basis: independent, each with the samples' variance (for
   /// weights relative to it). Score k is what degree k adds.
   const Vector& scores() const { return scores_; }

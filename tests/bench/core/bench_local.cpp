@@ -1,0 +1,102 @@
+// Cost of the local estimators: per estimate over 111 samples, and per sample of a stream.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "core/local/adaptive_jet.h"
+#include "core/local/estimator.h"
+#include "core/local/noise.h"
+#include "core/local/spikes.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kSigma = 5e-5;
+
+/// Samples 0.2 mm apart along a circle of 25 mm, with noise.
+std::vector<Vec2> arc(int count) {
+  std::mt19937_64 rng(1);
+  std::normal_distribution<double> normal(0.0, kSigma);
+  std::vector<Vec2> samples;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 0.008 * i;
+    samples.emplace_back(0.025 * std::cos(angle) + normal(rng),
+                         0.025 * std::sin(angle) + normal(rng));
+  }
+  return samples;
+}
+
+EstimatorOptions options_for(const benchmark::State& state) {
+  EstimatorOptions options;
+  options.kind = static_cast<EstimatorKind>(state.range(0));
+  options.sigma_m = kSigma;
+  options.window = options.kind == EstimatorKind::TwoRound ? 75 : 111;
+  return options;
+}
+
+void per_estimate(benchmark::State& state) {
+  const std::vector<Vec2> samples = arc(111);
+  const EstimatorOptions options = options_for(state);
+  state.SetLabel(std::string(name_of(options.kind)));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(estimate_window(samples, options));
+  }
+}
+BENCHMARK(per_estimate)->DenseRange(0, 3)->Unit(benchmark::kMicrosecond);
+
+/// Shift 4, as in the paper: a quarter of the samples brings an estimate.
+void stream_per_sample(benchmark::State& state) {
+  const std::vector<Vec2> samples = arc(4000);
+  const EstimatorOptions options = options_for(state);
+  state.SetLabel(std::string(name_of(options.kind)));
+  StreamingEstimator stream(options);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    if (i == samples.size()) {
+      i = 0;
+      stream.reset();
+    }
+    benchmark::DoNotOptimize(stream.add(samples[i++]));
+  }
+}
+BENCHMARK(stream_per_sample)->DenseRange(0, 3);
+
+void jet_degree(benchmark::State& state) {
+  const std::vector<Vec2> samples = arc(111);
+  EstimatorOptions options;
+  options.sigma_m = kSigma;
+  options.jet_degree = static_cast<int>(state.range(0));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(estimate_window(samples, options));
+  }
+}
+BENCHMARK(jet_degree)->DenseRange(3, 5)->Unit(benchmark::kMicrosecond);
+
+void adaptive_jet_at_the_centre(benchmark::State& state) {
+  const std::vector<Vec2> samples = arc(111);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(adaptive_jet(samples, PatchPlace::Centre, kSigma));
+  }
+}
+BENCHMARK(adaptive_jet_at_the_centre)->Unit(benchmark::kMicrosecond);
+
+void noise_of_a_patch(benchmark::State& state) {
+  const std::vector<Vec2> samples = arc(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(estimate_noise(samples));
+  }
+}
+BENCHMARK(noise_of_a_patch)->Arg(111)->Arg(222)->Unit(benchmark::kMicrosecond);
+
+void spikes_of_a_patch(benchmark::State& state) {
+  const std::vector<Vec2> samples = arc(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(find_spikes(samples, {.sigma_m = kSigma}));
+  }
+}
+BENCHMARK(spikes_of_a_patch)->Arg(111)->Arg(222)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace palpate
