@@ -19,7 +19,7 @@ struct JetOptions {
   /// residuals. [m]
   double sigma_m = 0.0;
   /// Where on the window: -1 its start, 0 its centre, 1 its end, along the window's axis. kappa_s
-  /// at an end has about 12 times the standard deviation of the centre's (degree 4).
+  /// at an end has about 8 times the standard deviation of the centre's (degree 4).
   double place = 0.0;
 };
 

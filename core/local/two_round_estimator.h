@@ -32,9 +32,9 @@ int two_round_samples(const TwoRoundOptions& options);
 /// Simpson's rule between the medians.
 ///
 /// The covariance is that of all samples to first order, the overlap of the windows included; the
-/// noise of the arc lengths is left out (relative error sigma / window). Biased: a parabola's
-/// curvature at the middle of a window of arc W is off by about W^2 / 40 times the second
-/// derivative of the curvature, and in kappa_s likewise. Cost O(n m); no allocation.
+/// noise of the arc lengths is left out (relative error sigma / window). Bias of kappa: W^2 / 56
+/// times the fourth derivative of the graph, W the arc of one window (u^4 has 4/7 of P_2 in it); of
+/// kappa_s: that derivative's slope likewise. Cost O(n m); no allocation.
 LocalResult two_round_estimate(std::span<const Vec2> samples, const TwoRoundOptions& options = {});
 
 }  // namespace palpate
