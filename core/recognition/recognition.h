@@ -36,6 +36,8 @@ struct Hypothesis {
   double probability = 0.0;  ///< posterior among all hypotheses, "unclassified" included
   double chi2 = 0.0;         ///< sum of squared normalised residuals of the samples in use
   int dof = 0;
+  /// The class has no interior optimum (an ellipse that wants to be a parabola): no shape is given.
+  bool at_limit = false;
 };
 
 /// A local estimate and its place on the recognised curve.

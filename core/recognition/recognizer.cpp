@@ -1,38 +1,247 @@
 #include "core/recognition/recognizer.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "core/local/spikes.h"
+#include "core/recognition/outliers.h"
+#include "core/recognition/richer_class.h"
+#include "core/recognition/spikes.h"
+#include "core/recognition/weigh.h"
 
 namespace palpate {
+namespace {
+
+/// Fewer points than this fit almost anything.
+constexpr std::size_t kFewestSamples = 8;
+
+/// Whether the linearised covariance of the shape means something.
+bool is_determined(const ShapeParameters& shape, const ShapePoseCovariance& covariance,
+                   double extent_m, double fraction) {
+  const std::string_view letters = parameter_letters(shape.curve_class);
+  for (std::size_t i = 0; i < letters.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    double natural = std::abs(shape.values[k]);
+    if (shape.curve_class == CurveClass::CubicSpline && letters[i] == 'c') {
+      natural = std::max(natural, std::sqrt(extent_m));  // c t against x = t^2
+    } else if (degrees_of_freedom(shape.curve_class) >= 5 && letters[i] != 'a' &&
+               shape.curve_class != CurveClass::Ellipse &&
+               shape.curve_class != CurveClass::Hyperbola) {
+      natural = std::max(natural, 1.0);  // slopes
+    }
+    if (!(std::sqrt(covariance(k, k)) <= fraction * natural)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Whether noise of the stated size can have left this chi-square (five standard deviations).
+bool is_noise(double chi2, double dof) { return chi2 <= dof + 5.0 * std::sqrt(2.0 * dof); }
+
+Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
+  const auto i = static_cast<std::size_t>(curve_class);
+  Hypothesis hypothesis;
+  hypothesis.shape.curve_class = curve_class;
+  hypothesis.probability = w.probabilities[i];
+  if (curve_class == CurveClass::Unclassified) {
+    hypothesis.chi2 = w.smooth.chi2;
+    hypothesis.dof = w.smooth.dof();
+    return hypothesis;
+  }
+  hypothesis.chi2 = w.fits[i]->chi2;
+  hypothesis.dof = static_cast<int>(w.data.points.size()) - degrees_of_freedom(curve_class);
+  hypothesis.at_limit = w.fits[i]->at_limit;
+  if (const auto& canonical = w.canonical[i]) {
+    hypothesis.shape = canonical->shape;
+    hypothesis.world_T_curve = canonical->world_T_curve;
+    hypothesis.covariance = w.inflation * canonical->covariance;
+  }
+  return hypothesis;
+}
+
+}  // namespace
 
 class Recognizer::Impl {
  public:
-  std::size_t sample_count = 0;
+  explicit Impl(const RecognizerOptions& options)
+      : options_(options), memory_(options.memory) {}
+
+  AddResult add(const PatchContext& context, std::span<const ContactSample> samples) {
+    return memory_.add(context, samples);
+  }
+
+  void reset() { memory_.clear(); }
+
+  Recognition recognize() {
+    Recognition answer;
+    answer.sample_count = memory_.sample_count();
+    const std::vector<StoredPatch> patches = without_spikes();
+    bool sigma_known = false;
+    const FitData data = make_fit_data(patches, options_.sigma_m, &sigma_known);
+    if (data.points.size() < kFewestSamples) {
+      return answer;
+    }
+    if (options_.method == RecognitionMethod::Tree) {
+      answer.outlier_count = memory_.stored_count() - data.points.size();
+      answer.contacts = estimate_contacts(patches, {}, contact_options());
+      walk_tree(&answer);
+      return answer;
+    }
+    Weighing w = weigh(data, sigma_known, patches, options_);
+    if (const auto kept = without_outliers(w, data, options_)) {
+      w = weigh(*kept, sigma_known, patches, options_);
+    }
+    answer.outlier_count = memory_.stored_count() - w.data.points.size();
+    fill(w, &answer);
+    answer.contacts = estimate_contacts(patches, w.sides, contact_options());
+    answer.decisions = tree_of(answer.contacts).decisions;
+    localise_contacts(answer.shape, answer.world_T_curve, &answer.contacts);
+    return answer;
+  }
+
+ private:
+  std::vector<StoredPatch> without_spikes() const {
+    std::vector<StoredPatch> kept = memory_.patches();
+    for (StoredPatch& patch : kept) {
+      // Spikes hide spikes: look again without those found.
+      constexpr int kMostPasses = 6;
+      for (int pass = 0; pass < kMostPasses; ++pass) {
+        const std::vector<bool> spikes =
+            find_spikes(patch.samples, options_.false_outlier_probability);
+        std::size_t i = 0;
+        if (std::erase_if(patch.samples, [&](const StoredSample&) { return spikes[i++]; }) == 0) {
+          break;
+        }
+      }
+      drop_single_spikes(&patch);
+    }
+    return kept;
+  }
+
+  ContactOptions contact_options() const {
+    ContactOptions options = options_.contacts;
+    options.sigma_m = options_.sigma_m;
+    return options;
+  }
+
+  /// The tree over the estimates at the windows' centres: those at the ends share their samples.
+  TreeResult tree_of(const std::vector<LocalizedContact>& contacts) const {
+    std::vector<TreePoint> points;
+    int patch = 0;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const auto same = [&](std::size_t j) {
+        return j < contacts.size() && contacts[j].probe == contacts[i].probe &&
+               contacts[j].patch == contacts[i].patch;
+      };
+      if (i > 0 && !same(i - 1)) {
+        ++patch;
+      }
+      if (i > 0 && same(i - 1) && same(i + 1)) {
+        points.push_back({contacts[i].estimate, patch});
+      }
+    }
+    return recognise_by_tree(points, options_.tree);
+  }
+
+  /// The paper's way: nothing but the tree's answer.
+  void walk_tree(Recognition* answer) const {
+    const TreeResult tree = tree_of(answer->contacts);
+    answer->decisions = tree.decisions;
+    answer->shape = tree.shape;
+    answer->status = tree.status == InvariantStatus::Ok ? RecognitionStatus::Recognized
+                                                        : RecognitionStatus::Ambiguous;
+    const auto letters =
+        static_cast<Eigen::Index>(parameter_letters(tree.shape.curve_class).size());
+    // Of the shape only: the tree does not propagate the pose's.
+    answer->covariance = ShapePoseCovariance::Zero(letters + 3, letters + 3);
+    answer->covariance.topLeftCorner(letters, letters) =
+        tree.covariance.topLeftCorner(letters, letters);
+    Hypothesis only;
+    only.shape = tree.shape;
+    only.covariance = answer->covariance;
+    only.probability = 1.0;
+    only.chi2 = tree.chi2;
+    only.dof = tree.dof;
+    if (tree.world_T_curve) {
+      answer->world_T_curve = only.world_T_curve = *tree.world_T_curve;
+      localise_contacts(answer->shape, answer->world_T_curve, &answer->contacts);
+    }
+    answer->hypotheses.push_back(only);
+  }
+
+  /// What is left where spikes were few: the sharper test of core/local.
+  void drop_single_spikes(StoredPatch* patch) const {
+    std::vector<Vec2> positions;
+    for (const StoredSample& sample : patch->samples) {
+      positions.push_back(sample.position_m);
+    }
+    SpikeOptions options;
+    options.false_alarms_per_patch = options_.false_outlier_probability;
+    const Spikes spikes = find_spikes(std::span<const Vec2>(positions), options);
+    for (auto index = spikes.indices.rbegin(); index != spikes.indices.rend(); ++index) {
+      patch->samples.erase(patch->samples.begin() + static_cast<std::ptrdiff_t>(*index));
+    }
+  }
+
+  void fill(const Weighing& w, Recognition* answer) const {
+    for (std::size_t i = 0; i < w.probabilities.size(); ++i) {
+      if (i == 0 || w.fits[i]) {
+        answer->hypotheses.push_back(to_hypothesis(w, static_cast<CurveClass>(i)));
+      }
+    }
+    std::stable_sort(answer->hypotheses.begin(), answer->hypotheses.end(),
+                     [](const Hypothesis& a, const Hypothesis& b) {
+                       return a.probability > b.probability;
+                     });
+    const Hypothesis& best = answer->hypotheses.front();
+    answer->shape = best.shape;
+    answer->world_T_curve = best.world_T_curve;
+    answer->covariance = best.covariance;
+    answer->sigma_m = w.sigma * w.data.scale *
+                      (w.correlation_length > 0.0 ? 1.0 : std::sqrt(w.inflation));
+    answer->noise_correlation_m = w.correlation_length * w.data.scale;
+    const bool certain = best.probability >= options_.recognized_probability &&
+                         (best.shape.curve_class == CurveClass::Unclassified || stands(w, best));
+    answer->status = certain ? RecognitionStatus::Recognized : RecognitionStatus::Ambiguous;
+  }
+
+  /// Whether a class that is more probable than all others also fits, and has one shape.
+  bool stands(const Weighing& w, const Hypothesis& best) const {
+    const auto& fit = *w.fits[static_cast<std::size_t>(best.shape.curve_class)];
+    // Odds of the recognition's own level between a spline and its rival across c = 0.
+    const double odds =
+        2.0 * std::log(options_.recognized_probability / (1.0 - options_.recognized_probability));
+    const bool one_shape =
+        !fit.rival || (fit.rival->chi2 - fit.chi2) / w.inflation > odds ||
+        is_same_curve(*fit.polynomial, *fit.rival);
+    // A misfit that is no noise may be form error, or another class: the data cannot tell.
+    return w.correlation_length == 0.0 && !best.at_limit && best.covariance.size() > 0 && one_shape &&
+           is_noise(best.chi2 / w.inflation, best.dof) &&
+           largest_departure(w, best.shape.curve_class) <=
+               (best.shape.curve_class == CurveClass::Line ? options_.excluded_turn_rad
+                                                           : options_.excluded_departure) &&
+           is_determined(best.shape, best.covariance, w.data.scale,
+                         options_.determined_fraction);
+  }
+
+  RecognizerOptions options_;
+  SampleMemory memory_;
 };
 
-Recognizer::Recognizer(const RecognizerOptions&) : impl_(std::make_unique<Impl>()) {}
+Recognizer::Recognizer(const RecognizerOptions& options)
+    : impl_(std::make_unique<Impl>(options)) {}
 Recognizer::~Recognizer() = default;
 Recognizer::Recognizer(Recognizer&&) noexcept = default;
 Recognizer& Recognizer::operator=(Recognizer&&) noexcept = default;
 
-AddResult Recognizer::add(const PatchContext&, std::span<const ContactSample> samples) {
-  AddResult result;
-  for (const ContactSample& sample : samples) {
-    if (sample.position_m.allFinite() && std::isfinite(sample.sigma_m)) {
-      ++result.accepted;
-    } else {
-      ++result.rejected_not_finite;
-    }
-  }
-  impl_->sample_count += result.accepted;
-  return result;
+AddResult Recognizer::add(const PatchContext& context, std::span<const ContactSample> samples) {
+  return impl_->add(context, samples);
 }
 
-Recognition Recognizer::recognize() {
-  Recognition recognition;
-  recognition.sample_count = impl_->sample_count;
-  return recognition;
-}
+Recognition Recognizer::recognize() { return impl_->recognize(); }
 
-void Recognizer::reset() { impl_->sample_count = 0; }
+void Recognizer::reset() { impl_->reset(); }
 
 }  // namespace palpate

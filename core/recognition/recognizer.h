@@ -1,46 +1,56 @@
 // The facade: add contact samples, ask for a recognition.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <span>
 
+#include "core/recognition/contact_sample.h"
+#include "core/recognition/contacts.h"
 #include "core/recognition/recognition.h"
+#include "core/recognition/recognition_tree.h"
+#include "core/recognition/sample_memory.h"
 
 namespace palpate {
 
-/// Side of the direction of travel on which the material lies.
-enum class MaterialSide { Unspecified, Left, Right };
-
-struct ContactSample {
-  Vec2 position_m = Vec2::Zero();
-  double sigma_m = 0.0;  ///< 1-sigma isotropic position noise; 0 = not known [m]
-  std::int64_t stamp_ns = 0;
-};
-
-/// Where a run of samples belongs: one unbroken touch of one probe.
-struct PatchContext {
-  std::uint32_t probe = 0;
-  std::uint32_t patch = 0;
-  double tip_radius_m = 0.0;  ///< samples are centres of a round tip of this radius; 0 = surface
-  MaterialSide material_side = MaterialSide::Unspecified;
+enum class RecognitionMethod {
+  MaximumLikelihood,  ///< all classes refined on all points, evidence weighed; the tree reports its path
+  Tree,               ///< the recognition tree on local estimates alone, as in the paper
 };
 
 struct RecognizerOptions {
+  RecognitionMethod method = RecognitionMethod::MaximumLikelihood;
   /// Noise of samples that bring no sigma of their own; 0 = estimate it from the data. [m]
   double sigma_m = 0.0;
   /// RECOGNIZED needs posterior >= this.
   double recognized_probability = 0.95;
+  /// RECOGNIZED needs every shape parameter's standard deviation <= this fraction of the parameter
+  /// (of 1 for the dimensionless b and c of the cubics): beyond it the linearised covariance means
+  /// little.
+  double determined_fraction = 0.3;
+  /// Price of a parameter in units of the Bayesian information criterion's log(n). With 1, the five
+  /// rivals of one more parameter that a parabola has would together always leave it in doubt.
+  double parsimony = 1.5;
+  /// RECOGNIZED as a limit of a richer class (a circle, say) needs the data to exclude, at two standard
+  /// deviations, departures larger than this: 1 - b/a of an ellipse, b^2/a^2 of an ellipse or hyperbola
+  /// that might be a parabola, c over the root of the half extent for a spline that might be
+  /// semi-cubical. Otherwise the arc is too short to tell.
+  double excluded_departure = 0.15;
+  /// The same for a line: turns of the arc larger than this. [rad]
+  double excluded_turn_rad = 0.03;
+  /// Deviations of a real part from its ideal curve up to this fraction of the touched half extent
+  /// count as form error, which is correlated along the arc and lowers the certainty; larger ones as
+  /// another shape.
+  double form_error_fraction = 1e-3;
+  /// Probability that a scene without spikes loses a sample to outlier rejection.
+  double false_outlier_probability = 0.01;
+  /// Classes to consider, by bit 1 << CurveClass; all by default.
+  unsigned classes = ~0U;
+  MemoryOptions memory;
+  ContactOptions contacts;
+  RecognitionTreeOptions tree;
 };
 
-/// Samples taken and samples refused, by reason.
-struct AddResult {
-  std::size_t accepted = 0;
-  std::size_t rejected_not_finite = 0;
-};
-
-/// Recognises one object from the patches of all probes of a group. Not thread-safe; create one
-/// per group.
+/// Recognises one object from the patches of all probes of a group. Not thread-safe; one per group.
 class Recognizer {
  public:
   explicit Recognizer(const RecognizerOptions& options = {});
@@ -51,7 +61,7 @@ class Recognizer {
   /// Appends samples of one patch in their order along the arc.
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples);
 
-  /// The answer for all samples in memory.
+  /// The answer for all samples in memory. O(samples).
   Recognition recognize();
 
   /// Forgets everything: a new object.

@@ -1,0 +1,342 @@
+#include "core/recognition/axis_fit.h"
+
+#include <ceres/tiny_solver.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+template <PolynomialModel kModel>
+constexpr bool has_arms() {
+  return kModel == PolynomialModel::SemiCubicalParabola || kModel == PolynomialModel::CubicSpline;
+}
+
+/// Powers of x (graph models) or t (arm models) that y is made of.
+template <PolynomialModel kModel>
+constexpr auto powers() {
+  if constexpr (kModel == PolynomialModel::Parabola) {
+    return std::array{0, 1, 2};
+  } else if constexpr (kModel == PolynomialModel::SemiCubicalParabola) {
+    return std::array{0, 2, 3};
+  } else {
+    return std::array{0, 1, 2, 3};
+  }
+}
+
+template <PolynomialModel kModel>
+class AxisResiduals {
+ public:
+  static constexpr auto kPowers = powers<kModel>();
+  static constexpr bool kArms = has_arms<kModel>();
+  static constexpr int kLinear = static_cast<int>(kPowers.size());
+  using Scalar = double;
+  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = kArms ? 2 : 1 };
+  using Design = Eigen::Matrix<double, Eigen::Dynamic, kLinear>;
+  using Coefficients = Eigen::Matrix<double, kLinear, 1>;
+
+  AxisResiduals(std::span<const FitPoint> points, std::span<const double> arms)
+      : points_(points), arms_(arms), design_(static_cast<Eigen::Index>(points.size()), kLinear),
+        right_(static_cast<Eigen::Index>(points.size()), 1 + NUM_PARAMETERS) {}
+
+  int NumResiduals() const { return static_cast<int>(points_.size()); }
+
+  /// Coefficients of y at the last evaluation.
+  const Coefficients& coefficients() const { return coefficients_; }
+
+  bool operator()(const double* x, double* residuals, double* jacobian) const {
+    const Vec2 axis(std::cos(x[0]), std::sin(x[0]));
+    const double x0 = kArms ? x[NUM_PARAMETERS - 1] : 0.0;
+    const Eigen::Index n = NumResiduals();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const FitPoint& point = points_[static_cast<std::size_t>(i)];
+      const double w = point.inverse_sigma * verticality(point, axis);
+      double u = point.position.dot(axis);
+      if constexpr (kArms) {
+        u = arms_[static_cast<std::size_t>(i)] * std::sqrt(std::max(u - x0, 0.0));
+      }
+      const double power[4] = {1.0, u, u * u, u * u * u};
+      for (int k = 0; k < kLinear; ++k) {
+        design_(i, k) = w * power[kPowers[static_cast<std::size_t>(k)]];
+      }
+      right_(i, 0) = w * cross(axis, point.position);
+    }
+    const Eigen::HouseholderQR<Design> qr(design_);
+    const Eigen::Matrix<double, kLinear, kLinear> r =
+        qr.matrixQR().template topRows<kLinear>().template triangularView<Eigen::Upper>();
+    if (!(r.diagonal().cwiseAbs().minCoeff() > 0.0)) {
+      // All points alike, as when the vertex passes beyond them: no curve. The solver does not look
+      // at the return value, but rejects a step to such residuals.
+      std::fill(residuals, residuals + n, std::sqrt(std::numeric_limits<double>::max() /
+                                                    static_cast<double>(4 * n)));
+      return false;
+    }
+    Eigen::Matrix<double, Eigen::Dynamic, 1> rotated = right_.col(0);
+    rotated.applyOnTheLeft(qr.householderQ().adjoint());
+    coefficients_ = r.template triangularView<Eigen::Upper>().solve(
+        rotated.template head<kLinear>());
+    rotated.template head<kLinear>().setZero();
+    std::copy(rotated.data(), rotated.data() + n, residuals);
+    if (jacobian == nullptr) {
+      return true;
+    }
+    // Kaufman's form: the derivative at fixed coefficients, projected off the columns.
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const FitPoint& point = points_[static_cast<std::size_t>(i)];
+      const double along = point.position.dot(axis);
+      const double across = cross(axis, point.position);
+      const double w = point.inverse_sigma * verticality(point, axis);
+      double slope = 0.0;  // dy/dx of the curve
+      double u = along;
+      double u_by_x = 1.0;
+      if constexpr (kArms) {
+        u = arms_[static_cast<std::size_t>(i)] * std::sqrt(std::max(along - x0, 0.0));
+        u_by_x = u != 0.0 ? 0.5 / u : 0.0;
+      }
+      double power = 1.0;
+      int degree = 0;
+      for (int k = 0; k < kLinear; ++k) {
+        const int wanted = kPowers[static_cast<std::size_t>(k)];
+        for (; degree + 1 < wanted; ++degree) {
+          power *= u;
+        }
+        slope += wanted > 0 ? wanted * coefficients_[k] * power * u_by_x : 0.0;
+      }
+      // Turning the axis by d: across falls by along d, along grows by across d.
+      right_(i, 1) = w * (-along - slope * across);
+      if constexpr (kArms) {
+        right_(i, 2) = w * slope;
+      }
+    }
+    Eigen::Matrix<double, Eigen::Dynamic, NUM_PARAMETERS> columns =
+        right_.template rightCols<NUM_PARAMETERS>();
+    columns.applyOnTheLeft(qr.householderQ().adjoint());
+    columns.template topRows<kLinear>().setZero();
+    std::copy(columns.data(), columns.data() + n * NUM_PARAMETERS, jacobian);
+    return true;
+  }
+
+ private:
+  std::span<const FitPoint> points_;
+  std::span<const double> arms_;
+  mutable Design design_;
+  mutable Eigen::Matrix<double, Eigen::Dynamic, 1 + NUM_PARAMETERS> right_;
+  mutable Coefficients coefficients_ = Coefficients::Zero();
+};
+
+template <PolynomialModel kModel>
+AxisFit refine(std::span<const FitPoint> points, AxisFit fit, int max_iterations) {
+  using Residuals = AxisResiduals<kModel>;
+  const Residuals residuals(points, fit.arms);
+  ceres::TinySolver<Residuals> solver{};
+  solver.options.max_num_iterations = max_iterations;
+  // A start for the refinement proper: chi-square to a tenth is plenty.
+  solver.options.function_tolerance = 0.1;
+  solver.options.gradient_tolerance = 0.0;
+  solver.options.parameter_tolerance = 1e-14;
+  solver.options.cost_threshold = 0.0;
+  solver.options.initial_trust_region_radius = 1e6;
+  Eigen::Matrix<double, Residuals::NUM_PARAMETERS, 1> x;
+  x[0] = fit.theta;
+  if constexpr (Residuals::kArms) {
+    x[1] = fit.x0;
+  }
+  fit.chi2 = 2.0 * solver.Solve(residuals, &x).final_cost;
+  fit.theta = x[0];
+  if constexpr (Residuals::kArms) {
+    fit.x0 = x[1];
+  }
+  return fit;
+}
+
+/// Coefficients of y in powers of u at given nonlinear parameters.
+template <PolynomialModel kModel>
+std::array<double, 4> across_coefficients(const AxisFit& fit,
+                                          std::span<const FitPoint> points) {
+  using Residuals = AxisResiduals<kModel>;
+  const Residuals residuals(points, fit.arms);
+  std::vector<double> scratch(points.size());
+  const double x[2] = {fit.theta, fit.x0};
+  residuals(x, scratch.data(), nullptr);
+  std::array<double, 4> y{};
+  for (int k = 0; k < Residuals::kLinear; ++k) {
+    y[static_cast<std::size_t>(Residuals::kPowers[static_cast<std::size_t>(k)])] =
+        residuals.coefficients()[k];
+  }
+  return y;
+}
+
+std::array<double, 4> across_coefficients(const AxisFit& fit,
+                                          std::span<const FitPoint> points) {
+  switch (fit.model) {
+    case PolynomialModel::Parabola:
+      return across_coefficients<PolynomialModel::Parabola>(fit, points);
+    case PolynomialModel::CubicalParabola:
+      return across_coefficients<PolynomialModel::CubicalParabola>(fit, points);
+    case PolynomialModel::SemiCubicalParabola:
+      return across_coefficients<PolynomialModel::SemiCubicalParabola>(fit, points);
+    case PolynomialModel::CubicSpline:
+      break;
+  }
+  return across_coefficients<PolynomialModel::CubicSpline>(fit, points);
+}
+
+/// The spline with its vertex moved by -factor * c / a, at most to just before the leftmost point.
+AxisFit with_vertex_moved(const AxisFit& spline, std::span<const FitPoint> points, double factor) {
+  const std::array<double, 4> y = across_coefficients(spline, points);
+  const Vec2 axis(std::cos(spline.theta), std::sin(spline.theta));
+  double least = std::numeric_limits<double>::infinity();
+  for (const FitPoint& point : points) {
+    least = std::min(least, point.position.dot(axis));
+  }
+  constexpr double kJustBefore = 1e-3;  // half extents of the data
+  AxisFit moved = spline;
+  const double step = factor * y[1] / y[3];
+  moved.x0 = std::min(std::isfinite(step) ? spline.x0 - step : spline.x0, least - kJustBefore);
+  return moved;
+}
+
+}  // namespace
+
+double verticality(const FitPoint& point, const Vec2& axis) {
+  constexpr double kLeast = 0.03;
+  constexpr double kUnknownDirection = 0.7;  // root mean square of the cosine
+  if (point.tangent.isZero()) {
+    return kUnknownDirection;
+  }
+  return std::max(std::abs(point.tangent.dot(axis)), kLeast);
+}
+
+AxisFit refine_axis(std::span<const FitPoint> points, AxisFit start, int max_iterations) {
+  switch (start.model) {
+    case PolynomialModel::Parabola:
+      return refine<PolynomialModel::Parabola>(points, std::move(start), max_iterations);
+    case PolynomialModel::CubicalParabola:
+      return refine<PolynomialModel::CubicalParabola>(points, std::move(start), max_iterations);
+    case PolynomialModel::SemiCubicalParabola:
+      return refine<PolynomialModel::SemiCubicalParabola>(points, std::move(start),
+                                                          max_iterations);
+    case PolynomialModel::CubicSpline:
+      break;
+  }
+  return refine<PolynomialModel::CubicSpline>(points, std::move(start), max_iterations);
+}
+
+bool reassign_arms(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
+                   AxisFit* fit) {
+  const Vec2 axis(std::cos(fit->theta), std::sin(fit->theta));
+  const std::array<double, 4> y = across_coefficients(*fit, points);
+  bool changed = false;
+  std::vector<double> advantage;  // of the positive arm over the negative one, point by point
+  for (const PatchSpan& patch : patches) {
+    advantage.clear();
+    double all = 0.0;
+    for (std::size_t i = patch.begin; i < patch.end; ++i) {
+      const double w = points[i].inverse_sigma * verticality(points[i], axis);
+      const double t = std::sqrt(std::max(points[i].position.dot(axis) - fit->x0, 0.0));
+      const double even = cross(axis, points[i].position) - y[0] - y[2] * t * t;
+      const double odd = y[1] * t + y[3] * t * t * t;
+      // (even + odd)^2 - (even - odd)^2
+      advantage.push_back(4.0 * w * w * even * odd);
+      all += advantage.back();
+    }
+    // Positive before the change and negative after it, or the other way round.
+    double before = 0.0;
+    double best = std::max(all, -all);
+    double first = all >= 0.0 ? 1.0 : -1.0;
+    std::size_t change = patch.size();
+    for (std::size_t k = 1; k < patch.size(); ++k) {
+      before += advantage[k - 1];
+      const double gain = 2.0 * before - all;
+      if (std::abs(gain) > best) {
+        best = std::abs(gain);
+        first = gain >= 0.0 ? 1.0 : -1.0;
+        change = k;
+      }
+    }
+    for (std::size_t k = 0; k < patch.size(); ++k) {
+      const double arm = k < change ? first : -first;
+      changed = changed || arm != fit->arms[patch.begin + k];
+      fit->arms[patch.begin + k] = arm;
+    }
+  }
+  return changed;
+}
+
+AxisFit twin_of(const AxisFit& spline, std::span<const FitPoint> points) {
+  return with_vertex_moved(spline, points, 4.0 / 3.0);
+}
+
+AxisFit semi_cubical_near(const AxisFit& spline, std::span<const FitPoint> points) {
+  AxisFit near = with_vertex_moved(spline, points, 2.0 / 3.0);
+  near.model = PolynomialModel::SemiCubicalParabola;
+  return near;
+}
+
+PolynomialFit to_polynomial(const AxisFit& fit, std::span<const FitPoint> points) {
+  const Vec2 axis(std::cos(fit.theta), std::sin(fit.theta));
+  std::array<double, 4> y = across_coefficients(fit, points);
+  std::array<double, 4> x{0.0, 1.0, 0.0, 0.0};
+  double shift = 0.0;
+  if (!fit.arms.empty()) {
+    x = {fit.x0, 0.0, 1.0, 0.0};
+  } else if (fit.model == PolynomialModel::CubicalParabola) {
+    // Move the origin of t to the inflection, where t^2 drops out. An inflection farther away than
+    // this, in half extents of the data, is as good as none: start from there.
+    constexpr double kFarthestInflection = 50.0;
+    if (std::abs(y[2]) > 3.0 * kFarthestInflection * std::abs(y[3])) {
+      y[3] = std::copysign(std::abs(y[2]) / (3.0 * kFarthestInflection), y[3]);
+    }
+    shift = y[3] != 0.0 ? -y[2] / (3.0 * y[3]) : 0.0;
+    x[0] = shift;
+    y = {y[0] + shift * (y[1] + shift * (y[2] + shift * y[3])),
+         y[1] + shift * (2.0 * y[2] + 3.0 * shift * y[3]), 0.0, y[3]};
+  }
+  PolynomialFit result;
+  for (std::size_t k = 0; k < 4; ++k) {
+    result.coefficients.col(static_cast<Eigen::Index>(k)) = x[k] * axis + y[k] * left_of(axis);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double along = points[i].position.dot(axis);
+    result.t.push_back(fit.arms.empty()
+                           ? along - shift
+                           : fit.arms[i] * std::sqrt(std::max(along - fit.x0, 0.0)));
+  }
+  result.chi2 = fit.chi2;
+  normalise_parameter(fit.model, &result);
+  return result;
+}
+
+void normalise_parameter(PolynomialModel model, PolynomialFit* fit) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  for (const double t : fit->t) {
+    least = std::min(least, t);
+    most = std::max(most, t);
+  }
+  PolynomialCoefficients& c = fit->coefficients;
+  double shift = 0.0;
+  if (model == PolynomialModel::Parabola || model == PolynomialModel::CubicSpline) {
+    shift = 0.5 * (least + most);
+    const PolynomialCoefficients old = c;
+    c.col(0) = old.col(0) + shift * (old.col(1) + shift * (old.col(2) + shift * old.col(3)));
+    c.col(1) = old.col(1) + shift * (2.0 * old.col(2) + 3.0 * shift * old.col(3));
+    c.col(2) = old.col(2) + 3.0 * shift * old.col(3);
+  }
+  const double scale = std::max(std::abs(least - shift), std::abs(most - shift));
+  if (!(scale > 0.0)) {
+    return;
+  }
+  c.col(1) *= scale;
+  c.col(2) *= scale * scale;
+  c.col(3) *= scale * scale * scale;
+  for (double& t : fit->t) {
+    t = (t - shift) / scale;
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,40 @@
+// Every class refined on all points: the material that evidence is weighed on.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "core/curves/curve_class.h"
+#include "core/recognition/fit_data.h"
+#include "core/recognition/implicit_fit.h"
+#include "core/recognition/polynomial_fit.h"
+#include "core/recognition/smooth_model.h"
+
+namespace palpate {
+
+/// A class at its best, in normalised coordinates.
+struct ClassFit {
+  CurveClass curve_class = CurveClass::Unclassified;
+  double chi2 = 0.0;
+  /// The class has no interior optimum: chi2 is that of the neighbour it runs away to (an ellipse
+  /// or hyperbola that wants to be a parabola), and there is no shape to report.
+  bool at_limit = false;
+  std::optional<ImplicitFit> implicit;      ///< line, circle, ellipse, hyperbola
+  std::optional<PolynomialFit> polynomial;  ///< parabola and the cubics
+  /// A spline's optimum on the other side of c = 0: where it fits as well, the shape is not known.
+  std::optional<PolynomialFit> rival;
+};
+
+/// Indexed by CurveClass; entry 0 (Unclassified) is empty.
+using ClassFits = std::array<std::optional<ClassFit>, 9>;
+
+/// Fits every class to the smooth model's reduced points, taken as surface points: seeds by
+/// exhaustive coarse search, then least orthogonal distances.
+ClassFits fit_classes(const FitData& reduced);
+
+/// Refines one of them on all points, tip radii and all; nullopt if its optimum there is no such curve
+/// (an ellipse that turned into a hyperbola or into a needle around straight points). O(points).
+std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& smooth,
+                                      const FitData& data);
+
+}  // namespace palpate

@@ -1,0 +1,27 @@
+// What a probe delivers, as core sees it.
+#pragma once
+
+#include <cstdint>
+
+#include "core/curves/pose2.h"
+
+namespace palpate {
+
+/// Side of the direction of travel on which the material lies.
+enum class MaterialSide { Unspecified, Left, Right };
+
+struct ContactSample {
+  Vec2 position_m = Vec2::Zero();
+  double sigma_m = 0.0;  ///< 1-sigma isotropic position noise; 0 = not known [m]
+  std::int64_t stamp_ns = 0;
+};
+
+/// Where a run of samples belongs: one unbroken touch of one probe.
+struct PatchContext {
+  std::uint32_t probe = 0;
+  std::uint32_t patch = 0;
+  double tip_radius_m = 0.0;  ///< samples are centres of a round tip of this radius; 0 = surface
+  MaterialSide material_side = MaterialSide::Unspecified;
+};
+
+}  // namespace palpate

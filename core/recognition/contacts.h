@@ -1,0 +1,33 @@
+// Local estimates along the patches, and their places on the recognised curve.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/recognition/recognition.h"
+#include "core/recognition/sample_memory.h"
+
+namespace palpate {
+
+struct ContactOptions {
+  /// Consecutive windows that a patch is divided into, each giving one estimate at its centre: no two
+  /// share a sample, so that their errors are independent.
+  std::size_t windows_per_patch = 4;
+  /// Fewest samples of a window; shorter patches have fewer windows.
+  std::size_t window_samples = 20;
+  /// Noise of samples that bring none; 0 = from each window's residuals. [m]
+  double sigma_m = 0.0;
+};
+
+/// Per patch an estimate at the centre of each window and one at each end of the patch, in the order of
+/// travel, taken back from tip centres to the surface where `sides` says so (+1: the tip lies left of
+/// travel, -1: right; one entry per patch, may be empty). t is 0.
+std::vector<LocalizedContact> estimate_contacts(std::span<const StoredPatch> patches,
+                                                std::span<const int> sides,
+                                                const ContactOptions& options);
+
+/// Sets t of each contact to that of its foot point on the curve.
+void localise_contacts(const ShapeParameters& shape, const Pose2& world_T_curve,
+                       std::vector<LocalizedContact>* contacts);
+
+}  // namespace palpate

@@ -1,0 +1,70 @@
+#include "core/recognition/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+/// See probabilities().
+void divide_conic(const ClassFits& fits, const EvidenceScale& scale,
+                  std::array<double, 9>* criterion) {
+  const auto& ellipse = fits[static_cast<std::size_t>(CurveClass::Ellipse)];
+  const auto& hyperbola = fits[static_cast<std::size_t>(CurveClass::Hyperbola)];
+  if (!ellipse || !hyperbola || ellipse->at_limit == hyperbola->at_limit) {
+    return;
+  }
+  const ClassFit& inside = ellipse->at_limit ? *hyperbola : *ellipse;
+  const ClassFit& beyond = ellipse->at_limit ? *ellipse : *hyperbola;
+  const double distance = std::sqrt(
+      std::max(0.0, misfit(beyond.chi2, scale) - misfit(inside.chi2, scale)));
+  // Phi(-z) without losing small tails, and its complement.
+  const double share_beyond = 0.5 * std::erfc(distance / std::sqrt(2.0));
+  double& conic = (*criterion)[static_cast<std::size_t>(inside.curve_class)];
+  (*criterion)[static_cast<std::size_t>(beyond.curve_class)] =
+      conic - 2.0 * std::log(std::max(share_beyond, std::numeric_limits<double>::min()));
+  conic -= 2.0 * std::log1p(-share_beyond);
+}
+
+}  // namespace
+
+double misfit(double chi2, const EvidenceScale& scale) {
+  if (scale.sigma_known) {
+    return chi2 / scale.tempering;
+  }
+  return scale.samples *
+         std::log(std::max(chi2 + scale.chi2_floor, std::numeric_limits<double>::min()));
+}
+
+double information_criterion(double chi2, double parameters, const EvidenceScale& scale) {
+  return misfit(chi2, scale) +
+         scale.parsimony * parameters * std::log(std::max(scale.samples, 1.0));
+}
+
+ClassProbabilities probabilities(const ClassFits& fits, double smooth_chi2, int smooth_parameters,
+                                 const EvidenceScale& scale) {
+  std::array<double, 9> criterion;
+  criterion.fill(std::numeric_limits<double>::infinity());
+  criterion[0] = information_criterion(smooth_chi2, smooth_parameters, scale);
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    if (fits[i]) {
+      criterion[i] = information_criterion(fits[i]->chi2, degrees_of_freedom(curve_class), scale);
+    }
+  }
+  divide_conic(fits, scale, &criterion);
+  const double best = *std::min_element(criterion.begin(), criterion.end());
+  ClassProbabilities result{};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < criterion.size(); ++i) {
+    result[i] = std::exp(-0.5 * (criterion[i] - best));
+    sum += result[i];
+  }
+  for (double& p : result) {
+    p /= sum;
+  }
+  return result;
+}
+
+}  // namespace palpate

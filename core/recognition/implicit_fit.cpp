@@ -1,0 +1,293 @@
+#include "core/recognition/implicit_fit.h"
+
+#include <ceres/tiny_solver.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+using Monomials = Eigen::Matrix<double, 6, 1>;
+
+Monomials monomials(const Vec2& p) {
+  return {p.x() * p.x(), p.x() * p.y(), p.y() * p.y(), p.x(), p.y(), 1.0};
+}
+
+double value(const ConicCoefficients& q, const Vec2& p) {
+  return (q[0] * p.x() + q[1] * p.y() + q[3]) * p.x() + (q[2] * p.y() + q[4]) * p.y() + q[5];
+}
+
+Vec2 gradient(const ConicCoefficients& q, const Vec2& p) {
+  return {2.0 * q[0] * p.x() + q[1] * p.y() + q[3], q[1] * p.x() + 2.0 * q[2] * p.y() + q[4]};
+}
+
+/// Columns: the model's directions in the space of the six coefficients.
+template <int K>
+using ModelBasis = Eigen::Matrix<double, 6, K>;
+
+ModelBasis<6> conic_basis() { return ModelBasis<6>::Identity(); }
+
+ModelBasis<4> circle_basis() {
+  ModelBasis<4> basis = ModelBasis<4>::Zero();
+  basis(0, 0) = basis(2, 0) = std::sqrt(0.5);
+  basis(3, 1) = basis(4, 2) = basis(5, 3) = 1.0;
+  return basis;
+}
+
+ModelBasis<3> line_basis() {
+  ModelBasis<3> basis = ModelBasis<3>::Zero();
+  basis(3, 0) = basis(4, 1) = basis(5, 2) = 1.0;
+  return basis;
+}
+
+/// Residuals over the tangent space of the unit sphere at `start`, as ceres::TinySolver asks.
+template <int K>
+class SphereResiduals {
+ public:
+  using Scalar = double;
+  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = K - 1 };
+  using Start = Eigen::Matrix<double, K, 1>;
+  using Step = Eigen::Matrix<double, K - 1, 1>;
+
+  SphereResiduals(std::span<const FitPoint> points, const ModelBasis<K>& basis, const Start& start,
+                  int side)
+      : points_(points), basis_(basis), start_(start.normalized()), side_(side) {
+    const Eigen::HouseholderQR<Start> qr(start_);
+    const Eigen::Matrix<double, K, K> q = qr.householderQ();
+    tangent_ = q.template rightCols<K - 1>();
+  }
+
+  int NumResiduals() const { return static_cast<int>(points_.size()); }
+
+  ConicCoefficients coefficients(const Step& step) const {
+    return basis_ * (start_ + tangent_ * step).normalized();
+  }
+
+  bool operator()(const double* step_data, double* residuals, double* jacobian) const {
+    const Eigen::Map<const Step> step(step_data);
+    const Start moved = start_ + tangent_ * step;
+    const double norm = moved.norm();
+    const Start u = moved / norm;
+    const ConicCoefficients q = basis_ * u;
+    Eigen::Matrix<double, 6, K - 1> q_by_step;
+    if (jacobian != nullptr) {
+      q_by_step = basis_ * ((tangent_ - u * (u.transpose() * tangent_)) / norm);
+    }
+    const Eigen::Index n = NumResiduals();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const FitPoint& point = points_[static_cast<std::size_t>(i)];
+      Vec2 foot;
+      const double distance = signed_distance(q, point.position, &foot);
+      residuals[i] = (distance - side_ * point.offset) * point.inverse_sigma;
+      if (jacobian != nullptr) {
+        // Envelope theorem: only the curve's motion along its normal at the foot point counts.
+        const double gradient_norm = gradient(q, foot).norm();
+        const double factor = gradient_norm > 0.0 ? point.inverse_sigma / gradient_norm : 0.0;
+        const Eigen::Matrix<double, 1, K - 1> row =
+            factor * (monomials(foot).transpose() * q_by_step);
+        for (Eigen::Index k = 0; k < K - 1; ++k) {
+          jacobian[k * n + i] = row[k];
+        }
+      }
+    }
+    return true;
+  }
+
+ private:
+  std::span<const FitPoint> points_;
+  ModelBasis<K> basis_;
+  Start start_;
+  Eigen::Matrix<double, K, K - 1> tangent_;
+  int side_;
+};
+
+template <int K>
+ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
+                   const ConicCoefficients& start, int side, int max_iterations) {
+  const Eigen::Matrix<double, K, 1> start_in_model = basis.transpose() * start;
+  const SphereResiduals<K> residuals(points, basis, start_in_model, side);
+  ceres::TinySolver<SphereResiduals<K>> solver{};
+  solver.options.max_num_iterations = max_iterations;
+  // Residuals are in units of sigma: chi-square changes below this cannot matter. (The solver
+  // compares the ABSOLUTE change of the cost, whatever its comment says.)
+  solver.options.function_tolerance = 1e-7;
+  solver.options.gradient_tolerance = 0.0;
+  // Little damping to begin with: the valleys of short arcs are long, and the solver multiplies
+  // the damping fast where a step fails.
+  solver.options.initial_trust_region_radius = 1e8;
+  solver.options.parameter_tolerance = 1e-14;
+  solver.options.cost_threshold = 0.0;
+  Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
+  const auto& summary = solver.Solve(residuals, &step);
+  return {residuals.coefficients(step), 2.0 * summary.final_cost, summary.iterations, side};
+}
+
+template <int K>
+InformationSpectrum spectrum(std::span<const FitPoint> points, const ModelBasis<K>& basis,
+                             const ConicCoefficients& q) {
+  const Eigen::Matrix<double, K, 1> start = basis.transpose() * q;
+  const SphereResiduals<K> residuals(points, basis, start, 0);
+  const Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
+  const auto n = static_cast<Eigen::Index>(points.size());
+  Eigen::VectorXd values(n);
+  Eigen::Matrix<double, Eigen::Dynamic, K - 1> jacobian(n, K - 1);
+  residuals(step.data(), values.data(), jacobian.data());
+  const Eigen::Matrix<double, K - 1, K - 1> information = jacobian.transpose() * jacobian;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, K - 1, K - 1>> solver(
+      information, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues();
+}
+
+}  // namespace
+
+InformationSpectrum conic_information(std::span<const FitPoint> points,
+                                      const ConicCoefficients& q) {
+  return spectrum<6>(points, conic_basis(), q);
+}
+
+InformationSpectrum circle_information(std::span<const FitPoint> points,
+                                       const ConicCoefficients& q) {
+  return spectrum<4>(points, circle_basis(), q);
+}
+
+InformationSpectrum line_information(std::span<const FitPoint> points,
+                                     const ConicCoefficients& q) {
+  return spectrum<3>(points, line_basis(), q);
+}
+
+double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot) {
+  // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}; its first step from the point is
+  // the first-order (Sampson) foot point.
+  constexpr int kMaxIterations = 6;
+  constexpr double kRelativeStep = 1e-13;  // of the normalised extent: at rounding level
+  Vec2 f = point;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    const double v = value(q, f);
+    const Vec2 g = gradient(q, f);
+    const double g2 = g.squaredNorm();
+    if (g2 <= 0.0) {
+      break;  // centre of a conic: no direction to go
+    }
+    const Vec2 away = point - f;
+    const double c = away.x() * g.y() - away.y() * g.x();
+    // d(away x g)/df = H rotated: rows for f.x and f.y.
+    const double cx = -g.y() + away.x() * q[1] - away.y() * 2.0 * q[0];
+    const double cy = g.x() + away.x() * 2.0 * q[2] - away.y() * q[1];
+    const double determinant = g.x() * cy - g.y() * cx;
+    Vec2 step;
+    if (determinant > 0.1 * g2) {
+      step = {(-v * cy + c * g.y()) / determinant, (-g.x() * c + v * cx) / determinant};
+    } else {
+      step = -v / g2 * g;  // beyond the centre of curvature: stay with the first-order foot point
+    }
+    f += step;
+    if (step.squaredNorm() < kRelativeStep * kRelativeStep) {
+      break;
+    }
+  }
+  *foot = f;
+  const Vec2 g = gradient(q, f);
+  const double distance = (point - f).norm();
+  return (point - f).dot(g) >= 0.0 ? distance : -distance;
+}
+
+ConicCoefficients algebraic_conic(std::span<const FitPoint> points) {
+  Monomials mean = Monomials::Zero();
+  double weight_sum = 0.0;
+  for (const FitPoint& point : points) {
+    const double w = point.inverse_sigma * point.inverse_sigma;
+    mean += w * monomials(point.position);
+    weight_sum += w;
+  }
+  mean /= weight_sum;
+  using Matrix5 = Eigen::Matrix<double, 5, 5>;
+  Matrix5 scatter = Matrix5::Zero();
+  Matrix5 gradients = Matrix5::Zero();
+  for (const FitPoint& point : points) {
+    const double w = point.inverse_sigma * point.inverse_sigma / weight_sum;
+    const Vec2& p = point.position;
+    const Eigen::Matrix<double, 5, 1> m = (monomials(p) - mean).head<5>();
+    scatter.noalias() += w * m * m.transpose();
+    Eigen::Matrix<double, 5, 2> d;
+    d << 2.0 * p.x(), 0.0, p.y(), p.x(), 0.0, 2.0 * p.y(), 1.0, 0.0, 0.0, 1.0;
+    gradients.noalias() += w * d * d.transpose();
+  }
+  // Points on a line leave one gradient direction empty; a rounding-level ridge keeps the
+  // eigenproblem defined.
+  constexpr double kRidge = 1e-14;
+  gradients.diagonal().array() += kRidge * gradients.trace();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix5> solver(scatter, gradients);
+  ConicCoefficients q;
+  q.head<5>() = solver.eigenvectors().col(0);
+  q[5] = -q.head<5>().dot(mean.head<5>());
+  return q.normalized();
+}
+
+ConicCoefficients algebraic_circle(std::span<const FitPoint> points) {
+  // Taubin's circle: z = x^2 + y^2 regressed with gradient weights (3 x 3 eigenproblem).
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  double weight_sum = 0.0;
+  const auto features = [](const Vec2& p) { return Eigen::Vector3d(p.squaredNorm(), p.x(), p.y()); };
+  for (const FitPoint& point : points) {
+    const double w = point.inverse_sigma * point.inverse_sigma;
+    mean += w * features(point.position);
+    weight_sum += w;
+  }
+  mean /= weight_sum;
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d gradients = Eigen::Matrix3d::Zero();
+  for (const FitPoint& point : points) {
+    const double w = point.inverse_sigma * point.inverse_sigma / weight_sum;
+    const Vec2& p = point.position;
+    const Eigen::Vector3d m = features(p) - mean;
+    scatter.noalias() += w * m * m.transpose();
+    Eigen::Matrix<double, 3, 2> d;
+    d << 2.0 * p.x(), 2.0 * p.y(), 1.0, 0.0, 0.0, 1.0;
+    gradients.noalias() += w * d * d.transpose();
+  }
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter, gradients);
+  const Eigen::Vector3d v = solver.eigenvectors().col(0);
+  ConicCoefficients q;
+  q << v[0], 0.0, v[0], v[1], v[2], -v.dot(mean);
+  return q.normalized();
+}
+
+ConicCoefficients algebraic_line(std::span<const FitPoint> points) {
+  Vec2 mean = Vec2::Zero();
+  double weight_sum = 0.0;
+  for (const FitPoint& point : points) {
+    const double w = point.inverse_sigma * point.inverse_sigma;
+    mean += w * point.position;
+    weight_sum += w;
+  }
+  mean /= weight_sum;
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const FitPoint& point : points) {
+    const double w = point.inverse_sigma * point.inverse_sigma / weight_sum;
+    scatter.noalias() += w * (point.position - mean) * (point.position - mean).transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(scatter);
+  const Vec2 normal = solver.eigenvectors().col(0);
+  ConicCoefficients q;
+  q << 0.0, 0.0, 0.0, normal.x(), normal.y(), -normal.dot(mean);
+  return q.normalized();
+}
+
+ImplicitFit refine_conic(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
+                         int max_iterations) {
+  return refine<6>(points, conic_basis(), start, side, max_iterations);
+}
+
+ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficients& start,
+                          int side, int max_iterations) {
+  return refine<4>(points, circle_basis(), start, side, max_iterations);
+}
+
+ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
+                        int max_iterations) {
+  return refine<3>(points, line_basis(), start, side, max_iterations);
+}
+
+}  // namespace palpate

@@ -1,0 +1,51 @@
+// Least orthogonal distances of an implicit curve of second degree at most: conic, circle, line.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "core/recognition/fit_data.h"
+
+namespace palpate {
+
+/// Coefficients of q0 x^2 + q1 xy + q2 y^2 + q3 x + q4 y + q5 = 0.
+using ConicCoefficients = Eigen::Matrix<double, 6, 1>;
+
+struct ImplicitFit {
+  ConicCoefficients coefficients = ConicCoefficients::Zero();  ///< unit norm, normalised frame
+  double chi2 = 0.0;
+  int iterations = 0;
+  int side = 0;  ///< where tip centres lie: +1 where the polynomial is positive, -1 negative
+};
+
+/// Starts without a previous fit, from the algebraic fit of G. Taubin ("Estimation of planar
+/// curves, surfaces and nonplanar space curves defined by implicit equations", 1991): gradient
+/// weights, hence no bias towards small ellipses, one 5 x 5 eigenproblem.
+ConicCoefficients algebraic_conic(std::span<const FitPoint> points);
+ConicCoefficients algebraic_circle(std::span<const FitPoint> points);
+ConicCoefficients algebraic_line(std::span<const FitPoint> points);
+
+/// Refines over all conics (5 degrees of freedom), all circles and lines (3), or all lines (2):
+/// the coefficients move on the unit sphere of the model's subspace, so that passing from ellipse
+/// through parabola to hyperbola, or from circle to line, is smooth.
+ImplicitFit refine_conic(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
+                         int max_iterations = 100);
+ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficients& start,
+                          int side, int max_iterations = 100);
+ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
+                        int max_iterations = 100);
+
+/// Eigenvalues, ascending, of the Fisher information of the model's coefficients (on the unit sphere,
+/// normalised frame, points' stated noise): how sharply the data determine each direction.
+using InformationSpectrum = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1>;
+InformationSpectrum conic_information(std::span<const FitPoint> points, const ConicCoefficients& q);
+InformationSpectrum circle_information(std::span<const FitPoint> points,
+                                       const ConicCoefficients& q);
+InformationSpectrum line_information(std::span<const FitPoint> points, const ConicCoefficients& q);
+
+/// Signed distance of a point to the conic near it, positive where the polynomial is. The foot
+/// point is found by Newton's method from the point itself: the nearest one wherever the distance
+/// is small beside the radius of curvature. `foot` receives it.
+double signed_distance(const ConicCoefficients& coefficients, const Vec2& point, Vec2* foot);
+
+}  // namespace palpate

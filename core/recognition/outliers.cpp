@@ -1,0 +1,65 @@
+#include "core/recognition/outliers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/recognition/normal_quantile.h"
+
+namespace palpate {
+std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,
+                                        const RecognizerOptions& options) {
+  const CanonicalFit* fit = nullptr;
+  double best = -1.0;
+  for (std::size_t i = 1; i < weighing.canonical.size(); ++i) {
+    if (weighing.canonical[i] && weighing.probabilities[i] > best) {
+      best = weighing.probabilities[i];
+      fit = &*weighing.canonical[i];
+    }
+  }
+  if (fit == nullptr) {
+    return std::nullopt;
+  }
+  const std::size_t n = data.points.size();
+  // Robust scale of the residuals: their noise may be unknown, and spikes must not widen it.
+  std::vector<double> magnitude(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    magnitude[i] = std::abs(fit->points[i].residual);
+  }
+  std::vector<double> sorted = magnitude;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n / 2),
+                   sorted.end());
+  constexpr double kMedianOfMagnitude = 0.6745;  // of a standard normal
+  const double scale = std::max(1.0, sorted[n / 2] / kMedianOfMagnitude);
+  const double limit =
+      scale * two_sided_normal_quantile(options.false_outlier_probability / static_cast<double>(n));
+  constexpr std::size_t kLongestRun = 3;
+  constexpr std::size_t kMost = 2;
+  constexpr std::size_t kOneIn = 20;
+  FitData kept = data;
+  kept.points.clear();
+  kept.patches.clear();
+  std::size_t dropped = 0;
+  for (const PatchSpan& patch : data.patches) {
+    const std::size_t begin = kept.points.size();
+    std::size_t run = 0;
+    for (std::size_t i = patch.begin; i < patch.end; ++i) {
+      if (magnitude[i] > limit) {
+        ++dropped;
+        if (++run > kLongestRun) {
+          return std::nullopt;
+        }
+      } else {
+        run = 0;
+        kept.points.push_back(data.points[i]);
+      }
+    }
+    kept.patches.push_back({begin, kept.points.size()});
+  }
+  if (dropped == 0 || dropped > kMost + n / kOneIn) {
+    return std::nullopt;
+  }
+  return kept;
+}
+
+}  // namespace palpate

@@ -1,0 +1,248 @@
+#include "core/recognition/polynomial_fit.h"
+
+#include <ceres/tiny_solver.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+template <PolynomialModel kModel>
+constexpr auto exponents() {
+  if constexpr (kModel == PolynomialModel::Parabola) {
+    return std::array{0, 1, 2};
+  } else if constexpr (kModel == PolynomialModel::CubicalParabola) {
+    return std::array{0, 1, 3};
+  } else if constexpr (kModel == PolynomialModel::SemiCubicalParabola) {
+    return std::array{0, 2, 3};
+  } else {
+    return std::array{0, 1, 2, 3};
+  }
+}
+
+/// Follows the foot point of `p` by Newton's method on (C(t) - p) . C'(t) = 0 from `t`.
+PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, double t) {
+  constexpr int kMaxIterations = 5;
+  constexpr double kRelativeStep = 1e-11;  // distances depend on t to second order only
+  constexpr double kLongestStep = 0.5;     // of the data's parameter range, about [-1, 1]
+  Vec2 away;
+  Vec2 first;
+  for (int iteration = 0;; ++iteration) {
+    away = p - (c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3))));
+    first = c.col(1) + t * (2.0 * c.col(2) + 3.0 * t * c.col(3));
+    const double speed2 = first.squaredNorm();
+    if (iteration == kMaxIterations || speed2 <= 0.0) {
+      break;
+    }
+    const Vec2 second = 2.0 * c.col(2) + 6.0 * t * c.col(3);
+    double slope = speed2 - away.dot(second);
+    if (slope < 0.1 * speed2) {
+      slope = speed2;  // beyond the centre of curvature: a Gauss-Newton step is safe
+    }
+    const double step = std::clamp(away.dot(first) / slope, -kLongestStep, kLongestStep);
+    if (std::abs(step) < kRelativeStep) {
+      break;
+    }
+    t += step;
+  }
+  PlacedPoint placed;
+  placed.t = t;
+  const double speed = first.norm();
+  const double distance = away.norm();
+  if (speed > 0.0) {
+    placed.normal = left_of(first) / speed;
+    placed.signed_distance = away.dot(placed.normal);
+  }
+  // At a cusp, or where the foot point is not stationary, the normal does not point along the
+  // distance: take the distance itself.
+  constexpr double kPerpendicular = 0.9;
+  if (std::abs(placed.signed_distance) < kPerpendicular * distance) {
+    placed.normal = away / distance;
+    placed.signed_distance = distance;
+  }
+  return placed;
+}
+
+template <PolynomialModel kModel>
+class PolynomialResiduals {
+ public:
+  static constexpr auto kExponents = exponents<kModel>();
+  using Scalar = double;
+  enum {
+    NUM_RESIDUALS = Eigen::Dynamic,
+    NUM_PARAMETERS = 2 * static_cast<int>(kExponents.size())
+  };
+  using Parameters = Eigen::Matrix<double, NUM_PARAMETERS, 1>;
+
+  PolynomialResiduals(std::span<const FitPoint> points, std::vector<double> t, int side)
+      : points_(points), side_(side), t_accepted_(std::move(t)), t_trial_(t_accepted_) {
+    trial_.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+
+  int NumResiduals() const { return static_cast<int>(points_.size()); }
+
+  static PolynomialCoefficients coefficients(const Parameters& x) {
+    PolynomialCoefficients c = PolynomialCoefficients::Zero();
+    for (std::size_t k = 0; k < kExponents.size(); ++k) {
+      c.col(kExponents[k]) = x.template segment<2>(2 * static_cast<Eigen::Index>(k));
+    }
+    return c;
+  }
+
+  static Parameters parameters(const PolynomialCoefficients& c) {
+    Parameters x;
+    for (std::size_t k = 0; k < kExponents.size(); ++k) {
+      x.template segment<2>(2 * static_cast<Eigen::Index>(k)) = c.col(kExponents[k]);
+    }
+    return x;
+  }
+
+  // The solver asks for residuals alone at a trial step and for the Jacobian at accepted ones: a
+  // rejected trial must not move the foot points that the next one starts from.
+  bool operator()(const double* x_data, double* residuals, double* jacobian) const {
+    const Parameters x = Eigen::Map<const Parameters>(x_data);
+    const PolynomialCoefficients c = coefficients(x);
+    const bool follows_trial = jacobian != nullptr && x == trial_;
+    const std::vector<double>& t_start = follows_trial ? t_trial_ : t_accepted_;
+    std::vector<double>& t_end = jacobian != nullptr ? t_accepted_ : t_trial_;
+    if (jacobian == nullptr) {
+      trial_ = x;
+    }
+    const std::size_t n = points_.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const FitPoint& point = points_[i];
+      const PlacedPoint foot = follow_foot_point(c, point.position, t_start[i]);
+      t_end[i] = foot.t;
+      residuals[i] = (foot.signed_distance - side_ * point.offset) * point.inverse_sigma;
+      if (jacobian != nullptr) {
+        const double powers[4] = {1.0, foot.t, foot.t * foot.t, foot.t * foot.t * foot.t};
+        const double nx = -foot.normal.x() * point.inverse_sigma;
+        const double ny = -foot.normal.y() * point.inverse_sigma;
+        for (std::size_t k = 0; k < kExponents.size(); ++k) {
+          const double power = powers[kExponents[k]];
+          jacobian[2 * k * n + i] = nx * power;
+          jacobian[(2 * k + 1) * n + i] = ny * power;
+        }
+      }
+    }
+    return true;
+  }
+
+  std::vector<double> take_t() { return std::move(t_accepted_); }
+
+ private:
+  std::span<const FitPoint> points_;
+  int side_;
+  mutable std::vector<double> t_accepted_;
+  mutable std::vector<double> t_trial_;
+  mutable Parameters trial_;
+};
+
+template <PolynomialModel kModel>
+PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int side,
+                     int max_iterations) {
+  using Residuals = PolynomialResiduals<kModel>;
+  Residuals residuals(points, std::move(start.t), side);
+  ceres::TinySolver<Residuals> solver{};
+  solver.options.max_num_iterations = max_iterations;
+  // Residuals are in units of sigma; the solver compares the ABSOLUTE change of the cost.
+  solver.options.function_tolerance = 1e-7;
+  solver.options.gradient_tolerance = 0.0;
+  // Little damping to begin with: the valleys of short arcs are long, and the solver multiplies
+  // the damping fast where a step fails.
+  solver.options.initial_trust_region_radius = 1e8;
+  solver.options.parameter_tolerance = 1e-14;
+  solver.options.cost_threshold = 0.0;
+  typename Residuals::Parameters x = Residuals::parameters(start.coefficients);
+  PolynomialFit fit;
+  fit.chi2 = std::numeric_limits<double>::infinity();
+  // The solver also stops where a step is refused for next to nothing, as happens along the directions
+  // that affine changes of t leave free. Starting afresh, with the scaling and damping of the new place,
+  // tells a stop from an optimum.
+  constexpr int kMostStarts = 6;
+  constexpr double kSettled = 1e-5;  // of chi-square
+  for (int start_number = 0; start_number < kMostStarts; ++start_number) {
+    const auto& summary = solver.Solve(residuals, &x);
+    const double chi2 = 2.0 * summary.final_cost;
+    fit.iterations += summary.iterations;
+    const bool settled = !(chi2 < fit.chi2 - kSettled);
+    fit.chi2 = std::min(fit.chi2, chi2);
+    if (settled || !std::isfinite(chi2)) {
+      break;
+    }
+  }
+  fit.coefficients = Residuals::coefficients(x);
+  fit.side = side;
+  fit.t = residuals.take_t();
+  return fit;
+}
+
+template <PolynomialModel kModel>
+Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> spectrum(std::span<const FitPoint> points,
+                                                           const PolynomialFit& fit) {
+  using Residuals = PolynomialResiduals<kModel>;
+  constexpr int kParameters = Residuals::NUM_PARAMETERS;
+  const Residuals residuals(points, fit.t, fit.side);
+  const typename Residuals::Parameters x = Residuals::parameters(fit.coefficients);
+  const auto n = static_cast<Eigen::Index>(points.size());
+  Eigen::VectorXd values(n);
+  Eigen::Matrix<double, Eigen::Dynamic, kParameters> jacobian(n, kParameters);
+  residuals(x.data(), values.data(), jacobian.data());
+  const Eigen::Matrix<double, kParameters, kParameters> information =
+      jacobian.transpose() * jacobian;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kParameters, kParameters>> solver(
+      information, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues();
+}
+
+}  // namespace
+
+Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> polynomial_information(
+    PolynomialModel model, std::span<const FitPoint> points, const PolynomialFit& fit) {
+  switch (model) {
+    case PolynomialModel::Parabola:
+      return spectrum<PolynomialModel::Parabola>(points, fit);
+    case PolynomialModel::CubicalParabola:
+      return spectrum<PolynomialModel::CubicalParabola>(points, fit);
+    case PolynomialModel::SemiCubicalParabola:
+      return spectrum<PolynomialModel::SemiCubicalParabola>(points, fit);
+    case PolynomialModel::CubicSpline:
+      break;
+  }
+  return spectrum<PolynomialModel::CubicSpline>(points, fit);
+}
+
+PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
+                                PolynomialFit start, int side, int max_iterations) {
+  switch (model) {
+    case PolynomialModel::Parabola:
+      return refine<PolynomialModel::Parabola>(points, std::move(start), side, max_iterations);
+    case PolynomialModel::CubicalParabola:
+      return refine<PolynomialModel::CubicalParabola>(points, std::move(start), side,
+                                                      max_iterations);
+    case PolynomialModel::SemiCubicalParabola:
+      return refine<PolynomialModel::SemiCubicalParabola>(points, std::move(start), side,
+                                                          max_iterations);
+    case PolynomialModel::CubicSpline:
+      return refine<PolynomialModel::CubicSpline>(points, std::move(start), side, max_iterations);
+  }
+  return start;
+}
+
+bool is_same_curve(const PolynomialFit& a, const PolynomialFit& b) {
+  constexpr double kSameChi2 = 1e-3;   // far below what tells curves apart
+  constexpr double kSameAngle = 1e-6;  // [rad]
+  const Vec2 u = a.coefficients.col(3).normalized();
+  const Vec2 v = b.coefficients.col(3).normalized();
+  return std::abs(a.chi2 - b.chi2) <= kSameChi2 && std::abs(cross(u, v)) <= kSameAngle;
+}
+
+PlacedPoint place_on(const PolynomialFit& fit, double t, const Vec2& point) {
+  return follow_foot_point(fit.coefficients, point, t);
+}
+
+}  // namespace palpate

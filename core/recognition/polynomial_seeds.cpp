@@ -1,0 +1,273 @@
+#include "core/recognition/polynomial_seeds.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+double square(double x) { return x * x; }
+
+/// Weighted moments for a least-squares polynomial in u of degree 3: sums of w u^k, w v u^k.
+struct Moments {
+  std::array<double, 7> u{};
+  std::array<double, 4> vu{};
+  double vv = 0.0;
+
+  void add(double w, double x, double v) {
+    double power = w;
+    for (std::size_t k = 0; k < 7; ++k) {
+      u[k] += power;
+      if (k < 4) {
+        vu[k] += power * v;
+      }
+      power *= x;
+    }
+    vv += w * v * v;
+  }
+
+  /// Adds another patch's moments, taken on the arm of the given sign: u -> sign u.
+  void add(const Moments& other, double sign) {
+    double s = 1.0;
+    for (std::size_t k = 0; k < 7; ++k) {
+      u[k] += s * other.u[k];
+      if (k < 4) {
+        vu[k] += s * other.vu[k];
+      }
+      s *= sign;
+    }
+    vv += other.vv;
+  }
+};
+
+/// Least squares of v over the powers of u given by `exponents`; returns the residual sum.
+template <std::size_t N>
+double residual_sum(const Moments& m, const std::array<std::size_t, N>& exponents) {
+  constexpr int kSize = static_cast<int>(N);
+  // Near-empty directions (all points alike) must not blow up: a ridge at the level of rounding.
+  constexpr double kRidge = 1e-12;
+  Eigen::Matrix<double, kSize, kSize> a;
+  Eigen::Matrix<double, kSize, 1> b;
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t j = 0; j < N; ++j) {
+      a(static_cast<int>(i), static_cast<int>(j)) = m.u[exponents[i] + exponents[j]];
+    }
+    a(static_cast<int>(i), static_cast<int>(i)) += kRidge * m.u[2 * exponents[i]];
+    b[static_cast<int>(i)] = m.vu[exponents[i]];
+  }
+  const Eigen::LLT<Eigen::Matrix<double, kSize, kSize>> llt(a);
+  const Eigen::Matrix<double, kSize, 1> x = llt.solve(b);
+  const double cost = m.vv - x.dot(b);
+  return std::isfinite(cost) ? std::max(cost, 0.0) : std::numeric_limits<double>::infinity();
+}
+
+/// One cell of the coarse search.
+struct Candidate {
+  double cost = std::numeric_limits<double>::infinity();
+  double theta = 0.0;
+  double x0 = 0.0;
+  std::vector<double> arms;  ///< sign of t of every point (arm models only)
+};
+
+/// Appends the best local minima over a grid of directions (circular, outer index) and vertices
+/// (inner index, `vertices` each), best first.
+void take_minima(const std::vector<Candidate>& grid, std::size_t vertices, std::size_t most,
+                 PolynomialModel model, std::vector<AxisFit>* seeds) {
+  std::vector<const Candidate*> minima;
+  const std::size_t directions = grid.size() / vertices;
+  const auto is_minimum = [&](std::size_t d, std::size_t v) {
+    const Candidate& here = grid[d * vertices + v];
+    for (std::size_t dd : {d + directions - 1, d, d + 1}) {
+      for (std::size_t vv = v > 0 ? v - 1 : v; vv <= std::min(v + 1, vertices - 1); ++vv) {
+        const Candidate& there = grid[(dd % directions) * vertices + vv];
+        if (&there != &here && (there.cost < here.cost ||
+                                (there.cost == here.cost && &there < &here))) {
+          return false;
+        }
+      }
+    }
+    return std::isfinite(here.cost);
+  };
+  for (std::size_t d = 0; d < directions; ++d) {
+    for (std::size_t v = 0; v < vertices; ++v) {
+      if (is_minimum(d, v)) {
+        minima.push_back(&grid[d * vertices + v]);
+      }
+    }
+  }
+  std::sort(minima.begin(), minima.end(),
+            [](const Candidate* a, const Candidate* b) { return a->cost < b->cost; });
+  minima.resize(std::min(most, minima.size()));
+  for (const Candidate* minimum : minima) {
+    seeds->push_back({model, minimum->theta, minimum->x0, minimum->arms, minimum->cost});
+  }
+}
+
+/// Arms of one patch for one direction and vertex: moments on the positive arm, and where the
+/// patch turns round its leftmost point, the index at which it changes arms.
+struct PatchArms {
+  Moments moments;
+  std::size_t change = 0;  ///< first index of the second arm; patch end if there is one arm only
+};
+
+class ArmSearch {
+ public:
+  /// Vertices from "at the leftmost point" to "so far away that the arms are graphs", in spans of
+  /// the points along the axis.
+  static constexpr std::array kVertexDistances = {0.002, 0.02, 0.06, 0.15, 0.35, 0.8, 1.8, 4.0};
+
+  ArmSearch(std::span<const FitPoint> points, std::span<const PatchSpan> patches)
+      : points_(points), patches_(patches) {
+    order_.resize(patches.size());
+    for (std::size_t p = 0; p < order_.size(); ++p) {
+      order_[p] = p;
+    }
+    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+      return patches[a].size() > patches[b].size();
+    });
+  }
+
+  /// Best arms for one direction and each vertex of kVertexDistances.
+  void search(double theta, Candidate* semi_cubicals, Candidate* splines) {
+    const Vec2 axis(std::cos(theta), std::sin(theta));
+    const std::size_t n = points_.size();
+    x_.resize(n);
+    y_.resize(n);
+    w_.resize(n);
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (std::size_t i = 0; i < n; ++i) {
+      x_[i] = points_[i].position.dot(axis);
+      y_[i] = cross(axis, points_[i].position);
+      w_[i] = square(points_[i].inverse_sigma * verticality(points_[i], axis));
+      least = std::min(least, x_[i]);
+      most = std::max(most, x_[i]);
+    }
+    const double span = most - least;
+    for (std::size_t v = 0; v < kVertexDistances.size(); ++v) {
+      search(theta, least - kVertexDistances[v] * span, span, &semi_cubicals[v], &splines[v]);
+    }
+  }
+
+ private:
+  void search(double theta, double x0, double span, Candidate* semi_cubical, Candidate* spline) {
+    arms_.resize(patches_.size());
+    for (std::size_t p = 0; p < arms_.size(); ++p) {
+      arms_[p] = patch_arms(patches_[p], x0, span);
+    }
+    constexpr std::size_t kMostEnumerated = 4;
+    const std::size_t enumerated = std::min(kMostEnumerated, arms_.size());
+    signs_.assign(arms_.size(), 1.0);
+    // The first patch's arm is a matter of convention (t -> -t).
+    for (unsigned pattern = 0; pattern < (1U << (enumerated - 1)); ++pattern) {
+      Moments sum;
+      for (std::size_t k = 0; k < enumerated; ++k) {
+        const double sign = k > 0 && ((pattern >> (k - 1)) & 1U) != 0 ? -1.0 : 1.0;
+        signs_[order_[k]] = sign;
+        sum.add(arms_[order_[k]].moments, sign);
+      }
+      for (std::size_t k = enumerated; k < order_.size(); ++k) {
+        const double sign = better_arm(sum, arms_[order_[k]].moments);
+        signs_[order_[k]] = sign;
+        sum.add(arms_[order_[k]].moments, sign);
+      }
+      if (const double cost = residual_sum<4>(sum, {0, 1, 2, 3}); cost < spline->cost) {
+        *spline = {cost, theta, x0, point_arms()};
+      }
+      if (const double cost = residual_sum<3>(sum, {0, 2, 3}); cost < semi_cubical->cost) {
+        *semi_cubical = {cost, theta, x0, point_arms()};
+      }
+    }
+  }
+
+  PatchArms patch_arms(const PatchSpan& patch, double x0, double span) const {
+    PatchArms arms;
+    arms.change = patch.end;
+    // A patch that turns round its leftmost point near the vertex passes from arm to arm there.
+    std::size_t leftmost = patch.begin;
+    for (std::size_t i = patch.begin; i < patch.end; ++i) {
+      leftmost = x_[i] < x_[leftmost] ? i : leftmost;
+    }
+    constexpr double kNearVertex = 0.03;  // of the span of all points
+    const double depth = std::min(x_[patch.begin], x_[patch.end - 1]) - x_[leftmost];
+    if (x_[leftmost] - x0 < kNearVertex * span && depth > 0.0) {
+      arms.change = leftmost + 1;
+    }
+    for (std::size_t i = patch.begin; i < patch.end; ++i) {
+      const double t = std::sqrt(x_[i] - x0);
+      arms.moments.add(w_[i], i < arms.change ? t : -t, y_[i]);
+    }
+    return arms;
+  }
+
+  static double better_arm(const Moments& so_far, const Moments& patch) {
+    Moments with_positive = so_far;
+    with_positive.add(patch, 1.0);
+    Moments with_negative = so_far;
+    with_negative.add(patch, -1.0);
+    return residual_sum<4>(with_positive, {0, 1, 2, 3}) <=
+                   residual_sum<4>(with_negative, {0, 1, 2, 3})
+               ? 1.0
+               : -1.0;
+  }
+
+  std::vector<double> point_arms() const {
+    std::vector<double> result(points_.size());
+    for (std::size_t p = 0; p < arms_.size(); ++p) {
+      for (std::size_t i = patches_[p].begin; i < patches_[p].end; ++i) {
+        result[i] = i < arms_[p].change ? signs_[p] : -signs_[p];
+      }
+    }
+    return result;
+  }
+
+  std::span<const FitPoint> points_;
+  std::span<const PatchSpan> patches_;
+  std::vector<std::size_t> order_;
+  std::vector<double> x_, y_, w_, signs_;
+  std::vector<PatchArms> arms_;
+};
+
+}  // namespace
+
+void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds) {
+  constexpr std::size_t kDirections = 72;  // 2.5 degrees: minima are narrow where there is little noise
+  std::vector<Candidate> parabolas(kDirections);
+  std::vector<Candidate> cubics(kDirections);
+  for (std::size_t d = 0; d < kDirections; ++d) {
+    const double theta = kPi * static_cast<double>(d) / static_cast<double>(kDirections);
+    const Vec2 axis(std::cos(theta), std::sin(theta));
+    Moments moments;
+    for (const FitPoint& point : points) {
+      moments.add(square(point.inverse_sigma * verticality(point, axis)),
+                  point.position.dot(axis), cross(axis, point.position));
+    }
+    parabolas[d].theta = cubics[d].theta = theta;
+    parabolas[d].cost = residual_sum<3>(moments, {0, 1, 2});
+    cubics[d].cost = residual_sum<4>(moments, {0, 1, 2, 3});
+  }
+  take_minima(parabolas, 1, PolynomialSeeds::kGraphSeeds, PolynomialModel::Parabola, &seeds->parabola);
+  take_minima(cubics, 1, PolynomialSeeds::kGraphSeeds, PolynomialModel::CubicalParabola, &seeds->cubical_parabola);
+}
+
+void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
+                   PolynomialSeeds* seeds) {
+  constexpr std::size_t kDirections = 48;  // 7.5 degrees
+  constexpr std::size_t kVertices = ArmSearch::kVertexDistances.size();
+  ArmSearch search(points, patches);
+  std::vector<Candidate> semi_cubicals(kDirections * kVertices);
+  std::vector<Candidate> splines(kDirections * kVertices);
+  for (std::size_t d = 0; d < kDirections; ++d) {
+    const double theta = 2.0 * kPi * static_cast<double>(d) / static_cast<double>(kDirections);
+    search.search(theta, &semi_cubicals[d * kVertices], &splines[d * kVertices]);
+  }
+  take_minima(semi_cubicals, kVertices, PolynomialSeeds::kArmSeeds,
+              PolynomialModel::SemiCubicalParabola, &seeds->semi_cubical_parabola);
+  take_minima(splines, kVertices, PolynomialSeeds::kArmSeeds, PolynomialModel::CubicSpline,
+              &seeds->cubic_spline);
+}
+
+}  // namespace palpate

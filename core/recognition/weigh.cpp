@@ -1,0 +1,235 @@
+#include "core/recognition/weigh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/recognition/residual_correlation.h"
+#include "core/recognition/tip_sides.h"
+
+namespace palpate {
+namespace {
+
+/// Multiplies the noise of all points.
+void scale_noise(FitData* data, double factor) {
+  for (FitPoint& point : data->points) {
+    point.inverse_sigma /= factor;
+  }
+}
+
+/// Sets the noise of points that bring none from the smooth model's residuals. Returns whether it is
+/// as good as known: no smaller than rounding.
+bool estimate_noise(FitData* data, SmoothModel* smooth) {
+  // With too few degrees of freedom there is no estimate; what fits to a millionth of the extent is
+  // then as good as exact.
+  constexpr int kFewestDegrees = 4;
+  constexpr double kNoEstimate = 1e-6;
+  const double rounding = rounding_level(*data);
+  const double estimate =
+      smooth->dof() >= kFewestDegrees ? smooth->noise_ratio() : kNoEstimate;
+  const double sigma = std::max(estimate, rounding);
+  scale_noise(data, sigma);
+  scale_noise(&smooth->reduced, sigma);
+  smooth->chi2 /= sigma * sigma;
+  return estimate <= rounding;
+}
+
+/// Root mean square of the points' noise.
+double typical_sigma(const FitData& data) {
+  double sum = 0.0;
+  for (const FitPoint& point : data.points) {
+    sum += 1.0 / (point.inverse_sigma * point.inverse_sigma);
+  }
+  return std::sqrt(sum / static_cast<double>(data.points.size()));
+}
+
+/// The class of the lowest criterion: probabilities beside "unclassified" may all have vanished.
+CurveClass best_class(const ClassFits& fits, const EvidenceScale& scale) {
+  CurveClass best = CurveClass::Unclassified;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto& fit = fits[static_cast<std::size_t>(curve_class)];
+    if (fit && !fit->at_limit) {
+      const double criterion =
+          information_criterion(fit->chi2, degrees_of_freedom(curve_class), scale);
+      if (criterion < lowest) {
+        lowest = criterion;
+        best = curve_class;
+      }
+    }
+  }
+  return best;
+}
+
+/// Fits to the reduced points for the way the material lies beside the patches. Where the probes do not
+/// say it, the first way stands (a part is rather touched from outside) unless another fits all points
+/// better beyond doubt: the offsets of a curve to its two sides fit a short arc alike.
+ClassFits fit_over_sides(std::span<const StoredPatch> patches, const SmoothModel& smooth,
+                         const FitData& data, const EvidenceScale& scale,
+                         std::vector<int>* best_sides) {
+  constexpr double kDoubt = 6.0;  // 2 log(20): odds of 20 to 1
+  const auto ways = possible_sides(patches, smooth.reduced);
+  ClassFits best;
+  double best_criterion = std::numeric_limits<double>::infinity();
+  for (const std::vector<int>& sides : ways) {
+    ClassFits fits = fit_classes(on_surface(smooth.reduced, sides));
+    if (ways.size() == 1) {
+      *best_sides = sides;
+      return fits;
+    }
+    const CurveClass candidate = best_class(fits, scale);
+    const auto& fit = fits[static_cast<std::size_t>(candidate)];
+    const auto refined = fit ? refine_on_all(*fit, smooth, data) : std::nullopt;
+    const double criterion =
+        refined ? information_criterion(refined->chi2, degrees_of_freedom(candidate), scale)
+                : std::numeric_limits<double>::infinity();
+    const bool first = &sides == &ways.front();
+    const double doubt = std::isfinite(best_criterion) ? kDoubt : 0.0;
+    if (first || criterion < best_criterion - doubt) {
+      best = std::move(fits);
+      *best_sides = sides;
+      best_criterion = criterion;
+    }
+  }
+  return best;
+}
+
+double lowest_criterion(const ClassFits& fits, const EvidenceScale& scale, double chi2_more) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const CurveClass curve_class : kCurveClasses) {
+    if (const auto& fit = fits[static_cast<std::size_t>(curve_class)]) {
+      lowest = std::min(lowest, information_criterion(fit->chi2 + chi2_more,
+                                                      degrees_of_freedom(curve_class), scale));
+    }
+  }
+  return lowest;
+}
+
+/// Refines on all points what the reduced points leave plausible; the others get the chi-square that
+/// the reduced points tell.
+void refine_plausible(const FitData& data, const SmoothModel& smooth, const EvidenceScale& scale,
+                      ClassFits* fits) {
+  // exp(-30/2) = 3e-7: no reduction error brings such a class back. Where the smooth model itself
+  // misfits, neither it nor the reduced points can be trusted that far.
+  constexpr double kHopeless = 30.0;
+  const double unsmooth = std::max(1.0, smooth.noise_ratio() * smooth.noise_ratio());
+  const double lowest = lowest_criterion(*fits, scale, smooth.chi2);
+  std::array<bool, 9> plausible{};
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    plausible[i] = (*fits)[i] && !(*fits)[i]->at_limit &&
+                   information_criterion((*fits)[i]->chi2 + smooth.chi2,
+                                         degrees_of_freedom(curve_class), scale) <
+                       lowest + kHopeless * unsmooth;
+  }
+  for (std::size_t i = 0; i < fits->size(); ++i) {
+    auto& fit = (*fits)[i];
+    if (!fit) {
+      continue;
+    }
+    if (!plausible[i]) {
+      fit->chi2 += smooth.chi2;
+    } else if (auto refined = refine_on_all(*fit, smooth, data)) {
+      fit = std::move(refined);
+    } else {
+      fit->chi2 = std::numeric_limits<double>::infinity();
+    }
+  }
+  // Ellipse and hyperbola at their limit are the parabola.
+  const auto& parabola = (*fits)[static_cast<std::size_t>(CurveClass::Parabola)];
+  for (const CurveClass curve_class : {CurveClass::Ellipse, CurveClass::Hyperbola}) {
+    auto& fit = (*fits)[static_cast<std::size_t>(curve_class)];
+    if (fit && parabola && (fit->at_limit || !std::isfinite(fit->chi2))) {
+      fit = parabola;
+      fit->curve_class = curve_class;
+      fit->at_limit = true;
+    }
+  }
+}
+
+CurveClass most_probable(const ClassProbabilities& probabilities) {
+  return static_cast<CurveClass>(
+      std::max_element(probabilities.begin(), probabilities.end()) - probabilities.begin());
+}
+
+}  // namespace
+
+Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
+               const RecognizerOptions& options) {
+  Weighing w;
+  w.smooth = fit_smooth_model(&data, sigma_known);
+  if (!sigma_known) {
+    sigma_known = estimate_noise(&data, &w.smooth);
+  }
+  const double n = static_cast<double>(data.points.size());
+  EvidenceScale scale;
+  scale.sigma_known = sigma_known;
+  scale.samples = n;
+  scale.parsimony = options.parsimony;
+  // Residuals below the rounding of the coordinates say nothing.
+  w.sigma = typical_sigma(data);
+  const double rounding = rounding_level(data) / w.sigma;
+  scale.chi2_floor = sigma_known ? 0.0 : n * rounding * rounding;
+
+  w.fits = fit_over_sides(patches, w.smooth, data, scale, &w.sides);
+  for (const CurveClass curve_class : kCurveClasses) {
+    // A class must leave something over to test it with.
+    const auto i = static_cast<std::size_t>(curve_class);
+    const bool wanted = (options.classes & (1U << i)) != 0;
+    if (!wanted || static_cast<int>(data.points.size()) <= degrees_of_freedom(curve_class)) {
+      w.fits[i].reset();
+    }
+  }
+  refine_plausible(data, w.smooth, scale, &w.fits);
+  w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
+  const CurveClass candidate = best_class(w.fits, scale);
+  const auto c = static_cast<std::size_t>(candidate);
+  if (w.fits[c]) {
+    w.canonical[c] = to_canonical(*w.fits[c], data);
+  }
+  if (w.fits[c] && w.canonical[c]) {
+    const double dof = n - degrees_of_freedom(candidate);
+    const double variance = w.fits[c]->chi2 / dof;  // of the residuals, in units of sigma^2
+    const double noise = w.smooth.dof() > 0 ? w.smooth.chi2 / w.smooth.dof() : 1.0;
+    const double excess = w.sigma * std::sqrt(std::max(0.0, variance - noise));
+    const bool misfits = most_probable(w.probabilities) == CurveClass::Unclassified;
+    std::vector<double> residuals;
+    for (const FittedPoint& point : w.canonical[c]->points) {
+      residuals.push_back(point.residual);
+    }
+    const ResidualCorrelation correlation = correlation_of(data, residuals);
+    // White residuals much larger than the smooth model's are noise that it took for bends (outliers,
+    // samples out of order); correlated ones are form error up to its limit, neighbours erring
+    // together, so that only one in `time` counts.
+    constexpr double kMuchLarger = 1.5;
+    constexpr double kLargestNoise = 0.01;  // of the half extent: beyond it nothing is measured
+    const bool noisy = correlation.time == 1.0 && variance > kMuchLarger * noise &&
+                       excess <= kLargestNoise;
+    const bool form_error =
+        correlation.time > 1.0 && excess <= options.form_error_fraction;
+    if (misfits && (noisy || form_error)) {
+      EvidenceScale tempered = scale;
+      tempered.sigma_known = true;
+      tempered.samples = std::max(n / correlation.time, 1.0);
+      tempered.tempering = variance * correlation.time;
+      w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, tempered);
+      w.inflation = variance * correlation.time;
+      w.correlation_length = correlation.length;
+    } else if (!sigma_known) {
+      w.inflation = variance;
+    }
+  }
+  w.best = most_probable(w.probabilities);
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    constexpr double kNegligible = 1e-6;
+    if (w.fits[i] && !w.canonical[i] && w.probabilities[i] > kNegligible) {
+      w.canonical[i] = to_canonical(*w.fits[i], data);
+    }
+  }
+  w.data = std::move(data);
+  return w;
+}
+
+}  // namespace palpate

@@ -1,0 +1,36 @@
+// From contact points to weighed hypotheses: one pass of the recognition.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/recognition/canonical_fit.h"
+#include "core/recognition/class_fits.h"
+#include "core/recognition/evidence.h"
+#include "core/recognition/recognizer.h"
+#include "core/recognition/smooth_model.h"
+
+namespace palpate {
+
+struct Weighing {
+  FitData data;  ///< noise set, tangents set
+  SmoothModel smooth;
+  ClassFits fits;  ///< chi2 on all points; refined there where plausible
+  std::array<std::optional<CanonicalFit>, 9> canonical;
+  ClassProbabilities probabilities{};
+  /// Per patch the side of travel on which the tip centres were taken to lie (tip_sides.h).
+  std::vector<int> sides;
+  CurveClass best = CurveClass::Unclassified;  ///< most probable, "unclassified" included
+  double sigma = 0.0;                          ///< noise of the typical point, normalised
+  /// What covariances are to be multiplied with: correlation and misfit.
+  double inflation = 1.0;
+  double correlation_length = 0.0;  ///< normalised; 0 = white
+};
+
+/// `data` from make_fit_data. Follows core/README.md, "Refinement and the bound" and "Evidence".
+Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
+               const RecognizerOptions& options);
+
+}  // namespace palpate
