@@ -1,0 +1,79 @@
+// Real mirrors: what they are designed to be, and form error that no white noise explains.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <string>
+
+#include "core/recognition/recognizer.h"
+
+namespace palpate {
+namespace {
+
+std::vector<ContactSample> read_profile(const std::string& name) {
+  std::ifstream in(std::string(PALPATE_TEST_DATA) + "/real/dabam/" + name + ".csv");
+  EXPECT_TRUE(in.good()) << name;
+  std::vector<ContactSample> samples;
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line[0] == '#' || line.starts_with("probe,")) {
+      continue;
+    }
+    std::istringstream fields(line);
+    std::string field;
+    std::getline(fields, field, ',');
+    std::getline(fields, field, ',');
+    Vec2 position;
+    for (int axis = 0; axis < 2; ++axis) {
+      std::getline(fields, field, ',');
+      position[axis] = std::stod(field);
+    }
+    samples.push_back({position, 0.0, 0});
+  }
+  return samples;
+}
+
+Recognition recognise(const std::string& name) {
+  Recognizer recognizer;
+  recognizer.add({}, read_profile(name));
+  return recognizer.recognize();
+}
+
+TEST(RealRecordings, FormErrorIsSeenAndNoMirrorIsCertainlyAnotherClass) {
+  for (const char* name : {"dabam-004", "dabam-006", "dabam-020", "dabam-022", "dabam-065"}) {
+    const Recognition answer = recognise(name);
+    std::cout << name << ": " << name_of(answer.shape.curve_class) << " p "
+              << answer.hypotheses.front().probability << " correlation "
+              << answer.noise_correlation_m << " m\n";
+    EXPECT_EQ(answer.status, RecognitionStatus::Ambiguous) << name;
+    EXPECT_GT(answer.noise_correlation_m, 0.0) << name;
+  }
+}
+
+TEST(RealRecordings, PoleCurvatureOfTheDesignIsMeasured) {
+  // Curvature at the pole is sin(theta) (1/p + 1/q) / 2; the profiles are nearly circular about it, and
+  // their middle window's kappa agrees with it to a few per cent (the pole's place is not given).
+  struct Design {
+    const char* name;
+    double p, q, theta;
+  };
+  for (const Design& design : {Design{"dabam-006", 4.5, 0.49914, 0.03499},
+                               Design{"dabam-020", 9.0, 0.35, 0.04363323129985824}}) {
+    const Recognition answer = recognise(design.name);
+    const double expected =
+        0.5 * std::sin(design.theta) * (1.0 / design.p + 1.0 / design.q);
+    ASSERT_FALSE(answer.contacts.empty());
+    double least = 1e9;
+    double most = 0.0;
+    for (const LocalizedContact& contact : answer.contacts) {
+      least = std::min(least, std::abs(contact.estimate.kappa));
+      most = std::max(most, std::abs(contact.estimate.kappa));
+    }
+    EXPECT_LT(least, expected) << design.name;
+    EXPECT_GT(most, expected) << design.name;
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,246 @@
+// Hard cases end to end, each with its defined outcome.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/recognition/recognizer.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+using Patch = std::vector<ContactSample>;
+
+/// 111 samples 0.2 mm apart on the 25 x 17.5 mm ellipse from parameter t0, sigma 0.05 mm; `outside` [m]
+/// moves them along the outward normal (tip centres).
+Patch elliptic_arc(double t0, std::mt19937_64& rng, double sigma_m = 5e-5, double outside = 0.0) {
+  std::normal_distribution<double> noise(0.0, 5e-5);
+  Patch patch;
+  double t = t0;
+  for (int i = 0; i < 111; ++i) {
+    const Vec2 tangent(-0.025 * std::sin(t), 0.0175 * std::cos(t));
+    const Vec2 outward = -left_of(tangent).normalized();
+    const Vec2 point = Vec2(0.025 * std::cos(t), 0.0175 * std::sin(t)) + outside * outward;
+    patch.push_back({point + Vec2(noise(rng), noise(rng)), sigma_m, 0});
+    t += 0.0002 / tangent.norm();
+  }
+  return patch;
+}
+
+Recognition recognise(const std::vector<Patch>& patches, PatchContext context = {},
+                      const RecognizerOptions& options = {}) {
+  Recognizer recognizer(options);
+  for (const Patch& patch : patches) {
+    recognizer.add(context, patch);
+    ++context.patch;
+  }
+  return recognizer.recognize();
+}
+
+void expect_the_ellipse(const Recognition& answer) {
+  EXPECT_EQ(answer.status, RecognitionStatus::Recognized);
+  ASSERT_EQ(answer.shape.curve_class, CurveClass::Ellipse);
+  // Five standard deviations of the published covariance.
+  EXPECT_NEAR(answer.shape.values[0], 0.025, 5.0 * std::sqrt(answer.covariance(0, 0)));
+  EXPECT_NEAR(answer.shape.values[1], 0.0175, 5.0 * std::sqrt(answer.covariance(1, 1)));
+  // The bound for two such patches: about 0.06 % and 0.2 %.
+  EXPECT_LT(std::sqrt(answer.covariance(0, 0)), 0.001 * 0.025);
+  EXPECT_LT(std::sqrt(answer.covariance(1, 1)), 0.004 * 0.0175);
+}
+
+TEST(RecognitionHardCases, PaperScene) {
+  std::mt19937_64 rng = test::test_rng();
+  const Recognition answer = recognise({elliptic_arc(0.3, rng), elliptic_arc(2.5, rng)});
+  expect_the_ellipse(answer);
+  EXPECT_EQ(answer.noise_correlation_m, 0.0);
+  EXPECT_EQ(answer.sample_count, 222U);
+}
+
+TEST(RecognitionHardCases, OnePatchOfItCannotTell) {
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < 20; ++i) {
+    const Recognition answer = recognise({elliptic_arc(0.3, rng)});
+    EXPECT_TRUE(answer.status == RecognitionStatus::Ambiguous ||
+                answer.shape.curve_class == CurveClass::Ellipse);
+  }
+}
+
+TEST(RecognitionHardCases, UnknownNoiseIsEstimated) {
+  std::mt19937_64 rng = test::test_rng();
+  const Recognition answer =
+      recognise({elliptic_arc(0.3, rng, 0.0), elliptic_arc(2.5, rng, 0.0)});
+  expect_the_ellipse(answer);
+  // Relative standard deviation of such an estimate: 1 / sqrt(2 * 217) = 5 %.
+  EXPECT_NEAR(answer.sigma_m / 5e-5, 1.0, 0.2);
+}
+
+TEST(RecognitionHardCases, SpikesInAFifthOfTheSamples) {
+  std::mt19937_64 rng = test::test_rng();
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (const double fraction : {0.02, 0.1, 0.2, 0.3}) {
+    std::vector<Patch> patches = {elliptic_arc(0.3, rng), elliptic_arc(2.5, rng)};
+    std::size_t spikes = 0;
+    for (Patch& patch : patches) {
+      for (ContactSample& sample : patch) {
+        if (uniform(rng) < fraction) {
+          sample.position_m += 0.01 * Vec2(uniform(rng) - 0.5, uniform(rng) - 0.5);
+          ++spikes;
+        }
+      }
+    }
+    const Recognition answer = recognise(patches);
+    EXPECT_GE(answer.outlier_count, spikes / 2) << fraction;
+    if (fraction > 0.2) {
+      // At a third, runs of neighbouring spikes may survive: then nothing fits, and no other class is
+      // claimed for certain.
+      EXPECT_TRUE(answer.status != RecognitionStatus::Recognized ||
+                  answer.shape.curve_class == CurveClass::Ellipse ||
+                  answer.shape.curve_class == CurveClass::Unclassified);
+      continue;
+    }
+    EXPECT_EQ(answer.shape.curve_class, CurveClass::Ellipse) << fraction;
+    EXPECT_NEAR(answer.shape.values[0], 0.025, 0.002 * 0.025) << fraction;
+  }
+}
+
+TEST(RecognitionHardCases, RoundTipsOutsideAndInside) {
+  std::mt19937_64 rng = test::test_rng();
+  for (const double radius : {0.002, 0.01}) {
+    PatchContext context;
+    context.tip_radius_m = radius;
+    context.material_side = MaterialSide::Left;  // counterclockwise travel outside the part
+    expect_the_ellipse(recognise({elliptic_arc(0.3, rng, 5e-5, radius),
+                                  elliptic_arc(2.5, rng, 5e-5, radius)}, context));
+  }
+  PatchContext hole;
+  hole.tip_radius_m = 0.002;
+  hole.material_side = MaterialSide::Right;
+  expect_the_ellipse(recognise({elliptic_arc(0.3, rng, 5e-5, -0.002),
+                                elliptic_arc(2.5, rng, 5e-5, -0.002)}, hole));
+}
+
+TEST(RecognitionHardCases, AMillionMetresFromTheOriginAndOfEverySize) {
+  std::mt19937_64 rng = test::test_rng();
+  const std::vector<Patch> patches = {elliptic_arc(0.3, rng), elliptic_arc(2.5, rng)};
+  const Recognition here = recognise(patches);
+  for (const double factor : {1e-6, 1e6}) {
+    std::vector<Patch> scaled = patches;
+    for (Patch& patch : scaled) {
+      for (ContactSample& sample : patch) {
+        sample.position_m *= factor;
+        sample.sigma_m *= factor;
+      }
+    }
+    const Recognition answer = recognise(scaled);
+    EXPECT_EQ(answer.status, RecognitionStatus::Recognized);
+    EXPECT_NEAR(answer.shape.values[0] / factor, here.shape.values[0], 1e-8);
+  }
+  std::vector<Patch> far = patches;
+  for (Patch& patch : far) {
+    for (ContactSample& sample : patch) {
+      sample.position_m += Vec2(1e6, -1e6);  // coordinates rounded to 1e-10 m
+    }
+  }
+  const Recognition answer = recognise(far);
+  EXPECT_EQ(answer.status, RecognitionStatus::Recognized);
+  EXPECT_NEAR(answer.shape.values[0], here.shape.values[0], 1e-8);
+  EXPECT_NEAR(answer.world_T_curve.x - 1e6, here.world_T_curve.x, 1e-7);
+}
+
+TEST(RecognitionHardCases, StraightEdgeIsALine) {
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  int recognised = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    Patch edge;
+    for (int i = 0; i < 200; ++i) {
+      edge.push_back({{0.01 + 2e-4 * i + noise(rng), 0.02 + 3e-4 * i + noise(rng)}, 1e-5, 0});
+    }
+    const Recognition answer = recognise({edge});
+    EXPECT_EQ(answer.shape.curve_class, CurveClass::Line);
+    recognised += answer.status == RecognitionStatus::Recognized ? 1 : 0;
+    EXPECT_NEAR(wrap_angle(answer.world_T_curve.theta - std::atan2(3.0, 2.0)), 0.0, 1e-3);
+  }
+  EXPECT_GE(recognised, 16);
+}
+
+TEST(RecognitionHardCases, TooLittleIsCollected) {
+  EXPECT_EQ(recognise({}).status, RecognitionStatus::Collecting);
+  Patch few;
+  for (int i = 0; i < 7; ++i) {
+    few.push_back({{0.001 * i, 1e-6 * i * i}, 1e-6, 0});
+  }
+  EXPECT_EQ(recognise({few}).status, RecognitionStatus::Collecting);
+  const Patch dwelling(500, ContactSample{{0.1, 0.2}, 1e-5, 0});
+  EXPECT_EQ(recognise({dwelling}).status, RecognitionStatus::Collecting);
+}
+
+TEST(RecognitionHardCases, GarbageNeverBecomesAnAnswer) {
+  std::mt19937_64 rng = test::test_rng();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Patch> patches = {elliptic_arc(0.3, rng), elliptic_arc(2.5, rng)};
+  for (Patch& patch : patches) {
+    patch.insert(patch.begin() + 50, ContactSample{{nan, 0.0}, 5e-5, 0});
+    patch.insert(patch.begin() + 20, ContactSample{{0.0, INFINITY}, 5e-5, 0});
+    patch.insert(patch.begin() + 70, patch[70]);  // repeated
+  }
+  expect_the_ellipse(recognise(patches));
+  // Random points are no curve, and no NaN.
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Patch chaos;
+  for (int i = 0; i < 100; ++i) {
+    chaos.push_back({{uniform(rng), uniform(rng)}, 1e-3, 0});
+  }
+  const Recognition answer = recognise({chaos});
+  EXPECT_TRUE(answer.status != RecognitionStatus::Recognized ||
+              answer.shape.curve_class == CurveClass::Unclassified);
+  for (const Hypothesis& hypothesis : answer.hypotheses) {
+    EXPECT_FALSE(std::isnan(hypothesis.probability));
+    EXPECT_TRUE(hypothesis.shape.values.allFinite());
+  }
+}
+
+TEST(RecognitionHardCases, QuantisedPositions) {
+  std::mt19937_64 rng = test::test_rng();
+  std::vector<Patch> patches = {elliptic_arc(0.3, rng), elliptic_arc(2.5, rng)};
+  for (Patch& patch : patches) {
+    for (ContactSample& sample : patch) {
+      sample.position_m = (sample.position_m / 2e-5).array().round() * 2e-5;  // steps of 0.02 mm
+    }
+  }
+  const Recognition answer = recognise(patches);
+  EXPECT_EQ(answer.shape.curve_class, CurveClass::Ellipse);
+  EXPECT_NEAR(answer.shape.values[0], 0.025, 0.003 * 0.025);
+}
+
+TEST(RecognitionHardCases, ANewObjectForgetsTheOld) {
+  std::mt19937_64 rng = test::test_rng();
+  Recognizer recognizer;
+  recognizer.add({}, elliptic_arc(0.3, rng));
+  recognizer.reset();
+  EXPECT_EQ(recognizer.recognize().sample_count, 0U);
+}
+
+TEST(RecognitionHardCases, TheTreeAloneAnswersTheCleanScene) {
+  std::vector<Patch> patches;
+  for (const double t0 : {0.3, 2.0, 3.9}) {
+    Patch patch;
+    for (int i = 0; i < 111; ++i) {
+      const double t = t0 + 0.008 * i;
+      patch.push_back({{0.025 * std::cos(t), 0.0175 * std::sin(t)}, 1e-8, 0});
+    }
+    patches.push_back(patch);
+  }
+  RecognizerOptions options;
+  options.method = RecognitionMethod::Tree;
+  // Without noise the estimates' error is their bias, which no covariance tells.
+  options.tree.relative_floor = 1e-2;
+  const Recognition answer = recognise(patches, {}, options);
+  EXPECT_FALSE(answer.decisions.empty());
+  ASSERT_EQ(answer.shape.curve_class, CurveClass::Ellipse);
+  EXPECT_NEAR(answer.shape.values[0], 0.025, 0.01 * 0.025);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,152 @@
+// Thousands of random scenes: the class, the bound, and whether the published uncertainties are true.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <map>
+
+#include "tests/support/scene_data.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kNoiseLevels[] = {1e-8, 1e-5, 1e-4, 5e-4, 1e-3, 2e-3};
+constexpr int kScenesPerCell = 11;  // 8 classes x 4 numbers of patches x 6 levels x 11 = 2112
+
+struct Statistics {
+  double squares[6] = {};
+  int count = 0;
+};
+
+void run(bool sigma_known) {
+  std::mt19937_64 rng = test::test_rng(sigma_known ? 1 : 0);
+  int recognised = 0;
+  int wrong = 0;
+  int scenes = 0;
+  std::map<CurveClass, Statistics> statistics;
+  std::map<std::pair<CurveClass, CurveClass>, int> confusion;
+  for (const double level : kNoiseLevels) {
+    for (int patches = 1; patches <= 4; ++patches) {
+      for (const CurveClass curve_class : kCurveClasses) {
+        for (int i = 0; i < test::stress_count(kScenesPerCell); ++i) {
+          test::SceneOptions options;
+          options.patches = patches;
+          options.sigma_over_size = level;
+          const test::Scene scene = test::random_scene(curve_class, options, rng);
+          const Recognition answer = test::recognise(scene, sigma_known ? scene.sigma_m : 0.0);
+          ++scenes;
+          ++confusion[{curve_class, answer.shape.curve_class}];
+          if (answer.status != RecognitionStatus::Recognized) {
+            continue;
+          }
+          ++recognised;
+          if (answer.shape.curve_class != curve_class) {
+            ++wrong;
+            continue;
+          }
+          const auto letters =
+              static_cast<Eigen::Index>(parameter_letters(curve_class).size());
+          bool determined = letters > 0;
+          for (Eigen::Index k = 0; k < letters; ++k) {
+            determined = determined && std::sqrt(answer.covariance(k, k)) <=
+                                           0.03 * std::abs(scene.values[k]);
+          }
+          if (!determined) {
+            continue;
+          }
+          const Eigen::VectorXd error = test::error_of(answer.hypotheses.front(), scene);
+          Statistics& s = statistics[curve_class];
+          ++s.count;
+          for (Eigen::Index k = 0; k < error.size(); ++k) {
+            if (answer.covariance(k, k) > 0.0) {
+              s.squares[k] += error[k] * error[k] / answer.covariance(k, k);
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GE(scenes, 2000);
+  // Over half of the scenes can be told; of those that are, under one in a hundred is wrong.
+  EXPECT_GT(recognised, scenes / 2);
+  EXPECT_LT(100 * wrong, recognised);
+  std::cout << "scenes " << scenes << ", recognised " << recognised << ", of those wrong " << wrong
+            << "\n";
+  for (const CurveClass truth : kCurveClasses) {
+    std::cout << "  " << name_of(truth) << ":";
+    for (int k = 0; k < 9; ++k) {
+      std::cout << " " << confusion[{truth, static_cast<CurveClass>(k)}];
+    }
+    std::cout << "\n";
+  }
+  for (const auto& [curve_class, s] : statistics) {
+    const auto letters = static_cast<Eigen::Index>(parameter_letters(curve_class).size());
+    const Eigen::Index compared =
+        pose_symmetry(curve_class) == 0 ? letters + 2 : letters + 3;  // a circle's theta is free
+    std::cout << "  rmse/bound " << name_of(curve_class) << " (" << s.count << "):";
+    for (Eigen::Index k = 0; k < compared; ++k) {
+      const double ratio = std::sqrt(s.squares[k] / s.count);
+      std::cout << " " << ratio;
+      // 1 by the bound and by maximum likelihood attaining it; 0.1 for what is not yet linear where
+      // the bound is as large as 3 %, and three standard deviations 1 / sqrt(2 n) of such a ratio.
+      EXPECT_NEAR(ratio, 1.0, 0.1 + 3.0 / std::sqrt(2.0 * s.count))
+          << name_of(curve_class) << " component " << k;
+    }
+    std::cout << "\n";
+  }
+}
+
+TEST(RecognitionScenes, WithTheNoiseStated) { run(true); }
+
+TEST(RecognitionScenes, WithTheNoiseUnknown) { run(false); }
+
+TEST(RecognitionScenes, CurvesOfNoClassAreNeverCertainlyOne) {
+  // "Long enough to tell": the best class leaves, without noise, more than a noncentrality of 60, twelve
+  // standard deviations of a parameter that is missing.
+  std::mt19937_64 rng = test::test_rng();
+  int tellable = 0;
+  int certainly_wrong = 0;
+  for (const auto shape : {test::OutsideShape::Sinusoid, test::OutsideShape::Superellipse,
+                           test::OutsideShape::LogSpiral, test::OutsideShape::Quartic}) {
+    for (const double level : {1e-5, 1e-4, 1e-3, 2e-3}) {
+      for (int patches = 1; patches <= 4; ++patches) {
+        for (int i = 0; i < test::stress_count(8); ++i) {
+          test::SceneOptions options;
+          options.patches = patches;
+          options.least_fraction = 0.15;
+          options.most_fraction = 0.4;
+          options.sigma_over_size = level;
+          const std::mt19937_64 same = rng;
+          const test::Scene scene = test::random_outside_scene(shape, options, rng);
+          options.sigma_over_size = 0.0;
+          std::mt19937_64 again = same;
+          test::Scene exact = test::random_outside_scene(shape, options, again);
+          const Recognition noiseless = test::recognise(exact, scene.sigma_m);
+          double best = std::numeric_limits<double>::infinity();
+          for (const Hypothesis& hypothesis : noiseless.hypotheses) {
+            if (hypothesis.shape.curve_class != CurveClass::Unclassified) {
+              best = std::min(best, hypothesis.chi2);
+            }
+          }
+          if (!(best > 60.0)) {
+            continue;
+          }
+          ++tellable;
+          const Recognition answer = test::recognise(scene, scene.sigma_m);
+          certainly_wrong += answer.status == RecognitionStatus::Recognized &&
+                                     answer.shape.curve_class != CurveClass::Unclassified
+                                 ? 1
+                                 : 0;
+        }
+      }
+    }
+  }
+  std::cout << "curves of no class: " << tellable << " long enough to tell, " << certainly_wrong
+            << " certainly wrong\n";
+  EXPECT_GT(tellable, 200);
+  EXPECT_LT(100 * certainly_wrong, tellable);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,40 @@
+// Random touched curves with known truth, made by formulas of their own (no curve code of core).
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "core/curves/curve_class.h"
+#include "core/curves/pose2.h"
+
+namespace palpate::test {
+
+struct SceneOptions {
+  int patches = 2;
+  int points_per_patch = 111;
+  /// Noise over the half diagonal of the whole curve piece.
+  double sigma_over_size = 1e-3;
+  /// Arc of each patch as a fraction of the whole curve piece, uniform in [least, most].
+  double least_fraction = 0.06;
+  double most_fraction = 0.25;
+  double size_m = 0.05;  ///< half diagonal of the whole curve piece [m]
+};
+
+struct Scene {
+  CurveClass curve_class = CurveClass::Unclassified;
+  Eigen::Vector3d values = Eigen::Vector3d::Zero();
+  Pose2 world_T_curve;
+  double sigma_m = 0.0;
+  std::vector<std::vector<Vec2>> patches;     ///< noisy samples in the world frame [m]
+  std::vector<std::vector<double>> t;         ///< true curve parameter of each sample
+};
+
+/// Classes outside the eight, for "never confidently wrong".
+enum class OutsideShape { Sinusoid, Superellipse, LogSpiral, Quartic };
+
+/// Patches lie in disjoint parts of the curve, in random order and directions of travel.
+Scene random_scene(CurveClass curve_class, const SceneOptions& options, std::mt19937_64& rng);
+Scene random_outside_scene(OutsideShape shape, const SceneOptions& options, std::mt19937_64& rng);
+
+}  // namespace palpate::test

@@ -1,0 +1,65 @@
+// Random scenes as the recogniser's inputs.
+#pragma once
+
+#include "core/recognition/fit_data.h"
+#include "core/recognition/recognizer.h"
+#include "tests/support/random_scene.h"
+
+namespace palpate::test {
+
+/// Adds every patch; `sigma_m` is what the samples claim (0 = not known).
+inline void add_scene(const Scene& scene, double sigma_m, Recognizer* recognizer) {
+  std::uint32_t number = 0;
+  for (const auto& patch : scene.patches) {
+    std::vector<ContactSample> samples;
+    for (const Vec2& position : patch) {
+      samples.push_back({position, sigma_m, 0});
+    }
+    PatchContext context;
+    context.patch = number++;
+    recognizer->add(context, samples);
+  }
+}
+
+inline Recognition recognise(const Scene& scene, double sigma_m,
+                             const RecognizerOptions& options = {}) {
+  Recognizer recognizer(options);
+  add_scene(scene, sigma_m, &recognizer);
+  return recognizer.recognize();
+}
+
+inline FitData fit_data(const Scene& scene, double sigma_m) {
+  std::vector<StoredPatch> patches;
+  for (const auto& samples : scene.patches) {
+    StoredPatch patch;
+    for (const Vec2& position : samples) {
+      patch.samples.push_back({position, sigma_m, 1.0});
+    }
+    patches.push_back(patch);
+  }
+  bool sigma_known = false;
+  return make_fit_data(patches, 0.0, &sigma_known);
+}
+
+inline const Hypothesis* hypothesis_of(const Recognition& answer, CurveClass curve_class) {
+  for (const Hypothesis& hypothesis : answer.hypotheses) {
+    if (hypothesis.shape.curve_class == curve_class) {
+      return &hypothesis;
+    }
+  }
+  return nullptr;
+}
+
+/// Error of shape and pose, [shape; x; y; theta], modulo the pose symmetry (2-fold only).
+inline Eigen::VectorXd error_of(const Hypothesis& hypothesis, const Scene& scene) {
+  const auto letters = static_cast<Eigen::Index>(parameter_letters(scene.curve_class).size());
+  Eigen::VectorXd error(letters + 3);
+  error.head(letters) = hypothesis.shape.values.head(letters) - scene.values.head(letters);
+  error[letters] = hypothesis.world_T_curve.x - scene.world_T_curve.x;
+  error[letters + 1] = hypothesis.world_T_curve.y - scene.world_T_curve.y;
+  const double turn = hypothesis.world_T_curve.theta - scene.world_T_curve.theta;
+  error[letters + 2] = std::remainder(turn, pose_symmetry(scene.curve_class) == 2 ? kPi : 2 * kPi);
+  return error;
+}
+
+}  // namespace palpate::test
