@@ -93,10 +93,9 @@ TEST_P(AdaptiveJetOf, KappaIsAtLeastAsAccurateAsTheTwoRoundFits) {
     const double two_round = std::sqrt(square / count);
     std::printf("%-22s sigma %.0e kappa %.3g / %.3g  kappa_s %.3g / %.3g\n", arc().name.c_str(),
                 sigma, adaptive.rmse[2], two_round, adaptive.rmse[3], std::sqrt(square_s / count));
-    // The ratio of two correlated errors from 500 trials is known to 5 %. At 0.2 mm, where noise
-    // decides all, nothing holds on to the quartic term but its prior: up to a fifth worse on the
-    // ellipse and the hyperbola (core/README.md).
-    EXPECT_LT(adaptive.rmse[2], (sigma < 1e-4 ? 1.05 : 1.25) * two_round) << sigma;
+    // The ratio of two correlated errors from 500 trials is known to 5 %. At 0.2 mm, where nothing
+    // but its prior holds the quartic term, the ellipse is 9 % worse (core/README.md).
+    EXPECT_LT(adaptive.rmse[2], (sigma < 1e-4 ? 1.05 : 1.15) * two_round) << sigma;
   }
 }
 
