@@ -1,9 +1,13 @@
 // Arc length by adaptive Gauss-Legendre quadrature, and its inverse, for any speed function.
+// Quadrature and not a difference of two antiderivatives: that would lose short arcs far from the
+// origin.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace palpate {
 
@@ -29,59 +33,78 @@ double gauss(const Speed& speed, double t0, double t1) {
 }
 
 template <typename Speed>
-double adaptive(const Speed& speed, double t0, double t1, double whole, int depth) {
-  constexpr double kRelative = 1e-14;
-  constexpr int kDeepest = 48;
+double adaptive(const Speed& speed, double t0, double t1, double whole, double tolerance,
+                int depth) {
+  // Each halving at a singularity of the speed next to the arc halves the piece: below 2^-60 of the
+  // arc it no longer counts.
+  constexpr int kDeepest = 60;
   const double middle = 0.5 * (t0 + t1);
   const double left = gauss(speed, t0, middle);
   const double right = gauss(speed, middle, t1);
   const double halves = left + right;
-  if (depth >= kDeepest || std::abs(halves - whole) <= kRelative * std::abs(halves)) {
+  if (depth >= kDeepest || !(std::abs(halves - whole) > tolerance)) {
     return halves;
   }
-  return adaptive(speed, t0, middle, left, depth + 1) +
-         adaptive(speed, middle, t1, right, depth + 1);
+  return adaptive(speed, t0, middle, left, tolerance, depth + 1) +
+         adaptive(speed, middle, t1, right, tolerance, depth + 1);
 }
 
 }  // namespace arc_length_detail
 
-/// Integral of the speed (>= 0, smooth on the open interval) from t0 to t1, negative if t1 < t0.
-/// Each piece is halved until halving changes it by less than 1e-14 of itself.
+/// Integral of the speed (>= 0, smooth on the open interval) from t0 to t1, negative if t1 < t0. A
+/// piece is halved while that changes it by more than 16 epsilon of the whole arc, the rounding of
+/// a sum of 12 terms; the halves are then right to far less, as the rule is of order 24.
 template <typename Speed>
 double integrate_speed(const Speed& speed, double t0, double t1) {
-  return arc_length_detail::adaptive(speed, t0, t1, arc_length_detail::gauss(speed, t0, t1), 0);
+  constexpr double kRelative = 16.0 * std::numeric_limits<double>::epsilon();
+  const double whole = arc_length_detail::gauss(speed, t0, t1);
+  return arc_length_detail::adaptive(speed, t0, t1, whole, kRelative * std::abs(whole), 0);
 }
 
-/// The t with length(t0, t) = s, where length grows with t at `speed` (> 0 but at isolated points):
-/// Newton's method inside a bracket that grows until it holds the answer.
+/// The t at signed arc length s from t0, where length(u, v) is the signed arc length and grows at
+/// speed(t)
+/// (> 0 but at isolated points). Newton's method on what remains of the arc, in a bracket that is
+/// open until a step overshoots; no step before that exceeds `first_step` (> 0) or twice the last
+/// one.
 template <typename Length, typename Speed>
 double invert_arc_length(const Length& length, const Speed& speed, double t0, double s,
                          double first_step) {
-  if (s == 0.0) {
-    return t0;
-  }
-  double step = std::copysign(first_step, s);
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  constexpr int kMostIterations = 1100;  // more doublings or halvings leave the range of a double
+  const double sign = s < 0.0 ? -1.0 : 1.0;
   double near = t0;
-  double far = t0 + step;
-  constexpr int kMostDoublings = 200;
-  for (int i = 0; i < kMostDoublings && std::abs(length(t0, far)) < std::abs(s); ++i) {
-    near = far;
-    step *= 2.0;
-    far = t0 + step;
-  }
-  double t = 0.5 * (near + far);
-  constexpr int kMostIterations = 100;
+  double far = sign * std::numeric_limits<double>::infinity();
+  double t = t0;
+  double remaining = s;
+  double longest = first_step;
+  double travelled = 0.0;
   for (int i = 0; i < kMostIterations; ++i) {
-    const double excess = length(t0, t) - s;
-    (std::abs(length(t0, t)) < std::abs(s) ? near : far) = t;
-    const double v = speed(t);
-    double next = v > 0.0 ? t - excess / v : 0.5 * (near + far);
-    if (!((next - near) * (next - far) < 0.0)) {
+    const double newton = remaining / speed(t);  // infinite at a cusp
+    // Before the bracket has a say: a step of rounding size may end on its border.
+    if (std::abs(remaining) <= kEpsilon * std::abs(s) ||
+        std::abs(newton) <= kEpsilon * std::abs(t)) {
+      if (travelled <= 2.0 * std::abs(s)) {
+        break;
+      }
+      // Long steps to and fro leave their rounding in what remains: once more, straight from t0.
+      remaining = s - length(t0, t);
+      travelled = 0.0;
+      continue;
+    }
+    (remaining * sign > 0.0 ? near : far) = t;
+    double next = t + newton;
+    if (std::isinf(far)) {
+      next = t + sign * std::min(std::abs(newton), longest);
+      longest *= 2.0;
+    } else if (!((next - near) * (next - far) < 0.0)) {
       next = 0.5 * (near + far);
     }
-    if (std::abs(next - t) <= 1e-16 * std::abs(t) || next == t) {
-      return next;
+    if (next == t) {
+      break;
     }
+    const double passed = length(t, next);
+    remaining -= passed;
+    travelled += std::abs(passed);
     t = next;
   }
   return t;

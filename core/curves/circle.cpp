@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/curves/foot_point.h"
+
 namespace palpate {
 
 bool Circle::is_valid() const { return std::isfinite(a) && a > 0.0; }
@@ -23,6 +25,9 @@ Eigen::Matrix<double, 2, 1> Circle::position_by_parameters(double t) const {
 }
 
 FootPoint Circle::foot_point(const Vec2& point) const {
+  if (!point.allFinite()) {
+    return no_foot_point(*this);
+  }
   const double t = std::atan2(point.y(), point.x());
   // Left of counterclockwise travel is inside.
   return {t, position(t), a - point.norm()};
@@ -35,7 +40,7 @@ double Circle::parameter_at_arc_length(double t0, double s) const { return t0 + 
 ParameterDomain Circle::domain() const { return {-kPi, kPi, 2.0 * kPi}; }
 
 std::optional<Localisation> Circle::localise(const LocalGeometry& local) const {
-  if (local.kappa == 0.0) {
+  if (!is_finite(local) || local.kappa == 0.0) {
     return std::nullopt;
   }
   return Localisation{0.0, local.kappa > 0.0};

@@ -1,10 +1,13 @@
 #include "core/curves/cubic_spline.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/curves/arc_length.h"
-#include "core/curves/polynomial_foot_point.h"
+#include "core/curves/foot_point.h"
+#include "core/curves/place_refinement.h"
+#include "core/curves/real_roots.h"
 
 namespace palpate {
 
@@ -27,8 +30,8 @@ LocalGeometry CubicSpline::geometry(double t) const {
   const double speed2 = 4.0 * t * t + y1 * y1;
   const double bend = 6.0 * a * t * t - 2.0 * c;  // x' y'' - x'' y'
   const double kappa = bend / (speed2 * std::sqrt(speed2));
-  const double kappa_s = (12.0 * a * t * speed2 - 3.0 * bend * (4.0 * t + y1 * y2)) /
-                         (speed2 * speed2 * speed2);
+  const double kappa_s =
+      (12.0 * a * t * speed2 - 3.0 * bend * (4.0 * t + y1 * y2)) / (speed2 * speed2 * speed2);
   return {std::atan2(y1, 2.0 * t), kappa, kappa_s};
 }
 
@@ -39,34 +42,38 @@ Eigen::Matrix<double, 2, 3> CubicSpline::position_by_parameters(double t) const 
 }
 
 FootPoint CubicSpline::foot_point(const Vec2& point) const {
+  if (!point.allFinite()) {
+    return no_foot_point(*this);
+  }
   // 2 t (t^2 - x) + (a t^3 + b t^2 + c t - y)(3 a t^2 + 2 b t + c) = 0.
   const double x = point.x();
   const double y = point.y();
-  Eigen::Matrix<double, 6, 1> condition;
+  Polynomial<5> condition;
   condition << -c * y, c * c - 2.0 * x - 2.0 * b * y, 3.0 * b * c - 3.0 * a * y,
       2.0 + 2.0 * b * b + 4.0 * a * c, 5.0 * a * b, 3.0 * a * a;
   return nearest_foot_point(*this, point,
-                            [&](const auto& visit) { visit_roots<5>(condition, visit); });
+                            [&](const auto& visit) { visit_real_roots<5>(condition, visit); });
+}
+
+double CubicSpline::speed(double t) const {
+  const double x = 2.0 * t;
+  const double y = (3.0 * a * t + 2.0 * b) * t + c;
+  return std::sqrt(x * x + y * y);
 }
 
 double CubicSpline::arc_length(double t0, double t1) const {
-  const auto speed = [this](double t) {
-    return std::hypot(2.0 * t, (3.0 * a * t + 2.0 * b) * t + c);
-  };
+  const auto speed_at = [this](double u) { return speed(u); };
   if (t0 * t1 < 0.0) {  // a bend as sharp as c is small lies near t = 0
-    return integrate_speed(speed, t0, 0.0) + integrate_speed(speed, 0.0, t1);
+    return integrate_speed(speed_at, t0, 0.0) + integrate_speed(speed_at, 0.0, t1);
   }
-  return integrate_speed(speed, t0, t1);
+  return integrate_speed(speed_at, t0, t1);
 }
 
 double CubicSpline::parameter_at_arc_length(double t0, double s) const {
-  const auto speed = [this](double t) {
-    return std::hypot(2.0 * t, (3.0 * a * t + 2.0 * b) * t + c);
-  };
-  const double first =
-      std::min(std::abs(s) / speed(t0), std::sqrt(std::abs(s) / std::hypot(2.0, 2.0 * b)));
-  return invert_arc_length([this](double u, double v) { return arc_length(u, v); }, speed, t0, s,
-                           first);
+  const auto speed_at = [this](double u) { return speed(u); };
+  // x = t^2: an arc of length s from t = 0 ends below sqrt(s).
+  return invert_arc_length([this](double u, double v) { return arc_length(u, v); }, speed_at, t0, s,
+                           std::sqrt(std::abs(s)));
 }
 
 ParameterDomain CubicSpline::domain() const {
@@ -75,37 +82,36 @@ ParameterDomain CubicSpline::domain() const {
 }
 
 std::optional<Localisation> CubicSpline::localise(const LocalGeometry& local) const {
-  // (45) in homogeneous form: sin(phi) 2 t = cos(phi) (3 a t^2 + 2 b t + c).
+  if (!is_finite(local)) {
+    return std::nullopt;
+  }
+  // (45) in homogeneous form: sin(phi) 2 t = cos(phi) (3 a t^2 + 2 b t + c). At an inflection the
+  // slope is extreme and the discriminant 0, below it by rounding or noise: it is then taken as 0.
   const double cosine = std::cos(local.tangent_angle);
   const double sine = std::sin(local.tangent_angle);
   const double quadratic = 3.0 * a * cosine;
   const double half_linear = b * cosine - sine;
   const double constant = c * cosine;
   const double discriminant = half_linear * half_linear - quadratic * constant;
-  if (discriminant < 0.0) {
-    return std::nullopt;
-  }
-  const double q = -(half_linear + std::copysign(std::sqrt(discriminant), half_linear));
-  std::optional<Localisation> best;
-  double best_error = std::numeric_limits<double>::infinity();
+  const double q =
+      -(half_linear + std::copysign(std::sqrt(std::max(discriminant, 0.0)), half_linear));
+  RefinedPlace best;
+  bool along = true;
   for (const double t : {q / quadratic, q != 0.0 ? constant / q : 0.0}) {
     if (!std::isfinite(t)) {
       continue;
     }
-    const LocalGeometry here = geometry(t);
-    const bool along =
-        std::cos(here.tangent_angle - local.tangent_angle) > 0.0;
-    // Compare in one scale: kappa_s over kappa^2 is a pure number.
-    const double kappa = along ? local.kappa : -local.kappa;
-    const double scale = std::max(std::abs(kappa), std::abs(here.kappa));
-    const double error = std::abs(here.kappa - kappa) / scale +
-                         std::abs(here.kappa_s - local.kappa_s) / (scale * scale);
-    if (error < best_error) {
-      best_error = error;
-      best = Localisation{t, along};
+    const bool here_along = std::cos(geometry(t).tangent_angle - local.tangent_angle) > 0.0;
+    const RefinedPlace place = refine_place(*this, t, here_along ? local : reversed(local));
+    if (place.disagreement < best.disagreement) {
+      best = place;
+      along = here_along;
     }
   }
-  return best;
+  if (!std::isfinite(best.disagreement)) {
+    return std::nullopt;
+  }
+  return finite_place(best.t, along);
 }
 
 }  // namespace palpate

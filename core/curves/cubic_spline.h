@@ -27,9 +27,11 @@ struct CubicSpline {
   /// Derivative of the position by the shape parameters at fixed t; 2 x 3.
   Eigen::Matrix<double, 2, 3> position_by_parameters(double t) const;
 
-  /// Nearest point of the whole curve. `point` finite. 
+  /// Nearest point of the whole curve.
   FootPoint foot_point(const Vec2& point) const;
 
+  /// |C'(t)| [m]. Not std::hypot: its care for overflow costs quadrature several times the speed.
+  double speed(double t) const;
   /// Arc length from t0 to t1, negative if t1 < t0. [m]
   double arc_length(double t0, double t1) const;
   /// The t at signed arc length s from t0.
@@ -38,8 +40,9 @@ struct CubicSpline {
   ParameterDomain domain() const;
 
   /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
-  /// found (section 5.3). From the canonical tangent angle, and kappa and kappa_s to choose between the two
-  /// places of that slope; nullopt where there is none.
+  /// found (section 5.3). Needs the tangent angle in the canonical frame, which has two places;
+  /// kappa and kappa_s choose. A slope that the curve does not reach (c > 0) gives the inflection
+  /// next to it.
   std::optional<Localisation> localise(const LocalGeometry& local) const;
 };
 

@@ -4,13 +4,13 @@
 #include <limits>
 
 #include "core/curves/arc_length.h"
-#include "core/curves/polynomial_foot_point.h"
+#include "core/curves/foot_point.h"
+#include "core/curves/place_refinement.h"
+#include "core/curves/real_roots.h"
 
 namespace palpate {
 
-bool CubicalParabola::is_valid() const {
-  return std::isfinite(a) && std::isfinite(c) && a != 0.0;
-}
+bool CubicalParabola::is_valid() const { return std::isfinite(a) && std::isfinite(c) && a != 0.0; }
 
 Vec2 CubicalParabola::position(double t) const { return {t, (a * t * t + c) * t}; }
 
@@ -22,7 +22,7 @@ LocalGeometry CubicalParabola::geometry(double t) const {
   const double slope = 3.0 * a * t * t + c;
   const double q = 1.0 + slope * slope;
   return {std::atan(slope), 6.0 * a * t / (q * std::sqrt(q)),
-          6.0 * a * (q - 18.0 * a * t * t * slope) / (q * q * q)};
+          6.0 * a * (1.0 - 18.0 * a * t * t * (slope / q)) / (q * q)};
 }
 
 Eigen::Matrix<double, 2, 2> CubicalParabola::position_by_parameters(double t) const {
@@ -32,23 +32,31 @@ Eigen::Matrix<double, 2, 2> CubicalParabola::position_by_parameters(double t) co
 }
 
 FootPoint CubicalParabola::foot_point(const Vec2& point) const {
+  if (!point.allFinite()) {
+    return no_foot_point(*this);
+  }
   // (t - x) + (a t^3 + c t - y)(3 a t^2 + c) = 0.
-  Eigen::Matrix<double, 6, 1> condition;
+  Polynomial<5> condition;
   condition << -point.x() - c * point.y(), 1.0 + c * c, -3.0 * a * point.y(), 4.0 * a * c, 0.0,
       3.0 * a * a;
   return nearest_foot_point(*this, point,
-                            [&](const auto& visit) { visit_roots<5>(condition, visit); });
+                            [&](const auto& visit) { visit_real_roots<5>(condition, visit); });
+}
+
+double CubicalParabola::speed(double t) const {
+  const double slope = 3.0 * a * t * t + c;
+  return std::sqrt(1.0 + slope * slope);
 }
 
 double CubicalParabola::arc_length(double t0, double t1) const {
-  return integrate_speed([this](double t) { return std::hypot(1.0, 3.0 * a * t * t + c); }, t0,
-                         t1);
+  return integrate_speed([this](double u) { return speed(u); }, t0, t1);
 }
 
 double CubicalParabola::parameter_at_arc_length(double t0, double s) const {
-  const auto speed = [this](double t) { return std::hypot(1.0, 3.0 * a * t * t + c); };
-  return invert_arc_length([this](double u, double v) { return arc_length(u, v); }, speed, t0, s,
-                           std::abs(s) / speed(t0));
+  const auto speed_at = [this](double u) { return speed(u); };
+  // x = t: no arc is shorter than its step in t.
+  return invert_arc_length([this](double u, double v) { return arc_length(u, v); }, speed_at, t0, s,
+                           std::abs(s));
 }
 
 ParameterDomain CubicalParabola::domain() const {
@@ -58,14 +66,16 @@ ParameterDomain CubicalParabola::domain() const {
 
 std::optional<Localisation> CubicalParabola::localise(const LocalGeometry& local) const {
   const double cosine = std::cos(local.tangent_angle);
-  if (cosine == 0.0) {
+  if (!is_finite(local) || cosine == 0.0) {
     return std::nullopt;
   }
-  const bool along = cosine > 0.0;
-  const double slope = std::tan(local.tangent_angle);
+  const bool along = cosine > 0.0;  // x grows with t
+  const LocalGeometry forward = along ? local : reversed(local);
+  const double slope = std::tan(forward.tangent_angle);
   const double q = 1.0 + slope * slope;
-  const double kappa = along ? local.kappa : -local.kappa;
-  return Localisation{kappa * q * std::sqrt(q) / (6.0 * a), along};
+  const double t = forward.kappa * q * std::sqrt(q) / (6.0 * a);
+  const RefinedPlace refined = refine_place(*this, t, forward);
+  return finite_place(std::isfinite(refined.disagreement) ? refined.t : t, along);
 }
 
 }  // namespace palpate

@@ -1,5 +1,7 @@
 #include "core/curves/curve.h"
 
+#include "core/curves/foot_point.h"
+
 namespace palpate {
 namespace {
 
@@ -78,6 +80,11 @@ FootPoint foot_point(const Curve& curve, const Vec2& point) {
   return std::visit([&point](const auto& c) { return c.foot_point(point); }, curve);
 }
 
+FootPoint foot_point_near(const Curve& curve, const Vec2& point, double t_start) {
+  return std::visit([&point, t_start](const auto& c) { return foot_point_near(c, point, t_start); },
+                    curve);
+}
+
 double arc_length(const Curve& curve, double t0, double t1) {
   return std::visit([=](const auto& c) { return c.arc_length(t0, t1); }, curve);
 }
@@ -98,8 +105,7 @@ Pose2 pose_from_contact(const Curve& curve, const Localisation& place, const Vec
                         double world_tangent_angle) {
   const double travel = place.along_increasing_t ? 0.0 : kPi;
   Pose2 pose;
-  pose.theta =
-      wrap_angle(world_tangent_angle - geometry(curve, place.t).tangent_angle - travel);
+  pose.theta = wrap_angle(world_tangent_angle - geometry(curve, place.t).tangent_angle - travel);
   const Vec2 origin = world_point - pose.rotate(position(curve, place.t));
   pose.x = origin.x();
   pose.y = origin.y();

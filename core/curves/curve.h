@@ -34,13 +34,25 @@ LocalGeometry geometry(const Curve& curve, double t);
 /// Columns in the order of parameter_letters; the rest is 0.
 Eigen::Matrix<double, 2, 3> position_by_parameters(const Curve& curve, double t);
 
+/// Nearest point of the whole curve.
 FootPoint foot_point(const Curve& curve, const Vec2& point);
+
+/// The foot whose basin `t_start` lies in, in a few steps; the global one where that fails. For
+/// callers who track t from sample to sample (core/curves/foot_point.h).
+FootPoint foot_point_near(const Curve& curve, const Vec2& point, double t_start);
+
+/// Signed arc length from t0 to t1. [m]
 double arc_length(const Curve& curve, double t0, double t1);
+/// The t at signed arc length s from t0.
 double parameter_at_arc_length(const Curve& curve, double t0, double s);
 ParameterDomain domain(const Curve& curve);
+
+/// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
+/// found. What it needs and when there is none: each class's `localise`.
 std::optional<Localisation> localise(const Curve& curve, const LocalGeometry& local);
 
-/// The pose that puts a place of the curve on a world point with the world direction of travel.
+/// The pose world_T_curve that puts a place of the curve on a world point with the world direction
+/// of travel.
 Pose2 pose_from_contact(const Curve& curve, const Localisation& place, const Vec2& world_point,
                         double world_tangent_angle);
 

@@ -36,15 +36,11 @@ const ClassFacts& facts_of(CurveClass curve_class) {
 
 std::string_view name_of(CurveClass curve_class) { return facts_of(curve_class).name; }
 
-std::string_view parameter_letters(CurveClass curve_class) {
-  return facts_of(curve_class).letters;
-}
+std::string_view parameter_letters(CurveClass curve_class) { return facts_of(curve_class).letters; }
 
 int pose_symmetry(CurveClass curve_class) { return facts_of(curve_class).symmetry; }
 
-int degrees_of_freedom(CurveClass curve_class) {
-  return facts_of(curve_class).degrees_of_freedom;
-}
+int degrees_of_freedom(CurveClass curve_class) { return facts_of(curve_class).degrees_of_freedom; }
 
 std::optional<CurveClass> curve_class_from_name(std::string_view name) {
   std::string normal;

@@ -20,9 +20,14 @@ enum class CurveClass {
 };
 
 inline constexpr std::array kCurveClasses = {
-    CurveClass::Line,      CurveClass::Circle,          CurveClass::Ellipse,
-    CurveClass::Parabola,  CurveClass::Hyperbola,       CurveClass::CubicalParabola,
-    CurveClass::SemiCubicalParabola, CurveClass::CubicSpline,
+    CurveClass::Line,
+    CurveClass::Circle,
+    CurveClass::Ellipse,
+    CurveClass::Parabola,
+    CurveClass::Hyperbola,
+    CurveClass::CubicalParabola,
+    CurveClass::SemiCubicalParabola,
+    CurveClass::CubicSpline,
 };
 
 /// Lower-case name with underscores ("semi_cubical_parabola").

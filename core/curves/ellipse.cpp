@@ -1,54 +1,65 @@
 #include "core/curves/ellipse.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/curves/arc_length.h"
-#include "core/curves/polynomial_foot_point.h"
+#include "core/curves/foot_point.h"
 
 namespace palpate {
 namespace {
 
-/// Foot point in the first quadrant, for a point there: bisection on the Lagrange multiplier, which
-/// has a single root beyond the last pole (D. Eberly, "Distance from a point to an ellipse"). Returns
-/// the angle t.
+/// The angle t of the foot in the first quadrant, for a point there. The foot is (a^2 x / (l +
+/// a^2), b^2 y / (l + b^2)) with the multiplier l of Lagrange that puts it on the ellipse, the only
+/// one above -b^2 (D. Eberly, "Distance from a point to an ellipse"). With z = 1 + l/b^2 as unknown
+/// nothing cancels: neither next to a circle (e -> 0) nor next to the major axis (z -> 0).
 double first_quadrant_angle(double a, double b, double x, double y) {
+  const double focal2 = (a - b) * (a + b);
   if (y == 0.0) {
-    // On the major axis: at the vertex, or off it inside the evolute's cusp at (a^2 - b^2) / a.
-    const double evolute = (a - b) * (a + b) / a;
-    return x < evolute ? std::acos(a * x / ((a - b) * (a + b))) : 0.0;
+    // The vertex, or off it for a point inside the evolute's cusp at focal2 / a.
+    const double cosine = a * x < focal2 ? a * x / focal2 : 1.0;
+    return std::atan2(std::sqrt((1.0 - cosine) * (1.0 + cosine)), cosine);
   }
-  if (x == 0.0) {
-    return 0.5 * kPi;
-  }
-  // g(s) = (r0 z0 / (s + r0))^2 + (z1 / (s + 1))^2 - 1, scaled by b.
-  const double ratio = a / b;
-  const double r0 = ratio * ratio;
-  const double z0 = x / a;
-  const double z1 = y / b;
-  const double g_at = z0 * z0 + z1 * z1 - 1.0;
-  const double n0 = r0 * z0;
-  double low = z1 - 1.0;
-  double high = g_at < 0.0 ? 0.0 : std::hypot(n0, z1) - 1.0;
-  double s = 0.0;
-  constexpr int kMostBisections = 1100;  // until the interval is a single double
-  for (int i = 0; i < kMostBisections; ++i) {
-    s = 0.5 * (low + high);
-    if (s == low || s == high) {
+  const double e = focal2 / (b * b);
+  const double nx = a * x / (b * b);
+  const double ny = y / b;
+  // (nx / (z + e))^2 + (ny / z)^2 - 1 falls and is convex for z > 0: from a start with a value >= 0
+  // Newton's method climbs to the root and never passes it.
+  double z = std::max(ny, nx - e);
+  constexpr int kMostIterations = 100;  // 1.5-fold growth at worst, from rounding to 1
+  for (int i = 0; i < kMostIterations; ++i) {
+    const double c = nx / (z + e);
+    const double s = ny / z;
+    const double slope = -2.0 * (c * c / (z + e) + s * s / z);
+    const double next = z - (c * c + s * s - 1.0) / slope;
+    if (!(next > z)) {
       break;
     }
-    const double u = n0 / (s + r0);
-    const double v = z1 / (s + 1.0);
-    const double g = u * u + v * v - 1.0;
-    if (g > 0.0) {
-      low = s;
-    } else if (g < 0.0) {
-      high = s;
-    } else {
+    z = next;
+  }
+  return std::atan2(ny / z, nx / (z + e));
+}
+
+/// Perimeter by the arithmetic-geometric mean: 2 pi (a^2 - sum 2^(n-1) c_n^2) / M(a, b).
+double perimeter(double a, double b) {
+  double mean = a;
+  double geometric = b;
+  double weight = 0.5;
+  double sum = a * a - weight * (a - b) * (a + b);
+  constexpr int kMostIterations = 40;  // quadratic once a/b is near 1; it takes its root before
+  for (int i = 0; i < kMostIterations; ++i) {
+    const double difference = 0.5 * (mean - geometric);
+    if (!(difference > std::numeric_limits<double>::epsilon() * mean)) {
       break;
     }
+    const double next = 0.5 * (mean + geometric);
+    geometric = std::sqrt(mean * geometric);
+    mean = next;
+    weight *= 2.0;
+    sum -= weight * difference * difference;
   }
-  return std::atan2(z1 / (s + 1.0), n0 / (s + r0));
+  return 2.0 * kPi * sum / mean;
 }
 
 }  // namespace
@@ -67,7 +78,7 @@ LocalGeometry Ellipse::geometry(double t) const {
   const double c = std::cos(t);
   const double s = std::sin(t);
   const double speed2 = a * a * s * s + b * b * c * c;
-  return {std::atan2(b * c, -a * s), a * b / (speed2 * std::sqrt(speed2)),          // (20)
+  return {std::atan2(b * c, -a * s), a * b / (speed2 * std::sqrt(speed2)),         // (20)
           -3.0 * a * b * (a - b) * (a + b) * s * c / (speed2 * speed2 * speed2)};  // (21)
 }
 
@@ -78,35 +89,62 @@ Eigen::Matrix<double, 2, 2> Ellipse::position_by_parameters(double t) const {
 }
 
 FootPoint Ellipse::foot_point(const Vec2& point) const {
+  if (!point.allFinite()) {
+    return no_foot_point(*this);
+  }
   double t = first_quadrant_angle(a, b, std::abs(point.x()), std::abs(point.y()));
   t = point.x() < 0.0 ? kPi - t : t;
   t = point.y() < 0.0 ? -t : t;
   return foot_point_at(*this, t, point);
 }
 
+double Ellipse::speed(double t) const {
+  const double x = a * std::sin(t);
+  const double y = b * std::cos(t);
+  return std::sqrt(x * x + y * y);
+}
+
 double Ellipse::arc_length(double t0, double t1) const {
-  return integrate_speed(
-      [this](double t) { return std::hypot(a * std::sin(t), b * std::cos(t)); }, t0, t1);
+  // Whole turns in one formula; the rest in pieces that end at the vertices, next to which the
+  // speed of a slender ellipse has its singularities.
+  const double turns = std::trunc((t1 - t0) / (2.0 * kPi));
+  const double end = t1 - 2.0 * kPi * turns;
+  double length = turns != 0.0 ? turns * perimeter(a, b) : 0.0;
+  const double low = std::min(t0, end);
+  const double high = std::max(t0, end);
+  const auto speed_at = [this](double u) { return speed(u); };
+  double sum = 0.0;
+  for (double u = low; u < high;) {
+    // The next multiple of pi/2, and at least a step on where rounding sees none.
+    const double vertex = 0.5 * kPi * (std::floor(u / (0.5 * kPi)) + 1.0);
+    const double v = vertex > u ? std::min(vertex, high) : high;
+    sum += integrate_speed(speed_at, u, v);
+    u = v;
+  }
+  return length + (end < t0 ? -sum : sum);
 }
 
 double Ellipse::parameter_at_arc_length(double t0, double s) const {
-  return invert_arc_length([this](double u, double v) { return arc_length(u, v); },
-                           [this](double t) { return std::hypot(a * std::sin(t), b * std::cos(t)); },
-                           t0, s, std::abs(s) / a);
+  // Whole turns first: Newton's method then stays within one.
+  const double turns = std::trunc(s / perimeter(a, b));
+  const double rest = s - turns * perimeter(a, b);
+  return 2.0 * kPi * turns +
+         invert_arc_length([this](double u, double v) { return arc_length(u, v); },
+                           [this](double u) { return speed(u); }, t0, rest, 0.25 * kPi);
 }
 
 ParameterDomain Ellipse::domain() const { return {-kPi, kPi, 2.0 * kPi}; }
 
 std::optional<Localisation> Ellipse::localise(const LocalGeometry& local) const {
   const double focal2 = (a - b) * (a + b);
-  if (local.kappa == 0.0 || focal2 == 0.0) {
+  if (!is_finite(local) || local.kappa == 0.0 || focal2 == 0.0) {
     return std::nullopt;
   }
   const double cube_root = std::cbrt(a * b / std::abs(local.kappa));
   const double d = cube_root * cube_root;  // squared speed at the point
   const double sin_2t = -2.0 * local.kappa_s * d * d * d / (3.0 * a * b * focal2);
-  const double cos_2t = ((a * a + b * b) - 2.0 * d) / focal2;
-  return Localisation{0.5 * std::atan2(sin_2t, cos_2t), local.kappa > 0.0};
+  const double cos_2t = ((a * a - d) + (b * b - d)) / focal2;
+  return finite_place(0.5 * std::atan2(sin_2t, cos_2t), local.kappa > 0.0);
 }
 
 }  // namespace palpate

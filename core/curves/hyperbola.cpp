@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "core/curves/arc_length.h"
-#include "core/curves/polynomial_foot_point.h"
+#include "core/curves/foot_point.h"
 
 namespace palpate {
 
@@ -24,8 +24,8 @@ LocalGeometry Hyperbola::geometry(double t) const {
   const double c = std::cosh(t);
   const double s = std::sinh(t);
   const double speed2 = a * a * s * s + b * b * c * c;
-  return {std::atan2(b * c, a * s), -a * b / (speed2 * std::sqrt(speed2)),             // (31)
-          3.0 * a * b * (a * a + b * b) * s * c / (speed2 * speed2 * speed2)};  // (32)
+  return {std::atan2(b * c, a * s), -a * b / (speed2 * std::sqrt(speed2)),        // (31)
+          3.0 * a * b * (a * a + b * b) * (s / speed2) * (c / speed2) / speed2};  // (32)
 }
 
 Eigen::Matrix<double, 2, 2> Hyperbola::position_by_parameters(double t) const {
@@ -35,31 +35,54 @@ Eigen::Matrix<double, 2, 2> Hyperbola::position_by_parameters(double t) const {
 }
 
 FootPoint Hyperbola::foot_point(const Vec2& point) const {
-  // (C - p) . C' = 0 with u = exp(t), times 4 u^2:
-  // (a^2 + b^2)(u^4 - 1) - 2 a x (u^3 - u) - 2 b y (u^3 + u) = 0.
+  if (!point.allFinite()) {
+    return no_foot_point(*this);
+  }
+  // (C - p) . C' = 0, over (a^2 + b^2) cosh t, with w = sinh t: w - A w / sqrt(1 + w^2) = B, for B
+  // >= 0 by symmetry with one root w > 0 (or w = 0).
   const double squares = a * a + b * b;
-  const double ax = 2.0 * a * point.x();
-  const double by = 2.0 * b * point.y();
-  Eigen::Matrix<double, 5, 1> condition;
-  condition << -squares, ax - by, 0.0, -ax - by, squares;
-  return nearest_foot_point(*this, point, [&](const auto& visit) {
-    visit_roots<4>(condition, [&](double u) {
-      if (u > 0.0 && std::isfinite(u)) {
-        visit(std::log(u));
+  const double big_a = a * point.x() / squares;
+  const double big_b = b * std::abs(point.y()) / squares;
+  double w = 0.0;
+  if (big_b == 0.0) {
+    w = big_a > 1.0 ? std::sqrt((big_a - 1.0) * (big_a + 1.0)) : 0.0;
+  } else {
+    // A > 0: convex, Newton's method descends from an upper bound; A <= 0: concave, it climbs from
+    // a lower one. In both cases it never passes the root.
+    const double direction = big_a > 0.0 ? -1.0 : 1.0;
+    w = big_a > 0.0 ? big_a + big_b : big_b / (1.0 - big_a);
+    constexpr int kMostIterations = 100;  // 2/3 a step at worst, next to the evolute's cusp
+    for (int i = 0; i < kMostIterations; ++i) {
+      const double q = 1.0 + w * w;
+      const double root = std::sqrt(q);
+      const double slope = 1.0 - big_a / (q * root);
+      const double step = slope > 0.0 ? -(w - big_a * (w / root) - big_b) / slope : 0.0;
+      if (!((w + step - w) * direction > 0.0)) {
+        break;
       }
-    });
-  });
+      w += step;
+    }
+  }
+  return foot_point_at(*this, std::copysign(std::asinh(w), point.y()), point);
+}
+
+double Hyperbola::speed(double t) const {
+  const double s = std::sinh(t);
+  return std::sqrt(a * a * (s * s) + b * b * (1.0 + s * s));
 }
 
 double Hyperbola::arc_length(double t0, double t1) const {
-  return integrate_speed(
-      [this](double t) { return std::hypot(a * std::sinh(t), b * std::cosh(t)); }, t0, t1);
+  const auto speed_at = [this](double u) { return speed(u); };
+  if (t0 * t1 < 0.0) {  // next to the vertex of a slender branch the speed has its singularities
+    return integrate_speed(speed_at, t0, 0.0) + integrate_speed(speed_at, 0.0, t1);
+  }
+  return integrate_speed(speed_at, t0, t1);
 }
 
 double Hyperbola::parameter_at_arc_length(double t0, double s) const {
-  const auto speed = [this](double t) { return std::hypot(a * std::sinh(t), b * std::cosh(t)); };
-  return invert_arc_length([this](double u, double v) { return arc_length(u, v); }, speed, t0, s,
-                           std::min(std::abs(s) / speed(t0), 1.0));
+  const auto speed_at = [this](double u) { return speed(u); };
+  return invert_arc_length([this](double u, double v) { return arc_length(u, v); }, speed_at, t0, s,
+                           1.0);
 }
 
 ParameterDomain Hyperbola::domain() const {
@@ -68,13 +91,13 @@ ParameterDomain Hyperbola::domain() const {
 }
 
 std::optional<Localisation> Hyperbola::localise(const LocalGeometry& local) const {
-  if (local.kappa == 0.0) {
+  if (!is_finite(local) || local.kappa == 0.0) {
     return std::nullopt;
   }
   const double cube_root = std::cbrt(a * b / std::abs(local.kappa));
   const double e = cube_root * cube_root;  // squared speed at the point
   const double sinh_2t = 2.0 * local.kappa_s * e * e * e / (3.0 * a * b * (a * a + b * b));
-  return Localisation{0.5 * std::asinh(sinh_2t), local.kappa < 0.0};
+  return finite_place(0.5 * std::asinh(sinh_2t), local.kappa < 0.0);
 }
 
 }  // namespace palpate

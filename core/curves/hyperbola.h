@@ -26,9 +26,11 @@ struct Hyperbola {
   /// Derivative of the position by the shape parameters at fixed t; 2 x 2.
   Eigen::Matrix<double, 2, 2> position_by_parameters(double t) const;
 
-  /// Nearest point of the whole curve. `point` finite. 
+  /// Nearest point of the whole curve.
   FootPoint foot_point(const Vec2& point) const;
 
+  /// |C'(t)| [m]. Not std::hypot: its care for overflow costs quadrature several times the speed.
+  double speed(double t) const;
   /// Arc length from t0 to t1, negative if t1 < t0. [m]
   double arc_length(double t0, double t1) const;
   /// The t at signed arc length s from t0.
@@ -37,7 +39,8 @@ struct Hyperbola {
   ParameterDomain domain() const;
 
   /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
-  /// found (section 5.3). From kappa and kappa_s, signed; nullopt if kappa = 0. The tangent angle is not used.
+  /// found (section 5.3). From kappa and kappa_s, signed; nullopt if kappa = 0. The tangent angle
+  /// is not used.
   std::optional<Localisation> localise(const LocalGeometry& local) const;
 };
 

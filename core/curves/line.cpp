@@ -1,6 +1,9 @@
 #include "core/curves/line.h"
 
+#include <cmath>
 #include <limits>
+
+#include "core/curves/foot_point.h"
 
 namespace palpate {
 
@@ -17,6 +20,9 @@ LocalGeometry Line::geometry(double) const { return {0.0, 0.0, 0.0}; }
 Eigen::Matrix<double, 2, 0> Line::position_by_parameters(double) const { return {}; }
 
 FootPoint Line::foot_point(const Vec2& point) const {
+  if (!point.allFinite()) {
+    return no_foot_point(*this);
+  }
   return {point.x(), {point.x(), 0.0}, point.y()};
 }
 
@@ -30,7 +36,7 @@ ParameterDomain Line::domain() const {
 }
 
 std::optional<Localisation> Line::localise(const LocalGeometry& local) const {
-  if (local.kappa != 0.0 || local.kappa_s != 0.0) {
+  if (!is_finite(local)) {
     return std::nullopt;
   }
   return Localisation{0.0, true};

@@ -11,7 +11,6 @@ struct Line {
   static constexpr int parameter_count = 0;
   using Parameters = Eigen::Matrix<double, 0, 1>;
 
-
   static Line from_parameters(const Parameters&) { return {}; }
   Parameters parameters() const { return Parameters(); }
 
@@ -24,7 +23,7 @@ struct Line {
   /// Derivative of the position by the shape parameters at fixed t; 2 x 0.
   Eigen::Matrix<double, 2, 0> position_by_parameters(double t) const;
 
-  /// Nearest point of the whole curve. `point` finite. 
+  /// Nearest point of the whole curve.
   FootPoint foot_point(const Vec2& point) const;
 
   /// Arc length from t0 to t1, negative if t1 < t0. [m]
@@ -35,7 +34,7 @@ struct Line {
   ParameterDomain domain() const;
 
   /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
-  /// found (section 5.3). Anywhere: t = 0, along the line; nullopt unless kappa and kappa_s are 0.
+  /// found (section 5.3). Anywhere: t = 0, along the line.
   std::optional<Localisation> localise(const LocalGeometry& local) const;
 };
 

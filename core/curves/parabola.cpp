@@ -1,10 +1,11 @@
 #include "core/curves/parabola.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/curves/arc_length.h"
-#include "core/curves/polynomial_foot_point.h"
+#include "core/curves/foot_point.h"
 
 namespace palpate {
 
@@ -27,20 +28,46 @@ Eigen::Matrix<double, 2, 1> Parabola::position_by_parameters(double t) const {
 }
 
 FootPoint Parabola::foot_point(const Vec2& point) const {
-  // (C - p) . C' = 0, over 2 a^2: t^3 + (2 - x/a) t - y/a = 0.
-  const Eigen::Vector4d condition(-point.y() / a, 2.0 - point.x() / a, 0.0, 1.0);
-  return nearest_foot_point(*this, point,
-                            [&](const auto& visit) { visit_roots<3>(condition, visit); });
+  if (!point.allFinite()) {
+    return no_foot_point(*this);
+  }
+  // (C - p) . C' = 0, over 2 a^2: t^3 + p t - q = 0, for q >= 0 by symmetry with one root t > 0 (or
+  // t = 0). There the cubic is convex: from above Newton's method descends to the root and never
+  // passes it.
+  const double p = 2.0 - point.x() / a;
+  const double q = std::abs(point.y()) / a;
+  double t = std::cbrt(q) + (p < 0.0 ? std::sqrt(-p) : 0.0);
+  if (p > 0.0) {
+    t = std::min(t, q / p);
+  }
+  constexpr int kMostIterations = 100;  // 2/3 a step at worst, next to the evolute's cusp
+  for (int i = 0; i < kMostIterations; ++i) {
+    const double slope = 3.0 * t * t + p;
+    const double next = slope > 0.0 ? t - ((t * t + p) * t - q) / slope : t;
+    if (!(next < t)) {
+      break;
+    }
+    t = next;
+  }
+  return foot_point_at(*this, std::copysign(t, point.y()), point);
 }
 
 double Parabola::arc_length(double t0, double t1) const {
-  return integrate_speed([this](double t) { return 2.0 * a * std::hypot(1.0, t); }, t0, t1);
+  // a (t sqrt(1 + t^2) + asinh t), its difference taken so that short arcs keep their digits.
+  const double q0 = std::hypot(1.0, t0);
+  const double q1 = std::hypot(1.0, t1);
+  if (t0 * t1 <= 0.0) {
+    return a * ((t1 * q1 - t0 * q0) + (std::asinh(t1) - std::asinh(t0)));
+  }
+  const double squares = (t1 - t0) * (t1 + t0);
+  return a * (squares * (1.0 + t0 * t0 + t1 * t1) / (t1 * q1 + t0 * q0) +
+              std::asinh(squares / (t1 * q0 + t0 * q1)));
 }
 
 double Parabola::parameter_at_arc_length(double t0, double s) const {
-  return invert_arc_length([this](double u, double v) { return arc_length(u, v); },
-                           [this](double t) { return 2.0 * a * std::hypot(1.0, t); }, t0, s,
-                           std::abs(s) / (2.0 * a * std::hypot(1.0, t0)));
+  const auto speed = [this](double t) { return 2.0 * a * std::hypot(1.0, t); };
+  return invert_arc_length([this](double u, double v) { return arc_length(u, v); }, speed, t0, s,
+                           1.0);
 }
 
 ParameterDomain Parabola::domain() const {
@@ -49,10 +76,10 @@ ParameterDomain Parabola::domain() const {
 }
 
 std::optional<Localisation> Parabola::localise(const LocalGeometry& local) const {
-  if (local.kappa == 0.0) {
+  if (!is_finite(local) || local.kappa == 0.0) {
     return std::nullopt;
   }
-  return Localisation{local.kappa_s / (3.0 * local.kappa * local.kappa), local.kappa < 0.0};
+  return finite_place(local.kappa_s / (3.0 * local.kappa * local.kappa), local.kappa < 0.0);
 }
 
 }  // namespace palpate

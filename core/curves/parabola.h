@@ -25,7 +25,7 @@ struct Parabola {
   /// Derivative of the position by the shape parameters at fixed t; 2 x 1.
   Eigen::Matrix<double, 2, 1> position_by_parameters(double t) const;
 
-  /// Nearest point of the whole curve. `point` finite. 
+  /// Nearest point of the whole curve.
   FootPoint foot_point(const Vec2& point) const;
 
   /// Arc length from t0 to t1, negative if t1 < t0. [m]
@@ -36,7 +36,8 @@ struct Parabola {
   ParameterDomain domain() const;
 
   /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
-  /// found (section 5.3). t = kappa_s / (3 kappa^2); nullopt if kappa = 0. The tangent angle is not used.
+  /// found (section 5.3). t = kappa_s / (3 kappa^2); nullopt if kappa = 0. The tangent angle is not
+  /// used.
   std::optional<Localisation> localise(const LocalGeometry& local) const;
 };
 

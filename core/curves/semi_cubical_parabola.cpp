@@ -4,7 +4,9 @@
 #include <limits>
 
 #include "core/curves/arc_length.h"
-#include "core/curves/polynomial_foot_point.h"
+#include "core/curves/foot_point.h"
+#include "core/curves/place_refinement.h"
+#include "core/curves/real_roots.h"
 
 namespace palpate {
 
@@ -28,7 +30,8 @@ LocalGeometry SemiCubicalParabola::geometry(double t) const {
   const double direction = t < 0.0 ? -1.0 : 1.0;
   const double kappa = 0.75 * a / (std::abs(t) * q * std::sqrt(q));
   // d kappa / dt over the speed 2 |t| sqrt(q), brought over one denominator.
-  const double kappa_s = -kappa * (q + 4.5 * a * t * slope) / (2.0 * t * std::abs(t) * q * std::sqrt(q));
+  const double kappa_s =
+      -kappa * (q + 4.5 * a * t * slope) / (2.0 * t * std::abs(t) * q * std::sqrt(q));
   return {std::atan2(direction * slope, direction), kappa, kappa_s};
 }
 
@@ -39,43 +42,52 @@ Eigen::Matrix<double, 2, 2> SemiCubicalParabola::position_by_parameters(double t
 }
 
 FootPoint SemiCubicalParabola::foot_point(const Vec2& point) const {
+  if (!point.allFinite()) {
+    return no_foot_point(*this);
+  }
   // (C - p) . C' / t = 2 (t^2 - x) + (a t^3 + b t^2 - y)(3 a t + 2 b) = 0, and the cusp t = 0.
-  Eigen::Matrix<double, 5, 1> condition;
+  Polynomial<4> condition;
   condition << -2.0 * point.x() - 2.0 * b * point.y(), -3.0 * a * point.y(), 2.0 + 2.0 * b * b,
       5.0 * a * b, 3.0 * a * a;
-  FootPoint foot = nearest_foot_point(*this, point, [&](const auto& visit) {
+  return nearest_foot_point(*this, point, [&](const auto& visit) {
     visit(0.0);
-    visit_roots<4>(condition, visit);
+    visit_real_roots<4>(condition, visit);
   });
-  if (foot.t == 0.0) {
-    // The tangent at the cusp is (1, b) on the arm t > 0, reversed on the other.
-    const double side = point.y() - b * point.x();
-    foot.distance = std::copysign(foot.distance, side);
+}
+
+FootPoint foot_point_at(const SemiCubicalParabola& curve, double t, const Vec2& point) {
+  const CurveDerivatives d = curve.derivatives(t);
+  if (d.position.norm() > std::numeric_limits<double>::epsilon() * point.norm()) {
+    const Vec2 away = point - d.position;
+    const double distance = away.norm();
+    return {t, d.position, cross(d.first, away) < 0.0 ? -distance : distance};
   }
-  return foot;
+  // The cusp has no normal. Both arms turn left, away from what lies between them, which is to
+  // their right; the rest of the plane, all points whose nearest is the cusp included, is to their
+  // left.
+  const double x = point.x();
+  const bool between = x > 0.0 && std::abs(point.y() - curve.b * x) < curve.a * x * std::sqrt(x);
+  return {0.0, Vec2::Zero(), between ? -point.norm() : point.norm()};
+}
+
+double SemiCubicalParabola::speed(double t) const {
+  const double slope = 1.5 * a * t + b;
+  return 2.0 * std::abs(t) * std::sqrt(1.0 + slope * slope);
 }
 
 double SemiCubicalParabola::arc_length(double t0, double t1) const {
-  const auto speed = [this](double t) {
-    return std::abs(t) * std::hypot(2.0, 3.0 * a * t + 2.0 * b);
-  };
+  const auto speed_at = [this](double u) { return speed(u); };
   if (t0 * t1 < 0.0) {  // |t| has a corner at the cusp
-    return integrate_speed(speed, t0, 0.0) + integrate_speed(speed, 0.0, t1);
+    return integrate_speed(speed_at, t0, 0.0) + integrate_speed(speed_at, 0.0, t1);
   }
-  return integrate_speed(speed, t0, t1);
+  return integrate_speed(speed_at, t0, t1);
 }
 
 double SemiCubicalParabola::parameter_at_arc_length(double t0, double s) const {
-  const auto speed = [this](double t) {
-    return std::abs(t) * std::hypot(2.0, 3.0 * a * t + 2.0 * b);
-  };
-  // From the cusp the arc grows as t^2.
-  const double slope_speed = std::hypot(2.0, 2.0 * b);
-  const double first = std::min(std::sqrt(std::abs(s) / slope_speed),
-                                t0 != 0.0 ? std::abs(s) / speed(t0)
-                                          : std::numeric_limits<double>::infinity());
-  return invert_arc_length([this](double u, double v) { return arc_length(u, v); }, speed, t0, s,
-                           first);
+  const auto speed_at = [this](double u) { return speed(u); };
+  // x = t^2: no arc from the cusp is shorter than t^2.
+  return invert_arc_length([this](double u, double v) { return arc_length(u, v); }, speed_at, t0, s,
+                           std::sqrt(std::abs(s)));
 }
 
 ParameterDomain SemiCubicalParabola::domain() const {
@@ -85,14 +97,25 @@ ParameterDomain SemiCubicalParabola::domain() const {
 
 std::optional<Localisation> SemiCubicalParabola::localise(const LocalGeometry& local) const {
   const double cosine = std::cos(local.tangent_angle);
-  if (cosine == 0.0) {
+  if (!is_finite(local) || local.kappa == 0.0 || cosine == 0.0) {
     return std::nullopt;
   }
-  const double t = 2.0 * (std::tan(local.tangent_angle) - b) / (3.0 * a);
-  if (t == 0.0) {
+  const bool along = local.kappa > 0.0;  // both arms turn left
+  const LocalGeometry forward = along ? local : reversed(local);
+  const double arm = along == (cosine > 0.0) ? 1.0 : -1.0;  // x grows with |t|
+  const double slope = std::tan(forward.tangent_angle);
+  const double q = 1.0 + slope * slope;
+  const double t_kappa = arm * 0.75 * a / (forward.kappa * q * std::sqrt(q));
+  const double t_slope = 2.0 * (slope - b) / (3.0 * a);
+  RefinedPlace best = refine_place(*this, t_kappa, forward);
+  if (t_slope * arm > 0.0) {  // a better start far from the cusp
+    const RefinedPlace other = refine_place(*this, t_slope, forward);
+    best = other.disagreement < best.disagreement ? other : best;
+  }
+  if (!std::isfinite(best.disagreement) || best.t == 0.0) {
     return std::nullopt;
   }
-  return Localisation{t, (t > 0.0) == (cosine > 0.0)};  // x grows with |t|
+  return finite_place(best.t, along);
 }
 
 }  // namespace palpate

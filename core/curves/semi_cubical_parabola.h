@@ -26,10 +26,13 @@ struct SemiCubicalParabola {
   /// Derivative of the position by the shape parameters at fixed t; 2 x 2.
   Eigen::Matrix<double, 2, 2> position_by_parameters(double t) const;
 
-  /// Nearest point of the whole curve. `point` finite. At the cusp the distance is the true one, with the
-  /// sign of the side on which the nearer arm has the point.
+  /// Nearest point of the whole curve; the cusp has no normal, but is a foot like any other.
+  /// Between the arms the distance is negative, everywhere else positive, continuously through the
+  /// cusp.
   FootPoint foot_point(const Vec2& point) const;
 
+  /// |C'(t)| [m]. Not std::hypot: its care for overflow costs quadrature several times the speed.
+  double speed(double t) const;
   /// Arc length from t0 to t1, negative if t1 < t0. [m]
   double arc_length(double t0, double t1) const;
   /// The t at signed arc length s from t0.
@@ -38,10 +41,13 @@ struct SemiCubicalParabola {
   ParameterDomain domain() const;
 
   /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
-  /// found (section 5.3). From the canonical tangent angle; nullopt where the canonical tangent is vertical
-  /// (nowhere on the curve) and at the cusp.
+  /// found (section 5.3). Needs the tangent angle in the canonical frame; its sign of the cosine
+  /// tells the arm, the sign of kappa the direction. nullopt if kappa = 0 (nowhere on the curve).
   std::optional<Localisation> localise(const LocalGeometry& local) const;
 };
+
+/// The signed result at a known foot t, right at the cusp too.
+FootPoint foot_point_at(const SemiCubicalParabola& curve, double t, const Vec2& point);
 
 static_assert(PlaneCurve<SemiCubicalParabola>);
 

@@ -50,8 +50,7 @@ Conditioning conditioning(CurveClass curve_class, const Eigen::Vector3d& v, doub
     c.kappa_s = c.kappa * (q + std::abs(part) * (1.0 + slope_condition)) / std::abs(q + part);
   } else if (curve_class == CurveClass::CubicSpline) {
     const double y1 = (3.0 * v[0] * t + 2.0 * v[1]) * t + v[2];
-    const double y1_size =
-        3.0 * v[0] * t * t + std::abs(2.0 * v[1] * t) + std::abs(v[2]);
+    const double y1_size = 3.0 * v[0] * t * t + std::abs(2.0 * v[1] * t) + std::abs(v[2]);
     const double y2 = 6.0 * v[0] * t + 2.0 * v[1];
     const double y2_size = std::abs(6.0 * v[0] * t) + std::abs(2.0 * v[1]);
     const double bend = 6.0 * v[0] * t * t - 2.0 * v[2];
@@ -88,8 +87,8 @@ TEST(CurveReference, EveryRowToRoundingTimesConditioning) {
     ASSERT_TRUE(curve.has_value());
     EXPECT_EQ(class_of(*curve), reference.curve_class);
     for (const test::ReferencePoint& point : reference.points) {
-      SCOPED_TRACE(std::string(name_of(reference.curve_class)) + " a=" +
-                   std::to_string(reference.a) + " t=" + std::to_string(point.t));
+      SCOPED_TRACE(std::string(name_of(reference.curve_class)) +
+                   " a=" + std::to_string(reference.a) + " t=" + std::to_string(point.t));
       ++rows;
       const Vec2 p = position(*curve, point.t);
       const LocalGeometry g = geometry(*curve, point.t);
@@ -124,8 +123,7 @@ TEST(CurveReference, EveryRowToRoundingTimesConditioning) {
 TEST(CurveReference, CurvatureChangesWithParametersAsDerivativesSay) {
   for (const test::ReferenceCurve& reference : test::reference_curves()) {
     const Eigen::Vector3d values = values_of(reference);
-    const auto letters =
-        static_cast<Eigen::Index>(parameter_letters(reference.curve_class).size());
+    const auto letters = static_cast<Eigen::Index>(parameter_letters(reference.curve_class).size());
     for (const test::ReferencePoint& point : reference.points) {
       const auto exact =
           position_by_parameters(*make_curve(reference.curve_class, values), point.t);
@@ -143,8 +141,7 @@ TEST(CurveReference, CurvatureChangesWithParametersAsDerivativesSay) {
         const Vec2 slope =
             (position(*curve_up, point.t) - position(*curve_down, point.t)) / (up[k] - down[k]);
         // Positions are linear in the parameters: only rounding separates the two.
-        const double rounding =
-            8.0 * kEpsilon * position(*curve_up, point.t).norm() / h + 1e-12;
+        const double rounding = 8.0 * kEpsilon * position(*curve_up, point.t).norm() / h + 1e-12;
         EXPECT_LE((slope - exact.col(k)).norm(), rounding);
       }
     }

@@ -1,0 +1,126 @@
+// What the foot points of all classes share: the signed result, the choice of the nearest
+// candidate, its last digits, and the search from a near start.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "core/curves/plane_curve.h"
+
+namespace palpate {
+
+/// The outcome for a point that is not finite: infinitely far from everywhere.
+template <typename C>
+FootPoint no_foot_point(const C& curve) {
+  return {0.0, curve.position(0.0), std::numeric_limits<double>::infinity()};
+}
+
+/// The signed result at a known foot t.
+template <typename C>
+FootPoint foot_point_at(const C& curve, double t, const Vec2& point) {
+  const CurveDerivatives d = curve.derivatives(t);
+  const Vec2 away = point - d.position;
+  const double distance = away.norm();
+  return {t, d.position, cross(d.first, away) < 0.0 ? -distance : distance};
+}
+
+/// Newton's method on (C(t) - p) . C'(t) = 0 from t, while it brings that nearer to 0 and the point
+/// no farther away than rounding: for the last digits of a foot that is known to a few.
+template <typename C>
+double polish_foot_point(const C& curve, double t, const Vec2& point) {
+  constexpr int kMostIterations = 8;
+  constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+  double best = t;
+  double best_slope = std::numeric_limits<double>::infinity();
+  double best_distance2 = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMostIterations; ++i) {
+    const CurveDerivatives d = curve.derivatives(t);
+    const Vec2 away = d.position - point;
+    const double slope = away.dot(d.first);
+    const double distance2 = away.squaredNorm();
+    if (!(std::abs(slope) < best_slope) || distance2 > best_distance2 * (1.0 + kRounding)) {
+      break;
+    }
+    best = t;
+    best_slope = std::abs(slope);
+    best_distance2 = distance2;
+    const double speed2 = d.first.squaredNorm();
+    const double second =
+        speed2 + away.dot(d.second);  // half the squared distance's second derivative
+    const double step = -slope / (second > 0.0 ? second : speed2);
+    if (!std::isfinite(step) || step == 0.0) {
+      break;
+    }
+    t += step;
+  }
+  return best;
+}
+
+/// The foot at the nearest of the candidates that `visit_candidates(visit)` hands over, polished.
+/// The candidates must include one next to the global minimum of the distance.
+template <typename C, typename VisitCandidates>
+FootPoint nearest_foot_point(const C& curve, const Vec2& point,
+                             const VisitCandidates& visit_candidates) {
+  double best = 0.0;
+  double best_distance2 = std::numeric_limits<double>::infinity();
+  visit_candidates([&](double candidate) {
+    const double distance2 = (curve.position(candidate) - point).squaredNorm();
+    if (distance2 < best_distance2) {
+      best_distance2 = distance2;
+      best = candidate;
+    }
+  });
+  return foot_point_at(curve, polish_foot_point(curve, best, point), point);
+}
+
+/// Foot of `point` by Newton's method from `t_start`, for callers that track t from sample to
+/// sample. It is the foot whose basin t_start lies in: a local minimum of the distance, no farther
+/// from the point than t_start is, and t runs on without a jump where the curve closes. Where
+/// Newton's method meets no minimum (t_start beyond the evolute, too far away, not finite), the
+/// global foot, t next to t_start.
+template <typename C>
+FootPoint foot_point_near(const C& curve, const Vec2& point, double t_start) {
+  // Five steps from a start within a tenth of the radius of curvature, and some halvings.
+  constexpr int kMostIterations = 15;
+  // Newton's step has converged where it moves the foot by no more than rounding moves the points,
+  // or where it is small and shrinks no more: next to the evolute rounding is magnified.
+  constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
+  constexpr double kSmall = 1e-10;
+  double t = t_start;
+  double step = 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  double last_move = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMostIterations; ++i) {
+    const CurveDerivatives d = curve.derivatives(t + step);
+    const Vec2 away = d.position - point;
+    const double distance = away.norm();
+    const double size = d.position.norm() + point.norm();
+    if (!(distance <= least + kRounding * size)) {
+      step *= 0.5;  // too far: the distance grew
+      continue;
+    }
+    t += step;
+    least = distance;
+    const double second = d.first.squaredNorm() + away.dot(d.second);
+    if (!(second > 0.0)) {
+      break;
+    }
+    step = -away.dot(d.first) / second;
+    const double move = std::abs(step) * d.first.norm();
+    if (move <= kRounding * size) {
+      return foot_point_at(curve, t + step, point);
+    }
+    if (move <= kSmall * size && move > 0.5 * last_move) {
+      return foot_point_at(curve, t, point);
+    }
+    last_move = move;
+  }
+  FootPoint foot = curve.foot_point(point);
+  const double period = curve.domain().period;
+  if (period > 0.0 && std::isfinite(t_start)) {
+    foot.t += period * std::round((t_start - foot.t) / period);
+  }
+  return foot;
+}
+
+}  // namespace palpate

@@ -1,0 +1,150 @@
+// Real roots of small polynomials, isolated: between neighbouring roots of its derivative a
+// polynomial is monotone, so that each change of sign there brackets exactly one root.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace palpate {
+
+/// Coefficients of sum c_k x^k, c_0 first.
+template <int kDegree>
+using Polynomial = Eigen::Matrix<double, kDegree + 1, 1>;
+
+namespace real_roots_detail {
+
+/// Ascending.
+template <int kDegree>
+struct Roots {
+  std::array<double, static_cast<std::size_t>(kDegree)> x{};
+  std::size_t count = 0;
+
+  void push(double root) { x[count++] = root; }
+};
+
+template <int kDegree>
+double value(const Polynomial<kDegree>& c, double x) {
+  double sum = c[kDegree];
+  for (int k = kDegree - 1; k >= 0; --k) {
+    sum = sum * x + c[k];
+  }
+  return sum;
+}
+
+/// Newton's method that never leaves the bracket and bisects where it would be slow. `at_low` is
+/// the value at `low`, of the other sign than at `high`.
+template <int kDegree>
+double bracketed_root(const Polynomial<kDegree>& c, double low, double high, double at_low) {
+  double x = 0.5 * (low + high);
+  double last_step = high - low;
+  // Newton's steps are quadratic at the end; bisections halve: 120 of the latter reach 2^-120.
+  constexpr int kMostIterations = 120;
+  for (int i = 0; i < kMostIterations; ++i) {
+    double f = c[kDegree];
+    double slope = 0.0;
+    for (int k = kDegree - 1; k >= 0; --k) {
+      slope = slope * x + f;
+      f = f * x + c[k];
+    }
+    if (f == 0.0) {
+      return x;
+    }
+    ((f < 0.0) == (at_low < 0.0) ? low : high) = x;
+    const double newton = x - f / slope;
+    const bool good = newton > low && newton < high && 2.0 * std::abs(newton - x) < last_step;
+    const double next = good ? newton : 0.5 * (low + high);
+    last_step = std::abs(next - x);
+    if (last_step <= std::numeric_limits<double>::epsilon() * std::abs(next)) {
+      return next;
+    }
+    x = next;
+  }
+  return x;
+}
+
+/// Of a polynomial whose roots and whose derivatives' roots lie in [-bound, bound]; c[kDegree] !=
+/// 0.
+template <int kDegree>
+Roots<kDegree> roots_within(const Polynomial<kDegree>& c, double bound) {
+  Roots<kDegree> roots;
+  if constexpr (kDegree == 1) {
+    roots.push(-c[0] / c[1]);
+  } else {
+    Polynomial<kDegree - 1> derivative;
+    for (int k = 1; k <= kDegree; ++k) {
+      derivative[k - 1] = k * c[k];
+    }
+    const Roots<kDegree - 1> critical = roots_within<kDegree - 1>(derivative, bound);
+    double low = -bound;
+    double at_low = value<kDegree>(c, low);
+    for (std::size_t i = 0; i <= critical.count; ++i) {
+      const double high = i < critical.count ? critical.x[i] : bound;
+      const double at_high = value<kDegree>(c, high);
+      if (at_high == 0.0) {
+        // A multiple root; the pieces on both sides of it then have no other.
+        if (roots.count < roots.x.size()) {
+          roots.push(high);
+        }
+      } else if (at_low != 0.0 && (at_low < 0.0) != (at_high < 0.0)) {
+        if (roots.count < roots.x.size()) {
+          roots.push(bracketed_root<kDegree>(c, low, high, at_low));
+        }
+      }
+      low = high;
+      at_low = at_high;
+    }
+  }
+  return roots;
+}
+
+}  // namespace real_roots_detail
+
+/// Calls `visit(root)` with every real root of the polynomial. Two roots closer than rounding lets
+/// tell apart may both be left out; a root of odd multiplicity never is. Leading coefficients that
+/// are 0 beside the largest are dropped. No allocation.
+template <int kDegree, typename Visit>
+void visit_real_roots(const Polynomial<kDegree>& c, const Visit& visit) {
+  const double largest = c.cwiseAbs().maxCoeff();
+  if (!(largest > 0.0) || !std::isfinite(largest)) {
+    return;
+  }
+  if (std::abs(c[kDegree]) <= std::numeric_limits<double>::min() * largest) {
+    if constexpr (kDegree > 1) {
+      visit_real_roots<kDegree - 1>(c.template head<kDegree>(), visit);
+    }
+    return;
+  }
+  // Fujiwara: all roots within 2 scale; with x in units of scale all coefficients are at most 1.
+  double scale = 0.0;
+  for (int k = 1; k <= kDegree; ++k) {
+    const double ratio = std::abs(c[kDegree - k] / c[kDegree]);
+    // Square and cube roots by name: the general power is several times as slow.
+    const double root = k == 1   ? ratio
+                        : k == 2 ? std::sqrt(ratio)
+                        : k == 3 ? std::cbrt(ratio)
+                        : k == 4 ? std::sqrt(std::sqrt(ratio))
+                                 : std::pow(ratio, 1.0 / k);
+    scale = std::max(scale, root);
+  }
+  if (!(scale > 0.0)) {
+    visit(0.0);
+    return;
+  }
+  Polynomial<kDegree> balanced;
+  double power = 1.0;
+  for (int k = kDegree; k >= 0; --k) {
+    balanced[k] = c[k] / c[kDegree] / power;
+    power *= scale;
+  }
+  constexpr double kBound = 2.0;
+  const auto roots = real_roots_detail::roots_within<kDegree>(balanced, kBound);
+  for (std::size_t i = 0; i < roots.count; ++i) {
+    visit(scale * roots.x[i]);
+  }
+}
+
+}  // namespace palpate

@@ -1,0 +1,32 @@
+// Random curves of every class, of size about 1 m, and the same curve at another size.
+#pragma once
+
+#include <random>
+
+#include "core/curves/curve.h"
+
+namespace palpate {
+
+inline double uniform(std::mt19937_64& rng, double least, double most) {
+  return std::uniform_real_distribution<double>(least, most)(rng);
+}
+
+inline double random_sign(std::mt19937_64& rng) {
+  return uniform(rng, -1.0, 1.0) < 0.0 ? -1.0 : 1.0;
+}
+
+struct RandomCurve {
+  Curve curve;
+  Eigen::Vector3d values;
+  double t_least, t_most;
+
+  double random_t(std::mt19937_64& rng) const { return uniform(rng, t_least, t_most); }
+};
+
+RandomCurve random_curve(CurveClass curve_class, std::mt19937_64& rng);
+
+/// The same shape `factor` times as large, and the parameter of the place that was at t.
+Curve scaled(const RandomCurve& random, double factor);
+double scaled_parameter(CurveClass curve_class, double t, double factor);
+
+}  // namespace palpate
