@@ -1,5 +1,6 @@
 #include "node/reconnect_guard.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <cstring>
@@ -17,8 +18,9 @@ std::string unique_monitor_address() {
 
 }  // namespace
 
-ReconnectGuard::ReconnectGuard(zmq::context_t& context, zmq::socket_t& socket, std::string address)
-    : socket_(socket), address_(std::move(address)), events_(context, zmq::socket_type::pair) {
+ReconnectGuard::ReconnectGuard(zmq::context_t& context, zmq::socket_t& socket,
+                               std::vector<std::string> addresses)
+    : socket_(socket), addresses_(std::move(addresses)), events_(context, zmq::socket_type::pair) {
   const std::string monitor = unique_monitor_address();
   const int events = ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_CONNECT_RETRIED |
                      ZMQ_EVENT_CONNECT_DELAYED | ZMQ_EVENT_CONNECTED;
@@ -34,19 +36,37 @@ bool ReconnectGuard::tend(std::chrono::steady_clock::time_point now) {
   zmq::message_t frame;
   while (zmq_msg_recv(frame.handle(), events_.handle(), ZMQ_DONTWAIT) >= 0) {
     std::uint16_t event = 0;
-    if (frame.size() < sizeof(event)) continue;
-    std::memcpy(&event, frame.data(), sizeof(event));
-    if (frame.more()) (void)zmq_msg_recv(frame.handle(), events_.handle(), ZMQ_DONTWAIT);
+    if (frame.size() >= sizeof(event)) std::memcpy(&event, frame.data(), sizeof(event));
+    if (!frame.more()) continue;
+    if (zmq_msg_recv(frame.handle(), events_.handle(), ZMQ_DONTWAIT) < 0) break;
     if (event == ZMQ_EVENT_DISCONNECTED) {
-      given_up_since_ = now;
+      silent_since_.emplace(frame.to_string(), now);
     } else {
-      given_up_since_.reset();
+      silent_since_.erase(frame.to_string());
     }
   }
-  if (!given_up_since_ || now - *given_up_since_ < kPatience) return false;
-  given_up_since_.reset();
-  (void)zmq_disconnect(socket_.handle(), address_.c_str());
-  return zmq_connect(socket_.handle(), address_.c_str()) == 0;
+  bool reconnected = false;
+  for (auto entry = silent_since_.begin(); entry != silent_since_.end();) {
+    if (now - entry->second < kPatience) {
+      ++entry;
+      continue;
+    }
+    reconnected = reconnect(entry->first) || reconnected;
+    entry = silent_since_.erase(entry);
+  }
+  return reconnected;
+}
+
+// libzmq tells resolved addresses: where ours was a name, all are connected again.
+bool ReconnectGuard::reconnect(const std::string& told) {
+  const bool known = std::find(addresses_.begin(), addresses_.end(), told) != addresses_.end();
+  bool reconnected = false;
+  for (const std::string& address : addresses_) {
+    if (known && address != told) continue;
+    (void)zmq_disconnect(socket_.handle(), address.c_str());
+    reconnected = zmq_connect(socket_.handle(), address.c_str()) == 0 || reconnected;
+  }
+  return reconnected;
 }
 
 }  // namespace palpate

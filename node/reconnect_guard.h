@@ -2,20 +2,23 @@
 #pragma once
 
 #include <chrono>
-#include <optional>
+#include <map>
 #include <string>
+#include <vector>
 #include <zmq.hpp>
 
 namespace palpate {
 
 /// libzmq (4.3.4) gives a connection up for good when a frame exceeds ZMQ_MAXMSGSIZE: it reports
 /// DISCONNECTED and never CONNECT_RETRIED. One bad message would so silence a probe for ever. This
-/// watches the socket's events and connects again. Belongs to the socket's thread.
+/// watches the socket's events and connects again. Belongs to the socket's thread, and must be
+/// destroyed before the socket.
 class ReconnectGuard {
  public:
-  /// Watches a socket that has been connected to `address`. Throws zmq::error_t where the monitor
+  /// Watches a socket that has been connected to `addresses`. Throws zmq::error_t where the monitor
   /// cannot be made.
-  ReconnectGuard(zmq::context_t& context, zmq::socket_t& socket, std::string address);
+  ReconnectGuard(zmq::context_t& context, zmq::socket_t& socket,
+                 std::vector<std::string> addresses);
   ~ReconnectGuard();
   ReconnectGuard(const ReconnectGuard&) = delete;
   ReconnectGuard& operator=(const ReconnectGuard&) = delete;
@@ -24,10 +27,12 @@ class ReconnectGuard {
   bool tend(std::chrono::steady_clock::time_point now);
 
  private:
+  bool reconnect(const std::string& told);
+
   zmq::socket_t& socket_;
-  std::string address_;
+  std::vector<std::string> addresses_;
   zmq::socket_t events_;
-  std::optional<std::chrono::steady_clock::time_point> given_up_since_;
+  std::map<std::string, std::chrono::steady_clock::time_point> silent_since_;  // by address
 };
 
 }  // namespace palpate

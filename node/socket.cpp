@@ -33,7 +33,6 @@ zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
   socket.set(zmq::sockopt::reconnect_ivl, kReconnectFirstMs);
   socket.set(zmq::sockopt::reconnect_ivl_max, kReconnectMaxMs);
   socket.set(zmq::sockopt::maxmsgsize, settings.max_message_bytes);
-  socket.set(zmq::sockopt::ipv6, true);
   if (settings.curve_server) {
     socket.set(zmq::sockopt::curve_server, true);
     socket.set(zmq::sockopt::curve_secretkey, settings.curve_server->secret_key);
@@ -53,6 +52,8 @@ zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
 }
 
 std::string attach(zmq::socket_t& socket, const Endpoint& endpoint) {
+  // Only where an address says so: else IPv4 addresses would be shown as mapped ones.
+  socket.set(zmq::sockopt::ipv6, endpoint.address.find('[') != std::string::npos);
   const int rc = endpoint.bind ? zmq_bind(socket.handle(), endpoint.address.c_str())
                                : zmq_connect(socket.handle(), endpoint.address.c_str());
   if (rc == 0) return {};

@@ -1,0 +1,42 @@
+// Percentiles of computing time over one reporting period.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace palpate {
+
+class ComputeTimes {
+ public:
+  void add(std::int64_t nanoseconds) {
+    if (times_.size() < kKept) {
+      times_.push_back(nanoseconds);
+    } else {
+      times_[next_++ % kKept] = nanoseconds;
+    }
+  }
+
+  /// The value that the fraction `q` in [0, 1] of the times do not exceed; 0 where there are none.
+  std::int64_t quantile(double q) {
+    if (times_.empty()) return 0;
+    const auto index = static_cast<std::size_t>(q * static_cast<double>(times_.size() - 1) + 0.5);
+    const auto nth = times_.begin() + static_cast<std::ptrdiff_t>(index);
+    std::nth_element(times_.begin(), nth, times_.end());
+    return *nth;
+  }
+
+  void clear() {
+    times_.clear();
+    next_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kKept = 4096;  // the latest, where a period has more
+
+  std::vector<std::int64_t> times_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace palpate

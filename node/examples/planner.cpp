@@ -1,0 +1,22 @@
+// A planner: prints what has been recognised, and where it lies.
+#include <chrono>
+#include <cstdio>
+
+#include "node/client/result_subscriber.h"
+
+int main(int argc, char** argv) {
+  palpate::client::ResultSubscriberOptions options;
+  if (argc > 1) options.endpoint = argv[1];
+  palpate::client::ResultSubscriber subscriber(options);
+  for (;;) {
+    // Only the present matters to a planner: update() takes in all that has come.
+    if (!subscriber.update(std::chrono::seconds(1))) continue;
+    for (const std::string& group : subscriber.groups()) {
+      const palpate::v1::Recognition& answer = *subscriber.latest(group);
+      if (answer.status() != palpate::v1::RECOGNITION_STATUS_RECOGNIZED) continue;
+      std::printf("%s: %s at x = %.5f m, y = %.5f m, theta = %.4f rad\n", group.c_str(),
+                  palpate::v1::CurveClass_Name(answer.curve_class()).c_str(), answer.pose().x_m(),
+                  answer.pose().y_m(), answer.pose().theta_rad());
+    }
+  }
+}

@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+"""A planner: prints what has been recognised, and where it lies.
+
+Needs python3-zmq, python3-protobuf and the generated package on the path:
+  PYTHONPATH=build/release/proto/python python3 node/examples/planner.py
+"""
+import argparse
+
+import zmq
+from palpate.v1 import recognition_pb2
+from palpate.v1.curve_pb2 import CurveClass
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--endpoint", default="tcp://127.0.0.1:5582", help="the recognizer's results")
+    parser.add_argument("--once", action="store_true", help="end with the first recognised object")
+    options = parser.parse_args()
+
+    socket = zmq.Context().socket(zmq.SUB)
+    socket.setsockopt(zmq.SUBSCRIBE, b"recognition/")  # or b"recognition/cup/" for one group
+    socket.setsockopt(zmq.RECONNECT_IVL, 10)
+    socket.setsockopt(zmq.HEARTBEAT_IVL, 200)  # [ms] a frozen recognizer is noticed
+    socket.connect(options.endpoint)
+
+    newest = {}  # of each group: (epoch, seq)
+    while True:
+        _, payload = socket.recv_multipart()
+        answer = recognition_pb2.Recognition.FromString(payload)
+        stamp = (answer.header.epoch, answer.header.seq)
+        if newest.get(answer.group) == stamp:
+            continue  # the recognizer repeats its latest answers for those who come late
+        newest[answer.group] = stamp
+
+        name = CurveClass.Name(answer.curve_class).removeprefix("CURVE_CLASS_").lower()
+        status = recognition_pb2.RecognitionStatus.Name(answer.status).rsplit("_", 1)[1].lower()
+        line = f"{answer.group}: {status} {name}, {answer.sample_count} samples"
+        if answer.HasField("pose"):
+            sizes = {f.name: v for f, v in answer.parameters.ListFields()}
+            pose = answer.pose
+            line += "".join(f" {k}={v:.5g}" for k, v in sizes.items())
+            line += f" at x={pose.x_m:.5f} m y={pose.y_m:.5f} m theta={pose.theta_rad:.4f} rad"
+        print(line, flush=True)
+        if options.once and answer.status == recognition_pb2.RECOGNITION_STATUS_RECOGNIZED:
+            break
+
+
+if __name__ == "__main__":
+    main()

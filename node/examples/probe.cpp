@@ -1,0 +1,34 @@
+// A probe: publishes touched points. Replace the loop's body by your own driver.
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <thread>
+
+#include "node/client/contact_publisher.h"
+
+int main(int argc, char** argv) {
+  palpate::client::ContactPublisherOptions options;
+  if (argc > 1) options.endpoint = argv[1];
+  palpate::client::ContactPublisher publisher(options);
+  if (!publisher.wait_for_recognizer(std::chrono::seconds(5))) {
+    std::fprintf(stderr, "no recognizer on %s\n", options.endpoint.c_str());
+    return 1;
+  }
+
+  palpate::v1::ContactBatch batch;
+  batch.set_object(1);  // a new number: a new object
+  batch.set_patch(0);   // plus one at each lift-off
+  for (int i = 0; i < 240; ++i) {
+    // A 40 x 25 mm ellipse, one point every 0.5 mm or so.
+    const double t = 0.4 + 0.012 * i;
+    palpate::v1::ContactSample& sample = *batch.add_samples();
+    sample.set_x_m(0.3 + 0.040 * std::cos(t));
+    sample.set_y_m(0.1 + 0.025 * std::sin(t));
+    if (batch.samples_size() == 10) {
+      publisher.publish("finger", batch);
+      batch.clear_samples();
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}

@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""A probe: publishes touched points. Replace `touch()` by your own driver.
+
+Needs python3-zmq, python3-protobuf and the generated package on the path:
+  PYTHONPATH=build/release/proto/python python3 node/examples/probe.py
+"""
+import argparse
+import math
+import random
+import time
+
+import zmq
+from palpate.v1.contact_pb2 import ContactBatch
+
+
+def touch():
+    """Yields points of a 40 x 25 mm ellipse, one every 0.5 mm or so, as a driver would."""
+    for i in range(240):
+        t = 0.4 + 0.012 * i
+        yield 0.3 + 0.040 * math.cos(t), 0.1 + 0.025 * math.sin(t)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--endpoint", default="tcp://127.0.0.1:5581", help="the recognizer's contacts")
+    parser.add_argument("--name", default="finger", help="this probe's name")
+    parser.add_argument("--rate", type=float, default=200.0, help="samples a second")
+    options = parser.parse_args()
+
+    socket = zmq.Context().socket(zmq.XPUB)
+    socket.setsockopt(zmq.LINGER, 200)  # [ms] do not hang at exit where nobody listens
+    socket.setsockopt(zmq.RECONNECT_IVL, 10)
+    socket.connect(options.endpoint)
+    socket.recv()  # the recognizer's subscription: from here on nothing is lost
+
+    batch = ContactBatch()
+    batch.header.source = options.name
+    batch.header.epoch = random.getrandbits(64)  # tells a restart of this probe
+    batch.object = 1  # a new number: a new object
+    batch.patch = 0  # plus one at each lift-off
+    topic = f"contact/{options.name}/".encode()
+    for x, y in touch():
+        sigma = 2e-5
+        batch.samples.add(
+            stamp_ns=time.time_ns(),
+            x_m=random.gauss(x, sigma),
+            y_m=random.gauss(y, sigma),
+            sigma_m=sigma,
+        )
+        if len(batch.samples) == 10:
+            batch.header.stamp_ns = time.time_ns()
+            socket.send_multipart([topic, batch.SerializeToString()])
+            batch.header.seq += 1
+            del batch.samples[:]
+        time.sleep(1.0 / options.rate)
+    socket.close()
+
+
+if __name__ == "__main__":
+    main()

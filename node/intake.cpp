@@ -1,0 +1,91 @@
+#include "node/intake.h"
+
+#include <utility>
+
+namespace palpate {
+namespace {
+
+using v1::RejectReason;
+
+Group::Continuity continuity_of(SequenceEvent event, bool same_group) {
+  if (same_group && event == SequenceEvent::Next) return Group::Continuity::Unbroken;
+  if (same_group && event == SequenceEvent::Gap) return Group::Continuity::SamplesMissing;
+  return Group::Continuity::Anew;
+}
+
+// A sender may claim any stamp; what cannot be subtracted is shown as 0.
+std::int64_t latency_between(std::int64_t sent_ns, std::int64_t received_ns) {
+  std::int64_t latency = 0;
+  return __builtin_sub_overflow(received_ns, sent_ns, &latency) ? 0 : latency;
+}
+
+}  // namespace
+
+Intake::Intake(const IntakeOptions& options)
+    : decoder_(options.limits),
+      probes_(options.max_probes, options.evict_idle),
+      groups_(options.max_groups, options.evict_idle, options.recognizer, options.group) {}
+
+RejectReason Intake::judge(const Probe* probe, const Group* group, SteadyTime now) const {
+  const ContactMessage& message = decoder_.message();
+  if (probe == nullptr && !probes_.has_room(now)) return v1::REJECT_REASON_TOO_MANY_PROBES;
+  if (probe != nullptr) {
+    const SequenceEvent event = probe->sequence.judge(message.epoch, message.seq);
+    if (event == SequenceEvent::NotNewer) return v1::REJECT_REASON_SEQUENCE;
+    if (event == SequenceEvent::StaleEpoch) return v1::REJECT_REASON_STALE_EPOCH;
+  }
+  if (group == nullptr) {
+    return groups_.has_room(now) ? v1::REJECT_REASON_UNSPECIFIED
+                                 : v1::REJECT_REASON_TOO_MANY_GROUPS;
+  }
+  return group->judge(message, probe, now);
+}
+
+RejectReason Intake::take(std::size_t frame_count, std::string_view topic, std::string_view payload,
+                          SteadyTime now, std::int64_t now_unix_ns) {
+  ++counters_.messages_received;
+  RejectReason reason = decoder_.decode(frame_count, topic, payload);
+  Probe* probe = decoder_.probe().empty() ? nullptr : probes_.find(decoder_.probe());
+  const ContactMessage& message = decoder_.message();
+  Group* group = nullptr;
+  if (reason == v1::REJECT_REASON_UNSPECIFIED) {
+    group = groups_.find(message.group);
+    reason = judge(probe, group, now);
+  }
+  if (reason != v1::REJECT_REASON_UNSPECIFIED) {
+    ++counters_.rejected[static_cast<std::size_t>(reason)];
+    if (probe != nullptr) ++probe->rejected;
+    return reason;
+  }
+
+  std::string evicted;
+  if (probe == nullptr) {
+    probe = &probes_.add(message.probe, now, evicted);
+    if (!evicted.empty()) forgotten_.probes.push_back(std::move(evicted));
+  }
+  if (group == nullptr) {
+    group = &groups_.add(message.group, evicted);
+    if (!evicted.empty()) forgotten_.groups.push_back(std::move(evicted));
+  }
+  const SequenceEvent event = probe->sequence.take(message.epoch, message.seq);
+  const Group::Continuity continuity = continuity_of(event, probe->group == message.group);
+  counters_.samples_refused += group->take(message, continuity, now);
+  groups_.mark_waiting(*group);
+
+  const std::size_t count = message.samples.size();
+  probe->group = message.group;
+  probe->object = message.object;
+  probe->last_heard = now;
+  ++probe->messages;
+  probe->samples += count;
+  probe->message_rate.add(now, 1);
+  probe->sample_rate.add(now, count);
+  probe->latency_ns = latency_between(message.published_ns, now_unix_ns);
+  ++counters_.messages_accepted;
+  counters_.samples_received += count;
+  return v1::REJECT_REASON_UNSPECIFIED;
+}
+
+Intake::Forgotten Intake::take_forgotten() { return std::exchange(forgotten_, {}); }
+
+}  // namespace palpate

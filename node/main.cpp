@@ -1,0 +1,166 @@
+// palpate-node: the recognizer node. Exit codes: 0 stopped as asked, 1 failed at run time (an
+// endpoint is taken), 2 usage, 6 configuration.
+#include <pthread.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <google/protobuf/text_format.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "node/config.h"
+#include "node/node.h"
+
+namespace {
+
+using palpate::NodeOptions;
+using palpate::Result;
+using palpate::v1::NodeConfig;
+
+enum ExitCode { kStopped = 0, kFailed = 1, kUsage = 2, kBadConfiguration = 6 };
+
+struct CommandLine {
+  NodeConfig flags;
+  std::string config_file;
+  bool check_config = false;
+  bool print_config = false;
+};
+
+std::string flag_of(std::string name) {
+  for (char& c : name) c = c == '_' ? '-' : c;
+  return "--" + name;
+}
+
+std::string default_text(const NodeConfig& defaults, const std::string& name) {
+  const auto* field = NodeConfig::descriptor()->FindFieldByName(name);
+  const int index = field->is_repeated() ? 0 : -1;
+  std::string text;
+  google::protobuf::TextFormat::PrintFieldValueToString(defaults, field, index, &text);
+  return text;
+}
+
+// One flag an option of the table.
+void add_flags(CLI::App& app, NodeConfig& flags) {
+  NodeOptions options;
+  const NodeConfig defaults = palpate::to_config(options);
+  palpate::for_each_option(options, [&](const palpate::OptionInfo& info, const auto& field) {
+    using Field = std::decay_t<decltype(field)>;
+    const std::string name = info.name;
+    const auto set = [&flags, name](const std::string& text) {
+      if (const std::string why = palpate::set_option(flags, name, text); !why.empty()) {
+        throw CLI::ValidationError(flag_of(name), why);
+      }
+    };
+    if constexpr (std::is_same_v<Field, bool>) {
+      const std::string names = flag_of(name) + ",!--no-" + flag_of(name).substr(2);
+      app.add_flag_function(
+          names, [set](std::int64_t count) { set(count > 0 ? "true" : "false"); }, info.help);
+    } else if constexpr (std::is_same_v<Field, std::vector<std::string>>) {
+      app.add_option_function<std::vector<std::string>>(
+             flag_of(name),
+             [set](const std::vector<std::string>& texts) {
+               for (const std::string& text : texts) set(text);
+             },
+             info.help)
+          ->allow_extra_args(false)
+          ->type_name("")
+          ->default_str(default_text(defaults, name));
+    } else {
+      app.add_option_function<std::string>(flag_of(name), set, info.help)
+          ->type_name("")
+          ->default_str(default_text(defaults, name));
+    }
+  });
+}
+
+Result<NodeOptions> all_options(const CommandLine& command_line) {
+  using Options = Result<NodeOptions>;
+  NodeConfig config;
+  if (!command_line.config_file.empty()) {
+    const Result<NodeConfig> file = palpate::read_config_file(command_line.config_file);
+    if (!file) return Options::fail(file.error);
+    config = *file.value;
+  }
+  const Result<NodeConfig> environment = palpate::config_from_environment();
+  if (!environment) return Options::fail(environment.error);
+  config = palpate::merge(palpate::merge(config, *environment.value), command_line.flags);
+  return palpate::make_options(config);
+}
+
+// Blocks the stop signals, to be read from the returned descriptor. Before any thread starts, so
+// that every thread (libzmq's too) has them blocked.
+int take_stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+}
+
+int serve(const NodeOptions& options, const palpate::NodeKeys& keys) {
+  const int stop_fd = take_stop_signals();
+  if (stop_fd < 0) {
+    spdlog::error("no signalfd");
+    return kFailed;
+  }
+  try {
+    palpate::Node node(options, keys);
+    spdlog::info("contacts on {}, results on {}{}", node.contacts_address(), node.results_address(),
+                 keys.own ? ", CURVE" : "");
+    node.run(stop_fd);
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return kFailed;
+  }
+  ::close(stop_fd);
+  return kStopped;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_logger_st("palpate-node"));
+  CLI::App app(
+      "Recognises and locates curved parts: contacts in, recognitions out.\n"
+      "Each option may also be set by PALPATE_<NAME> in the environment and by <name> in the\n"
+      "configuration file. Flag before environment before file before default.\n"
+      "Exit codes: 0 stopped as asked, 1 failed at run time, 2 usage, 6 configuration.",
+      "palpate-node");
+  CommandLine command_line;
+  app.add_option("--config", command_line.config_file, "File of options, protobuf text format")
+      ->type_name("FILE");
+  app.add_flag("--check-config", command_line.check_config, "Check the options and exit");
+  app.add_flag("--print-config", command_line.print_config,
+               "Print all options as a configuration file and exit");
+  app.set_version_flag("--version", PALPATE_VERSION);
+  add_flags(app, command_line.flags);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kStopped : kUsage;
+  }
+
+  const Result<NodeOptions> options = all_options(command_line);
+  if (!options) {
+    spdlog::error("{}", options.error);
+    return kBadConfiguration;
+  }
+  spdlog::set_level(spdlog::level::from_str(options.value->log_level));
+  const Result<palpate::NodeKeys> keys = palpate::read_node_keys(*options.value);
+  if (!keys) {
+    spdlog::error("{}", keys.error);
+    return kBadConfiguration;
+  }
+  if (command_line.print_config) {
+    std::fputs(palpate::to_text(palpate::to_config(*options.value)).c_str(), stdout);
+  }
+  if (command_line.print_config || command_line.check_config) return kStopped;
+  return serve(*options.value, *keys.value);
+}

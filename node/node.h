@@ -1,0 +1,91 @@
+// The recognizer as a process: contacts in, recognitions out. One thread, one poll.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+#include <zmq.hpp>
+
+#include "node/compute_times.h"
+#include "node/intake.h"
+#include "node/options.h"
+#include "node/path_lock.h"
+#include "node/reconnect_guard.h"
+#include "node/result.h"
+#include "node/result_publisher.h"
+#include "node/socket.h"
+#include "node/zap_handler.h"
+#include "palpate/v1/local_estimate.pb.h"
+#include "palpate/v1/node_status.pb.h"
+#include "palpate/v1/recognition.pb.h"
+
+namespace palpate {
+
+/// Keys that the options name.
+struct NodeKeys {
+  std::optional<CurveKeyPair> own;
+  std::vector<std::string> clients;
+};
+
+/// Reads the key files; nothing to read where CURVE is not asked for.
+Result<NodeKeys> read_node_keys(const NodeOptions& options);
+
+class Node {
+ public:
+  /// Opens all sockets. `options` as make_options() has checked them. Throws std::runtime_error
+  /// where an endpoint cannot be had.
+  Node(const NodeOptions& options, const NodeKeys& keys);
+
+  /// Serves until `stop_fd` is readable; then takes what has been received, recognises and
+  /// publishes it, and returns.
+  void run(int stop_fd);
+
+  /// The same, until a stop is requested.
+  void run(const std::stop_token& stop);
+
+  /// Addresses bound last: with "tcp://127.0.0.1:*" the port that the system chose.
+  std::string contacts_address() const { return contacts_.get(zmq::sockopt::last_endpoint); }
+  std::string results_address() const { return results_.get(zmq::sockopt::last_endpoint); }
+
+ private:
+  zmq::socket_t open(zmq::socket_type type, const std::vector<std::string>& endpoints,
+                     const SocketSettings& settings);
+  void guard(zmq::socket_t& socket, const std::vector<std::string>& endpoints);
+  void drain_contacts(SteadyTime deadline);
+  void recognize_next();
+  void publish(const Recognition& recognition, const Group& group, std::int64_t compute_ns);
+  void publish_estimates(const Recognition& recognition, const Group& group);
+  void forget_evicted();
+  void tick(SteadyTime now);
+  void publish_status(SteadyTime now);
+  void log_rejections();
+  void finish();
+
+  NodeOptions options_;
+  zmq::context_t context_;
+  std::vector<PathLock> locks_;
+  std::optional<ZapHandler> zap_;
+  zmq::socket_t contacts_;
+  zmq::socket_t results_;
+  std::vector<std::unique_ptr<ReconnectGuard>> guards_;
+  Intake intake_;
+  ResultPublisher publisher_;
+  ComputeTimes compute_times_;
+  std::uint64_t recognitions_published_ = 0;
+  SteadyTime started_;
+  SteadyTime next_tick_;
+  SteadyTime next_status_;
+  decltype(IntakeCounters::rejected) rejections_logged_{};
+
+  // Reused: parsing and filling them again allocates nothing.
+  TwoFrames incoming_;
+  v1::Recognition recognition_message_;
+  v1::LocalEstimate estimate_message_;
+  v1::NodeStatus status_message_;
+};
+
+}  // namespace palpate

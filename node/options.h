@@ -1,0 +1,98 @@
+// All options of the node, with their one table.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "node/endpoint.h"
+#include "node/intake.h"
+
+namespace palpate {
+
+struct NodeOptions {
+  std::string name = "recognizer";
+  std::vector<std::string> contacts{std::string(kDefaultContactsEndpoint)};
+  std::vector<std::string> results{std::string(kDefaultResultsEndpoint)};
+  std::string curve_secret_key;
+  std::string allow_clients;
+  bool insecure = false;
+  std::uint32_t contacts_high_water_mark = 1000;
+  std::uint32_t results_high_water_mark = 1000;
+  double probe_timeout_s = 0.5;
+  double status_period_s = 1.0;
+  bool publish_estimates = false;
+  std::string log_level = "info";
+  IntakeOptions intake;
+};
+
+/// One option: its name is the field in NodeConfig, the flag (--max-groups) and the environment
+/// variable (PALPATE_MAX_GROUPS).
+struct OptionInfo {
+  const char* name;
+  const char* help;
+  double lowest = 0.0;  ///< numbers only
+  double highest = std::numeric_limits<double>::max();
+};
+
+/// The table. Calls visit(OptionInfo, field) for every option, the field being a reference into
+/// `options`: std::string, std::vector<std::string>, bool, std::uint32_t, std::size_t, double or a
+/// duration of double seconds. To add an option: a line here and a field in NodeConfig.
+template <typename Options, typename Visit>
+void for_each_option(Options& options, Visit&& visit) {
+  constexpr double kMostMessages = 1e6;
+  constexpr double kMostThings = 1e5;
+  constexpr double kLongest = 1e6;
+  auto& intake = options.intake;
+  auto& recognizer = intake.recognizer;
+  visit({"name", "Name of the node, as in the topic status/<node>/"}, options.name);
+  visit({"contacts", "Endpoint for contacts, [bind:|connect:]ADDRESS; may be repeated"},
+        options.contacts);
+  visit({"results", "Endpoint for results, [bind:|connect:]ADDRESS; may be repeated"},
+        options.results);
+  visit({"curve_secret_key", "CURVE: this node's secret key file"}, options.curve_secret_key);
+  visit({"allow_clients", "CURVE: file of the public keys that may connect"},
+        options.allow_clients);
+  visit({"insecure", "Permit a bind beyond this machine without CURVE"}, options.insecure);
+  visit({"contacts_high_water_mark", "Messages that may wait from one probe", 1, kMostMessages},
+        options.contacts_high_water_mark);
+  visit({"results_high_water_mark", "Messages that may wait for one planner", 1, kMostMessages},
+        options.results_high_water_mark);
+  visit({"max_message_bytes", "Longest contact message [bytes]", 1024, 1e8},
+        intake.limits.max_message_bytes);
+  visit({"max_samples_per_batch", "Most samples of one message", 1, kMostMessages},
+        intake.limits.max_samples_per_batch);
+  visit({"max_probes", "Most probes known at a time", 1, kMostThings}, intake.max_probes);
+  visit({"max_groups", "Most groups in memory", 1, kMostThings}, intake.max_groups);
+  visit({"max_probes_per_group", "Most probes that touch one object", 1, kMostThings},
+        intake.group.max_probes_per_group);
+  visit({"max_coordinate_m", "Largest |x| and |y| [m]", 1e-9, 1e9}, intake.limits.max_coordinate_m);
+  visit({"max_sigma_m", "Largest sigma of a sample [m]", 1e-9, 1e9}, intake.limits.max_sigma_m);
+  visit({"max_tip_radius_m", "Largest tip radius [m]", 1e-9, 1e9}, intake.limits.max_tip_radius_m);
+  visit({"probe_timeout_s", "A probe silent for longer is not alive [s]", 0.05, kLongest},
+        options.probe_timeout_s);
+  visit({"status_period_s", "Period of NodeStatus, and of repeating the latest results [s]", 0.1,
+         3600},
+        options.status_period_s);
+  visit({"evict_idle_s", "Who is silent for longer may be forgotten to make room [s]", 0, kLongest},
+        intake.evict_idle);
+  visit({"object_takeover_s",
+         "A probe with another object number than its group's is heard after the others' silence "
+         "of this [s]",
+         0, kLongest},
+        intake.group.object_takeover);
+  visit({"gap_break_spacings",
+         "After lost messages, the hole that breaks the arc [sample spacings]", 0, 1e9},
+        intake.group.gap_break_spacings);
+  visit({"publish_estimates", "Publish local estimates on estimate/<probe>/ too"},
+        options.publish_estimates);
+  visit({"log_level", "trace, debug, info, warning, error or off"}, options.log_level);
+  visit({"sigma_m", "Noise of samples that bring none; 0 = estimate it from the data [m]", 0, 1e3},
+        recognizer.sigma_m);
+  visit({"recognized_probability", "RECOGNIZED needs a posterior of at least this", 0.0, 1.0},
+        recognizer.recognized_probability);
+}
+
+}  // namespace palpate

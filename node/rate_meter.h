@@ -1,0 +1,47 @@
+// Events a second over the last second.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+namespace palpate {
+
+class RateMeter {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  void add(Time now, std::uint64_t count) {
+    advance(now);
+    buckets_[current_ % kBuckets] += count;
+  }
+
+  /// Mean over the last second; the current tenth counts as far as it has gone.
+  double per_second(Time now) {
+    advance(now);
+    std::uint64_t sum = 0;
+    for (const std::uint64_t bucket : buckets_) sum += bucket;
+    const std::chrono::duration<double> partial = now.time_since_epoch() - current_ * kBucket;
+    const std::chrono::duration<double> full = (kBuckets - 1) * kBucket;
+    return static_cast<double>(sum) / (full + partial).count();
+  }
+
+ private:
+  static constexpr std::size_t kBuckets = 11;  // ten full ones and the one being filled
+  static constexpr std::chrono::milliseconds kBucket{100};
+
+  void advance(Time now) {
+    const std::int64_t index = now.time_since_epoch() / kBucket;
+    if (index - static_cast<std::int64_t>(current_) >= static_cast<std::int64_t>(kBuckets)) {
+      buckets_.fill(0);
+      current_ = static_cast<std::size_t>(index);
+    }
+    while (static_cast<std::int64_t>(current_) < index) buckets_[++current_ % kBuckets] = 0;
+  }
+
+  std::array<std::uint64_t, kBuckets> buckets_{};
+  std::size_t current_ = 0;
+};
+
+}  // namespace palpate
