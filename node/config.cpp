@@ -153,6 +153,26 @@ std::string check_together(const NodeOptions& options) {
   return {};
 }
 
+// The recogniser's options that a configuration says in words.
+std::string resolve_words(NodeOptions& options) {
+  RecognizerOptions& recognizer = options.intake.recognizer;
+  if (options.method == "maximum_likelihood") {
+    recognizer.method = RecognitionMethod::MaximumLikelihood;
+  } else if (options.method == "tree") {
+    recognizer.method = RecognitionMethod::Tree;
+  } else {
+    return "method: expected maximum_likelihood or tree";
+  }
+  if (!options.classes.empty()) recognizer.classes = 0;
+  for (const std::string& name : options.classes) {
+    const std::optional<CurveClass> curve_class = curve_class_from_name(name);
+    if (!curve_class || *curve_class == CurveClass::Unclassified)
+      return "classes: \"" + name + "\" is no curve class";
+    recognizer.classes |= 1U << static_cast<unsigned>(*curve_class);
+  }
+  return {};
+}
+
 class ErrorText : public google::protobuf::io::ErrorCollector {
  public:
   void AddError(int line, google::protobuf::io::ColumnNumber column,
@@ -245,8 +265,10 @@ Result<v1::NodeConfig> config_from_environment() {
 v1::NodeConfig merge(const v1::NodeConfig& under, const v1::NodeConfig& over) {
   v1::NodeConfig merged = under;
   // MergeFrom appends lists; a list given above replaces the one below.
-  if (over.contacts_size() > 0) merged.clear_contacts();
-  if (over.results_size() > 0) merged.clear_results();
+  const Reflection& reflection = *v1::NodeConfig::GetReflection();
+  std::vector<const FieldDescriptor*> given;
+  reflection.ListFields(over, &given);
+  for (const FieldDescriptor* field : given) reflection.ClearField(&merged, field);
   merged.MergeFrom(over);
   return merged;
 }
@@ -256,9 +278,9 @@ Result<NodeOptions> make_options(const v1::NodeConfig& config) {
   Reader reader(config);
   for_each_option(options, reader);
   if (!reader.error().empty()) return Result<NodeOptions>::fail(reader.error());
-  if (std::string error = check_together(options); !error.empty()) {
-    return Result<NodeOptions>::fail(std::move(error));
-  }
+  std::string error = resolve_words(options);
+  if (error.empty()) error = check_together(options);
+  if (!error.empty()) return Result<NodeOptions>::fail(std::move(error));
   return Result<NodeOptions>::ok(std::move(options));
 }
 

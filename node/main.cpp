@@ -40,6 +40,8 @@ std::string flag_of(std::string name) {
 std::string default_text(const NodeConfig& defaults, const std::string& name) {
   const auto* field = NodeConfig::descriptor()->FindFieldByName(name);
   const int index = field->is_repeated() ? 0 : -1;
+  if (field->is_repeated() && NodeConfig::GetReflection()->FieldSize(defaults, field) == 0)
+    return "";
   std::string text;
   google::protobuf::TextFormat::PrintFieldValueToString(defaults, field, index, &text);
   return text;

@@ -23,7 +23,7 @@ class PatchNumbering {
     const bool joins = open_ && wire_patch == wire_patches_.back() &&
                        !(samples_are_missing && is_broken(break_spacings, samples));
     if (!joins) begin(wire_patch);
-    follow(samples);
+    follow(samples, samples_are_missing);
     return first_run_ + static_cast<std::uint32_t>(wire_patches_.size()) - 1;
   }
 
@@ -58,14 +58,15 @@ class PatchNumbering {
     return (samples.front().position_m - last_).norm() > break_spacings * spacing_;
   }
 
-  // Mean spacing over about the last kMemory samples.
-  void follow(std::span<const ContactSample> samples) {
+  // Mean spacing over about the last kMemory samples; a hole is no spacing.
+  void follow(std::span<const ContactSample> samples, bool after_hole) {
     constexpr double kMemory = 16.0;
     for (const ContactSample& sample : samples) {
-      if (has_last_) {
+      if (has_last_ && !after_hole) {
         const double step = (sample.position_m - last_).norm();
         spacing_ = spacing_ == 0.0 ? step : spacing_ + (step - spacing_) / kMemory;
       }
+      after_hole = false;
       last_ = sample.position_m;
       has_last_ = true;
     }

@@ -1,0 +1,159 @@
+#include "node/config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "node/options.h"
+
+namespace palpate {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) { ::setenv(name, value, 1); }
+  ~Environment() { ::unsetenv(name_); }
+
+ private:
+  const char* name_;
+};
+
+v1::NodeConfig read(const std::string& text, std::string* error = nullptr) {
+  const std::string path = ::testing::TempDir() + "palpate_config_test.textproto";
+  std::ofstream(path) << text;
+  const Result<v1::NodeConfig> config = read_config_file(path);
+  std::remove(path.c_str());
+  if (error != nullptr) *error = config.error;
+  return config.value.value_or(v1::NodeConfig());
+}
+
+TEST(Config, TableAndFileHaveTheSameOptions) {
+  std::set<std::string> in_table;
+  NodeOptions options;
+  for_each_option(options,
+                  [&](const OptionInfo& info, const auto&) { in_table.insert(info.name); });
+  std::set<std::string> in_file;
+  const auto* descriptor = v1::NodeConfig::descriptor();
+  for (int i = 0; i < descriptor->field_count(); ++i) in_file.insert(descriptor->field(i)->name());
+  EXPECT_EQ(in_table, in_file);
+}
+
+TEST(Config, DefaultsAreTheStructs) {
+  const Result<NodeOptions> options = make_options(v1::NodeConfig());
+  ASSERT_TRUE(options) << options.error;
+  EXPECT_EQ(to_text(to_config(*options.value)), to_text(to_config(NodeOptions())));
+  EXPECT_EQ(options.value->intake.recognizer.parsimony, RecognizerOptions().parsimony);
+  EXPECT_EQ(options.value->intake.recognizer.classes, RecognizerOptions().classes);
+}
+
+TEST(Config, WhatIsPrintedIsReadBack) {
+  v1::NodeConfig config;
+  ASSERT_EQ(set_option(config, "max_groups", "7"), "");
+  ASSERT_EQ(set_option(config, "evict_idle_s", "2.5"), "");
+  ASSERT_EQ(set_option(config, "insecure", "true"), "");
+  ASSERT_EQ(set_option(config, "contacts", "tcp://*:1"), "");
+  ASSERT_EQ(set_option(config, "contacts", "ipc:///tmp/x"), "");
+  const Result<NodeOptions> options = make_options(config);
+  ASSERT_TRUE(options) << options.error;
+  EXPECT_EQ(options.value->intake.max_groups, 7U);
+  EXPECT_EQ(options.value->intake.evict_idle.count(), 2.5);
+  EXPECT_EQ(options.value->contacts.size(), 2U);
+  const std::string text = to_text(to_config(*options.value));
+  const Result<NodeOptions> again = make_options(read(text));
+  ASSERT_TRUE(again) << again.error;
+  EXPECT_EQ(to_text(to_config(*again.value)), text);
+}
+
+TEST(Config, FlagBeforeEnvironmentBeforeFile) {
+  const v1::NodeConfig file =
+      read("max_groups: 1 max_probes: 1 sigma_m: 1 contacts: \"ipc:///a\" contacts: \"ipc:///b\"");
+  const Environment groups("PALPATE_MAX_GROUPS", "2");
+  const Environment probes("PALPATE_MAX_PROBES", "2");
+  const Environment results("PALPATE_RESULTS", "ipc:///r1,ipc:///r2");
+  const Result<v1::NodeConfig> environment = config_from_environment();
+  ASSERT_TRUE(environment) << environment.error;
+  v1::NodeConfig flags;
+  ASSERT_EQ(set_option(flags, "max_groups", "3"), "");
+  ASSERT_EQ(set_option(flags, "contacts", "ipc:///c"), "");
+  const Result<NodeOptions> options = make_options(merge(merge(file, *environment.value), flags));
+  ASSERT_TRUE(options) << options.error;
+  EXPECT_EQ(options.value->intake.max_groups, 3U);           // flag
+  EXPECT_EQ(options.value->intake.max_probes, 2U);           // environment
+  EXPECT_EQ(options.value->intake.recognizer.sigma_m, 1.0);  // file
+  EXPECT_EQ(options.value->contacts, std::vector<std::string>{"ipc:///c"});
+  EXPECT_EQ(options.value->results, (std::vector<std::string>{"ipc:///r1", "ipc:///r2"}));
+}
+
+TEST(Config, UnknownKeysAndBadValuesAreErrors) {
+  std::string error;
+  read("max_grops: 3", &error);
+  EXPECT_THAT(error, HasSubstr("max_grops"));
+  EXPECT_THAT(error, HasSubstr(":1:"));
+  read("max_groups: \"three\"", &error);
+  EXPECT_NE(error, "");
+  EXPECT_NE(read_config_file("/nonexistent").error, "");
+  v1::NodeConfig config;
+  EXPECT_NE(set_option(config, "max_grops", "3"), "");
+  EXPECT_NE(set_option(config, "max_groups", "3x"), "");
+  EXPECT_NE(set_option(config, "max_groups", "-3"), "");
+  EXPECT_NE(set_option(config, "max_groups", ""), "");
+  EXPECT_NE(set_option(config, "sigma_m", "1,5"), "");
+  EXPECT_NE(set_option(config, "insecure", "yes"), "");
+  const Environment groups("PALPATE_MAX_GROUPS", "many");
+  EXPECT_THAT(config_from_environment().error, HasSubstr("PALPATE_MAX_GROUPS"));
+}
+
+std::string error_with(const std::string& name, const std::string& text) {
+  v1::NodeConfig config;
+  EXPECT_EQ(set_option(config, name, text), "");
+  return make_options(config).error;
+}
+
+TEST(Config, RangesAreChecked) {
+  EXPECT_THAT(error_with("max_groups", "0"), HasSubstr("max_groups"));
+  EXPECT_THAT(error_with("sigma_m", "-1"), HasSubstr("sigma_m"));
+  EXPECT_THAT(error_with("sigma_m", "nan"), HasSubstr("sigma_m"));
+  EXPECT_THAT(error_with("evict_idle_s", "inf"), HasSubstr("evict_idle_s"));
+  EXPECT_THAT(error_with("recognized_probability", "1.5"), HasSubstr("recognized_probability"));
+  EXPECT_THAT(error_with("log_level", "loud"), HasSubstr("log_level"));
+  EXPECT_THAT(error_with("name", "a/b"), HasSubstr("name"));
+  EXPECT_THAT(error_with("method", "magic"), HasSubstr("method"));
+  EXPECT_THAT(error_with("classes", "square"), HasSubstr("square"));
+  EXPECT_THAT(error_with("contacts", "127.0.0.1:1"), HasSubstr("endpoint"));
+}
+
+TEST(Config, NothingIsOpenToTheNetworkUnlessSaidAloud) {
+  EXPECT_THAT(error_with("contacts", "tcp://*:5581"), HasSubstr("open to the network"));
+  EXPECT_THAT(error_with("results", "bind:tcp://0.0.0.0:5582"), HasSubstr("open to the network"));
+  EXPECT_EQ(error_with("results", "connect:tcp://192.168.0.7:5582"), "");
+  EXPECT_THAT(error_with("curve_secret_key", "node.key"), HasSubstr("allow_clients"));
+  v1::NodeConfig config;
+  config.add_contacts("tcp://*:5581");
+  config.set_insecure(true);
+  EXPECT_TRUE(make_options(config));
+  config.set_insecure(false);
+  config.set_curve_secret_key("node.key");
+  config.set_allow_clients("clients.pub");
+  EXPECT_TRUE(make_options(config));
+}
+
+TEST(Config, ClassesAreChosenByName) {
+  v1::NodeConfig config;
+  config.add_classes("ellipse");
+  config.add_classes("cubic_spline");
+  const Result<NodeOptions> options = make_options(config);
+  ASSERT_TRUE(options) << options.error;
+  EXPECT_EQ(options.value->intake.recognizer.classes,
+            (1U << static_cast<unsigned>(CurveClass::Ellipse)) |
+                (1U << static_cast<unsigned>(CurveClass::CubicSpline)));
+}
+
+}  // namespace
+}  // namespace palpate

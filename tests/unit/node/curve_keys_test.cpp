@@ -1,0 +1,138 @@
+#include "node/curve_keys.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "node/path_lock.h"
+#include "node/zap_handler.h"
+
+namespace palpate {
+namespace {
+
+using ::testing::HasSubstr;
+
+class CurveKeysTest : public ::testing::Test {
+ protected:
+  CurveKeysTest() : folder_(::testing::TempDir() + "palpate_keys_" + std::to_string(::getpid())) {
+    std::filesystem::create_directory(folder_);
+  }
+  ~CurveKeysTest() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+
+ private:
+  std::string folder_;
+};
+
+TEST_F(CurveKeysTest, WrittenKeysAreReadBack) {
+  const Result<CurveKeyPair> keys = generate_curve_keys();
+  ASSERT_TRUE(keys) << keys.error;
+  ASSERT_EQ(write_curve_keys(*keys.value, path("a.key"), path("a.pub")), "");
+  struct stat info {};
+  ASSERT_EQ(::stat(path("a.key").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777U, 0600U);
+  const Result<CurveKeyPair> again = read_curve_keys(path("a.key"));
+  ASSERT_TRUE(again) << again.error;
+  EXPECT_EQ(again.value->public_key, keys.value->public_key);
+  EXPECT_EQ(again.value->secret_key, keys.value->secret_key);
+  const Result<std::vector<std::string>> public_keys = read_public_keys(path("a.pub"));
+  ASSERT_TRUE(public_keys) << public_keys.error;
+  EXPECT_EQ(*public_keys.value, std::vector<std::string>{keys.value->public_key});
+}
+
+TEST_F(CurveKeysTest, NothingIsOverwrittenAndSecretsStaySecret) {
+  const CurveKeyPair keys = *generate_curve_keys().value;
+  ASSERT_EQ(write_curve_keys(keys, path("a.key"), path("a.pub")), "");
+  EXPECT_NE(write_curve_keys(keys, path("a.key"), path("b.pub")), "");
+  EXPECT_NE(write_curve_keys(keys, path("b.key"), path("a.pub")), "");
+  EXPECT_FALSE(std::filesystem::exists(path("b.key")));  // no half pair is left
+  EXPECT_THAT(read_public_keys(path("a.key")).error, HasSubstr("secret"));
+  ::chmod(path("a.key").c_str(), 0644);
+  EXPECT_THAT(read_curve_keys(path("a.key")).error, HasSubstr("chmod 600"));
+}
+
+TEST_F(CurveKeysTest, BadFilesAreRefused) {
+  const CurveKeyPair keys = *generate_curve_keys().value;
+  const CurveKeyPair other = *generate_curve_keys().value;
+  const auto write = [&](const std::string& text) {
+    std::ofstream(path("x")) << text;
+    ::chmod(path("x").c_str(), 0600);
+  };
+  write("public-key " + other.public_key + "\nsecret-key " + keys.secret_key + "\n");
+  EXPECT_THAT(read_curve_keys(path("x")).error, HasSubstr("do not belong together"));
+  write("public-key " + keys.public_key + "\n");
+  EXPECT_FALSE(read_curve_keys(path("x")));
+  write("public-key tooshort\n");
+  EXPECT_THAT(read_public_keys(path("x")).error, HasSubstr(":1:"));
+  write("# nothing\n\n");
+  EXPECT_FALSE(read_public_keys(path("x")));
+  EXPECT_FALSE(read_public_keys(path("missing")));
+  write("# two\npublic-key " + keys.public_key + "\r\npublic-key " + other.public_key);
+  EXPECT_EQ(read_public_keys(path("x")).value->size(), 2U);
+}
+
+std::string raw(const std::string& z85) {
+  std::array<std::uint8_t, 32> bytes{};
+  EXPECT_NE(zmq_z85_decode(bytes.data(), z85.c_str()), nullptr);
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST(ZapReply, OnlyAListedCurveKeyOfOurDomainIsAllowed) {
+  const CurveKeyPair keys = *generate_curve_keys().value;
+  const CurveKeyPair other = *generate_curve_keys().value;
+  const ClientList clients({keys.public_key});
+  const std::vector<std::string> good = {"1.0", "42",    "palpate",           "127.0.0.1",
+                                         "",    "CURVE", raw(keys.public_key)};
+  const auto reply = zap_reply(good, clients);
+  EXPECT_EQ(reply[0], "1.0");
+  EXPECT_EQ(reply[1], "42");
+  EXPECT_EQ(reply[2], "200");
+  const auto status_with = [&](std::size_t frame, const std::string& text) {
+    std::vector<std::string> frames = good;
+    frames[frame] = text;
+    return zap_reply(frames, clients)[2];
+  };
+  EXPECT_EQ(status_with(0, "2.0"), "400");
+  EXPECT_EQ(status_with(2, "other"), "400");
+  EXPECT_EQ(status_with(5, "NULL"), "400");
+  EXPECT_EQ(status_with(5, "PLAIN"), "400");
+  EXPECT_EQ(status_with(6, raw(other.public_key)), "400");
+  EXPECT_EQ(status_with(6, ""), "400");
+  EXPECT_EQ(status_with(6, keys.public_key), "400");  // Z85 in place of bytes
+  EXPECT_EQ(zap_reply(std::vector<std::string>{}, clients)[2], "400");
+  std::vector<std::string> longer = good;
+  longer.emplace_back("more");
+  EXPECT_EQ(zap_reply(longer, clients)[2], "400");
+}
+
+TEST(PathLock, HasOneHolder) {
+  const std::string path = ::testing::TempDir() + "palpate_lock_" + std::to_string(::getpid());
+  {
+    Result<PathLock> first = PathLock::acquire(path);
+    ASSERT_TRUE(first) << first.error;
+    EXPECT_FALSE(PathLock::acquire(path));
+    const PathLock moved = std::move(*first.value);
+    first.value.reset();
+    EXPECT_FALSE(PathLock::acquire(path));
+  }
+  EXPECT_TRUE(PathLock::acquire(path));
+  std::filesystem::remove(path + ".lock");
+}
+
+TEST(PathLock, PathsOfAddresses) {
+  EXPECT_EQ(ipc_path("ipc:///run/x"), "/run/x");
+  EXPECT_EQ(ipc_path("ipc://@abstract"), "");
+  EXPECT_EQ(ipc_path("ipc://*"), "");
+  EXPECT_EQ(ipc_path("tcp://127.0.0.1:1"), "");
+}
+
+}  // namespace
+}  // namespace palpate

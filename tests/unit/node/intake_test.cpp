@@ -1,0 +1,234 @@
+// What counts and what does not: sequence, objects, bounds, turns.
+#include "node/intake.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <numeric>
+#include <string>
+
+#include "contact_messages.h"
+
+namespace palpate {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::contact_topic;
+using testing::line_batch;
+
+constexpr v1::RejectReason kTaken = v1::REJECT_REASON_UNSPECIFIED;
+
+class IntakeTest : public ::testing::Test {
+ protected:
+  v1::RejectReason give(Intake& intake, const std::string& probe, const v1::ContactBatch& batch) {
+    return intake.take(2, contact_topic(probe), batch.SerializeAsString(), now_, 0);
+  }
+
+  v1::RejectReason give(const std::string& probe, const v1::ContactBatch& batch) {
+    return give(intake_, probe, batch);
+  }
+
+  static v1::ContactBatch in_group(const std::string& group, std::uint64_t object,
+                                   v1::ContactBatch batch) {
+    batch.set_group(group);
+    batch.set_object(object);
+    return batch;
+  }
+
+  static std::uint64_t rejected_sum(const Intake& intake) {
+    const auto& rejected = intake.counters().rejected;
+    return std::accumulate(rejected.begin(), rejected.end(), std::uint64_t{0});
+  }
+
+  SteadyTime now_ = SteadyTime(seconds(1000));
+  Intake intake_{IntakeOptions()};
+};
+
+TEST_F(IntakeTest, TheLedgerIsExact) {
+  EXPECT_EQ(give("p", line_batch("p", 1, 0)), kTaken);
+  EXPECT_EQ(give("p", line_batch("p", 1, 4)), kTaken);                         // 3 missing
+  EXPECT_EQ(give("p", line_batch("p", 1, 4)), v1::REJECT_REASON_SEQUENCE);     // duplicate
+  EXPECT_EQ(give("p", line_batch("p", 1, 2)), v1::REJECT_REASON_SEQUENCE);     // late
+  EXPECT_EQ(give("p", line_batch("p", 2, 0)), kTaken);                         // restart
+  EXPECT_EQ(give("p", line_batch("p", 1, 5)), v1::REJECT_REASON_STALE_EPOCH);  // before it
+  EXPECT_EQ(intake_.take(3, "x", "y", now_, 0), v1::REJECT_REASON_FRAMES);
+  const IntakeCounters& counters = intake_.counters();
+  EXPECT_EQ(counters.messages_received, 7U);
+  EXPECT_EQ(counters.messages_accepted, 3U);
+  EXPECT_EQ(counters.messages_accepted + rejected_sum(intake_), counters.messages_received);
+  EXPECT_EQ(counters.samples_received, 30U);
+  const Probe& probe = *intake_.probes().find("p");
+  EXPECT_EQ(probe.messages, 3U);
+  EXPECT_EQ(probe.rejected, 3U);
+  EXPECT_EQ(intake_.probes().missing(), 3U);
+  EXPECT_EQ(intake_.probes().gaps(), 1U);
+  EXPECT_EQ(intake_.probes().restarts(), 1U);
+}
+
+TEST_F(IntakeTest, ARejectedMessageChangesNothingButACount) {
+  give("p", line_batch("p", 1, 0));
+  v1::ContactBatch bad = line_batch("p", 1, 900);
+  bad.mutable_samples(0)->set_x_m(1e308);
+  EXPECT_EQ(give("p", bad), v1::REJECT_REASON_COORDINATE);
+  bad = line_batch("q", 1, 0);
+  bad.clear_samples();
+  EXPECT_EQ(give("q", bad), v1::REJECT_REASON_EMPTY);
+  EXPECT_EQ(intake_.probes().find("q"), nullptr);
+  EXPECT_EQ(intake_.groups().size(), 1U);
+  EXPECT_EQ(give("p", line_batch("p", 1, 1)), kTaken);
+  EXPECT_EQ(intake_.probes().missing(), 0U);
+}
+
+TEST_F(IntakeTest, AStampThatCannotBeSubtractedIsShownAsZero) {
+  v1::ContactBatch batch = line_batch("p", 1, 0);
+  batch.mutable_header()->set_stamp_ns(std::numeric_limits<std::int64_t>::min());
+  EXPECT_EQ(give("p", batch), kTaken);
+  EXPECT_EQ(intake_.probes().find("p")->latency_ns, 0);
+}
+
+TEST_F(IntakeTest, ANewObjectForgetsTheOld) {
+  give("p", in_group("cup", 1, line_batch("p", 1, 0, 50)));
+  EXPECT_EQ(intake_.groups().find("cup")->recognize().sample_count, 50U);
+  EXPECT_EQ(give("p", in_group("cup", 2, line_batch("p", 1, 1, 30))), kTaken);
+  const Group& group = *intake_.groups().find("cup");
+  EXPECT_EQ(group.object(), 2U);
+  EXPECT_EQ(intake_.groups().find("cup")->recognize().sample_count, 30U);
+}
+
+TEST_F(IntakeTest, ARestartedProbeGoesOnWithItsObject) {
+  give("p", in_group("cup", 1, line_batch("p", 1, 7, 50)));
+  EXPECT_EQ(give("p", in_group("cup", 1, line_batch("p", 2, 0, 30, 1.0))), kTaken);
+  EXPECT_EQ(intake_.groups().find("cup")->recognize().sample_count, 80U);
+}
+
+TEST_F(IntakeTest, StragglersOfTheOldObjectNeitherMixNorReturn) {
+  give("a", in_group("cup", 1, line_batch("a", 1, 0, 50)));
+  give("b", in_group("cup", 1, line_batch("b", 1, 0, 50, 1.0)));
+  EXPECT_EQ(give("a", in_group("cup", 2, line_batch("a", 1, 1, 30))), kTaken);
+  EXPECT_EQ(give("b", in_group("cup", 1, line_batch("b", 1, 1, 50, 1.1))),
+            v1::REJECT_REASON_STALE_OBJECT);
+  EXPECT_EQ(intake_.groups().find("cup")->object(), 2U);
+  EXPECT_EQ(intake_.groups().find("cup")->recognize().sample_count, 30U);
+  EXPECT_EQ(give("b", in_group("cup", 2, line_batch("b", 1, 2, 20, 1.2))), kTaken);
+  EXPECT_EQ(intake_.groups().find("cup")->recognize().sample_count, 50U);
+}
+
+TEST_F(IntakeTest, AProbeOfAnotherMindIsHeardAfterTheOthersSilence) {
+  give("a", in_group("cup", 1, line_batch("a", 1, 0)));
+  EXPECT_EQ(give("b", in_group("cup", 7, line_batch("b", 1, 0))), v1::REJECT_REASON_STALE_OBJECT);
+  now_ += milliseconds(1001);
+  EXPECT_EQ(give("b", in_group("cup", 7, line_batch("b", 1, 0))), kTaken);
+  EXPECT_EQ(intake_.groups().find("cup")->object(), 7U);
+}
+
+TEST_F(IntakeTest, FramesAreNotMixed) {
+  v1::ContactBatch batch = line_batch("p", 1, 0);
+  batch.mutable_header()->set_frame("table");
+  EXPECT_EQ(give("p", batch), kTaken);
+  EXPECT_EQ(give("p", line_batch("p", 1, 1)), v1::REJECT_REASON_FRAME_NAME);
+  EXPECT_EQ(intake_.groups().find("p")->frame(), "table");
+}
+
+TEST_F(IntakeTest, ContactsAreNamedAsTheProbeNamesThem) {
+  v1::ContactBatch batch = in_group("cup", 1, line_batch("left", 1, 0));
+  batch.set_patch(5);
+  give("left", batch);
+  batch = in_group("cup", 1, line_batch("right", 1, 0, 10, 1.0));
+  batch.set_patch(9);
+  give("right", batch);
+  batch = in_group("cup", 1, line_batch("right", 1, 1, 10, 2.0));
+  batch.set_patch(10);
+  give("right", batch);
+  const Group& group = *intake_.groups().find("cup");
+  EXPECT_EQ(group.source_of(0, 0).probe, "left");
+  EXPECT_EQ(group.source_of(0, 0).patch, 5U);
+  EXPECT_EQ(group.source_of(1, 1).probe, "right");
+  EXPECT_EQ(group.source_of(1, 1).patch, 10U);
+  EXPECT_EQ(group.source_of(2, 0).probe, "");
+}
+
+TEST_F(IntakeTest, TenThousandNamesStayWithinTheBoundsAndDisplaceNobody) {
+  IntakeOptions options;
+  options.max_probes = 8;
+  options.max_groups = 4;
+  Intake intake(options);
+  EXPECT_EQ(give(intake, "good", line_batch("good", 1, 0)), kTaken);
+  for (int i = 0; i < 10000; ++i) {
+    const std::string name = "invented" + std::to_string(i);
+    give(intake, name, line_batch(name, 1, 0, 1));
+    now_ += milliseconds(1);
+    if (i % 1000 == 999) {
+      const auto seq = static_cast<std::uint64_t>(i / 1000 + 1);
+      EXPECT_EQ(give(intake, "good", line_batch("good", 1, seq)), kTaken);
+    }
+  }
+  EXPECT_LE(intake.probes().all().size(), 8U);
+  EXPECT_LE(intake.groups().size(), 4U);
+  EXPECT_EQ(intake.probes().find("good")->messages, 11U);
+  const IntakeCounters& counters = intake.counters();
+  EXPECT_EQ(counters.messages_accepted + rejected_sum(intake), counters.messages_received);
+  EXPECT_GT(counters.rejected[v1::REJECT_REASON_TOO_MANY_GROUPS], 9900U);
+}
+
+TEST_F(IntakeTest, TheIdleMakeRoom) {
+  IntakeOptions options;
+  options.max_probes = 2;
+  options.max_groups = 2;
+  Intake intake(options);
+  give(intake, "a", line_batch("a", 1, 0));
+  now_ += seconds(1);
+  give(intake, "b", line_batch("b", 1, 0));
+  EXPECT_EQ(give(intake, "c", line_batch("c", 1, 0)), v1::REJECT_REASON_TOO_MANY_PROBES);
+  now_ += milliseconds(9500);  // a silent for 10.5 s, b for 9.5 s
+  EXPECT_EQ(give(intake, "c", line_batch("c", 1, 0)), kTaken);
+  EXPECT_EQ(intake.probes().find("a"), nullptr);
+  EXPECT_NE(intake.probes().find("b"), nullptr);
+  const Intake::Forgotten forgotten = intake.take_forgotten();
+  ASSERT_EQ(forgotten.groups.size(), 1U);
+  EXPECT_EQ(forgotten.groups.front(), "a");
+  ASSERT_EQ(forgotten.probes.size(), 1U);
+  EXPECT_EQ(forgotten.probes.front(), "a");
+  EXPECT_EQ(intake.groups().evicted_count(), 1U);
+  EXPECT_EQ(intake.probes().evicted_count(), 1U);
+}
+
+TEST_F(IntakeTest, AGroupHasSoManyProbes) {
+  IntakeOptions options;
+  options.group.max_probes_per_group = 2;
+  Intake intake(options);
+  EXPECT_EQ(give(intake, "a", in_group("g", 1, line_batch("a", 1, 0))), kTaken);
+  EXPECT_EQ(give(intake, "b", in_group("g", 1, line_batch("b", 1, 0))), kTaken);
+  EXPECT_EQ(give(intake, "c", in_group("g", 1, line_batch("c", 1, 0))),
+            v1::REJECT_REASON_TOO_MANY_PROBES_IN_GROUP);
+}
+
+TEST_F(IntakeTest, AModestGroupIsServedBeforeBusyOnes) {
+  constexpr std::int64_t kCost = 1'000'000;
+  std::uint64_t seq = 0;
+  const auto all_busy_ones_wait = [&] {
+    for (const char* name : {"busy1", "busy2", "busy3"}) give(name, line_batch(name, 1, seq));
+    ++seq;
+  };
+  GroupRegistry& groups = intake_.groups();
+  all_busy_ones_wait();
+  for (int turn = 0; turn < 100; ++turn) {
+    Group* next = groups.next_waiting();
+    ASSERT_NE(next, nullptr);
+    groups.mark_served(*next, kCost);
+    all_busy_ones_wait();
+  }
+  // Comes anew, with nothing saved up, and waits for nobody who has had as much.
+  give("modest", line_batch("modest", 1, 0));
+  int turns = 0;
+  while (groups.next_waiting()->name() != "modest") {
+    groups.mark_served(*groups.next_waiting(), kCost);
+    all_busy_ones_wait();
+    ASSERT_LE(++turns, 3);  // at most those that stood at the same level before it
+  }
+  groups.mark_served(*groups.next_waiting(), kCost / 10);
+  EXPECT_NE(groups.next_waiting()->name(), "modest");
+}
+
+}  // namespace
+}  // namespace palpate
