@@ -1,0 +1,340 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "node/csv/contact_csv.h"
+#include "node/csv/csv_columns.h"
+#include "node/topics.h"
+
+namespace palpate {
+namespace {
+
+using csv::Column;
+using csv::kColumnCount;
+using csv::kColumnNames;
+using csv::kRequiredColumns;
+
+// The bounds of node/ingest.h: what the node would refuse is not used offline either.
+constexpr double kMaxCoordinateM = 1e7;
+constexpr double kMinSigmaM = 1e-15;
+constexpr double kMaxSigmaM = 1e3;
+constexpr double kMaxTipRadiusM = 1e3;
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+/// As it may be shown in an error: short and printable.
+std::string shown(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  std::string result = "'";
+  for (const char c : text.substr(0, kLongest)) {
+    result += c >= ' ' && c <= '~' ? c : '?';
+  }
+  return result + (text.size() > kLongest ? "...'" : "'");
+}
+
+class Reader {
+ public:
+  Reader(std::string_view text, std::string_view name) : text_(text), name_(name) {}
+
+  Result<ContactTable> read() {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text_.starts_with(kByteOrderMark)) {
+      text_.remove_prefix(kByteOrderMark.size());
+    }
+    bool has_header = false;
+    while (error_.empty() && next_line()) {
+      if (trim(line_).empty()) continue;
+      if (has_header) {
+        read_row();
+      } else {
+        has_header = read_header();
+      }
+    }
+    if (error_.empty() && !has_header) {
+      fail(line_begin_, "no header line; it names the columns: probe,patch,x_m,y_m");
+    }
+    if (!error_.empty()) {
+      return Result<ContactTable>::fail(std::move(error_));
+    }
+    return Result<ContactTable>::ok(std::move(table_));
+  }
+
+ private:
+  /// Puts the next line into line_, without comment and line end.
+  bool next_line() {
+    if (position_ >= text_.size()) return false;
+    ++line_number_;
+    const std::size_t end = std::min(text_.find('\n', position_), text_.size());
+    line_ = text_.substr(position_, end - position_);
+    line_begin_ = line_.data();
+    position_ = end + 1;
+    if (line_.ends_with('\r')) line_.remove_suffix(1);
+    if (const std::size_t comment = line_.find('#'); comment != std::string_view::npos) {
+      line_ = line_.substr(0, comment);
+    }
+    return true;
+  }
+
+  /// Splits line_ at its commas; at most one field more than there are columns.
+  std::size_t split() {
+    std::size_t count = 0;
+    for (std::size_t from = 0; count < fields_.size();) {
+      const std::size_t comma = line_.find(',', from);
+      fields_[count++] = trim(line_.substr(from, comma - from));
+      if (comma == std::string_view::npos) break;
+      from = comma + 1;
+    }
+    return count;
+  }
+
+  bool read_header() {
+    columns_.fill(std::nullopt);
+    width_ = split();
+    for (std::size_t i = 0; i < width_; ++i) {
+      const auto* const found = std::find(kColumnNames.begin(), kColumnNames.end(), fields_[i]);
+      if (found == kColumnNames.end()) {
+        return fail(fields_[i].data(), unknown_column(fields_[i]));
+      }
+      auto& column = columns_[static_cast<std::size_t>(found - kColumnNames.begin())];
+      if (column) return fail(fields_[i].data(), "column " + std::string(*found) + " comes twice");
+      column = i;
+    }
+    for (std::size_t i = 0; i < kRequiredColumns; ++i) {
+      if (!columns_[i]) {
+        return fail(line_begin_, "column " + std::string(kColumnNames[i]) + " is missing");
+      }
+    }
+    return true;
+  }
+
+  static std::string unknown_column(std::string_view name) {
+    std::string why = "no such column: " + shown(name) + "; there are";
+    for (const std::string_view column : kColumnNames) {
+      (why += ' ') += column;
+    }
+    if (name.find(';') != std::string_view::npos || name.find('\t') != std::string_view::npos) {
+      why += "; columns are separated by commas";
+    }
+    return why;
+  }
+
+  void read_row() {
+    const std::size_t count = split();
+    if (count != width_) {
+      fail(count > width_ ? fields_[width_].data() : line_.data() + line_.size(),
+           (count > width_ ? "more than " : std::to_string(count) + " fields instead of ") +
+               std::to_string(width_) + (count > width_ ? " fields" : ""));
+      return;
+    }
+    ContactRow row;
+    const std::string_view probe = field(Column::Probe);
+    if (probe != last_probe_) {
+      if (!is_valid_name(probe)) {
+        fail(probe.data(), "probe " + shown(probe) + ": a name is 1 to 64 of A-Z a-z 0-9 _ . -");
+        return;
+      }
+      last_probe_ = probe;
+      last_probe_index_ = intern(probe);
+    }
+    row.probe = row.group = last_probe_index_;
+    if (const std::string_view group = optional_field(Column::Group); !group.empty()) {
+      if (!is_valid_name(group)) {
+        fail(group.data(), "group " + shown(group) + ": a name is 1 to 64 of A-Z a-z 0-9 _ . -");
+        return;
+      }
+      row.group = group == table_.names[row.probe] ? row.probe : intern(group);
+    }
+    const bool all_read =
+        whole(Column::Patch, row.context.patch) &&
+        number(Column::X, -kMaxCoordinateM, kMaxCoordinateM, row.sample.position_m.x()) &&
+        number(Column::Y, -kMaxCoordinateM, kMaxCoordinateM, row.sample.position_m.y()) &&
+        number(Column::Sigma, 0.0, kMaxSigmaM, row.sample.sigma_m) && is_noise(row.sample) &&
+        whole(Column::Stamp, row.sample.stamp_ns) && whole(Column::Object, row.object) &&
+        number(Column::TipRadius, 0.0, kMaxTipRadiusM, row.context.tip_radius_m) &&
+        side(row.context.material_side);
+    if (all_read && agrees_with_patch(row)) {
+      table_.rows.push_back(row);
+    }
+  }
+
+  std::size_t intern(std::string_view name) {
+    const auto found = name_indices_.find(name);
+    if (found != name_indices_.end()) return found->second;
+    table_.names.emplace_back(name);
+    return name_indices_.emplace(name, table_.names.size() - 1).first->second;
+  }
+
+  bool is_noise(const ContactSample& sample) {
+    const std::string_view text = optional_field(Column::Sigma);
+    return sample.sigma_m == 0.0 || sample.sigma_m >= kMinSigmaM ||
+           fail(text.data(), in_column(Column::Sigma, text) + "must be 0 (not known) or >= 1e-15");
+  }
+
+  std::string_view field(Column column) const {
+    return fields_[*columns_[static_cast<std::size_t>(column)]];
+  }
+
+  /// Empty where the file has no such column.
+  std::string_view optional_field(Column column) const {
+    return columns_[static_cast<std::size_t>(column)] ? field(column) : std::string_view();
+  }
+
+  static bool is_required(Column column) {
+    return static_cast<std::size_t>(column) < kRequiredColumns;
+  }
+
+  std::string in_column(Column column, std::string_view text) const {
+    return std::string(kColumnNames[static_cast<std::size_t>(column)]) + " " + shown(text) + ": ";
+  }
+
+  /// A finite number within the bounds; untouched where the field is optional and empty.
+  bool number(Column column, double lowest, double highest, double& value) {
+    const std::string_view text = optional_field(column);
+    if (text.empty() && !is_required(column)) return true;
+    double parsed = 0.0;
+    const auto [end, status] = std::from_chars(begin_of(text), text.data() + text.size(), parsed);
+    if (end != text.data() + text.size() || status == std::errc::invalid_argument) {
+      return fail(text.data(), in_column(column, text) + "not a number");
+    }
+    if (status == std::errc::result_out_of_range) {
+      return fail(text.data(), in_column(column, text) + "beyond what a double can hold");
+    }
+    if (!std::isfinite(parsed)) {
+      return fail(text.data(), in_column(column, text) + "not a finite number");
+    }
+    if (parsed < lowest || parsed > highest) {
+      char bounds[64];
+      std::snprintf(bounds, sizeof bounds, "must lie in %g to %g", lowest, highest);
+      return fail(text.data(), in_column(column, text) + bounds);
+    }
+    value = parsed;
+    return true;
+  }
+
+  /// A whole number that its type can hold.
+  template <typename Integer>
+  bool whole(Column column, Integer& value) {
+    const std::string_view text = optional_field(column);
+    if (text.empty() && !is_required(column)) return true;
+    const auto [end, status] = std::from_chars(begin_of(text), text.data() + text.size(), value);
+    if (status == std::errc::result_out_of_range) {
+      return fail(text.data(), in_column(column, text) + "out of range");
+    }
+    if (status != std::errc() || end != text.data() + text.size()) {
+      return fail(text.data(), in_column(column, text) +
+                                   (std::is_signed_v<Integer> ? "not a whole number"
+                                                              : "not a whole number >= 0"));
+    }
+    return true;
+  }
+
+  /// from_chars knows no plus sign; people write it. A second sign is left for it to refuse.
+  static const char* begin_of(std::string_view text) {
+    const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
+    return text.data() + (plus ? 1 : 0);
+  }
+
+  bool side(MaterialSide& value) {
+    const std::string_view text = optional_field(Column::MaterialSide);
+    if (text.empty() || text == "unspecified") {
+      value = MaterialSide::Unspecified;
+    } else if (text == "left") {
+      value = MaterialSide::Left;
+    } else if (text == "right") {
+      value = MaterialSide::Right;
+    } else {
+      return fail(text.data(),
+                  in_column(Column::MaterialSide, text) + "must be left, right or unspecified");
+    }
+    return true;
+  }
+
+  /// One patch is one touch of one tip.
+  bool agrees_with_patch(const ContactRow& row) {
+    const auto key = std::tuple(row.group, row.object, row.probe, row.context.patch);
+    if (last_patch_ == nullptr || key != last_patch_key_) {
+      last_patch_ = &patches_.try_emplace(key, row.context).first->second;
+      last_patch_key_ = key;
+    }
+    if (row.context.tip_radius_m != last_patch_->tip_radius_m) {
+      return fail(field(Column::Patch).data(), "tip_radius_m changes within a patch");
+    }
+    if (row.context.material_side != last_patch_->material_side) {
+      return fail(field(Column::Patch).data(), "material_side changes within a patch");
+    }
+    return true;
+  }
+
+  bool fail(const char* at, std::string_view why) {
+    if (error_.empty()) {
+      const std::ptrdiff_t column = at == nullptr || line_begin_ == nullptr ? 0 : at - line_begin_;
+      error_ = std::string(name_) + ":" + std::to_string(std::max<std::size_t>(line_number_, 1)) +
+               ":" + std::to_string(column + 1) + ": " + std::string(why);
+    }
+    return false;
+  }
+
+  using PatchKey = std::tuple<std::size_t, std::uint64_t, std::size_t, std::uint32_t>;
+
+  std::string_view text_;
+  std::string_view name_;
+  std::size_t position_ = 0;
+  std::size_t line_number_ = 0;
+  std::string_view line_;
+  const char* line_begin_ = nullptr;
+  std::array<std::string_view, kColumnCount + 1> fields_;
+  std::array<std::optional<std::size_t>, kColumnCount> columns_;  ///< place of each in a line
+  std::size_t width_ = 0;
+  std::string_view last_probe_;
+  std::size_t last_probe_index_ = 0;
+  std::map<PatchKey, PatchContext> patches_;
+  PatchContext* last_patch_ = nullptr;
+  PatchKey last_patch_key_;
+  std::map<std::string, std::size_t, std::less<>> name_indices_;
+  ContactTable table_;
+  std::string error_;
+};
+
+}  // namespace
+
+Result<ContactTable> parse_contact_csv(std::string_view text, std::string_view name) {
+  return Reader(text, name).read();
+}
+
+Result<ContactTable> read_contact_csv(const std::string& path) {
+  std::string text;
+  if (path == "-") {
+    text.assign(std::istreambuf_iterator<char>(std::cin), {});
+    return parse_contact_csv(text, "standard input");
+  }
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = in ? static_cast<std::streamoff>(in.tellg()) : -1;
+  if (size >= 0 && in.seekg(0)) {
+    text.resize(static_cast<std::size_t>(size));
+    in.read(text.data(), size);
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    return parse_contact_csv(text, path);
+  }
+  // A pipe has no size.
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    return Result<ContactTable>::fail(path + ": cannot be read");
+  }
+  text.assign(std::istreambuf_iterator<char>(stream), {});
+  return parse_contact_csv(text, path);
+}
+
+}  // namespace palpate

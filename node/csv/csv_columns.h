@@ -1,0 +1,30 @@
+// The columns of a contact CSV file.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace palpate::csv {
+
+enum class Column {
+  Probe,
+  Patch,
+  X,
+  Y,
+  Sigma,
+  Stamp,
+  Object,
+  Group,
+  TipRadius,
+  MaterialSide,
+};
+
+/// In the order of Column. The first kRequiredColumns must be there.
+inline constexpr std::array<std::string_view, 10> kColumnNames = {
+    "probe", "patch",  "x_m",   "y_m",          "sigma_m",
+    "stamp_ns", "object", "group", "tip_radius_m", "material_side"};
+inline constexpr std::size_t kColumnCount = kColumnNames.size();
+inline constexpr std::size_t kRequiredColumns = 4;
+
+}  // namespace palpate::csv

@@ -1,0 +1,161 @@
+#include "sim/contacts.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "sim/random.h"
+
+namespace palpate::sim {
+namespace {
+
+constexpr double kDefaultRateHz = 1000.0;
+constexpr std::size_t kDefaultBatchSamples = 10;
+constexpr double kDefaultLiftOffS = 0.2;
+
+double or_default(double value, double standard) { return value > 0.0 ? value : standard; }
+
+/// Places that a patch touches, at equal arc lengths.
+class PatchWalk {
+ public:
+  PatchWalk(const Shape& shape, const v1::SceneProbe& probe, const v1::ScenePatch& patch)
+      : shape_(shape), rate_hz_(or_default(probe.rate_hz(), kDefaultRateHz)) {
+    const double spacing = patch.pace_case() == v1::ScenePatch::kSpeedMPerS
+                               ? patch.speed_m_per_s() / rate_hz_
+                               : patch.spacing_m();
+    // A spacing that divides the arc but for rounding reaches its end.
+    count_ = static_cast<std::size_t>(std::floor(patch.arc_m() / spacing * (1.0 + 1e-12))) + 1;
+    step_ = patch.backwards() ? -spacing : spacing;
+    t_ = patch.start_case() == v1::ScenePatch::kStartArcM
+             ? parameter_at_arc_length(shape, 0.0, patch.start_arc_m())
+             : patch.start_t();
+  }
+
+  std::size_t count() const { return count_; }
+  double interval_s() const { return 1.0 / rate_hz_; }
+  double t() const { return t_; }
+
+  /// Each step is measured from the place before: over n samples rounding adds up to n units in the
+  /// last place of t, and the cost of a step does not grow.
+  void advance() { t_ = parameter_at_arc_length(shape_, t_, step_); }
+
+ private:
+  const Shape& shape_;
+  double rate_hz_;
+  std::size_t count_ = 0;
+  double step_ = 0.0;
+  double t_ = 0.0;
+};
+
+/// +1: the material lies left of increasing t.
+double material_sign(const v1::Scene& scene) {
+  return scene.material_side() == v1::MATERIAL_SIDE_RIGHT ? -1.0 : 1.0;
+}
+
+const v1::SceneNoise& noise_of(const v1::Scene& scene, const v1::SceneProbe& probe) {
+  return probe.has_noise() ? probe.noise() : scene.noise();
+}
+
+/// What the sensor makes of a position. Every sample draws the same numbers whatever the noise, so
+/// that changing one kind of noise leaves the others as they were.
+struct Sensed {
+  Vec2 position;
+  bool lost = false;
+};
+
+Sensed sense(const Vec2& true_position, const v1::SceneNoise& noise, Random& random) {
+  const Vec2 normal = random.normal_pair();
+  const double spike_draw = random.uniform();
+  const double direction = 2.0 * kPi * random.uniform();
+  const double dropout_draw = random.uniform();
+  Sensed sensed{true_position + noise.sigma_m() * normal};
+  if (spike_draw < noise.spike_probability()) {
+    sensed.position += noise.spike_m() * Vec2(std::cos(direction), std::sin(direction));
+  }
+  if (const double step = noise.quantization_m(); step > 0.0) {
+    sensed.position = step * (sensed.position / step).array().round().matrix();
+  }
+  sensed.lost = dropout_draw < noise.dropout_probability();
+  return sensed;
+}
+
+SimulatedPatch touch(const Scene& scene, const v1::SceneProbe& probe, const v1::ScenePatch& patch,
+                     double start_s, Random& random) {
+  const v1::SceneNoise& noise = noise_of(scene.description, probe);
+  const double side = material_sign(scene.description);
+  PatchWalk walk(scene.shape, probe, patch);
+  SimulatedPatch touched;
+  touched.side = (side > 0.0) == !patch.backwards() ? MaterialSide::Left : MaterialSide::Right;
+  touched.side_is_reported = !probe.hide_material_side();
+  touched.start_t = walk.t();
+  touched.samples.reserve(walk.count());
+  for (std::size_t i = 0; i < walk.count(); ++i) {
+    if (i > 0) walk.advance();
+    touched.end_t = walk.t();
+    const ShapePoint place = point_at(scene.shape, walk.t());
+    Vec2 centre = place.position;
+    if (probe.tip_radius_m() > 0.0) {
+      centre -= side * probe.tip_radius_m() * left_of(place.first.normalized());
+    }
+    const Sensed sensed = sense(scene.world_T_shape * centre, noise, random);
+    if (!sensed.lost) {
+      touched.samples.push_back({sensed.position, noise.hide_sigma() ? 0.0 : noise.sigma_m(),
+                                 start_s + static_cast<double>(i) * walk.interval_s(), walk.t()});
+    }
+  }
+  return touched;
+}
+
+double duration_s(const Shape& shape, const v1::SceneProbe& probe, const v1::ScenePatch& patch) {
+  const PatchWalk walk(shape, probe, patch);
+  return static_cast<double>(walk.count() - 1) * walk.interval_s() +
+         or_default(patch.lift_off_s(), kDefaultLiftOffS);
+}
+
+}  // namespace
+
+std::vector<SimulatedProbe> simulate_contacts(const Scene& scene, std::uint64_t repetition) {
+  std::vector<SimulatedProbe> probes;
+  for (int i = 0; i < scene.description.probes_size(); ++i) {
+    const v1::SceneProbe& described = scene.description.probes(i);
+    Random random(scene.description.seed(), (repetition << 16) + static_cast<std::uint64_t>(i));
+    SimulatedProbe probe;
+    probe.name = described.name();
+    probe.tip_radius_m = described.tip_radius_m();
+    probe.batch_samples =
+        described.batch_samples() > 0 ? described.batch_samples() : kDefaultBatchSamples;
+    double start_s = described.start_s();
+    for (const v1::ScenePatch& patch : described.patches()) {
+      SimulatedPatch touched = touch(scene, described, patch, start_s, random);
+      touched.number = static_cast<std::uint32_t>(probe.patches.size());
+      start_s += duration_s(scene.shape, described, patch);
+      probe.patches.push_back(std::move(touched));
+    }
+    probes.push_back(std::move(probe));
+  }
+  return probes;
+}
+
+std::string tip_trouble(const v1::Scene& scene, const Shape& shape, const v1::SceneProbe& probe,
+                        const v1::ScenePatch& patch) {
+  if (!(probe.tip_radius_m() > 0.0)) {
+    return {};
+  }
+  // The tip lies on the side without material. Where the surface bends towards it more than it is
+  // round itself, it cannot touch.
+  const double side = material_sign(scene);
+  PatchWalk walk(shape, probe, patch);
+  for (std::size_t i = 0; i < walk.count(); ++i) {
+    if (i > 0) walk.advance();
+    const double towards_tip = -side * curvature(point_at(shape, walk.t()));
+    if (!(towards_tip * probe.tip_radius_m() < 1.0)) {
+      char text[120];
+      std::snprintf(text, sizeof text,
+                    "at t = %.6g the surface is too hollow for a tip of radius %.6g m", walk.t(),
+                    probe.tip_radius_m());
+      return text;
+    }
+  }
+  return {};
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,276 @@
+// palpate-sim: plays scenes as the probes of a real cell would. Exit codes: 0 all played, 1 failed
+// at run time (no recognizer listens, a file cannot be written), 2 usage or a bad scene.
+#include <pthread.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "node/client/connection.h"
+#include "node/clock.h"
+#include "node/csv/contact_csv.h"
+#include "sim/contact_export.h"
+#include "sim/contacts.h"
+#include "sim/playback.h"
+#include "sim/truth.h"
+
+namespace {
+
+using namespace palpate;
+
+enum ExitCode { kPlayed = 0, kFailed = 1, kUsage = 2 };
+
+struct CommandLine {
+  std::vector<std::string> scenes;
+  std::string contacts{kDefaultContactsEndpoint};
+  double speed = 1.0;
+  bool fast = false;
+  std::uint64_t repeat = 1;
+  double pause_s = 0.5;
+  double wait_s = 10.0;
+  std::uint64_t object = 0;
+  std::string csv;
+  std::string truth;
+  std::string own_key;
+  std::string recognizer_key;
+  bool quiet = false;
+};
+
+void add_options(CLI::App& app, CommandLine& options) {
+  app.add_option("SCENE", options.scenes, "Scene files (sim/scenes/*.textproto), played in turn")
+      ->required()
+      ->type_name("");
+  app.add_option("--contacts", options.contacts,
+                 "The recognizer's contacts endpoint, [bind:|connect:]ADDRESS")
+      ->capture_default_str()
+      ->type_name("ENDPOINT");
+  app.add_option("--speed", options.speed, "Times as fast as the scene's own time")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->type_name("FACTOR");
+  app.add_flag("--fast", options.fast, "As fast as possible");
+  app.add_option("--repeat", options.repeat,
+                 "Play all scenes so many times, each time a new object with new noise; 0 = for ever")
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--pause", options.pause_s, "Seconds between two scenes")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->type_name("S");
+  app.add_option("--wait", options.wait_s, "Seconds to wait for a recognizer before giving up")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->type_name("S");
+  app.add_option("--object", options.object,
+                 "Number of the first object; the others follow. Default: the scene's own, or else "
+                 "one that was never used before (1 with --csv)")
+      ->type_name("N");
+  app.add_option("--csv", options.csv,
+                 "Write the samples to FILE (- = standard output) for `palpate fit`, publish nothing")
+      ->type_name("FILE");
+  app.add_option("--truth", options.truth,
+                 "Write class, parameters and pose to FILE (- = standard output), one JSON line for "
+                 "each group and object")
+      ->type_name("FILE");
+  CLI::Option* own = app.add_option("--curve-secret-key", options.own_key,
+                                    "CURVE: this probe's secret key file (palpate keygen)")
+                         ->type_name("FILE");
+  app.add_option("--curve-server-key", options.recognizer_key,
+                 "CURVE: the recognizer's public key file")
+      ->needs(own)
+      ->type_name("FILE");
+  app.add_flag("--quiet", options.quiet, "Say nothing unless it fails");
+}
+
+/// Blocks the stop signals, to be read from the returned descriptor; before any thread starts.
+int take_stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+}
+
+/// A file, or standard output for "-".
+class Output {
+ public:
+  bool open(const std::string& path) {
+    path_ = path;
+    if (path == "-" || path.empty()) return true;
+    file_.open(path, std::ios::binary | std::ios::trunc);
+    return static_cast<bool>(file_);
+  }
+
+  bool write(const std::string& text) {
+    std::ostream& out = path_ == "-" ? std::cout : file_;
+    return path_.empty() || static_cast<bool>(out << text << std::flush);
+  }
+
+ private:
+  std::string path_;
+  std::ofstream file_;
+};
+
+/// Numbers of the objects, in the order in which they are played.
+class ObjectNumbers {
+ public:
+  ObjectNumbers(const CLI::App& app, const CommandLine& options) {
+    if (app.count("--object") > 0) {
+      next_ = options.object;
+      given_ = true;
+    } else {
+      next_ = options.csv.empty() ? static_cast<std::uint64_t>(unix_time_ns() / 1'000'000) : 1;
+    }
+  }
+
+  std::uint64_t next(const sim::Scene& scene) {
+    // A scene's own number holds for its first time: after that, it would be the same object.
+    if (!given_ && scene.description.has_object() &&
+        (!started_ || scene.description.object() >= next_)) {
+      next_ = scene.description.object();
+    }
+    started_ = true;
+    return next_++;
+  }
+
+ private:
+  std::uint64_t next_ = 1;
+  bool given_ = false;
+  bool started_ = false;
+};
+
+std::string summary(const sim::Scene& scene, const sim::PlaybackCounts& counts,
+                    std::uint64_t object) {
+  return scene.name + ": object " + std::to_string(object) + ", " +
+         std::to_string(counts.samples) + " samples in " + std::to_string(counts.messages) +
+         " messages" +
+         (counts.refused > 0 ? ", " + std::to_string(counts.refused) + " not taken" : "") + "\n";
+}
+
+struct Player {
+  const CommandLine& options;
+  ObjectNumbers numbers;
+  Output truth;
+  int stop_fd;
+
+  /// Writes the truth; false where it cannot be written.
+  bool tell_truth(const sim::Scene& scene, std::span<const sim::SimulatedProbe> probes,
+                  std::uint64_t object) {
+    for (const v1::SceneTruth& line : sim::scene_truths(scene, probes, object)) {
+      if (!truth.write(sim::to_json(line) + "\n")) return false;
+    }
+    return true;
+  }
+
+  int export_csv(const std::vector<sim::Scene>& scenes) {
+    ContactTable table;
+    for (std::uint64_t round = 0; round < std::max<std::uint64_t>(options.repeat, 1); ++round) {
+      for (const sim::Scene& scene : scenes) {
+        const std::vector<sim::SimulatedProbe> probes = sim::simulate_contacts(scene, round);
+        const std::uint64_t object = numbers.next(scene);
+        sim::append_rows(scene, probes, object, table);
+        if (!tell_truth(scene, probes, object)) return failed(options.truth + ": cannot be written");
+      }
+    }
+    Output csv;
+    if (!csv.open(options.csv) || !csv.write(to_csv(table))) {
+      return failed(options.csv + ": cannot be written");
+    }
+    return kPlayed;
+  }
+
+  int publish(const std::vector<sim::Scene>& scenes) {
+    client::ContactPublisherOptions publisher_options;
+    publisher_options.endpoint = options.contacts;
+    // Room for what "as fast as possible" piles up.
+    publisher_options.high_water_mark = options.fast ? 100000 : 1000;
+    if (!options.recognizer_key.empty()) {
+      Result<CurveClient> curve =
+          client::read_curve_client(options.own_key, options.recognizer_key);
+      if (!curve) return failed(curve.error);
+      publisher_options.curve = *curve.value;
+    }
+    client::ContactPublisher publisher(publisher_options);
+    if (const int code = wait_for_recognizer(publisher); code != kPlayed) return code;
+    for (std::uint64_t round = 0; options.repeat == 0 || round < options.repeat; ++round) {
+      for (const sim::Scene& scene : scenes) {
+        const bool is_first = round == 0 && &scene == &scenes.front();
+        if (!is_first && sim::wait_or_stop(options.pause_s, stop_fd)) return kPlayed;
+        const std::vector<sim::SimulatedProbe> probes = sim::simulate_contacts(scene, round);
+        const std::uint64_t object = numbers.next(scene);
+        if (!tell_truth(scene, probes, object)) return failed(options.truth + ": cannot be written");
+        std::vector<sim::TimedBatch> batches = sim::make_batches(scene, probes, object);
+        const sim::PlaybackCounts counts =
+            sim::play(batches, probes, options.fast ? 0.0 : options.speed, stop_fd, publisher);
+        if (!options.quiet) std::cerr << summary(scene, counts, object);
+        if (counts.stopped) return kPlayed;
+      }
+    }
+    return kPlayed;
+  }
+
+  /// In short waits, so that a stop is heard.
+  int wait_for_recognizer(client::ContactPublisher& publisher) const {
+    constexpr double kStepS = 0.05;
+    for (double waited_s = 0.0;; waited_s += kStepS) {
+      if (publisher.wait_for_recognizer(std::chrono::milliseconds(50))) return kPlayed;
+      if (sim::wait_or_stop(0.0, stop_fd)) return kPlayed;
+      if (waited_s >= options.wait_s) {
+        return failed("no recognizer listens at " + options.contacts + " (start palpate-node)");
+      }
+    }
+  }
+
+  static int failed(const std::string& why) {
+    std::cerr << "palpate-sim: " << why << "\n";
+    return kFailed;
+  }
+};
+
+int run(const CLI::App& app, const CommandLine& options) {
+  std::vector<sim::Scene> scenes;
+  for (const std::string& path : options.scenes) {
+    Result<sim::Scene> scene = sim::read_scene(path);
+    if (!scene) {
+      std::cerr << scene.error << "\n";
+      return kUsage;
+    }
+    scenes.push_back(std::move(*scene.value));
+  }
+  Player player{options, ObjectNumbers(app, options), {}, take_stop_signals()};
+  if (!player.truth.open(options.truth)) {
+    return Player::failed(options.truth + ": cannot be written");
+  }
+  return options.csv.empty() ? player.publish(scenes) : player.export_csv(scenes);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Simulates touch probes: publishes the contacts of scenes, or writes them to a file.\n"
+      "Exit codes: 0 all played (or stopped as asked), 1 failed at run time, 2 usage or bad scene.",
+      "palpate-sim");
+  app.set_version_flag("--version", PALPATE_VERSION);
+  CommandLine options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kPlayed : kUsage;
+  }
+  try {
+    return run(app, options);
+  } catch (const std::exception& error) {
+    return Player::failed(error.what());
+  }
+}

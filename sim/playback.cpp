@@ -1,0 +1,57 @@
+#include "sim/playback.h"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "node/clock.h"
+
+namespace palpate::sim {
+
+bool wait_or_stop(double seconds, int stop_fd) {
+  using Clock = std::chrono::steady_clock;
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                           std::chrono::duration<double>(seconds));
+  pollfd stop{stop_fd, POLLIN, 0};
+  for (;;) {
+    const auto left = std::max(deadline - Clock::now(), Clock::duration::zero());
+    const auto nanoseconds =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(left).count();
+    const timespec timeout{nanoseconds / 1'000'000'000, nanoseconds % 1'000'000'000};
+    if (ppoll(&stop, 1, &timeout, nullptr) > 0) return true;
+    if (Clock::now() >= deadline) return false;
+  }
+}
+
+PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProbe> probes,
+                    double speed, int stop_fd, client::ContactPublisher& publisher) {
+  PlaybackCounts counts;
+  const bool paced = speed > 0.0;
+  const double scale = paced ? 1.0 / speed : 0.0;
+  const std::int64_t start_ns = unix_time_ns();
+  const auto due_ns = [&](double time_s) {
+    return start_ns + std::llround(time_s * scale * 1e9);
+  };
+  for (TimedBatch& timed : batches) {
+    const double wait_s =
+        paced ? 1e-9 * static_cast<double>(due_ns(timed.time_s) - unix_time_ns()) : 0.0;
+    // Even without a wait: a stop is heard.
+    if (wait_or_stop(std::max(wait_s, 0.0), stop_fd)) {
+      counts.stopped = true;
+      break;
+    }
+    const std::int64_t now_ns = unix_time_ns();
+    for (v1::ContactSample& sample : *timed.batch.mutable_samples()) {
+      sample.set_stamp_ns(paced ? due_ns(1e-9 * static_cast<double>(sample.stamp_ns())) : now_ns);
+    }
+    const bool taken = publisher.publish(probes[timed.probe].name, timed.batch);
+    counts.refused += taken ? 0 : 1;
+    ++counts.messages;
+    counts.samples += static_cast<std::uint64_t>(timed.batch.samples_size());
+  }
+  return counts;
+}
+
+}  // namespace palpate::sim

@@ -1,0 +1,29 @@
+// Publishes a scene's messages at their times.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "node/client/contact_publisher.h"
+#include "sim/contact_export.h"
+
+namespace palpate::sim {
+
+struct PlaybackCounts {
+  std::uint64_t messages = 0;
+  std::uint64_t samples = 0;
+  std::uint64_t refused = 0;  ///< messages that the socket did not take
+  bool stopped = false;       ///< by a signal
+};
+
+/// Publishes the batches in order, each when its last sample is due: `speed` times as fast as the
+/// scene's time, 0 = at once. Samples are stamped with the Unix time at which they are due. Ends
+/// early when `stop_fd` becomes readable. Changes the batches.
+PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProbe> probes,
+                    double speed, int stop_fd, client::ContactPublisher& publisher);
+
+/// Waits; true where `stop_fd` became readable.
+bool wait_or_stop(double seconds, int stop_fd);
+
+}  // namespace palpate::sim

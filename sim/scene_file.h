@@ -1,0 +1,26 @@
+// Scene files: read, checked, ready to be touched.
+#pragma once
+
+#include <string>
+
+#include "core/curves/pose2.h"
+#include "node/result.h"
+#include "palpate/v1/scene.pb.h"
+#include "sim/shape.h"
+
+namespace palpate::sim {
+
+struct Scene {
+  std::string name;  ///< the file's
+  v1::Scene description;
+  Shape shape;
+  Pose2 world_T_shape;
+};
+
+/// Reads and checks a scene; an error reads "FILE:LINE: FIELD: what is wrong".
+Result<Scene> read_scene(const std::string& path);
+
+/// The same from text; `name` stands for the file in errors.
+Result<Scene> parse_scene(const std::string& text, const std::string& name);
+
+}  // namespace palpate::sim
