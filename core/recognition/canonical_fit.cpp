@@ -9,10 +9,11 @@
 namespace palpate {
 namespace {
 
-/// Shape, pose and the canonical parameter t = scale * (fit parameter) + shift (polynomials only).
+/// Shape and pose in the fit's frame, in metres, and the canonical parameter
+/// t = scale * (fit parameter) + shift (polynomials only).
 struct Placement {
   ShapeParameters shape;
-  Pose2 world_T_curve;
+  Pose2 frame_T_curve;
   double t_scale = 1.0;
   double t_shift = 0.0;
 };
@@ -43,9 +44,8 @@ std::optional<Placement> place_line(const ConicCoefficients& q, const FitData& d
   if (direction.dot(first.back().position - first.front().position) < 0.0) {
     direction = -direction;
   }
-  const Vec2 world = data.centre + data.scale * origin;
   return Placement{{CurveClass::Line, Eigen::Vector3d::Zero()},
-                   {world.x(), world.y(), std::atan2(direction.y(), direction.x())}};
+                   {data.scale * origin.x(), data.scale * origin.y(), std::atan2(direction.y(), direction.x())}};
 }
 
 std::optional<Placement> place_circle(const ConicCoefficients& q, const FitData& data) {
@@ -60,10 +60,9 @@ std::optional<Placement> place_circle(const ConicCoefficients& q, const FitData&
   if (!(radius2 > 0.0)) {
     return std::nullopt;
   }
-  const Vec2 world = data.centre + data.scale * centre;
   return Placement{
       {CurveClass::Circle, Eigen::Vector3d(data.scale * std::sqrt(radius2), 0.0, 0.0)},
-      {world.x(), world.y(), 0.0}};
+      {data.scale * centre.x(), data.scale * centre.y(), -data.frame.theta}};  // world angle 0
 }
 
 std::optional<Placement> place_conic(CurveClass curve_class, const ConicCoefficients& q,
@@ -103,9 +102,8 @@ std::optional<Placement> place_conic(CurveClass curve_class, const ConicCoeffici
   if (!(a2 > 0.0 && b2 > 0.0) || !std::isfinite(a2) || !std::isfinite(b2)) {
     return std::nullopt;
   }
-  const Vec2 world = data.centre + data.scale * centre;
   placement.shape.values = data.scale * Eigen::Vector3d(std::sqrt(a2), std::sqrt(b2), 0.0);
-  placement.world_T_curve = {world.x(), world.y(), wrap_angle(angle)};
+  placement.frame_T_curve = {data.scale * centre.x(), data.scale * centre.y(), angle};
   return placement;
 }
 
@@ -115,7 +113,7 @@ std::optional<Placement> place_polynomial(CurveClass curve_class,
   Placement placement;
   placement.shape.curve_class = curve_class;
   const auto place = [&](const Vec2& origin, const Vec2& x_axis) {
-    placement.world_T_curve = {origin.x(), origin.y(), std::atan2(x_axis.y(), x_axis.x())};
+    placement.frame_T_curve = {origin.x(), origin.y(), std::atan2(x_axis.y(), x_axis.x())};
   };
   if (curve_class == CurveClass::Parabola) {
     const double opening = c.col(2).norm();
@@ -176,9 +174,7 @@ std::optional<Placement> place_of(const ClassFit& fit, const FitData& data) {
     return std::nullopt;
   }
   if (fit.polynomial) {
-    PolynomialCoefficients c = data.scale * fit.polynomial->coefficients;
-    c.col(0) += data.centre;
-    return place_polynomial(fit.curve_class, c);
+    return place_polynomial(fit.curve_class, data.scale * fit.polynomial->coefficients);
   }
   const ConicCoefficients& q = fit.implicit->coefficients;
   switch (fit.curve_class) {
@@ -230,13 +226,15 @@ ShapePoseCovariance invert(const ShapePoseCovariance& information, int rank) {
 }  // namespace
 
 std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& data) {
+  assert(fit.on_all);
   const auto placement = place_of(fit, data);
   if (!placement || !placement->shape.values.allFinite()) {
     return std::nullopt;
   }
   CanonicalFit canonical;
   canonical.shape = placement->shape;
-  canonical.world_T_curve = placement->world_T_curve;
+  const Pose2& frame_T_curve = placement->frame_T_curve;
+  canonical.world_T_curve = data.frame * frame_T_curve;
   const auto curve = make_curve(canonical.shape.curve_class, canonical.shape.values);
   if (!curve) {
     return std::nullopt;
@@ -256,8 +254,7 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
       Vec2 foot;
       distance = signed_distance(q, point.position, &foot);
       fitted.normal = conic_gradient(q, foot).normalized();
-      const Vec2 world = data.centre + data.scale * foot;
-      fitted.t = parameter_of(canonical.shape, canonical.world_T_curve.to_local(world));
+      fitted.t = parameter_of(canonical.shape, frame_T_curve.to_local(data.scale * foot));
     } else {
       const double t = fit.polynomial->t[i];
       fitted.t = placement->t_scale * t + placement->t_shift;
@@ -267,7 +264,8 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
     }
     fitted.residual = (distance - side * point.offset) * point.inverse_sigma;
 
-    const Vec2 local_normal = canonical.world_T_curve.rotate_back(fitted.normal);
+    const Vec2 local_normal = frame_T_curve.rotate_back(fitted.normal);
+    fitted.normal = data.frame.rotate(fitted.normal);
     const Vec2 local = position(*curve, fitted.t);
     Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 6> row(n);
     row.head(letters) =

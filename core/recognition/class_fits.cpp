@@ -1,6 +1,7 @@
 #include "core/recognition/class_fits.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -61,19 +62,18 @@ bool is_touchable(const ConicCoefficients& q, const FitData& data) {
   return true;
 }
 
-/// The same for a polynomial curve: no patch may run over a fold (a bend sharper than its points show)
-/// that turns the curve's direction against its own.
+/// The same for a polynomial curve: the curve parameter runs one way along a patch. Samples half a patch
+/// apart are compared, whose order noise does not turn round.
 bool is_touchable(const PolynomialFit& fit, const FitData& data) {
-  constexpr std::size_t kOneIn = 50;
-  const auto& c = fit.coefficients;
+  constexpr std::size_t kOneIn = 10;  // that noise may turn round on a patch of four sigma
   for (const PatchSpan& patch : data.patches) {
-    std::size_t along = 0;
-    for (std::size_t i = patch.begin; i < patch.end; ++i) {
-      const double t = fit.t[i];
-      const Vec2 first = c.col(1) + t * (2.0 * c.col(2) + 3.0 * t * c.col(3));
-      along += first.dot(data.points[i].tangent) >= 0.0 ? 1 : 0;
+    const std::size_t lag = patch.size() / 2;
+    std::size_t forward = 0;
+    for (std::size_t i = patch.begin; i + lag < patch.end; ++i) {
+      forward += fit.t[i + lag] >= fit.t[i] ? 1 : 0;
     }
-    if (std::min(along, patch.size() - along) * kOneIn > patch.size()) {
+    const std::size_t pairs = patch.size() - lag;
+    if (std::min(forward, pairs - forward) * kOneIn > pairs) {
       return false;
     }
   }
@@ -117,7 +117,7 @@ std::optional<PolynomialFit> best_of(const std::vector<AxisFit>& seeds, const Fi
     return std::nullopt;
   }
   return refine_polynomial(walked.front().model, reduced.points,
-                           to_polynomial(walked.front(), reduced.points), side);
+                           to_polynomial(walked.front(), reduced.points), side, kCoarseEffort);
 }
 
 /// Walks the splines' valleys, and lets the other models start beside the splines found: near c = 0
@@ -147,7 +147,8 @@ SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced
   }
   constexpr int kMostIterations = 15;
   const auto refine = [&](const AxisFit& fit) {
-    return refine_polynomial(fit.model, reduced.points, to_polynomial(fit, reduced.points), 0);
+    return refine_polynomial(fit.model, reduced.points, to_polynomial(fit, reduced.points), 0,
+                             kCoarseEffort);
   };
   pair.best = refine(walked.front());
   pair.rival = refine(refine_axis_and_arms(reduced.points, reduced.patches,
@@ -268,7 +269,7 @@ ClassFits fit_classes(const FitData& reduced) {
       PolynomialFit start = **limit;
       normalise_parameter(PolynomialModel::CubicSpline, &start);
       keep_better(&spline, refine_polynomial(PolynomialModel::CubicSpline, points,
-                                             std::move(start), side));
+                                             std::move(start), side, kCoarseEffort));
     }
   }
 
@@ -328,56 +329,105 @@ ClassFits fit_classes(const FitData& reduced) {
   return fits;
 }
 
-std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& smooth,
-                                      const FitData& data) {
-  const std::span<const FitPoint> points(data.points);
-  ClassFit refined = fit;
-  const auto refine_from_reduced = [&](const PolynomialFit& on_reduced) {
-    PolynomialFit start = on_reduced;
-    start.t.clear();
-    double along_normal = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double t = on_reduced.t[smooth.nearest_reduced[i]];
-      start.t.push_back(t);
-      along_normal += place_on(start, t, points[i].position).signed_distance * points[i].offset;
-    }
-    return refine_polynomial(polynomial_model(fit), points, std::move(start),
-                             sign_of(along_normal));
-  };
-  if (fit.polynomial) {
-    refined.polynomial = refine_from_reduced(*fit.polynomial);
-    refined.chi2 = refined.polynomial->chi2;
-    if (fit.rival) {
-      refined.rival = refine_from_reduced(*fit.rival);
-      if (refined.rival->chi2 < refined.chi2) {
-        std::swap(*refined.polynomial, *refined.rival);
-        refined.chi2 = refined.polynomial->chi2;
-      }
-    }
-    if (!is_touchable(*refined.polynomial, data)) {
-      return std::nullopt;
-    }
-    return refined;
+namespace {
+
+/// A polynomial on the reduced points carried to all points, not refined yet.
+PolynomialFit start_on_all(const PolynomialFit& on_reduced, const SmoothModel& smooth,
+                           std::span<const FitPoint> points) {
+  PolynomialFit start = on_reduced;
+  start.t.clear();
+  double along_normal = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double t = on_reduced.t[smooth.nearest_reduced[i]];
+    start.t.push_back(t);
+    along_normal += place_on(start, t, points[i].position).signed_distance * points[i].offset;
   }
-  const ConicCoefficients& start = fit.implicit->coefficients;
+  start.side = sign_of(along_normal);
+  return start;
+}
+
+/// On which side of the conic the tip centres lie.
+int side_of_tips(const ConicCoefficients& q, std::span<const FitPoint> points) {
   double along_gradient = 0.0;
   for (const FitPoint& point : points) {
-    Vec2 foot;
-    along_gradient += signed_distance(start, point.position, &foot) * point.offset;
+    if (point.offset > 0.0) {
+      Vec2 foot;
+      along_gradient += signed_distance(q, point.position, &foot) * point.offset;
+    }
   }
-  const int side = sign_of(along_gradient);
-  refined.implicit = fit.curve_class == CurveClass::Line     ? refine_line(points, start, side)
-                     : fit.curve_class == CurveClass::Circle ? refine_circle(points, start, side)
-                                                             : refine_conic(points, start, side);
-  refined.chi2 = refined.implicit->chi2;
-  const bool conic =
-      fit.curve_class == CurveClass::Ellipse || fit.curve_class == CurveClass::Hyperbola;
-  const ConicCoefficients& end = refined.implicit->coefficients;
-  if (conic && (!is_touchable(end, data) ||
-                (discriminant(end) > 0.0) != (fit.curve_class == CurveClass::Ellipse))) {
-    return std::nullopt;
+  return sign_of(along_gradient);
+}
+
+/// The fit's own parts refined, their sides as they are.
+ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const RefineEffort& effort) {
+  if (fit.polynomial) {
+    const auto refine = [&](PolynomialFit& part) {
+      part = refine_polynomial(polynomial_model(fit), points, std::move(part), part.side, effort);
+    };
+    refine(*fit.polynomial);
+    if (fit.rival) {
+      refine(*fit.rival);
+      if (fit.rival->chi2 < fit.polynomial->chi2) {
+        std::swap(*fit.polynomial, *fit.rival);
+      }
+    }
+    fit.chi2 = fit.polynomial->chi2;
+    return fit;
   }
-  return refined;
+  const ConicCoefficients start = fit.implicit->coefficients;
+  const int side = fit.implicit->side;
+  fit.implicit = fit.curve_class == CurveClass::Line ? refine_line(points, start, side, effort)
+                 : fit.curve_class == CurveClass::Circle
+                     ? refine_circle(points, start, side, effort)
+                     : refine_conic(points, start, side, effort);
+  fit.chi2 = fit.implicit->chi2;
+  return fit;
+}
+
+/// Whether a fit to all points is still the curve that it is called.
+bool is_what_it_says(const ClassFit& fit, const FitData& data) {
+  if (fit.polynomial) {
+    return is_touchable(*fit.polynomial, data);
+  }
+  const bool ellipse = fit.curve_class == CurveClass::Ellipse;
+  if (!ellipse && fit.curve_class != CurveClass::Hyperbola) {
+    return true;
+  }
+  const ConicCoefficients& q = fit.implicit->coefficients;
+  return (discriminant(q) > 0.0) == ellipse && is_touchable(q, data);
+}
+
+}  // namespace
+
+std::optional<ClassFit> refine_on_all(const ClassFit& coarse, const FitData& reduced,
+                                      const SmoothModel& smooth, const FitData& data,
+                                      const RefineEffort& effort) {
+  // To the optimum on the few reduced points first: from there it is not far on all.
+  constexpr int kMoreOnReduced = 4;
+  RefineEffort on_reduced = effort;
+  on_reduced.iterations *= kMoreOnReduced;
+  ClassFit start = coarse;
+  if (coarse.polynomial) {
+    start = refine_parts(coarse, reduced.points, on_reduced);
+    if (start.rival && start.rival->chi2 > start.chi2 + kHopeless) {
+      start.rival.reset();
+    }
+    start.polynomial = start_on_all(*start.polynomial, smooth, data.points);
+    if (start.rival) {
+      start.rival = start_on_all(*start.rival, smooth, data.points);
+    }
+  } else {
+    start.implicit->side = side_of_tips(start.implicit->coefficients, data.points);
+  }
+  start.on_all = true;
+  const ClassFit refined = refine_parts(std::move(start), data.points, effort);
+  return is_what_it_says(refined, data) ? std::optional(refined) : std::nullopt;
+}
+
+std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data) {
+  assert(fit.on_all);
+  const ClassFit polished = refine_parts(fit, data.points, {});
+  return is_what_it_says(polished, data) ? std::optional(polished) : std::nullopt;
 }
 
 }  // namespace palpate

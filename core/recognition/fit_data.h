@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-/// One contact point in normalised coordinates (world = centre + scale * normalised).
+/// One contact point in normalised coordinates (world = frame * (scale * normalised)).
 struct FitPoint {
   Vec2 position = Vec2::Zero();  ///< normalised
   Vec2 tangent = Vec2::Zero();   ///< direction of travel, unit; zero where it is not known
@@ -26,13 +26,13 @@ struct PatchSpan {
   std::size_t size() const { return end - begin; }
 };
 
-/// Points of all patches of an object. Normalised so that solver tolerances mean the same at every
-/// scale and far from the origin.
+/// Points of all patches of an object. Normalised to their principal axes and extent, so that starts,
+/// solver tolerances and roundings are the same at every scale and wherever the object lies.
 struct FitData {
   std::vector<FitPoint> points;
   std::vector<PatchSpan> patches;
-  Vec2 centre = Vec2::Zero();  ///< [m]
-  double scale = 1.0;          ///< half extent of the points [m]
+  Pose2 frame;         ///< centre of the points' extents, x along the longer principal axis
+  double scale = 1.0;  ///< half extent of the points [m]
 
   std::span<const FitPoint> patch(std::size_t i) const {
     return std::span(points).subspan(patches[i].begin, patches[i].size());

@@ -105,14 +105,14 @@ class SphereResiduals {
 
 template <int K>
 ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
-                   const ConicCoefficients& start, int side, int max_iterations) {
+                   const ConicCoefficients& start, int side, const RefineEffort& effort) {
   const Eigen::Matrix<double, K, 1> start_in_model = basis.transpose() * start;
   const SphereResiduals<K> residuals(points, basis, start_in_model, side);
   ceres::TinySolver<SphereResiduals<K>> solver{};
-  solver.options.max_num_iterations = max_iterations;
+  solver.options.max_num_iterations = effort.iterations;
   // Residuals are in units of sigma: chi-square changes below this cannot matter. (The solver
   // compares the ABSOLUTE change of the cost, whatever its comment says.)
-  solver.options.function_tolerance = 1e-7;
+  solver.options.function_tolerance = effort.chi2_tolerance;
   solver.options.gradient_tolerance = 0.0;
   // Little damping to begin with: the valleys of short arcs are long, and the solver multiplies
   // the damping fast where a step fails.
@@ -276,18 +276,18 @@ ConicCoefficients algebraic_line(std::span<const FitPoint> points) {
 }
 
 ImplicitFit refine_conic(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
-                         int max_iterations) {
-  return refine<6>(points, conic_basis(), start, side, max_iterations);
+                         const RefineEffort& effort) {
+  return refine<6>(points, conic_basis(), start, side, effort);
 }
 
 ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficients& start,
-                          int side, int max_iterations) {
-  return refine<4>(points, circle_basis(), start, side, max_iterations);
+                          int side, const RefineEffort& effort) {
+  return refine<4>(points, circle_basis(), start, side, effort);
 }
 
 ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
-                        int max_iterations) {
-  return refine<3>(points, line_basis(), start, side, max_iterations);
+                        const RefineEffort& effort) {
+  return refine<3>(points, line_basis(), start, side, effort);
 }
 
 }  // namespace palpate

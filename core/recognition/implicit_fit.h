@@ -5,6 +5,7 @@
 #include <span>
 
 #include "core/recognition/fit_data.h"
+#include "core/recognition/refine_effort.h"
 
 namespace palpate {
 
@@ -29,11 +30,11 @@ ConicCoefficients algebraic_line(std::span<const FitPoint> points);
 /// the coefficients move on the unit sphere of the model's subspace, so that passing from ellipse
 /// through parabola to hyperbola, or from circle to line, is smooth.
 ImplicitFit refine_conic(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
-                         int max_iterations = 100);
+                         const RefineEffort& effort = {});
 ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficients& start,
-                          int side, int max_iterations = 100);
+                          int side, const RefineEffort& effort = {});
 ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
-                        int max_iterations = 100);
+                        const RefineEffort& effort = {});
 
 /// Eigenvalues, ascending, of the Fisher information of the model's coefficients (on the unit sphere,
 /// normalised frame, points' stated noise): how sharply the data determine each direction.

@@ -27,15 +27,16 @@ constexpr auto exponents() {
 /// Follows the foot point of `p` by Newton's method on (C(t) - p) . C'(t) = 0 from `t`.
 PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, double t) {
   constexpr int kMaxIterations = 5;
-  constexpr double kRelativeStep = 1e-11;  // distances depend on t to second order only
-  constexpr double kLongestStep = 0.5;     // of the data's parameter range, about [-1, 1]
+  constexpr double kLastStep = 1e-6;    // after it the error is its square
+  constexpr double kLongestStep = 0.5;  // of the data's parameter range, about [-1, 1]
   Vec2 away;
   Vec2 first;
+  bool last = false;
   for (int iteration = 0;; ++iteration) {
     away = p - (c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3))));
     first = c.col(1) + t * (2.0 * c.col(2) + 3.0 * t * c.col(3));
     const double speed2 = first.squaredNorm();
-    if (iteration == kMaxIterations || speed2 <= 0.0) {
+    if (last || iteration == kMaxIterations || speed2 <= 0.0) {
       break;
     }
     const Vec2 second = 2.0 * c.col(2) + 6.0 * t * c.col(3);
@@ -44,9 +45,7 @@ PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, do
       slope = speed2;  // beyond the centre of curvature: a Gauss-Newton step is safe
     }
     const double step = std::clamp(away.dot(first) / slope, -kLongestStep, kLongestStep);
-    if (std::abs(step) < kRelativeStep) {
-      break;
-    }
+    last = std::abs(step) < kLastStep;
     t += step;
   }
   PlacedPoint placed;
@@ -144,13 +143,13 @@ class PolynomialResiduals {
 
 template <PolynomialModel kModel>
 PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int side,
-                     int max_iterations) {
+                     const RefineEffort& effort) {
   using Residuals = PolynomialResiduals<kModel>;
   Residuals residuals(points, std::move(start.t), side);
   ceres::TinySolver<Residuals> solver{};
-  solver.options.max_num_iterations = max_iterations;
+  solver.options.max_num_iterations = effort.iterations;
   // Residuals are in units of sigma; the solver compares the ABSOLUTE change of the cost.
-  solver.options.function_tolerance = 1e-7;
+  solver.options.function_tolerance = effort.chi2_tolerance;
   solver.options.gradient_tolerance = 0.0;
   // Little damping to begin with: the valleys of short arcs are long, and the solver multiplies
   // the damping fast where a step fails.
@@ -163,9 +162,8 @@ PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int 
   // The solver also stops where a step is refused for next to nothing, as happens along the directions
   // that affine changes of t leave free. Starting afresh, with the scaling and damping of the new place,
   // tells a stop from an optimum.
-  constexpr int kMostStarts = 6;
   constexpr double kSettled = 1e-5;  // of chi-square
-  for (int start_number = 0; start_number < kMostStarts; ++start_number) {
+  for (int start_number = 0; start_number < effort.starts; ++start_number) {
     const auto& summary = solver.Solve(residuals, &x);
     const double chi2 = 2.0 * summary.final_cost;
     fit.iterations += summary.iterations;
@@ -217,18 +215,18 @@ Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> polynomial_information(
 }
 
 PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
-                                PolynomialFit start, int side, int max_iterations) {
+                                PolynomialFit start, int side, const RefineEffort& effort) {
   switch (model) {
     case PolynomialModel::Parabola:
-      return refine<PolynomialModel::Parabola>(points, std::move(start), side, max_iterations);
+      return refine<PolynomialModel::Parabola>(points, std::move(start), side, effort);
     case PolynomialModel::CubicalParabola:
       return refine<PolynomialModel::CubicalParabola>(points, std::move(start), side,
-                                                      max_iterations);
+                                                      effort);
     case PolynomialModel::SemiCubicalParabola:
       return refine<PolynomialModel::SemiCubicalParabola>(points, std::move(start), side,
-                                                          max_iterations);
+                                                          effort);
     case PolynomialModel::CubicSpline:
-      return refine<PolynomialModel::CubicSpline>(points, std::move(start), side, max_iterations);
+      return refine<PolynomialModel::CubicSpline>(points, std::move(start), side, effort);
   }
   return start;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/recognition/fit_data.h"
+#include "core/recognition/refine_effort.h"
 
 namespace palpate {
 
@@ -35,7 +36,7 @@ struct PolynomialFit {
 /// theorem. Affine changes of t leave the curve as it is; the damping takes care of them.
 /// `start.t` must hold a parameter near each point's foot point. O(points) per iteration.
 PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
-                                PolynomialFit start, int side, int max_iterations = 100);
+                                PolynomialFit start, int side, const RefineEffort& effort = {});
 
 /// Eigenvalues, ascending, of the Fisher information of the model's coefficients; those of affine
 /// changes of t are 0.

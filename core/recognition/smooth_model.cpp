@@ -194,7 +194,7 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known) {
   SmoothModel model;
   model.points = static_cast<int>(data->points.size());
   model.nearest_reduced.resize(data->points.size());
-  model.reduced.centre = data->centre;
+  model.reduced.frame = data->frame;
   model.reduced.scale = data->scale;
   for (const PatchSpan& patch : data->patches) {
     const std::size_t begin = model.reduced.points.size();

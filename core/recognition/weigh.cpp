@@ -73,14 +73,15 @@ ClassFits fit_over_sides(std::span<const StoredPatch> patches, const SmoothModel
   ClassFits best;
   double best_criterion = std::numeric_limits<double>::infinity();
   for (const std::vector<int>& sides : ways) {
-    ClassFits fits = fit_classes(on_surface(smooth.reduced, sides));
+    const FitData reduced = on_surface(smooth.reduced, sides);
+    ClassFits fits = fit_classes(reduced);
     if (ways.size() == 1) {
       *best_sides = sides;
       return fits;
     }
     const CurveClass candidate = best_class(fits, scale);
     const auto& fit = fits[static_cast<std::size_t>(candidate)];
-    const auto refined = fit ? refine_on_all(*fit, smooth, data) : std::nullopt;
+    const auto refined = fit ? refine_on_all(*fit, reduced, smooth, data) : std::nullopt;
     const double criterion =
         refined ? information_criterion(refined->chi2, degrees_of_freedom(candidate), scale)
                 : std::numeric_limits<double>::infinity();
@@ -95,45 +96,35 @@ ClassFits fit_over_sides(std::span<const StoredPatch> patches, const SmoothModel
   return best;
 }
 
-double lowest_criterion(const ClassFits& fits, const EvidenceScale& scale, double chi2_more) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const CurveClass curve_class : kCurveClasses) {
-    if (const auto& fit = fits[static_cast<std::size_t>(curve_class)]) {
-      lowest = std::min(lowest, information_criterion(fit->chi2 + chi2_more,
-                                                      degrees_of_freedom(curve_class), scale));
-    }
-  }
-  return lowest;
+double criterion_of(const ClassFit& fit, const EvidenceScale& scale) {
+  return information_criterion(fit.chi2, degrees_of_freedom(fit.curve_class), scale);
 }
 
-/// Refines on all points what the reduced points leave plausible; the others get the chi-square that
-/// the reduced points tell.
-void refine_plausible(const FitData& data, const SmoothModel& smooth, const EvidenceScale& scale,
-                      ClassFits* fits) {
-  // exp(-30/2) = 3e-7: no reduction error brings such a class back. Where the smooth model itself
-  // misfits, neither it nor the reduced points can be trusted that far.
-  constexpr double kHopeless = 30.0;
-  const double unsmooth = std::max(1.0, smooth.noise_ratio() * smooth.noise_ratio());
-  const double lowest = lowest_criterion(*fits, scale, smooth.chi2);
-  std::array<bool, 9> plausible{};
-  for (const CurveClass curve_class : kCurveClasses) {
-    const auto i = static_cast<std::size_t>(curve_class);
-    plausible[i] = (*fits)[i] && !(*fits)[i]->at_limit &&
-                   information_criterion((*fits)[i]->chi2 + smooth.chi2,
-                                         degrees_of_freedom(curve_class), scale) <
-                       lowest + kHopeless * unsmooth;
-  }
-  for (std::size_t i = 0; i < fits->size(); ++i) {
-    auto& fit = (*fits)[i];
-    if (!fit) {
-      continue;
+/// Refines on all points what is plausible and not yet refined there. The others keep the chi-square
+/// that the reduced points tell.
+void refine_plausible(const FitData& data, const FitData& reduced, const SmoothModel& smooth,
+                      const EvidenceScale& scale, ClassFits* fits) {
+  // No reduction error brings a hopeless class back. Where the smooth model itself misfits, neither it
+  // nor the reduced points can be trusted that far.
+  const double hopeless =
+      kHopeless * std::max(1.0, smooth.noise_ratio() * smooth.noise_ratio());
+  for (bool changed = true; changed;) {
+    changed = false;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const auto& fit : *fits) {
+      lowest = fit ? std::min(lowest, criterion_of(*fit, scale)) : lowest;
     }
-    if (!plausible[i]) {
-      fit->chi2 += smooth.chi2;
-    } else if (auto refined = refine_on_all(*fit, smooth, data)) {
-      fit = std::move(refined);
-    } else {
-      fit->chi2 = std::numeric_limits<double>::infinity();
+    for (auto& fit : *fits) {
+      if (!fit || fit->on_all || fit->at_limit || !std::isfinite(fit->chi2) ||
+          !(criterion_of(*fit, scale) < lowest + hopeless)) {
+        continue;
+      }
+      changed = true;
+      if (auto refined = refine_on_all(*fit, reduced, smooth, data)) {
+        fit = std::move(refined);
+      } else {
+        fit->chi2 = std::numeric_limits<double>::infinity();
+      }
     }
   }
   // Ellipse and hyperbola at their limit are the parabola.
@@ -144,6 +135,22 @@ void refine_plausible(const FitData& data, const SmoothModel& smooth, const Evid
       fit = parabola;
       fit->curve_class = curve_class;
       fit->at_limit = true;
+    }
+  }
+}
+
+/// Spares no effort on the models with sharp bends.
+void refine_sharp_bends(const ClassFits& coarse, const FitData& data, const FitData& reduced,
+                        const SmoothModel& smooth, ClassFits* fits) {
+  for (const CurveClass curve_class :
+       {CurveClass::SemiCubicalParabola, CurveClass::CubicSpline}) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    if (!coarse[i]) {
+      continue;
+    }
+    auto refined = refine_on_all(*coarse[i], reduced, smooth, data, RefineEffort{});
+    if (refined && refined->chi2 < (*fits)[i]->chi2) {
+      (*fits)[i] = std::move(refined);
     }
   }
 }
@@ -181,11 +188,28 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
       w.fits[i].reset();
     }
   }
-  refine_plausible(data, w.smooth, scale, &w.fits);
+  for (auto& fit : w.fits) {
+    if (fit) {
+      fit->chi2 += w.smooth.chi2;  // as the reduced points tell it
+    }
+  }
+  const FitData reduced = on_surface(w.smooth.reduced, w.sides);
+  const ClassFits coarse = w.fits;
+  refine_plausible(data, reduced, w.smooth, scale, &w.fits);
   w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
+  if (most_probable(w.probabilities) == CurveClass::Unclassified) {
+    // Where nothing fits, a narrow valley may not have been walked to its end.
+    refine_sharp_bends(coarse, data, reduced, w.smooth, &w.fits);
+    w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
+  }
   const CurveClass candidate = best_class(w.fits, scale);
   const auto c = static_cast<std::size_t>(candidate);
-  if (w.fits[c]) {
+  if (w.fits[c] && w.fits[c]->on_all) {
+    if (auto polished = polish(*w.fits[c], data)) {
+      w.fits[c] = std::move(polished);
+    }
+  }
+  if (w.fits[c] && w.fits[c]->on_all) {
     w.canonical[c] = to_canonical(*w.fits[c], data);
   }
   if (w.fits[c] && w.canonical[c]) {
@@ -213,6 +237,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
       tempered.sigma_known = true;
       tempered.samples = std::max(n / correlation.time, 1.0);
       tempered.tempering = variance * correlation.time;
+      refine_plausible(data, reduced, w.smooth, tempered, &w.fits);
       w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, tempered);
       w.inflation = variance * correlation.time;
       w.correlation_length = correlation.length;
@@ -224,7 +249,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     constexpr double kNegligible = 1e-6;
-    if (w.fits[i] && !w.canonical[i] && w.probabilities[i] > kNegligible) {
+    if (w.fits[i] && w.fits[i]->on_all && !w.canonical[i] && w.probabilities[i] > kNegligible) {
       w.canonical[i] = to_canonical(*w.fits[i], data);
     }
   }

@@ -43,6 +43,10 @@ void run(bool sigma_known) {
           ++recognised;
           if (answer.shape.curve_class != curve_class) {
             ++wrong;
+            std::cout << "wrong: " << name_of(curve_class) << " as "
+                      << name_of(answer.shape.curve_class) << ", " << patches
+                      << " patches, sigma/size " << level << ", probability "
+                      << answer.hypotheses.front().probability << "\n";
             continue;
           }
           const auto letters =

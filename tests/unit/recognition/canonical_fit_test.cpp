@@ -27,9 +27,11 @@ TEST_P(CanonicalFitOf, ExactPointsGiveShapeAndPoseBack) {
     const SmoothModel smooth = fit_smooth_model(&data, true);
     const ClassFits fits = fit_classes(smooth.reduced);
     const auto refined =
-        refine_on_all(*fits[static_cast<std::size_t>(GetParam())], smooth, data);
+        refine_on_all(*fits[static_cast<std::size_t>(GetParam())], smooth.reduced, smooth, data);
     ASSERT_TRUE(refined.has_value());
-    const auto canonical = to_canonical(*refined, data);
+    const auto polished = polish(*refined, data);
+    ASSERT_TRUE(polished.has_value());
+    const auto canonical = to_canonical(*polished, data);
     ASSERT_TRUE(canonical.has_value());
     // Every sample lies on the curve so placed, where it is said to lie, to the fit's own precision.
     const auto curve = make_curve(canonical->shape.curve_class, canonical->shape.values);
@@ -69,7 +71,7 @@ TEST_P(CanonicalFitOf, CovarianceIsPositiveAndScalesWithTheNoise) {
     const SmoothModel smooth = fit_smooth_model(&data, true);
     const ClassFits fits = fit_classes(smooth.reduced);
     const auto refined =
-        refine_on_all(*fits[static_cast<std::size_t>(GetParam())], smooth, data);
+        refine_on_all(*fits[static_cast<std::size_t>(GetParam())], smooth.reduced, smooth, data);
     return to_canonical(*refined, data)->covariance;
   };
   const ShapePoseCovariance one = covariance_for(1.0);

@@ -51,7 +51,7 @@ TEST(SmoothModel, ReducedPointsTellWhatAllPointsTell) {
       if (fit->at_limit) {
         continue;
       }
-      const auto refined = refine_on_all(*fit, model, data);
+      const auto refined = refine_on_all(*fit, model.reduced, model, data);
       if (!refined) {
         continue;  // straight points: no such conic
       }

@@ -1,0 +1,19 @@
+// How far a refinement goes.
+#pragma once
+
+namespace palpate {
+
+struct RefineEffort {
+  int iterations = 100;  ///< of one start, at most
+  /// Afresh from where the last one stopped, until nothing changes (polynomial models).
+  int starts = 6;
+  /// Change of chi-square at which a start ends: its root is the distance from the optimum, in standard
+  /// deviations, that may be left.
+  double chi2_tolerance = 1e-7;
+};
+
+/// Tells classes that cannot be from those that may: a well determined shape has converged long before,
+/// and what wanders along a valley is not determined.
+inline constexpr RefineEffort kCoarseEffort{20, 1, 1e-3};
+
+}  // namespace palpate
