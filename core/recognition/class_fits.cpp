@@ -426,7 +426,8 @@ std::optional<ClassFit> refine_on_all(const ClassFit& coarse, const FitData& red
 
 std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data) {
   assert(fit.on_all);
-  const ClassFit polished = refine_parts(fit, data.points, {});
+  constexpr RefineEffort kPolish{50, 3, 1e-6};
+  const ClassFit polished = refine_parts(fit, data.points, kPolish);
   return is_what_it_says(polished, data) ? std::optional(polished) : std::nullopt;
 }
 
