@@ -153,26 +153,6 @@ std::string check_together(const NodeOptions& options) {
   return {};
 }
 
-// The recogniser's options that a configuration says in words.
-std::string resolve_words(NodeOptions& options) {
-  RecognizerOptions& recognizer = options.intake.recognizer;
-  if (options.method == "maximum_likelihood") {
-    recognizer.method = RecognitionMethod::MaximumLikelihood;
-  } else if (options.method == "tree") {
-    recognizer.method = RecognitionMethod::Tree;
-  } else {
-    return "method: expected maximum_likelihood or tree";
-  }
-  if (!options.classes.empty()) recognizer.classes = 0;
-  for (const std::string& name : options.classes) {
-    const std::optional<CurveClass> curve_class = curve_class_from_name(name);
-    if (!curve_class || *curve_class == CurveClass::Unclassified)
-      return "classes: \"" + name + "\" is no curve class";
-    recognizer.classes |= 1U << static_cast<unsigned>(*curve_class);
-  }
-  return {};
-}
-
 class ErrorText : public google::protobuf::io::ErrorCollector {
  public:
   void AddError(int line, google::protobuf::io::ColumnNumber column,
@@ -278,7 +258,7 @@ Result<NodeOptions> make_options(const v1::NodeConfig& config) {
   Reader reader(config);
   for_each_option(options, reader);
   if (!reader.error().empty()) return Result<NodeOptions>::fail(reader.error());
-  std::string error = resolve_words(options);
+  std::string error = resolve(options.words, options.intake.recognizer);
   if (error.empty()) error = check_together(options);
   if (!error.empty()) return Result<NodeOptions>::fail(std::move(error));
   return Result<NodeOptions>::ok(std::move(options));

@@ -79,6 +79,28 @@ v1::RecognitionStatus to_wire(RecognitionStatus status) {
   return v1::RECOGNITION_STATUS_UNSPECIFIED;
 }
 
+v1::RecognitionDoubt to_wire(Doubt doubt) {
+  switch (doubt) {
+    case Doubt::None:
+      break;
+    case Doubt::SeveralClasses:
+      return v1::RECOGNITION_DOUBT_SEVERAL_CLASSES;
+    case Doubt::AtLimit:
+      return v1::RECOGNITION_DOUBT_AT_LIMIT;
+    case Doubt::FormError:
+      return v1::RECOGNITION_DOUBT_FORM_ERROR;
+    case Doubt::Misfit:
+      return v1::RECOGNITION_DOUBT_MISFIT;
+    case Doubt::TwoShapes:
+      return v1::RECOGNITION_DOUBT_TWO_SHAPES;
+    case Doubt::RicherClass:
+      return v1::RECOGNITION_DOUBT_RICHER_CLASS;
+    case Doubt::Undetermined:
+      return v1::RECOGNITION_DOUBT_UNDETERMINED;
+  }
+  return v1::RECOGNITION_DOUBT_UNSPECIFIED;
+}
+
 void to_wire(const ShapeParameters& shape, v1::Parameters& out) {
   Eigen::Index index = 0;
   for (const char letter : parameter_letters(shape.curve_class)) {
@@ -100,6 +122,7 @@ void to_wire(const Recognition& recognition, const ContactSourceOf& source_of,
   out.Clear();
   const CurveClass curve_class = recognition.shape.curve_class;
   out.set_status(to_wire(recognition.status));
+  out.set_doubt(to_wire(recognition.doubt));
   // While nothing is known no class is named: "unclassified" would be an answer.
   const bool has_answer = recognition.status != RecognitionStatus::Collecting;
   out.set_curve_class(has_answer ? to_wire(curve_class) : v1::CURVE_CLASS_UNSPECIFIED);

@@ -17,6 +17,7 @@ v1::CurveClass to_wire(CurveClass curve_class);
 CurveClass from_wire(v1::CurveClass curve_class);
 
 v1::RecognitionStatus to_wire(RecognitionStatus status);
+v1::RecognitionDoubt to_wire(Doubt doubt);
 
 void to_wire(const ShapeParameters& shape, v1::Parameters& out);
 void to_wire(const Pose2& pose, v1::Pose2& out);

@@ -3,12 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "node/endpoint.h"
 #include "node/intake.h"
+#include "node/recognizer_options.h"
 
 namespace palpate {
 
@@ -25,18 +25,8 @@ struct NodeOptions {
   double status_period_s = 1.0;
   bool publish_estimates = false;
   std::string log_level = "info";
-  std::string method = "maximum_likelihood";
-  std::vector<std::string> classes;  ///< empty = all
+  RecognizerWords words;
   IntakeOptions intake;
-};
-
-/// One option: its name is the field in NodeConfig, the flag (--max-groups) and the environment
-/// variable (PALPATE_MAX_GROUPS).
-struct OptionInfo {
-  const char* name;
-  const char* help;
-  double lowest = 0.0;  ///< numbers only
-  double highest = std::numeric_limits<double>::max();
 };
 
 /// The table. Calls visit(OptionInfo, field) for every option, the field being a reference into
@@ -91,47 +81,7 @@ void for_each_option(Options& options, Visit&& visit) {
   visit({"publish_estimates", "Publish local estimates on estimate/<probe>/ too"},
         options.publish_estimates);
   visit({"log_level", "trace, debug, info, warning, error or off"}, options.log_level);
-  visit(
-      {"method", "maximum_likelihood (all classes on all points) or tree (local estimates alone)"},
-      options.method);
-  visit({"classes", "Class to consider, e.g. ellipse; may be repeated; none = all"},
-        options.classes);
-  visit({"sigma_m", "Noise of samples that bring none; 0 = estimate it from the data [m]", 0, 1e3},
-        recognizer.sigma_m);
-  visit({"recognized_probability", "RECOGNIZED needs a posterior of at least this", 0, 1},
-        recognizer.recognized_probability);
-  visit({"determined_fraction",
-         "RECOGNIZED needs each parameter's standard deviation within this fraction of it", 0, 1e3},
-        recognizer.determined_fraction);
-  visit({"parsimony", "Price of a parameter in units of log(n)", 0, 1e3}, recognizer.parsimony);
-  visit({"excluded_departure",
-         "RECOGNIZED as a limit of a richer class needs larger departures excluded", 0, 1},
-        recognizer.excluded_departure);
-  visit({"excluded_turn_rad", "RECOGNIZED as a line needs larger turns excluded [rad]", 0, 7},
-        recognizer.excluded_turn_rad);
-  visit({"form_error_fraction", "Form error of a real part, of the touched half extent", 0, 1},
-        recognizer.form_error_fraction);
-  visit({"false_outlier_probability", "Chance that a clean scene loses a sample as a spike", 0, 1},
-        recognizer.false_outlier_probability);
-  visit({"most_samples_per_patch", "Samples of a patch before neighbours are merged", 8,
-         kMostMessages},
-        recognizer.memory.most_samples_per_patch);
-  visit({"most_patches", "Patches of an object before the oldest is forgotten", 1, 1024},
-        recognizer.memory.most_patches);
-  visit({"windows_per_patch", "Local estimates: windows of a patch", 1, 1e3},
-        recognizer.contacts.windows_per_patch);
-  visit({"window_samples", "Local estimates: fewest samples of a window", 4, kMostMessages},
-        recognizer.contacts.window_samples);
-  visit({"window_sigma_m",
-         "Local estimates: noise of samples that bring none; 0 = from the window [m]", 0, 1e3},
-        recognizer.contacts.sigma_m);
-  visit({"tree_significance", "Tree: probability that a test rejects the true class", 0, 1},
-        recognizer.tree.significance);
-  visit({"tree_relative_floor", "Tree: standard deviation added to every estimate", 0, 1},
-        recognizer.tree.relative_floor);
-  visit({"tree_relative_tolerance",
-         "Tree: above 0, the paper's plain tolerance in place of statistics", 0, 1},
-        recognizer.tree.relative_tolerance);
+  for_each_recognizer_option(options.words, recognizer, visit);
 }
 
 }  // namespace palpate

@@ -11,6 +11,28 @@ namespace {
 /// Standard deviation of exact data, of kappa and kappa_s in units of the points' own scale.
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
+/// Chi-square of "kappa = 0, kappa_s = 0 and all tangents parallel": the common direction is a free
+/// parameter, known up to pi (patches may be travelled either way).
+double chi2_of_line(std::span<const MeasuredGeometry> points, double scale) {
+  const double reference = points.front().tangent_angle;
+  double weight_sum = 0.0;
+  double weighted = 0.0;
+  double chi2 = 0.0;
+  for (const MeasuredGeometry& point : points) {
+    const MeasuredGeometry p = in_units_of(point, 1.0 / scale);
+    Eigen::Matrix3d covariance = p.covariance;
+    covariance.diagonal().array() += kRounding * kRounding;
+    const Eigen::Matrix3d weight = covariance.inverse();
+    const double turn = p.tangent_angle - reference;
+    const double half_turns = std::nearbyint(turn / kPi);
+    const Eigen::Vector3d z(turn - kPi * half_turns, p.kappa, p.kappa_s);
+    weight_sum += weight(0, 0);
+    weighted += weight.row(0).dot(z);
+    chi2 += z.dot(weight * z);
+  }
+  return chi2 - weighted * weighted / weight_sum;
+}
+
 /// (kappa, kappa_s) of a point travelled so that its patch turns left on the whole, and the inverse
 /// of their covariance; in lengths of 1 / scale.
 struct LeftTurning {
@@ -49,10 +71,12 @@ ConstantCurvature fit_constant_curvature(std::span<const MeasuredGeometry> point
   const int count = static_cast<int>(points.size());
   fit.status = InvariantStatus::Ok;
   fit.circle_dof = 2 * count - 1;
-  fit.line_dof = 2 * count;
+  fit.line_dof = 3 * count - 1;
   const double scale = curvature_scale(points);
   if (scale == 0.0) {
-    return fit;  // exactly straight: both chi-squares are zero
+    // Exactly straight pieces, parallel or not.
+    fit.line_chi2 = chi2_of_line(points, 1.0);
+    return fit;
   }
   double weight_sum = 0.0;
   double weighted = 0.0;
@@ -60,8 +84,8 @@ ConstantCurvature fit_constant_curvature(std::span<const MeasuredGeometry> point
     const auto [z, weight] = left_turning(points, point, scale);
     weight_sum += weight(0, 0);
     weighted += weight.row(0).dot(z);
-    fit.line_chi2 += z.dot(weight * z);
   }
+  fit.line_chi2 = chi2_of_line(points, scale);
   fit.kappa = weighted / weight_sum;
   fit.variance = scale * scale / weight_sum;
   for (const MeasuredGeometry& point : points) {

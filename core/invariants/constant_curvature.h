@@ -14,8 +14,8 @@ struct ConstantCurvature {
   double variance = 0.0;     ///< of kappa [1/m^2]
   double circle_chi2 = 0.0;  ///< of "kappa constant, kappa_s = 0"
   int circle_dof = 0;        ///< 2 points - 1
-  double line_chi2 = 0.0;    ///< of "kappa = 0, kappa_s = 0"
-  int line_dof = 0;          ///< 2 points
+  double line_chi2 = 0.0;    ///< of "kappa = 0, kappa_s = 0, tangents parallel"
+  int line_dof = 0;          ///< 3 points - 1
 };
 
 /// The direction of travel may differ between patches: within one the sign of kappa must agree.

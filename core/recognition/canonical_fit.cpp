@@ -227,14 +227,22 @@ ShapePoseCovariance invert(const ShapePoseCovariance& information, int rank) {
 
 std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& data) {
   assert(fit.on_all);
-  const auto placement = place_of(fit, data);
+  auto placement = place_of(fit, data);
   if (!placement || !placement->shape.values.allFinite()) {
     return std::nullopt;
   }
   CanonicalFit canonical;
   canonical.shape = placement->shape;
-  const Pose2& frame_T_curve = placement->frame_T_curve;
+  Pose2& frame_T_curve = placement->frame_T_curve;
   canonical.world_T_curve = data.frame * frame_T_curve;
+  // Of two poses that are the same, the one nearer to the world's axes.
+  if (pose_symmetry(canonical.shape.curve_class) == 2 &&
+      std::abs(canonical.world_T_curve.theta) > 0.5 * kPi) {
+    frame_T_curve.theta += kPi;
+    canonical.world_T_curve = data.frame * frame_T_curve;
+    placement->t_scale = -placement->t_scale;
+    placement->t_shift = -placement->t_shift;
+  }
   const auto curve = make_curve(canonical.shape.curve_class, canonical.shape.values);
   if (!curve) {
     return std::nullopt;

@@ -4,15 +4,34 @@
 #include <cmath>
 
 #include "core/curves/curve.h"
+#include "core/local/adaptive_jet.h"
 #include "core/local/jet_estimator.h"
 #include "core/local/tip_radius.h"
 
 namespace palpate {
+namespace {
+
+LocalResult estimate(std::span<const Vec2> window, PatchPlace place, double sigma_m,
+                     bool with_bias) {
+  if (with_bias) {
+    return adaptive_jet(window, place, sigma_m).result;
+  }
+  JetOptions jet;
+  jet.sigma_m = sigma_m;
+  jet.place = place == PatchPlace::Start ? -1.0 : place == PatchPlace::End ? 1.0 : 0.0;
+  return jet_estimate(window, jet);
+}
+
+}  // namespace
+
 std::vector<LocalizedContact> estimate_contacts(std::span<const StoredPatch> patches,
                                                 std::span<const int> sides,
                                                 const ContactOptions& options) {
   std::vector<LocalizedContact> contacts;
   std::vector<Vec2> points;
+  const std::size_t patch_count = std::max<std::size_t>(patches.size(), 1);
+  const std::size_t wanted = std::max(options.windows_per_patch,
+                                      (options.least_windows + patch_count - 1) / patch_count);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const StoredPatch& patch = patches[p];
     points.clear();
@@ -25,18 +44,15 @@ std::vector<LocalizedContact> estimate_contacts(std::span<const StoredPatch> pat
       variance += sigma * sigma / sample.weight;
     }
     const std::size_t n = points.size();
-    const std::size_t windows =
-        std::clamp<std::size_t>(n / options.window_samples, 1, options.windows_per_patch);
+    const std::size_t windows = std::clamp<std::size_t>(n / options.window_samples, 1, wanted);
     const double signed_radius =
         p < sides.size() ? sides[p] * patch.context.tip_radius_m : 0.0;
-    const auto add = [&](std::size_t window, double place) {
+    const auto add = [&](std::size_t window, PatchPlace place) {
       const std::size_t begin = window * n / windows;
       const std::size_t end = (window + 1) * n / windows;
-      JetOptions jet;
-      jet.sigma_m = known && n > 0 ? std::sqrt(variance / static_cast<double>(n)) : 0.0;
-      jet.place = place;
-      const LocalResult result =
-          jet_estimate(std::span(points).subspan(begin, end - begin), jet);
+      const double sigma = known && n > 0 ? std::sqrt(variance / static_cast<double>(n)) : 0.0;
+      const LocalResult result = estimate(std::span(points).subspan(begin, end - begin), place,
+                                          sigma, options.with_bias);
       if (!result) {
         return;
       }
@@ -44,11 +60,11 @@ std::vector<LocalizedContact> estimate_contacts(std::span<const StoredPatch> pat
         contacts.push_back({patch.context.probe, patch.context.patch, 0.0, *surface});
       }
     };
-    add(0, -1.0);
+    add(0, PatchPlace::Start);
     for (std::size_t window = 0; window < windows; ++window) {
-      add(window, 0.0);
+      add(window, PatchPlace::Centre);
     }
-    add(windows - 1, 1.0);
+    add(windows - 1, PatchPlace::End);
   }
   return contacts;
 }

@@ -12,11 +12,16 @@ namespace palpate {
 struct ContactOptions {
   /// Consecutive windows that a patch is divided into, each giving one estimate at its centre: no two
   /// share a sample, so that their errors are independent.
-  std::size_t windows_per_patch = 4;
+  std::size_t windows_per_patch = 2;
+  /// Where patches are few, as many windows more as make this number: the tree's tests need them.
+  std::size_t least_windows = 4;
   /// Fewest samples of a window; shorter patches have fewer windows.
   std::size_t window_samples = 20;
   /// Noise of samples that bring none; 0 = from each window's residuals. [m]
   double sigma_m = 0.0;
+  /// Covariances that hold the window's bias too (core/local/adaptive_jet.h), at some five times the
+  /// cost: the tree, which has nothing but these estimates, always does.
+  bool with_bias = false;
 };
 
 /// Per patch an estimate at the centre of each window and one at each end of the patch, in the order of

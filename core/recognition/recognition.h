@@ -19,6 +19,21 @@ enum class RecognitionStatus {
   Recognized,  ///< one class stands out and its shape is determined
 };
 
+/// Why an answer is AMBIGUOUS; the first that applies, in this order.
+enum class Doubt {
+  None,
+  SeveralClasses,  ///< no class is probable enough
+  AtLimit,         ///< the class fits best where it turns into another
+  FormError,       ///< residuals are correlated along the arc: form error, or a class not known here
+  Misfit,          ///< the residuals are larger than the noise can be
+  TwoShapes,       ///< two shapes of the class fit alike
+  RicherClass,     ///< the arc is too short to exclude a class of which this one is a limit
+  Undetermined,    ///< the shape's standard deviations are too large
+};
+
+/// Lower-case name with underscores ("several_classes").
+std::string_view name_of(Doubt doubt);
+
 /// Shape parameters in the order of parameter_letters(class); unused entries are 0.
 struct ShapeParameters {
   CurveClass curve_class = CurveClass::Unclassified;
@@ -58,6 +73,7 @@ struct Decision {
 
 struct Recognition {
   RecognitionStatus status = RecognitionStatus::Collecting;
+  Doubt doubt = Doubt::None;  ///< unless AMBIGUOUS
   ShapeParameters shape;
   Pose2 world_T_curve;
   ShapePoseCovariance covariance;

@@ -74,9 +74,14 @@ class SignificanceTree {
     }
     if (fit.kappa > 0.0 && passes("circle", fit.circle_chi2, fit.circle_dof)) {
       const double radius = 1.0 / fit.kappa;
+      const TangentCircle circle = tangent_circle(points_, radius, options_.relative_floor);
+      // Constant curvature within its errors: the places and tangents know better.
+      if (!passes("circle through tangents", circle.chi2, circle.dof)) {
+        return false;
+      }
       reach(CurveClass::Circle, {radius, 0.0, 0.0}, fit.circle_chi2, fit.circle_dof);
       result_.covariance(0, 0) = std::pow(radius, 4) * fit.variance;
-      result_.world_T_curve = circle_pose(points_, radius);
+      result_.world_T_curve = circle.pose;
       return true;
     }
     return false;
@@ -104,18 +109,25 @@ class SignificanceTree {
     const double sign = line.ic1 / sd;
     const bool signed_conic = std::abs(sign) > threshold;
     result_.decisions.push_back({"Ic1 not zero", std::abs(sign), threshold, signed_conic});
-    if (!signed_conic) {
-      return parabola(line);
+    if (signed_conic) {
+      return central_conic(sign > 0.0 ? CurveClass::Ellipse : CurveClass::Hyperbola, line.ic1, line);
     }
-    const CurveClass curve_class = sign > 0.0 ? CurveClass::Ellipse : CurveClass::Hyperbola;
+    // The sign of Ic1 is not known: the tangents, which are measured far better, may decide.
+    const double size = std::max(std::abs(line.ic1), sd);
+    return parabola(line) || central_conic(CurveClass::Ellipse, size, line) ||
+           central_conic(CurveClass::Hyperbola, -size, line);
+  }
+
+  bool central_conic(CurveClass curve_class, double ic1, const ConicLine& line) {
+    const bool ellipse = curve_class == CurveClass::Ellipse;
     const ConicParameters parameters =
-        sign > 0.0 ? ellipse_parameters(line.ic1, line.ic2, line.covariance)
-                   : hyperbola_parameters(line.ic1, line.ic2, line.covariance);
+        ellipse ? ellipse_parameters(ic1, line.ic2, line.covariance)
+                : hyperbola_parameters(ic1, line.ic2, line.covariance);
     if (parameters.status != InvariantStatus::Ok) {
-      return refused(sign > 0.0 ? "ellipse" : "hyperbola", dof);
+      return refused(ellipse ? "ellipse" : "hyperbola", static_cast<int>(measured_.size()) - 2);
     }
     return rotation(curve_class, {parameters.a, parameters.b, 0.0},
-                    sign > 0.0 ? "ellipse rotation" : "hyperbola rotation");
+                    ellipse ? "ellipse rotation" : "hyperbola rotation");
   }
 
   bool parabola(const ConicLine& line) {

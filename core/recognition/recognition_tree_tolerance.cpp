@@ -91,7 +91,7 @@ class ToleranceTree {
     if (passes("circle", std::max(size.spread(), change.size()))) {
       const double radius = 1.0 / (size.mean() * scale);
       result_.shape = {CurveClass::Circle, {radius, 0.0, 0.0}};
-      result_.world_T_curve = circle_pose(points_, radius);
+      result_.world_T_curve = tangent_circle(points_, radius, RecognitionTreeOptions{}.relative_floor).pose;
       return true;
     }
     return false;

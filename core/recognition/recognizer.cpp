@@ -86,7 +86,7 @@ class Recognizer::Impl {
     if (options_.method == RecognitionMethod::Tree) {
       answer.outlier_count = memory_.stored_count() - data.points.size();
       answer.contacts = estimate_contacts(patches, {}, contact_options());
-      walk_tree(&answer);
+      walk_tree(data.scale, &answer);
       return answer;
     }
     Weighing w = weigh(data, sigma_known, patches, options_);
@@ -123,6 +123,7 @@ class Recognizer::Impl {
   ContactOptions contact_options() const {
     ContactOptions options = options_.contacts;
     options.sigma_m = options_.sigma_m;
+    options.with_bias = options.with_bias || options_.method == RecognitionMethod::Tree;
     return options;
   }
 
@@ -146,18 +147,28 @@ class Recognizer::Impl {
   }
 
   /// The paper's way: nothing but the tree's answer.
-  void walk_tree(Recognition* answer) const {
+  void walk_tree(double extent_m, Recognition* answer) const {
     const TreeResult tree = tree_of(answer->contacts);
     answer->decisions = tree.decisions;
     answer->shape = tree.shape;
-    answer->status = tree.status == InvariantStatus::Ok ? RecognitionStatus::Recognized
-                                                        : RecognitionStatus::Ambiguous;
+    double squares = 0.0;
+    for (const LocalizedContact& contact : answer->contacts) {
+      squares += contact.estimate.sigma_m * contact.estimate.sigma_m;
+    }
+    if (!answer->contacts.empty()) {
+      answer->sigma_m = std::sqrt(squares / static_cast<double>(answer->contacts.size()));
+    }
     const auto letters =
         static_cast<Eigen::Index>(parameter_letters(tree.shape.curve_class).size());
     // Of the shape only: the tree does not propagate the pose's.
     answer->covariance = ShapePoseCovariance::Zero(letters + 3, letters + 3);
     answer->covariance.topLeftCorner(letters, letters) =
         tree.covariance.topLeftCorner(letters, letters);
+    const bool told = tree.status == InvariantStatus::Ok &&
+                      is_determined(tree.shape, answer->covariance, extent_m,
+                                    options_.determined_fraction);
+    answer->status = told ? RecognitionStatus::Recognized : RecognitionStatus::Ambiguous;
+    answer->doubt = told ? Doubt::None : Doubt::Undetermined;
     Hypothesis only;
     only.shape = tree.shape;
     only.covariance = answer->covariance;
@@ -202,28 +213,46 @@ class Recognizer::Impl {
     answer->sigma_m = w.sigma * w.data.scale *
                       (w.correlation_length > 0.0 ? 1.0 : std::sqrt(w.inflation));
     answer->noise_correlation_m = w.correlation_length * w.data.scale;
-    const bool certain = best.probability >= options_.recognized_probability &&
-                         (best.shape.curve_class == CurveClass::Unclassified || stands(w, best));
-    answer->status = certain ? RecognitionStatus::Recognized : RecognitionStatus::Ambiguous;
+    answer->doubt = doubt_about(w, best);
+    answer->status = answer->doubt == Doubt::None ? RecognitionStatus::Recognized
+                                                  : RecognitionStatus::Ambiguous;
   }
 
-  /// Whether a class that is more probable than all others also fits, and has one shape.
-  bool stands(const Weighing& w, const Hypothesis& best) const {
-    const auto& fit = *w.fits[static_cast<std::size_t>(best.shape.curve_class)];
+  /// What speaks against a class that is more probable than all others.
+  Doubt doubt_about(const Weighing& w, const Hypothesis& best) const {
+    if (best.probability < options_.recognized_probability) {
+      return Doubt::SeveralClasses;
+    }
+    const CurveClass curve_class = best.shape.curve_class;
+    if (curve_class == CurveClass::Unclassified) {
+      return Doubt::None;
+    }
+    if (best.at_limit || best.covariance.size() == 0) {
+      return Doubt::AtLimit;
+    }
+    // A misfit that is no noise may be form error, or another class: the data cannot tell.
+    if (w.correlation_length > 0.0) {
+      return Doubt::FormError;
+    }
+    if (!is_noise(best.chi2 / w.inflation, best.dof)) {
+      return Doubt::Misfit;
+    }
+    const auto& fit = *w.fits[static_cast<std::size_t>(curve_class)];
     // Odds of the recognition's own level between a spline and its rival across c = 0.
     const double odds =
         2.0 * std::log(options_.recognized_probability / (1.0 - options_.recognized_probability));
-    const bool one_shape =
-        !fit.rival || (fit.rival->chi2 - fit.chi2) / w.inflation > odds ||
-        is_same_curve(*fit.polynomial, *fit.rival);
-    // A misfit that is no noise may be form error, or another class: the data cannot tell.
-    return w.correlation_length == 0.0 && !best.at_limit && best.covariance.size() > 0 && one_shape &&
-           is_noise(best.chi2 / w.inflation, best.dof) &&
-           largest_departure(w, best.shape.curve_class) <=
-               (best.shape.curve_class == CurveClass::Line ? options_.excluded_turn_rad
-                                                           : options_.excluded_departure) &&
-           is_determined(best.shape, best.covariance, w.data.scale,
-                         options_.determined_fraction);
+    if (fit.rival && (fit.rival->chi2 - fit.chi2) / w.inflation <= odds &&
+        !is_same_curve(*fit.polynomial, *fit.rival)) {
+      return Doubt::TwoShapes;
+    }
+    const double excluded = curve_class == CurveClass::Line ? options_.excluded_turn_rad
+                                                            : options_.excluded_departure;
+    if (!(largest_departure(w, curve_class) <= excluded)) {
+      return Doubt::RicherClass;
+    }
+    return is_determined(best.shape, best.covariance, w.data.scale, options_.determined_fraction)
+               ? Doubt::None
+               : Doubt::Undetermined;
   }
 
   RecognizerOptions options_;

@@ -1,5 +1,7 @@
 #include "core/recognition/tree_pose.h"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -53,15 +55,44 @@ Pose2 pose_of(std::span<const TreePoint> points, const SemiSignatureFit& fit) {
   return pose;
 }
 
-Pose2 circle_pose(std::span<const TreePoint> points, double radius) {
-  Vec2 sum = Vec2::Zero();
+TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
+                             double relative_floor) {
+  // Unknown are the centre, from the points' mean, and the radius, both in units of `radius`. A
+  // point's offset errs along its normal; its angle displaces the centre along its tangent.
+  Vec2 mean = Vec2::Zero();
   for (const TreePoint& point : points) {
-    const double angle = point.estimate.tangent_angle;
-    const double side = std::copysign(radius, point.estimate.kappa);
-    sum += point.estimate.position + side * left_of(Vec2(std::cos(angle), std::sin(angle)));
+    mean += point.estimate.position;
   }
-  sum /= static_cast<double>(points.size());
-  return {sum.x(), sum.y(), 0.0};
+  mean /= static_cast<double>(points.size());
+  Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  double sum = 0.0;
+  const auto add = [&](const Eigen::Vector3d& row, double value, double variance) {
+    const double weight = 1.0 / (variance + relative_floor * relative_floor);
+    normal_matrix += weight * row * row.transpose();
+    right += weight * value * row;
+    sum += weight * value * value;
+  };
+  for (const TreePoint& point : points) {
+    const LocalEstimate& estimate = point.estimate;
+    double turn = 0.0;  // a patch turns to one side: single curvatures may be noise
+    for (const TreePoint& other : points) {
+      turn += other.patch == point.patch ? other.estimate.kappa : 0.0;
+    }
+    const Vec2 tangent(std::cos(estimate.tangent_angle), std::sin(estimate.tangent_angle));
+    const Vec2 inward = std::copysign(1.0, turn) * left_of(tangent);
+    const Vec2 p = (estimate.position - mean) / radius;
+    add({inward.x(), inward.y(), -1.0}, inward.dot(p),
+        estimate.covariance(0, 0) / (radius * radius));
+    add({tangent.x(), tangent.y(), 0.0}, tangent.dot(p), estimate.covariance(1, 1));
+  }
+  const Eigen::Vector3d solution = normal_matrix.ldlt().solve(right);
+  TangentCircle circle;
+  const Vec2 centre = mean + radius * solution.head<2>();
+  circle.pose = {centre.x(), centre.y(), 0.0};
+  circle.chi2 = std::max(0.0, sum - right.dot(solution));
+  circle.dof = 2 * static_cast<int>(points.size()) - 3;
+  return circle;
 }
 
 Pose2 line_pose(std::span<const TreePoint> points) {

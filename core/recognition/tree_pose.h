@@ -13,8 +13,17 @@ namespace palpate {
 /// Orientation from the fit, position as the mean of (touched point - the curve's point turned).
 Pose2 pose_of(std::span<const TreePoint> points, const SemiSignatureFit& fit);
 
-/// Centre as the mean of the points' centres of curvature.
-Pose2 circle_pose(std::span<const TreePoint> points, double radius);
+/// The circle that touched points and tangents say, without their curvatures.
+struct TangentCircle {
+  Pose2 pose;          ///< its centre
+  double chi2 = 0.0;   ///< of "one circle has all these points and tangents"
+  int dof = 0;         ///< 2 points - 3
+};
+
+/// Weighted least squares over centre and radius; `radius` as the curvatures say weighs the tangents'
+/// errors. `relative_floor` as in RecognitionTreeOptions.
+TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
+                             double relative_floor);
 
 /// Along the mean tangent direction (modulo pi) through the mean point.
 Pose2 line_pose(std::span<const TreePoint> points);

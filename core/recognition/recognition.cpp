@@ -1,0 +1,27 @@
+#include "core/recognition/recognition.h"
+
+namespace palpate {
+
+std::string_view name_of(Doubt doubt) {
+  switch (doubt) {
+    case Doubt::None:
+      break;
+    case Doubt::SeveralClasses:
+      return "several_classes";
+    case Doubt::AtLimit:
+      return "at_limit";
+    case Doubt::FormError:
+      return "form_error";
+    case Doubt::Misfit:
+      return "misfit";
+    case Doubt::TwoShapes:
+      return "two_shapes";
+    case Doubt::RicherClass:
+      return "richer_class";
+    case Doubt::Undetermined:
+      return "undetermined";
+  }
+  return "none";
+}
+
+}  // namespace palpate

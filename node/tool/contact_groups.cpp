@@ -1,0 +1,48 @@
+#include "node/tool/contact_groups.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace palpate {
+
+std::vector<ContactGroup> contact_groups(const std::string& file, const ContactTable& table) {
+  std::vector<ContactGroup> groups;
+  std::map<std::pair<std::size_t, std::uint64_t>, std::size_t> index_of;
+  for (const ContactRow& row : table.rows) {
+    const auto [found, is_new] = index_of.try_emplace({row.group, row.object}, groups.size());
+    if (is_new) {
+      groups.push_back({file, table.names[row.group], row.object, {}, {}});
+    }
+    ContactGroup& group = groups[found->second];
+    const std::string& probe = table.names[row.probe];
+    const auto known = std::find(group.probes.begin(), group.probes.end(), probe);
+    PatchContext context = row.context;
+    context.probe = static_cast<std::uint32_t>(known - group.probes.begin());
+    if (known == group.probes.end()) {
+      group.probes.push_back(probe);
+    }
+    const bool continues = !group.runs.empty() &&
+                           group.runs.back().context.probe == context.probe &&
+                           group.runs.back().context.patch == context.patch;
+    if (!continues) {
+      group.runs.push_back({context, {}});
+    }
+    group.runs.back().samples.push_back(row.sample);
+  }
+  return groups;
+}
+
+AddResult add_group(const ContactGroup& group, Recognizer& recognizer) {
+  AddResult sum;
+  for (const ContactRun& run : group.runs) {
+    const AddResult added = recognizer.add(run.context, run.samples);
+    sum.accepted += added.accepted;
+    sum.rejected_not_finite += added.rejected_not_finite;
+    sum.rejected_negative_sigma += added.rejected_negative_sigma;
+    sum.repeated += added.repeated;
+  }
+  return sum;
+}
+
+}  // namespace palpate

@@ -1,0 +1,35 @@
+// The samples of CSV files, sorted into objects to be recognised.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/recognition/contact_sample.h"
+#include "core/recognition/recognizer.h"
+#include "node/csv/contact_table.h"
+
+namespace palpate {
+
+/// Samples that follow one another in one patch. context.probe counts the probes of its group.
+struct ContactRun {
+  PatchContext context;
+  std::vector<ContactSample> samples;
+};
+
+/// What is recognised together: one object under one group of one file.
+struct ContactGroup {
+  std::string file;
+  std::string name;
+  std::uint64_t object = 0;
+  std::vector<std::string> probes;  ///< names, by context.probe
+  std::vector<ContactRun> runs;     ///< in the order of the file
+};
+
+/// Groups in the order in which the file begins them.
+std::vector<ContactGroup> contact_groups(const std::string& file, const ContactTable& table);
+
+/// Feeds them all to a recogniser.
+AddResult add_group(const ContactGroup& group, Recognizer& recognizer);
+
+}  // namespace palpate

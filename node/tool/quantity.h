@@ -1,0 +1,23 @@
+// Numbers as a person reads them: with as many digits as their uncertainty leaves.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace palpate {
+
+/// "12.3456 +- 0.0021": the standard deviation to two significant digits, the value to the same
+/// place. Without uncertainty (0): six significant digits; where it is not finite: "+- inf".
+std::string with_sigma(double value, double sigma);
+
+/// Six significant digits.
+std::string number(double value);
+
+/// A unit of length that suits a magnitude: m, mm or um.
+struct LengthUnit {
+  std::string_view name;
+  double per_m = 1.0;
+};
+LengthUnit length_unit_for(double magnitude_m);
+
+}  // namespace palpate

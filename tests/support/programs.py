@@ -1,0 +1,17 @@
+"""The built programs, as script tests call them."""
+import os
+import pathlib
+import subprocess
+
+BUILD = pathlib.Path(os.environ["PALPATE_BUILD"])
+SOURCE = pathlib.Path(os.environ["PALPATE_SOURCE"])
+TOOL = BUILD / "node/tool/palpate"
+NODE = BUILD / "node/palpate-node"
+SIM = BUILD / "sim/palpate-sim"
+
+
+def run(program, *arguments, text_in=None, timeout=30):
+    """Runs a program to its end; gives exit code, standard output and standard error."""
+    done = subprocess.run([str(program), *map(str, arguments)], input=text_in, text=True,
+                          capture_output=True, timeout=timeout)
+    return done.returncode, done.stdout, done.stderr

@@ -1,0 +1,155 @@
+"""palpate fit, called as a user calls it."""
+import json
+import math
+import pathlib
+import random
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+from google.protobuf import json_format
+
+from palpate.v1 import curve_pb2, recognition_pb2
+from programs import TOOL, run
+
+A, B, SIGMA = 0.025, 0.0175, 2e-5
+POSE = (0.3, -0.1, 0.6)
+
+
+def ellipse(patches=((0.3, 1.5), (2.3, 3.6)), object_number=1, seed=1, sigma=SIGMA):
+    """CSV rows of patches of 111 samples each, between two curve parameters."""
+    rng = random.Random(seed)
+    rows = []
+    for number, (start, end) in enumerate(patches):
+        for i in range(111):
+            t = start + (end - start) * i / 110
+            u, v = A * math.cos(t), B * math.sin(t)
+            x = POSE[0] + math.cos(POSE[2]) * u - math.sin(POSE[2]) * v + rng.gauss(0, sigma)
+            y = POSE[1] + math.sin(POSE[2]) * u + math.cos(POSE[2]) * v + rng.gauss(0, sigma)
+            rows.append(f"finger,{number},{x!r},{y!r},{sigma!r},{object_number}\n")
+    return "".join(rows)
+
+
+HEADER = "probe,patch,x_m,y_m,sigma_m,object\n"
+
+
+class Fit(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def answers(self, *arguments, text_in=None):
+        code, out, err = run(TOOL, "fit", "--format", "json", *arguments, text_in=text_in)
+        self.assertEqual((code, err), (0, ""))
+        lines = out.splitlines()
+        # Every line is a whole message of the wire contract.
+        return [json_format.Parse(line, recognition_pb2.Recognition()) for line in lines], lines
+
+    def check_ellipse(self, answer):
+        self.assertEqual(answer.status, recognition_pb2.RECOGNITION_STATUS_RECOGNIZED)
+        truth = [A, B, *POSE]
+        found = [answer.parameters.a, answer.parameters.b, answer.pose.x_m, answer.pose.y_m,
+                 answer.pose.theta_rad]
+        for i, (f, t) in enumerate(zip(found, truth)):
+            self.assertLess(abs(f - t), 4 * math.sqrt(answer.covariance[6 * i]), i)
+
+    def test_json_is_the_wire_contract_with_truth_within_four_sigma(self):
+        answers, lines = self.answers(self.write("part.csv", HEADER + ellipse()))
+        self.check_ellipse(answers[0])
+        self.assertEqual(answers[0].group, "finger")
+        self.assertEqual(answers[0].object, 1)
+        self.assertEqual(answers[0].sample_count, 222)
+        self.assertGreater(answers[0].compute_ns, 0)
+        self.assertEqual(len(answers[0].covariance), 25)
+        # Field names as in the contract, zeros not left out.
+        self.assertEqual(json.loads(lines[0])["contacts"][0]["patch"], 0)
+
+    def test_many_files_and_objects_in_one_call_in_their_order(self):
+        one = self.write("one.csv", HEADER + ellipse(object_number=5) + ellipse(object_number=3))
+        two = self.write("two.csv", HEADER + ellipse(seed=2))
+        answers, _ = self.answers(one, two)
+        self.assertEqual([(a.header.source, a.object) for a in answers],
+                         [(str(one), 5), (str(one), 3), (str(two), 1)])
+        for answer in answers:
+            self.check_ellipse(answer)
+
+    def test_standard_input(self):
+        answers, _ = self.answers("-", text_in=HEADER + ellipse())
+        self.check_ellipse(answers[0])
+
+    def test_text_says_class_parameters_and_status(self):
+        path = self.write("part.csv", HEADER + ellipse())
+        code, out, err = run(TOOL, "fit", "--format", "text", path)
+        self.assertEqual((code, err), (0, ""))
+        self.assertIn("ellipse", out)
+        self.assertRegex(out, r"status +recognized")
+        self.assertRegex(out, r"a +\d\d\.\d+ \+- 0\.\d+ mm")
+        self.assertRegex(out, r"theta 3\d\.\d+ \+- .* deg \(or that \+ 180\)")
+
+    def test_text_gives_the_reason_of_a_doubt(self):
+        short = ellipse(patches=((0.3, 0.4),), sigma=1e-4)
+        _, out, _ = run(TOOL, "fit", "--format", "text", "-", text_in=HEADER + short)
+        self.assertRegex(out, r"status +ambiguous: \w+")
+
+    def test_sigma_is_used_where_the_file_has_none(self):
+        text = "".join(line.rsplit(",", 2)[0] + "\n"
+                       for line in (HEADER + ellipse()).splitlines())
+        for given in (1e-5, 4e-5):
+            answers, _ = self.answers("--sigma", given, "-", text_in=text)
+            self.assertAlmostEqual(answers[0].sigma_m / given, 1.0)
+        estimated, _ = self.answers("-", text_in=text)
+        self.assertLess(abs(estimated[0].sigma_m / SIGMA - 1), 5 / math.sqrt(2 * 217))
+
+    def test_classes_restricts_the_hypotheses(self):
+        answers, _ = self.answers("--classes", "circle,parabola", "-", text_in=HEADER + ellipse())
+        names = {h.curve_class for h in answers[0].hypotheses}
+        self.assertEqual(names, {curve_pb2.CURVE_CLASS_UNCLASSIFIED, curve_pb2.CURVE_CLASS_CIRCLE,
+                                 curve_pb2.CURVE_CLASS_PARABOLA})
+
+    def test_the_tree_alone_answers_too(self):
+        answers, _ = self.answers("--method", "tree", "-", text_in=HEADER + ellipse(sigma=1e-9))
+        self.assertEqual(answers[0].curve_class, curve_pb2.CURVE_CLASS_ELLIPSE)
+        self.assertAlmostEqual(answers[0].parameters.a / A, 1, places=2)
+
+    def test_plots_are_svg_one_a_group(self):
+        path = self.write("part.csv", HEADER + ellipse() + ellipse(object_number=2))
+        self.answers("--plot", self.folder / "plot.svg", path)
+        for name in ("plot.svg", "plot-2.svg"):
+            root = xml.etree.ElementTree.parse(self.folder / name).getroot()
+            self.assertTrue(root.tag.endswith("svg"))
+
+    def test_a_bad_file_is_named_by_line_and_column_and_nothing_is_half_done(self):
+        good = self.write("good.csv", HEADER + ellipse())
+        bad = self.write("bad.csv", "probe,patch,x_m,y_m\na,0,1,2\na,0,1,zwei\n")
+        code, out, err = run(TOOL, "fit", good, bad, self.folder / "absent.csv")
+        self.assertEqual((code, out), (2, ""))
+        self.assertIn(f"{bad}:3:7: y_m", err)
+        self.assertIn("absent.csv: cannot be read", err)
+
+    def test_bad_usage_exits_with_2(self):
+        path = self.write("part.csv", HEADER + ellipse())
+        for arguments in (["fit"], ["fit", path, "--classes", "sphere"], ["fit", path, "--sigma", "-1"],
+                          ["fit", path, "--method", "magic"], ["fit", path, "--nonsense"], []):
+            code, out, err = run(TOOL, *arguments)
+            self.assertEqual((code, out), (2, ""), arguments)
+            self.assertTrue(err, arguments)
+
+    def test_a_plot_that_cannot_be_written_fails(self):
+        path = self.write("part.csv", HEADER + ellipse())
+        code, _, err = run(TOOL, "fit", path, "--plot", self.folder / "absent" / "plot.svg")
+        self.assertEqual(code, 1)
+        self.assertIn("cannot be written", err)
+
+    def test_too_few_samples_collect(self):
+        answers, _ = self.answers("-", text_in="probe,patch,x_m,y_m\na,0,0,0\na,0,1,0\n")
+        self.assertEqual(answers[0].status, recognition_pb2.RECOGNITION_STATUS_COLLECTING)
+
+
+if __name__ == "__main__":
+    unittest.main()
