@@ -5,172 +5,16 @@
 #include <cmath>
 #include <limits>
 
-#include "core/recognition/axis_fit.h"
-#include "core/recognition/polynomial_seeds.h"
+#include "core/recognition/touchable.h"
 
 namespace palpate {
 namespace {
-
-/// Positive for ellipses, negative for hyperbolas; unit-norm coefficients.
-double discriminant(const ConicCoefficients& q) { return 4.0 * q[0] * q[2] - q[1] * q[1]; }
-
-/// Whether all points lie on one branch of a hyperbola: on one side of its conjugate axis.
-bool on_one_branch(const ConicCoefficients& q, std::span<const FitPoint> points) {
-  const double d = discriminant(q);
-  const Vec2 centre((q[1] * q[4] - 2.0 * q[2] * q[3]) / d, (q[1] * q[3] - 2.0 * q[0] * q[4]) / d);
-  // Along the real axis the polynomial changes sign from the centre outwards.
-  const double at_centre = 0.5 * (q[3] * centre.x() + q[4] * centre.y()) + q[5];
-  const double angle = 0.5 * std::atan2(q[1], q[0] - q[2]);
-  Vec2 axis(std::cos(angle), std::sin(angle));
-  const double curvature_along = q[0] * axis.x() * axis.x() + q[1] * axis.x() * axis.y() +
-                                 q[2] * axis.y() * axis.y();
-  if (curvature_along * at_centre > 0.0) {
-    axis = left_of(axis);
-  }
-  bool any_positive = false;
-  bool any_negative = false;
-  for (const FitPoint& point : points) {
-    const double along = (point.position - centre).dot(axis);
-    any_positive = any_positive || along > 0.0;
-    any_negative = any_negative || along < 0.0;
-  }
-  return !(any_positive && any_negative);
-}
-
-/// Whether a conic is one that a probe could have touched at these points: one branch, each patch
-/// on one side of it. A thin ellipse, or the two branches of a flat hyperbola, "explains" straight
-/// noisy points by letting neighbours lie on opposite sides: its direction of travel then flips
-/// against the patch's own from point to point.
-bool is_touchable(const ConicCoefficients& q, const FitData& data) {
-  if (!(discriminant(q) > 0.0 || on_one_branch(q, data.points))) {
-    return false;
-  }
-  constexpr std::size_t kOneIn = 50;  // points whose own direction noise may turn round
-  for (const PatchSpan& patch : data.patches) {
-    std::size_t left = 0;
-    for (std::size_t i = patch.begin; i < patch.end; ++i) {
-      Vec2 foot;
-      signed_distance(q, data.points[i].position, &foot);
-      const Vec2 gradient(2.0 * q[0] * foot.x() + q[1] * foot.y() + q[3],
-                          q[1] * foot.x() + 2.0 * q[2] * foot.y() + q[4]);
-      left += cross(data.points[i].tangent, gradient) >= 0.0 ? 1 : 0;
-    }
-    if (std::min(left, patch.size() - left) * kOneIn > patch.size()) {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// The same for a polynomial curve: the curve parameter runs one way along a patch. Samples half a patch
-/// apart are compared, whose order noise does not turn round.
-bool is_touchable(const PolynomialFit& fit, const FitData& data) {
-  constexpr std::size_t kOneIn = 10;  // that noise may turn round on a patch of four sigma
-  for (const PatchSpan& patch : data.patches) {
-    const std::size_t lag = patch.size() / 2;
-    std::size_t forward = 0;
-    for (std::size_t i = patch.begin; i + lag < patch.end; ++i) {
-      forward += fit.t[i + lag] >= fit.t[i] ? 1 : 0;
-    }
-    const std::size_t pairs = patch.size() - lag;
-    if (std::min(forward, pairs - forward) * kOneIn > pairs) {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// refine_axis, the arms reassigned until they stay.
-AxisFit refine_axis_and_arms(std::span<const FitPoint> points,
-                             std::span<const PatchSpan> patches, AxisFit fit, int max_iterations) {
-  constexpr int kMostReassignments = 5;
-  fit = refine_axis(points, std::move(fit), max_iterations);
-  for (int i = 0; i < kMostReassignments && !fit.arms.empty(); ++i) {
-    if (!reassign_arms(points, patches, &fit)) {
-      break;
-    }
-    fit = refine_axis(points, std::move(fit), max_iterations);
-  }
-  return fit;
-}
-
-/// Walks the valleys of all seeds on the reduced points; best first.
-std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& reduced) {
-  constexpr int kMostIterations = 15;
-  std::vector<AxisFit> walked;
-  for (const AxisFit& seed : seeds) {
-    AxisFit fit = refine_axis_and_arms(reduced.points, reduced.patches, seed, kMostIterations);
-    if (std::isfinite(fit.chi2)) {
-      walked.push_back(std::move(fit));
-    }
-  }
-  std::sort(walked.begin(), walked.end(),
-            [](const AxisFit& a, const AxisFit& b) { return a.chi2 < b.chi2; });
-  return walked;
-}
-
-/// The best of the walked seeds, refined on the reduced points.
-std::optional<PolynomialFit> best_of(const std::vector<AxisFit>& seeds, const FitData& reduced,
-                                     int side) {
-  const std::vector<AxisFit> walked = walk(seeds, reduced);
-  if (walked.empty()) {
-    return std::nullopt;
-  }
-  return refine_polynomial(walked.front().model, reduced.points,
-                           to_polynomial(walked.front(), reduced.points), side, kCoarseEffort);
-}
-
-/// Walks the splines' valleys, and lets the other models start beside the splines found: near c = 0
-/// splines come in pairs with a semi-cubical parabola between the two.
-void add_relatives(const FitData& reduced, PolynomialSeeds* seeds) {
-  seeds->cubic_spline = walk(seeds->cubic_spline, reduced);
-  for (const AxisFit& spline : seeds->cubic_spline) {
-    seeds->semi_cubical_parabola.push_back(semi_cubical_near(spline, reduced.points));
-  }
-  if (!seeds->cubic_spline.empty()) {
-    // A spline with its vertex far away is a cubical parabola along the same axis.
-    seeds->cubical_parabola.push_back(
-        {PolynomialModel::CubicalParabola, seeds->cubic_spline.front().theta, 0.0, {}, 0.0});
-  }
-}
-
-/// The best spline and the optimum on the other side of c = 0, if there is one.
-struct SplinePair {
-  std::optional<PolynomialFit> best;
-  std::optional<PolynomialFit> rival;
-};
-
-SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced) {
-  SplinePair pair;
-  if (walked.empty()) {
-    return pair;
-  }
-  constexpr int kMostIterations = 15;
-  const auto refine = [&](const AxisFit& fit) {
-    return refine_polynomial(fit.model, reduced.points, to_polynomial(fit, reduced.points), 0,
-                             kCoarseEffort);
-  };
-  pair.best = refine(walked.front());
-  pair.rival = refine(refine_axis_and_arms(reduced.points, reduced.patches,
-                                           twin_of(walked.front(), reduced.points),
-                                           kMostIterations));
-  if (pair.rival->chi2 < pair.best->chi2) {
-    std::swap(pair.best, pair.rival);
-  }
-  return pair;
-}
 
 /// Whether a fit to the reduced points is as good as noise allows.
 bool fits_well(double chi2, const FitData& reduced) {
   constexpr double kStandardDeviations = 5.0;
   const double n = static_cast<double>(reduced.points.size());
   return chi2 < n + kStandardDeviations * std::sqrt(2.0 * n);
-}
-
-void keep_better(std::optional<PolynomialFit>* best, PolynomialFit fit) {
-  if (std::isfinite(fit.chi2) && (!*best || fit.chi2 < (*best)->chi2)) {
-    *best = std::move(fit);
-  }
 }
 
 ConicCoefficients conic_of_parabola(const PolynomialFit& fit) {
@@ -220,59 +64,24 @@ PolynomialModel polynomial_model(const ClassFit& fit) {
   }
 }
 
-/// The last resort for the models with arms, whose sharp bends make narrow valleys.
-void refine_every_seed(const FitData& reduced, const PolynomialSeeds& seeds, ClassFits* fits) {
-  const auto improve = [&](CurveClass curve_class, const AxisFit& seed) {
-    auto& fit = (*fits)[static_cast<std::size_t>(curve_class)];
-    PolynomialFit refined = refine_polynomial(seed.model, reduced.points,
-                                              to_polynomial(seed, reduced.points), 0);
-    if (std::isfinite(refined.chi2) && (!fit || refined.chi2 < fit->chi2)) {
-      fit = polynomial_class(curve_class, refined);
-    }
-  };
-  for (const AxisFit& seed : seeds.cubic_spline) {
-    improve(CurveClass::CubicSpline, seed);
-    improve(CurveClass::CubicSpline, twin_of(seed, reduced.points));
-  }
-  for (const AxisFit& seed : seeds.semi_cubical_parabola) {
-    improve(CurveClass::SemiCubicalParabola, seed);
-  }
-}
-
 int sign_of(double x) { return x > 0.0 ? 1 : x < 0.0 ? -1 : 0; }
 
 }  // namespace
 
-ClassFits fit_classes(const FitData& reduced) {
+ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts) {
   constexpr int side = 0;
   const std::span<const FitPoint> points(reduced.points);
-  ClassFits fits;
+  ClassFits result;
   const auto set = [&](ClassFit fit) {
-    fits[static_cast<std::size_t>(fit.curve_class)] = std::move(fit);
+    result[static_cast<std::size_t>(fit.curve_class)] = std::move(fit);
   };
 
   set(implicit_class(CurveClass::Line, refine_line(points, algebraic_line(points), side)));
   const ImplicitFit circle = refine_circle(points, algebraic_circle(points), side);
   set(implicit_class(CurveClass::Circle, circle));
 
-  PolynomialSeeds seeds;
-  add_graph_seeds(points, &seeds);
-  add_arm_seeds(points, reduced.patches, &seeds);
-  add_relatives(reduced, &seeds);
-  const auto parabola = best_of(seeds.parabola, reduced, side);
-  const auto cubical = best_of(seeds.cubical_parabola, reduced, side);
-  const auto semi_cubical = best_of(seeds.semi_cubical_parabola, reduced, side);
-  auto [spline, rival] = fit_spline(seeds.cubic_spline, reduced);
-  // A class can be no worse than its limits: start from them too where it is.
-  for (const auto* limit : {&parabola, &cubical, &semi_cubical}) {
-    if (*limit && (!spline || (*limit)->chi2 < spline->chi2)) {
-      PolynomialFit start = **limit;
-      normalise_parameter(PolynomialModel::CubicSpline, &start);
-      keep_better(&spline, refine_polynomial(PolynomialModel::CubicSpline, points,
-                                             std::move(start), side, kCoarseEffort));
-    }
-  }
-
+  PolynomialFits polynomials =
+      starts != nullptr ? follow_polynomials(reduced, *starts) : search_polynomials(reduced);
   // The algebraic start serves unless it led to a conic that nothing touches, or one that a limit
   // betters; then the limits are the starts.
   ImplicitFit conic = refine_conic(points, algebraic_conic(points), side);
@@ -286,34 +95,35 @@ ClassFits fit_classes(const FitData& reduced) {
       }
     }
   };
-  if (parabola) {
-    also_from(parabola->chi2, conic_of_parabola(*parabola));
+  if (polynomials.parabola) {
+    also_from(polynomials.parabola->chi2, conic_of_parabola(*polynomials.parabola));
   }
   also_from(circle.chi2, circle.coefficients);
 
+  // Where nothing fits, no walk into a valley was good enough to be trusted.
+  const auto fits = [&](const auto& fit) { return fit && fits_well(fit->chi2, reduced); };
+  if (!fits_well(conic.chi2, reduced) && !fits_well(circle.chi2, reduced) &&
+      !fits(polynomials.parabola) && !fits(polynomials.cubical_parabola) &&
+      !fits(polynomials.semi_cubical_parabola) && !fits(polynomials.cubic_spline)) {
+    if (starts != nullptr) {
+      return fit_classes(reduced);
+    }
+    refine_every_seed(reduced, &polynomials);
+  }
+  const auto& parabola = polynomials.parabola;
   if (parabola) {
     set(polynomial_class(CurveClass::Parabola, *parabola));
   }
-  if (cubical) {
-    set(polynomial_class(CurveClass::CubicalParabola, *cubical));
+  if (polynomials.cubical_parabola) {
+    set(polynomial_class(CurveClass::CubicalParabola, *polynomials.cubical_parabola));
   }
-  if (semi_cubical) {
-    set(polynomial_class(CurveClass::SemiCubicalParabola, *semi_cubical));
+  if (polynomials.semi_cubical_parabola) {
+    set(polynomial_class(CurveClass::SemiCubicalParabola, *polynomials.semi_cubical_parabola));
   }
-  if (spline) {
-    ClassFit fit = polynomial_class(CurveClass::CubicSpline, *spline);
-    fit.rival = std::move(rival);
+  if (polynomials.cubic_spline) {
+    ClassFit fit = polynomial_class(CurveClass::CubicSpline, *polynomials.cubic_spline);
+    fit.rival = std::move(polynomials.rival);
     set(std::move(fit));
-  }
-
-  // Where nothing fits, no walk into a valley was good enough to be trusted: refine every seed.
-  const auto fits_anything = [&] {
-    return std::any_of(fits.begin(), fits.end(), [&](const std::optional<ClassFit>& fit) {
-      return fit && fits_well(fit->chi2, reduced);
-    });
-  };
-  if (!fits_well(conic.chi2, reduced) && !fits_anything()) {
-    refine_every_seed(reduced, seeds, &fits);
   }
 
   const bool elliptic = discriminant(conic.coefficients) > 0.0;
@@ -326,7 +136,7 @@ ClassFits fit_classes(const FitData& reduced) {
       set(std::move(limit));
     }
   }
-  return fits;
+  return result;
 }
 
 namespace {

@@ -8,6 +8,7 @@
 #include "core/recognition/fit_data.h"
 #include "core/recognition/implicit_fit.h"
 #include "core/recognition/polynomial_fit.h"
+#include "core/recognition/polynomial_search.h"
 #include "core/recognition/smooth_model.h"
 
 namespace palpate {
@@ -30,8 +31,9 @@ struct ClassFit {
 using ClassFits = std::array<std::optional<ClassFit>, 9>;
 
 /// Fits every class to the smooth model's reduced points, taken as surface points: seeds by
-/// exhaustive coarse search, then least orthogonal distances, polynomials with coarse effort.
-ClassFits fit_classes(const FitData& reduced);
+/// exhaustive coarse search, or `starts` (for these points) where given and anything then fits; least
+/// orthogonal distances, polynomials with coarse effort.
+ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts = nullptr);
 
 /// A class whose criterion (evidence.h) is this much above another's is out: odds of
 /// exp(20/2), or 1 to 22000.

@@ -166,6 +166,9 @@ PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int 
   for (int start_number = 0; start_number < effort.starts; ++start_number) {
     const auto& summary = solver.Solve(residuals, &x);
     const double chi2 = 2.0 * summary.final_cost;
+    if (start_number == 0) {
+      fit.chi2 = 2.0 * summary.initial_cost;
+    }
     fit.iterations += summary.iterations;
     const bool settled = !(chi2 < fit.chi2 - kSettled);
     fit.chi2 = std::min(fit.chi2, chi2);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "core/local/spikes.h"
@@ -72,12 +73,17 @@ class Recognizer::Impl {
     return memory_.add(context, samples);
   }
 
-  void reset() { memory_.clear(); }
+  void reset() {
+    memory_.clear();
+    clean_.clear();
+    clean_states_.clear();
+    last_.reset();
+  }
 
   Recognition recognize() {
     Recognition answer;
     answer.sample_count = memory_.sample_count();
-    const std::vector<StoredPatch> patches = without_spikes();
+    const std::vector<StoredPatch>& patches = without_spikes();
     bool sigma_known = false;
     const FitData data = make_fit_data(patches, options_.sigma_m, &sigma_known);
     if (data.points.size() < kFewestSamples) {
@@ -89,35 +95,98 @@ class Recognizer::Impl {
       walk_tree(data.scale, &answer);
       return answer;
     }
-    Weighing w = weigh(data, sigma_known, patches, options_);
-    if (const auto kept = without_outliers(w, data, options_)) {
-      w = weigh(*kept, sigma_known, patches, options_);
-    }
+    const Weighing w = weigh_once_more(data, sigma_known, patches);
     answer.outlier_count = memory_.stored_count() - w.data.points.size();
     fill(w, &answer);
     answer.contacts = estimate_contacts(patches, w.sides, contact_options());
-    answer.decisions = tree_of(answer.contacts).decisions;
+    if (last_->decisions.empty()) {
+      last_->decisions = tree_of(answer.contacts).decisions;
+    }
+    answer.decisions = last_->decisions;
     localise_contacts(answer.shape, answer.world_T_curve, &answer.contacts);
     return answer;
   }
 
  private:
-  std::vector<StoredPatch> without_spikes() const {
-    std::vector<StoredPatch> kept = memory_.patches();
-    for (StoredPatch& patch : kept) {
-      // Spikes hide spikes: look again without those found.
-      constexpr int kMostPasses = 6;
-      for (int pass = 0; pass < kMostPasses; ++pass) {
-        const std::vector<bool> spikes =
-            find_spikes(patch.samples, options_.false_outlier_probability);
-        std::size_t i = 0;
-        if (std::erase_if(patch.samples, [&](const StoredSample&) { return spikes[i++]; }) == 0) {
-          break;
-        }
+  /// What the last weighing left.
+  struct Last {
+    WarmStart warm;
+    CurveClass best = CurveClass::Unclassified;
+    std::size_t samples = 0;  ///< at the last search
+    std::size_t patches = 0;
+    std::vector<Decision> decisions;  ///< of the tree, at the last search
+  };
+
+  /// From the last weighing while the object is touched on in the same patches; from a new search where
+  /// they have grown by this, where there is another patch, and where the answer would change.
+  Weighing weigh_once_more(const FitData& data, bool sigma_known,
+                           std::span<const StoredPatch> patches) {
+    constexpr double kGrowth = 1.25;
+    const std::size_t samples = memory_.sample_count();
+    const bool warm = last_ && last_->patches == data.patches.size() &&
+                      static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
+    if (warm) {
+      Weighing w = weigh_without_outliers(data, sigma_known, patches, &last_->warm);
+      if (w.best == last_->best) {
+        last_->warm = warm_start_from(w.coarse, w.data);
+        return w;
       }
-      drop_single_spikes(&patch);
     }
-    return kept;
+    Weighing w = weigh_without_outliers(data, sigma_known, patches, nullptr);
+    last_ = Last{warm_start_from(w.coarse, w.data), w.best, samples, data.patches.size(), {}};
+    return w;
+  }
+
+  Weighing weigh_without_outliers(const FitData& data, bool sigma_known,
+                                  std::span<const StoredPatch> patches,
+                                  const WarmStart* warm) const {
+    Weighing w = weigh(data, sigma_known, patches, options_, warm);
+    if (const auto kept = without_outliers(w, data, options_)) {
+      w = weigh(*kept, sigma_known, patches, options_, warm);
+    }
+    return w;
+  }
+
+  /// A patch without its spikes, as long as the patch stays as it is.
+  struct CleanPatch {
+    std::size_t stored = 0;
+    double contacts_per_sample = 0.0;
+    Vec2 newest_m = Vec2::Zero();
+  };
+
+  const std::vector<StoredPatch>& without_spikes() {
+    const std::vector<StoredPatch>& patches = memory_.patches();
+    clean_.resize(patches.size());
+    clean_states_.resize(patches.size());
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+      const StoredPatch& patch = patches[p];
+      CleanPatch& state = clean_states_[p];
+      const bool same = state.stored == patch.samples.size() &&
+                        state.contacts_per_sample == patch.contacts_per_sample &&
+                        state.newest_m == patch.newest_m &&
+                        clean_[p].context.probe == patch.context.probe &&
+                        clean_[p].context.patch == patch.context.patch;
+      if (!same) {
+        clean_[p] = patch;
+        drop_spikes(&clean_[p]);
+        state = {patch.samples.size(), patch.contacts_per_sample, patch.newest_m};
+      }
+    }
+    return clean_;
+  }
+
+  void drop_spikes(StoredPatch* patch) const {
+    // Spikes hide spikes: look again without those found.
+    constexpr int kMostPasses = 6;
+    for (int pass = 0; pass < kMostPasses; ++pass) {
+      const std::vector<bool> spikes =
+          find_spikes(patch->samples, options_.false_outlier_probability);
+      std::size_t i = 0;
+      if (std::erase_if(patch->samples, [&](const StoredSample&) { return spikes[i++]; }) == 0) {
+        break;
+      }
+    }
+    drop_single_spikes(patch);
   }
 
   ContactOptions contact_options() const {
@@ -257,6 +326,9 @@ class Recognizer::Impl {
 
   RecognizerOptions options_;
   SampleMemory memory_;
+  std::vector<StoredPatch> clean_;  ///< the memory's patches without spikes
+  std::vector<CleanPatch> clean_states_;
+  std::optional<Last> last_;
 };
 
 Recognizer::Recognizer(const RecognizerOptions& options)

@@ -66,7 +66,7 @@ CurveClass best_class(const ClassFits& fits, const EvidenceScale& scale) {
 /// say it, the first way stands (a part is rather touched from outside) unless another fits all points
 /// better beyond doubt: the offsets of a curve to its two sides fit a short arc alike.
 ClassFits fit_over_sides(std::span<const StoredPatch> patches, const SmoothModel& smooth,
-                         const FitData& data, const EvidenceScale& scale,
+                         const FitData& data, const EvidenceScale& scale, const WarmStart* warm,
                          std::vector<int>* best_sides) {
   constexpr double kDoubt = 6.0;  // 2 log(20): odds of 20 to 1
   const auto ways = possible_sides(patches, smooth.reduced);
@@ -74,7 +74,10 @@ ClassFits fit_over_sides(std::span<const StoredPatch> patches, const SmoothModel
   double best_criterion = std::numeric_limits<double>::infinity();
   for (const std::vector<int>& sides : ways) {
     const FitData reduced = on_surface(smooth.reduced, sides);
-    ClassFits fits = fit_classes(reduced);
+    const auto starts = warm != nullptr && ways.size() == 1
+                            ? std::optional(carried_to(*warm, reduced))
+                            : std::nullopt;
+    ClassFits fits = fit_classes(reduced, starts ? &*starts : nullptr);
     if (ways.size() == 1) {
       *best_sides = sides;
       return fits;
@@ -163,7 +166,7 @@ CurveClass most_probable(const ClassProbabilities& probabilities) {
 }  // namespace
 
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
-               const RecognizerOptions& options) {
+               const RecognizerOptions& options, const WarmStart* warm) {
   Weighing w;
   w.smooth = fit_smooth_model(&data, sigma_known);
   if (!sigma_known) {
@@ -179,13 +182,15 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   const double rounding = rounding_level(data) / w.sigma;
   scale.chi2_floor = sigma_known ? 0.0 : n * rounding * rounding;
 
-  w.fits = fit_over_sides(patches, w.smooth, data, scale, &w.sides);
+  w.coarse = fit_over_sides(patches, w.smooth, data, scale, warm, &w.sides);
+  w.fits = w.coarse;
   for (const CurveClass curve_class : kCurveClasses) {
     // A class must leave something over to test it with.
     const auto i = static_cast<std::size_t>(curve_class);
     const bool wanted = (options.classes & (1U << i)) != 0;
     if (!wanted || static_cast<int>(data.points.size()) <= degrees_of_freedom(curve_class)) {
       w.fits[i].reset();
+      w.coarse[i].reset();
     }
   }
   for (auto& fit : w.fits) {
@@ -194,12 +199,11 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
     }
   }
   const FitData reduced = on_surface(w.smooth.reduced, w.sides);
-  const ClassFits coarse = w.fits;
   refine_plausible(data, reduced, w.smooth, scale, &w.fits);
   w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
   if (most_probable(w.probabilities) == CurveClass::Unclassified) {
     // Where nothing fits, a narrow valley may not have been walked to its end.
-    refine_sharp_bends(coarse, data, reduced, w.smooth, &w.fits);
+    refine_sharp_bends(w.coarse, data, reduced, w.smooth, &w.fits);
     w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
   }
   const CurveClass candidate = best_class(w.fits, scale);

@@ -11,13 +11,15 @@
 #include "core/recognition/evidence.h"
 #include "core/recognition/recognizer.h"
 #include "core/recognition/smooth_model.h"
+#include "core/recognition/warm_start.h"
 
 namespace palpate {
 
 struct Weighing {
   FitData data;  ///< noise set, tangents set
   SmoothModel smooth;
-  ClassFits fits;  ///< chi2 on all points; refined there where plausible
+  ClassFits coarse;  ///< on the smooth model's reduced points
+  ClassFits fits;    ///< chi2 on all points; refined there where plausible
   std::array<std::optional<CanonicalFit>, 9> canonical;
   ClassProbabilities probabilities{};
   /// Per patch the side of travel on which the tip centres were taken to lie (tip_sides.h).
@@ -30,7 +32,8 @@ struct Weighing {
 };
 
 /// `data` from make_fit_data. Follows core/README.md, "Refinement and the bound" and "Evidence".
+/// `warm`: what an earlier weighing of fewer samples of the same patches left, or nullptr.
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
-               const RecognizerOptions& options);
+               const RecognizerOptions& options, const WarmStart* warm = nullptr);
 
 }  // namespace palpate

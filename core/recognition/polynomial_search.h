@@ -1,0 +1,32 @@
+// The polynomial classes on the reduced points: searched for, or followed from earlier ones.
+#pragma once
+
+#include <optional>
+
+#include "core/recognition/fit_data.h"
+#include "core/recognition/polynomial_fit.h"
+#include "core/recognition/polynomial_seeds.h"
+
+namespace palpate {
+
+struct PolynomialFits {
+  std::optional<PolynomialFit> parabola;
+  std::optional<PolynomialFit> cubical_parabola;
+  std::optional<PolynomialFit> semi_cubical_parabola;
+  std::optional<PolynomialFit> cubic_spline;
+  /// The spline's optimum on the other side of c = 0, if there is one.
+  std::optional<PolynomialFit> rival;
+  PolynomialSeeds seeds;  ///< that the search started from
+};
+
+/// Exhaustive coarse search, valleys walked, the best of each refined with coarse effort.
+PolynomialFits search_polynomials(const FitData& reduced);
+
+/// The same from earlier fits, whose t must be those of `reduced` (warm_start.h): no search.
+PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts);
+
+/// The last resort for the models with arms, whose sharp bends make narrow valleys: refines every seed
+/// with full effort.
+void refine_every_seed(const FitData& reduced, PolynomialFits* fits);
+
+}  // namespace palpate

@@ -1,0 +1,93 @@
+#include "core/recognition/warm_start.h"
+
+#include <array>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+/// The parameter of the place nearest to a point, among places along the curve.
+class NearestPlace {
+ public:
+  explicit NearestPlace(const PolynomialCoefficients& c) {
+    for (std::size_t k = 0; k < kPlaces; ++k) {
+      const double t = parameter(k);
+      places_[k] = c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3)));
+    }
+  }
+
+  double operator()(const Vec2& point) const {
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < kPlaces; ++k) {
+      const double distance = (places_[k] - point).squaredNorm();
+      if (distance < least) {
+        least = distance;
+        nearest = k;
+      }
+    }
+    return parameter(nearest);
+  }
+
+ private:
+  // The points were within [-1, 1] (normalise_parameter); they may have grown beyond it by a quarter.
+  static constexpr std::size_t kPlaces = 65;
+  static constexpr double kFarthest = 1.6;
+  static double parameter(std::size_t k) {
+    return kFarthest * (2.0 * static_cast<double>(k) / (kPlaces - 1) - 1.0);
+  }
+
+  std::array<Vec2, kPlaces> places_;
+};
+
+std::optional<PolynomialFit> carried(const std::optional<PolynomialFit>& fit, const WarmStart& warm,
+                                     const FitData& reduced) {
+  if (!fit) {
+    return std::nullopt;
+  }
+  PolynomialFit start;
+  for (Eigen::Index k = 0; k < 4; ++k) {
+    const Vec2 scaled = warm.scale * fit->coefficients.col(k);
+    start.coefficients.col(k) =
+        (k == 0 ? reduced.frame.to_local(warm.frame * scaled)
+                : reduced.frame.rotate_back(warm.frame.rotate(scaled))) /
+        reduced.scale;
+  }
+  const NearestPlace nearest(start.coefficients);
+  for (const FitPoint& point : reduced.points) {
+    start.t.push_back(nearest(point.position));
+  }
+  return start;
+}
+
+}  // namespace
+
+WarmStart warm_start_from(const ClassFits& fits, const FitData& data) {
+  WarmStart warm;
+  warm.frame = data.frame;
+  warm.scale = data.scale;
+  const auto take = [&](CurveClass curve_class) -> std::optional<PolynomialFit> {
+    const auto& fit = fits[static_cast<std::size_t>(curve_class)];
+    return fit && !fit->at_limit ? fit->polynomial : std::nullopt;
+  };
+  warm.polynomials.parabola = take(CurveClass::Parabola);
+  warm.polynomials.cubical_parabola = take(CurveClass::CubicalParabola);
+  warm.polynomials.semi_cubical_parabola = take(CurveClass::SemiCubicalParabola);
+  warm.polynomials.cubic_spline = take(CurveClass::CubicSpline);
+  if (const auto& spline = fits[static_cast<std::size_t>(CurveClass::CubicSpline)]) {
+    warm.polynomials.rival = spline->rival;
+  }
+  return warm;
+}
+
+PolynomialFits carried_to(const WarmStart& warm, const FitData& reduced) {
+  PolynomialFits starts;
+  starts.parabola = carried(warm.polynomials.parabola, warm, reduced);
+  starts.cubical_parabola = carried(warm.polynomials.cubical_parabola, warm, reduced);
+  starts.semi_cubical_parabola = carried(warm.polynomials.semi_cubical_parabola, warm, reduced);
+  starts.cubic_spline = carried(warm.polynomials.cubic_spline, warm, reduced);
+  starts.rival = carried(warm.polynomials.rival, warm, reduced);
+  return starts;
+}
+
+}  // namespace palpate

@@ -1,0 +1,22 @@
+// What one recognition leaves for the next of the same object.
+#pragma once
+
+#include <optional>
+
+#include "core/recognition/class_fits.h"
+
+namespace palpate {
+
+/// The polynomial classes as they were fitted last: a growing patch moves them little.
+struct WarmStart {
+  PolynomialFits polynomials;
+  Pose2 frame;         ///< FitData's, that they were fitted in
+  double scale = 1.0;  ///< likewise
+};
+
+WarmStart warm_start_from(const ClassFits& fits, const FitData& data);
+
+/// The starts in the frame of `reduced`, each with the parameters of the points' nearest places.
+PolynomialFits carried_to(const WarmStart& warm, const FitData& reduced);
+
+}  // namespace palpate
