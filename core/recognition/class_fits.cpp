@@ -186,10 +186,13 @@ ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const Refi
   }
   const ConicCoefficients start = fit.implicit->coefficients;
   const int side = fit.implicit->side;
-  fit.implicit = fit.curve_class == CurveClass::Line ? refine_line(points, start, side, effort)
+  RefineEffort to_the_end = effort;
+  to_the_end.chi2_tolerance = RefineEffort{}.chi2_tolerance;
+  fit.implicit = fit.curve_class == CurveClass::Line
+                     ? refine_line(points, start, side, to_the_end)
                  : fit.curve_class == CurveClass::Circle
-                     ? refine_circle(points, start, side, effort)
-                     : refine_conic(points, start, side, effort);
+                     ? refine_circle(points, start, side, to_the_end)
+                     : refine_conic(points, start, side, to_the_end);
   fit.chi2 = fit.implicit->chi2;
   return fit;
 }
@@ -236,6 +239,9 @@ std::optional<ClassFit> refine_on_all(const ClassFit& coarse, const FitData& red
 
 std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data) {
   assert(fit.on_all);
+  if (fit.implicit) {
+    return fit;  // these converge at once
+  }
   constexpr RefineEffort kPolish{50, 3, 1e-6};
   const ClassFit polished = refine_parts(fit, data.points, kPolish);
   return is_what_it_says(polished, data) ? std::optional(polished) : std::nullopt;

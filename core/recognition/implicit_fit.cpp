@@ -161,7 +161,7 @@ double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot
   // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}; its first step from the point is
   // the first-order (Sampson) foot point.
   constexpr int kMaxIterations = 6;
-  constexpr double kRelativeStep = 1e-13;  // of the normalised extent: at rounding level
+  constexpr double kLastStep = 1e-6;  // of the normalised extent: after it the error is its square
   Vec2 f = point;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const double v = value(q, f);
@@ -183,7 +183,7 @@ double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot
       step = -v / g2 * g;  // beyond the centre of curvature: stay with the first-order foot point
     }
     f += step;
-    if (step.squaredNorm() < kRelativeStep * kRelativeStep) {
+    if (step.squaredNorm() < kLastStep * kLastStep) {
       break;
     }
   }

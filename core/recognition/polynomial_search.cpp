@@ -129,10 +129,12 @@ PolynomialFits search_polynomials(const FitData& reduced) {
 }
 
 PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts) {
+  // A step or two; what is plausible goes on from there (refine_on_all).
+  constexpr RefineEffort kFollow{5, 1, 1e-2};
   PolynomialFits fits;
   const auto follow = [&](const std::optional<PolynomialFit>& start, PolynomialModel model) {
     return start ? std::optional(refine_polynomial(model, reduced.points, *start, kSurfacePoints,
-                                                   kCoarseEffort))
+                                                   kFollow))
                  : std::nullopt;
   };
   fits.parabola = follow(starts.parabola, PolynomialModel::Parabola);
