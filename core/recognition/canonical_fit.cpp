@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/curves/canonical_conic.h"
+#include "core/curves/canonical_cubic.h"
 #include "core/curves/curve.h"
 
 namespace palpate {
@@ -48,125 +50,47 @@ std::optional<Placement> place_line(const ConicCoefficients& q, const FitData& d
                    {data.scale * origin.x(), data.scale * origin.y(), std::atan2(direction.y(), direction.x())}};
 }
 
-std::optional<Placement> place_circle(const ConicCoefficients& q, const FitData& data) {
-  // A radius beyond this many half extents cannot be told from a line in double precision.
-  constexpr double kLargestRadius = 1e8;
-  const double norm = std::hypot(q[3], q[4]);
-  if (!(std::abs(q[0]) * kLargestRadius > norm)) {
-    return std::nullopt;
-  }
-  const Vec2 centre(-q[3] / (2.0 * q[0]), -q[4] / (2.0 * q[0]));
-  const double radius2 = centre.squaredNorm() - q[5] / q[0];
-  if (!(radius2 > 0.0)) {
-    return std::nullopt;
-  }
-  return Placement{
-      {CurveClass::Circle, Eigen::Vector3d(data.scale * std::sqrt(radius2), 0.0, 0.0)},
-      {data.scale * centre.x(), data.scale * centre.y(), -data.frame.theta}};  // world angle 0
-}
-
 std::optional<Placement> place_conic(CurveClass curve_class, const ConicCoefficients& q,
                                      const FitData& data) {
-  const double d = 4.0 * q[0] * q[2] - q[1] * q[1];
-  const Vec2 centre((q[1] * q[4] - 2.0 * q[2] * q[3]) / d, (q[1] * q[3] - 2.0 * q[0] * q[4]) / d);
-  const double at_centre = 0.5 * (q[3] * centre.x() + q[4] * centre.y()) + q[5];
-  // Eigenvalues of the quadratic part without cancellation: the smaller one from the determinant.
-  const double half_trace = 0.5 * (q[0] + q[2]);
-  const double radius = std::hypot(0.5 * (q[0] - q[2]), 0.5 * q[1]);
-  const double large = half_trace + std::copysign(radius, half_trace);
-  const double small = 0.25 * d / large;
-  const double large_angle = 0.5 * std::atan2(q[1], q[0] - q[2]) +
-                             (half_trace >= 0.0 ? 0.0 : 0.5 * kPi);
-  // Along the axis of eigenvalue l the squared semi-axis is -at_centre / l.
-  const double square_large = -at_centre / large;
-  const double square_small = -at_centre / small;
-  Placement placement;
-  placement.shape.curve_class = curve_class;
-  double angle = 0.0;
-  double a2 = 0.0;
-  double b2 = 0.0;
-  if (curve_class == CurveClass::Ellipse) {
-    angle = large_angle + 0.5 * kPi;  // the long axis belongs to the small eigenvalue
-    a2 = square_small;
-    b2 = square_large;
-  } else {
-    const bool real_is_large = square_large > 0.0;
-    angle = real_is_large ? large_angle : large_angle + 0.5 * kPi;
-    a2 = real_is_large ? square_large : square_small;
-    b2 = real_is_large ? -square_small : -square_large;
-    const Vec2 axis(std::cos(angle), std::sin(angle));
-    if ((mean_position(data) - centre).dot(axis) < 0.0) {
-      angle += kPi;  // the branch x > 0 is the one touched
+  if (curve_class == CurveClass::Circle) {
+    // A radius beyond this many half extents cannot be told from a line in double precision.
+    constexpr double kLargestRadius = 1e8;
+    if (!(std::abs(q[0]) * kLargestRadius > std::hypot(q[3], q[4]))) {
+      return std::nullopt;
     }
   }
-  if (!(a2 > 0.0 && b2 > 0.0) || !std::isfinite(a2) || !std::isfinite(b2)) {
+  const auto canonical = canonicalise_as(curve_class, q);
+  if (!canonical) {
     return std::nullopt;
   }
-  placement.shape.values = data.scale * Eigen::Vector3d(std::sqrt(a2), std::sqrt(b2), 0.0);
-  placement.frame_T_curve = {data.scale * centre.x(), data.scale * centre.y(), angle};
+  Placement placement;
+  placement.shape = {curve_class, data.scale * canonical->values};
+  placement.frame_T_curve = canonical->world_T_curve;
+  Pose2& pose = placement.frame_T_curve;
+  const Vec2 axis(std::cos(pose.theta), std::sin(pose.theta));
+  if (curve_class == CurveClass::Hyperbola &&
+      (mean_position(data) - pose.translation()).dot(axis) < 0.0) {
+    pose.theta += kPi;  // the branch x > 0 is the one touched
+  }
+  if (curve_class == CurveClass::Circle) {
+    pose.theta = -data.frame.theta;  // 0 in the world
+  }
+  pose.x *= data.scale;
+  pose.y *= data.scale;
   return placement;
 }
 
-/// Appendix B for each model, chirality kept. `c` in metres.
+/// Appendix B for each model. `c` in metres.
 std::optional<Placement> place_polynomial(CurveClass curve_class,
                                           const PolynomialCoefficients& c) {
-  Placement placement;
-  placement.shape.curve_class = curve_class;
-  const auto place = [&](const Vec2& origin, const Vec2& x_axis) {
-    placement.frame_T_curve = {origin.x(), origin.y(), std::atan2(x_axis.y(), x_axis.x())};
-  };
-  if (curve_class == CurveClass::Parabola) {
-    const double opening = c.col(2).norm();
-    const Vec2 x_axis = c.col(2) / opening;
-    const double vertex = -x_axis.dot(c.col(1)) / (2.0 * opening);
-    const double across = cross(x_axis, c.col(1));
-    if (!(opening > 0.0) || across == 0.0) {
-      return std::nullopt;
-    }
-    placement.shape.values = {across * across / (4.0 * opening), 0.0, 0.0};
-    place(c.col(0) + vertex * (c.col(1) + vertex * c.col(2)), x_axis);
-    placement.t_scale = 2.0 * opening / across;
-    placement.t_shift = -vertex * placement.t_scale;
-    return placement;
-  }
-  const double cubic = c.col(3).norm();
-  if (!(cubic > 0.0)) {
+  const CubicCanonicalisation canonical = canonicalise_as(curve_class, PolynomialCurve2{c});
+  if (!canonical.curve) {
     return std::nullopt;
   }
-  Vec2 x_axis = -left_of(c.col(3)) / cubic;
-  if (curve_class == CurveClass::CubicalParabola) {
-    const double along = x_axis.dot(c.col(1));
-    if (along == 0.0) {
-      return std::nullopt;
-    }
-    placement.shape.values = {cubic / (along * along * along), cross(x_axis, c.col(1)) / along,
-                              0.0};
-    place(c.col(0), x_axis);
-    placement.t_scale = along;
-    return placement;
-  }
-  double quadratic = x_axis.dot(c.col(2));
-  if (quadratic == 0.0) {
-    return std::nullopt;
-  }
-  if (quadratic < 0.0) {  // c2 < 0: turn by pi
-    x_axis = -x_axis;
-    quadratic = -quadratic;
-  }
-  const double vertex = -x_axis.dot(c.col(1)) / (2.0 * quadratic);
-  const Vec2 first = c.col(1) + vertex * (2.0 * c.col(2) + 3.0 * vertex * c.col(3));
-  const Vec2 second = c.col(2) + 3.0 * vertex * c.col(3);
-  const double third = cross(x_axis, c.col(3));
-  const double root = std::copysign(std::sqrt(quadratic), third);  // makes a positive
-  const double a = std::abs(third) / (quadratic * std::sqrt(quadratic));
-  const double b = cross(x_axis, second) / quadratic;
-  placement.shape.values = {a, b,
-                            curve_class == CurveClass::CubicSpline ? cross(x_axis, first) / root
-                                                                   : 0.0};
-  place(c.col(0) + vertex * (c.col(1) + vertex * (c.col(2) + vertex * c.col(3))), x_axis);
-  placement.t_scale = root;
-  placement.t_shift = -vertex * root;
-  return placement;
+  return Placement{{curve_class, canonical.curve->values},
+                   canonical.curve->world_T_curve,
+                   canonical.curve->canonical_t.scale,
+                   canonical.curve->canonical_t.shift};
 }
 
 std::optional<Placement> place_of(const ClassFit& fit, const FitData& data) {
@@ -180,8 +104,6 @@ std::optional<Placement> place_of(const ClassFit& fit, const FitData& data) {
   switch (fit.curve_class) {
     case CurveClass::Line:
       return place_line(q, data);
-    case CurveClass::Circle:
-      return place_circle(q, data);
     default:
       return place_conic(fit.curve_class, q, data);
   }

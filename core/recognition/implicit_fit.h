@@ -4,13 +4,11 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "core/curves/canonical_conic.h"
 #include "core/recognition/fit_data.h"
 #include "core/recognition/refine_effort.h"
 
 namespace palpate {
-
-/// Coefficients of q0 x^2 + q1 xy + q2 y^2 + q3 x + q4 y + q5 = 0.
-using ConicCoefficients = Eigen::Matrix<double, 6, 1>;
 
 struct ImplicitFit {
   ConicCoefficients coefficients = ConicCoefficients::Zero();  ///< unit norm, normalised frame
