@@ -1,0 +1,124 @@
+// The simulator's contacts: repeatable, spaced as asked, noisy as asked, and errors that name the field.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/contacts.h"
+#include "sim/scene_file.h"
+#include "sim/truth.h"
+
+namespace palpate {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+sim::Scene scene_of(const std::string& text) {
+  Result<sim::Scene> scene = sim::parse_scene(text, "scene.textproto");
+  EXPECT_TRUE(scene.value.has_value()) << scene.error;
+  return std::move(*scene.value);
+}
+
+constexpr const char* kCircle =
+    "seed: 5\n"
+    "curve { curve_class: CURVE_CLASS_CIRCLE parameters { a: 0.02 } }\n"
+    "pose { x_m: 0.1 y_m: 0.2 }\n";
+
+std::string probe(const std::string& noise, const std::string& patch) {
+  return std::string(kCircle) + "noise { " + noise + " }\nprobes { name: \"p\" patches { " + patch +
+         " } }\n";
+}
+
+TEST(Simulation, TheSameSeedGivesTheSameSamplesAndAnotherRoundOthers) {
+  const sim::Scene scene = scene_of(probe("sigma_m: 1e-5", "start_t: 0 arc_m: 0.02 spacing_m: 2e-4"));
+  const auto one = sim::simulate_contacts(scene, 0);
+  const auto two = sim::simulate_contacts(scene, 0);
+  const auto other = sim::simulate_contacts(scene, 1);
+  ASSERT_EQ(one[0].patches[0].samples.size(), 101U);
+  for (std::size_t i = 0; i < 101; ++i) {
+    EXPECT_EQ(one[0].patches[0].samples[i].position_m, two[0].patches[0].samples[i].position_m);
+    EXPECT_NE(one[0].patches[0].samples[i].position_m, other[0].patches[0].samples[i].position_m);
+  }
+}
+
+TEST(Simulation, SamplesLieOnTheCurveAtTheSpacingAsked) {
+  const sim::Scene scene = scene_of(probe("", "start_t: 1 arc_m: 0.02 spacing_m: 2e-4 backwards: true"));
+  const auto probes = sim::simulate_contacts(scene, 0);
+  const auto& samples = probes[0].patches[0].samples;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Vec2 from = samples[i].position_m - Vec2(0.1, 0.2);
+    EXPECT_NEAR(from.norm(), 0.02, 1e-15);
+    const double t = 1.0 - 2e-4 / 0.02 * static_cast<double>(i);
+    EXPECT_NEAR(std::atan2(from.y(), from.x()), t, 1e-12);
+  }
+}
+
+TEST(Simulation, NoiseHasTheStandardDeviationAsked) {
+  constexpr double kSigma = 1e-5;
+  const sim::Scene scene = scene_of(probe("sigma_m: 1e-5", "start_t: 0 arc_m: 0.1 spacing_m: 1e-5"));
+  const auto probes = sim::simulate_contacts(scene, 0);
+  const auto& samples = probes[0].patches[0].samples;
+  double squares = 0.0;
+  for (const auto& sample : samples) {
+    const double off = (sample.position_m - Vec2(0.1, 0.2)).norm() - 0.02;
+    squares += off * off;
+  }
+  // Relative standard deviation of a variance: sqrt(2 / n); four of them.
+  const double n = static_cast<double>(samples.size());
+  EXPECT_NEAR(squares / n / (kSigma * kSigma), 1.0, 4.0 * std::sqrt(2.0 / n));
+  EXPECT_EQ(samples.front().sigma_m, kSigma);
+}
+
+TEST(Simulation, SpikesAndDropoutsComeAtTheirRates) {
+  const sim::Scene scene = scene_of(probe(
+      "sigma_m: 1e-7 spike_probability: 0.1 spike_m: 0.001 dropout_probability: 0.2 hide_sigma: true",
+      "start_t: 0 arc_m: 0.1 spacing_m: 1e-5"));
+  const auto probes = sim::simulate_contacts(scene, 0);
+  const auto& samples = probes[0].patches[0].samples;
+  const double asked = 10001.0;
+  const double n = static_cast<double>(samples.size());
+  EXPECT_NEAR(n / asked, 0.8, 4.0 * std::sqrt(0.8 * 0.2 / asked));
+  double spikes = 0.0;
+  for (const auto& sample : samples) {
+    // A spike along the tangent stays near the circle: those farther than a tenth of its size count.
+    spikes += std::abs((sample.position_m - Vec2(0.1, 0.2)).norm() - 0.02) > 1e-4 ? 1.0 : 0.0;
+    EXPECT_EQ(sample.sigma_m, 0.0);
+  }
+  // |sin| < about 0.1 of all directions: between 85 % and all of the spikes are seen.
+  EXPECT_GT(spikes / n, 0.085 - 4.0 * std::sqrt(0.09 / n));
+  EXPECT_LT(spikes / n, 0.1 + 4.0 * std::sqrt(0.09 / n));
+}
+
+TEST(Simulation, ARoundTipRunsOnTheOffsetOutsideTheMaterial) {
+  const sim::Scene scene = scene_of(
+      std::string(kCircle) +
+      "probes { name: \"p\" tip_radius_m: 0.003 patches { start_t: 0 arc_m: 0.02 spacing_m: 2e-4 } }\n");
+  const auto probes = sim::simulate_contacts(scene, 0);
+  for (const auto& sample : probes[0].patches[0].samples) {
+    EXPECT_NEAR((sample.position_m - Vec2(0.1, 0.2)).norm(), 0.023, 1e-15);
+  }
+}
+
+TEST(SceneFile, EveryBadFieldIsNamedWithItsLine) {
+  const auto error_of = [](const std::string& text) {
+    return sim::parse_scene(text, "scene.textproto").error;
+  };
+  const std::string good = probe("sigma_m: 1e-5", "start_t: 0 arc_m: 0.02 spacing_m: 2e-4");
+  EXPECT_EQ(error_of(good), "");
+  EXPECT_THAT(error_of("nonsense: 1\n"), StartsWith("scene.textproto:1:"));
+  EXPECT_THAT(error_of(""), StartsWith("scene.textproto"));
+  EXPECT_THAT(error_of(probe("sigma_m: -1", "start_t: 0 arc_m: 0.02 spacing_m: 2e-4")),
+              StartsWith("scene.textproto:4: noise.sigma_m"));
+  EXPECT_THAT(error_of(probe("", "start_t: 0 arc_m: 0 spacing_m: 2e-4")), HasSubstr("arc_m"));
+  EXPECT_THAT(error_of(probe("", "start_t: 0 arc_m: 0.02 spacing_m: -2e-4")), HasSubstr("spacing_m"));
+  EXPECT_THAT(error_of(probe("spike_probability: 2", "start_t: 0 arc_m: 0.02 spacing_m: 2e-4")),
+              HasSubstr("spike_probability"));
+  EXPECT_THAT(error_of("curve { curve_class: CURVE_CLASS_ELLIPSE parameters { a: 1 } }\n" + good.substr(8)),
+              StartsWith("scene.textproto"));
+  EXPECT_THAT(error_of(std::string(kCircle) + "probes { name: \"a b\" patches { start_t: 0 arc_m: 1 spacing_m: 1 } }"),
+              HasSubstr("name"));
+}
+
+}  // namespace
+}  // namespace palpate
