@@ -1,21 +1,18 @@
 // palpate-node: the recognizer node. Exit codes: 0 stopped as asked, 1 failed at run time (an
 // endpoint is taken), 2 usage, 6 configuration.
-#include <pthread.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
-#include <sys/signalfd.h>
-#include <unistd.h>
 
 #include <google/protobuf/text_format.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
 
 #include "node/config.h"
 #include "node/node.h"
+#include "node/stop_signals.h"
 
 namespace {
 
@@ -95,19 +92,8 @@ Result<NodeOptions> all_options(const CommandLine& command_line) {
   return palpate::make_options(config);
 }
 
-// Blocks the stop signals, to be read from the returned descriptor. Before any thread starts, so
-// that every thread (libzmq's too) has them blocked.
-int take_stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
-}
-
 int serve(const NodeOptions& options, const palpate::NodeKeys& keys) {
-  const int stop_fd = take_stop_signals();
+  const int stop_fd = palpate::take_stop_signals();
   if (stop_fd < 0) {
     spdlog::error("no signalfd");
     return kFailed;

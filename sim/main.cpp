@@ -1,11 +1,7 @@
 // palpate-sim: plays scenes as the probes of a real cell would. Exit codes: 0 all played, 1 failed
 // at run time (no recognizer listens, a file cannot be written), 2 usage or a bad scene.
-#include <pthread.h>
-#include <sys/signalfd.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -17,6 +13,7 @@
 #include "node/client/connection.h"
 #include "node/clock.h"
 #include "node/csv/contact_csv.h"
+#include "node/stop_signals.h"
 #include "sim/contact_export.h"
 #include "sim/contacts.h"
 #include "sim/playback.h"
@@ -90,17 +87,7 @@ void add_options(CLI::App& app, CommandLine& options) {
   app.add_flag("--quiet", options.quiet, "Say nothing unless it fails");
 }
 
-/// Blocks the stop signals, to be read from the returned descriptor; before any thread starts.
-int take_stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
-}
-
-/// A file, or standard output for "-".
+//// A file, or standard output for "-".
 class Output {
  public:
   bool open(const std::string& path) {

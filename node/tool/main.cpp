@@ -3,12 +3,41 @@
 #include <exception>
 #include <iostream>
 
+#include "node/client/connection.h"
 #include "node/tool/command.h"
 
-int palpate::complain(const std::string& why, int exit_code) {
+namespace palpate {
+
+int complain(const std::string& why, int exit_code) {
   std::cerr << "palpate: " << why << "\n";
   return exit_code;
 }
+
+void add_connection_flags(CLI::App& command, const char* flag, const char* help,
+                          Connection& connection) {
+  command.add_option(flag, connection.endpoint, help)->capture_default_str()->type_name("ENDPOINT");
+  CLI::Option* own = command
+                         .add_option("--curve-secret-key", connection.own_key,
+                                     "CURVE: our secret key file (palpate keygen)")
+                         ->type_name("FILE");
+  command
+      .add_option("--curve-server-key", connection.recognizer_key,
+                  "CURVE: the recognizer's public key file")
+      ->needs(own)
+      ->type_name("FILE");
+}
+
+Result<std::optional<CurveClient>> curve_of(const Connection& connection) {
+  using Curve = Result<std::optional<CurveClient>>;
+  if (connection.own_key.empty()) {
+    return Curve::ok(std::nullopt);
+  }
+  Result<CurveClient> client =
+      client::read_curve_client(connection.own_key, connection.recognizer_key);
+  return client ? Curve::ok(std::move(client.value)) : Curve::fail(client.error);
+}
+
+}  // namespace palpate
 
 int main(int argc, char** argv) {
   CLI::App app(
@@ -18,10 +47,16 @@ int main(int argc, char** argv) {
       "palpate");
   app.set_version_flag("--version", PALPATE_VERSION);
   app.require_subcommand(1);
-  app.get_formatter()->column_width(34);
   int exit_code = palpate::kDone;
   palpate::add_fit_command(app, exit_code);
   palpate::add_estimate_command(app, exit_code);
+  palpate::add_watch_command(app, exit_code);
+  palpate::add_list_command(app, exit_code);
+  palpate::add_hz_command(app, exit_code);
+  palpate::add_record_command(app, exit_code);
+  palpate::add_replay_command(app, exit_code);
+  palpate::add_check_command(app, exit_code);
+  palpate::add_keygen_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,62 @@
+#include "node/tool/topic_counts.h"
+
+#include <algorithm>
+
+#include "node/endpoint.h"
+#include "node/socket.h"
+
+namespace palpate {
+
+double TopicCount::rate_hz() const {
+  const double span = std::chrono::duration<double>(last - first).count();
+  return messages > 1 && span > 0.0 ? static_cast<double>(messages - 1) / span : 0.0;
+}
+
+void TopicCount::take(std::size_t size, std::chrono::steady_clock::time_point now) {
+  if (messages == 0) {
+    first = now;
+  } else {
+    const double interval = std::chrono::duration<double>(now - last).count();
+    shortest_s = messages == 1 ? interval : std::min(shortest_s, interval);
+    longest_s = std::max(longest_s, interval);
+  }
+  last = now;
+  ++messages;
+  bytes += size;
+}
+
+Result<std::map<std::string, TopicCount>> count_topics(
+    const Connection& connection,
+    const std::function<bool(const std::map<std::string, TopicCount>&)>& until) {
+  using Counts = Result<std::map<std::string, TopicCount>>;
+  const auto curve = curve_of(connection);
+  if (!curve) {
+    return Counts::fail(curve.error);
+  }
+  const Result<Endpoint> endpoint = parse_endpoint(connection.endpoint, /*bind_by_default=*/false);
+  if (!endpoint) {
+    return Counts::fail(endpoint.error);
+  }
+  zmq::context_t context(1);
+  SocketSettings settings;
+  settings.curve_client = *curve.value;
+  zmq::socket_t socket = make_socket(context, zmq::socket_type::sub, settings);
+  socket.set(zmq::sockopt::subscribe, "");
+  if (const std::string error = attach(socket, *endpoint.value); !error.empty()) {
+    return Counts::fail(error);
+  }
+  std::map<std::string, TopicCount> counts;
+  std::vector<zmq::pollitem_t> items{{socket.handle(), 0, ZMQ_POLLIN, 0}};
+  TwoFrames message;
+  while (!until(counts)) {
+    constexpr int kStepMs = 50;
+    poll(items, kStepMs);
+    while (receive_now(socket, message)) {
+      counts[message.topic.to_string()].take(message.payload.size(),
+                                             std::chrono::steady_clock::now());
+    }
+  }
+  return Counts::ok(std::move(counts));
+}
+
+}  // namespace palpate

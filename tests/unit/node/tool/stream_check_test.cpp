@@ -1,0 +1,133 @@
+// What palpate check finds in streams that are wrong in one way each.
+#include "node/tool/stream_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "palpate/v1/contact.pb.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::int64_t kNow = 1'700'000'000'000'000'000;
+
+/// Feeds batches of ten samples along a circle of 20 mm, each changed by `spoil`.
+std::vector<Finding> findings_of(
+    const std::function<void(std::size_t number, v1::ContactBatch& batch)>& spoil) {
+  StreamCheck check;
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  for (std::size_t number = 0; number < 20; ++number) {
+    v1::ContactBatch batch;
+    batch.mutable_header()->set_source("p");
+    batch.mutable_header()->set_epoch(5);
+    batch.mutable_header()->set_seq(number);
+    for (std::size_t i = 0; i < 10; ++i) {
+      const double t = 0.01 * static_cast<double>(10 * number + i);
+      v1::ContactSample& sample = *batch.add_samples();
+      sample.set_x_m(0.02 * std::cos(t) + noise(rng));
+      sample.set_y_m(0.02 * std::sin(t) + noise(rng));
+      sample.set_sigma_m(1e-5);
+      sample.set_stamp_ns(kNow + static_cast<std::int64_t>(10 * number + i) * 1'000'000);
+    }
+    spoil(number, batch);
+    check.take(2, "contact/p/", batch.SerializeAsString(),
+               kNow + static_cast<std::int64_t>(10 * number + 10) * 1'000'000);
+  }
+  return check.findings();
+}
+
+bool has(const std::vector<Finding>& findings, Severity severity, const std::string& what) {
+  for (const Finding& finding : findings) {
+    if (finding.severity == severity && finding.what.find(what) != std::string::npos) {
+      return true;
+    }
+  }
+  return false;
+}
+
+TEST(StreamCheck, AGoodStreamHasNotesOnly) {
+  for (const Finding& finding : findings_of([](std::size_t, v1::ContactBatch&) {})) {
+    EXPECT_EQ(finding.severity, Severity::Note) << finding.what;
+  }
+}
+
+TEST(StreamCheck, MillimetresAreSuspected) {
+  const auto findings = findings_of([](std::size_t, v1::ContactBatch& batch) {
+    for (v1::ContactSample& sample : *batch.mutable_samples()) {
+      sample.set_x_m(1e3 * sample.x_m());
+      sample.set_y_m(1e3 * sample.y_m());
+    }
+  });
+  EXPECT_TRUE(has(findings, Severity::Warning, "a patch extends over"));
+}
+
+TEST(StreamCheck, AMissingLiftOffIsAJump) {
+  const auto findings = findings_of([](std::size_t number, v1::ContactBatch& batch) {
+    for (v1::ContactSample& sample : *batch.mutable_samples()) {
+      sample.set_x_m(sample.x_m() + (number >= 10 ? 0.05 : 0.0));
+    }
+  });
+  EXPECT_TRUE(has(findings, Severity::Error, "1 jumps"));
+}
+
+TEST(StreamCheck, NoiseThatIsNotAsStatedIsTold) {
+  const auto findings = findings_of([](std::size_t, v1::ContactBatch& batch) {
+    for (v1::ContactSample& sample : *batch.mutable_samples()) {
+      sample.set_sigma_m(1e-7);
+    }
+  });
+  EXPECT_TRUE(has(findings, Severity::Warning, "the samples scatter by"));
+}
+
+TEST(StreamCheck, GapsInSeqAreCounted) {
+  const auto findings = findings_of([](std::size_t number, v1::ContactBatch& batch) {
+    batch.mutable_header()->set_seq(number + (number >= 7 ? 3 : 0));
+  });
+  EXPECT_TRUE(has(findings, Severity::Warning, "1 gaps in seq, 3 messages lost"));
+}
+
+TEST(StreamCheck, BadStampsAreErrors) {
+  EXPECT_TRUE(has(findings_of([](std::size_t, v1::ContactBatch& batch) {
+                    for (v1::ContactSample& sample : *batch.mutable_samples()) {
+                      sample.set_stamp_ns(sample.stamp_ns() - kNow + 1);
+                    }
+                  }),
+                  Severity::Error, "more than an hour old"));
+  EXPECT_TRUE(has(findings_of([](std::size_t, v1::ContactBatch& batch) {
+                    for (v1::ContactSample& sample : *batch.mutable_samples()) {
+                      sample.set_stamp_ns(2 * kNow - sample.stamp_ns());
+                    }
+                  }),
+                  Severity::Error, "stamps earlier than the one before"));
+  EXPECT_TRUE(has(findings_of([](std::size_t, v1::ContactBatch& batch) {
+                    for (v1::ContactSample& sample : *batch.mutable_samples()) {
+                      sample.set_stamp_ns(sample.stamp_ns() + 1'000'000'000);
+                    }
+                  }),
+                  Severity::Error, "stamps in the future"));
+}
+
+TEST(StreamCheck, WhatTheRecognizerWouldRejectIsNamedWithItsCure) {
+  StreamCheck check;
+  check.take(2, "contact/p/", "no message", kNow);
+  check.take(1, "contact/p/", "", kNow);
+  check.take(2, "contact/p", "", kNow);
+  const auto findings = check.findings();
+  ASSERT_EQ(findings.size(), 3U);
+  for (const Finding& finding : findings) {
+    EXPECT_EQ(finding.severity, Severity::Error);
+    EXPECT_THAT(finding.what, HasSubstr("1 messages rejected"));
+    EXPECT_FALSE(finding.cure.empty());
+  }
+}
+
+}  // namespace
+}  // namespace palpate
