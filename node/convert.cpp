@@ -29,7 +29,8 @@ void fill_hypothesis(const Hypothesis& hypothesis, v1::Hypothesis& out) {
   out.set_chi2(hypothesis.chi2);
   out.set_dof(static_cast<std::uint32_t>(std::max(hypothesis.dof, 0)));
   out.set_at_limit(hypothesis.at_limit);
-  if (hypothesis.at_limit || hypothesis.shape.curve_class == CurveClass::Unclassified) return;
+  // Hopeless classes are not brought to canonical form.
+  if (hypothesis.at_limit || hypothesis.covariance.size() == 0) return;
   to_wire(hypothesis.shape, *out.mutable_parameters());
   to_wire(hypothesis.world_T_curve, *out.mutable_pose());
 }

@@ -83,7 +83,8 @@ Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
   if (!table) {
     return Messages::fail(table.error);
   }
-  const bool stamped = std::all_of(
+  // Times may count from 0.
+  const bool stamped = std::any_of(
       table.value->rows.begin(), table.value->rows.end(),
       [](const ContactRow& row) { return row.sample.stamp_ns > 0; });
   const double period_ns = 1e9 / command.rate_hz;

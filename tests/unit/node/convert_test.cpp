@@ -58,6 +58,7 @@ TEST(Convert, ARecognitionArrivesWhole) {
   Hypothesis winner;
   winner.shape = recognition.shape;
   winner.world_T_curve = recognition.world_T_curve;
+  winner.covariance = recognition.covariance;
   winner.probability = 0.9;
   winner.chi2 = 100.0;
   winner.dof = 115;

@@ -1,0 +1,50 @@
+"""CURVE: the right key works, a wrong one or none gets nothing and is counted."""
+import unittest
+
+from bus import Bus, Probe, wait_for
+from programs import SIM, SOURCE, TOOL, run
+
+
+class Curve(unittest.TestCase):
+    def test_right_key_wrong_key_and_none(self):
+        with Bus("tcp") as bus:
+            for name in ("node", "friend", "stranger"):
+                self.assertEqual(run(TOOL, "keygen", bus.folder / name)[0], 0)
+            (bus.folder / "allowed").write_text((bus.folder / "friend.public").read_text())
+            bus.start_node("--curve-secret-key", bus.folder / "node.secret", "--allow-clients",
+                           bus.folder / "allowed")
+            scene = SOURCE / "sim/scenes/circle.textproto"
+
+            def play(key):
+                keys = [] if key is None else ["--curve-secret-key", bus.folder / f"{key}.secret",
+                                               "--curve-server-key", bus.folder / "node.public"]
+                return run(SIM, scene, "--contacts", bus.contacts, "--fast", "--wait", "1.5", *keys)[0]
+
+            def watch(key):
+                keys = [] if key is None else ["--curve-secret-key", bus.folder / f"{key}.secret",
+                                               "--curve-server-key", bus.folder / "node.public"]
+                return run(TOOL, "watch", "--results", bus.results, "--timeout", "3", "--count", "1",
+                           "--format", "json", *keys)
+
+            self.assertEqual(play("friend"), 0)
+            code, out, _ = watch("friend")
+            self.assertEqual(code, 0)
+            self.assertIn("CURVE_CLASS_CIRCLE", out)
+            for key in ("stranger", None):
+                self.assertEqual(play(key), 1, key)
+                code, out, _ = watch(key)
+                self.assertEqual((code, out), (1, ""), key)
+            _, out, _ = watch("friend")
+            self.assertIn("CURVE_CLASS_CIRCLE", out)
+
+    def test_keys_are_never_overwritten(self):
+        with Bus() as bus:
+            self.assertEqual(run(TOOL, "keygen", bus.folder / "a")[0], 0)
+            before = (bus.folder / "a.secret").read_text()
+            self.assertEqual((bus.folder / "a.secret").stat().st_mode & 0o777, 0o600)
+            self.assertEqual(run(TOOL, "keygen", bus.folder / "a")[0], 1)
+            self.assertEqual((bus.folder / "a.secret").read_text(), before)
+
+
+if __name__ == "__main__":
+    unittest.main()
