@@ -1,18 +1,22 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian), builds everything and runs every test.
 #
-#   tests/run.sh              warnings as errors, all tests
-#   tests/run.sh --sanitize   the same again under the address and undefined behaviour sanitizers
+#   tests/run.sh                  warnings as errors, all tests
+#   tests/run.sh --sanitize       besides: under the address, undefined and thread sanitizers
+#   tests/run.sh --fuzz SECONDS   besides: each fuzz target for so long (needs clang)
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 
 sanitize=no
-for argument in "$@"; do
-  case "$argument" in
+fuzz=0
+while [ $# -gt 0 ]; do
+  case "$1" in
     --sanitize) sanitize=yes ;;
+    --fuzz) fuzz=${2:?"tests/run.sh: --fuzz needs a number of seconds"}; shift ;;
     -h|--help) sed -n '2,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) echo "tests/run.sh: unknown argument '$argument' (try --help)" >&2; exit 2 ;;
+    *) echo "tests/run.sh: unknown argument '$1' (try --help)" >&2; exit 2 ;;
   esac
+  shift
 done
 
 step() { printf '\n== %s\n' "$*"; }
@@ -20,6 +24,7 @@ step() { printf '\n== %s\n' "$*"; }
 packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-dev libgmock-dev
           libbenchmark-dev protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev
           libcli11-dev python3 python3-protobuf python3-zmq)
+if [ "$fuzz" != 0 ]; then packages+=(clang); fi
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' ||
@@ -35,17 +40,39 @@ if [ ${#missing[@]} -gt 0 ]; then
 fi
 
 jobs=$(nproc)
-run_preset() {
-  step "building ($1)"
-  cmake --preset "$1" >/dev/null
-  cmake --build --preset "$1" -j "$jobs"
-  step "testing ($1)"
-  ctest --test-dir "build/$1" --output-on-failure -j "$jobs"
+build() {  # preset, targets...
+  local preset=$1
+  shift
+  step "building ($preset)"
+  cmake --preset "$preset" >/dev/null
+  cmake --build --preset "$preset" -j "$jobs" ${1:+--target "$@"}
 }
 
-run_preset strict
+build strict
+step "testing (strict)"
+ctest --test-dir build/strict --output-on-failure -j "$jobs"
+
 if [ "$sanitize" = yes ]; then
   export ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
-  run_preset asan
+  build asan
+  step "testing (address and undefined behaviour sanitizers)"
+  # The processes' own tests measure time; their twin in one process is among the others.
+  ctest --test-dir build/asan --output-on-failure -j "$jobs" -LE processes
+  build tsan twin_test
+  step "testing (thread sanitizer)"
+  # libzmq is not instrumented: its hand-over between threads looks like a race.
+  TSAN_OPTIONS="suppressions=$PWD/tests/processes/tsan.supp" \
+    ctest --test-dir build/tsan --output-on-failure -R '^twin_test$'
+fi
+
+if [ "$fuzz" != 0 ]; then
+  targets=(contact_csv ingest recording)
+  build fuzz "${targets[@]/#/fuzz_}"
+  for target in "${targets[@]}"; do
+    step "fuzzing $target for $fuzz s"
+    mkdir -p "build/fuzz/corpus/$target"
+    "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="$fuzz" -max_len=4096 -print_final_stats=1 \
+      -artifact_prefix="build/fuzz/$target-" "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target"
+  done
 fi
 step "all tests passed"

@@ -10,13 +10,6 @@
 namespace palpate {
 namespace {
 
-/// Whether a fit to the reduced points is as good as noise allows.
-bool fits_well(double chi2, const FitData& reduced) {
-  constexpr double kStandardDeviations = 5.0;
-  const double n = static_cast<double>(reduced.points.size());
-  return chi2 < n + kStandardDeviations * std::sqrt(2.0 * n);
-}
-
 ConicCoefficients conic_of_parabola(const PolynomialFit& fit) {
   // (11), (12) eliminated as below (13): with u = b2 (x - a0) - a2 (y - b0) and
   // v = b1 (x - a0) - a1 (y - b0) the curve is u^2 = (a1 b2 - a2 b1) (-v) up to sign.
@@ -101,14 +94,16 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts) {
   also_from(circle.chi2, circle.coefficients);
 
   // Where nothing fits, no walk into a valley was good enough to be trusted.
-  const auto fits = [&](const auto& fit) { return fit && fits_well(fit->chi2, reduced); };
-  if (!fits_well(conic.chi2, reduced) && !fits_well(circle.chi2, reduced) &&
+  const auto fits = [&](const auto& fit) { return fit && fits_well(fit->chi2, reduced.points.size()); };
+  if (!fits_well(conic.chi2, reduced.points.size()) && !fits_well(circle.chi2, reduced.points.size()) &&
       !fits(polynomials.parabola) && !fits(polynomials.cubical_parabola) &&
       !fits(polynomials.semi_cubical_parabola) && !fits(polynomials.cubic_spline)) {
-    if (starts != nullptr) {
+    if (starts != nullptr && !starts->every_seed) {
       return fit_classes(reduced);
     }
-    refine_every_seed(reduced, &polynomials);
+    if (starts == nullptr) {
+      refine_every_seed(reduced, &polynomials);
+    }
   }
   const auto& parabola = polynomials.parabola;
   if (parabola) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <optional>
 
 #include "core/curves/curve_class.h"
@@ -29,6 +31,12 @@ struct ClassFit {
 
 /// Indexed by CurveClass; entry 0 (Unclassified) is empty.
 using ClassFits = std::array<std::optional<ClassFit>, 9>;
+
+/// Whether a fit to that many reduced points is as good as noise allows: five standard deviations.
+inline bool fits_well(double chi2, std::size_t reduced_points) {
+  const double n = static_cast<double>(reduced_points);
+  return chi2 < n + 5.0 * std::sqrt(2.0 * n);
+}
 
 /// Fits every class to the smooth model's reduced points, taken as surface points: seeds by
 /// exhaustive coarse search, or `starts` (for these points) where given and anything then fits; least

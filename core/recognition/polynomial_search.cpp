@@ -132,6 +132,7 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
   // A step or two; what is plausible goes on from there (refine_on_all).
   constexpr RefineEffort kFollow{5, 1, 1e-2};
   PolynomialFits fits;
+  fits.every_seed = starts.every_seed;
   const auto follow = [&](const std::optional<PolynomialFit>& start, PolynomialModel model) {
     return start ? std::optional(refine_polynomial(model, reduced.points, *start, kSurfacePoints,
                                                    kFollow))
@@ -151,9 +152,12 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
 }
 
 void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
+  constexpr RefineEffort kThorough{100, 2, 1e-4};
+  fits->every_seed = true;
   const auto improve = [&](std::optional<PolynomialFit>* fit, const AxisFit& seed) {
     keep_better(fit, refine_polynomial(seed.model, reduced.points,
-                                       to_polynomial(seed, reduced.points), kSurfacePoints));
+                                       to_polynomial(seed, reduced.points), kSurfacePoints,
+                                       kThorough));
   };
   for (const AxisFit& seed : fits->seeds.cubic_spline) {
     improve(&fits->cubic_spline, seed);

@@ -17,6 +17,7 @@ struct PolynomialFits {
   /// The spline's optimum on the other side of c = 0, if there is one.
   std::optional<PolynomialFit> rival;
   PolynomialSeeds seeds;  ///< that the search started from
+  bool every_seed = false;  ///< refined, as nothing fitted
 };
 
 /// Exhaustive coarse search, valleys walked, the best of each refined with coarse effort.
@@ -26,7 +27,7 @@ PolynomialFits search_polynomials(const FitData& reduced);
 PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts);
 
 /// The last resort for the models with arms, whose sharp bends make narrow valleys: refines every seed
-/// with full effort.
+/// thoroughly.
 void refine_every_seed(const FitData& reduced, PolynomialFits* fits);
 
 }  // namespace palpate

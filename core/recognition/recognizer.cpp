@@ -128,12 +128,12 @@ class Recognizer::Impl {
     if (warm) {
       Weighing w = weigh_without_outliers(data, sigma_known, patches, &last_->warm);
       if (w.best == last_->best) {
-        last_->warm = warm_start_from(w.coarse, w.data);
+        last_->warm = warm_start_from(w.coarse, w.smooth.reduced);
         return w;
       }
     }
     Weighing w = weigh_without_outliers(data, sigma_known, patches, nullptr);
-    last_ = Last{warm_start_from(w.coarse, w.data), w.best, samples, data.patches.size(), {}};
+    last_ = Last{warm_start_from(w.coarse, w.smooth.reduced), w.best, samples, data.patches.size(), {}};
     return w;
   }
 

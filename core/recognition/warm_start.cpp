@@ -1,5 +1,6 @@
 #include "core/recognition/warm_start.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -62,10 +63,14 @@ std::optional<PolynomialFit> carried(const std::optional<PolynomialFit>& fit, co
 
 }  // namespace
 
-WarmStart warm_start_from(const ClassFits& fits, const FitData& data) {
+WarmStart warm_start_from(const ClassFits& fits, const FitData& reduced) {
   WarmStart warm;
-  warm.frame = data.frame;
-  warm.scale = data.scale;
+  warm.frame = reduced.frame;
+  warm.scale = reduced.scale;
+  warm.polynomials.every_seed =
+      std::none_of(fits.begin(), fits.end(), [&](const std::optional<ClassFit>& fit) {
+        return fit && fits_well(fit->chi2, reduced.points.size());
+      });
   const auto take = [&](CurveClass curve_class) -> std::optional<PolynomialFit> {
     const auto& fit = fits[static_cast<std::size_t>(curve_class)];
     return fit && !fit->at_limit ? fit->polynomial : std::nullopt;
@@ -82,6 +87,7 @@ WarmStart warm_start_from(const ClassFits& fits, const FitData& data) {
 
 PolynomialFits carried_to(const WarmStart& warm, const FitData& reduced) {
   PolynomialFits starts;
+  starts.every_seed = warm.polynomials.every_seed;
   starts.parabola = carried(warm.polynomials.parabola, warm, reduced);
   starts.cubical_parabola = carried(warm.polynomials.cubical_parabola, warm, reduced);
   starts.semi_cubical_parabola = carried(warm.polynomials.semi_cubical_parabola, warm, reduced);

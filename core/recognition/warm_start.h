@@ -14,7 +14,9 @@ struct WarmStart {
   double scale = 1.0;  ///< likewise
 };
 
-WarmStart warm_start_from(const ClassFits& fits, const FitData& data);
+/// `fits` on reduced points. Where none of them fits, the next recognition does not search again either:
+/// the search has just been made.
+WarmStart warm_start_from(const ClassFits& fits, const FitData& reduced);
 
 /// The starts in the frame of `reduced`, each with the parameters of the points' nearest places.
 PolynomialFits carried_to(const WarmStart& warm, const FitData& reduced);

@@ -227,7 +227,9 @@ std::vector<Finding> StreamCheck::findings() const {
                         count_text(count, "messages rejected: ") + v1::RejectReason_Name(key.second),
                         cure_of(key.second)});
   }
-  for (const auto& [name, probe] : probes_) {
+  for (const auto& entry : probes_) {
+    const std::string& name = entry.first;
+    const Probe& probe = entry.second;
     const auto add = [&](Severity severity, std::string what, std::string cure) {
       findings.push_back({severity, name, std::move(what), std::move(cure)});
     };

@@ -31,8 +31,9 @@ TEST(Ingest, AValidMessageArrivesWhole) {
   batch.set_material_side(v1::MATERIAL_SIDE_RIGHT);
   batch.mutable_samples(3)->set_stamp_ns(5000);
   const std::string payload = batch.SerializeAsString();
+  const std::string topic = contact_topic("p");  // the message views it
   ContactDecoder decoder;
-  ASSERT_EQ(decoder.decode(2, contact_topic("p"), payload), v1::REJECT_REASON_UNSPECIFIED);
+  ASSERT_EQ(decoder.decode(2, topic, payload), v1::REJECT_REASON_UNSPECIFIED);
   const ContactMessage& message = decoder.message();
   EXPECT_EQ(message.probe, "p");
   EXPECT_EQ(message.group, "cup");
@@ -54,7 +55,8 @@ TEST(Ingest, AValidMessageArrivesWhole) {
 TEST(Ingest, AGroupLeftOutIsTheProbe) {
   ContactDecoder decoder;
   const std::string payload = line_batch("p", 0, 0).SerializeAsString();
-  ASSERT_EQ(decoder.decode(2, contact_topic("p"), payload), v1::REJECT_REASON_UNSPECIFIED);
+  const std::string topic = contact_topic("p");
+  ASSERT_EQ(decoder.decode(2, topic, payload), v1::REJECT_REASON_UNSPECIFIED);
   EXPECT_EQ(decoder.message().group, "p");
 }
 
@@ -66,7 +68,8 @@ TEST(Ingest, NothingOfAnEarlierMessageRemains) {
   first.mutable_header()->set_frame("table");
   ASSERT_EQ(decoder.decode(2, contact_topic("p"), first.SerializeAsString()),
             v1::REJECT_REASON_UNSPECIFIED);
-  ASSERT_EQ(decoder.decode(2, contact_topic("q"), line_batch("q", 0, 0, 2).SerializeAsString()),
+  const std::string topic = contact_topic("q");
+  ASSERT_EQ(decoder.decode(2, topic, line_batch("q", 0, 0, 2).SerializeAsString()),
             v1::REJECT_REASON_UNSPECIFIED);
   EXPECT_EQ(decoder.message().group, "q");
   EXPECT_EQ(decoder.message().frame, "world");
