@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
       std::printf("%s: %s at x = %.5f m, y = %.5f m, theta = %.4f rad\n", group.c_str(),
                   palpate::v1::CurveClass_Name(answer.curve_class()).c_str(), answer.pose().x_m(),
                   answer.pose().y_m(), answer.pose().theta_rad());
+      std::fflush(stdout);
     }
   }
 }

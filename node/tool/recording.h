@@ -25,8 +25,9 @@ class RecordingWriter {
   std::string buffer_;
 };
 
-/// All messages of a file. A file that breaks off within its last message gives those before it, and
-/// `truncated_at` the byte where the whole part ends; any other damage is an error that names the byte.
+/// All messages of a file. A file that breaks off within a message (or whose message claims to be longer
+/// than the rest: the two look alike) gives those before it, and `truncated_at` the byte where the whole
+/// part ends; any other damage is an error that names the byte.
 struct Recording {
   std::vector<v1::RecordedMessage> messages;
   std::uint64_t truncated_at = 0;  ///< 0 = whole

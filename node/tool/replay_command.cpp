@@ -38,13 +38,15 @@ struct TimedMessage {
   v1::ContactBatch batch;
 };
 
-Result<std::vector<TimedMessage>> from_recording(const std::string& path) {
+/// `is_whole` receives whether the file goes on to its end.
+Result<std::vector<TimedMessage>> from_recording(const std::string& path, bool* is_whole) {
   using Messages = Result<std::vector<TimedMessage>>;
   const Result<Recording> recording = read_recording(path);
   if (!recording) {
     return Messages::fail(recording.error);
   }
-  if (recording.value->truncated_at > 0) {
+  *is_whole = recording.value->truncated_at == 0;
+  if (!*is_whole) {
     complain(path + ": breaks off at byte " + std::to_string(recording.value->truncated_at) +
                  "; what is before it is replayed",
              kDone);
@@ -141,8 +143,9 @@ int run(const ReplayCommand& command) {
   if (!curve) {
     return complain(curve.error, kUsage);
   }
+  bool is_whole = true;
   Result<std::vector<TimedMessage>> messages =
-      is_recording(command.file) ? from_recording(command.file) : from_csv(command);
+      is_recording(command.file) ? from_recording(command.file, &is_whole) : from_csv(command);
   if (!messages) {
     return complain(messages.error, kUsage);
   }
@@ -191,7 +194,7 @@ int run(const ReplayCommand& command) {
   std::cerr << command.file << ": " << messages.value->size() << " messages, " << samples
             << " samples";
   std::cerr << (refused > 0 ? ", " + std::to_string(refused) + " not taken\n" : "\n");
-  return refused == 0 ? kDone : kFailed;
+  return refused == 0 && is_whole ? kDone : kFailed;
 }
 
 }  // namespace

@@ -179,6 +179,13 @@ void StreamCheck::judge_patches(const std::string& name, const Probe& probe,
     add(Severity::Warning, "a patch extends over " + length_text(extent),
         "coordinates are metres: were these millimetres?");
   }
+  constexpr double kLargestNoise = 1e-3;  // of a touch probe [m]
+  if (estimated_noise > kLargestNoise || stated_noise > kLargestNoise) {
+    add(Severity::Error,
+        "noise of " + length_text(std::max(estimated_noise, stated_noise)) +
+            " is no touch probe's",
+        "coordinates and sigma_m are metres: were these millimetres?");
+  }
   if (extent > 0.0 && extent < kSmallestPart) {
     add(Severity::Warning, "the longest patch extends over " + length_text(extent),
         "coordinates are metres: were these kilometres, or does the probe dwell?");

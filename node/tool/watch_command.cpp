@@ -61,7 +61,8 @@ class Watch {
     while (!stop_requested(stop_fd_)) {
       const client::ReceivedResult result = subscriber_.receive(step);
       const auto now = Clock::now();
-      if (result) {
+      // Where recognitions are waited for, the node's being alive is none.
+      if (command_.count > 0 ? result.recognition != nullptr : static_cast<bool>(result)) {
         heard = now;
       } else if (command_.timeout_s > 0.0 &&
                  now - heard > std::chrono::duration<double>(command_.timeout_s)) {
@@ -205,7 +206,7 @@ void add_watch_command(CLI::App& app, int& exit_code) {
       ->type_name("N");
   command
       ->add_option("--timeout", watch->timeout_s,
-                   "Fail where nothing is heard for so long; 0 = wait for ever [s]")
+                   "Fail where nothing (with --count: no recognition) is heard for so long; 0 = wait for ever [s]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->type_name("S");
