@@ -141,7 +141,7 @@ class Reader {
     }
     ContactRow row;
     const std::string_view probe = field(Column::Probe);
-    if (probe != last_probe_) {
+    if (probe.empty() || probe != last_probe_) {
       if (!is_valid_name(probe)) {
         fail(probe.data(), "probe " + shown(probe) + ": a name is 1 to 64 of A-Z a-z 0-9 _ . -");
         return;

@@ -57,6 +57,7 @@ TEST(ContactCsv, AnErrorNamesFileLineColumnAndReason) {
   EXPECT_THAT(error_of("probe,patch,x_m,y_m\na,0,1,2,3\n"), StartsWith("part.csv:2:9:"));
   EXPECT_THAT(error_of("probe,patch,x_m,y_m\na,-1,1,2\n"), StartsWith("part.csv:2:3: patch"));
   EXPECT_THAT(error_of("probe,patch,x_m,y_m\na b,0,1,2\n"), StartsWith("part.csv:2:1: probe"));
+  EXPECT_THAT(error_of("probe,patch,x_m,y_m\n,0,1,2\n"), StartsWith("part.csv:2:1: probe"));
   EXPECT_THAT(error_of("probe,patch,x_m,y_m\n# c\na,0,nan,2\n"), StartsWith("part.csv:3:5: x_m"));
   EXPECT_THAT(error_of("probe,patch,x_m,y_m\na,0,1e999,2\n"), HasSubstr("beyond"));
   EXPECT_THAT(error_of("probe,patch,x_m\n"), HasSubstr("y_m is missing"));
