@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/paper/default_experiments.h"
 #include "tests/paper/paper_experiments.h"
 
 namespace palpate::paper {
@@ -84,6 +85,23 @@ TEST(PaperFigure7, TheEllipsesInvariantsAreThePrintedOnes) {
   }
   EXPECT_NEAR(measured.ip[0], 0.8971, 0.0025);
   EXPECT_NEAR(measured.ip[1], 0.4030, 0.0035);
+}
+
+TEST(PaperTable3, WithTheDefaultsMeanErrorsAreBelowAHundredthOfAPercent) {
+  for (const DefaultRecovery& recovery : default_table3()) {
+    EXPECT_LT(recovery.mean_percent, 0.01) << recovery.name;
+  }
+}
+
+TEST(PaperTable4, WithTheDefaultsTheSpreadIsTheBound) {
+  const DefaultEllipse ellipse = default_table4();
+  EXPECT_EQ(ellipse.recognised, ellipse.trials);
+  for (int k = 0; k < 2; ++k) {
+    // Relative standard deviation 1 / sqrt(2 n) of a standard deviation, and 0.1 mm's nonlinearity.
+    EXPECT_NEAR(ellipse.sd_mm[k] / ellipse.bound_mm[k], 1.0, 4.0 / std::sqrt(2.0 * ellipse.trials));
+    EXPECT_NEAR(ellipse.mean_mm[k], k == 0 ? 25.0 : 17.5,
+                4.0 * ellipse.bound_mm[k] / std::sqrt(static_cast<double>(ellipse.trials)) + 0.01);
+  }
 }
 
 }  // namespace

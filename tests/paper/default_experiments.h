@@ -1,0 +1,33 @@
+// The paper's recovery experiments with this project's defaults: raw contact points in, no noise (table 3) or
+// the joystick's (section 6, table 4).
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace palpate::paper {
+
+/// Mean and worst relative error of the shape parameters over random noise-free curves, two patches of 111
+/// samples each, noise not told.
+struct DefaultRecovery {
+  std::string_view name;
+  int curves = 0;
+  int recognised = 0;  ///< as their class, with certainty
+  double mean_percent = 0.0;
+  double worst_percent = 0.0;
+};
+std::vector<DefaultRecovery> default_table3();
+
+/// The 25 x 17.5 mm ellipse, sigma 0.05 mm, two patches of 111 samples 0.2 mm apart, over seeds.
+struct DefaultEllipse {
+  int trials = 0;
+  int recognised = 0;
+  double mean_mm[2] = {};   ///< of a, b
+  double min_mm[2] = {};
+  double max_mm[2] = {};
+  double sd_mm[2] = {};     ///< of the trials
+  double bound_mm[2] = {};  ///< Kanatani-Cramer-Rao, as published
+};
+DefaultEllipse default_table4();
+
+}  // namespace palpate::paper
