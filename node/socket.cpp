@@ -5,9 +5,15 @@
 namespace palpate {
 namespace {
 
-// A frozen peer or a cut cable is noticed after one interval and one timeout.
+// A frozen peer or a cut cable is noticed after one interval and one timeout. Only the publishing side
+// asks: where a reader's own heartbeat expires while its queue is full (it has not read for so long),
+// libzmq 4.3 aborts the process once the queue is emptied ("_input_stopped").
 constexpr int kHeartbeatIntervalMs = 200;
 constexpr int kHeartbeatTimeoutMs = 600;
+// What tells a reader of a cut cable instead, after a second of silence and three unanswered probes.
+constexpr int kKeepaliveIdleS = 1;
+constexpr int kKeepaliveIntervalS = 1;
+constexpr int kKeepaliveProbes = 3;
 // A peer that connects and says nothing is dropped.
 constexpr int kHandshakeTimeoutMs = 1000;
 // Retries after 10, 20, then every 32 to 42 ms: a restarted recognizer is found again in less than
@@ -27,8 +33,14 @@ zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
   socket.set(zmq::sockopt::linger, kLingerMs);
   socket.set(zmq::sockopt::sndhwm, settings.send_high_water_mark);
   socket.set(zmq::sockopt::rcvhwm, settings.receive_high_water_mark);
-  socket.set(zmq::sockopt::heartbeat_ivl, kHeartbeatIntervalMs);
-  socket.set(zmq::sockopt::heartbeat_timeout, kHeartbeatTimeoutMs);
+  if (type == zmq::socket_type::pub || type == zmq::socket_type::xpub) {
+    socket.set(zmq::sockopt::heartbeat_ivl, kHeartbeatIntervalMs);
+    socket.set(zmq::sockopt::heartbeat_timeout, kHeartbeatTimeoutMs);
+  }
+  socket.set(zmq::sockopt::tcp_keepalive, 1);
+  socket.set(zmq::sockopt::tcp_keepalive_idle, kKeepaliveIdleS);
+  socket.set(zmq::sockopt::tcp_keepalive_intvl, kKeepaliveIntervalS);
+  socket.set(zmq::sockopt::tcp_keepalive_cnt, kKeepaliveProbes);
   socket.set(zmq::sockopt::handshake_ivl, kHandshakeTimeoutMs);
   socket.set(zmq::sockopt::reconnect_ivl, kReconnectFirstMs);
   socket.set(zmq::sockopt::reconnect_ivl_max, kReconnectMaxMs);

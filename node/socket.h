@@ -31,8 +31,8 @@ struct SocketSettings {
   std::optional<CurveClient> curve_client;   ///< set on the other side
 };
 
-/// A socket with heartbeats, quick reconnects, no lingering at exit, and those settings; not yet
-/// bound or connected.
+/// A socket that notices a peer's end, reconnects quickly and does not linger at exit, with those
+/// settings; not yet bound or connected.
 zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
                           const SocketSettings& settings);
 
