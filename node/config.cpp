@@ -131,6 +131,9 @@ class Writer {
 // What only all options together can say.
 std::string check_together(const NodeOptions& options) {
   if (!is_valid_name(options.name)) return "name: expected 1 to 64 of [A-Za-z0-9_.-]";
+  for (const std::string& prefix : options.probe_prefixes) {
+    if (!is_valid_name(prefix)) return "probe_prefixes: expected 1 to 64 of [A-Za-z0-9_.-] each";
+  }
   if (options.curve_secret_key.empty() != options.allow_clients.empty()) {
     return "curve_secret_key and allow_clients: give both or neither";
   }

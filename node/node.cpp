@@ -88,7 +88,11 @@ zmq::socket_t Node::open(zmq::socket_type type, const std::vector<std::string>& 
                          const SocketSettings& settings) {
   zmq::socket_t socket = make_socket(context_, type, settings);
   if (type == zmq::socket_type::sub) {
-    socket.set(zmq::sockopt::subscribe, topic_prefix(TopicKind::Contact));
+    const std::string all(topic_prefix(TopicKind::Contact));
+    for (const std::string& prefix : options_.probe_prefixes) {
+      socket.set(zmq::sockopt::subscribe, all + prefix);
+    }
+    if (options_.probe_prefixes.empty()) socket.set(zmq::sockopt::subscribe, all);
   } else {
     socket.set(zmq::sockopt::xpub_verbose, true);
   }

@@ -16,6 +16,9 @@ struct NodeOptions {
   std::string name = "recognizer";
   std::vector<std::string> contacts{std::string(kDefaultContactsEndpoint)};
   std::vector<std::string> results{std::string(kDefaultResultsEndpoint)};
+  /// Probes to listen to, by the beginning of their names; none = all. Several nodes can so share the
+  /// probes of one endpoint.
+  std::vector<std::string> probe_prefixes;
   std::string curve_secret_key;
   std::string allow_clients;
   bool insecure = false;
@@ -44,6 +47,8 @@ void for_each_option(Options& options, Visit&& visit) {
         options.contacts);
   visit({"results", "Endpoint for results, [bind:|connect:]ADDRESS; may be repeated"},
         options.results);
+  visit({"probe_prefixes", "Beginning of the names of probes to listen to; may be repeated; none = all"},
+        options.probe_prefixes);
   visit({"curve_secret_key", "CURVE: this node's secret key file"}, options.curve_secret_key);
   visit({"allow_clients", "CURVE: file of the public keys that may connect"},
         options.allow_clients);

@@ -91,6 +91,14 @@ TEST(Config, FlagBeforeEnvironmentBeforeFile) {
   EXPECT_EQ(options.value->results, (std::vector<std::string>{"ipc:///r1", "ipc:///r2"}));
 }
 
+TEST(Config, ProbePrefixesAreBeginningsOfNames) {
+  v1::NodeConfig config;
+  ASSERT_EQ(set_option(config, "probe_prefixes", "left"), "");
+  ASSERT_TRUE(make_options(config));
+  ASSERT_EQ(set_option(config, "probe_prefixes", "no/slash"), "");
+  EXPECT_THAT(make_options(config).error, HasSubstr("probe_prefixes"));
+}
+
 TEST(Config, UnknownKeysAndBadValuesAreErrors) {
   std::string error;
   read("max_grops: 3", &error);
