@@ -141,7 +141,8 @@ int main(int argc, char** argv) {
     return kBadConfiguration;
   }
   spdlog::set_level(spdlog::level::from_str(options.value->log_level));
-  const Result<palpate::NodeKeys> keys = palpate::read_node_keys(*options.value);
+  const Result<palpate::NodeKeys> keys =
+      palpate::read_node_keys(options.value->curve_secret_key, options.value->allow_clients);
   if (!keys) {
     spdlog::error("{}", keys.error);
     return kBadConfiguration;

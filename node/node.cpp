@@ -49,25 +49,7 @@ SocketSettings results_settings(const NodeOptions& options, const NodeKeys& keys
   return settings;
 }
 
-std::optional<ZapHandler> make_zap_handler(zmq::context_t& context, const NodeKeys& keys) {
-  if (!keys.own) return std::nullopt;
-  return std::optional<ZapHandler>(std::in_place, context, ClientList(keys.clients));
-}
-
 }  // namespace
-
-Result<NodeKeys> read_node_keys(const NodeOptions& options) {
-  NodeKeys keys;
-  if (options.curve_secret_key.empty()) return Result<NodeKeys>::ok(keys);
-  if (!curve_available()) return Result<NodeKeys>::fail("libzmq was built without CURVE");
-  Result<CurveKeyPair> own = read_curve_keys(options.curve_secret_key);
-  if (!own) return Result<NodeKeys>::fail(own.error);
-  Result<std::vector<std::string>> clients = read_public_keys(options.allow_clients);
-  if (!clients) return Result<NodeKeys>::fail(clients.error);
-  keys.own = std::move(*own.value);
-  keys.clients = std::move(*clients.value);
-  return Result<NodeKeys>::ok(std::move(keys));
-}
 
 Node::Node(const NodeOptions& options, const NodeKeys& keys)
     : options_(options),

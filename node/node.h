@@ -12,6 +12,7 @@
 
 #include "node/compute_times.h"
 #include "node/intake.h"
+#include "node/node_keys.h"
 #include "node/options.h"
 #include "node/path_lock.h"
 #include "node/reconnect_guard.h"
@@ -24,15 +25,6 @@
 #include "palpate/v1/recognition.pb.h"
 
 namespace palpate {
-
-/// Keys that the options name.
-struct NodeKeys {
-  std::optional<CurveKeyPair> own;
-  std::vector<std::string> clients;
-};
-
-/// Reads the key files; nothing to read where CURVE is not asked for.
-Result<NodeKeys> read_node_keys(const NodeOptions& options);
 
 class Node {
  public:

@@ -126,6 +126,8 @@ void StreamCheck::judge_patches(const std::string& name, const Probe& probe,
   std::size_t longest = 0;
   std::size_t jumps = 0;
   std::size_t repeated = 0;
+  std::size_t holes = 0;
+  double widest = 0.0;  // hole, in typical spacings
   std::size_t samples = 0;
   double noise_ratio = 0.0;  // largest of estimated over stated, or of stated over estimated
   double estimated_noise = 0.0;
@@ -160,8 +162,19 @@ void StreamCheck::judge_patches(const std::string& name, const Probe& probe,
                          (patch.positions[i + 2] - patch.positions[i]).norm() > 0.5 * step;
       jumps += step > kJumpSpacings * typical && stays ? 1 : 0;
     }
-    coarsest = std::max(coarsest, typical / std::max((high - low).norm(), typical));
+    // Noise alone widens a spacing too: by three standard deviations of a difference at most.
+    constexpr double kHoleSpacings = 3.0;
+    constexpr double kNoiseWidths = 3.0;
     const NoiseEstimate noise = estimate_noise(patch.positions);
+    const double by_noise =
+        noise.status == LocalStatus::Ok ? kNoiseWidths * std::sqrt(2.0) * noise.sigma_m : 0.0;
+    for (const double step : steps) {
+      if (step > kHoleSpacings * typical + by_noise && step <= kJumpSpacings * typical) {
+        ++holes;
+        widest = std::max(widest, step / typical);
+      }
+    }
+    coarsest = std::max(coarsest, typical / std::max((high - low).norm(), typical));
     if (noise.status == LocalStatus::Ok && noise.dof > 20 && patch.with_sigma > 0) {
       const double stated =
           std::sqrt(patch.sigma_squares / static_cast<double>(patch.with_sigma));
@@ -204,6 +217,13 @@ void StreamCheck::judge_patches(const std::string& name, const Probe& probe,
   if (longest >= kShort && coarsest > kCoarse) {
     add(Severity::Note, "samples lie as coarse as a " + number(1.0 / coarsest) + "th of their patch",
         "sample more densely: noise averages out over the samples");
+  }
+  constexpr double kFewHoles = 0.01;  // of the samples: dropouts that do no harm
+  if (holes > 0) {
+    add(static_cast<double>(holes) > kFewHoles * static_cast<double>(samples) ? Severity::Warning
+                                                                              : Severity::Note,
+        count_text(holes, "holes of 3 to ") + number(widest) + " typical spacings within a patch",
+        "publish every contact at an even pace along the arc; a real lift-off needs a new patch");
   }
   if (repeated > 0) {
     add(Severity::Note, count_text(repeated, "samples at exactly the place of the one before"),

@@ -1,5 +1,7 @@
 // palpate watch: what the recognizer says, live.
 #include <google/protobuf/util/json_util.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -111,6 +113,7 @@ class Watch {
     for (auto& [group, shown] : groups_) {
       if (shown.is_held &&
           (all || now - shown.at >= std::chrono::duration<double>(command_.interval_s))) {
+        clear_table();
         std::cout << group << " object " << shown.held.object() << ": " << summary_text(shown.held)
                   << ", " << shown.held.sample_count() << " samples" << shown.latency
                   << std::endl;
@@ -125,24 +128,50 @@ class Watch {
       std::cout << json_line(status) << std::flush;
       return;
     }
+    const bool table = is_terminal_ && !status.probes().empty();
     for (const v1::ProbeStatus& probe : status.probes()) {
       Probe& known = probes_[probe.probe()];
       const bool news = !known.seen || known.alive != probe.alive() || known.gaps != probe.gaps() ||
                         known.rejected != probe.rejected() || known.restarts != probe.restarts();
-      if (news) {
-        char text[256];
-        std::snprintf(text, sizeof text,
-                      "probe %s: %s, %.0f samples/s, last heard %.2f s ago, %llu gaps (%llu messages), "
-                      "%llu rejected, %llu restarts",
-                      probe.probe().c_str(), probe.alive() ? "alive" : "SILENT",
-                      probe.sample_rate_hz(), std::max(probe.age_s(), 0.0),
-                      static_cast<unsigned long long>(probe.gaps()),
-                      static_cast<unsigned long long>(probe.missing()),
-                      static_cast<unsigned long long>(probe.rejected()),
-                      static_cast<unsigned long long>(probe.restarts()));
-        std::cout << text << std::endl;
+      if (news && !table) {
+        std::cout << probe_line(probe) << std::endl;
       }
       known = {true, probe.alive(), probe.gaps(), probe.rejected(), probe.restarts()};
+    }
+    if (table) {
+      clear_table();
+      for (const v1::ProbeStatus& probe : status.probes()) {
+        std::cout << probe_line(probe).substr(0, terminal_columns()) << "\n";
+      }
+      std::cout << std::flush;
+      table_lines_ = status.probes_size();
+    }
+  }
+
+  static std::string probe_line(const v1::ProbeStatus& probe) {
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "probe %s: %s, %.0f samples/s, heard %.2f s ago, %llu gaps (%llu lost), %llu rejected, "
+                  "%llu restarts",
+                  probe.probe().c_str(), probe.alive() ? "alive" : "SILENT", probe.sample_rate_hz(),
+                  std::max(probe.age_s(), 0.0), static_cast<unsigned long long>(probe.gaps()),
+                  static_cast<unsigned long long>(probe.missing()),
+                  static_cast<unsigned long long>(probe.rejected()),
+                  static_cast<unsigned long long>(probe.restarts()));
+    return text;
+  }
+
+  /// A line that wraps could not be taken away again.
+  static std::size_t terminal_columns() {
+    winsize size{};
+    constexpr std::size_t kUsual = 80;
+    return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
+  }
+
+  /// On a terminal the probes' lines stay below the answers: they are taken away before a line is added.
+  void clear_table() {
+    for (; table_lines_ > 0; --table_lines_) {
+      std::cout << "\033[A\033[2K";
     }
   }
 
@@ -160,6 +189,8 @@ class Watch {
   std::uint64_t recognitions_ = 0;
   std::map<std::string, Shown> groups_;
   std::map<std::string, Probe> probes_;
+  const bool is_terminal_ = isatty(STDOUT_FILENO) != 0;
+  int table_lines_ = 0;
 };
 
 int run(const WatchCommand& command) {
@@ -187,7 +218,8 @@ void add_watch_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "watch",
       "Show what the recognizer says: class, parameters and pose with their standard deviations, time\n"
-      "since the touch, and every probe that falls silent, comes back or loses messages.");
+      "since the touch, and the probes: on a terminal a line each below the answers, renewed with every\n"
+      "NodeStatus; elsewhere a line where one falls silent, comes back or loses messages.");
   command->add_option("GROUP", watch->groups, "Groups to watch; none = all")->type_name("");
   add_connection_flags(*command, "--results", "The recognizer's results endpoint",
                        watch->connection);

@@ -1,4 +1,5 @@
 """CURVE: the right key works, a wrong one or none gets nothing and is counted."""
+import subprocess
 import unittest
 
 from bus import Bus, Probe, wait_for
@@ -36,6 +37,32 @@ class Curve(unittest.TestCase):
                 self.assertEqual((code, out), (1, ""), key)
             _, out, _ = watch("friend")
             self.assertIn("CURVE_CLASS_CIRCLE", out)
+
+    def test_check_takes_the_recognizers_place_with_its_keys(self):
+        with Bus() as bus:
+            for name in ("node", "friend", "stranger"):
+                self.assertEqual(run(TOOL, "keygen", bus.folder / name)[0], 0)
+            (bus.folder / "allowed").write_text((bus.folder / "friend.public").read_text())
+
+            def check(player):
+                checker = bus.start(TOOL, "check", "--contacts", bus.contacts, "--seconds", "2",
+                                    "--curve-secret-key", bus.folder / "node.secret", "--allow-clients",
+                                    bus.folder / "allowed", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                run(SIM, SOURCE / "sim/scenes/circle.textproto", "--contacts", bus.contacts, "--fast",
+                    "--wait", "1.5", "--curve-secret-key", bus.folder / f"{player}.secret",
+                    "--curve-server-key", bus.folder / "node.public")
+                out, _ = checker.communicate(timeout=10)
+                return checker.returncode, out
+
+            code, out = check("friend")
+            self.assertEqual(code, 0, out)
+            self.assertIn("fit for the recognizer", out)
+            code, out = check("stranger")
+            self.assertEqual(code, 1, out)
+            self.assertIn("turned away", out)
+            code, _, err = run(TOOL, "check", "--contacts", "tcp://0.0.0.0:*", "--seconds", "1")
+            self.assertEqual(code, 2)
+            self.assertIn("open to the network", err)
 
     def test_keys_are_never_overwritten(self):
         with Bus() as bus:

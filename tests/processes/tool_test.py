@@ -1,5 +1,7 @@
 """palpate watch, list, hz, record, replay and check against a running system."""
 import json
+import os
+import pty
 import subprocess
 import time
 import unittest
@@ -24,6 +26,23 @@ class Tool(unittest.TestCase):
                                "1", "--timeout", "5")
             answer = next(m for m in map(json.loads, out.splitlines()) if "hypotheses" in m)
             self.assertEqual(answer["curve_class"], "CURVE_CLASS_ELLIPSE")
+
+    def test_watch_on_a_terminal_keeps_the_probes_below_the_answers(self):
+        with Bus() as bus:
+            bus.start_node("--status-period-s", "0.1")
+            terminal, far_end = pty.openpty()
+            watch = bus.start(TOOL, "watch", "--results", bus.results, "--count", "40", stdout=far_end)
+            bus.simulate(SCENE, "--speed", "0.5")
+            bus.simulate(SCENE, "--fast")
+            watch.kill()
+            watch.wait()
+            os.close(far_end)
+            screen = os.read(terminal, 1 << 20).decode()
+            os.close(terminal)
+            # The line of a probe is taken away before the next line is written.
+            self.assertRegex(screen, r"probe \S+: alive, [^\n]*\r\n\x1b\[A\x1b\[2K")
+            shown = screen.split("\x1b[2K")[-1]
+            self.assertLessEqual(shown.count("probe "), 1, screen)
 
     def test_watch_fails_where_nothing_is_heard(self):
         with Bus() as bus:

@@ -95,6 +95,11 @@ class Bus:
         return socket
 
 
+def receive_any(socket, timeout_s):
+    """The next message as topic and payload, None after the timeout."""
+    return socket.recv_multipart() if socket.poll(int(1000 * timeout_s)) else None
+
+
 def receive(socket, timeout_s):
     """The next result as a message, None after the timeout."""
     if not socket.poll(int(1000 * timeout_s)):

@@ -69,6 +69,21 @@ TEST(StreamCheck, MillimetresAreSuspected) {
   EXPECT_TRUE(has(findings, Severity::Warning, "a patch extends over"));
 }
 
+TEST(StreamCheck, AnUnevenPaceIsHoles) {
+  // Every other batch starts seven spacings late.
+  double late = 0.0;
+  const auto findings = findings_of([&](std::size_t number, v1::ContactBatch& batch) {
+    late += number % 2 == 1 ? 0.07 : 0.0;
+    for (v1::ContactSample& sample : *batch.mutable_samples()) {
+      const double x = sample.x_m();
+      sample.set_x_m(x * std::cos(late) - sample.y_m() * std::sin(late));
+      sample.set_y_m(x * std::sin(late) + sample.y_m() * std::cos(late));
+    }
+  });
+  EXPECT_TRUE(has(findings, Severity::Warning, "10 holes of 3 to"));
+  EXPECT_FALSE(has(findings, Severity::Error, "jumps"));
+}
+
 TEST(StreamCheck, AMissingLiftOffIsAJump) {
   const auto findings = findings_of([](std::size_t number, v1::ContactBatch& batch) {
     for (v1::ContactSample& sample : *batch.mutable_samples()) {
