@@ -1,0 +1,72 @@
+// Signature curves (curvature, its derivative by arc length) of a shape of each class, with local estimates from
+// noisy strokes beside them. Prints CSV, in units of the part's size: figures 2 to 5 and 10 of the paper, redone.
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+
+#include "core/curves/signature.h"
+#include "core/local/estimator.h"
+#include "tests/support/touched_curve.h"
+
+namespace {
+
+using namespace palpate;
+
+constexpr std::uint64_t kSeed = 2026;
+constexpr double kNoise = 1e-4;  // of the part's size, which is 1
+constexpr int kCurvePoints = 400;
+constexpr int kSamples = 600;
+
+struct Shape {
+  CurveClass curve_class;
+  Eigen::Vector3d values;
+  double t0, t1;
+};
+
+const Shape kShapes[] = {
+    {CurveClass::Ellipse, {1.0, 0.6, 0.0}, 0.0, 2.0 * kPi},
+    {CurveClass::Parabola, {0.4, 0.0, 0.0}, -1.2, 1.2},
+    {CurveClass::Hyperbola, {0.8, 0.7, 0.0}, -1.0, 1.0},
+    {CurveClass::CubicalParabola, {1.0, -0.4, 0.0}, -0.9, 0.9},
+    {CurveClass::SemiCubicalParabola, {1.5, 0.5, 0.0}, 0.35, 1.1},
+    {CurveClass::CubicSpline, {1.5, 0.4, 0.6}, -0.8, 0.9},
+};
+
+void print(const std::string& name, const char* kind, double kappa, double kappa_s) {
+  std::printf("%s,%s,%.8g,%.8g\n", name.c_str(), kind, kappa, kappa_s);
+}
+
+void estimates(const Shape& shape, const Curve& curve, const std::string& name) {
+  std::mt19937_64 rng(kSeed);
+  const double length = std::abs(arc_length(curve, shape.t0, shape.t1));
+  const double middle = parameter_at_arc_length(curve, shape.t0, 0.5 * length);
+  const test::Stroke stroke{middle, length, kSamples, 1};
+  const test::Scene scene = test::touched_curve(curve, {}, {&stroke, 1}, kNoise, rng);
+  for (const EstimatorKind kind : {EstimatorKind::FiniteDifference, EstimatorKind::Jet}) {
+    EstimatorOptions options;
+    options.kind = kind;
+    options.window = 111;
+    options.shift = 12;
+    options.sigma_m = kNoise;
+    for (const WindowResult& window : estimate_all(scene.patches[0], options)) {
+      if (!window.result) continue;
+      print(name, std::string(name_of(kind)).c_str(), window.result.estimate.kappa, window.result.estimate.kappa_s);
+    }
+  }
+}
+
+}  // namespace
+
+int main() {
+  std::printf("class,kind,kappa,kappa_s\n");
+  for (const Shape& shape : kShapes) {
+    const Curve curve = make_curve(shape.curve_class, shape.values).value();
+    const std::string name(name_of(shape.curve_class));
+    for (const SignaturePoint& point : signature_curve(curve, shape.t0, shape.t1, kCurvePoints)) {
+      print(name, "curve", point.kappa, point.kappa_s);
+    }
+    estimates(shape, curve, name);
+  }
+  return 0;
+}

@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Speed against error, beside the paper, the peers and the physical limits: one command, one report.
+#
+#   tests/bench/run.sh            everything, about half an hour on two cores
+#   tests/bench/run.sh --quick    fewer scenes, under five minutes after the build
+#
+# Installs what is missing (Debian), builds Release, writes build/report/report.md with its plots (SVG and PNG)
+# and a CSV of every figure. Peers that cannot be installed are skipped aloud. Leave the machine alone meanwhile:
+# times are medians, but a busy neighbour is a busy neighbour.
+set -euo pipefail
+cd "$(dirname "$(readlink -f "$0")")/../.."
+
+scale=full
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --quick) scale=quick ;;
+    -h|--help) sed -n '2,9s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) echo "tests/bench/run.sh: unknown argument '$1' (try --help)" >&2; exit 2 ;;
+  esac
+  shift
+done
+
+step() { printf '\n== %s\n' "$*"; }
+as_root=()
+[ "$(id -u)" = 0 ] || as_root=(sudo)
+install() {  # packages that are missing
+  local missing=()
+  for package in "$@"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+  step "installing: ${missing[*]}"
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+    "${missing[@]}" >/dev/null
+}
+install g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-dev libgmock-dev libbenchmark-dev \
+  protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev python3 python3-protobuf \
+  python3-zmq python3-matplotlib python3-numpy
+for peer in python3-opencv python3-scipy; do
+  install "$peer" || echo "$peer cannot be installed: its peers are skipped"
+done
+
+step "building (release)"
+cmake --preset release >/dev/null
+cmake --build --preset release -j "$(nproc)"
+bench=build/release/tests/bench
+out=build/report
+rm -rf "$out"
+mkdir -p "$out"
+
+if [ $scale = quick ]; then
+  pareto=6 sweeps=10 calibration=4 rounds=1000 load=1 least_time=0.05 peers=4
+else
+  pareto=40 sweeps=100 calibration=40 rounds=10000 load=5 least_time=0.5 peers=40
+fi
+measure() {  # title, file, command...
+  local title=$1 file=$2
+  shift 2
+  step "$title"
+  "$@" >"$out/$file"
+}
+measure "latency beside a bare relay" latency.csv "$bench/processes/bench_latency" --rounds $rounds
+measure "load, probes, two nodes" load.csv "$bench/processes/bench_load" --seconds $load
+measure "time of a recognition" recognition.csv "$bench/core/bench_recognition" --benchmark_format=csv \
+  --benchmark_min_time=$least_time
+measure "time of the local estimators" local.csv "$bench/core/bench_local" --benchmark_format=csv \
+  --benchmark_min_time=$least_time
+measure "speed against error" pareto.csv "$bench/accuracy/bench_pareto" --scenes $pareto
+measure "hard cases" sweeps.csv "$bench/accuracy/bench_sweeps" --scenes $sweeps
+measure "noise honesty" calibration.csv "$bench/accuracy/bench_calibration" --scenes $calibration
+measure "the paper's tables" paper.md build/release/tests/paper/paper_tables
+measure "signature curves" signatures.csv "$bench/accuracy/bench_signatures"
+step "peers on the same points"
+"$bench/peers/peer_scenes" --scenes $peers --out "$out" && /usr/bin/python3 tests/bench/peers/peers.py "$out"
+
+step "report"
+/usr/bin/python3 tests/bench/report/report.py "$out" --scale $scale
+echo "written: $out/report.md"
