@@ -190,23 +190,43 @@ Pose2 random_pose(const SceneOptions& options, std::mt19937_64& rng) {
           uniform(rng, -kPi, kPi)};
 }
 
-}  // namespace
-
-Scene random_scene(CurveClass curve_class, const SceneOptions& options, std::mt19937_64& rng) {
+/// The scene before it is touched: the curve of that shape, enlarged by `scale`, at a random pose.
+Scene untouched(CurveClass curve_class, const Eigen::Vector3d& shape, double scale,
+                const SceneOptions& options, std::mt19937_64& rng) {
   Scene scene;
   scene.curve_class = curve_class;
-  const auto [shape, reach] = random_shape(curve_class, rng);
-  const Piece piece = piece_of(curve_class, shape, reach);
-  const double scale = options.size_m / ArcTable(piece).half_diagonal;
   scene.values = scaled(curve_class, shape, scale);
   scene.world_T_curve = random_pose(options, rng);
   scene.sigma_m = options.sigma_over_size * options.size_m;
+  return scene;
+}
+
+}  // namespace
+
+Scene random_scene(CurveClass curve_class, const SceneOptions& options, std::mt19937_64& rng) {
+  const auto [shape, reach] = random_shape(curve_class, rng);
+  const Piece piece = piece_of(curve_class, shape, reach);
+  const double scale = options.size_m / ArcTable(piece).half_diagonal;
+  Scene scene = untouched(curve_class, shape, scale, options, rng);
   touch(piece, options, scale, rng, &scene);
   for (auto& patch : scene.t) {
     for (double& t : patch) {
       t = scaled_t(curve_class, t, scale);
     }
   }
+  return scene;
+}
+
+Scene random_ellipse_arc(double arc_rad, const SceneOptions& options, std::mt19937_64& rng) {
+  const auto [shape, reach] = random_shape(CurveClass::Ellipse, rng);
+  Piece piece = piece_of(CurveClass::Ellipse, shape, reach);
+  const double scale = options.size_m / ArcTable(piece).half_diagonal;
+  Scene scene = untouched(CurveClass::Ellipse, shape, scale, options, rng);
+  piece.t0 = uniform(rng, 0.0, 2.0 * kPi);
+  piece.t1 = piece.t0 + arc_rad;
+  SceneOptions whole = options;
+  whole.least_fraction = whole.most_fraction = 1.0;
+  touch(piece, whole, scale, rng, &scene);
   return scene;
 }
 

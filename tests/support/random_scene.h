@@ -35,6 +35,9 @@ enum class OutsideShape { Sinusoid, Superellipse, LogSpiral, Quartic };
 
 /// Patches lie in disjoint parts of the curve, in random order and directions of travel.
 Scene random_scene(CurveClass curve_class, const SceneOptions& options, std::mt19937_64& rng);
+/// One stretch of an ellipse, arc_rad of its eccentric angle t from a random start. The patches share
+/// it: each covers 98 per cent of its part (least_fraction, most_fraction are not used).
+Scene random_ellipse_arc(double arc_rad, const SceneOptions& options, std::mt19937_64& rng);
 Scene random_outside_scene(OutsideShape shape, const SceneOptions& options, std::mt19937_64& rng);
 
 }  // namespace palpate::test
