@@ -4,7 +4,7 @@
 #   tests/bench/run.sh            everything, about half an hour on two cores
 #   tests/bench/run.sh --quick    fewer scenes, under five minutes after the build
 #
-# Installs what is missing (Debian), builds Release, writes build/report/report.md with its plots (SVG and PNG)
+# Installs what is missing (Debian), builds Release (preset strict), writes build/report/report.md with its plots (SVG and PNG)
 # and a CSV of every figure. Peers that cannot be installed are skipped aloud. Leave the machine alone meanwhile:
 # times are medians, but a busy neighbour is a busy neighbour.
 set -euo pipefail
@@ -41,10 +41,10 @@ for peer in python3-opencv python3-scipy; do
   install "$peer" || echo "$peer cannot be installed: its peers are skipped"
 done
 
-step "building (release)"
-cmake --preset release >/dev/null
-cmake --build --preset release -j "$(nproc)"
-bench=build/release/tests/bench
+step "building (strict: Release)"
+cmake --preset strict >/dev/null
+cmake --build --preset strict -j "$(nproc)"
+bench=build/strict/tests/bench
 out=build/report
 rm -rf "$out"
 mkdir -p "$out"
@@ -69,10 +69,11 @@ measure "time of the local estimators" local.csv "$bench/core/bench_local" --ben
 measure "speed against error" pareto.csv "$bench/accuracy/bench_pareto" --scenes $pareto
 measure "hard cases" sweeps.csv "$bench/accuracy/bench_sweeps" --scenes $sweeps
 measure "noise honesty" calibration.csv "$bench/accuracy/bench_calibration" --scenes $calibration
-measure "the paper's tables" paper.md build/release/tests/paper/paper_tables
+measure "the paper's tables" paper.md build/strict/tests/paper/paper_tables
 measure "signature curves" signatures.csv "$bench/accuracy/bench_signatures"
 step "peers on the same points"
-"$bench/peers/peer_scenes" --scenes $peers --out "$out" && /usr/bin/python3 tests/bench/peers/peers.py "$out"
+"$bench/peers/peer_scenes" "$out" --scenes $peers
+/usr/bin/python3 tests/bench/peers/peers.py "$out" >"$out/peers.md"
 
 step "report"
 /usr/bin/python3 tests/bench/report/report.py "$out" --scale $scale

@@ -200,7 +200,7 @@ int main(int argc, char** argv) {
       for (const bool true_class_only : {false, true}) {
         Cell cell;
         for (const test::Scene& scene : scenes) refined_on(scene, true_class_only, &cell);
-        print(curve_class, noise, true_class_only ? "refined, class known" : "refined", 0, 0, cell, shape_bound,
+        print(curve_class, noise, true_class_only ? "refined (class known)" : "refined", 0, 0, cell, shape_bound,
               pose_bound);
       }
       std::fflush(stdout);

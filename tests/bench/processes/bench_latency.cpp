@@ -142,7 +142,7 @@ bool measure(const std::string& transport, const Endpoints& node, const Endpoint
   print(transport, "publish to recognition", whole);
   print(transport, "less its computation", less_compute);
   print(transport, "bare relay", relayed);
-  print(transport, "relay as busy, less that", busy_relayed);
+  print(transport, "relay as busy (less that)", busy_relayed);
   std::fflush(stdout);
   return true;
 }
