@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "core/local/spikes.h"
+#include "core/recognition/explained_spikes.h"
+#include "core/recognition/normal_quantile.h"
 #include "core/recognition/outliers.h"
 #include "core/recognition/richer_class.h"
 #include "core/recognition/spikes.h"
@@ -95,7 +97,10 @@ class Recognizer::Impl {
       walk_tree(data.scale, &answer);
       return answer;
     }
-    const Weighing w = weigh_once_more(data, sigma_known, patches);
+    Weighing w = weigh_once_more(data, sigma_known, patches);
+    if (memory_.stored_count() > data.points.size()) {
+      take_back_explained(patches, &w);
+    }
     answer.outlier_count = memory_.stored_count() - w.data.points.size();
     fill(w, &answer);
     answer.contacts = estimate_contacts(patches, w.sides, contact_options());
@@ -145,6 +150,30 @@ class Recognizer::Impl {
       w = weigh(*kept, sigma_known, patches, options_, warm);
     }
     return w;
+  }
+
+  /// Weighs again with the spikes that the best class explains; that stands where the class does.
+  void take_back_explained(std::span<const StoredPatch> patches, Weighing* w) const {
+    const auto& best = w->canonical[static_cast<std::size_t>(w->best)];
+    const auto curve = best ? make_curve(w->best, best->shape.values) : std::nullopt;
+    if (!curve) {
+      return;
+    }
+    const double noise_m =
+        w->sigma * w->data.scale * (w->correlation_length > 0.0 ? 1.0 : std::sqrt(w->inflation));
+    const double limit = two_sided_normal_quantile(options_.false_outlier_probability /
+                                                   static_cast<double>(memory_.stored_count()));
+    const auto more = with_explained_spikes(memory_.patches(), patches, *curve, best->world_T_curve,
+                                            noise_m, limit);
+    if (!more) {
+      return;
+    }
+    bool sigma_known = false;
+    const FitData data = make_fit_data(*more, options_.sigma_m, &sigma_known);
+    Weighing again = weigh_without_outliers(data, sigma_known, *more, &last_->warm);
+    if (again.best == w->best && again.canonical[static_cast<std::size_t>(again.best)]) {
+      *w = std::move(again);
+    }
   }
 
   /// A patch without its spikes, as long as the patch stays as it is.
@@ -293,8 +322,16 @@ class Recognizer::Impl {
       return Doubt::SeveralClasses;
     }
     const CurveClass curve_class = best.shape.curve_class;
+    // Where so many samples had to be set aside, what fits badly may be spikes that were not.
+    constexpr double kManySpikes = 0.1;  // of the samples
+    const auto stored = static_cast<double>(memory_.stored_count());
+    const bool many_spikes =
+        stored - static_cast<double>(w.data.points.size()) > kManySpikes * stored;
+    if (many_spikes && !is_noise(best.chi2, best.dof)) {
+      return Doubt::Misfit;
+    }
     if (curve_class == CurveClass::Unclassified) {
-      return Doubt::None;
+      return many_spikes ? Doubt::Misfit : Doubt::None;
     }
     if (best.at_limit || best.covariance.size() == 0) {
       return Doubt::AtLimit;

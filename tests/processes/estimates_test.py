@@ -47,7 +47,7 @@ class Estimates(unittest.TestCase):
                 self.assertAlmostEqual(math.hypot(newest.x_m - 0.3, newest.y_m - 0.1), RADIUS_M, delta=1e-4)
                 # Within four standard deviations: of three probes' newest estimates of a normal law,
                 # one in five thousand test runs would not be.
-                self.assertLess(abs(abs(newest.kappa_per_m) - 1.0 / RADIUS_M), 4.0 * newest.kappa_sigma_per_m)
+                self.assertLess(abs(newest.kappa_per_m - 1.0 / RADIUS_M), 4.0 * newest.kappa_sigma_per_m)
                 # At the end of an arc, but it still says that the arc is curved.
                 self.assertLess(newest.kappa_sigma_per_m, 0.5 / RADIUS_M)
                 self.assertLess(abs(newest.kappa_s_per_m2), 4.0 * newest.kappa_s_sigma_per_m2)
