@@ -1,6 +1,7 @@
 #include "core/recognition/canonical_fit.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <cassert>
 #include <cmath>
 
@@ -46,8 +47,9 @@ std::optional<Placement> place_line(const ConicCoefficients& q, const FitData& d
   if (direction.dot(first.back().position - first.front().position) < 0.0) {
     direction = -direction;
   }
-  return Placement{{CurveClass::Line, Eigen::Vector3d::Zero()},
-                   {data.scale * origin.x(), data.scale * origin.y(), std::atan2(direction.y(), direction.x())}};
+  return Placement{
+      {CurveClass::Line, Eigen::Vector3d::Zero()},
+      {data.scale * origin.x(), data.scale * origin.y(), std::atan2(direction.y(), direction.x())}};
 }
 
 std::optional<Placement> place_conic(CurveClass curve_class, const ConicCoefficients& q,
@@ -81,8 +83,7 @@ std::optional<Placement> place_conic(CurveClass curve_class, const ConicCoeffici
 }
 
 /// Appendix B for each model. `c` in metres.
-std::optional<Placement> place_polynomial(CurveClass curve_class,
-                                          const PolynomialCoefficients& c) {
+std::optional<Placement> place_polynomial(CurveClass curve_class, const PolynomialCoefficients& c) {
   const CubicCanonicalisation canonical = canonicalise_as(curve_class, PolynomialCurve2{c});
   if (!canonical.curve) {
     return std::nullopt;
@@ -172,7 +173,11 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
   const auto letters =
       static_cast<Eigen::Index>(parameter_letters(canonical.shape.curve_class).size());
   const Eigen::Index n = letters + 3;
-  ShapePoseCovariance information = ShapePoseCovariance::Zero(n, n);
+  // Of [pose; shape], so that a class with fewer letters has its part at the top left: fixed sizes
+  // are several times as fast.
+  Eigen::Matrix<double, 6, 6> pose_first = Eigen::Matrix<double, 6, 6>::Zero();
+  const Eigen::Matrix2d frame_R_curve = Eigen::Rotation2Dd(frame_T_curve.theta).toRotationMatrix();
+  const Eigen::Matrix2d world_R_frame = Eigen::Rotation2Dd(data.frame.theta).toRotationMatrix();
   canonical.points.reserve(data.points.size());
   const int side = fit.implicit ? fit.implicit->side : fit.polynomial->side;
   for (std::size_t i = 0; i < data.points.size(); ++i) {
@@ -194,21 +199,24 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
     }
     fitted.residual = (distance - side * point.offset) * point.inverse_sigma;
 
-    const Vec2 local_normal = frame_T_curve.rotate_back(fitted.normal);
-    fitted.normal = data.frame.rotate(fitted.normal);
+    const Vec2 local_normal = frame_R_curve.transpose() * fitted.normal;
+    fitted.normal = world_R_frame * fitted.normal;
     const Vec2 local = position(*curve, fitted.t);
-    Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, 6> row(n);
-    row.head(letters) =
-        (local_normal.transpose() * position_by_parameters(*curve, fitted.t)).head(letters);
-    row[letters] = fitted.normal.x();
-    row[letters + 1] = fitted.normal.y();
-    row[letters + 2] = canonical.shape.curve_class == CurveClass::Circle
-                           ? 0.0  // a circle turns into itself
-                           : local_normal.dot(left_of(local));
-    const double weight = point.inverse_sigma / data.scale;  // 1 / sigma in metres
-    information.noalias() += weight * weight * row.transpose() * row;
+    Eigen::Matrix<double, 6, 1> row;
+    row[0] = fitted.normal.x();
+    row[1] = fitted.normal.y();
+    row[2] = canonical.shape.curve_class == CurveClass::Circle ? 0.0  // a circle turns into itself
+                                                               : local_normal.dot(left_of(local));
+    row.tail<3>() = position_by_parameters(*curve, fitted.t).transpose() * local_normal;
+    row *= point.inverse_sigma / data.scale;  // 1 / sigma in metres
+    pose_first.noalias() += row * row.transpose();
     canonical.points.push_back(fitted);
   }
+  ShapePoseCovariance information(n, n);
+  information.topLeftCorner(letters, letters) = pose_first.block(3, 3, letters, letters);
+  information.topRightCorner(letters, 3) = pose_first.block(3, 0, letters, 3);
+  information.bottomLeftCorner(3, letters) = pose_first.block(0, 3, 3, letters);
+  information.bottomRightCorner<3, 3>() = pose_first.topLeftCorner<3, 3>();
   canonical.covariance = invert(information, degrees_of_freedom(canonical.shape.curve_class));
   return canonical;
 }

@@ -57,11 +57,18 @@ PolynomialModel polynomial_model(const ClassFit& fit) {
   }
 }
 
+/// Whether any class of `classes` needs the models with a cubic term.
+bool wants_cubics(unsigned classes) {
+  return (classes & (1U << static_cast<int>(CurveClass::CubicalParabola) |
+                     1U << static_cast<int>(CurveClass::SemiCubicalParabola) |
+                     1U << static_cast<int>(CurveClass::CubicSpline))) != 0;
+}
+
 int sign_of(double x) { return x > 0.0 ? 1 : x < 0.0 ? -1 : 0; }
 
 }  // namespace
 
-ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts) {
+ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsigned classes) {
   constexpr int side = 0;
   const std::span<const FitPoint> points(reduced.points);
   ClassFits result;
@@ -73,8 +80,9 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts) {
   const ImplicitFit circle = refine_circle(points, algebraic_circle(points), side);
   set(implicit_class(CurveClass::Circle, circle));
 
-  PolynomialFits polynomials =
-      starts != nullptr ? follow_polynomials(reduced, *starts) : search_polynomials(reduced);
+  PolynomialFits polynomials = starts != nullptr       ? follow_polynomials(reduced, *starts)
+                               : wants_cubics(classes) ? search_polynomials(reduced)
+                                                       : search_parabola(reduced);
   // The algebraic start serves unless it led to a conic that nothing touches, or one that a limit
   // betters; then the limits are the starts.
   ImplicitFit conic = refine_conic(points, algebraic_conic(points), side);
@@ -94,12 +102,15 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts) {
   also_from(circle.chi2, circle.coefficients);
 
   // Where nothing fits, no walk into a valley was good enough to be trusted.
-  const auto fits = [&](const auto& fit) { return fit && fits_well(fit->chi2, reduced.points.size()); };
-  if (!fits_well(conic.chi2, reduced.points.size()) && !fits_well(circle.chi2, reduced.points.size()) &&
-      !fits(polynomials.parabola) && !fits(polynomials.cubical_parabola) &&
-      !fits(polynomials.semi_cubical_parabola) && !fits(polynomials.cubic_spline)) {
+  const auto fits = [&](const auto& fit) {
+    return fit && fits_well(fit->chi2, reduced.points.size());
+  };
+  if (!fits_well(conic.chi2, reduced.points.size()) &&
+      !fits_well(circle.chi2, reduced.points.size()) && !fits(polynomials.parabola) &&
+      !fits(polynomials.cubical_parabola) && !fits(polynomials.semi_cubical_parabola) &&
+      !fits(polynomials.cubic_spline)) {
     if (starts != nullptr && !starts->every_seed) {
-      return fit_classes(reduced);
+      return fit_classes(reduced, nullptr, classes);
     }
     if (starts == nullptr) {
       refine_every_seed(reduced, &polynomials);
@@ -183,8 +194,7 @@ ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const Refi
   const int side = fit.implicit->side;
   RefineEffort to_the_end = effort;
   to_the_end.chi2_tolerance = RefineEffort{}.chi2_tolerance;
-  fit.implicit = fit.curve_class == CurveClass::Line
-                     ? refine_line(points, start, side, to_the_end)
+  fit.implicit = fit.curve_class == CurveClass::Line ? refine_line(points, start, side, to_the_end)
                  : fit.curve_class == CurveClass::Circle
                      ? refine_circle(points, start, side, to_the_end)
                      : refine_conic(points, start, side, to_the_end);
@@ -211,7 +221,7 @@ std::optional<ClassFit> refine_on_all(const ClassFit& coarse, const FitData& red
                                       const SmoothModel& smooth, const FitData& data,
                                       const RefineEffort& effort) {
   // To the optimum on the few reduced points first: from there it is not far on all.
-  constexpr int kMoreOnReduced = 4;
+  constexpr int kMoreOnReduced = 10;
   RefineEffort on_reduced = effort;
   on_reduced.iterations *= kMoreOnReduced;
   ClassFit start = coarse;

@@ -19,7 +19,8 @@ namespace palpate {
 struct ClassFit {
   CurveClass curve_class = CurveClass::Unclassified;
   double chi2 = 0.0;
-  bool on_all = false;  ///< refined on all points; until then it has foot points of the reduced ones
+  bool on_all =
+      false;  ///< refined on all points; until then it has foot points of the reduced ones
   /// The class has no interior optimum: chi2 is that of the neighbour it runs away to (an ellipse
   /// or hyperbola that wants to be a parabola), and there is no shape to report.
   bool at_limit = false;
@@ -38,21 +39,26 @@ inline bool fits_well(double chi2, std::size_t reduced_points) {
   return chi2 < n + 5.0 * std::sqrt(2.0 * n);
 }
 
+/// Classes by bit 1 << CurveClass.
+inline constexpr unsigned kAllClasses = ~0U;
+
 /// Fits every class to the smooth model's reduced points, taken as surface points: seeds by
-/// exhaustive coarse search, or `starts` (for these points) where given and anything then fits; least
-/// orthogonal distances, polynomials with coarse effort.
-ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts = nullptr);
+/// exhaustive coarse search, or `starts` (for these points) where given and anything then fits;
+/// least orthogonal distances, polynomials with coarse effort. What `classes` leaves out may be
+/// missing.
+ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts = nullptr,
+                      unsigned classes = kAllClasses);
 
 /// A class whose criterion (evidence.h) is this much above another's is out: odds of
 /// exp(20/2), or 1 to 22000.
 inline constexpr double kHopeless = 20.0;
 
-/// Refines one of them on all points, tip radii and all; nullopt if its optimum there is no such curve
-/// (an ellipse that turned into a hyperbola or into a needle around straight points). `reduced`: the
-/// surface points that `fit` was found on. O(points).
+/// Refines one of them on all points, tip radii and all; nullopt if its optimum there is no such
+/// curve (an ellipse that turned into a hyperbola or into a needle around straight points).
+/// `reduced`: the surface points that `fit` was found on. O(points).
 std::optional<ClassFit> refine_on_all(const ClassFit& fit, const FitData& reduced,
                                       const SmoothModel& smooth, const FitData& data,
-                                      const RefineEffort& effort = kCoarseEffort);
+                                      const RefineEffort& effort = kOnAllEffort);
 
 /// Takes a fit on all points to its optimum as far as rounding goes; nullopt as above. O(points).
 std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data);

@@ -27,7 +27,8 @@ constexpr auto exponents() {
 /// Follows the foot point of `p` by Newton's method on (C(t) - p) . C'(t) = 0 from `t`.
 PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, double t) {
   constexpr int kMaxIterations = 5;
-  constexpr double kLastStep = 1e-6;    // after it the error is its square
+  constexpr double kLastStep =
+      1e-4;  // after it t is off by its square, the distance by its fourth power
   constexpr double kLongestStep = 0.5;  // of the data's parameter range, about [-1, 1]
   Vec2 away;
   Vec2 first;
@@ -71,10 +72,7 @@ class PolynomialResiduals {
  public:
   static constexpr auto kExponents = exponents<kModel>();
   using Scalar = double;
-  enum {
-    NUM_RESIDUALS = Eigen::Dynamic,
-    NUM_PARAMETERS = 2 * static_cast<int>(kExponents.size())
-  };
+  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 2 * static_cast<int>(kExponents.size()) };
   using Parameters = Eigen::Matrix<double, NUM_PARAMETERS, 1>;
 
   PolynomialResiduals(std::span<const FitPoint> points, std::vector<double> t, int side)
@@ -159,12 +157,13 @@ PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int 
   typename Residuals::Parameters x = Residuals::parameters(start.coefficients);
   PolynomialFit fit;
   fit.chi2 = std::numeric_limits<double>::infinity();
-  // The solver also stops where a step is refused for next to nothing, as happens along the directions
-  // that affine changes of t leave free. Starting afresh, with the scaling and damping of the new place,
-  // tells a stop from an optimum.
+  // The solver also stops where a step is refused for next to nothing, as happens along the
+  // directions that affine changes of t leave free. Starting afresh, with the scaling and damping
+  // of the new place, tells a stop from an optimum.
   constexpr double kSettled = 1e-5;  // of chi-square
-  // Where the points scatter far less than their stated noise (exact data, noise estimated from a smooth
-  // model that bends too little), what is left to gain is to be seen beside what is left at all.
+  // Where the points scatter far less than their stated noise (exact data, noise estimated from a
+  // smooth model that bends too little), what is left to gain is to be seen beside what is left at
+  // all.
   constexpr double kExact = 1e-3;  // of the chi-square that noise would leave
   constexpr int kMoreStarts = 2;
   const double n = static_cast<double>(points.size());
@@ -234,11 +233,9 @@ PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint>
     case PolynomialModel::Parabola:
       return refine<PolynomialModel::Parabola>(points, std::move(start), side, effort);
     case PolynomialModel::CubicalParabola:
-      return refine<PolynomialModel::CubicalParabola>(points, std::move(start), side,
-                                                      effort);
+      return refine<PolynomialModel::CubicalParabola>(points, std::move(start), side, effort);
     case PolynomialModel::SemiCubicalParabola:
-      return refine<PolynomialModel::SemiCubicalParabola>(points, std::move(start), side,
-                                                          effort);
+      return refine<PolynomialModel::SemiCubicalParabola>(points, std::move(start), side, effort);
     case PolynomialModel::CubicSpline:
       return refine<PolynomialModel::CubicSpline>(points, std::move(start), side, effort);
   }

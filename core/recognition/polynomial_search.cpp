@@ -12,8 +12,8 @@ namespace {
 constexpr int kSurfacePoints = 0;  // side: reduced points bear no tip radius
 
 /// refine_axis, the arms reassigned until they stay.
-AxisFit refine_axis_and_arms(std::span<const FitPoint> points,
-                             std::span<const PatchSpan> patches, AxisFit fit, int max_iterations) {
+AxisFit refine_axis_and_arms(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
+                             AxisFit fit, int max_iterations) {
   constexpr int kMostReassignments = 5;
   fit = refine_axis(points, std::move(fit), max_iterations);
   for (int i = 0; i < kMostReassignments && !fit.arms.empty(); ++i) {
@@ -41,14 +41,14 @@ std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& redu
 }
 
 /// The best of the walked seeds, refined on the reduced points.
-std::optional<PolynomialFit> best_of(const std::vector<AxisFit>& seeds,
-                                     const FitData& reduced) {
+std::optional<PolynomialFit> best_of(const std::vector<AxisFit>& seeds, const FitData& reduced) {
   const std::vector<AxisFit> walked = walk(seeds, reduced);
   if (walked.empty()) {
     return std::nullopt;
   }
   return refine_polynomial(walked.front().model, reduced.points,
-                           to_polynomial(walked.front(), reduced.points), kSurfacePoints, kCoarseEffort);
+                           to_polynomial(walked.front(), reduced.points), kSurfacePoints,
+                           kCoarseEffort);
 }
 
 /// Walks the splines' valleys, and lets the other models start beside the splines found: near c = 0
@@ -82,9 +82,8 @@ SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced
                              kSurfacePoints, kCoarseEffort);
   };
   pair.best = refine(walked.front());
-  pair.rival = refine(refine_axis_and_arms(reduced.points, reduced.patches,
-                                           twin_of(walked.front(), reduced.points),
-                                           kMostIterations));
+  pair.rival = refine(refine_axis_and_arms(
+      reduced.points, reduced.patches, twin_of(walked.front(), reduced.points), kMostIterations));
   if (pair.rival->chi2 < pair.best->chi2) {
     std::swap(pair.best, pair.rival);
   }
@@ -128,14 +127,21 @@ PolynomialFits search_polynomials(const FitData& reduced) {
   return fits;
 }
 
+PolynomialFits search_parabola(const FitData& reduced) {
+  PolynomialFits fits;
+  add_graph_seeds(reduced.points, &fits.seeds);
+  fits.parabola = best_of(fits.seeds.parabola, reduced);
+  return fits;
+}
+
 PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts) {
   // A step or two; what is plausible goes on from there (refine_on_all).
   constexpr RefineEffort kFollow{5, 1, 1e-2};
   PolynomialFits fits;
   fits.every_seed = starts.every_seed;
   const auto follow = [&](const std::optional<PolynomialFit>& start, PolynomialModel model) {
-    return start ? std::optional(refine_polynomial(model, reduced.points, *start, kSurfacePoints,
-                                                   kFollow))
+    return start ? std::optional(
+                       refine_polynomial(model, reduced.points, *start, kSurfacePoints, kFollow))
                  : std::nullopt;
   };
   fits.parabola = follow(starts.parabola, PolynomialModel::Parabola);
@@ -155,9 +161,9 @@ void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
   constexpr RefineEffort kThorough{100, 2, 1e-4};
   fits->every_seed = true;
   const auto improve = [&](std::optional<PolynomialFit>* fit, const AxisFit& seed) {
-    keep_better(fit, refine_polynomial(seed.model, reduced.points,
-                                       to_polynomial(seed, reduced.points), kSurfacePoints,
-                                       kThorough));
+    keep_better(fit,
+                refine_polynomial(seed.model, reduced.points, to_polynomial(seed, reduced.points),
+                                  kSurfacePoints, kThorough));
   };
   for (const AxisFit& seed : fits->seeds.cubic_spline) {
     improve(&fits->cubic_spline, seed);

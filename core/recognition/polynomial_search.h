@@ -23,6 +23,9 @@ struct PolynomialFits {
 /// Exhaustive coarse search, valleys walked, the best of each refined with coarse effort.
 PolynomialFits search_polynomials(const FitData& reduced);
 
+/// The parabola alone, which the conics need at their limit.
+PolynomialFits search_parabola(const FitData& reduced);
+
 /// The same from earlier fits, whose t must be those of `reduced` (warm_start.h): no search.
 PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts);
 

@@ -7,13 +7,17 @@ struct RefineEffort {
   int iterations = 100;  ///< of one start, at most
   /// Afresh from where the last one stopped, until nothing changes (polynomial models).
   int starts = 6;
-  /// Change of chi-square at which a start ends: its root is the distance from the optimum, in standard
-  /// deviations, that may be left.
+  /// Change of chi-square at which a start ends: its root is the distance from the optimum, in
+  /// standard deviations, that may be left.
   double chi2_tolerance = 1e-7;
 };
 
-/// Tells classes that cannot be from those that may: a well determined shape has converged long before,
-/// and what wanders along a valley is not determined.
+/// Tells classes that cannot be from those that may: a well determined shape has converged long
+/// before, and what wanders along a valley is not determined.
 inline constexpr RefineEffort kCoarseEffort{20, 1, 1e-3};
+
+/// Weighs the plausible ones: to a tenth of a standard deviation of the optimum, from which the
+/// best goes on to the end (polish).
+inline constexpr RefineEffort kOnAllEffort{8, 1, 1e-2};
 
 }  // namespace palpate

@@ -15,24 +15,28 @@ constexpr std::size_t kFewestSamples = 12;
 constexpr double kMedianOfMagnitude = 0.6745;  // of a standard normal
 
 double quantile(std::span<double> values, double fraction) {
-  const auto place = values.begin() +
-                     static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size()));
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size()));
   std::nth_element(values.begin(), place, values.end());
   return *place;
 }
 
 double median(std::span<double> values) { return quantile(values, 0.5); }
 
-/// Whether any second difference is unusually long: what a spike cannot but cause.
+/// Whether any fourth difference is unusually long: what a spike cannot but cause, and a bend
+/// hardly does.
 bool anything_unusual(std::span<const StoredSample> samples) {
-  // A spike touches three second differences, so that with a third of spikes only (2/3)^3 of them are
-  // clean: compare with a low quantile. A thousand Gaussian samples reach about 8 times this one.
+  // A spike touches five fourth differences, so that with a third of spikes only (2/3)^5 of them,
+  // 13 %, are clean: compare with a low quantile. A thousand Gaussian samples reach about 8 times
+  // this one.
   constexpr double kLowQuantile = 0.1;
   constexpr double kUnusual = 12.0;
   std::vector<double> lengths;
-  for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
-    lengths.push_back((samples[i - 1].position_m - 2.0 * samples[i].position_m +
-                       samples[i + 1].position_m).norm());
+  lengths.reserve(samples.size());
+  for (std::size_t i = 2; i + 2 < samples.size(); ++i) {
+    const auto at = [&](std::size_t k) -> const Vec2& { return samples[k].position_m; };
+    lengths.push_back(
+        (at(i - 2) - 4.0 * at(i - 1) + 6.0 * at(i) - 4.0 * at(i + 1) + at(i + 2)).norm());
   }
   const double longest = *std::max_element(lengths.begin(), lengths.end());
   return longest > kUnusual * quantile(lengths, kLowQuantile);
@@ -94,8 +98,8 @@ double deviation(std::span<const StoredSample> window, std::size_t i) {
     }
     c = a.ldlt().solve(b);
     for (std::size_t k = 0; k < n; ++k) {
-      w[k] = k == i ? 0.0
-                    : 1.0 / std::max(std::abs(y[k] - c[0] - x[k] * (c[1] + x[k] * c[2])), least);
+      w[k] =
+          k == i ? 0.0 : 1.0 / std::max(std::abs(y[k] - c[0] - x[k] * (c[1] + x[k] * c[2])), least);
     }
   }
   return std::isfinite(c[0]) ? -c[0] / std::sqrt(1.0 + (c[1] / length) * (c[1] / length)) : 0.0;

@@ -18,16 +18,15 @@ void scale_noise(FitData* data, double factor) {
   }
 }
 
-/// Sets the noise of points that bring none from the smooth model's residuals. Returns whether it is
-/// as good as known: no smaller than rounding.
+/// Sets the noise of points that bring none from the smooth model's residuals. Returns whether it
+/// is as good as known: no smaller than rounding.
 bool estimate_noise(FitData* data, SmoothModel* smooth) {
   // With too few degrees of freedom there is no estimate; what fits to a millionth of the extent is
   // then as good as exact.
   constexpr int kFewestDegrees = 4;
   constexpr double kNoEstimate = 1e-6;
   const double rounding = rounding_level(*data);
-  const double estimate =
-      smooth->dof() >= kFewestDegrees ? smooth->noise_ratio() : kNoEstimate;
+  const double estimate = smooth->dof() >= kFewestDegrees ? smooth->noise_ratio() : kNoEstimate;
   const double sigma = std::max(estimate, rounding);
   scale_noise(data, sigma);
   scale_noise(&smooth->reduced, sigma);
@@ -62,12 +61,12 @@ CurveClass best_class(const ClassFits& fits, const EvidenceScale& scale) {
   return best;
 }
 
-/// Fits to the reduced points for the way the material lies beside the patches. Where the probes do not
-/// say it, the first way stands (a part is rather touched from outside) unless another fits all points
-/// better beyond doubt: the offsets of a curve to its two sides fit a short arc alike.
+/// Fits to the reduced points for the way the material lies beside the patches. Where the probes do
+/// not say it, the first way stands (a part is rather touched from outside) unless another fits all
+/// points better beyond doubt: the offsets of a curve to its two sides fit a short arc alike.
 ClassFits fit_over_sides(std::span<const StoredPatch> patches, const SmoothModel& smooth,
                          const FitData& data, const EvidenceScale& scale, const WarmStart* warm,
-                         std::vector<int>* best_sides) {
+                         unsigned classes, std::vector<int>* best_sides) {
   constexpr double kDoubt = 6.0;  // 2 log(20): odds of 20 to 1
   const auto ways = possible_sides(patches, smooth.reduced);
   ClassFits best;
@@ -77,7 +76,7 @@ ClassFits fit_over_sides(std::span<const StoredPatch> patches, const SmoothModel
     const auto starts = warm != nullptr && ways.size() == 1
                             ? std::optional(carried_to(*warm, reduced))
                             : std::nullopt;
-    ClassFits fits = fit_classes(reduced, starts ? &*starts : nullptr);
+    ClassFits fits = fit_classes(reduced, starts ? &*starts : nullptr, classes);
     if (ways.size() == 1) {
       *best_sides = sides;
       return fits;
@@ -103,14 +102,13 @@ double criterion_of(const ClassFit& fit, const EvidenceScale& scale) {
   return information_criterion(fit.chi2, degrees_of_freedom(fit.curve_class), scale);
 }
 
-/// Refines on all points what is plausible and not yet refined there. The others keep the chi-square
-/// that the reduced points tell.
+/// Refines on all points what is plausible and not yet refined there. The others keep the
+/// chi-square that the reduced points tell.
 void refine_plausible(const FitData& data, const FitData& reduced, const SmoothModel& smooth,
                       const EvidenceScale& scale, ClassFits* fits) {
-  // No reduction error brings a hopeless class back. Where the smooth model itself misfits, neither it
-  // nor the reduced points can be trusted that far.
-  const double hopeless =
-      kHopeless * std::max(1.0, smooth.noise_ratio() * smooth.noise_ratio());
+  // No reduction error brings a hopeless class back. Where the smooth model itself misfits, neither
+  // it nor the reduced points can be trusted that far.
+  const double hopeless = kHopeless * std::max(1.0, smooth.noise_ratio() * smooth.noise_ratio());
   for (bool changed = true; changed;) {
     changed = false;
     double lowest = std::numeric_limits<double>::infinity();
@@ -145,8 +143,7 @@ void refine_plausible(const FitData& data, const FitData& reduced, const SmoothM
 /// Spares no effort on the models with sharp bends.
 void refine_sharp_bends(const ClassFits& coarse, const FitData& data, const FitData& reduced,
                         const SmoothModel& smooth, ClassFits* fits) {
-  for (const CurveClass curve_class :
-       {CurveClass::SemiCubicalParabola, CurveClass::CubicSpline}) {
+  for (const CurveClass curve_class : {CurveClass::SemiCubicalParabola, CurveClass::CubicSpline}) {
     const auto i = static_cast<std::size_t>(curve_class);
     if (!coarse[i]) {
       continue;
@@ -159,8 +156,8 @@ void refine_sharp_bends(const ClassFits& coarse, const FitData& data, const FitD
 }
 
 CurveClass most_probable(const ClassProbabilities& probabilities) {
-  return static_cast<CurveClass>(
-      std::max_element(probabilities.begin(), probabilities.end()) - probabilities.begin());
+  return static_cast<CurveClass>(std::max_element(probabilities.begin(), probabilities.end()) -
+                                 probabilities.begin());
 }
 
 }  // namespace
@@ -182,7 +179,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   const double rounding = rounding_level(data) / w.sigma;
   scale.chi2_floor = sigma_known ? 0.0 : n * rounding * rounding;
 
-  w.coarse = fit_over_sides(patches, w.smooth, data, scale, warm, &w.sides);
+  w.coarse = fit_over_sides(patches, w.smooth, data, scale, warm, options.classes, &w.sides);
   w.fits = w.coarse;
   for (const CurveClass curve_class : kCurveClasses) {
     // A class must leave something over to test it with.
@@ -227,15 +224,14 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
       residuals.push_back(point.residual);
     }
     const ResidualCorrelation correlation = correlation_of(data, residuals);
-    // White residuals much larger than the smooth model's are noise that it took for bends (outliers,
-    // samples out of order); correlated ones are form error up to its limit, neighbours erring
-    // together, so that only one in `time` counts.
+    // White residuals much larger than the smooth model's are noise that it took for bends
+    // (outliers, samples out of order); correlated ones are form error up to its limit, neighbours
+    // erring together, so that only one in `time` counts.
     constexpr double kMuchLarger = 1.5;
     constexpr double kLargestNoise = 0.01;  // of the half extent: beyond it nothing is measured
-    const bool noisy = correlation.time == 1.0 && variance > kMuchLarger * noise &&
-                       excess <= kLargestNoise;
-    const bool form_error =
-        correlation.time > 1.0 && excess <= options.form_error_fraction;
+    const bool noisy =
+        correlation.time == 1.0 && variance > kMuchLarger * noise && excess <= kLargestNoise;
+    const bool form_error = correlation.time > 1.0 && excess <= options.form_error_fraction;
     if (misfits && (noisy || form_error)) {
       EvidenceScale tempered = scale;
       tempered.sigma_known = true;
