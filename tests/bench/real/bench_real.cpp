@@ -1,0 +1,73 @@
+// Figures on real recordings, in markdown.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/bench/real/ellipse_part.h"
+#include "tests/bench/real/mirrors.h"
+
+namespace {
+
+constexpr const char* kAbout =
+    R"(Figures on real recordings, in markdown.
+
+  bench_real
+      the X-ray mirrors of tests/data/real/dabam beside their design
+  bench_real --ellipse-part FILE --semi-axes 0.065445,0.0525 --tip-radius 0.00475
+      arcs of a closed elliptic part; FILE is in palpate's CSV format: a header line
+      "probe,patch,x_m,y_m", then one patch of contacts all around the part, in order.
+      The axes and radius above are those of part "ellip2" and its pusher in the public data set
+      "More than a Million Ways to Be Pushed" (K.-T. Yu, M. Bauza, N. Fazeli, A. Rodriguez, IROS 2016;
+      MIT MCube Lab): contacts of a robot's cylindrical pusher, whose centres in the part's
+      frame are x_m, y_m. The data are not part of this repository.)";
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(kAbout);
+  std::optional<std::string> file;
+  std::vector<double> semi_axes;
+  std::optional<double> tip_radius;
+  std::optional<std::string> arcs;
+  std::string mirrors = PALPATE_TEST_DATA "/real/dabam";
+  app.add_option("--mirrors", mirrors, "Folder of mirrors with design.json")->capture_default_str();
+  auto* part = app.add_option("--ellipse-part", file, "Contacts around an elliptic part, CSV");
+  auto* axes = app.add_option("--semi-axes", semi_axes, "Of the part, A,B [m]")
+                   ->delimiter(',')
+                   ->expected(2)
+                   ->check(CLI::PositiveNumber)
+                   ->needs(part);
+  part->needs(axes);
+  app.add_option(
+         "--tip-radius", tip_radius,
+         "Of the probe, whose centres the contacts are [m]; without it, the file's own column")
+      ->check(CLI::NonNegativeNumber)
+      ->needs(part);
+  app.add_option("--arcs", arcs, "Write the arcs' points to this CSV file, for opencv_arcs.py")
+      ->needs(part);
+  bool side_known = false;
+  app.add_flag("--side-known", side_known, "Tell palpate that the material lies inside")
+      ->needs(part);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (!file) {
+      palpate::bench::print_mirrors(mirrors, std::cout);
+      return 0;
+    }
+    palpate::bench::EllipsePart ellipse{palpate::bench::read_recording(*file),
+                                        std::max(semi_axes[0], semi_axes[1]),
+                                        std::min(semi_axes[0], semi_axes[1]), side_known};
+    if (tip_radius) {
+      ellipse.recording.context.tip_radius_m = *tip_radius;
+    }
+    palpate::bench::print_ellipse_part(ellipse, arcs, std::cout);
+  } catch (const std::runtime_error& error) {
+    std::cerr << "bench_real: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,180 @@
+#include "tests/bench/real/ellipse_part.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "tests/support/scene_data.h"
+
+namespace palpate::bench {
+namespace {
+
+constexpr int kArcs = 36;
+constexpr int kArcDegrees[] = {60, 90, 120, 180};
+/// Of the worse axis: beyond it even the right class is a wrong answer.
+constexpr double kWrongAxis = 0.1;
+
+/// A contact and its polar angle about the part's centre, in [0, 2 pi).
+struct Polar {
+  double angle = 0.0;
+  Vec2 point;
+};
+
+double turn(double angle) {
+  const double rest = std::fmod(angle, 2.0 * kPi);
+  return rest < 0.0 ? rest + 2.0 * kPi : rest;
+}
+
+/// Centre of the ellipse that explains the whole recording.
+Vec2 centre_of(const Recording& recording) {
+  const Recognition whole = recognise(recording.context, recording.points);
+  const Hypothesis* ellipse = test::hypothesis_of(whole, CurveClass::Ellipse);
+  if (ellipse == nullptr || ellipse->at_limit) {
+    throw std::runtime_error("the whole recording is no closed ellipse");
+  }
+  return ellipse->world_T_curve.translation();
+}
+
+/// The contacts within `width` from `start` on, by rising angle.
+std::vector<Vec2> arc(const std::vector<Polar>& contacts, double start, double width) {
+  std::vector<Polar> inside;
+  for (const Polar& contact : contacts) {
+    const double from_start = turn(contact.angle - start);
+    if (from_start < width) {
+      inside.push_back({from_start, contact.point});
+    }
+  }
+  std::stable_sort(inside.begin(), inside.end(),
+                   [](const Polar& a, const Polar& b) { return a.angle < b.angle; });
+  std::vector<Vec2> points;
+  for (const Polar& contact : inside) {
+    points.push_back(contact.point);
+  }
+  return points;
+}
+
+/// Relative error of the worse axis; infinite without a shape.
+double worse_axis(const ShapeParameters& shape, const EllipsePart& part) {
+  return std::max(std::abs(shape.values[0] / part.semi_major_m - 1.0),
+                  std::abs(shape.values[1] / part.semi_minor_m - 1.0));
+}
+
+struct Counts {
+  std::vector<double> errors;  ///< of the ellipse hypothesis, whether it won or not
+  std::map<std::string, int> answers;
+  int other_class = 0;             ///< RECOGNIZED
+  int wrong_axis = 0;              ///< RECOGNIZED as an ellipse, of another size
+  std::vector<std::string> wrong;  ///< both, a line each
+};
+
+void add(const std::string& arc, const Recognition& answer, const EllipsePart& part,
+         Counts* counts) {
+  const Hypothesis* ellipse = test::hypothesis_of(answer, CurveClass::Ellipse);
+  counts->errors.push_back(ellipse == nullptr || ellipse->at_limit
+                               ? std::numeric_limits<double>::infinity()
+                               : worse_axis(ellipse->shape, part));
+  const std::string curve_class(palpate::name_of(answer.shape.curve_class));
+  ++counts->answers[std::string(name_of(answer.status)) + ' ' + curve_class];
+  const bool is_ellipse = answer.shape.curve_class == CurveClass::Ellipse;
+  if (answer.status != RecognitionStatus::Recognized ||
+      (is_ellipse && worse_axis(answer.shape, part) <= kWrongAxis)) {
+    return;
+  }
+  ++(is_ellipse ? counts->wrong_axis : counts->other_class);
+  std::ostringstream line;
+  line << std::setprecision(3) << arc << ": " << curve_class << " p "
+       << answer.hypotheses.front().probability << ',';
+  for (std::size_t i = 0; i < parameter_letters(answer.shape.curve_class).size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    line << ' ' << answer.shape.values[k] << " +- " << std::sqrt(answer.covariance(k, k));
+  }
+  if (is_ellipse) {
+    line << ", the worse axis off by " << 100.0 * worse_axis(answer.shape, part) << " %";
+  }
+  line << ", sigma " << answer.sigma_m << " m, " << answer.outlier_count << " outliers";
+  counts->wrong.push_back(line.str());
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return values.size() % 2 == 1 ? *middle
+                                : 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+std::string joined(const std::map<std::string, int>& answers) {
+  std::ostringstream out;
+  for (const auto& [answer, count] : answers) {
+    out << (out.tellp() > 0 ? ", " : "") << count << ' ' << answer;
+  }
+  return out.str();
+}
+
+void write_arc(std::ostream& out, int degrees, int start, const std::vector<Vec2>& points) {
+  for (const Vec2& point : points) {
+    out << degrees << ',' << start << ',' << point.x() << ',' << point.y() << '\n';
+  }
+}
+
+}  // namespace
+
+void print_ellipse_part(const EllipsePart& part,
+                        const std::optional<std::filesystem::path>& arcs_csv, std::ostream& out) {
+  std::ofstream arcs;
+  if (arcs_csv) {
+    arcs.open(*arcs_csv);
+    arcs << std::setprecision(std::numeric_limits<double>::max_digits10)
+         << "arc_deg,start_deg,x_m,y_m\n";
+  }
+  const Vec2 centre = centre_of(part.recording);
+  PatchContext context = part.recording.context;
+  // Rising angles run around the part with the material on their left.
+  context.material_side = part.side_known ? MaterialSide::Left : MaterialSide::Unspecified;
+  std::vector<Polar> contacts;
+  for (const Vec2& point : part.recording.points) {
+    const Vec2 away = point - centre;
+    contacts.push_back({turn(std::atan2(away.y(), away.x())), point});
+  }
+  out << "Ellipse of " << part.semi_major_m << " and " << part.semi_minor_m << " m, "
+      << contacts.size() << " contacts, tip radius " << part.recording.context.tip_radius_m
+      << " m, side " << (part.side_known ? "known" : "not known") << "; " << kArcs
+      << " arcs a row. The error is the worse axis's of the ellipse hypothesis, whether it won or "
+         "not. Wrong: RECOGNIZED as another class, or with an axis off by more than "
+      << 100.0 * kWrongAxis << " %.\n\n"
+      << "| arc [deg] | median error [%] | no ellipse | answers | RECOGNIZED, another class | "
+         "RECOGNIZED, wrong axis |\n|---|---|---|---|---|---|\n";
+  std::vector<std::string> wrong;
+  for (const int degrees : kArcDegrees) {
+    Counts counts;
+    for (int i = 0; i < kArcs; ++i) {
+      const int start = i * 360 / kArcs;
+      const auto points = arc(contacts, start * kPi / 180.0, degrees * kPi / 180.0);
+      add(std::to_string(degrees) + " deg from " + std::to_string(start) + " deg",
+          recognise(context, points), part, &counts);
+      write_arc(arcs, degrees, start, points);
+    }
+    out << "| " << degrees << " | " << std::setprecision(3) << 100.0 * median(counts.errors)
+        << " | "
+        << std::count(counts.errors.begin(), counts.errors.end(),
+                      std::numeric_limits<double>::infinity())
+        << " | " << joined(counts.answers) << " | " << counts.other_class << " | "
+        << counts.wrong_axis << " |\n"
+        << std::flush;
+    wrong.insert(wrong.end(), counts.wrong.begin(), counts.wrong.end());
+  }
+  out << "\nThe wrong ones (" << wrong.size() << "), by polar angle of the arc's start:\n";
+  for (const std::string& line : wrong) {
+    out << "- " << line << '\n';
+  }
+  if (arcs_csv && !arcs.flush()) {
+    throw std::runtime_error("cannot write " + arcs_csv->string());
+  }
+}
+
+}  // namespace palpate::bench

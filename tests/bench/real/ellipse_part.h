@@ -1,0 +1,27 @@
+// Arcs of a closed elliptic part of known size: how far off, how often certain, how often wrongly.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <ostream>
+
+#include "tests/bench/real/recording.h"
+
+namespace palpate::bench {
+
+struct EllipsePart {
+  Recording recording;  ///< contacts all around the part, in order
+  double semi_major_m = 0.0;
+  double semi_minor_m = 0.0;
+  /// Tell palpate that the material lies inside; otherwise both sides of the tip's centres are
+  /// open.
+  bool side_known = false;
+};
+
+/// Prints a table in markdown; with `arcs_csv`, writes the points of each arc for opencv_arcs.py.
+/// Throws std::runtime_error where the whole recording gives no ellipse to measure arcs about, or
+/// the file cannot be written.
+void print_ellipse_part(const EllipsePart& part,
+                        const std::optional<std::filesystem::path>& arcs_csv, std::ostream& out);
+
+}  // namespace palpate::bench

@@ -1,0 +1,25 @@
+// A recording of one touch, and what palpate says to it.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/recognition/recognizer.h"
+
+namespace palpate::bench {
+
+/// The contacts of a file in palpate's CSV format, which holds one patch of one probe. Throws
+/// std::runtime_error where it cannot be read or holds more patches than one.
+struct Recording {
+  PatchContext context;
+  std::vector<Vec2> points;  ///< in the order of travel [m]
+};
+Recording read_recording(const std::filesystem::path& path);
+
+/// The answer of a new recognizer with defaults; the noise is not told.
+Recognition recognise(const PatchContext& context, const std::vector<Vec2>& points);
+
+/// "RECOGNIZED", "AMBIGUOUS", "COLLECTING".
+std::string_view name_of(RecognitionStatus status);
+
+}  // namespace palpate::bench
