@@ -5,6 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -53,7 +55,9 @@ class SphereResiduals {
 
   SphereResiduals(std::span<const FitPoint> points, const ModelBasis<K>& basis, const Start& start,
                   int side)
-      : points_(points), basis_(basis), start_(start.normalized()), side_(side) {
+      : points_(points), basis_(basis), start_(start.normalized()), side_(side),
+        feet_(points.size()) {
+    trial_.setConstant(std::numeric_limits<double>::quiet_NaN());
     const Eigen::HouseholderQR<Start> qr(start_);
     const Eigen::Matrix<double, K, K> q = qr.householderQ();
     tangent_ = q.template rightCols<K - 1>();
@@ -65,31 +69,39 @@ class SphereResiduals {
     return basis_ * (start_ + tangent_ * step).normalized();
   }
 
+  // The solver asks for residuals alone at a trial step, and for the Jacobian at the same one when it is
+  // accepted: the foot points are there already.
   bool operator()(const double* step_data, double* residuals, double* jacobian) const {
-    const Eigen::Map<const Step> step(step_data);
+    const Step step = Eigen::Map<const Step>(step_data);
     const Start moved = start_ + tangent_ * step;
     const double norm = moved.norm();
     const Start u = moved / norm;
     const ConicCoefficients q = basis_ * u;
-    Eigen::Matrix<double, 6, K - 1> q_by_step;
-    if (jacobian != nullptr) {
-      q_by_step = basis_ * ((tangent_ - u * (u.transpose() * tangent_)) / norm);
+    const std::size_t n = points_.size();
+    if (jacobian == nullptr || step != trial_) {
+      for (std::size_t i = 0; i < n; ++i) {
+        feet_[i].distance = signed_distance(q, points_[i].position, &feet_[i].position);
+      }
+      trial_ = step;
     }
-    const Eigen::Index n = NumResiduals();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const FitPoint& point = points_[static_cast<std::size_t>(i)];
-      Vec2 foot;
-      const double distance = signed_distance(q, point.position, &foot);
-      residuals[i] = (distance - side_ * point.offset) * point.inverse_sigma;
-      if (jacobian != nullptr) {
-        // Envelope theorem: only the curve's motion along its normal at the foot point counts.
-        const double gradient_norm = gradient(q, foot).norm();
-        const double factor = gradient_norm > 0.0 ? point.inverse_sigma / gradient_norm : 0.0;
-        const Eigen::Matrix<double, 1, K - 1> row =
-            factor * (monomials(foot).transpose() * q_by_step);
-        for (Eigen::Index k = 0; k < K - 1; ++k) {
-          jacobian[k * n + i] = row[k];
-        }
+    for (std::size_t i = 0; i < n; ++i) {
+      const FitPoint& point = points_[i];
+      residuals[i] = (feet_[i].distance - side_ * point.offset) * point.inverse_sigma;
+    }
+    if (jacobian == nullptr) {
+      return true;
+    }
+    const Eigen::Matrix<double, 6, K - 1> q_by_step =
+        basis_ * ((tangent_ - u * (u.transpose() * tangent_)) / norm);
+    for (std::size_t i = 0; i < n; ++i) {
+      // Envelope theorem: only the curve's motion along its normal at the foot point counts.
+      const Vec2& foot = feet_[i].position;
+      const double gradient_norm = gradient(q, foot).norm();
+      const double factor = gradient_norm > 0.0 ? points_[i].inverse_sigma / gradient_norm : 0.0;
+      const Eigen::Matrix<double, 1, K - 1> row =
+          factor * (monomials(foot).transpose() * q_by_step);
+      for (std::size_t k = 0; k < K - 1; ++k) {
+        jacobian[k * n + i] = row[static_cast<Eigen::Index>(k)];
       }
     }
     return true;
@@ -101,6 +113,13 @@ class SphereResiduals {
   Start start_;
   Eigen::Matrix<double, K, K - 1> tangent_;
   int side_;
+
+  struct Foot {
+    Vec2 position = Vec2::Zero();
+    double distance = 0.0;
+  };
+  mutable std::vector<Foot> feet_;  ///< at trial_
+  mutable Step trial_;
 };
 
 template <int K>

@@ -27,8 +27,7 @@ constexpr auto exponents() {
 /// Follows the foot point of `p` by Newton's method on (C(t) - p) . C'(t) = 0 from `t`.
 PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, double t) {
   constexpr int kMaxIterations = 5;
-  constexpr double kLastStep =
-      1e-4;  // after it t is off by its square, the distance by its fourth power
+  constexpr double kLastStep = 1e-6;    // after it the error is its square
   constexpr double kLongestStep = 0.5;  // of the data's parameter range, about [-1, 1]
   Vec2 away;
   Vec2 first;
@@ -76,7 +75,7 @@ class PolynomialResiduals {
   using Parameters = Eigen::Matrix<double, NUM_PARAMETERS, 1>;
 
   PolynomialResiduals(std::span<const FitPoint> points, std::vector<double> t, int side)
-      : points_(points), side_(side), t_accepted_(std::move(t)), t_trial_(t_accepted_) {
+      : points_(points), side_(side), t_accepted_(std::move(t)), feet_(points.size()) {
     trial_.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
 
@@ -99,31 +98,35 @@ class PolynomialResiduals {
   }
 
   // The solver asks for residuals alone at a trial step and for the Jacobian at accepted ones: a
-  // rejected trial must not move the foot points that the next one starts from.
+  // rejected trial must not move the foot points that the next one starts from, and an accepted one has
+  // found them already.
   bool operator()(const double* x_data, double* residuals, double* jacobian) const {
     const Parameters x = Eigen::Map<const Parameters>(x_data);
-    const PolynomialCoefficients c = coefficients(x);
-    const bool follows_trial = jacobian != nullptr && x == trial_;
-    const std::vector<double>& t_start = follows_trial ? t_trial_ : t_accepted_;
-    std::vector<double>& t_end = jacobian != nullptr ? t_accepted_ : t_trial_;
-    if (jacobian == nullptr) {
+    const std::size_t n = points_.size();
+    if (jacobian == nullptr || x != trial_) {
+      const PolynomialCoefficients c = coefficients(x);
+      for (std::size_t i = 0; i < n; ++i) {
+        feet_[i] = follow_foot_point(c, points_[i].position, t_accepted_[i]);
+      }
       trial_ = x;
     }
-    const std::size_t n = points_.size();
     for (std::size_t i = 0; i < n; ++i) {
       const FitPoint& point = points_[i];
-      const PlacedPoint foot = follow_foot_point(c, point.position, t_start[i]);
-      t_end[i] = foot.t;
-      residuals[i] = (foot.signed_distance - side_ * point.offset) * point.inverse_sigma;
-      if (jacobian != nullptr) {
-        const double powers[4] = {1.0, foot.t, foot.t * foot.t, foot.t * foot.t * foot.t};
-        const double nx = -foot.normal.x() * point.inverse_sigma;
-        const double ny = -foot.normal.y() * point.inverse_sigma;
-        for (std::size_t k = 0; k < kExponents.size(); ++k) {
-          const double power = powers[kExponents[k]];
-          jacobian[2 * k * n + i] = nx * power;
-          jacobian[(2 * k + 1) * n + i] = ny * power;
-        }
+      residuals[i] = (feet_[i].signed_distance - side_ * point.offset) * point.inverse_sigma;
+    }
+    if (jacobian == nullptr) {
+      return true;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const double t = feet_[i].t;
+      t_accepted_[i] = t;
+      const double powers[4] = {1.0, t, t * t, t * t * t};
+      const double nx = -feet_[i].normal.x() * points_[i].inverse_sigma;
+      const double ny = -feet_[i].normal.y() * points_[i].inverse_sigma;
+      for (std::size_t k = 0; k < kExponents.size(); ++k) {
+        const double power = powers[kExponents[k]];
+        jacobian[2 * k * n + i] = nx * power;
+        jacobian[(2 * k + 1) * n + i] = ny * power;
       }
     }
     return true;
@@ -135,7 +138,7 @@ class PolynomialResiduals {
   std::span<const FitPoint> points_;
   int side_;
   mutable std::vector<double> t_accepted_;
-  mutable std::vector<double> t_trial_;
+  mutable std::vector<PlacedPoint> feet_;  ///< at trial_
   mutable Parameters trial_;
 };
 

@@ -42,7 +42,8 @@ TEST_P(PausedReader, ReadsOnWhenItComesBack) {
     std::this_thread::sleep_for(milliseconds(1200));  // twice the heartbeat's timeout
     int waiting = 0;
     while (planner.receive(milliseconds(0)).recognition != nullptr) ++waiting;
-    EXPECT_GE(waiting, options.high_water_mark);
+    // The queue was full: its writer learns of room half a queue at a time.
+    EXPECT_GE(waiting, options.high_water_mark / 2);
     const v1::Recognition* newest = nullptr;
     for (int attempt = 0; attempt < 100 && (newest == nullptr || newest->header().seq() + 1 != seq); ++attempt) {
       publish();
