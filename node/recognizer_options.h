@@ -53,6 +53,9 @@ void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& vi
         recognizer.form_error_fraction);
   visit({"false_outlier_probability", "Chance that a clean scene loses a sample as a spike", 0, 1},
         recognizer.false_outlier_probability);
+  visit({"inside_probability", "Prior that tips whose probe tells no side touched from within a bend",
+         1e-12, 1 - 1e-12},
+        recognizer.inside_probability);
   visit({"most_samples_per_patch", "Samples of a patch before neighbours are merged", 8,
          kMostSamples},
         recognizer.memory.most_samples_per_patch);

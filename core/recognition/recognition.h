@@ -26,7 +26,7 @@ enum class Doubt {
   AtLimit,         ///< the class fits best where it turns into another
   FormError,       ///< residuals are correlated along the arc: form error, or a class not known here
   Misfit,          ///< the residuals are larger than the noise can be
-  TwoShapes,       ///< two shapes of the class fit alike
+  TwoShapes,       ///< two shapes fit alike (a spline and its rival; tips on either side)
   RicherClass,     ///< the arc is too short to exclude a class of which this one is a limit
   Undetermined,    ///< the shape's standard deviations are too large
 };

@@ -344,11 +344,13 @@ class Recognizer::Impl {
       return Doubt::Misfit;
     }
     const auto& fit = *w.fits[static_cast<std::size_t>(curve_class)];
-    // Odds of the recognition's own level between a spline and its rival across c = 0.
+    // Odds of the recognition's own level between a spline and its rival across c = 0, and between the
+    // two sides that the tips may have touched.
     const double odds =
         2.0 * std::log(options_.recognized_probability / (1.0 - options_.recognized_probability));
-    if (fit.rival && (fit.rival->chi2 - fit.chi2) / w.inflation <= odds &&
-        !is_same_curve(*fit.polynomial, *fit.rival)) {
+    const bool has_rival = fit.rival && (fit.rival->chi2 - fit.chi2) / w.inflation <= odds &&
+                           !is_same_curve(*fit.polynomial, *fit.rival);
+    if (has_rival || w.sides_margin / w.inflation <= odds) {
       return Doubt::TwoShapes;
     }
     const double excluded = curve_class == CurveClass::Line ? options_.excluded_turn_rad

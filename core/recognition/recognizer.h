@@ -43,6 +43,10 @@ struct RecognizerOptions {
   double form_error_fraction = 1e-3;
   /// Probability that a scene without spikes loses a sample to outlier rejection.
   double false_outlier_probability = 0.01;
+  /// Prior probability that tips of a stated radius touched the part from within a bend where the probe does
+  /// not say on which side the material lies: the offsets of a curve to its two sides fit a short arc
+  /// alike. In (0, 1).
+  double inside_probability = 0.01;
   /// Classes to consider, by bit 1 << CurveClass; all by default.
   unsigned classes = ~0U;
   MemoryOptions memory;

@@ -61,45 +61,52 @@ CurveClass best_class(const ClassFits& fits, const EvidenceScale& scale) {
   return best;
 }
 
-/// Fits to the reduced points for the way the material lies beside the patches. Where the probes do
-/// not say it, the first way stands (a part is rather touched from outside) unless another fits all
-/// points better beyond doubt: the offsets of a curve to its two sides fit a short arc alike.
-ClassFits fit_over_sides(std::span<const StoredPatch> patches, const SmoothModel& smooth,
-                         const FitData& data, const EvidenceScale& scale, const WarmStart* warm,
-                         unsigned classes, std::vector<int>* best_sides) {
-  constexpr double kDoubt = 6.0;  // 2 log(20): odds of 20 to 1
+double criterion_of(const ClassFit& fit, const EvidenceScale& scale) {
+  return information_criterion(fit.chi2, degrees_of_freedom(fit.curve_class), scale);
+}
+
+/// Fits to the reduced points for the way the material lies beside the patches: where the probes do
+/// not say it, the way under which all points are fitted best, the first (from outside the bends)
+/// at the odds of the prior. Sets w->sides and w->sides_margin.
+ClassFits fit_over_sides(std::span<const StoredPatch> patches, const FitData& data,
+                         const EvidenceScale& scale, const RecognizerOptions& options,
+                         const WarmStart* warm, Weighing* w) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const SmoothModel& smooth = w->smooth;
   const auto ways = possible_sides(patches, smooth.reduced);
+  if (ways.size() == 1) {
+    w->sides_margin = kInfinity;
+    w->sides = ways.front();
+    const FitData reduced = on_surface(smooth.reduced, w->sides);
+    const auto starts = warm != nullptr ? std::optional(carried_to(*warm, reduced)) : std::nullopt;
+    return fit_classes(reduced, starts ? &*starts : nullptr, options.classes);
+  }
+  const double inside = options.inside_probability;
+  const double price_of_inside = 2.0 * std::log((1.0 - inside) / inside);
   ClassFits best;
-  double best_criterion = std::numeric_limits<double>::infinity();
+  double lowest = kInfinity;
+  double second = kInfinity;
   for (const std::vector<int>& sides : ways) {
     const FitData reduced = on_surface(smooth.reduced, sides);
-    const auto starts = warm != nullptr && ways.size() == 1
-                            ? std::optional(carried_to(*warm, reduced))
-                            : std::nullopt;
-    ClassFits fits = fit_classes(reduced, starts ? &*starts : nullptr, classes);
-    if (ways.size() == 1) {
-      *best_sides = sides;
-      return fits;
-    }
+    ClassFits fits = fit_classes(reduced, nullptr, options.classes);
     const CurveClass candidate = best_class(fits, scale);
     const auto& fit = fits[static_cast<std::size_t>(candidate)];
     const auto refined = fit ? refine_on_all(*fit, reduced, smooth, data) : std::nullopt;
-    const double criterion =
-        refined ? information_criterion(refined->chi2, degrees_of_freedom(candidate), scale)
-                : std::numeric_limits<double>::infinity();
     const bool first = &sides == &ways.front();
-    const double doubt = std::isfinite(best_criterion) ? kDoubt : 0.0;
-    if (first || criterion < best_criterion - doubt) {
+    // A line has no bend to be outside of.
+    const double price = first || candidate == CurveClass::Line ? 0.0 : price_of_inside;
+    const double criterion = refined ? criterion_of(*refined, scale) + price : kInfinity;
+    if (first || criterion < lowest) {
+      second = lowest;
+      lowest = criterion;
       best = std::move(fits);
-      *best_sides = sides;
-      best_criterion = criterion;
+      w->sides = sides;
+    } else {
+      second = std::min(second, criterion);
     }
   }
+  w->sides_margin = std::isfinite(second) ? second - lowest : kInfinity;
   return best;
-}
-
-double criterion_of(const ClassFit& fit, const EvidenceScale& scale) {
-  return information_criterion(fit.chi2, degrees_of_freedom(fit.curve_class), scale);
 }
 
 /// Refines on all points what is plausible and not yet refined there. The others keep the
@@ -179,7 +186,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   const double rounding = rounding_level(data) / w.sigma;
   scale.chi2_floor = sigma_known ? 0.0 : n * rounding * rounding;
 
-  w.coarse = fit_over_sides(patches, w.smooth, data, scale, warm, options.classes, &w.sides);
+  w.coarse = fit_over_sides(patches, data, scale, options, warm, &w);
   w.fits = w.coarse;
   for (const CurveClass curve_class : kCurveClasses) {
     // A class must leave something over to test it with.

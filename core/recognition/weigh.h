@@ -24,6 +24,9 @@ struct Weighing {
   ClassProbabilities probabilities{};
   /// Per patch the side of travel on which the tip centres were taken to lie (tip_sides.h).
   std::vector<int> sides;
+  /// By how much the criterion (evidence.h) of another way for them to lie is worse, priors included;
+  /// infinite where the probes told.
+  double sides_margin = 0.0;
   CurveClass best = CurveClass::Unclassified;  ///< most probable, "unclassified" included
   double sigma = 0.0;                          ///< noise of the typical point, normalised
   /// What covariances are to be multiplied with: correlation and misfit.

@@ -14,8 +14,8 @@ namespace {
 
 using Patch = std::vector<ContactSample>;
 
-/// 111 samples 0.2 mm apart on the 25 x 17.5 mm ellipse from parameter t0, sigma 0.05 mm; `outside` [m]
-/// moves them along the outward normal (tip centres).
+/// 111 samples 0.2 mm apart on the 25 x 17.5 mm ellipse from parameter t0, sigma 0.05 mm; `outside`
+/// [m] moves them along the outward normal (tip centres).
 Patch elliptic_arc(double t0, std::mt19937_64& rng, double sigma_m = 5e-5, double outside = 0.0) {
   std::normal_distribution<double> noise(0.0, 5e-5);
   Patch patch;
@@ -70,19 +70,21 @@ TEST(RecognitionHardCases, OnePatchOfItCannotTell) {
 
 TEST(RecognitionHardCases, UnknownNoiseIsEstimated) {
   std::mt19937_64 rng = test::test_rng();
-  const Recognition answer =
-      recognise({elliptic_arc(0.3, rng, 0.0), elliptic_arc(2.5, rng, 0.0)});
+  const Recognition answer = recognise({elliptic_arc(0.3, rng, 0.0), elliptic_arc(2.5, rng, 0.0)});
   expect_the_ellipse(answer);
   // Relative standard deviation of such an estimate: 1 / sqrt(2 * 217) = 5 %.
   EXPECT_NEAR(answer.sigma_m / 5e-5, 1.0, 0.2);
 }
 
-// Radius of curvature 0.03 mm at the bend, samples 0.27 mm apart: what tells c are the few samples around it.
+// Radius of curvature 0.03 mm at the bend, samples 0.27 mm apart: what tells c are the few samples
+// around it.
 TEST(RecognitionHardCases, ABendSharperThanTheSpacingIsNoSpike) {
   const double size = 0.025;
   const Curve spline =
-      make_curve(CurveClass::CubicSpline, {1.2 / std::sqrt(size), 0.4, 0.05 * std::sqrt(size)}).value();
-  const test::Stroke strokes[] = {{-0.6 * std::sqrt(size), 0.03, 111, 1}, {0.8 * std::sqrt(size), 0.03, 111, -1}};
+      make_curve(CurveClass::CubicSpline, {1.2 / std::sqrt(size), 0.4, 0.05 * std::sqrt(size)})
+          .value();
+  const test::Stroke strokes[] = {{-0.6 * std::sqrt(size), 0.03, 111, 1},
+                                  {0.8 * std::sqrt(size), 0.03, 111, -1}};
   std::mt19937_64 rng = test::test_rng();
   int recognised = 0;
   for (int i = 0; i < 20; ++i) {
@@ -142,8 +144,8 @@ TEST(RecognitionHardCases, SpikesInAFifthOfTheSamples) {
     const Recognition answer = recognise(patches);
     EXPECT_GE(answer.outlier_count, spikes / 2) << fraction;
     if (fraction > 0.2) {
-      // At a third, runs of neighbouring spikes may survive: then nothing fits, and no other class is
-      // claimed for certain, nor that there is none.
+      // At a third, runs of neighbouring spikes may survive: then nothing fits, and no other class
+      // is claimed for certain, nor that there is none.
       EXPECT_TRUE(answer.status != RecognitionStatus::Recognized ||
                   answer.shape.curve_class == CurveClass::Ellipse);
       continue;
@@ -159,14 +161,57 @@ TEST(RecognitionHardCases, RoundTipsOutsideAndInside) {
     PatchContext context;
     context.tip_radius_m = radius;
     context.material_side = MaterialSide::Left;  // counterclockwise travel outside the part
-    expect_the_ellipse(recognise({elliptic_arc(0.3, rng, 5e-5, radius),
-                                  elliptic_arc(2.5, rng, 5e-5, radius)}, context));
+    expect_the_ellipse(recognise(
+        {elliptic_arc(0.3, rng, 5e-5, radius), elliptic_arc(2.5, rng, 5e-5, radius)}, context));
   }
   PatchContext hole;
   hole.tip_radius_m = 0.002;
   hole.material_side = MaterialSide::Right;
-  expect_the_ellipse(recognise({elliptic_arc(0.3, rng, 5e-5, -0.002),
-                                elliptic_arc(2.5, rng, 5e-5, -0.002)}, hole));
+  expect_the_ellipse(recognise(
+      {elliptic_arc(0.3, rng, 5e-5, -0.002), elliptic_arc(2.5, rng, 5e-5, -0.002)}, hole));
+}
+
+// The offsets of an ellipse to its two sides fit a short arc alike; a part is rather touched from
+// outside.
+TEST(RecognitionHardCases, TipsWhoseSideIsNotToldAreTakenToBeOutsideButNeverForCertainInside) {
+  std::mt19937_64 rng = test::test_rng();
+  PatchContext context;
+  context.tip_radius_m = 0.002;
+  int recognised = 0;
+  for (int i = 0; i < 20; ++i) {
+    const double start = 2.0 * kPi * i / 20;
+    const Recognition answer = recognise(
+        {elliptic_arc(start, rng, 5e-5, 0.002), elliptic_arc(start + 1.0, rng, 5e-5, 0.002)},
+        context);
+    if (answer.status == RecognitionStatus::Recognized) {
+      ++recognised;
+      const Hypothesis& best = answer.hypotheses.front();
+      ASSERT_EQ(best.shape.curve_class, CurveClass::Ellipse);
+      for (const int k : {0, 1}) {
+        const double truth = k == 0 ? 0.025 : 0.0175;
+        EXPECT_NEAR(best.shape.values[k], truth, 5.0 * std::sqrt(best.covariance(k, k))) << start;
+      }
+    }
+  }
+  EXPECT_GT(recognised, 10);
+}
+
+TEST(RecognitionHardCases, ALineTouchedByTipsWhoseSideIsNotToldIsEitherOfTwo) {
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  Patch patch;
+  for (int i = 0; i < 100; ++i) {
+    patch.push_back({Vec2(1e-3 * i, noise(rng)), 1e-5, 0});
+  }
+  PatchContext context;
+  context.tip_radius_m = 0.002;
+  const Recognition either = recognise({patch}, context);
+  EXPECT_EQ(either.shape.curve_class, CurveClass::Line);
+  EXPECT_EQ(either.doubt, Doubt::TwoShapes);
+  context.material_side = MaterialSide::Right;
+  const Recognition told = recognise({patch}, context);
+  EXPECT_EQ(told.status, RecognitionStatus::Recognized);
+  EXPECT_NEAR(told.world_T_curve.y, -0.002, 1e-5);
 }
 
 TEST(RecognitionHardCases, AMillionMetresFromTheOriginAndOfEverySize) {
