@@ -18,16 +18,4 @@ struct DefaultRecovery {
 };
 std::vector<DefaultRecovery> default_table3();
 
-/// The 25 x 17.5 mm ellipse, sigma 0.05 mm, two patches of 111 samples 0.2 mm apart, over seeds.
-struct DefaultEllipse {
-  int trials = 0;
-  int recognised = 0;
-  double mean_mm[2] = {};   ///< of a, b
-  double min_mm[2] = {};
-  double max_mm[2] = {};
-  double sd_mm[2] = {};     ///< of the trials
-  double bound_mm[2] = {};  ///< Kanatani-Cramer-Rao, as published
-};
-DefaultEllipse default_table4();
-
 }  // namespace palpate::paper

@@ -6,6 +6,7 @@
 
 #include "tests/paper/default_experiments.h"
 #include "tests/paper/paper_experiments.h"
+#include "tests/paper/sensor_experiments.h"
 
 namespace palpate::paper {
 namespace {
@@ -93,15 +94,28 @@ TEST(PaperTable3, WithTheDefaultsMeanErrorsAreBelowAHundredthOfAPercent) {
   }
 }
 
-TEST(PaperTable4, WithTheDefaultsTheSpreadIsTheBound) {
-  const DefaultEllipse ellipse = default_table4();
-  EXPECT_EQ(ellipse.recognised, ellipse.trials);
-  for (int k = 0; k < 2; ++k) {
-    // Relative standard deviation 1 / sqrt(2 n) of a standard deviation, and 0.1 mm's nonlinearity.
-    EXPECT_NEAR(ellipse.sd_mm[k] / ellipse.bound_mm[k], 1.0, 4.0 / std::sqrt(2.0 * ellipse.trials));
-    EXPECT_NEAR(ellipse.mean_mm[k], k == 0 ? 25.0 : 17.5,
-                4.0 * ellipse.bound_mm[k] / std::sqrt(static_cast<double>(ellipse.trials)) + 0.01);
+void expect_the_bound(const SensorExperiment& e, int parameters) {
+  EXPECT_EQ(e.by_defaults.answers, e.trials);
+  for (int k = 0; k < parameters; ++k) {
+    // Asymptotic standard deviations, in units of that of the law and over sqrt(n): 0.97 of half the middle
+    // 68 %, 1.25 of the median; a tenth for what is not linear.
+    const double root = std::sqrt(static_cast<double>(e.trials));
+    EXPECT_NEAR(e.by_defaults.spread[k] / e.bound[k], 1.0, 0.1 + 4.0 * 0.97 / root) << k;
+    EXPECT_NEAR(e.by_defaults.median[k], e.truth[k], (0.1 + 4.0 * 1.25 / root) * e.bound[k]) << k;
+    EXPECT_GT(e.by_paper.spread[k], 10.0 * e.by_defaults.spread[k]) << k;
   }
+}
+
+TEST(PaperTable4, WithTheDefaultsTheSpreadIsTheBound) {
+  const SensorExperiment e = table4();
+  EXPECT_EQ(e.recognised, e.trials);
+  expect_the_bound(e, 2);
+}
+
+TEST(PaperTable5, WithTheDefaultsTheSpreadIsTheBound) {
+  const SensorExperiment e = table5();
+  EXPECT_EQ(e.recognised, e.trials);
+  expect_the_bound(e, 3);
 }
 
 }  // namespace

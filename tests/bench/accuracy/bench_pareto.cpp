@@ -1,5 +1,5 @@
 // Speed against error: every local estimator by window and shift, alone (the recognition tree on its estimates,
-// as in the paper) and beside the refinement on all points. Prints CSV, a row a class, noise and pipeline.
+// as in the paper), the tree on the default contacts (palpate fit --method tree), and the refinement on all points. Prints CSV, a row a class, noise and pipeline.
 //   bench_pareto [--scenes N]
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -124,10 +124,8 @@ void tree_on(const test::Scene& scene, const EstimatorOptions& estimator, Cell* 
   }
 }
 
-void refined_on(const test::Scene& scene, bool true_class_only, Cell* cell) {
+void recognizer_on(const test::Scene& scene, const RecognizerOptions& options, Cell* cell) {
   ++cell->scenes;
-  RecognizerOptions options;
-  if (true_class_only) options.classes = 1U << static_cast<unsigned>(scene.curve_class);
   const double sigma = scene.sigma_m;
   Recognition answer;
   const double us = median_us([&] { answer = test::recognise(scene, sigma, options); });
@@ -197,12 +195,18 @@ int main(int argc, char** argv) {
           }
         }
       }
-      for (const bool true_class_only : {false, true}) {
+      const auto recognizer = [&](const char* pipeline, const RecognizerOptions& recognizer_options) {
         Cell cell;
-        for (const test::Scene& scene : scenes) refined_on(scene, true_class_only, &cell);
-        print(curve_class, noise, true_class_only ? "refined (class known)" : "refined", 0, 0, cell, shape_bound,
-              pose_bound);
-      }
+        for (const test::Scene& scene : scenes) recognizer_on(scene, recognizer_options, &cell);
+        print(curve_class, noise, pipeline, 0, 0, cell, shape_bound, pose_bound);
+      };
+      RecognizerOptions tree;
+      tree.method = RecognitionMethod::Tree;
+      recognizer("tree, default contacts", tree);
+      recognizer("refined", {});
+      RecognizerOptions class_known;
+      class_known.classes = 1U << static_cast<unsigned>(curve_class);
+      recognizer("refined (class known)", class_known);
       std::fflush(stdout);
     }
   }
