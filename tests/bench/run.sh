@@ -71,6 +71,7 @@ measure "hard cases" sweeps.csv "$bench/accuracy/bench_sweeps" --scenes $sweeps
 measure "noise honesty" calibration.csv "$bench/accuracy/bench_calibration" --scenes $calibration
 measure "the paper's tables" paper.md build/strict/tests/paper/paper_tables
 measure "signature curves" signatures.csv "$bench/accuracy/bench_signatures"
+measure "real recordings" real.md "$bench/real/bench_real"
 step "peers on the same points"
 "$bench/peers/peer_scenes" "$out" --scenes $peers
 /usr/bin/python3 tests/bench/peers/peers.py "$out" >"$out/peers.md"

@@ -202,7 +202,7 @@ int main(int argc, char** argv) {
       };
       RecognizerOptions tree;
       tree.method = RecognitionMethod::Tree;
-      recognizer("tree, default contacts", tree);
+      recognizer("tree on default contacts", tree);
       recognizer("refined", {});
       RecognizerOptions class_known;
       class_known.classes = 1U << static_cast<unsigned>(curve_class);

@@ -1,12 +1,15 @@
 // Signature curves (curvature, its derivative by arc length) of a shape of each class, with local estimates from
 // noisy strokes beside them: by circles through three samples (figure 9 of the paper), by its two-round fit (figure
-// 10) and by jets. Shapes are the paper's where it gives them. Prints CSV, in units of the part's size.
+// 10) and by adaptive jets. Shapes are the paper's where it gives them. Prints CSV, in units of the part's size.
 #include <cmath>
 #include <cstdio>
 #include <random>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "core/curves/signature.h"
+#include "core/local/adaptive_jet.h"
 #include "core/local/estimator.h"
 #include "tests/support/touched_curve.h"
 
@@ -18,9 +21,8 @@ constexpr std::uint64_t kSeed = 2026;
 constexpr double kNoise = 1e-4;  // of the part's size, which is 1
 constexpr int kCurvePoints = 400;
 constexpr int kSamples = 600;
-// The two-round fit takes its ten windows besides, 36 samples more: a quarter of a part would be too much.
-constexpr int kWindow = 51;
-constexpr int kShift = 4;
+constexpr std::size_t kSamplesPerEstimate = 87;
+constexpr std::size_t kShift = 4;
 
 struct Shape {
   CurveClass curve_class;
@@ -34,7 +36,7 @@ const Shape kShapes[] = {
     {CurveClass::Hyperbola, {0.8, 0.7, 0.0}, -1.0, 1.0},
     {CurveClass::CubicalParabola, {0.6, 0.4, 0.0}, -1.5, 1.5},
     {CurveClass::SemiCubicalParabola, {1.5, 0.5, 0.0}, 0.35, 1.1},
-    {CurveClass::CubicSpline, {1.10734, 1.67996, -0.401898}, -1.1, 0.7},
+    {CurveClass::CubicSpline, {1.10734, 1.67996, -0.401898}, 0.25, 1.1},
 };
 
 void print(const std::string& name, const char* kind, double kappa, double kappa_s) {
@@ -47,16 +49,24 @@ void estimates(const Shape& shape, const Curve& curve, const std::string& name) 
   const double middle = parameter_at_arc_length(curve, shape.t0, 0.5 * length);
   const test::Stroke stroke{middle, length, kSamples, 1};
   const test::Scene scene = test::touched_curve(curve, {}, {&stroke, 1}, kNoise, rng);
-  for (const EstimatorKind kind : {EstimatorKind::Circle, EstimatorKind::TwoRound, EstimatorKind::Jet}) {
+  const auto print_estimate = [&](std::string_view kind, const LocalResult& result) {
+    if (result) print(name, std::string(kind).c_str(), result.estimate.kappa, result.estimate.kappa_s);
+  };
+  for (const EstimatorKind kind : {EstimatorKind::Circle, EstimatorKind::TwoRound}) {
     EstimatorOptions options;
     options.kind = kind;
-    options.window = kWindow;
-    options.shift = kShift;
+    options.shift = static_cast<int>(kShift);
     options.sigma_m = kNoise;
+    options.window = 0;  // the two-round fit takes more than a window
+    options.window = static_cast<int>(kSamplesPerEstimate - samples_per_estimate(options));
     for (const WindowResult& window : estimate_all(scene.patches[0], options)) {
-      if (!window.result) continue;
-      print(name, std::string(name_of(kind)).c_str(), window.result.estimate.kappa, window.result.estimate.kappa_s);
+      print_estimate(name_of(kind), window.result);
     }
+  }
+  const std::span<const Vec2> samples(scene.patches[0]);
+  for (std::size_t first = 0; first + kSamplesPerEstimate <= samples.size(); first += kShift) {
+    print_estimate("adaptive jet",
+                   adaptive_jet(samples.subspan(first, kSamplesPerEstimate), PatchPlace::Centre, kNoise).result);
   }
 }
 

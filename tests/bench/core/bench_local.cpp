@@ -46,10 +46,11 @@ void per_estimate(benchmark::State& state) {
 }
 BENCHMARK(per_estimate)->DenseRange(0, 3)->Unit(benchmark::kMicrosecond);
 
-/// Shift 4, as in the paper: a quarter of the samples brings an estimate.
+/// Over the window. Shift 4, as in the paper: a quarter of the samples brings an estimate.
 void stream_per_sample(benchmark::State& state) {
   const std::vector<Vec2> samples = arc(4000);
-  const EstimatorOptions options = options_for(state);
+  EstimatorOptions options = options_for(state);
+  options.window = static_cast<int>(state.range(1));
   state.SetLabel(std::string(name_of(options.kind)));
   StreamingEstimator stream(options);
   std::size_t i = 0;
@@ -61,7 +62,7 @@ void stream_per_sample(benchmark::State& state) {
     benchmark::DoNotOptimize(stream.add(samples[i++]));
   }
 }
-BENCHMARK(stream_per_sample)->DenseRange(0, 3);
+BENCHMARK(stream_per_sample)->ArgsProduct({{0, 1, 2, 3}, {15, 31, 51, 75, 111, 151}});
 
 void jet_degree(benchmark::State& state) {
   const std::vector<Vec2> samples = arc(111);

@@ -8,9 +8,10 @@ import matplotlib
 matplotlib.use("svg")
 matplotlib.rcParams["svg.hashsalt"] = "palpate"  # the same data, the same file
 import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.ticker  # noqa: E402
 
 COLOURS = {"finite-difference": "tab:red", "circle": "tab:orange", "two-round": "tab:purple", "jet": "tab:blue",
-           "refined": "tab:green", "refined (class known)": "tab:olive"}
+           "adaptive jet": "tab:blue", "tree on default contacts": "tab:brown", "refined": "tab:green", "refined (class known)": "tab:olive"}
 
 
 def rows_of(path):
@@ -42,7 +43,8 @@ def median(values):
 
 
 def save(figure, folder, name):
-    figure.tight_layout()
+    if figure.get_layout_engine() is None:
+        figure.tight_layout()
     figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
     figure.savefig(folder / f"{name}.png", dpi=110)
     plt.close(figure)
@@ -76,6 +78,7 @@ def pareto(rows, folder):
         if bound > 0:
             axis.axhline(bound, color="black", linestyle="--", linewidth=1, label="Kanatani-Cramer-Rao bound")
         axis.set(xscale="log", yscale="log", title=f"noise / size {noise:g}")
+        axis.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
         axis.grid(alpha=0.3, which="both")
     for axis in axes[1]:
         axis.set_xlabel("time of a recognition [us]")
@@ -92,18 +95,21 @@ def pareto(rows, folder):
 
 
 def local_errors(rows, folder):
-    """Error of kappa and of kappa_s over the window, a line an estimator, at two noise levels."""
+    """Error of kappa and of kappa_s over the samples of an estimate, a line an estimator, at two noise levels."""
+    shift = 4.0
+    further = {"two-round": 9 * shift}  # its ten windows begin a shift apart
     figure, axes = plt.subplots(2, 2, figsize=(10, 7), sharex=True)
     for column, noise in enumerate((1e-5, 1e-3)):
         for line, quantity in enumerate(("kappa", "kappa_s")):
             axis = axes[line][column]
-            here = [r for r in rows if r["noise_over_size"] == noise and r["shift"] == 4.0]
+            here = [r for r in rows if r["noise_over_size"] == noise and r["shift"] == shift]
             for (pipeline,), group in group_by(here, "pipeline").items():
                 windows = sorted({row["window"] for row in group})
                 errors = [mean_over_classes([r for r in group if r["window"] == w], f"{quantity}_error")
                           for w in windows]
-                axis.plot(windows, errors, "o-", color=COLOURS[pipeline], label=pipeline)
-            axis.set(yscale="log", title=f"{quantity}, noise / size {noise:g}", xlabel="window [samples]",
+                axis.plot([w + further.get(pipeline, 0) for w in windows], errors, "o-", color=COLOURS[pipeline],
+                          label=pipeline)
+            axis.set(yscale="log", title=f"{quantity}, noise / size {noise:g}", xlabel="samples of an estimate",
                      ylabel="relative error, median")
             axis.grid(alpha=0.3, which="both")
     axes[0][0].legend(fontsize=8)
@@ -113,23 +119,17 @@ def local_errors(rows, folder):
 def sweeps(rows, folder):
     """Error beside the bound, and what the answers said, towards each degeneracy."""
     groups = group_by(rows, "sweep")
-    columns = 4
+    columns = 5
     lines = math.ceil(len(groups) / columns)
-    figure, axes = plt.subplots(2 * lines, columns, figsize=(15, 5.2 * lines),
-                                gridspec_kw={"height_ratios": [2, 1] * lines})
-    for axis in axes.flat:
-        axis.set_visible(False)
-    for number, ((name,), group) in enumerate(groups.items()):
-        above = axes[2 * (number // columns)][number % columns]
-        below = axes[2 * (number // columns) + 1][number % columns]
+    figure = plt.figure(figsize=(18, 4.2 * lines), layout="constrained")
+    cells = figure.subfigures(lines, columns, squeeze=False).flat
+    for number, (cell, ((name,), group)) in enumerate(zip(cells, groups.items())):
+        above, below = cell.subplots(2, 1, height_ratios=[2, 1], sharex=True)
         places = range(len(group))
-        above.set_visible(True)
-        below.set_visible(True)
         above.semilogy(places, [r["shape_error_median"] for r in group], "o-", label="error, median")
         above.semilogy(places, [r["shape_bound"] for r in group], "k--", label="bound (1 sd)")
         above.set_title(name, fontsize=10)
         above.grid(alpha=0.3)
-        above.set_xticks([])
         n = [r["scenes"] for r in group]
         for column, colour in (("right_class", "tab:blue"), ("limit_class", "tab:gray"), ("recognized", "tab:green"),
                                ("recognized_wrongly", "tab:red")):
@@ -169,7 +169,7 @@ def signatures(rows, folder):
         curve = kinds[("curve",)]
         kappas = [r["kappa"] for r in curve]
         slopes = [r["kappa_s"] for r in curve]
-        for kind, marker in (("finite-difference", "x"), ("jet", "o")):
+        for kind, marker in (("circle", "x"), ("two-round", "+"), ("adaptive jet", "o")):
             own = kinds.get((kind,), [])
             axis.plot([r["kappa"] for r in own], [r["kappa_s"] for r in own], marker, color=COLOURS[kind], label=kind,
                       markersize=4)
@@ -192,7 +192,7 @@ def processes(latency, load, folder):
         left.plot(range(3), [row[q] for q in quantiles], "o", label=f"{transport}: {what}",
                   linestyle="-" if transport == "ipc" else "--", color=f"C{number % len(whats)}")
     left.set_xticks(range(3), ["p50", "p90", "p99"])
-    left.set(ylabel="us", ylim=(0, None), title="Publish to answer, less the computation")
+    left.set(ylabel="us", yscale="log", title="Publish to answer, less the computation")
     left.legend(fontsize=8)
     one = [r for r in load if r["probes"] == 1.0 and r["nodes"] == 1.0]
     right.loglog([r["sent_samples_per_s"] for r in one], [r["cpu_ms_per_1000_samples"] for r in one], "o-",
@@ -206,15 +206,22 @@ def processes(latency, load, folder):
     save(figure, folder, "processes")
 
 
-def cost(recognition, folder):
-    figure, axis = plt.subplots(figsize=(6, 4.2))
+def cost(recognition, local, folder):
+    """Of a recognition over the samples; of the local estimators, per sample of a stream, over the window."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.2))
     rows = [r for r in recognition if str(r["name"]).startswith("cold_by_samples/")]
     rows = [r for r in rows if str(r["name"]).split("/")[1].isdigit()]
     samples = [int(r["name"].split("/")[1]) for r in rows]
     times = [r["cpu_time"] for r in rows]
-    axis.loglog(samples, times, "o-", label="cold recognition, all classes")
-    axis.loglog(samples, [times[-1] * n / samples[-1] for n in samples], "k--", linewidth=1, label="linear")
-    axis.set(xlabel="samples", ylabel="us")
-    axis.grid(alpha=0.3, which="both")
-    axis.legend(fontsize=8)
+    left.loglog(samples, times, "o-", label="cold recognition, all classes")
+    left.loglog(samples, [times[-1] * n / samples[-1] for n in samples], "k--", linewidth=1, label="linear")
+    left.set(xlabel="samples", ylabel="us")
+    streams = [r for r in local if str(r["name"]).startswith("stream_per_sample/")]
+    for (pipeline,), group in group_by(streams, "label").items():
+        windows = [int(r["name"].split("/")[2]) for r in group]
+        right.semilogy(windows, [r["cpu_time"] / 1e3 for r in group], "o-", color=COLOURS[pipeline], label=pipeline)
+    right.set(xlabel="window [samples]", ylabel="us per sample, an estimate every fourth")
+    for axis in (left, right):
+        axis.grid(alpha=0.3, which="both")
+        axis.legend(fontsize=8)
     save(figure, folder, "cost")
