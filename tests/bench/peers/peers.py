@@ -376,6 +376,10 @@ def print_tables(rows, columns, options):
     table("Relative error of the worse of a and b (cubical parabola: a and c), median; none: half of the "
           "answers or more name another class or no shape",
           lambda group: number(statistics.median_low([r["relative_error"] for r in group])), columns)
+    medians = {key: statistics.median_low([r["relative_error"] for r in group]) for key, group in groups.items()}
+    print_table("The same over palpate's", {
+        key: number(error / medians[(*key[:2], PALPATE)]) for key, error in medians.items()
+        if 0 < medians[(*key[:2], PALPATE)] < math.inf}, kinds, [c for c in columns if c != PALPATE])
     table(f"Within {100 * options.success:.0f} % [% of scenes]",
           lambda group: percent([r["relative_error"] <= options.success for r in group]), columns)
     judges = [c for c in columns if c in (PALPATE, "algebraic conic")]
@@ -397,6 +401,13 @@ def print_tables(rows, columns, options):
           "median",
           lambda group: number(statistics.median([r["over_palpate"] for r in group])),
           [c for c in columns if c != PALPATE])
+    for name in ("fitEllipseAMS", "fitEllipseDirect"):
+        own = [r for r in rows if r["peer"] == name]
+        plain = {r["scene"]: (r["a"], r["b"]) for r in rows if r["peer"] == "fitEllipse"}
+        if own:
+            same = sum((r["a"], r["b"]) == plain[r["scene"]] for r in own)
+            print(f"\n{name} gave fitEllipse's answer, to the last digit, in {same} of {len(own)} scenes: OpenCV falls "
+                  "back to it without a word.")
     times = [r["seconds"] for r in rows if r["peer"] == PALPATE]
     print(f"\npalpate's own: median {1e3 * statistics.median(times):.2f} ms. The peers' times include "
           "Python's calls; scipy.odr calls back into numpy at every step.")
