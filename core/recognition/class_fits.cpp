@@ -152,11 +152,14 @@ PolynomialFit start_on_all(const PolynomialFit& on_reduced, const SmoothModel& s
                            std::span<const FitPoint> points) {
   PolynomialFit start = on_reduced;
   start.t.clear();
+  start.t.reserve(points.size());
   double along_normal = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double t = on_reduced.t[smooth.nearest_reduced[i]];
     start.t.push_back(t);
-    along_normal += place_on(start, t, points[i].position).signed_distance * points[i].offset;
+    if (points[i].offset > 0.0) {
+      along_normal += place_on(start, t, points[i].position).signed_distance * points[i].offset;
+    }
   }
   start.side = sign_of(along_normal);
   return start;
