@@ -1,6 +1,7 @@
 #include "core/local/jet_estimator.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/local/aligned_frame.h"
@@ -15,11 +16,21 @@ namespace {
 /// standard deviation of 1/sqrt(2 * 4) = 35 %.
 constexpr std::size_t kSpareResiduals = 4;
 
+/// The polynomial of a window, or why there is none.
 template <int Degree>
-LocalResult estimate(std::span<const Vec2> samples, const JetOptions& options) {
+struct JetFit {
+  LocalStatus status = LocalStatus::TooFewSamples;
+  AlignedFrame frame;
+  LegendreFit<Degree> fit;
+  double sigma = 0.0;  ///< noise, given or seen, in units of the half extent
+  double window_arc_m = 0.0;
+};
+
+template <int Degree>
+JetFit<Degree> fit_window(std::span<const Vec2> samples, double sigma_given_m) {
   constexpr int kSize = Degree + 1;
-  LocalResult result;
-  const bool sigma_known = options.sigma_m > 0.0;
+  JetFit<Degree> result;
+  const bool sigma_known = sigma_given_m > 0.0;
   if (samples.size() < kSize + (sigma_known ? 0 : kSpareResiduals)) {
     return result;
   }
@@ -28,8 +39,10 @@ LocalResult estimate(std::span<const Vec2> samples, const JetOptions& options) {
     result.status = frame_status;
     return result;
   }
+  result.frame = frame;
   const double unit = frame.half_extent_m;
-  double sigma = options.sigma_m / unit;
+  double& sigma = result.sigma;
+  sigma = sigma_given_m / unit;
 
   LegendreFit<Degree> plain;
   for (const Vec2& p : samples) {
@@ -42,7 +55,7 @@ LocalResult estimate(std::span<const Vec2> samples, const JetOptions& options) {
   }
   // Isotropic noise has the variance sigma^2 (1 + slope^2) along v.
   const LegendreVector<kSize> start = plain.coefficients();
-  LegendreFit<Degree> fit;
+  LegendreFit<Degree>& fit = result.fit;
   for (const Vec2& p : samples) {
     const Vec2 uv = frame.to_frame(p);
     const double s = slope<kSize>(start, uv.x());
@@ -69,19 +82,34 @@ LocalResult estimate(std::span<const Vec2> samples, const JetOptions& options) {
         return result;
       }
     }
-    if (const LocalStatus order = check_backtrack(frame, options.sigma_m / unit, sigma_seen);
+    if (const LocalStatus order = check_backtrack(frame, sigma_given_m / unit, sigma_seen);
         order != LocalStatus::Ok) {
       result.status = order;
       return result;
     }
   }
+  result.window_arc_m = unit * arc_length<kSize>(c, frame.first_u, frame.last_u);
+  result.status = LocalStatus::Ok;
+  return result;
+}
 
-  const double u = std::clamp(options.place, -1.0, 1.0);
+/// What the polynomial says at one place of the window.
+template <int Degree>
+LocalResult estimate_at(const JetFit<Degree>& window, double place) {
+  constexpr int kSize = Degree + 1;
+  LocalResult result;
+  result.status = window.status;
+  if (window.status != LocalStatus::Ok) {
+    return result;
+  }
+  const AlignedFrame& frame = window.frame;
+  const double unit = frame.half_extent_m;
+  const double u = std::clamp(place, -1.0, 1.0);
   const Eigen::Matrix<double, 5, kSize> basis = legendre_derivatives<5, kSize>(u);
-  const Eigen::Matrix<double, 5, 1> derivatives = basis * c;
+  const Eigen::Matrix<double, 5, 1> derivatives = basis * window.fit.coefficients();
   const GraphGeometry geometry = graph_geometry(derivatives);
   const Eigen::Matrix<double, 4, kSize> rows = geometry.jacobian * basis;
-  Eigen::Matrix<double, kSize, 4> spread = fit.whitened(rows);
+  Eigen::Matrix<double, kSize, 4> spread = window.fit.whitened(rows);
   spread *= Eigen::Vector4d(unit, 1.0, 1.0 / unit, 1.0 / (unit * unit)).asDiagonal();
 
   LocalEstimate& e = result.estimate;
@@ -89,31 +117,50 @@ LocalResult estimate(std::span<const Vec2> samples, const JetOptions& options) {
   e.tangent_angle = wrap_angle(std::atan2(frame.axis.y(), frame.axis.x()) + geometry.angle);
   e.kappa = geometry.kappa / unit;
   e.kappa_s = geometry.kappa_s / (unit * unit);
-  e.covariance = sigma * sigma * (spread.transpose() * spread);
-  e.window_arc_m = unit * arc_length<kSize>(c, frame.first_u, frame.last_u);
-  e.window_samples = static_cast<int>(samples.size());
-  e.sigma_m = sigma_known ? options.sigma_m : sigma * unit;
+  e.covariance = window.sigma * window.sigma * (spread.transpose() * spread);
+  e.window_arc_m = window.window_arc_m;
   if (!(e.position.allFinite() && std::isfinite(e.kappa) && std::isfinite(e.kappa_s) &&
         e.covariance.allFinite() && std::isfinite(e.window_arc_m))) {
     e = {};
     result.status = LocalStatus::NotFinite;
-    return result;
   }
-  result.status = LocalStatus::Ok;
   return result;
+}
+
+template <int Degree>
+void estimate(std::span<const Vec2> samples, const JetOptions& options,
+              std::span<const double> places, std::span<LocalResult> results) {
+  const JetFit<Degree> window = fit_window<Degree>(samples, options.sigma_m);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    results[i] = estimate_at(window, places[i]);
+    if (results[i]) {
+      LocalEstimate& e = results[i].estimate;
+      e.window_samples = static_cast<int>(samples.size());
+      e.sigma_m =
+          options.sigma_m > 0.0 ? options.sigma_m : window.sigma * window.frame.half_extent_m;
+    }
+  }
 }
 
 }  // namespace
 
-LocalResult jet_estimate(std::span<const Vec2> samples, const JetOptions& options) {
+void jet_estimates(std::span<const Vec2> samples, const JetOptions& options,
+                   std::span<const double> places, std::span<LocalResult> results) {
+  assert(places.size() == results.size());
   switch (std::clamp(options.degree, kMinJetDegree, kMaxJetDegree)) {
     case 3:
-      return estimate<3>(samples, options);
+      return estimate<3>(samples, options, places, results);
     case 4:
-      return estimate<4>(samples, options);
+      return estimate<4>(samples, options, places, results);
     default:
-      return estimate<5>(samples, options);
+      return estimate<5>(samples, options, places, results);
   }
+}
+
+LocalResult jet_estimate(std::span<const Vec2> samples, const JetOptions& options) {
+  LocalResult result;
+  jet_estimates(samples, options, {&options.place, 1}, {&result, 1});
+  return result;
 }
 
 }  // namespace palpate

@@ -32,4 +32,8 @@ struct JetOptions {
 /// = 6. Needs degree + 1 samples, and 4 more where it must estimate the noise.
 LocalResult jet_estimate(std::span<const Vec2> samples, const JetOptions& options = {});
 
+/// The same at several places of one window, which share the fit. `results`: one per place.
+void jet_estimates(std::span<const Vec2> samples, const JetOptions& options,
+                   std::span<const double> places, std::span<LocalResult> results);
+
 }  // namespace palpate

@@ -21,10 +21,6 @@ struct Placement {
   double t_shift = 0.0;
 };
 
-Vec2 conic_gradient(const ConicCoefficients& q, const Vec2& p) {
-  return {2.0 * q[0] * p.x() + q[1] * p.y() + q[3], q[1] * p.x() + 2.0 * q[2] * p.y() + q[4]};
-}
-
 Vec2 mean_position(const FitData& data) {
   Vec2 sum = Vec2::Zero();
   for (const FitPoint& point : data.points) {
@@ -176,7 +172,7 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
   // Of [pose; shape], so that a class with fewer letters has its part at the top left: fixed sizes
   // are several times as fast.
   Eigen::Matrix<double, 6, 6> pose_first = Eigen::Matrix<double, 6, 6>::Zero();
-  const Eigen::Matrix2d frame_R_curve = Eigen::Rotation2Dd(frame_T_curve.theta).toRotationMatrix();
+  const Eigen::Matrix2d curve_R_frame = Eigen::Rotation2Dd(-frame_T_curve.theta).toRotationMatrix();
   const Eigen::Matrix2d world_R_frame = Eigen::Rotation2Dd(data.frame.theta).toRotationMatrix();
   canonical.points.reserve(data.points.size());
   const int side = fit.implicit ? fit.implicit->side : fit.polynomial->side;
@@ -184,24 +180,26 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
     const FitPoint& point = data.points[i];
     FittedPoint fitted;
     double distance = 0.0;
+    Vec2 local;  // the foot point in the curve's frame
     if (fit.implicit) {
       const ConicCoefficients& q = fit.implicit->coefficients;
-      Vec2 foot;
-      distance = signed_distance(q, point.position, &foot);
+      const Vec2& foot = fit.implicit->feet[i];
+      distance = signed_distance_from(foot, q, point.position);
       fitted.normal = conic_gradient(q, foot).normalized();
-      fitted.t = parameter_of(canonical.shape, frame_T_curve.to_local(data.scale * foot));
+      local = curve_R_frame * (data.scale * foot - frame_T_curve.translation());
+      fitted.t = parameter_of(canonical.shape, local);
     } else {
       const double t = fit.polynomial->t[i];
       fitted.t = placement->t_scale * t + placement->t_shift;
       const PlacedPoint placed = place_on(*fit.polynomial, t, point.position);
       distance = placed.signed_distance;
       fitted.normal = placed.normal;
+      local = position(*curve, fitted.t);
     }
     fitted.residual = (distance - side * point.offset) * point.inverse_sigma;
 
-    const Vec2 local_normal = frame_R_curve.transpose() * fitted.normal;
+    const Vec2 local_normal = curve_R_frame * fitted.normal;
     fitted.normal = world_R_frame * fitted.normal;
-    const Vec2 local = position(*curve, fitted.t);
     Eigen::Matrix<double, 6, 1> row;
     row[0] = fitted.normal.x();
     row[1] = fitted.normal.y();

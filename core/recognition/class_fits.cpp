@@ -86,11 +86,11 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsi
   // The algebraic start serves unless it led to a conic that nothing touches, or one that a limit
   // betters; then the limits are the starts.
   ImplicitFit conic = refine_conic(points, algebraic_conic(points), side);
-  bool usable = is_touchable(conic.coefficients, reduced);
+  bool usable = is_touchable(conic, reduced);
   const auto also_from = [&](double chi2, const ConicCoefficients& start) {
     if (!usable || chi2 < conic.chi2) {
       const ImplicitFit other = refine_conic(points, start, side);
-      if (is_touchable(other.coefficients, reduced) && (!usable || other.chi2 < conic.chi2)) {
+      if (is_touchable(other, reduced) && (!usable || other.chi2 < conic.chi2)) {
         conic = other;
         usable = true;
       }
@@ -152,11 +152,14 @@ PolynomialFit start_on_all(const PolynomialFit& on_reduced, const SmoothModel& s
                            std::span<const FitPoint> points) {
   PolynomialFit start = on_reduced;
   start.t.clear();
+  start.t.reserve(points.size());
   double along_normal = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double t = on_reduced.t[smooth.nearest_reduced[i]];
     start.t.push_back(t);
-    along_normal += place_on(start, t, points[i].position).signed_distance * points[i].offset;
+    if (points[i].offset > 0.0) {
+      along_normal += place_on(start, t, points[i].position).signed_distance * points[i].offset;
+    }
   }
   start.side = sign_of(along_normal);
   return start;
@@ -211,8 +214,8 @@ bool is_what_it_says(const ClassFit& fit, const FitData& data) {
   if (!ellipse && fit.curve_class != CurveClass::Hyperbola) {
     return true;
   }
-  const ConicCoefficients& q = fit.implicit->coefficients;
-  return (discriminant(q) > 0.0) == ellipse && is_touchable(q, data);
+  return (discriminant(fit.implicit->coefficients) > 0.0) == ellipse &&
+         is_touchable(*fit.implicit, data);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "core/recognition/contacts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/curves/curve.h"
@@ -11,15 +12,23 @@
 namespace palpate {
 namespace {
 
-LocalResult estimate(std::span<const Vec2> window, PatchPlace place, double sigma_m,
-                     bool with_bias) {
+constexpr std::size_t kMostPlaces = 3;  // of a window: its centre, and the patch's ends
+
+/// Estimates at those places of one window.
+void estimate(std::span<const Vec2> window, std::span<const PatchPlace> places, double sigma_m,
+              bool with_bias, std::span<LocalResult> results) {
   if (with_bias) {
-    return adaptive_jet(window, place, sigma_m).result;
+    std::transform(places.begin(), places.end(), results.begin(),
+                   [&](PatchPlace place) { return adaptive_jet(window, place, sigma_m).result; });
+    return;
   }
   JetOptions jet;
   jet.sigma_m = sigma_m;
-  jet.place = place == PatchPlace::Start ? -1.0 : place == PatchPlace::End ? 1.0 : 0.0;
-  return jet_estimate(window, jet);
+  std::array<double, kMostPlaces> at{};
+  std::transform(places.begin(), places.end(), at.begin(), [](PatchPlace place) {
+    return place == PatchPlace::Start ? -1.0 : place == PatchPlace::End ? 1.0 : 0.0;
+  });
+  jet_estimates(window, jet, std::span(at).first(places.size()), results);
 }
 
 }  // namespace
@@ -30,8 +39,8 @@ std::vector<LocalizedContact> estimate_contacts(std::span<const StoredPatch> pat
   std::vector<LocalizedContact> contacts;
   std::vector<Vec2> points;
   const std::size_t patch_count = std::max<std::size_t>(patches.size(), 1);
-  const std::size_t wanted = std::max(options.windows_per_patch,
-                                      (options.least_windows + patch_count - 1) / patch_count);
+  const std::size_t wanted =
+      std::max(options.windows_per_patch, (options.least_windows + patch_count - 1) / patch_count);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const StoredPatch& patch = patches[p];
     points.clear();
@@ -45,26 +54,32 @@ std::vector<LocalizedContact> estimate_contacts(std::span<const StoredPatch> pat
     }
     const std::size_t n = points.size();
     const std::size_t windows = std::clamp<std::size_t>(n / options.window_samples, 1, wanted);
-    const double signed_radius =
-        p < sides.size() ? sides[p] * patch.context.tip_radius_m : 0.0;
-    const auto add = [&](std::size_t window, PatchPlace place) {
+    const double signed_radius = p < sides.size() ? sides[p] * patch.context.tip_radius_m : 0.0;
+    const double sigma = known && n > 0 ? std::sqrt(variance / static_cast<double>(n)) : 0.0;
+    for (std::size_t window = 0; window < windows; ++window) {
+      std::array<PatchPlace, kMostPlaces> places{};
+      std::size_t count = 0;
+      if (window == 0) {
+        places[count++] = PatchPlace::Start;
+      }
+      places[count++] = PatchPlace::Centre;
+      if (window + 1 == windows) {
+        places[count++] = PatchPlace::End;
+      }
       const std::size_t begin = window * n / windows;
       const std::size_t end = (window + 1) * n / windows;
-      const double sigma = known && n > 0 ? std::sqrt(variance / static_cast<double>(n)) : 0.0;
-      const LocalResult result = estimate(std::span(points).subspan(begin, end - begin), place,
-                                          sigma, options.with_bias);
-      if (!result) {
-        return;
+      std::array<LocalResult, kMostPlaces> results;
+      estimate(std::span(points).subspan(begin, end - begin), std::span(places).first(count), sigma,
+               options.with_bias, std::span(results).first(count));
+      for (const LocalResult& result : std::span(results).first(count)) {
+        if (!result) {
+          continue;
+        }
+        if (const auto surface = surface_from_tip(result.estimate, signed_radius)) {
+          contacts.push_back({patch.context.probe, patch.context.patch, 0.0, *surface});
+        }
       }
-      if (const auto surface = surface_from_tip(result.estimate, signed_radius)) {
-        contacts.push_back({patch.context.probe, patch.context.patch, 0.0, *surface});
-      }
-    };
-    add(0, PatchPlace::Start);
-    for (std::size_t window = 0; window < windows; ++window) {
-      add(window, PatchPlace::Centre);
     }
-    add(windows - 1, PatchPlace::End);
   }
   return contacts;
 }

@@ -21,7 +21,7 @@ double value(const ConicCoefficients& q, const Vec2& p) {
   return (q[0] * p.x() + q[1] * p.y() + q[3]) * p.x() + (q[2] * p.y() + q[4]) * p.y() + q[5];
 }
 
-Vec2 gradient(const ConicCoefficients& q, const Vec2& p) {
+inline Vec2 gradient(const ConicCoefficients& q, const Vec2& p) {
   return {2.0 * q[0] * p.x() + q[1] * p.y() + q[3], q[1] * p.x() + 2.0 * q[2] * p.y() + q[4]};
 }
 
@@ -55,7 +55,10 @@ class SphereResiduals {
 
   SphereResiduals(std::span<const FitPoint> points, const ModelBasis<K>& basis, const Start& start,
                   int side)
-      : points_(points), basis_(basis), start_(start.normalized()), side_(side),
+      : points_(points),
+        basis_(basis),
+        start_(start.normalized()),
+        side_(side),
         feet_(points.size()) {
     trial_.setConstant(std::numeric_limits<double>::quiet_NaN());
     const Eigen::HouseholderQR<Start> qr(start_);
@@ -69,8 +72,8 @@ class SphereResiduals {
     return basis_ * (start_ + tangent_ * step).normalized();
   }
 
-  // The solver asks for residuals alone at a trial step, and for the Jacobian at the same one when it is
-  // accepted: the foot points are there already.
+  // The solver asks for residuals alone at a trial step, and for the Jacobian at the same one when
+  // it is accepted: the foot points are there already.
   bool operator()(const double* step_data, double* residuals, double* jacobian) const {
     const Step step = Eigen::Map<const Step>(step_data);
     const Start moved = start_ + tangent_ * step;
@@ -79,10 +82,7 @@ class SphereResiduals {
     const ConicCoefficients q = basis_ * u;
     const std::size_t n = points_.size();
     if (jacobian == nullptr || step != trial_) {
-      for (std::size_t i = 0; i < n; ++i) {
-        feet_[i].distance = signed_distance(q, points_[i].position, &feet_[i].position);
-      }
-      trial_ = step;
+      place(q, step);
     }
     for (std::size_t i = 0; i < n; ++i) {
       const FitPoint& point = points_[i];
@@ -107,7 +107,28 @@ class SphereResiduals {
     return true;
   }
 
+  /// Foot points on the curve `step`, where the solver has ended: found at its last trial, unless
+  /// that was rejected.
+  std::vector<Vec2> feet(const Step& step) const {
+    if (step != trial_) {
+      place(coefficients(step), step);
+    }
+    std::vector<Vec2> positions;
+    positions.reserve(feet_.size());
+    for (const Foot& foot : feet_) {
+      positions.push_back(foot.position);
+    }
+    return positions;
+  }
+
  private:
+  void place(const ConicCoefficients& q, const Step& step) const {
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      feet_[i].distance = signed_distance(q, points_[i].position, &feet_[i].position);
+    }
+    trial_ = step;
+  }
+
   std::span<const FitPoint> points_;
   ModelBasis<K> basis_;
   Start start_;
@@ -140,7 +161,8 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
   solver.options.cost_threshold = 0.0;
   Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
   const auto& summary = solver.Solve(residuals, &step);
-  return {residuals.coefficients(step), 2.0 * summary.final_cost, summary.iterations, side};
+  return {residuals.coefficients(step), 2.0 * summary.final_cost, summary.iterations, side,
+          residuals.feet(step)};
 }
 
 template <int K>
@@ -171,8 +193,7 @@ InformationSpectrum circle_information(std::span<const FitPoint> points,
   return spectrum<4>(points, circle_basis(), q);
 }
 
-InformationSpectrum line_information(std::span<const FitPoint> points,
-                                     const ConicCoefficients& q) {
+InformationSpectrum line_information(std::span<const FitPoint> points, const ConicCoefficients& q) {
   return spectrum<3>(points, line_basis(), q);
 }
 
@@ -207,10 +228,15 @@ double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot
     }
   }
   *foot = f;
-  const Vec2 g = gradient(q, f);
-  const double distance = (point - f).norm();
-  return (point - f).dot(g) >= 0.0 ? distance : -distance;
+  return signed_distance_from(f, q, point);
 }
+
+double signed_distance_from(const Vec2& foot, const ConicCoefficients& q, const Vec2& point) {
+  const double distance = (point - foot).norm();
+  return (point - foot).dot(gradient(q, foot)) >= 0.0 ? distance : -distance;
+}
+
+Vec2 conic_gradient(const ConicCoefficients& q, const Vec2& p) { return gradient(q, p); }
 
 ConicCoefficients algebraic_conic(std::span<const FitPoint> points) {
   Monomials mean = Monomials::Zero();
@@ -248,7 +274,9 @@ ConicCoefficients algebraic_circle(std::span<const FitPoint> points) {
   // Taubin's circle: z = x^2 + y^2 regressed with gradient weights (3 x 3 eigenproblem).
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   double weight_sum = 0.0;
-  const auto features = [](const Vec2& p) { return Eigen::Vector3d(p.squaredNorm(), p.x(), p.y()); };
+  const auto features = [](const Vec2& p) {
+    return Eigen::Vector3d(p.squaredNorm(), p.x(), p.y());
+  };
   for (const FitPoint& point : points) {
     const double w = point.inverse_sigma * point.inverse_sigma;
     mean += w * features(point.position);

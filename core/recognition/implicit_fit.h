@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "core/curves/canonical_conic.h"
 #include "core/recognition/fit_data.h"
@@ -15,6 +16,7 @@ struct ImplicitFit {
   double chi2 = 0.0;
   int iterations = 0;
   int side = 0;  ///< where tip centres lie: +1 where the polynomial is positive, -1 negative
+  std::vector<Vec2> feet;  ///< foot point of every point
 };
 
 /// Starts without a previous fit, from the algebraic fit of G. Taubin ("Estimation of planar
@@ -46,5 +48,12 @@ InformationSpectrum line_information(std::span<const FitPoint> points, const Con
 /// point is found by Newton's method from the point itself: the nearest one wherever the distance
 /// is small beside the radius of curvature. `foot` receives it.
 double signed_distance(const ConicCoefficients& coefficients, const Vec2& point, Vec2* foot);
+
+/// The same where the foot point is known.
+double signed_distance_from(const Vec2& foot, const ConicCoefficients& coefficients,
+                            const Vec2& point);
+
+/// The gradient of the conic's polynomial.
+Vec2 conic_gradient(const ConicCoefficients& coefficients, const Vec2& p);
 
 }  // namespace palpate

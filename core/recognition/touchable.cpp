@@ -14,8 +14,8 @@ bool on_one_branch(const ConicCoefficients& q, std::span<const FitPoint> points)
   const double at_centre = 0.5 * (q[3] * centre.x() + q[4] * centre.y()) + q[5];
   const double angle = 0.5 * std::atan2(q[1], q[0] - q[2]);
   Vec2 axis(std::cos(angle), std::sin(angle));
-  const double curvature_along = q[0] * axis.x() * axis.x() + q[1] * axis.x() * axis.y() +
-                                 q[2] * axis.y() * axis.y();
+  const double curvature_along =
+      q[0] * axis.x() * axis.x() + q[1] * axis.x() * axis.y() + q[2] * axis.y() * axis.y();
   if (curvature_along * at_centre > 0.0) {
     axis = left_of(axis);
   }
@@ -31,7 +31,8 @@ bool on_one_branch(const ConicCoefficients& q, std::span<const FitPoint> points)
 
 }  // namespace
 
-bool is_touchable(const ConicCoefficients& q, const FitData& data) {
+bool is_touchable(const ImplicitFit& fit, const FitData& data) {
+  const ConicCoefficients& q = fit.coefficients;
   if (!(discriminant(q) > 0.0 || on_one_branch(q, data.points))) {
     return false;
   }
@@ -39,11 +40,7 @@ bool is_touchable(const ConicCoefficients& q, const FitData& data) {
   for (const PatchSpan& patch : data.patches) {
     std::size_t left = 0;
     for (std::size_t i = patch.begin; i < patch.end; ++i) {
-      Vec2 foot;
-      signed_distance(q, data.points[i].position, &foot);
-      const Vec2 gradient(2.0 * q[0] * foot.x() + q[1] * foot.y() + q[3],
-                          q[1] * foot.x() + 2.0 * q[2] * foot.y() + q[4]);
-      left += cross(data.points[i].tangent, gradient) >= 0.0 ? 1 : 0;
+      left += cross(data.points[i].tangent, conic_gradient(q, fit.feet[i])) >= 0.0 ? 1 : 0;
     }
     if (std::min(left, patch.size() - left) * kOneIn > patch.size()) {
       return false;

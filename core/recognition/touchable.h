@@ -15,8 +15,8 @@ inline double discriminant(const ConicCoefficients& q) {
 /// Whether a conic is one that a probe could have touched at these points: one branch, each patch
 /// on one side of it. A thin ellipse, or the two branches of a flat hyperbola, "explains" straight
 /// noisy points by letting neighbours lie on opposite sides: its direction of travel then flips
-/// against the patch's own from point to point.
-bool is_touchable(const ConicCoefficients& q, const FitData& data);
+/// against the patch's own from point to point. The fit must be one to these points.
+bool is_touchable(const ImplicitFit& fit, const FitData& data);
 
 /// The same for a polynomial curve: the curve parameter runs one way along a patch. Samples half a patch
 /// apart are compared, whose order noise does not turn round.
