@@ -34,6 +34,12 @@ class ScaledPart {
  private:
   ClosedSpline spline_;
   std::vector<Vec2> nodes_;
+  /// Circles around the nodes of each segment: most need not be looked at.
+  struct Bound {
+    Vec2 centre = Vec2::Zero();
+    double radius = 0.0;
+  };
+  std::vector<Bound> bounds_;
   double outside_;
 };
 

@@ -147,7 +147,7 @@ class JointTest {
     constexpr double kOutside = 0.05;
     const double limit = chi_square_threshold(kOutside, 1);
     // All along the run: where the bend is weak, what is possible may have gaps.
-    constexpr std::size_t kMostPlaces = 160;
+    constexpr std::size_t kMostPlaces = 80;
     const std::size_t stride = n / kMostPlaces + 1;
     joint.earliest = joint.latest = joint.index;
     for (std::size_t i = 0; i < n; i += stride) {
