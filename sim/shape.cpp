@@ -15,31 +15,14 @@ struct Overloaded : Visitors... {
 template <typename... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
-/// Arc length over a shape that is smooth between joints at whole numbers of t, or everywhere.
-double arc_length(const Shape& shape, double t0, double t1) {
-  const auto speed = [&](double t) { return point_at(shape, t).first.norm(); };
-  if (!std::holds_alternative<ClosedSpline>(shape)) {
-    return integrate_speed(speed, t0, t1);
-  }
-  if (t1 < t0) {
-    return -arc_length(shape, t1, t0);
-  }
-  double sum = 0.0;
-  for (double from = t0; from < t1;) {
-    const double to = std::min(std::floor(from) + 1.0, t1);
-    sum += integrate_speed(speed, from, to);
-    from = to;
-  }
-  return sum;
-}
-
 }  // namespace
 
 ShapePoint point_at(const Shape& shape, double t) {
-  return std::visit(Overloaded{[t](const Curve& curve) {
-                                 const CurveDerivatives d = derivatives(curve, t);
-                                 return ShapePoint{d.position, d.first, d.second};
-                               },
+  const auto point = [](const CurveDerivatives& d) {
+    return ShapePoint{d.position, d.first, d.second};
+  };
+  return std::visit(Overloaded{[&](const Curve& curve) { return point(derivatives(curve, t)); },
+                               [&](const ClosedSpline& spline) { return point(spline.derivatives(t)); },
                                [t](const auto& other) { return other.point_at(t); }},
                     shape);
 }
@@ -50,13 +33,17 @@ double curvature(const ShapePoint& point) {
 }
 
 double parameter_at_arc_length(const Shape& shape, double t0, double s) {
-  if (const auto* curve = std::get_if<Curve>(&shape)) {
-    return palpate::parameter_at_arc_length(*curve, t0, s);
-  }
-  const double speed = point_at(shape, t0).first.norm();
-  return invert_arc_length([&](double from, double to) { return arc_length(shape, from, to); },
-                           [&](double t) { return point_at(shape, t).first.norm(); }, t0, s,
-                           std::abs(s) / speed);
+  return std::visit(
+      Overloaded{
+          [&](const Curve& curve) { return palpate::parameter_at_arc_length(curve, t0, s); },
+          [&](const ClosedSpline& spline) { return spline.parameter_at_arc_length(t0, s); },
+          [&](const auto& other) {
+            const auto speed = [&](double t) { return other.point_at(t).first.norm(); };
+            return invert_arc_length(
+                [&](double from, double to) { return integrate_speed(speed, from, to); }, speed, t0,
+                s, std::abs(s) / speed(t0));
+          }},
+      shape);
 }
 
 std::optional<ClassifiedPiece> classified_piece(const Shape& shape, double t0, double t1) {

@@ -4,8 +4,9 @@
 #include <optional>
 #include <variant>
 
+#include "core/curves/closed_spline.h"
 #include "core/curves/curve.h"
-#include "sim/closed_spline.h"
+#include "sim/shape_point.h"
 #include "sim/unclassified_shapes.h"
 
 namespace palpate::sim {

@@ -14,6 +14,7 @@
 #include "node/recognizer_options.h"
 #include "node/tool/command.h"
 #include "node/tool/contact_groups.h"
+#include "node/tool/part_match.h"
 #include "node/tool/recognition_text.h"
 #include "node/tool/svg_plot.h"
 
@@ -24,6 +25,7 @@ struct FitCommand {
   std::vector<std::string> files;
   std::string format;
   std::string plot;
+  std::string part;
   RecognizerWords words;
   RecognizerOptions recognizer;
 };
@@ -92,7 +94,7 @@ Answer recognise(const ContactGroup& group, const RecognizerOptions& options) {
   return answer;
 }
 
-std::string json_line(const v1::Recognition& message) {
+std::string json_line(const google::protobuf::Message& message) {
   google::protobuf::util::JsonPrintOptions options;
   options.preserve_proto_field_names = true;
   options.always_print_primitive_fields = true;
@@ -111,6 +113,30 @@ std::string plot_path(const std::string& path, std::size_t number) {
   const std::string stem = path.substr(0, dot);
   const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
   return stem + "-" + std::to_string(number) + ending;
+}
+
+/// Places a known part instead of recognising one.
+int place(const FitCommand& fit, const std::vector<ContactGroup>& groups, bool json) {
+  const Result<ClosedSpline> part = read_part(fit.part);
+  if (!part) {
+    return complain(part.error, kUsage);
+  }
+  SegmentMatchOptions options;
+  options.sigma_m = fit.recognizer.sigma_m;
+  options.determined_probability = fit.recognizer.recognized_probability;
+  options.false_outlier_probability = fit.recognizer.false_outlier_probability;
+  const char* separator = "";
+  for (const ContactGroup& group : groups) {
+    const v1::PartMatch match = match_part(group, *part.value, options);
+    if (json) {
+      std::cout << json_line(match);
+    } else {
+      std::cout << separator << group.file << ", " << group.name << ": " << part_match_text(match);
+      separator = "\n";
+    }
+  }
+  std::cout.flush();
+  return std::cout ? kDone : complain("standard output: cannot be written", kFailed);
 }
 
 int run(FitCommand& fit) {
@@ -136,6 +162,9 @@ int run(FitCommand& fit) {
   }
   const bool json =
       fit.format.empty() ? isatty(STDOUT_FILENO) == 0 : fit.format == "json";
+  if (!fit.part.empty()) {
+    return place(fit, groups, json);
+  }
   std::size_t number = 0;
   for (const ContactGroup& group : groups) {
     const Answer answer = recognise(group, fit.recognizer);
@@ -176,10 +205,19 @@ void add_fit_command(CLI::App& app, int& exit_code) {
                    "wire contract a line")
       ->check(CLI::IsMember({"text", "json"}))
       ->type_name("FORMAT");
+  CLI::Option* plot =
+      command
+          ->add_option("--plot", fit->plot,
+                       "Draw points, recognised curve, contacts and the curve's frame as SVG; further "
+                       "groups go to FILE-2.svg, ...")
+          ->type_name("FILE");
   command
-      ->add_option("--plot", fit->plot,
-                   "Draw points, recognised curve, contacts and the curve's frame as SVG; further "
-                   "groups go to FILE-2.svg, ...")
+      ->add_option("--part", fit->part,
+                   "Place the closed spline of this scene file (*.textproto) instead of recognising a "
+                   "curve: its pose, the segment of every patch, the samples beyond a joint. Uses "
+                   "--sigma, --recognized-probability and --false-outlier-probability; json is one "
+                   "PartMatch (palpate/v1/part_match.proto) a line")
+      ->excludes(plot)
       ->type_name("FILE");
   add_recognizer_flags(*command, *fit);
   command->callback([fit, &exit_code] { exit_code = run(*fit); });

@@ -1,11 +1,13 @@
 // Every scene that ships: what the recogniser makes of the simulator's contacts against their truth.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 
 #include "node/convert.h"
 #include "node/tool/contact_groups.h"
+#include "node/tool/part_match.h"
 #include "sim/contact_export.h"
 #include "sim/contacts.h"
 #include "sim/scene_file.h"
@@ -82,6 +84,45 @@ TEST_P(ShippedScene, IsRecognisedWithinFourStandardDeviations) {
 INSTANTIATE_TEST_SUITE_P(All, ShippedScene, testing::ValuesIn(scene_files()), [](const auto& scene) {
   return std::filesystem::path(scene.param).stem().string();
 });
+
+TEST(ShippedScenes, ClosedPartsAreFoundWhereTheyLie) {
+  int parts = 0;
+  for (const std::string& file : scene_files()) {
+    const Result<sim::Scene> scene = sim::read_scene(file);
+    ASSERT_TRUE(scene.value.has_value()) << scene.error;
+    if (!scene.value->description.has_closed_spline()) {
+      continue;
+    }
+    ++parts;
+    const Result<ClosedSpline> part = read_part(file);
+    ASSERT_TRUE(part.value.has_value()) << part.error;
+    const auto probes = sim::simulate_contacts(*scene.value, 0);
+    ContactTable table;
+    sim::append_rows(*scene.value, probes, 1, table);
+    const auto truths = sim::scene_truths(*scene.value, probes, 1);
+    const auto groups = contact_groups(file, table);
+    ASSERT_EQ(groups.size(), truths.size());
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const v1::PartMatch match = match_part(groups[g], *part.value, {});
+      ASSERT_EQ(match.status(), v1::PART_MATCH_STATUS_DETERMINED);
+      const v1::PartPlacement& best = match.placements(0);
+      const Pose2& truth = scene.value->world_T_shape;
+      const std::array errors = {best.pose().x_m() - truth.x, best.pose().y_m() - truth.y,
+                                 wrap_angle(best.pose().theta_rad() - truth.theta)};
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_LE(std::abs(errors[static_cast<std::size_t>(i)]), 4.0 * std::sqrt(best.covariance(4 * i)));
+      }
+      ASSERT_EQ(best.patches_size(), truths[g].patches_size());
+      for (int p = 0; p < best.patches_size(); ++p) {
+        const auto& t = best.patches(p).t();
+        constexpr double kClose = 1e-3;  // some micrometres
+        EXPECT_NEAR(t[0], truths[g].patches(p).start_t(), kClose);
+        EXPECT_NEAR(t[t.size() - 1], truths[g].patches(p).end_t(), kClose);
+      }
+    }
+  }
+  EXPECT_GE(parts, 1);
+}
 
 TEST(ShippedScenes, ShowEveryClass) {
   std::vector<bool> shown(9, false);

@@ -1,0 +1,148 @@
+// Parts that look alike from several places, patches that say little, and parts that are not the
+// model.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/recognition/segment_match.h"
+#include "tests/support/closed_spline_part.h"
+#include "tests/support/test_rng.h"
+#include "tests/support/touched_curve.h"
+
+namespace palpate {
+namespace {
+
+TEST(SegmentMatchHardCases, ASymmetricPartIsAmbiguous) {
+  auto rng = test::test_rng();
+  for (const int points : {4, 5, 6}) {
+    const ClosedSpline part = test::symmetric_part(points);
+    const test::TouchedPart touched =
+        test::touch(part, test::random_pose(rng), {{0.1, 0.05, 201}}, 1e-7, 1e-7, rng);
+    const SegmentMatch match = match_segment(part, touched.patches);
+    ASSERT_EQ(match.status, SegmentMatchStatus::Ambiguous) << points;
+    EXPECT_EQ(match.doubt, SegmentMatchDoubt::SeveralPlacements);
+    // Once for every rotation, and a mirror axis across each segment lets the travel be reversed.
+    ASSERT_GE(match.placements.size(), static_cast<std::size_t>(points));
+    for (int i = 0; i < points; ++i) {
+      EXPECT_NEAR(match.placements[static_cast<std::size_t>(i)].probability,
+                  match.placements[0].probability, 0.05);
+      EXPECT_NEAR(match.segment_probability[static_cast<std::size_t>(i)], 1.0 / points, 0.05);
+    }
+  }
+}
+
+TEST(SegmentMatchHardCases, AHalfTurnSymmetricPartHasTwoPlacements) {
+  // Control points that go into one another by a half turn, and by no reflection.
+  const ClosedSpline part(
+      {{0.04, 0.0}, {0.02, 0.035}, {-0.02, 0.015}, {-0.04, 0.0}, {-0.02, -0.035}, {0.02, -0.015}});
+  auto rng = test::test_rng();
+  const test::TouchedPart touched =
+      test::touch(part, test::random_pose(rng), {{0.3, 0.04, 161}}, 1e-6, 1e-6, rng);
+  const SegmentMatch match = match_segment(part, touched.patches);
+  ASSERT_EQ(match.status, SegmentMatchStatus::Ambiguous);
+  ASSERT_EQ(match.placements.size(), 2U);
+  EXPECT_NEAR(match.placements[0].probability, 0.5, 1e-3);
+  EXPECT_EQ((match.placements[0].patches[0].segment + 3) % 6,
+            match.placements[1].patches[0].segment);
+}
+
+TEST(SegmentMatchHardCases, AShortPatchIsAmbiguousRatherThanWrong) {
+  const ClosedSpline part = test::paper_part();
+  auto rng = test::test_rng();
+  std::uniform_real_distribution<double> place(0.0, 5.0);
+  int determined = 0;
+  for (int i = 0; i < test::stress_count(30); ++i) {
+    const test::TouchedPart touched =
+        test::touch(part, test::random_pose(rng), {{place(rng), 0.004, 21}}, 2e-5, 2e-5, rng);
+    const SegmentMatch match = match_segment(part, touched.patches);
+    EXPECT_NE(match.status, SegmentMatchStatus::NoMatch);
+    determined += match.status == SegmentMatchStatus::Determined;
+  }
+  EXPECT_EQ(determined, 0);
+}
+
+TEST(SegmentMatchHardCases, AnotherPartIsNoMatch) {
+  const ClosedSpline part = test::paper_part();
+  auto rng = test::test_rng();
+  // Each control point 3 mm off. Over less than 40 mm, a stroke of it does fit some place or other
+  // of the model: a short arc has hardly more shape than the place along the part can make up for.
+  const ClosedSpline other(
+      {{0.033, 0.000}, {0.012, 0.031}, {-0.035, 0.022}, {-0.028, -0.021}, {0.007, -0.030}});
+  for (int segment = 0; segment < 5; ++segment) {
+    const test::TouchedPart touched =
+        test::touch(other, test::random_pose(rng), {{segment + 0.1, 0.045}}, 1e-5, 1e-5, rng);
+    const SegmentMatch match = match_segment(part, touched.patches);
+    EXPECT_EQ(match.status, SegmentMatchStatus::NoMatch) << segment;
+    EXPECT_FALSE(match.placements.empty());  // how badly
+  }
+}
+
+TEST(SegmentMatchHardCases, TheMirroredPartIsNoMatch) {
+  const ClosedSpline part = test::paper_part();
+  const ClosedSpline mirrored(
+      {{-0.030, 0.000}, {-0.012, 0.034}, {0.032, 0.022}, {0.028, -0.024}, {-0.010, -0.030}});
+  auto rng = test::test_rng();
+  for (int segment = 0; segment < 5; ++segment) {
+    const test::TouchedPart touched =
+        test::touch(mirrored, test::random_pose(rng), {{segment + 0.1, 0.04}}, 1e-6, 1e-6, rng);
+    EXPECT_EQ(match_segment(part, touched.patches).status, SegmentMatchStatus::NoMatch) << segment;
+  }
+}
+
+TEST(SegmentMatchHardCases, AnEllipseAndAStraightEdgeAreNoMatch) {
+  const ClosedSpline part = test::paper_part();
+  auto rng = test::test_rng();
+  const auto match_of = [&](const test::Scene& scene) {
+    StoredPatch patch;
+    for (const Vec2& position : scene.patches[0]) {
+      patch.samples.push_back({position, scene.sigma_m, 1.0});
+    }
+    return match_segment(part, std::span(&patch, 1)).status;
+  };
+  const std::vector<test::Stroke> stroke = {{0.4, 0.04}};
+  EXPECT_EQ(match_of(test::touched_curve(Ellipse{0.035, 0.02}, {0.1, 0.2, 0.3}, stroke, 1e-5, rng)),
+            SegmentMatchStatus::NoMatch);
+  EXPECT_EQ(match_of(test::touched_curve(Line{}, {0.1, 0.2, 0.3}, stroke, 1e-5, rng)),
+            SegmentMatchStatus::NoMatch);
+}
+
+TEST(SegmentMatchHardCases, FarFromTheOrigin) {
+  const ClosedSpline part = test::paper_part();
+  auto rng = test::test_rng();
+  const Pose2 truth{1e6, -1e6, 0.7};
+  const test::TouchedPart touched = test::touch(part, truth, {{1.1, 0.03}}, 1e-6, 1e-6, rng);
+  const SegmentMatch match = match_segment(part, touched.patches);
+  ASSERT_EQ(match.status, SegmentMatchStatus::Determined);
+  EXPECT_EQ(match.placements[0].patches[0].segment, 1U);
+  EXPECT_NEAR(match.placements[0].world_T_part.x, truth.x, 1e-4);
+}
+
+TEST(SegmentMatchHardCases, ACounterclockwiseModelAndAClockwiseOneAgree) {
+  const ClosedSpline part = test::paper_part();
+  const ClosedSpline clockwise(
+      {{0.010, -0.030}, {-0.028, -0.024}, {-0.032, 0.022}, {0.012, 0.034}, {0.030, 0.000}});
+  ASSERT_LT(clockwise.signed_area(), 0.0);
+  auto rng = test::test_rng();
+  const Pose2 truth = test::random_pose(rng);
+  const test::TouchedPart touched = test::touch(part, truth, {{1.1, 0.03}}, 1e-6, 1e-6, rng, 0.003);
+  const SegmentMatch match = match_segment(clockwise, touched.patches);
+  ASSERT_EQ(match.status, SegmentMatchStatus::Determined);
+  EXPECT_FALSE(match.placements[0].patches[0].along_increasing_t);
+  EXPECT_NEAR(match.placements[0].world_T_part.x, truth.x, 1e-4);
+}
+
+TEST(SegmentMatchHardCases, RepeatedAndDwellingSamplesDoNoHarm) {
+  const ClosedSpline part = test::paper_part();
+  auto rng = test::test_rng();
+  test::TouchedPart touched =
+      test::touch(part, test::random_pose(rng), {{1.1, 0.03}}, 1e-6, 1e-6, rng);
+  std::vector<StoredSample>& samples = touched.patches[0].samples;
+  const StoredSample dwelt = samples[50];
+  samples.insert(samples.begin() + 50, 40, dwelt);
+  const SegmentMatch match = match_segment(part, touched.patches);
+  ASSERT_FALSE(match.placements.empty());
+  EXPECT_EQ(match.placements[0].patches[0].segment, 1U);
+}
+
+}  // namespace
+}  // namespace palpate

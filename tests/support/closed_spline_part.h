@@ -1,0 +1,41 @@
+// Closed spline parts, and strokes over them as a probe makes them.
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "core/curves/closed_spline.h"
+#include "core/recognition/sample_memory.h"
+
+namespace palpate::test {
+
+/// Five segments, as the part of section 6; that of sim/scenes/paper_closed_spline.textproto. About
+/// 60 mm across.
+ClosedSpline paper_part();
+
+/// A regular polygon's spline: every segment is like every other.
+ClosedSpline symmetric_part(int points);
+
+/// From curve parameter t0, travelled by arc_m [m] (negative: against increasing t).
+struct PartStroke {
+  double t0 = 0.0;
+  double arc_m = 0.0;
+  int count = 111;
+};
+
+struct TouchedPart {
+  std::vector<StoredPatch> patches;
+  std::vector<std::vector<double>>
+      t;  ///< true curve parameter of each sample, taken modulo nothing
+};
+
+/// Samples at equal arc lengths of the part at that pose, with isotropic Gaussian noise of
+/// `noise_m`; they claim `sigma_m`. Tips (radius 0 = none) lie outside.
+TouchedPart touch(const ClosedSpline& part, const Pose2& world_T_part,
+                  const std::vector<PartStroke>& strokes, double noise_m, double sigma_m,
+                  std::mt19937_64& rng, double tip_radius_m = 0.0);
+
+/// Uniform in translation (within 1 m) and rotation.
+Pose2 random_pose(std::mt19937_64& rng);
+
+}  // namespace palpate::test

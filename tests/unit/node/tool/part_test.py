@@ -1,0 +1,116 @@
+"""palpate fit --part, called as a user calls it."""
+import math
+import pathlib
+import random
+import tempfile
+import unittest
+
+from google.protobuf import json_format
+
+from palpate.v1 import part_match_pb2
+from programs import TOOL, run
+
+POINTS = [(0.030, 0.000), (0.012, 0.034), (-0.032, 0.022), (-0.028, -0.024), (0.010, -0.030)]
+POSE = (0.3, -0.1, 0.6)
+SIGMA = 1e-6
+MODEL = "closed_spline {\n%s}\n" % "".join(
+    f"  control_points {{ x_m: {x} y_m: {y} }}\n" for x, y in POINTS)
+
+
+def position(t):
+    """Of the uniform cubic B-spline, by its basis functions."""
+    segment, u = int(t % 5), t % 1
+    basis = [(1 - u) ** 3 / 6, (3 * u ** 3 - 6 * u ** 2 + 4) / 6,
+             (-3 * u ** 3 + 3 * u ** 2 + 3 * u + 1) / 6, u ** 3 / 6]
+    x, y = (sum(b * POINTS[(segment + k) % 5][i] for k, b in enumerate(basis)) for i in (0, 1))
+    c, s = math.cos(POSE[2]), math.sin(POSE[2])
+    return POSE[0] + c * x - s * y, POSE[1] + s * x + c * y
+
+
+def stroke(patch, t0, t1, count=111, seed=1):
+    rng = random.Random(seed + patch)
+    rows = []
+    for i in range(count):
+        x, y = position(t0 + (t1 - t0) * i / (count - 1))
+        rows.append(f"finger,{patch},{x + rng.gauss(0, SIGMA)!r},{y + rng.gauss(0, SIGMA)!r},{SIGMA!r}\n")
+    return "".join(rows)
+
+
+HEADER = "probe,patch,x_m,y_m,sigma_m\n"
+
+
+class Part(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.model = self.write("part.textproto", MODEL)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def match(self, samples):
+        code, out, err = run(TOOL, "fit", "--format", "json", "--part", self.model,
+                             self.write("part.csv", HEADER + samples))
+        self.assertEqual((code, err), (0, ""))
+        (line,) = out.splitlines()
+        return json_format.Parse(line, part_match_pb2.PartMatch())
+
+    def test_patches_of_one_part_over_a_joint_and_against_t(self):
+        match = self.match(stroke(0, 1.4025, 2.4025, 201) + stroke(1, 4.9, 4.2))
+        self.assertEqual(match.status, part_match_pb2.PART_MATCH_STATUS_DETERMINED)
+        best = match.placements[0]
+        for i, (found, truth) in enumerate(
+                zip((best.pose.x_m, best.pose.y_m, best.pose.theta_rad), POSE)):
+            self.assertLess(abs(found - truth), 4 * math.sqrt(best.covariance[4 * i]))
+        first, second = best.patches
+        self.assertEqual((first.segment, second.segment), (1, 4))
+        self.assertTrue(first.along_increasing_t)
+        self.assertFalse(second.along_increasing_t)
+        # The joint t = 2 is half-way between two samples, 150 micrometres apart; the place is known to
+        # some micrometres.
+        self.assertEqual(list(first.beyond), list(range(120, 201)))
+        self.assertEqual(list(second.beyond), [])
+        for i, t in enumerate(first.t):
+            self.assertAlmostEqual(t, 1.4025 + i / 200, delta=1e-3)
+        # Without the model: one joint, where it is.
+        self.assertEqual(len(match.joints[1].joints), 0)
+        (joint,) = match.joints[0].joints
+        self.assertLessEqual(joint.earliest, 120)
+        self.assertGreaterEqual(joint.latest, 120)
+
+    def test_text_names_segment_pose_and_samples_beyond_the_joint(self):
+        samples = self.write("part.csv", HEADER + stroke(0, 1.4025, 2.4025, 201))
+        code, out, err = run(TOOL, "fit", "--format", "text", "--part", self.model, samples)
+        self.assertEqual((code, err), (0, ""))
+        self.assertIn(", finger: determined\n", out)
+        self.assertRegex(out, r"patch finger/0    segment 1, t 1\.40\d\d to 2\.40\d\d; "
+                              r"beyond a joint: samples 120-200\n")
+        self.assertRegex(out, r"part         x (300\.0|299\.9)\d+ \+- 0\.\d+ mm, y ")
+
+    def test_another_curve_is_no_match(self):
+        rows = "".join(f"finger,0,{0.03 * math.cos(i / 60)!r},{0.02 * math.sin(i / 60)!r},{SIGMA!r}\n"
+                       for i in range(111))
+        self.assertEqual(self.match(rows).status, part_match_pb2.PART_MATCH_STATUS_NO_MATCH)
+
+    def test_bad_models_are_named(self):
+        samples = self.write("part.csv", HEADER + stroke(0, 1.1, 1.9))
+        few = MODEL.replace("  control_points { x_m: 0.03 y_m: 0.0 }\n", "").replace(
+            "  control_points { x_m: 0.012 y_m: 0.034 }\n", "")
+        for text, why in (("curve { curve_class: CURVE_CLASS_LINE }", "has no closed_spline"),
+                          ("closed_spline { control_points { x_m: nan } }", "is not finite"),
+                          (few, "at least four"), ("closed_spine {}", "1:")):
+            model = self.write("bad.textproto", text)
+            code, out, err = run(TOOL, "fit", "--part", model, samples)
+            self.assertEqual((code, out), (2, ""))
+            self.assertIn(str(model), err)
+            self.assertIn(why, err)
+        code, _, err = run(TOOL, "fit", "--part", self.folder / "none", samples)
+        self.assertEqual(code, 2)
+        self.assertIn("cannot be read", err)
+
+
+if __name__ == "__main__":
+    unittest.main()
