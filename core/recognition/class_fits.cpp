@@ -10,23 +10,6 @@
 namespace palpate {
 namespace {
 
-ConicCoefficients conic_of_parabola(const PolynomialFit& fit) {
-  // (11), (12) eliminated as below (13): with u = b2 (x - a0) - a2 (y - b0) and
-  // v = b1 (x - a0) - a1 (y - b0) the curve is u^2 = (a1 b2 - a2 b1) (-v) up to sign.
-  const auto& c = fit.coefficients;
-  const Vec2 nu(c(1, 2), -c(0, 2));
-  const Vec2 nv(c(1, 1), -c(0, 1));
-  const Vec2 origin = c.col(0);
-  const double k = c(0, 1) * c(1, 2) - c(0, 2) * c(1, 1);
-  // On the curve: u = k t, v = -k t^2, hence u^2 + k v = 0.
-  const double u0 = -nu.dot(origin);
-  const double v0 = -nv.dot(origin);
-  ConicCoefficients q;
-  q << nu.x() * nu.x(), 2.0 * nu.x() * nu.y(), nu.y() * nu.y(), 2.0 * nu.x() * u0 + k * nv.x(),
-      2.0 * nu.y() * u0 + k * nv.y(), u0 * u0 + k * v0;
-  return q.normalized();
-}
-
 ClassFit implicit_class(CurveClass curve_class, const ImplicitFit& fit) {
   ClassFit result;
   result.curve_class = curve_class;
@@ -67,6 +50,23 @@ bool wants_cubics(unsigned classes) {
 int sign_of(double x) { return x > 0.0 ? 1 : x < 0.0 ? -1 : 0; }
 
 }  // namespace
+
+ConicCoefficients conic_of_parabola(const PolynomialFit& fit) {
+  // (11), (12) eliminated as below (13): with u = b2 (x - a0) - a2 (y - b0) and
+  // v = b1 (x - a0) - a1 (y - b0) the curve is u^2 = (a1 b2 - a2 b1) (-v) up to sign.
+  const auto& c = fit.coefficients;
+  const Vec2 nu(c(1, 2), -c(0, 2));
+  const Vec2 nv(c(1, 1), -c(0, 1));
+  const Vec2 origin = c.col(0);
+  const double k = c(0, 1) * c(1, 2) - c(0, 2) * c(1, 1);
+  // On the curve: u = k t, v = -k t^2, hence u^2 + k v = 0.
+  const double u0 = -nu.dot(origin);
+  const double v0 = -nv.dot(origin);
+  ConicCoefficients q;
+  q << nu.x() * nu.x(), 2.0 * nu.x() * nu.y(), nu.y() * nu.y(), 2.0 * nu.x() * u0 + k * nv.x(),
+      2.0 * nu.y() * u0 + k * nv.y(), u0 * u0 + k * v0;
+  return q.normalized();
+}
 
 ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsigned classes) {
   constexpr int side = 0;

@@ -33,6 +33,9 @@ struct ClassFit {
 /// Indexed by CurveClass; entry 0 (Unclassified) is empty.
 using ClassFits = std::array<std::optional<ClassFit>, 9>;
 
+/// The implicit form of a parabola's polynomials, of unit norm.
+ConicCoefficients conic_of_parabola(const PolynomialFit& fit);
+
 /// Whether a fit to that many reduced points is as good as noise allows: five standard deviations.
 inline bool fits_well(double chi2, std::size_t reduced_points) {
   const double n = static_cast<double>(reduced_points);

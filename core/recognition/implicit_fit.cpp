@@ -68,6 +68,9 @@ class SphereResiduals {
 
   int NumResiduals() const { return static_cast<int>(points_.size()); }
 
+  /// Columns: the directions of a step's elements.
+  const Eigen::Matrix<double, K, K - 1>& tangent() const { return tangent_; }
+
   ConicCoefficients coefficients(const Step& step) const {
     return basis_ * (start_ + tangent_ * step).normalized();
   }
@@ -166,18 +169,25 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
 }
 
 template <int K>
-InformationSpectrum spectrum(std::span<const FitPoint> points, const ModelBasis<K>& basis,
-                             const ConicCoefficients& q) {
-  const Eigen::Matrix<double, K, 1> start = basis.transpose() * q;
-  const SphereResiduals<K> residuals(points, basis, start, 0);
+using Information = Eigen::Matrix<double, K - 1, K - 1>;
+
+/// Fisher information of a step in the tangent space at q.
+template <int K>
+Information<K> information(const SphereResiduals<K>& residuals) {
   const Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
-  const auto n = static_cast<Eigen::Index>(points.size());
+  const Eigen::Index n = residuals.NumResiduals();
   Eigen::VectorXd values(n);
   Eigen::Matrix<double, Eigen::Dynamic, K - 1> jacobian(n, K - 1);
   residuals(step.data(), values.data(), jacobian.data());
-  const Eigen::Matrix<double, K - 1, K - 1> information = jacobian.transpose() * jacobian;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, K - 1, K - 1>> solver(
-      information, Eigen::EigenvaluesOnly);
+  return jacobian.transpose() * jacobian;
+}
+
+template <int K>
+InformationSpectrum spectrum(std::span<const FitPoint> points, const ModelBasis<K>& basis,
+                             const ConicCoefficients& q) {
+  const Eigen::Matrix<double, K, 1> start = basis.transpose() * q;
+  const Eigen::SelfAdjointEigenSolver<Information<K>> solver(
+      information(SphereResiduals<K>(points, basis, start, 0)), Eigen::EigenvaluesOnly);
   return solver.eigenvalues();
 }
 
@@ -195,6 +205,17 @@ InformationSpectrum circle_information(std::span<const FitPoint> points,
 
 InformationSpectrum line_information(std::span<const FitPoint> points, const ConicCoefficients& q) {
   return spectrum<3>(points, line_basis(), q);
+}
+
+double conic_deviation(std::span<const FitPoint> points, const ConicCoefficients& q,
+                       const ConicCoefficients& gradient) {
+  const SphereResiduals<6> residuals(points, conic_basis(), q, 0);
+  const Eigen::LDLT<Information<6>> solver(information(residuals));
+  const Eigen::Matrix<double, 5, 1> by_step = residuals.tangent().transpose() * gradient;
+  const double variance = by_step.dot(solver.solve(by_step));
+  return solver.isPositive() && std::isfinite(variance) && variance >= 0.0
+             ? std::sqrt(variance)
+             : std::numeric_limits<double>::infinity();
 }
 
 double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot) {

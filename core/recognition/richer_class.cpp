@@ -13,14 +13,30 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 /// |value| + two standard deviations of a function of the shape with the given gradient.
 double reach(double value, const Eigen::Vector3d& gradient, const CanonicalFit& fit,
              double inflation) {
-  const auto letters =
-      static_cast<Eigen::Index>(parameter_letters(fit.shape.curve_class).size());
+  const auto letters = static_cast<Eigen::Index>(parameter_letters(fit.shape.curve_class).size());
   const double variance =
       inflation * gradient.head(letters).dot(fit.covariance.topLeftCorner(letters, letters) *
                                              gradient.head(letters));
   return std::isfinite(variance)
              ? std::abs(value) + kStandardDeviations * std::sqrt(std::max(variance, 0.0))
              : kUnbounded;
+}
+
+/// Of a conic whose optimum is the parabola, as far as rounding tells: two standard deviations of
+/// its |1 - e^2|. With quadratic part A, B, C that is |4 A C - B^2| / (A + C)^2 to first order
+/// about 0.
+double departure_of_the_parabola_itself(const Weighing& w) {
+  const auto& fit = w.fits[static_cast<std::size_t>(CurveClass::Parabola)];
+  if (!fit || !fit->polynomial) {
+    return kUnbounded;
+  }
+  const ConicCoefficients q = conic_of_parabola(*fit->polynomial);
+  ConicCoefficients gradient = ConicCoefficients::Zero();
+  gradient.head<3>() << 4.0 * q[2], -2.0 * q[1], 4.0 * q[0];
+  gradient /= (q[0] + q[2]) * (q[0] + q[2]);
+  // The side of the tips does not enter: the information is that of the curve through the surface
+  // points.
+  return kStandardDeviations * std::sqrt(w.inflation) * conic_deviation(w.data.points, q, gradient);
 }
 
 }  // namespace
@@ -39,8 +55,7 @@ double largest_departure(const Weighing& w, CurveClass limit) {
       }
       const double radius = circle->shape.values[0];
       const double extent = 2.0 * w.data.scale;
-      return reach(extent / radius, {-extent / (radius * radius), 0.0, 0.0}, *circle,
-                   w.inflation);
+      return reach(extent / radius, {-extent / (radius * radius), 0.0, 0.0}, *circle, w.inflation);
     }
     case CurveClass::Circle: {
       // 1 - b / a.
@@ -64,7 +79,7 @@ double largest_departure(const Weighing& w, CurveClass limit) {
               least, reach(ratio, {-2.0 * ratio / a, 2.0 * ratio / b, 0.0}, *fit, w.inflation));
         }
       }
-      return least;
+      return std::isfinite(least) ? least : departure_of_the_parabola_itself(w);
     }
     case CurveClass::SemiCubicalParabola: {
       // c t against x = t^2, where x is the half extent.

@@ -23,23 +23,36 @@ double quantile(std::span<double> values, double fraction) {
 
 double median(std::span<double> values) { return quantile(values, 0.5); }
 
-/// Whether any fourth difference is unusually long: what a spike cannot but cause, and a bend
-/// hardly does.
-bool anything_unusual(std::span<const StoredSample> samples) {
+/// Whether any of these lengths is beyond what Gaussian samples leave.
+bool has_unusual(std::vector<double>& lengths) {
   // A spike touches five fourth differences, so that with a third of spikes only (2/3)^5 of them,
   // 13 %, are clean: compare with a low quantile. A thousand Gaussian samples reach about 8 times
   // this one.
   constexpr double kLowQuantile = 0.1;
   constexpr double kUnusual = 12.0;
+  const double longest = *std::max_element(lengths.begin(), lengths.end());
+  return longest > kUnusual * quantile(lengths, kLowQuantile);
+}
+
+/// Whether there is any unusually long second difference, and fourth one: a spike cannot but cause
+/// both. A sharp bend has long second differences, and exact samples have fourth ones of every
+/// size.
+bool anything_unusual(std::span<const StoredSample> samples) {
+  const auto at = [&](std::size_t k) -> const Vec2& { return samples[k].position_m; };
   std::vector<double> lengths;
   lengths.reserve(samples.size());
+  for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
+    lengths.push_back((at(i - 1) - 2.0 * at(i) + at(i + 1)).norm());
+  }
+  if (!has_unusual(lengths)) {
+    return false;
+  }
+  lengths.clear();
   for (std::size_t i = 2; i + 2 < samples.size(); ++i) {
-    const auto at = [&](std::size_t k) -> const Vec2& { return samples[k].position_m; };
     lengths.push_back(
         (at(i - 2) - 4.0 * at(i - 1) + 6.0 * at(i) - 4.0 * at(i + 1) + at(i + 2)).norm());
   }
-  const double longest = *std::max_element(lengths.begin(), lengths.end());
-  return longest > kUnusual * quantile(lengths, kLowQuantile);
+  return has_unusual(lengths);
 }
 
 /// Direction from the median place of the first half of a window to that of the second.

@@ -3,6 +3,7 @@
 #
 #   tests/bench/run.sh            everything, about half an hour on two cores
 #   tests/bench/run.sh --quick    fewer scenes, under five minutes after the build
+#   tests/bench/run.sh --keep     besides: puts the summary and its plots into tests/bench/report/latest/, for the repository
 #
 # Installs what is missing (Debian), builds Release (preset strict), writes build/report/report.md with its plots (SVG and PNG)
 # and a CSV of every figure. Peers that cannot be installed are skipped aloud. Leave the machine alone meanwhile:
@@ -11,10 +12,12 @@ set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."
 
 scale=full
+keep=no
 while [ $# -gt 0 ]; do
   case "$1" in
     --quick) scale=quick ;;
-    -h|--help) sed -n '2,9s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    --keep) keep=yes ;;
+    -h|--help) sed -n '2,10s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "tests/bench/run.sh: unknown argument '$1' (try --help)" >&2; exit 2 ;;
   esac
   shift
@@ -79,3 +82,8 @@ step "peers on the same points"
 step "report"
 /usr/bin/python3 tests/bench/report/report.py "$out" --scale $scale
 echo "written: $out/report.md"
+if [ $keep = yes ]; then
+  mkdir -p tests/bench/report/latest
+  cp "$out"/summary.md "$out"/{pareto,hard_cases,calibration}.svg tests/bench/report/latest/
+  echo "kept: tests/bench/report/latest/summary.md"
+fi
