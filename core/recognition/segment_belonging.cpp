@@ -255,7 +255,7 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, doubl
                        ? fit_run(std::span(kept.samples).subspan(core_begin, core_end - core_begin),
                                  kept.context, noise_m)
                        : std::nullopt;
-  result.was_tested = kept.samples.size() >= 2 * kFewestSamples && run.has_value();
+  result.was_tested = kept.samples.size() >= 2 * kFewestSamples;
   if (run) {
     result.chi2 = run->single.chi2;
     result.dof = static_cast<int>(core_end - core_begin) - kCubicDegrees;
