@@ -179,12 +179,26 @@ KnottedCubicFit fit_single_cubic(const FitData& data) {
   for (const CurveClass curve_class : {CurveClass::CubicSpline, CurveClass::SemiCubicalParabola,
                                        CurveClass::CubicalParabola, CurveClass::Parabola}) {
     const auto& coarse = fits[static_cast<std::size_t>(curve_class)];
-    const auto fit = coarse ? refine_on_all(*coarse, smooth.reduced, smooth, points) : std::nullopt;
-    if (fit && fit->polynomial && fit->polynomial->chi2 < best.chi2) {
-      best = rescaled(*fit->polynomial);
+    if (!coarse || !coarse->polynomial) {
+      continue;
+    }
+    const auto refined = refine_on_all(*coarse, smooth.reduced, smooth, points);
+    PolynomialFit polynomial =
+        refined && refined->polynomial ? *refined->polynomial : *coarse->polynomial;
+    if (polynomial.t.size() != points.points.size()) {
+      // No such curve fits all the points, as where several segments meet: a start all the same.
+      std::vector<double> t;
+      for (const std::uint32_t nearest : smooth.nearest_reduced) {
+        t.push_back(polynomial.t[nearest]);
+      }
+      polynomial.t = std::move(t);
+    }
+    KnottedCubicFit fit = refine_knotted(points.points, rescaled(polynomial), false);
+    if (fit.chi2 < best.chi2) {
+      best = std::move(fit);
     }
   }
-  return std::isfinite(best.chi2) ? refine_knotted(points.points, std::move(best), false) : best;
+  return best;
 }
 
 KnottedCubicFit refine_knotted(std::span<const FitPoint> points, KnottedCubicFit start,

@@ -179,16 +179,21 @@ void part_run(const JointTest& test, std::size_t begin, std::size_t end,
 }
 
 /// Each joint again, between its neighbours: the first ones were found with others still in the
-/// run.
+/// run, and where they lie askew, others were found beside them. What is no joint between its
+/// neighbours goes.
 void settle(const JointTest& test, std::size_t count, std::vector<SegmentJoint>* joints) {
-  if (joints->size() < 2) {
-    return;
-  }
-  for (std::size_t j = 0; j < joints->size(); ++j) {
-    const std::size_t begin = j > 0 ? (*joints)[j - 1].latest : 0;
-    const std::size_t end = j + 1 < joints->size() ? (*joints)[j + 1].earliest : count;
-    if (const auto joint = test.joint_of(begin, end)) {
-      (*joints)[j] = *joint;
+  constexpr int kPasses = 2;
+  for (int pass = 0; pass < kPasses && joints->size() > 1; ++pass) {
+    for (std::size_t j = 0; j < joints->size();) {
+      const std::size_t begin = j > 0 ? (*joints)[j - 1].latest : 0;
+      const std::size_t end = j + 1 < joints->size() ? (*joints)[j + 1].earliest : count;
+      if (const auto joint = test.joint_of(begin, end)) {
+        (*joints)[j++] = *joint;
+      } else if (end >= begin + 2 * kFewestSamples) {
+        joints->erase(joints->begin() + static_cast<std::ptrdiff_t>(j));
+      } else {
+        ++j;  // too near its neighbours to be tested
+      }
     }
   }
 }
@@ -255,7 +260,7 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, doubl
                        ? fit_run(std::span(kept.samples).subspan(core_begin, core_end - core_begin),
                                  kept.context, noise_m)
                        : std::nullopt;
-  result.was_tested = kept.samples.size() >= 2 * kFewestSamples && run.has_value();
+  result.was_tested = kept.samples.size() >= 2 * kFewestSamples;
   if (run) {
     result.chi2 = run->single.chi2;
     result.dof = static_cast<int>(core_end - core_begin) - kCubicDegrees;

@@ -27,8 +27,8 @@ struct SegmentBelonging {
   std::vector<SegmentJoint> joints;  ///< rising
   /// Samples that do not belong to that run's cubic: those outside it, and spikes.
   std::vector<std::size_t> outside;
-  double chi2 = 0.0;  ///< of the run's own cubic, on what certainly lies between the joints
-  int dof = 0;
+  double chi2 = 0.0;     ///< of the run's own cubic, on what certainly lies between the joints
+  int dof = 0;           ///< 0 where that is too little for a cubic
   double sigma_m = 0.0;  ///< noise used, root mean square [m]
 };
 

@@ -10,7 +10,7 @@
 namespace palpate::test {
 
 /// Five segments, as the part of section 6; that of sim/scenes/paper_closed_spline.textproto. About
-/// 60 mm across.
+/// 52 mm across.
 ClosedSpline paper_part();
 
 /// A regular polygon's spline: every segment is like every other.

@@ -61,20 +61,34 @@ TEST(SegmentMatchHardCases, AShortPatchIsAmbiguousRatherThanWrong) {
   EXPECT_EQ(determined, 0);
 }
 
+/// The paper's part with each control point 3 mm off.
+ClosedSpline other_part() {
+  return ClosedSpline(
+      {{0.033, 0.000}, {0.012, 0.031}, {-0.035, 0.022}, {-0.028, -0.021}, {0.007, -0.030}});
+}
+
 TEST(SegmentMatchHardCases, AnotherPartIsNoMatch) {
   const ClosedSpline part = test::paper_part();
   auto rng = test::test_rng();
-  // Each control point 3 mm off. Over less than 40 mm, a stroke of it does fit some place or other
-  // of the model: a short arc has hardly more shape than the place along the part can make up for.
-  const ClosedSpline other(
-      {{0.033, 0.000}, {0.012, 0.031}, {-0.035, 0.022}, {-0.028, -0.021}, {0.007, -0.030}});
   for (int segment = 0; segment < 5; ++segment) {
-    const test::TouchedPart touched =
-        test::touch(other, test::random_pose(rng), {{segment + 0.1, 0.045}}, 1e-5, 1e-5, rng);
+    const test::TouchedPart touched = test::touch(other_part(), test::random_pose(rng),
+                                                  {{segment + 0.1, 0.045}}, 1e-5, 1e-5, rng);
     const SegmentMatch match = match_segment(part, touched.patches);
     EXPECT_EQ(match.status, SegmentMatchStatus::NoMatch) << segment;
     EXPECT_FALSE(match.placements.empty());  // how badly
   }
+}
+
+// The limit of what a short stroke can tell: it has hardly more shape than its place along the
+// model can make up for, and this one happens to fit elsewhere.
+TEST(SegmentMatchHardCases, AShortStrokeOfAnotherPartMayFit) {
+  const ClosedSpline part = test::paper_part();
+  auto rng = test::test_rng();
+  const test::TouchedPart touched =
+      test::touch(other_part(), test::random_pose(rng), {{1.1, 0.03}}, 1e-5, 1e-5, rng);
+  const SegmentMatch match = match_segment(part, touched.patches);
+  EXPECT_EQ(match.status, SegmentMatchStatus::Determined);
+  EXPECT_EQ(match.placements[0].patches[0].segment, 0U);
 }
 
 TEST(SegmentMatchHardCases, TheMirroredPartIsNoMatch) {

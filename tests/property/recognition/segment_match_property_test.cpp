@@ -254,5 +254,23 @@ TEST(LongestSegmentStatistics, JointsAreFoundAndLieInTheirIntervals) {
   }
 }
 
+TEST(LongestSegmentStatistics, SeveralJointsAreCounted) {
+  const ClosedSpline part = test::paper_part();
+  auto rng = test::test_rng();
+  for (const double arc_m : {0.07, 0.1, 0.15}) {
+    int right = 0;
+    const int count = test::stress_count(20);
+    for (int i = 0; i < count; ++i) {
+      const test::TouchedPart touched =
+          test::touch(part, test::random_pose(rng), {{i % 5 + 0.4, arc_m, 161}}, 1e-6, 1e-6, rng);
+      const auto joints = static_cast<std::size_t>(std::floor(touched.t[0].back()) - i % 5);
+      right += longest_segment(touched.patches[0]).joints.size() == joints;
+    }
+    std::printf("%g mm, sigma 0.001 mm: all joints and no more in %d of %d patches\n", 1e3 * arc_m,
+                right, count);
+    EXPECT_GE(right, 0.9 * count);  // each run is tested at 1 %
+  }
+}
+
 }  // namespace
 }  // namespace palpate
