@@ -226,7 +226,7 @@ class Match {
     std::size_t next = 0;  // point of data_
     for (std::size_t p = 0; p < given_.size(); ++p) {
       const StoredPatch& patch = given_[p];
-      PatchPlace place;
+      PatchOnPart place;
       std::vector<std::size_t> votes(part_.size(), 0);
       for (std::size_t i = 0; i < patch.samples.size(); ++i) {
         SamplePlace sample;
@@ -262,7 +262,7 @@ class Match {
   bool agrees_with_material(const PartPlacement& placement, const ScaledPart& part) const {
     for (std::size_t p = 0; p < given_.size(); ++p) {
       const TravelDirections allowed = directions_of(given_[p].context.material_side, part);
-      const PatchPlace& place = placement.patches[p];
+      const PatchOnPart& place = placement.patches[p];
       if (place.samples.size() > 1 &&
           !(place.along_increasing_t ? allowed.along : allowed.against)) {
         return false;

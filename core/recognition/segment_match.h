@@ -57,7 +57,7 @@ struct SamplePlace {
   bool is_outlier = false;  ///< set aside as a spike: no part of the fit
 };
 
-struct PatchPlace {
+struct PatchOnPart {
   std::size_t segment = 0;           ///< that most of its samples lie on
   bool along_increasing_t = true;    ///< its direction of travel
   std::vector<SamplePlace> samples;  ///< as given
@@ -81,7 +81,7 @@ struct PartPlacement {
   /// / 4
   /// - 1|, the worse direction.
   double nonlinearity = 0.0;
-  std::vector<PatchPlace> patches;
+  std::vector<PatchOnPart> patches;
 };
 
 struct SegmentMatch {

@@ -96,8 +96,8 @@ void to_wire(const PartPlacement& placement, std::span<const StoredPatch> patche
   message.set_slide_sd_m(placement.slide_sd_m);
   message.set_nonlinearity(placement.nonlinearity);
   for (std::size_t p = 0; p < patches.size(); ++p) {
-    const PatchPlace& place = placement.patches[p];
-    v1::PatchPlace& patch = *message.add_patches();
+    const PatchOnPart& place = placement.patches[p];
+    v1::PatchOnPart& patch = *message.add_patches();
     patch.set_probe(group.probes[patches[p].context.probe]);
     patch.set_patch(patches[p].context.patch);
     patch.set_segment(static_cast<std::uint32_t>(place.segment));

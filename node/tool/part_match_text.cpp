@@ -64,7 +64,7 @@ std::string pose_text(const v1::PartPlacement& placement) {
          with_sigma(pose.theta_rad() * kDegrees, sigma(2) * kDegrees) + " deg";
 }
 
-void add_patch(const v1::PatchPlace& patch, std::string& text) {
+void add_patch(const v1::PatchOnPart& patch, std::string& text) {
   text += "  patch " + patch.probe() + "/" + std::to_string(patch.patch()) + "    segment " +
           std::to_string(patch.segment());
   if (patch.t_size() > 0) {
@@ -107,7 +107,7 @@ std::string part_match_text(const v1::PartMatch& match) {
     text += "  part         " + pose_text(placement) + "\n";
     text += "  along it     +- " + number(placement.slide_sd_m() * unit.per_m) + " " +
             std::string(unit.name) + "\n";
-    for (const v1::PatchPlace& patch : placement.patches()) {
+    for (const v1::PatchOnPart& patch : placement.patches()) {
       add_patch(patch, text);
     }
   }

@@ -71,8 +71,8 @@ TEST(SegmentMatchLaws, ReversedSamplesLieWhereTheyLay) {
     std::reverse(samples.begin(), samples.end());
     const SegmentMatch after = match_segment(part, touched.patches);
     expect_same(before, after, {});
-    const PatchPlace& p = before.placements[0].patches[0];
-    const PatchPlace& q = after.placements[0].patches[0];
+    const PatchOnPart& p = before.placements[0].patches[0];
+    const PatchOnPart& q = after.placements[0].patches[0];
     EXPECT_NE(p.along_increasing_t, q.along_increasing_t);
     for (std::size_t k = 0; k < p.samples.size(); ++k) {
       EXPECT_EQ(p.samples[k].segment, q.samples[p.samples.size() - 1 - k].segment);

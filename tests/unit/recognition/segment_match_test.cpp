@@ -43,7 +43,7 @@ TEST(SegmentMatch, EverySegmentInBothDirections) {
       EXPECT_GT(best.probability, 1.0 - 1e-9);
       EXPECT_LT(best.chi2, 1e-9);
       expect_pose(best.world_T_part, world_T_part, 1e-9);
-      const PatchPlace& place = best.patches[0];
+      const PatchOnPart& place = best.patches[0];
       EXPECT_EQ(place.segment, static_cast<std::size_t>(segment));
       EXPECT_EQ(place.along_increasing_t, along);
       EXPECT_TRUE(place.beyond.empty());
