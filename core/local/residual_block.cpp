@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/local/legendre_curve.h"
-
 namespace palpate {
 namespace {
 
@@ -29,32 +27,29 @@ LocalStatus ResidualBlock::fit(std::span<const Vec2> samples, const std::vector<
     return status;
   }
   frame_ = frame;
-  using Fit = LegendreFit<kDegree>;
-  Fit fit;
-  in_frame_.clear();
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    in_frame_.push_back(frame.to_frame(samples[i]));
-    if (is_used(i)) {
-      fit.add(in_frame_[i].x(), in_frame_[i].y(), 1.0);
-    }
+  LegendreFit<kDegree> fit;
+  for (const Vec2& p : used_) {
+    const Vec2 uv = frame.to_frame(p);
+    fit.add(uv.x(), uv.y(), 1.0);
   }
   if (!fit.factorise(0.0)) {
     return LocalStatus::Unresolved;
   }
   studentised_m_.resize(samples.size());
   steepest_ = 0.0;
-  const Fit::Vector c = fit.coefficients();
-  const Fit::Matrix whitening = fit.whitened(Fit::Matrix(Fit::Matrix::Identity()));
+  const auto c = fit.coefficients();
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Vec2& uv = in_frame_[i];
-    const Fit::Vector basis = legendre<Fit::kSize>(uv.x());
-    const double slope_here = slope<Fit::kSize>(c, uv.x());
-    const double leverage = (whitening * basis).squaredNorm();
+    const Vec2 uv = frame.to_frame(samples[i]);
+    const Eigen::Matrix<double, 2, kDegree + 1> basis =
+        legendre_derivatives<2, kDegree + 1>(uv.x());
+    const Eigen::Vector2d at = basis * c;  // value and slope
+    const Eigen::Matrix<double, 1, kDegree + 1> row = basis.row(0);
+    const double leverage = fit.whitened(row).squaredNorm();
     if (is_used(i)) {
-      steepest_ = std::max(steepest_, std::abs(slope_here));
+      steepest_ = std::max(steepest_, std::abs(at[1]));
     }
     const double freedom = is_used(i) ? std::max(1.0 - leverage, 0.0) : 1.0 + leverage;
-    const double residual = (uv.y() - c.dot(basis)) / std::sqrt(1.0 + slope_here * slope_here);
+    const double residual = (uv.y() - at[0]) / std::sqrt(1.0 + at[1] * at[1]);
     studentised_m_[i] =
         freedom < kMinFreedom ? 0.0 : frame.half_extent_m * residual / std::sqrt(freedom);
   }

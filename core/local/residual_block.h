@@ -39,7 +39,6 @@ class ResidualBlock {
   AlignedFrame frame_;
   double steepest_ = 0.0;
   std::vector<Vec2> used_;
-  std::vector<Vec2> in_frame_;
   std::vector<double> studentised_m_;
 };
 
