@@ -251,7 +251,11 @@ std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data) {
     return fit;  // these converge at once
   }
   constexpr RefineEffort kPolish{50, 3, 1e-6};
-  const ClassFit polished = refine_parts(fit, data.points, kPolish);
+  ClassFit start = fit;
+  if (start.rival && is_same_curve(*start.polynomial, *start.rival)) {
+    start.rival.reset();  // one optimum: it need not be walked to twice
+  }
+  const ClassFit polished = refine_parts(std::move(start), data.points, kPolish);
   return is_what_it_says(polished, data) ? std::optional(polished) : std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/recognition/axis_fit.h"
@@ -90,17 +91,31 @@ SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced
   return pair;
 }
 
+/// The fit as it is, with the points' foot points and chi-square.
+PolynomialFit placed_on(std::span<const FitPoint> points, PolynomialFit fit) {
+  fit.chi2 = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PlacedPoint placed = place_on(fit, fit.t[i], points[i].position);
+    const double residual = placed.signed_distance * points[i].inverse_sigma;
+    fit.t[i] = placed.t;
+    fit.chi2 += residual * residual;
+  }
+  return fit;
+}
+
 void keep_better(std::optional<PolynomialFit>* best, PolynomialFit fit) {
   if (std::isfinite(fit.chi2) && (!*best || fit.chi2 < (*best)->chi2)) {
     *best = std::move(fit);
   }
 }
 
-/// A class can be no worse than its limits: starts from them too where it is.
-void start_from_limits(const FitData& reduced, PolynomialFits* fits) {
+/// A class can be no worse than its limits: starts from them too where it is. Limits above
+/// `highest_chi2` do not matter.
+void start_from_limits(const FitData& reduced, double highest_chi2, PolynomialFits* fits) {
   for (const auto* limit :
        {&fits->parabola, &fits->cubical_parabola, &fits->semi_cubical_parabola}) {
-    if (*limit && (!fits->cubic_spline || (*limit)->chi2 < fits->cubic_spline->chi2)) {
+    if (*limit && (*limit)->chi2 <= highest_chi2 &&
+        (!fits->cubic_spline || (*limit)->chi2 < fits->cubic_spline->chi2)) {
       PolynomialFit start = **limit;
       normalise_parameter(PolynomialModel::CubicSpline, &start);
       keep_better(&fits->cubic_spline,
@@ -123,7 +138,7 @@ PolynomialFits search_polynomials(const FitData& reduced) {
   SplinePair pair = fit_spline(fits.seeds.cubic_spline, reduced);
   fits.cubic_spline = std::move(pair.best);
   fits.rival = std::move(pair.rival);
-  start_from_limits(reduced, &fits);
+  start_from_limits(reduced, std::numeric_limits<double>::infinity(), &fits);
   return fits;
 }
 
@@ -137,12 +152,18 @@ PolynomialFits search_parabola(const FitData& reduced) {
 PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts) {
   // A step or two; what is plausible goes on from there (refine_on_all).
   constexpr RefineEffort kFollow{5, 1, 1e-2};
+  // Odds of exp(50) or more: the few points that may be added before the next search (a quarter of
+  // all) do not turn them.
+  constexpr double kFarOut = 100.0;
   PolynomialFits fits;
   fits.every_seed = starts.every_seed;
+  const double highest_chi2 = starts.lowest_chi2 + kFarOut;
   const auto follow = [&](const std::optional<PolynomialFit>& start, PolynomialModel model) {
-    return start ? std::optional(
-                       refine_polynomial(model, reduced.points, *start, kSurfacePoints, kFollow))
-                 : std::nullopt;
+    return !start ? std::nullopt
+           : start->chi2 > highest_chi2
+               ? std::optional(placed_on(reduced.points, *start))
+               : std::optional(
+                     refine_polynomial(model, reduced.points, *start, kSurfacePoints, kFollow));
   };
   fits.parabola = follow(starts.parabola, PolynomialModel::Parabola);
   fits.cubical_parabola = follow(starts.cubical_parabola, PolynomialModel::CubicalParabola);
@@ -153,7 +174,7 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
   if (fits.rival && fits.cubic_spline && fits.rival->chi2 < fits.cubic_spline->chi2) {
     std::swap(fits.rival, fits.cubic_spline);
   }
-  start_from_limits(reduced, &fits);
+  start_from_limits(reduced, highest_chi2, &fits);
   return fits;
 }
 

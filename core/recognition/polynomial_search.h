@@ -1,6 +1,7 @@
 // The polynomial classes on the reduced points: searched for, or followed from earlier ones.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "core/recognition/fit_data.h"
@@ -18,6 +19,8 @@ struct PolynomialFits {
   std::optional<PolynomialFit> rival;
   PolynomialSeeds seeds;  ///< that the search started from
   bool every_seed = false;  ///< refined, as nothing fitted
+  /// Of all classes, conics included, on the points of these fits: what is far above it is not followed.
+  double lowest_chi2 = std::numeric_limits<double>::infinity();
 };
 
 /// Exhaustive coarse search, valleys walked, the best of each refined with coarse effort.
@@ -26,7 +29,8 @@ PolynomialFits search_polynomials(const FitData& reduced);
 /// The parabola alone, which the conics need at their limit.
 PolynomialFits search_parabola(const FitData& reduced);
 
-/// The same from earlier fits, whose t must be those of `reduced` (warm_start.h): no search.
+/// The same from earlier fits, whose t must be those of `reduced` (warm_start.h): no search. Fits that
+/// were out by far stay as they are, their chi2 that of the new points.
 PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts);
 
 /// The last resort for the models with arms, whose sharp bends make narrow valleys: refines every seed

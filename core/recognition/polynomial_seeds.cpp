@@ -1,6 +1,5 @@
 #include "core/recognition/polynomial_seeds.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,21 +45,30 @@ struct Moments {
 /// Least squares of v over the powers of u given by `exponents`; returns the residual sum.
 template <std::size_t N>
 double residual_sum(const Moments& m, const std::array<std::size_t, N>& exponents) {
-  constexpr int kSize = static_cast<int>(N);
   // Near-empty directions (all points alike) must not blow up: a ridge at the level of rounding.
   constexpr double kRidge = 1e-12;
-  Eigen::Matrix<double, kSize, kSize> a;
-  Eigen::Matrix<double, kSize, 1> b;
+  // Gaussian elimination of the normal equations: each pivot takes its part off the sum of squares.
+  std::array<std::array<double, N + 1>, N> rows;
   for (std::size_t i = 0; i < N; ++i) {
-    for (std::size_t j = 0; j < N; ++j) {
-      a(static_cast<int>(i), static_cast<int>(j)) = m.u[exponents[i] + exponents[j]];
+    for (std::size_t j = i; j < N; ++j) {
+      rows[i][j] = m.u[exponents[i] + exponents[j]];
     }
-    a(static_cast<int>(i), static_cast<int>(i)) += kRidge * m.u[2 * exponents[i]];
-    b[static_cast<int>(i)] = m.vu[exponents[i]];
+    rows[i][i] += kRidge * m.u[2 * exponents[i]];
+    rows[i][N] = m.vu[exponents[i]];
   }
-  const Eigen::LLT<Eigen::Matrix<double, kSize, kSize>> llt(a);
-  const Eigen::Matrix<double, kSize, 1> x = llt.solve(b);
-  const double cost = m.vv - x.dot(b);
+  double cost = m.vv;
+  for (std::size_t k = 0; k < N; ++k) {
+    if (!(rows[k][k] > 0.0)) {
+      continue;
+    }
+    for (std::size_t i = k + 1; i < N; ++i) {
+      const double factor = rows[k][i] / rows[k][k];
+      for (std::size_t j = i; j <= N; ++j) {
+        rows[i][j] -= factor * rows[k][j];
+      }
+    }
+    cost -= rows[k][N] * rows[k][N] / rows[k][k];
+  }
   return std::isfinite(cost) ? std::max(cost, 0.0) : std::numeric_limits<double>::infinity();
 }
 
@@ -69,11 +77,10 @@ struct Candidate {
   double cost = std::numeric_limits<double>::infinity();
   double theta = 0.0;
   double x0 = 0.0;
-  std::vector<double> arms;  ///< sign of t of every point (arm models only)
 };
 
 /// Appends the best local minima over a grid of directions (circular, outer index) and vertices
-/// (inner index, `vertices` each), best first.
+/// (inner index, `vertices` each), best first; without arms.
 void take_minima(const std::vector<Candidate>& grid, std::size_t vertices, std::size_t most,
                  PolynomialModel model, std::vector<AxisFit>* seeds) {
   std::vector<const Candidate*> minima;
@@ -83,8 +90,8 @@ void take_minima(const std::vector<Candidate>& grid, std::size_t vertices, std::
     for (std::size_t dd : {d + directions - 1, d, d + 1}) {
       for (std::size_t vv = v > 0 ? v - 1 : v; vv <= std::min(v + 1, vertices - 1); ++vv) {
         const Candidate& there = grid[(dd % directions) * vertices + vv];
-        if (&there != &here && (there.cost < here.cost ||
-                                (there.cost == here.cost && &there < &here))) {
+        if (&there != &here &&
+            (there.cost < here.cost || (there.cost == here.cost && &there < &here))) {
           return false;
         }
       }
@@ -102,9 +109,16 @@ void take_minima(const std::vector<Candidate>& grid, std::size_t vertices, std::
             [](const Candidate* a, const Candidate* b) { return a->cost < b->cost; });
   minima.resize(std::min(most, minima.size()));
   for (const Candidate* minimum : minima) {
-    seeds->push_back({model, minimum->theta, minimum->x0, minimum->arms, minimum->cost});
+    seeds->push_back({model, minimum->theta, minimum->x0, {}, minimum->cost});
   }
 }
+
+/// Where a patch comes nearest to the vertex along the axis, and by how much both its ends lie
+/// beyond.
+struct Turn {
+  std::size_t leftmost = 0;
+  double depth = 0.0;
+};
 
 /// Arms of one patch for one direction and vertex: moments on the positive arm, and where the
 /// patch turns round its leftmost point, the index at which it changes arms.
@@ -120,8 +134,14 @@ class ArmSearch {
   static constexpr std::array kVertexDistances = {0.002, 0.02, 0.06, 0.15, 0.35, 0.8, 1.8, 4.0};
 
   ArmSearch(std::span<const FitPoint> points, std::span<const PatchSpan> patches)
-      : points_(points), patches_(patches) {
-    order_.resize(patches.size());
+      : points_(points),
+        patches_(patches),
+        order_(patches.size()),
+        x_(points.size()),
+        y_(points.size()),
+        w_(points.size()),
+        turns_(patches.size()),
+        arms_(patches.size()) {
     for (std::size_t p = 0; p < order_.size(); ++p) {
       order_[p] = p;
     }
@@ -130,33 +150,70 @@ class ArmSearch {
     });
   }
 
-  /// Best arms for one direction and each vertex of kVertexDistances.
+  /// Costs with the best arms for one direction and each vertex of kVertexDistances.
   void search(double theta, Candidate* semi_cubicals, Candidate* splines) {
-    const Vec2 axis(std::cos(theta), std::sin(theta));
-    const std::size_t n = points_.size();
-    x_.resize(n);
-    y_.resize(n);
-    w_.resize(n);
-    double least = std::numeric_limits<double>::infinity();
-    double most = -least;
-    for (std::size_t i = 0; i < n; ++i) {
-      x_[i] = points_[i].position.dot(axis);
-      y_[i] = cross(axis, points_[i].position);
-      w_[i] = square(points_[i].inverse_sigma * verticality(points_[i], axis));
-      least = std::min(least, x_[i]);
-      most = std::max(most, x_[i]);
-    }
-    const double span = most - least;
+    look_along(theta);
     for (std::size_t v = 0; v < kVertexDistances.size(); ++v) {
-      search(theta, least - kVertexDistances[v] * span, span, &semi_cubicals[v], &splines[v]);
+      const double x0 = least_ - kVertexDistances[v] * span_;
+      Candidate& semi_cubical = semi_cubicals[v] = {kNone, theta, x0};
+      Candidate& spline = splines[v] = {kNone, theta, x0};
+      for_each_pattern(x0, [&](const Moments& sum) {
+        semi_cubical.cost = std::min(semi_cubical.cost, residual_sum(sum, kSemiCubical));
+        spline.cost = std::min(spline.cost, residual_sum(sum, kSpline));
+      });
     }
   }
 
+  /// The best arms, point by point, of what `search` has found.
+  std::vector<double> best_arms(const AxisFit& seed) {
+    look_along(seed.theta);
+    double best = kNone;
+    std::vector<double> arms;
+    for_each_pattern(seed.x0, [&](const Moments& sum) {
+      const double cost = seed.model == PolynomialModel::CubicSpline
+                              ? residual_sum(sum, kSpline)
+                              : residual_sum(sum, kSemiCubical);
+      if (cost < best) {
+        best = cost;
+        arms = point_arms();
+      }
+    });
+    return arms;
+  }
+
  private:
-  void search(double theta, double x0, double span, Candidate* semi_cubical, Candidate* spline) {
-    arms_.resize(patches_.size());
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  static constexpr std::array<std::size_t, 3> kSemiCubical = {0, 2, 3};  // powers of t
+  static constexpr std::array<std::size_t, 4> kSpline = {0, 1, 2, 3};
+
+  void look_along(double theta) {
+    const Vec2 axis(std::cos(theta), std::sin(theta));
+    least_ = std::numeric_limits<double>::infinity();
+    double most = -least_;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      x_[i] = points_[i].position.dot(axis);
+      y_[i] = cross(axis, points_[i].position);
+      w_[i] = square(points_[i].inverse_sigma * verticality(points_[i], axis));
+      least_ = std::min(least_, x_[i]);
+      most = std::max(most, x_[i]);
+    }
+    span_ = most - least_;
+    for (std::size_t p = 0; p < patches_.size(); ++p) {
+      const PatchSpan& patch = patches_[p];
+      std::size_t leftmost = patch.begin;
+      for (std::size_t i = patch.begin; i < patch.end; ++i) {
+        leftmost = x_[i] < x_[leftmost] ? i : leftmost;
+      }
+      turns_[p] = {leftmost, std::min(x_[patch.begin], x_[patch.end - 1]) - x_[leftmost]};
+    }
+  }
+
+  /// Calls `function` with the moments of all points for each pattern of arms, signs_ being the
+  /// patches'.
+  template <typename Function>
+  void for_each_pattern(double x0, const Function& function) {
     for (std::size_t p = 0; p < arms_.size(); ++p) {
-      arms_[p] = patch_arms(patches_[p], x0, span);
+      arms_[p] = patch_arms(p, x0);
     }
     constexpr std::size_t kMostEnumerated = 4;
     const std::size_t enumerated = std::min(kMostEnumerated, arms_.size());
@@ -174,33 +231,23 @@ class ArmSearch {
         signs_[order_[k]] = sign;
         sum.add(arms_[order_[k]].moments, sign);
       }
-      if (const double cost = residual_sum<4>(sum, {0, 1, 2, 3}); cost < spline->cost) {
-        *spline = {cost, theta, x0, point_arms()};
-      }
-      if (const double cost = residual_sum<3>(sum, {0, 2, 3}); cost < semi_cubical->cost) {
-        *semi_cubical = {cost, theta, x0, point_arms()};
-      }
+      function(sum);
     }
   }
 
-  PatchArms patch_arms(const PatchSpan& patch, double x0, double span) const {
-    PatchArms arms;
-    arms.change = patch.end;
+  PatchArms patch_arms(std::size_t p, double x0) const {
+    const PatchSpan& patch = patches_[p];
     // A patch that turns round its leftmost point near the vertex passes from arm to arm there.
-    std::size_t leftmost = patch.begin;
-    for (std::size_t i = patch.begin; i < patch.end; ++i) {
-      leftmost = x_[i] < x_[leftmost] ? i : leftmost;
-    }
     constexpr double kNearVertex = 0.03;  // of the span of all points
-    const double depth = std::min(x_[patch.begin], x_[patch.end - 1]) - x_[leftmost];
-    if (x_[leftmost] - x0 < kNearVertex * span && depth > 0.0) {
-      arms.change = leftmost + 1;
-    }
+    const auto [leftmost, depth] = turns_[p];
+    const bool turns = x_[leftmost] - x0 < kNearVertex * span_ && depth > 0.0;
+    const std::size_t change = turns ? leftmost + 1 : patch.end;
+    Moments moments;
     for (std::size_t i = patch.begin; i < patch.end; ++i) {
       const double t = std::sqrt(x_[i] - x0);
-      arms.moments.add(w_[i], i < arms.change ? t : -t, y_[i]);
+      moments.add(w_[i], i < change ? t : -t, y_[i]);
     }
-    return arms;
+    return {moments, change};
   }
 
   static double better_arm(const Moments& so_far, const Moments& patch) {
@@ -208,10 +255,8 @@ class ArmSearch {
     with_positive.add(patch, 1.0);
     Moments with_negative = so_far;
     with_negative.add(patch, -1.0);
-    return residual_sum<4>(with_positive, {0, 1, 2, 3}) <=
-                   residual_sum<4>(with_negative, {0, 1, 2, 3})
-               ? 1.0
-               : -1.0;
+    return residual_sum(with_positive, kSpline) <= residual_sum(with_negative, kSpline) ? 1.0
+                                                                                        : -1.0;
   }
 
   std::vector<double> point_arms() const {
@@ -227,14 +272,21 @@ class ArmSearch {
   std::span<const FitPoint> points_;
   std::span<const PatchSpan> patches_;
   std::vector<std::size_t> order_;
-  std::vector<double> x_, y_, w_, signs_;
+  // Along the axis last looked along:
+  std::vector<double> x_, y_, w_;
+  double least_ = 0.0;  ///< of x_
+  double span_ = 0.0;   ///< of x_
+  std::vector<Turn> turns_;
+  // For the vertex last tried:
   std::vector<PatchArms> arms_;
+  std::vector<double> signs_;
 };
 
 }  // namespace
 
 void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds) {
-  constexpr std::size_t kDirections = 72;  // 2.5 degrees: minima are narrow where there is little noise
+  constexpr std::size_t kDirections =
+      72;  // 2.5 degrees: minima are narrow where there is little noise
   std::vector<Candidate> parabolas(kDirections);
   std::vector<Candidate> cubics(kDirections);
   for (std::size_t d = 0; d < kDirections; ++d) {
@@ -242,15 +294,17 @@ void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds) {
     const Vec2 axis(std::cos(theta), std::sin(theta));
     Moments moments;
     for (const FitPoint& point : points) {
-      moments.add(square(point.inverse_sigma * verticality(point, axis)),
-                  point.position.dot(axis), cross(axis, point.position));
+      moments.add(square(point.inverse_sigma * verticality(point, axis)), point.position.dot(axis),
+                  cross(axis, point.position));
     }
     parabolas[d].theta = cubics[d].theta = theta;
     parabolas[d].cost = residual_sum<3>(moments, {0, 1, 2});
     cubics[d].cost = residual_sum<4>(moments, {0, 1, 2, 3});
   }
-  take_minima(parabolas, 1, PolynomialSeeds::kGraphSeeds, PolynomialModel::Parabola, &seeds->parabola);
-  take_minima(cubics, 1, PolynomialSeeds::kGraphSeeds, PolynomialModel::CubicalParabola, &seeds->cubical_parabola);
+  take_minima(parabolas, 1, PolynomialSeeds::kGraphSeeds, PolynomialModel::Parabola,
+              &seeds->parabola);
+  take_minima(cubics, 1, PolynomialSeeds::kGraphSeeds, PolynomialModel::CubicalParabola,
+              &seeds->cubical_parabola);
 }
 
 void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
@@ -268,6 +322,11 @@ void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> 
               PolynomialModel::SemiCubicalParabola, &seeds->semi_cubical_parabola);
   take_minima(splines, kVertices, PolynomialSeeds::kArmSeeds, PolynomialModel::CubicSpline,
               &seeds->cubic_spline);
+  for (auto* found : {&seeds->semi_cubical_parabola, &seeds->cubic_spline}) {
+    for (AxisFit& seed : *found) {
+      seed.arms = search.best_arms(seed);
+    }
+  }
 }
 
 }  // namespace palpate

@@ -31,7 +31,8 @@ class NearestPlace {
   }
 
  private:
-  // The points were within [-1, 1] (normalise_parameter); they may have grown beyond it by a quarter.
+  // The points were within [-1, 1] (normalise_parameter); they may have grown beyond it by a
+  // quarter.
   static constexpr std::size_t kPlaces = 65;
   static constexpr double kFarthest = 1.6;
   static double parameter(std::size_t k) {
@@ -47,14 +48,15 @@ std::optional<PolynomialFit> carried(const std::optional<PolynomialFit>& fit, co
     return std::nullopt;
   }
   PolynomialFit start;
+  start.chi2 = fit->chi2;
   for (Eigen::Index k = 0; k < 4; ++k) {
     const Vec2 scaled = warm.scale * fit->coefficients.col(k);
-    start.coefficients.col(k) =
-        (k == 0 ? reduced.frame.to_local(warm.frame * scaled)
-                : reduced.frame.rotate_back(warm.frame.rotate(scaled))) /
-        reduced.scale;
+    start.coefficients.col(k) = (k == 0 ? reduced.frame.to_local(warm.frame * scaled)
+                                        : reduced.frame.rotate_back(warm.frame.rotate(scaled))) /
+                                reduced.scale;
   }
   const NearestPlace nearest(start.coefficients);
+  start.t.reserve(reduced.points.size());
   for (const FitPoint& point : reduced.points) {
     start.t.push_back(nearest(point.position));
   }
@@ -67,10 +69,14 @@ WarmStart warm_start_from(const ClassFits& fits, const FitData& reduced) {
   WarmStart warm;
   warm.frame = reduced.frame;
   warm.scale = reduced.scale;
-  warm.polynomials.every_seed =
-      std::none_of(fits.begin(), fits.end(), [&](const std::optional<ClassFit>& fit) {
-        return fit && fits_well(fit->chi2, reduced.points.size());
-      });
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& fit : fits) {
+    lowest = fit ? std::min(lowest, fit->chi2) : lowest;
+  }
+  warm.polynomials.every_seed = !fits_well(lowest, reduced.points.size());
+  if (!warm.polynomials.every_seed) {  // where nothing fits, nothing is out for that
+    warm.polynomials.lowest_chi2 = lowest;
+  }
   const auto take = [&](CurveClass curve_class) -> std::optional<PolynomialFit> {
     const auto& fit = fits[static_cast<std::size_t>(curve_class)];
     return fit && !fit->at_limit ? fit->polynomial : std::nullopt;
@@ -88,6 +94,7 @@ WarmStart warm_start_from(const ClassFits& fits, const FitData& reduced) {
 PolynomialFits carried_to(const WarmStart& warm, const FitData& reduced) {
   PolynomialFits starts;
   starts.every_seed = warm.polynomials.every_seed;
+  starts.lowest_chi2 = warm.polynomials.lowest_chi2;
   starts.parabola = carried(warm.polynomials.parabola, warm, reduced);
   starts.cubical_parabola = carried(warm.polynomials.cubical_parabola, warm, reduced);
   starts.semi_cubical_parabola = carried(warm.polynomials.semi_cubical_parabola, warm, reduced);
