@@ -21,8 +21,9 @@ namespace {
 /// The path through the tree with the estimates' uncertainties as thresholds.
 class SignificanceTree {
  public:
-  SignificanceTree(std::span<const TreePoint> points, const RecognitionTreeOptions& options)
-      : points_(points), options_(options) {
+  SignificanceTree(std::span<const TreePoint> points, const RecognitionTreeOptions& options,
+                   const SplineOptions& spline)
+      : points_(points), options_(options), spline_(spline) {
     for (const TreePoint& point : points) {
       MeasuredGeometry measured = measured_geometry(point.estimate, point.patch);
       const double size = curvature_scale({&measured, 1});
@@ -110,7 +111,8 @@ class SignificanceTree {
     const bool signed_conic = std::abs(sign) > threshold;
     result_.decisions.push_back({"Ic1 not zero", std::abs(sign), threshold, signed_conic});
     if (signed_conic) {
-      return central_conic(sign > 0.0 ? CurveClass::Ellipse : CurveClass::Hyperbola, line.ic1, line);
+      return central_conic(sign > 0.0 ? CurveClass::Ellipse : CurveClass::Hyperbola, line.ic1,
+                           line);
     }
     // The sign of Ic1 is not known: the tangents, which are measured far better, may decide.
     const double size = std::max(std::abs(line.ic1), sd);
@@ -120,9 +122,9 @@ class SignificanceTree {
 
   bool central_conic(CurveClass curve_class, double ic1, const ConicLine& line) {
     const bool ellipse = curve_class == CurveClass::Ellipse;
-    const ConicParameters parameters =
-        ellipse ? ellipse_parameters(ic1, line.ic2, line.covariance)
-                : hyperbola_parameters(ic1, line.ic2, line.covariance);
+    const ConicParameters parameters = ellipse
+                                           ? ellipse_parameters(ic1, line.ic2, line.covariance)
+                                           : hyperbola_parameters(ic1, line.ic2, line.covariance);
     if (parameters.status != InvariantStatus::Ok) {
       return refused(ellipse ? "ellipse" : "hyperbola", static_cast<int>(measured_.size()) - 2);
     }
@@ -155,7 +157,7 @@ class SignificanceTree {
       return measured_.size() >= 2 &&
              leaf(fit_semi_cubical_parabola(measured_), "semi-cubical parabola");
     }
-    return measured_.size() >= 4 && leaf(fit_cubic_spline(measured_), "cubic spline");
+    return measured_.size() >= 4 && leaf(fit_cubic_spline(measured_, spline_), "cubic spline");
   }
 
   bool leaf(const SemiSignatureFit& fit, std::string_view name) {
@@ -174,6 +176,7 @@ class SignificanceTree {
 
   std::span<const TreePoint> points_;
   const RecognitionTreeOptions& options_;
+  const SplineOptions& spline_;
   std::vector<MeasuredGeometry> measured_;
   TreeResult result_;
 };
@@ -181,7 +184,7 @@ class SignificanceTree {
 }  // namespace
 
 TreeResult recognise_by_tree(std::span<const TreePoint> points,
-                             const RecognitionTreeOptions& options) {
+                             const RecognitionTreeOptions& options, const SplineOptions& spline) {
   TreeResult result;
   if (points.size() < 2) {
     return result;
@@ -194,7 +197,7 @@ TreeResult recognise_by_tree(std::span<const TreePoint> points,
     }
   }
   return options.relative_tolerance > 0.0 ? recognise_by_tolerance(points, options)
-                                          : SignificanceTree(points, options).run();
+                                          : SignificanceTree(points, options, spline).run();
 }
 
 }  // namespace palpate

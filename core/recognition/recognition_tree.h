@@ -8,6 +8,7 @@
 
 #include "core/invariants/invariant_status.h"
 #include "core/invariants/local_parameter.h"
+#include "core/invariants/spline_least_squares.h"
 #include "core/recognition/recognition.h"
 
 namespace palpate {
@@ -47,8 +48,9 @@ struct TreeResult {
 /// tangent rotation of the conic; cubical parabola; semi-cubical parabola; cubic spline. A conic
 /// needs three points, the spline four (three and one that verifies), the other two. Points are
 /// taken as independent: neighbouring windows that share samples are not, and make the tests
-/// stricter than their significance says.
+/// stricter than their significance says. `spline`: the effort on its leaf.
 TreeResult recognise_by_tree(std::span<const TreePoint> points,
-                             const RecognitionTreeOptions& options = {});
+                             const RecognitionTreeOptions& options = {},
+                             const SplineOptions& spline = {});
 
 }  // namespace palpate

@@ -68,8 +68,7 @@ Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
 
 class Recognizer::Impl {
  public:
-  explicit Impl(const RecognizerOptions& options)
-      : options_(options), memory_(options.memory) {}
+  explicit Impl(const RecognizerOptions& options) : options_(options), memory_(options.memory) {}
 
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples) {
     return memory_.add(context, samples);
@@ -122,8 +121,9 @@ class Recognizer::Impl {
     std::vector<Decision> decisions;  ///< of the tree, at the last search
   };
 
-  /// From the last weighing while the object is touched on in the same patches; from a new search where
-  /// they have grown by this, where there is another patch, and where the answer would change.
+  /// From the last weighing while the object is touched on in the same patches; from a new search
+  /// where they have grown by this, where there is another patch, and where the answer would
+  /// change.
   Weighing weigh_once_more(const FitData& data, bool sigma_known,
                            std::span<const StoredPatch> patches) {
     constexpr double kGrowth = 1.25;
@@ -138,7 +138,8 @@ class Recognizer::Impl {
       }
     }
     Weighing w = weigh_without_outliers(data, sigma_known, patches, nullptr);
-    last_ = Last{warm_start_from(w.coarse, w.smooth.reduced), w.best, samples, data.patches.size(), {}};
+    last_ =
+        Last{warm_start_from(w.coarse, w.smooth.reduced), w.best, samples, data.patches.size(), {}};
     return w;
   }
 
@@ -241,7 +242,11 @@ class Recognizer::Impl {
         points.push_back({contacts[i].estimate, patch});
       }
     }
-    return recognise_by_tree(points, options_.tree);
+    SplineOptions spline;
+    if (options_.method == RecognitionMethod::MaximumLikelihood) {
+      spline.fallback_starts = 0;  // the path is reported only: not worth the time
+    }
+    return recognise_by_tree(points, options_.tree, spline);
   }
 
   /// The paper's way: nothing but the tree's answer.
@@ -262,9 +267,9 @@ class Recognizer::Impl {
     answer->covariance = ShapePoseCovariance::Zero(letters + 3, letters + 3);
     answer->covariance.topLeftCorner(letters, letters) =
         tree.covariance.topLeftCorner(letters, letters);
-    const bool told = tree.status == InvariantStatus::Ok &&
-                      is_determined(tree.shape, answer->covariance, extent_m,
-                                    options_.determined_fraction);
+    const bool told =
+        tree.status == InvariantStatus::Ok &&
+        is_determined(tree.shape, answer->covariance, extent_m, options_.determined_fraction);
     answer->status = told ? RecognitionStatus::Recognized : RecognitionStatus::Ambiguous;
     answer->doubt = told ? Doubt::None : Doubt::Undetermined;
     Hypothesis only;
@@ -300,20 +305,19 @@ class Recognizer::Impl {
         answer->hypotheses.push_back(to_hypothesis(w, static_cast<CurveClass>(i)));
       }
     }
-    std::stable_sort(answer->hypotheses.begin(), answer->hypotheses.end(),
-                     [](const Hypothesis& a, const Hypothesis& b) {
-                       return a.probability > b.probability;
-                     });
+    std::stable_sort(
+        answer->hypotheses.begin(), answer->hypotheses.end(),
+        [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
     const Hypothesis& best = answer->hypotheses.front();
     answer->shape = best.shape;
     answer->world_T_curve = best.world_T_curve;
     answer->covariance = best.covariance;
-    answer->sigma_m = w.sigma * w.data.scale *
-                      (w.correlation_length > 0.0 ? 1.0 : std::sqrt(w.inflation));
+    answer->sigma_m =
+        w.sigma * w.data.scale * (w.correlation_length > 0.0 ? 1.0 : std::sqrt(w.inflation));
     answer->noise_correlation_m = w.correlation_length * w.data.scale;
     answer->doubt = doubt_about(w, best);
-    answer->status = answer->doubt == Doubt::None ? RecognitionStatus::Recognized
-                                                  : RecognitionStatus::Ambiguous;
+    answer->status =
+        answer->doubt == Doubt::None ? RecognitionStatus::Recognized : RecognitionStatus::Ambiguous;
   }
 
   /// What speaks against a class that is more probable than all others.
@@ -344,8 +348,8 @@ class Recognizer::Impl {
       return Doubt::Misfit;
     }
     const auto& fit = *w.fits[static_cast<std::size_t>(curve_class)];
-    // Odds of the recognition's own level between a spline and its rival across c = 0, and between the
-    // two sides that the tips may have touched.
+    // Odds of the recognition's own level between a spline and its rival across c = 0, and between
+    // the two sides that the tips may have touched.
     const double odds =
         2.0 * std::log(options_.recognized_probability / (1.0 - options_.recognized_probability));
     const bool has_rival = fit.rival && (fit.rival->chi2 - fit.chi2) / w.inflation <= odds &&
@@ -353,8 +357,8 @@ class Recognizer::Impl {
     if (has_rival || w.sides_margin / w.inflation <= odds) {
       return Doubt::TwoShapes;
     }
-    const double excluded = curve_class == CurveClass::Line ? options_.excluded_turn_rad
-                                                            : options_.excluded_departure;
+    const double excluded =
+        curve_class == CurveClass::Line ? options_.excluded_turn_rad : options_.excluded_departure;
     if (!(largest_departure(w, curve_class) <= excluded)) {
       return Doubt::RicherClass;
     }
@@ -370,8 +374,7 @@ class Recognizer::Impl {
   std::optional<Last> last_;
 };
 
-Recognizer::Recognizer(const RecognizerOptions& options)
-    : impl_(std::make_unique<Impl>(options)) {}
+Recognizer::Recognizer(const RecognizerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 Recognizer::~Recognizer() = default;
 Recognizer::Recognizer(Recognizer&&) noexcept = default;
 Recognizer& Recognizer::operator=(Recognizer&&) noexcept = default;
