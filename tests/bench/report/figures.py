@@ -79,6 +79,7 @@ def pareto(rows, folder):
         if bound > 0:
             axis.axhline(bound, color="black", linestyle="--", linewidth=1, label="Kanatani-Cramer-Rao bound")
         axis.set(xscale="log", yscale="log", title=f"noise / size {noise:g}")
+        axis.set_xticks([200, 500, 1000, 2000, 5000], ["200", "500", "1000", "2000", "5000"])
         axis.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
         axis.grid(alpha=0.3, which="both")
     for axis in axes[1]:
