@@ -1,30 +1,33 @@
 #!/usr/bin/env bash
 # Instructions per call of each piece of the library, counted by valgrind: a busy machine changes nothing.
 #
-#   tests/bench/kernels/compare.sh                 the working tree: CSV of kernel, calls, instructions
-#   tests/bench/kernels/compare.sh BASE_COMMIT     beside another commit's, with the ratio to it
+#   tests/bench/compare.sh             the working tree: CSV of kernel, calls, instructions
+#   tests/bench/compare.sh OLD         beside the commit OLD, with the ratio to it
+#   tests/bench/compare.sh OLD NEW     the commit NEW in place of the working tree
 #     --only REGEX    kernels whose name matches, e.g. '^recognition/cold' ('kernels --list' lists all)
 #     --jobs N        builds and counts N at a time (default: all cores)
 #
-# The CSV goes to standard output, all else to standard error. The ratio is the working tree's over the base
-# commit's: under 1 is fewer instructions than there. The same kernels.cpp and tests/support are built
-# against both (Release, same flags), so data are equal; a base whose interfaces differ from what
-# they use does not compile, and is said so. It is checked out as a git worktree in build/kernels/base, which
-# 'git worktree remove --force build/kernels/base' takes away again. Preparing data is not counted,
-# allocation within a call is. Repeated counts agree to 1e-5. Instructions are not time: cache misses, mispredicted
-# branches and divisions cost more than one. Needs valgrind; installs nothing.
+# The CSV goes to standard output, all else to standard error. A ratio under 1 is fewer instructions than in OLD.
+# The working tree's kernels.cpp and tests/support are built against each (Release, same flags), so data are
+# equal; a commit whose interfaces differ from what they use does not compile, and is said so. Commits are
+# checked out as git worktrees in build/kernels/{old,new}, which 'git worktree remove --force' takes away
+# again. Preparing data is not counted, allocation within a call is. Repeated counts agree to 1e-5. Instructions
+# are not time: cache misses, mispredicted branches and divisions cost more than one. Needs valgrind;
+# installs nothing.
 set -euo pipefail
-cd "$(dirname "$(readlink -f "$0")")/../../.."
+cd "$(dirname "$(readlink -f "$0")")/../.."
 
-base='' only=. jobs=$(nproc)
-fail() { echo "tests/bench/kernels/compare.sh: $1" >&2; exit "${2:-1}"; }
+old='' new='' only=. jobs=$(nproc)
+fail() { echo "tests/bench/compare.sh: $1" >&2; exit "${2:-1}"; }
 while [ $# -gt 0 ]; do
   case "$1" in
     --only) [ $# -gt 1 ] || fail "--only needs a regular expression" 2; only=$2; shift ;;
     --jobs) [[ ${2:-} =~ ^[1-9][0-9]*$ ]] || fail "--jobs needs a whole number of at least 1" 2; jobs=$2; shift ;;
-    -h|--help) sed -n '2,16s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h|--help) sed -n '2,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
     -*) fail "unknown argument '$1' (try --help)" 2 ;;
-    *) [ -z "$base" ] || fail "one BASE_COMMIT only (try --help)" 2; base=$1 ;;
+    *)
+      [ -z "$new" ] || fail "two commits at most (try --help)" 2
+      if [ -z "$old" ]; then old=$1; else new=$1; fi ;;
   esac
   shift
 done
@@ -34,11 +37,11 @@ done
 
 work=build/kernels
 mkdir -p $work
-if [ -n "$base" ]; then
-  given=$base
-  base=$(git rev-parse --verify --quiet "$given^{commit}") || fail "no such commit: $given" 2
-  step_base="base $(git log -1 --format='%h %s' "$base")"
-fi
+commit() {  # the full name of a commit
+  git rev-parse --verify --quiet "$1^{commit}" || fail "no such commit: $1" 2
+}
+if [ -n "$old" ]; then old=$(commit "$old"); fi
+if [ -n "$new" ]; then new=$(commit "$new"); fi
 
 build() {  # title, source folder, build folder; leaves kernels in it
   echo "== building: $1" >&2
@@ -48,22 +51,24 @@ build() {  # title, source folder, build folder; leaves kernels in it
     fail "$1 does not build with this kernels.cpp: see $3.log"
   }
 }
-build "the working tree" . $work/head
-if [ -n "$base" ]; then
-  if [ -e $work/base/.git ]; then
-    git -C $work/base checkout --quiet --force --detach "$base"
-    git -C $work/base clean --quiet --force -d
+build_commit() {  # side, commit
+  local tree=$work/$1
+  if [ -e "$tree/.git" ]; then
+    git -C "$tree" checkout --quiet --force --detach "$2"
+    git -C "$tree" clean --quiet --force -d
   else
-    git worktree add --quiet --force --detach $work/base "$base"
+    git worktree add --quiet --force --detach "$tree" "$2"
   fi
-  rm -rf $work/base/tests/support $work/base/tests/bench/kernels
-  mkdir -p $work/base/tests/bench
-  cp -Rp tests/support $work/base/tests/support
-  cp -Rp tests/bench/kernels $work/base/tests/bench/kernels
+  rm -rf "$tree/tests/support" "$tree/tests/bench/kernels"
+  mkdir -p "$tree/tests/bench"
+  cp -Rp tests/support "$tree/tests/support"
+  cp -Rp tests/bench/kernels "$tree/tests/bench/kernels"
   printf '%s\n' 'find_package(GTest REQUIRED)' 'add_subdirectory(support)' 'add_subdirectory(bench/kernels)' \
-    >$work/base/tests/CMakeLists.txt
-  build "$step_base" $work/base $work/base-build
-fi
+    >"$tree/tests/CMakeLists.txt"
+  build "$1: $(git log -1 --format='%h %s' "$2")" "$tree" "$work/$1-build"
+}
+if [ -n "$new" ]; then build_commit new "$new"; else build "the working tree" . $work/new-build; fi
+if [ -n "$old" ]; then build_commit old "$old"; fi
 
 # count PROGRAM FOLDER "NAME CALLS": writes the instructions of all calls to FOLDER/NAME (slashes as dots)
 count() {
@@ -76,14 +81,14 @@ count() {
 }
 export -f count
 
-kernels=$(find $work/head -type f -name kernels -perm -u+x)
+program_of() { find "$work/$1-build" -type f -name kernels -perm -u+x; }
+kernels=$(program_of new)
 chosen=$("$kernels" --list | awk -v only="$only" '$1 == "empty" || $1 ~ only')
 [ "$(wc -l <<<"$chosen")" -gt 1 ] || fail "no kernel matches '$only'" 2
-sides=(head ${base:+base})
+sides=(new ${old:+old})
 for side in "${sides[@]}"; do
   folder=$work/count-$side
-  program=$kernels
-  [ $side = head ] || program=$(find $work/base-build -type f -name kernels -perm -u+x)
+  program=$(program_of $side)
   rm -rf $folder
   mkdir -p $folder
   echo "== counting: $side, $(wc -l <<<"$chosen") kernels" >&2
@@ -91,7 +96,7 @@ for side in "${sides[@]}"; do
     fail "not every kernel was counted"
 done
 
-echo "kernel,calls,instructions_per_call${base:+,base_instructions_per_call,ratio}"
+echo "kernel,calls,instructions_per_call${old:+,old_instructions_per_call,ratio}"
 while read -r name calls; do
   [ "$name" != empty ] || continue
   for side in "${sides[@]}"; do
@@ -102,11 +107,11 @@ done <<<"$chosen" | awk -v sides=${#sides[@]} '
     each = $4 / $2 - $3  # the cost of calling a kernel at all is taken off
     if (NR % sides == 1 || sides == 1) {
       printf "%s,%d,%.1f", $1, $2, each
-      head = each
+      now = each
     }
     if (sides == 2 && NR % 2 == 0) {
-      printf ",%.1f,%.4f", each, head / each
-      logs += log(head / each)
+      printf ",%.1f,%.4f", each, now / each
+      logs += log(now / each)
       rows++
     }
     if (NR % sides == 0) printf "\n"
