@@ -214,6 +214,19 @@ TEST(RecognitionHardCases, ALineTouchedByTipsWhoseSideIsNotToldIsEitherOfTwo) {
   EXPECT_NEAR(told.world_T_curve.y, -0.002, 1e-5);
 }
 
+// Near c = 0 a spline bends within a few samples: none of them is a spike.
+TEST(RecognitionHardCases, ASharpBendIsNotEatenAwayAsSpikes) {
+  for (const std::uint64_t seed : {24, 144, 889, 1392}) {
+    std::mt19937_64 rng(seed);
+    test::SceneOptions options;
+    options.patches = 1;
+    options.sigma_over_size = seed == 889 ? 1e-5 : 1e-8;
+    const test::Scene scene = test::random_scene(CurveClass::CubicSpline, options, rng);
+    const Recognition answer = test::recognise(scene, scene.sigma_m);
+    EXPECT_LE(answer.outlier_count, 2U) << seed;
+  }
+}
+
 TEST(RecognitionHardCases, AMillionMetresFromTheOriginAndOfEverySize) {
   std::mt19937_64 rng = test::test_rng();
   const std::vector<Patch> patches = {elliptic_arc(0.3, rng), elliptic_arc(2.5, rng)};
