@@ -1,12 +1,12 @@
 #include "core/recognition/axis_fit.h"
 
-#include <ceres/tiny_solver.h>
-
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "core/recognition/least_squares.h"
 
 namespace palpate {
 namespace {
@@ -40,7 +40,9 @@ class AxisResiduals {
   using Coefficients = Eigen::Matrix<double, kLinear, 1>;
 
   AxisResiduals(std::span<const FitPoint> points, std::span<const double> arms)
-      : points_(points), arms_(arms), design_(static_cast<Eigen::Index>(points.size()), kLinear),
+      : points_(points),
+        arms_(arms),
+        design_(static_cast<Eigen::Index>(points.size()), kLinear),
         right_(static_cast<Eigen::Index>(points.size()), 1 + NUM_PARAMETERS) {}
 
   int NumResiduals() const { return static_cast<int>(points_.size()); }
@@ -71,14 +73,14 @@ class AxisResiduals {
     if (!(r.diagonal().cwiseAbs().minCoeff() > 0.0)) {
       // All points alike, as when the vertex passes beyond them: no curve. The solver does not look
       // at the return value, but rejects a step to such residuals.
-      std::fill(residuals, residuals + n, std::sqrt(std::numeric_limits<double>::max() /
-                                                    static_cast<double>(4 * n)));
+      std::fill(residuals, residuals + n,
+                std::sqrt(std::numeric_limits<double>::max() / static_cast<double>(4 * n)));
       return false;
     }
     Eigen::Matrix<double, Eigen::Dynamic, 1> rotated = right_.col(0);
     rotated.applyOnTheLeft(qr.householderQ().adjoint());
-    coefficients_ = r.template triangularView<Eigen::Upper>().solve(
-        rotated.template head<kLinear>());
+    coefficients_ =
+        r.template triangularView<Eigen::Upper>().solve(rotated.template head<kLinear>());
     rotated.template head<kLinear>().setZero();
     std::copy(rotated.data(), rotated.data() + n, residuals);
     if (jacobian == nullptr) {
@@ -133,12 +135,9 @@ AxisFit refine(std::span<const FitPoint> points, AxisFit fit, int max_iterations
   using Residuals = AxisResiduals<kModel>;
   const Residuals residuals(points, fit.arms);
   ceres::TinySolver<Residuals> solver{};
-  solver.options.max_num_iterations = max_iterations;
   // A start for the refinement proper: chi-square to a tenth is plenty.
-  solver.options.function_tolerance = 0.1;
-  solver.options.gradient_tolerance = 0.0;
-  solver.options.parameter_tolerance = 1e-14;
-  solver.options.cost_threshold = 0.0;
+  constexpr double kChi2Tolerance = 0.1;
+  solver.options = least_squares_options<Residuals>(max_iterations, kChi2Tolerance);
   solver.options.initial_trust_region_radius = 1e6;
   Eigen::Matrix<double, Residuals::NUM_PARAMETERS, 1> x;
   x[0] = fit.theta;
@@ -155,8 +154,7 @@ AxisFit refine(std::span<const FitPoint> points, AxisFit fit, int max_iterations
 
 /// Coefficients of y in powers of u at given nonlinear parameters.
 template <PolynomialModel kModel>
-std::array<double, 4> across_coefficients(const AxisFit& fit,
-                                          std::span<const FitPoint> points) {
+std::array<double, 4> across_coefficients(const AxisFit& fit, std::span<const FitPoint> points) {
   using Residuals = AxisResiduals<kModel>;
   const Residuals residuals(points, fit.arms);
   std::vector<double> scratch(points.size());
@@ -170,8 +168,7 @@ std::array<double, 4> across_coefficients(const AxisFit& fit,
   return y;
 }
 
-std::array<double, 4> across_coefficients(const AxisFit& fit,
-                                          std::span<const FitPoint> points) {
+std::array<double, 4> across_coefficients(const AxisFit& fit, std::span<const FitPoint> points) {
   switch (fit.model) {
     case PolynomialModel::Parabola:
       return across_coefficients<PolynomialModel::Parabola>(fit, points);
@@ -218,8 +215,7 @@ AxisFit refine_axis(std::span<const FitPoint> points, AxisFit start, int max_ite
     case PolynomialModel::CubicalParabola:
       return refine<PolynomialModel::CubicalParabola>(points, std::move(start), max_iterations);
     case PolynomialModel::SemiCubicalParabola:
-      return refine<PolynomialModel::SemiCubicalParabola>(points, std::move(start),
-                                                          max_iterations);
+      return refine<PolynomialModel::SemiCubicalParabola>(points, std::move(start), max_iterations);
     case PolynomialModel::CubicSpline:
       break;
   }
@@ -302,9 +298,8 @@ PolynomialFit to_polynomial(const AxisFit& fit, std::span<const FitPoint> points
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double along = points[i].position.dot(axis);
-    result.t.push_back(fit.arms.empty()
-                           ? along - shift
-                           : fit.arms[i] * std::sqrt(std::max(along - fit.x0, 0.0)));
+    result.t.push_back(fit.arms.empty() ? along - shift
+                                        : fit.arms[i] * std::sqrt(std::max(along - fit.x0, 0.0)));
   }
   result.chi2 = fit.chi2;
   normalise_parameter(fit.model, &result);

@@ -60,6 +60,14 @@ std::optional<Extents> extents_of(std::span<const StoredPatch> patches) {
 
 }  // namespace
 
+double rms_sigma(const FitData& data) {
+  double sum = 0.0;
+  for (const FitPoint& point : data.points) {
+    sum += 1.0 / (point.inverse_sigma * point.inverse_sigma);
+  }
+  return std::sqrt(sum / static_cast<double>(data.points.size()));
+}
+
 double rounding_level(const FitData& data) {
   // A coordinate carries half a unit in the last place; a few such errors meet in a residual.
   constexpr double kRoundings = 4.0;

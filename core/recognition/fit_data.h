@@ -46,6 +46,9 @@ struct FitData {
 FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma_m,
                       bool* sigma_known);
 
+/// Root mean square of the points' noise, in normalised units. At least one point.
+double rms_sigma(const FitData& data);
+
 /// Rounding of the data's coordinates, in normalised units: no noise is smaller than that.
 double rounding_level(const FitData& data);
 

@@ -1,12 +1,12 @@
 #include "core/recognition/implicit_fit.h"
 
-#include <ceres/tiny_solver.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "core/recognition/least_squares.h"
 
 namespace palpate {
 namespace {
@@ -19,10 +19,6 @@ Monomials monomials(const Vec2& p) {
 
 double value(const ConicCoefficients& q, const Vec2& p) {
   return (q[0] * p.x() + q[1] * p.y() + q[3]) * p.x() + (q[2] * p.y() + q[4]) * p.y() + q[5];
-}
-
-inline Vec2 gradient(const ConicCoefficients& q, const Vec2& p) {
-  return {2.0 * q[0] * p.x() + q[1] * p.y() + q[3], q[1] * p.x() + 2.0 * q[2] * p.y() + q[4]};
 }
 
 /// Columns: the model's directions in the space of the six coefficients.
@@ -99,7 +95,7 @@ class SphereResiduals {
     for (std::size_t i = 0; i < n; ++i) {
       // Envelope theorem: only the curve's motion along its normal at the foot point counts.
       const Vec2& foot = feet_[i].position;
-      const double gradient_norm = gradient(q, foot).norm();
+      const double gradient_norm = conic_gradient(q, foot).norm();
       const double factor = gradient_norm > 0.0 ? points_[i].inverse_sigma / gradient_norm : 0.0;
       const Eigen::Matrix<double, 1, K - 1> row =
           factor * (monomials(foot).transpose() * q_by_step);
@@ -152,16 +148,8 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
   const Eigen::Matrix<double, K, 1> start_in_model = basis.transpose() * start;
   const SphereResiduals<K> residuals(points, basis, start_in_model, side);
   ceres::TinySolver<SphereResiduals<K>> solver{};
-  solver.options.max_num_iterations = effort.iterations;
-  // Residuals are in units of sigma: chi-square changes below this cannot matter. (The solver
-  // compares the ABSOLUTE change of the cost, whatever its comment says.)
-  solver.options.function_tolerance = effort.chi2_tolerance;
-  solver.options.gradient_tolerance = 0.0;
-  // Little damping to begin with: the valleys of short arcs are long, and the solver multiplies
-  // the damping fast where a step fails.
-  solver.options.initial_trust_region_radius = 1e8;
-  solver.options.parameter_tolerance = 1e-14;
-  solver.options.cost_threshold = 0.0;
+  solver.options =
+      least_squares_options<SphereResiduals<K>>(effort.iterations, effort.chi2_tolerance);
   Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
   const auto& summary = solver.Solve(residuals, &step);
   return {residuals.coefficients(step), 2.0 * summary.final_cost, summary.iterations, side,
@@ -226,7 +214,7 @@ double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot
   Vec2 f = point;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const double v = value(q, f);
-    const Vec2 g = gradient(q, f);
+    const Vec2 g = conic_gradient(q, f);
     const double g2 = g.squaredNorm();
     if (g2 <= 0.0) {
       break;  // centre of a conic: no direction to go
@@ -254,10 +242,8 @@ double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot
 
 double signed_distance_from(const Vec2& foot, const ConicCoefficients& q, const Vec2& point) {
   const double distance = (point - foot).norm();
-  return (point - foot).dot(gradient(q, foot)) >= 0.0 ? distance : -distance;
+  return (point - foot).dot(conic_gradient(q, foot)) >= 0.0 ? distance : -distance;
 }
-
-Vec2 conic_gradient(const ConicCoefficients& q, const Vec2& p) { return gradient(q, p); }
 
 ConicCoefficients algebraic_conic(std::span<const FitPoint> points) {
   Monomials mean = Monomials::Zero();

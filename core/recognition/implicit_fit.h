@@ -59,6 +59,8 @@ double signed_distance_from(const Vec2& foot, const ConicCoefficients& coefficie
                             const Vec2& point);
 
 /// The gradient of the conic's polynomial.
-Vec2 conic_gradient(const ConicCoefficients& coefficients, const Vec2& p);
+inline Vec2 conic_gradient(const ConicCoefficients& q, const Vec2& p) {
+  return {2.0 * q[0] * p.x() + q[1] * p.y() + q[3], q[1] * p.x() + 2.0 * q[2] * p.y() + q[4]};
+}
 
 }  // namespace palpate

@@ -1,14 +1,14 @@
 #include "core/recognition/knotted_cubic.h"
 
-#include <ceres/tiny_solver.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "core/curves/polynomial_curve.h"
+#include "core/curves/plane_curve.h"
+#include "core/recognition/axis_fit.h"
 #include "core/recognition/class_fits.h"
+#include "core/recognition/least_squares.h"
 #include "core/recognition/smooth_model.h"
 
 namespace palpate {
@@ -126,14 +126,9 @@ KnottedCubicFit refine(std::span<const FitPoint> points, const KnottedCubicFit& 
   using Residuals = KnottedResiduals<kParameters>;
   const Residuals residuals(points, start);
   ceres::TinySolver<Residuals> solver{};
-  solver.options.max_num_iterations = 30;
-  // Residuals are in units of sigma; the solver compares the ABSOLUTE change of the cost.
-  solver.options.function_tolerance = 1e-6;
-  solver.options.gradient_tolerance = 0.0;
-  solver.options.parameter_tolerance = 1e-14;
-  solver.options.cost_threshold = 0.0;
-  // Little damping: what an affine change of t leaves free needs hardly any.
-  solver.options.initial_trust_region_radius = 1e8;
+  constexpr int kMostIterations = 30;
+  constexpr double kChi2Tolerance = 1e-6;
+  solver.options = least_squares_options<Residuals>(kMostIterations, kChi2Tolerance);
   typename Residuals::Parameters x = residuals.parameters();
   const auto& summary = solver.Solve(residuals, &x);
   KnottedCubicFit fit = start;
@@ -146,22 +141,20 @@ KnottedCubicFit refine(std::span<const FitPoint> points, const KnottedCubicFit& 
 }
 
 /// With the parameter running from -1 to 1 over the points, in their order.
-KnottedCubicFit rescaled(const PolynomialFit& fit) {
-  const auto [low, high] = std::minmax_element(fit.t.begin(), fit.t.end());
-  const double middle = 0.5 * (*low + *high);
-  const double half = 0.5 * (*high - *low);
-  const double direction = fit.t.back() < fit.t.front() ? -1.0 : 1.0;
+KnottedCubicFit rescaled(PolynomialFit fit) {
+  normalise_parameter(PolynomialModel::CubicSpline, &fit);
+  if (fit.t.back() < fit.t.front()) {
+    fit.coefficients.col(1) *= -1.0;
+    fit.coefficients.col(3) *= -1.0;
+    fit.side = -fit.side;
+    for (double& t : fit.t) {
+      t = -t;
+    }
+  }
   KnottedCubicFit result;
-  result.curve.coefficients = PolynomialCurve2{fit.coefficients}.shifted(middle).coefficients;
-  double power = 1.0;
-  for (int k = 0; k < 4; ++k) {
-    result.curve.coefficients.col(k) *= power;
-    power *= direction * half;
-  }
-  for (const double t : fit.t) {
-    result.t.push_back((t - middle) / (direction * half));
-  }
-  result.side = static_cast<int>(direction) * fit.side;
+  result.curve.coefficients = fit.coefficients;
+  result.t = std::move(fit.t);
+  result.side = fit.side;
   result.chi2 = fit.chi2;
   return result;
 }
@@ -193,7 +186,7 @@ KnottedCubicFit fit_single_cubic(const FitData& data) {
       }
       polynomial.t = std::move(t);
     }
-    KnottedCubicFit fit = refine_knotted(points.points, rescaled(polynomial), false);
+    KnottedCubicFit fit = refine_knotted(points.points, rescaled(std::move(polynomial)), false);
     if (fit.chi2 < best.chi2) {
       best = std::move(fit);
     }

@@ -1,13 +1,12 @@
 #include "core/recognition/part_fit.h"
 
-#include <ceres/tiny_solver.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 
 #include "core/curves/foot_point.h"
+#include "core/recognition/least_squares.h"
 
 namespace palpate {
 namespace {
@@ -71,19 +70,15 @@ PartFit fit(const ScaledPart& part, std::span<const FitPoint> points, const Pose
   using Residuals = PartResiduals<kMotions>;
   const Residuals residuals(part, points, start, motions);
   ceres::TinySolver<Residuals> solver{};
-  solver.options.max_num_iterations = most_iterations;
-  // Residuals are in units of sigma; the solver compares the ABSOLUTE change of the cost. The last
-  // step is then far shorter still: Gauss-Newton converges quadratically where the part fits.
-  solver.options.function_tolerance = 1e-9;
-  solver.options.gradient_tolerance = 0.0;
+  // The last step is far shorter than this tells: Gauss-Newton converges quadratically where the
+  // part fits.
+  constexpr double kChi2Tolerance = 1e-9;
+  solver.options = least_squares_options<Residuals>(most_iterations, kChi2Tolerance);
   solver.options.parameter_tolerance = 1e-15;
-  solver.options.cost_threshold = 0.0;
-  solver.options.initial_trust_region_radius = 1e8;
   typename Residuals::Parameters x = Residuals::Parameters::Zero();
-  const auto& summary = solver.Solve(residuals, &x);
+  solver.Solve(residuals, &x);
   PartFit result;
   result.data_T_part = residuals.pose(x);
-  result.iterations = summary.iterations;
   const auto n = static_cast<Eigen::Index>(points.size());
   Eigen::VectorXd values(n);
   Eigen::Matrix<double, Eigen::Dynamic, kMotions> jacobian(n, kMotions);

@@ -61,7 +61,6 @@ struct PartMotions {
 struct PartFit {
   Pose2 data_T_part;
   double chi2 = 0.0;
-  int iterations = 0;
   /// Fisher information of the motions at the fit.
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> information;
 };

@@ -1,12 +1,12 @@
 #include "core/recognition/polynomial_fit.h"
 
-#include <ceres/tiny_solver.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "core/recognition/least_squares.h"
 
 namespace palpate {
 namespace {
@@ -98,8 +98,8 @@ class PolynomialResiduals {
   }
 
   // The solver asks for residuals alone at a trial step and for the Jacobian at accepted ones: a
-  // rejected trial must not move the foot points that the next one starts from, and an accepted one has
-  // found them already.
+  // rejected trial must not move the foot points that the next one starts from, and an accepted one
+  // has found them already.
   bool operator()(const double* x_data, double* residuals, double* jacobian) const {
     const Parameters x = Eigen::Map<const Parameters>(x_data);
     const std::size_t n = points_.size();
@@ -148,15 +148,7 @@ PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int 
   using Residuals = PolynomialResiduals<kModel>;
   Residuals residuals(points, std::move(start.t), side);
   ceres::TinySolver<Residuals> solver{};
-  solver.options.max_num_iterations = effort.iterations;
-  // Residuals are in units of sigma; the solver compares the ABSOLUTE change of the cost.
-  solver.options.function_tolerance = effort.chi2_tolerance;
-  solver.options.gradient_tolerance = 0.0;
-  // Little damping to begin with: the valleys of short arcs are long, and the solver multiplies
-  // the damping fast where a step fails.
-  solver.options.initial_trust_region_radius = 1e8;
-  solver.options.parameter_tolerance = 1e-14;
-  solver.options.cost_threshold = 0.0;
+  solver.options = least_squares_options<Residuals>(effort.iterations, effort.chi2_tolerance);
   typename Residuals::Parameters x = Residuals::parameters(start.coefficients);
   PolynomialFit fit;
   fit.chi2 = std::numeric_limits<double>::infinity();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -85,7 +84,7 @@ class Recognizer::Impl {
   Recognition recognize() {
     Recognition answer;
     answer.sample_count = memory_.sample_count();
-    const std::vector<StoredPatch>& patches = without_spikes();
+    const std::vector<StoredPatch>& patches = clean_patches();
     bool sigma_known = false;
     const FitData data = make_fit_data(patches, options_.sigma_m, &sigma_known);
     if (data.points.size() < kFewestSamples) {
@@ -185,7 +184,7 @@ class Recognizer::Impl {
     Vec2 newest_m = Vec2::Zero();
   };
 
-  const std::vector<StoredPatch>& without_spikes() {
+  const std::vector<StoredPatch>& clean_patches() {
     const std::vector<StoredPatch>& patches = memory_.patches();
     clean_.resize(patches.size());
     clean_states_.resize(patches.size());
@@ -207,37 +206,8 @@ class Recognizer::Impl {
   }
 
   void drop_spikes(StoredPatch* patch) const {
-    // Spikes hide spikes: look again without those found.
-    constexpr int kMostPasses = 6;
-    const std::vector<StoredSample> all = patch->samples;
-    std::vector<std::size_t> kept(all.size());
-    std::iota(kept.begin(), kept.end(), std::size_t{0});
-    for (int pass = 0; pass < kMostPasses; ++pass) {
-      const std::vector<bool> spikes =
-          find_spikes(patch->samples, options_.false_outlier_probability);
-      std::size_t i = 0;
-      if (std::erase_if(patch->samples, [&](const StoredSample&) { return spikes[i++]; }) == 0) {
-        break;
-      }
-      i = 0;
-      std::erase_if(kept, [&](std::size_t) { return spikes[i++]; });
-    }
-    // A run of so many is a sharp bend that the passes have eaten into: spikes take neighbours along, but where
-    // half of the samples go at random, one patch of a hundred samples in a thousand loses such a run.
-    constexpr std::size_t kLongestRun = 16;
-    patch->samples.clear();
-    std::size_t next = 0;
-    for (std::size_t k = 0; k <= kept.size(); ++k) {
-      const std::size_t end = k < kept.size() ? kept[k] : all.size();
-      if (end - next >= kLongestRun) {
-        patch->samples.insert(patch->samples.end(), all.begin() + static_cast<std::ptrdiff_t>(next),
-                              all.begin() + static_cast<std::ptrdiff_t>(end));
-      }
-      if (k < kept.size()) {
-        patch->samples.push_back(all[end]);
-      }
-      next = end + 1;
-    }
+    patch->samples = without_spikes(
+        patch->samples, find_spikes_in_passes(patch->samples, options_.false_outlier_probability));
     drop_single_spikes(patch);
   }
 

@@ -216,11 +216,10 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, doubl
   constexpr double kFalseSpikes = 0.01;  // probability that a patch without spikes loses a sample
   const std::vector<bool> is_spike = find_spikes(patch.samples, kFalseSpikes);
   StoredPatch kept = patch;
+  kept.samples = without_spikes(patch.samples, is_spike);
   std::vector<std::size_t> numbers;  // of the samples kept
-  kept.samples.clear();
-  for (std::size_t i = 0; i < patch.samples.size(); ++i) {
+  for (std::size_t i = 0; i < is_spike.size(); ++i) {
     if (!is_spike[i]) {
-      kept.samples.push_back(patch.samples[i]);
       numbers.push_back(i);
     }
   }
@@ -229,11 +228,9 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, doubl
     return result;
   }
   const double noise_m = noise_of(kept, sigma_m);
-  bool mixed = false;
-  for (StoredSample& sample : kept.samples) {
-    mixed = mixed || !(sample.sigma_m > 0.0);
-  }
-  if (mixed) {
+  const bool all_known = std::all_of(kept.samples.begin(), kept.samples.end(),
+                                     [](const StoredSample& s) { return s.sigma_m > 0.0; });
+  if (!all_known) {
     for (StoredSample& sample : kept.samples) {
       sample.sigma_m = noise_m;
     }
@@ -264,12 +261,7 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, doubl
   if (run) {
     result.chi2 = run->single.chi2;
     result.dof = static_cast<int>(core_end - core_begin) - kCubicDegrees;
-    double variances = 0.0;
-    for (const FitPoint& point : run->data.points) {
-      variances += 1.0 / (point.inverse_sigma * point.inverse_sigma);
-    }
-    result.sigma_m =
-        run->data.scale * std::sqrt(variances / static_cast<double>(run->data.points.size()));
+    result.sigma_m = run->data.scale * rms_sigma(run->data);
   }
   // Back to the numbers of the samples as given.
   const auto given = [&](std::size_t i) {

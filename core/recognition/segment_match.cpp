@@ -25,30 +25,15 @@ struct CleanPatches {
   std::vector<std::vector<bool>> is_spike;
 };
 
-CleanPatches without_spikes(std::span<const StoredPatch> patches, double false_alarm) {
+CleanPatches clean_patches(std::span<const StoredPatch> patches, double false_alarm) {
   CleanPatches clean;
   for (const StoredPatch& patch : patches) {
     clean.is_spike.push_back(find_spikes(patch.samples, false_alarm));
     StoredPatch kept = patch;
-    std::size_t i = 0;
-    std::erase_if(kept.samples, [&](const StoredSample&) { return clean.is_spike.back()[i++]; });
+    kept.samples = without_spikes(patch.samples, clean.is_spike.back());
     clean.patches.push_back(std::move(kept));
   }
   return clean;
-}
-
-void scale_noise(FitData* data, double factor) {
-  for (FitPoint& point : data->points) {
-    point.inverse_sigma /= factor;
-  }
-}
-
-double rms_sigma(const FitData& data) {
-  double sum = 0.0;
-  for (const FitPoint& point : data.points) {
-    sum += 1.0 / (point.inverse_sigma * point.inverse_sigma);
-  }
-  return std::sqrt(sum / static_cast<double>(data.points.size()));
 }
 
 /// The patch of the longest chord, among those that have samples.
@@ -101,7 +86,7 @@ class Match {
       : part_(part),
         given_(patches),
         options_(options),
-        clean_(without_spikes(patches, spike_probability(patches, options))) {
+        clean_(clean_patches(patches, spike_probability(patches, options))) {
     bool sigma_known = false;
     data_ = make_fit_data(clean_.patches, options.sigma_m, &sigma_known);
     if (data_.points.empty()) {
@@ -111,9 +96,7 @@ class Match {
     if (!sigma_known) {
       noise_known_ = smooth_.dof() >= kFewestNoiseDegrees;
       const double sigma = std::max(smooth_.noise_ratio(), rounding_level(data_));
-      scale_noise(&data_, sigma);
-      scale_noise(&smooth_.reduced, sigma);
-      smooth_.chi2 /= sigma * sigma;
+      scale_noise(sigma, &data_, &smooth_);
     }
   }
 

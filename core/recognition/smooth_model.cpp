@@ -206,4 +206,13 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known) {
   return model;
 }
 
+void scale_noise(double factor, FitData* data, SmoothModel* smooth) {
+  for (std::vector<FitPoint>* points : {&data->points, &smooth->reduced.points}) {
+    for (FitPoint& point : *points) {
+      point.inverse_sigma /= factor;
+    }
+  }
+  smooth->chi2 /= factor * factor;
+}
+
 }  // namespace palpate

@@ -19,7 +19,8 @@ struct SmoothModel {
   /// The nodes of the discrete Gauss quadrature of each section, on the fitted polynomial, with the
   /// weights as inverse variances: for any curve that the section's polynomials can follow,
   ///   chi2(curve; points) = chi2(smooth model) + chi2(curve; reduced points)
-  /// up to rounding (core/README.md, "Refinement and the bound"). A dozen points stand for hundreds.
+  /// up to rounding (core/README.md, "Refinement and the bound"). A dozen points stand for
+  /// hundreds.
   FitData reduced;
   /// For every point the reduced point nearest to it along its section.
   std::vector<std::uint32_t> nearest_reduced;
@@ -31,9 +32,13 @@ struct SmoothModel {
 };
 
 /// Cuts each patch into sections that turn by less than about a radian and fits each with the
-/// polynomial degree that the Bayesian information criterion chooses. With `sigma_known`, chi-square
-/// is taken at its word; otherwise the criterion profiles the noise. Sets the tangents of `data`.
-/// O(points).
+/// polynomial degree that the Bayesian information criterion chooses. With `sigma_known`,
+/// chi-square is taken at its word; otherwise the criterion profiles the noise. Sets the tangents
+/// of `data`. O(points).
 SmoothModel fit_smooth_model(FitData* data, bool sigma_known);
+
+/// Multiplies the noise of the data's points and of the model's reduced ones, and takes chi-square
+/// along.
+void scale_noise(double factor, FitData* data, SmoothModel* smooth);
 
 }  // namespace palpate

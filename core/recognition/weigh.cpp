@@ -11,13 +11,6 @@
 namespace palpate {
 namespace {
 
-/// Multiplies the noise of all points.
-void scale_noise(FitData* data, double factor) {
-  for (FitPoint& point : data->points) {
-    point.inverse_sigma /= factor;
-  }
-}
-
 /// Sets the noise of points that bring none from the smooth model's residuals. Returns whether it
 /// is as good as known: no smaller than rounding.
 bool estimate_noise(FitData* data, SmoothModel* smooth) {
@@ -28,19 +21,8 @@ bool estimate_noise(FitData* data, SmoothModel* smooth) {
   const double rounding = rounding_level(*data);
   const double estimate = smooth->dof() >= kFewestDegrees ? smooth->noise_ratio() : kNoEstimate;
   const double sigma = std::max(estimate, rounding);
-  scale_noise(data, sigma);
-  scale_noise(&smooth->reduced, sigma);
-  smooth->chi2 /= sigma * sigma;
+  scale_noise(sigma, data, smooth);
   return estimate <= rounding;
-}
-
-/// Root mean square of the points' noise.
-double typical_sigma(const FitData& data) {
-  double sum = 0.0;
-  for (const FitPoint& point : data.points) {
-    sum += 1.0 / (point.inverse_sigma * point.inverse_sigma);
-  }
-  return std::sqrt(sum / static_cast<double>(data.points.size()));
 }
 
 /// The class of the lowest criterion: probabilities beside "unclassified" may all have vanished.
@@ -182,7 +164,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   scale.samples = n;
   scale.parsimony = options.parsimony;
   // Residuals below the rounding of the coordinates say nothing.
-  w.sigma = typical_sigma(data);
+  w.sigma = rms_sigma(data);
   const double rounding = rounding_level(data) / w.sigma;
   scale.chi2_floor = sigma_known ? 0.0 : n * rounding * rounding;
 
