@@ -1,6 +1,5 @@
 #include "node/config.h"
 
-#include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/text_format.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include <sstream>
 #include <type_traits>
 
+#include "node/text_format.h"
 #include "node/topics.h"
 
 namespace palpate {
@@ -156,18 +156,6 @@ std::string check_together(const NodeOptions& options) {
   return {};
 }
 
-class ErrorText : public google::protobuf::io::ErrorCollector {
- public:
-  void AddError(int line, google::protobuf::io::ColumnNumber column,
-                const std::string& message) override {
-    if (!text.empty()) return;
-    text = std::to_string(line + 1) + ":" + std::to_string(column + 1) + ": " + message;
-  }
-  void AddWarning(int, google::protobuf::io::ColumnNumber, const std::string&) override {}
-
-  std::string text;
-};
-
 }  // namespace
 
 std::string set_option(v1::NodeConfig& config, const std::string& name, const std::string& text) {
@@ -212,12 +200,9 @@ Result<v1::NodeConfig> read_config_file(const std::string& path) {
   if (!file) return Result<v1::NodeConfig>::fail(path + ": " + std::strerror(errno));
   std::stringstream content;
   content << file.rdbuf();
-  google::protobuf::TextFormat::Parser parser;
-  ErrorText errors;
-  parser.RecordErrorsTo(&errors);
   v1::NodeConfig config;
-  if (!parser.ParseFromString(content.str(), &config)) {
-    return Result<v1::NodeConfig>::fail(path + ":" + errors.text);
+  if (std::string error = parse_text(content.str(), path, config); !error.empty()) {
+    return Result<v1::NodeConfig>::fail(std::move(error));
   }
   return Result<v1::NodeConfig>::ok(std::move(config));
 }

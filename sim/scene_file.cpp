@@ -1,47 +1,18 @@
 #include "sim/scene_file.h"
 
-#include <google/protobuf/io/tokenizer.h>
-
-#include <fstream>
-#include <sstream>
 #include <utility>
 
+#include "node/text_format.h"
 #include "sim/scene_check.h"
 
 namespace palpate::sim {
-namespace {
-
-/// Keeps the first error of protobuf's text parser.
-class FirstError : public google::protobuf::io::ErrorCollector {
- public:
-  explicit FirstError(std::string file) : file_(std::move(file)) {}
-
-  void AddError(int line, int column, const std::string& message) override {
-    if (text_.empty()) {
-      text_ = file_ + ":" + std::to_string(line + 1) + ":" + std::to_string(column + 1) + ": " +
-              message;
-    }
-  }
-
-  const std::string& text() const { return text_; }
-
- private:
-  std::string file_;
-  std::string text_;
-};
-
-}  // namespace
 
 Result<Scene> parse_scene(const std::string& text, const std::string& name) {
   using Loaded = Result<Scene>;
   v1::Scene description;
-  FirstError first_error(name);
   google::protobuf::TextFormat::ParseInfoTree tree;
-  google::protobuf::TextFormat::Parser parser;
-  parser.RecordErrorsTo(&first_error);
-  parser.WriteLocationsTo(&tree);
-  if (!parser.ParseFromString(text, &description)) {
-    return Loaded::fail(first_error.text().empty() ? name + ": not a scene" : first_error.text());
+  if (std::string error = parse_text(text, name, description, &tree); !error.empty()) {
+    return Loaded::fail(std::move(error));
   }
   SceneCheck check(description, tree, name);
   std::optional<Shape> shape = check.check();
@@ -54,12 +25,8 @@ Result<Scene> parse_scene(const std::string& text, const std::string& name) {
 }
 
 Result<Scene> read_scene(const std::string& path) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) {
-    return Result<Scene>::fail(path + ": cannot be read");
-  }
-  return parse_scene(text.str(), path);
+  const Result<std::string> text = read_file(path);
+  return text ? parse_scene(*text.value, path) : Result<Scene>::fail(text.error);
 }
 
 }  // namespace palpate::sim

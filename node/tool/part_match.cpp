@@ -1,38 +1,15 @@
 #include "node/tool/part_match.h"
 
-#include <google/protobuf/io/tokenizer.h>
-#include <google/protobuf/text_format.h>
-
-#include <cmath>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <utility>
 
 #include "core/recognition/segment_belonging.h"
+#include "node/convert.h"
+#include "node/text_format.h"
 #include "palpate/v1/scene.pb.h"
 
 namespace palpate {
 namespace {
-
-/// Keeps the first error of protobuf's text parser.
-class FirstError : public google::protobuf::io::ErrorCollector {
- public:
-  explicit FirstError(const std::string& file) : file_(file) {}
-
-  void AddError(int line, int column, const std::string& message) override {
-    if (text_.empty()) {
-      text_ = file_ + ":" + std::to_string(line + 1) + ":" + std::to_string(column + 1) + ": " +
-              message;
-    }
-  }
-
-  const std::string& text() const { return text_; }
-
- private:
-  std::string file_;
-  std::string text_;
-};
 
 /// One for each probe and patch number, in the order in which they begin.
 std::vector<StoredPatch> patches_of(const ContactGroup& group) {
@@ -80,10 +57,7 @@ v1::PartMatchDoubt to_wire(SegmentMatchDoubt doubt) {
 void to_wire(const PartPlacement& placement, std::span<const StoredPatch> patches,
              const ContactGroup& group, v1::PartPlacement& message) {
   message.set_probability(placement.probability);
-  v1::Pose2& pose = *message.mutable_pose();
-  pose.set_x_m(placement.world_T_part.x);
-  pose.set_y_m(placement.world_T_part.y);
-  pose.set_theta_rad(placement.world_T_part.theta);
+  to_wire(placement.world_T_part, *message.mutable_pose());
   for (Eigen::Index row = 0; row < 3; ++row) {
     for (Eigen::Index column = 0; column < 3; ++column) {
       message.add_covariance(placement.covariance(row, column));
@@ -131,17 +105,13 @@ void to_wire(const SegmentBelonging& belonging, v1::PatchJoints& message) {
 
 Result<ClosedSpline> read_part(const std::string& path) {
   using Loaded = Result<ClosedSpline>;
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) {
-    return Loaded::fail(path + ": cannot be read");
+  const Result<std::string> text = read_file(path);
+  if (!text) {
+    return Loaded::fail(text.error);
   }
   v1::Scene scene;
-  FirstError first_error(path);
-  google::protobuf::TextFormat::Parser parser;
-  parser.RecordErrorsTo(&first_error);
-  if (!parser.ParseFromString(text.str(), &scene)) {
-    return Loaded::fail(first_error.text().empty() ? path + ": not a scene" : first_error.text());
+  if (std::string error = parse_text(*text.value, path, scene); !error.empty()) {
+    return Loaded::fail(std::move(error));
   }
   if (!scene.has_closed_spline()) {
     return Loaded::fail(path + ": has no closed_spline: only such parts can be matched");

@@ -1,23 +1,12 @@
 // A match for a person to read.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <numbers>
 
 #include "node/tool/part_match.h"
 #include "node/tool/quantity.h"
 
 namespace palpate {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-template <typename... Values>
-void add_row(std::string& text, const char* format, Values... values) {
-  char row[256];
-  std::snprintf(row, sizeof row, format, values...);
-  text += row;
-}
 
 std::string verdict(const v1::PartMatch& match) {
   switch (match.status()) {

@@ -1,10 +1,22 @@
 // Numbers as a person reads them: with as many digits as their uncertainty leaves.
 #pragma once
 
+#include <cstdio>
+#include <numbers>
 #include <string>
 #include <string_view>
 
 namespace palpate {
+
+inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< per radian
+
+/// Appends what printf makes of the values, up to 255 characters.
+template <typename... Values>
+void add_row(std::string& text, const char* format, Values... values) {
+  char row[256];
+  std::snprintf(row, sizeof row, format, values...);
+  text += row;
+}
 
 /// "12.3456 +- 0.0021": the standard deviation to two significant digits, the value to the same
 /// place. Without uncertainty (0): six significant digits; where it is not finite: "+- inf".

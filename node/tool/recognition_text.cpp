@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <vector>
 
 #include "node/tool/quantity.h"
 
 namespace palpate {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Unit of a shape parameter; nullptr = a length.
 const char* unit_of(v1::CurveClass curve_class, char letter) {
@@ -109,13 +106,6 @@ void add_line(std::string& text, const char* label, const std::string& value) {
   text += start + value + "\n";
 }
 
-template <typename... Values>
-void add_row(std::string& text, const char* format, Values... values) {
-  char row[256];
-  std::snprintf(row, sizeof row, format, values...);
-  text += row;
-}
-
 void add_hypotheses(const v1::Recognition& answer, std::string& text) {
   constexpr double kWorthShowing = 1e-9;
   add_row(text, "  %-24s %12s %14s %6s  %s\n", "hypothesis", "probability", "chi2", "dof", "shape");
@@ -176,7 +166,7 @@ std::string_view sentence_of(v1::RecognitionDoubt doubt) {
     case v1::RECOGNITION_DOUBT_MISFIT:
       return "residuals are larger than the noise can be";
     case v1::RECOGNITION_DOUBT_TWO_SHAPES:
-      return "two shapes of the class fit alike";
+      return "two shapes fit alike (a spline and its twin, or tips on either side)";
     case v1::RECOGNITION_DOUBT_RICHER_CLASS:
       return "the arc is too short to exclude a class of which this one is a limit";
     case v1::RECOGNITION_DOUBT_UNDETERMINED:
