@@ -25,6 +25,18 @@ test::PartStroke random_stroke(const ClosedSpline& part, double arc_m, std::mt19
   return {t0, rng() % 2 == 0 ? arc_m : -arc_m};
 }
 
+/// Strokes of those lengths anywhere on the part, which lies anywhere. The draws are made one after
+/// the other: the order of arguments is the compiler's.
+test::TouchedPart touch_anywhere(const ClosedSpline& part, const std::vector<double>& arcs_m,
+                                 std::mt19937_64& rng) {
+  std::vector<test::PartStroke> strokes;
+  for (const double arc_m : arcs_m) {
+    strokes.push_back(random_stroke(part, arc_m, rng));
+  }
+  const Pose2 world_T_part = test::random_pose(rng);
+  return test::touch(part, world_T_part, strokes, kSigma, kSigma, rng);
+}
+
 void expect_same(const SegmentMatch& a, const SegmentMatch& b, const Pose2& b_T_a) {
   ASSERT_EQ(a.status, b.status);
   ASSERT_FALSE(a.placements.empty());
@@ -49,8 +61,7 @@ TEST(SegmentMatchLaws, MovesWithTheSamples) {
   const ClosedSpline part = test::paper_part();
   auto rng = test::test_rng();
   for (int i = 0; i < test::stress_count(10); ++i) {
-    test::TouchedPart touched = test::touch(part, test::random_pose(rng),
-                                            {random_stroke(part, 0.03, rng)}, kSigma, kSigma, rng);
+    test::TouchedPart touched = touch_anywhere(part, {0.03}, rng);
     const SegmentMatch before = match_segment(part, touched.patches);
     const Pose2 motion = test::random_pose(rng);
     for (StoredSample& sample : touched.patches[0].samples) {
@@ -64,8 +75,7 @@ TEST(SegmentMatchLaws, ReversedSamplesLieWhereTheyLay) {
   const ClosedSpline part = test::paper_part();
   auto rng = test::test_rng();
   for (int i = 0; i < test::stress_count(10); ++i) {
-    test::TouchedPart touched = test::touch(part, test::random_pose(rng),
-                                            {random_stroke(part, 0.03, rng)}, kSigma, kSigma, rng);
+    test::TouchedPart touched = touch_anywhere(part, {0.03}, rng);
     const SegmentMatch before = match_segment(part, touched.patches);
     std::vector<StoredSample>& samples = touched.patches[0].samples;
     std::reverse(samples.begin(), samples.end());
@@ -84,9 +94,7 @@ TEST(SegmentMatchLaws, PatchesComeInAnyOrder) {
   const ClosedSpline part = test::paper_part();
   auto rng = test::test_rng();
   for (int i = 0; i < test::stress_count(5); ++i) {
-    test::TouchedPart touched = test::touch(
-        part, test::random_pose(rng),
-        {random_stroke(part, 0.03, rng), random_stroke(part, 0.01, rng)}, kSigma, kSigma, rng);
+    test::TouchedPart touched = touch_anywhere(part, {0.03, 0.01}, rng);
     const SegmentMatch before = match_segment(part, touched.patches);
     std::swap(touched.patches[0], touched.patches[1]);
     const SegmentMatch after = match_segment(part, touched.patches);
