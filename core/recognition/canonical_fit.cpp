@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <cassert>
 #include <cmath>
 
 #include "core/curves/canonical_conic.h"
@@ -145,7 +144,6 @@ ShapePoseCovariance invert(const ShapePoseCovariance& information, int rank) {
 }  // namespace
 
 std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& data) {
-  assert(fit.on_all);
   auto placement = place_of(fit, data);
   if (!placement || !placement->shape.values.allFinite()) {
     return std::nullopt;

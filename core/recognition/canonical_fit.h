@@ -26,7 +26,8 @@ struct CanonicalFit {
   std::vector<FittedPoint> points;
 };
 
-/// nullopt where there is no such curve: a class at its limit, a circle as flat as a line, a parabola
+/// `data`: all points where `fit` is refined on all, otherwise the reduced ones, which carry the same
+/// information. nullopt where there is no such curve: a class at its limit, a circle as flat as a line, a parabola
 /// or cubic without extent across its axis.
 std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& data);
 

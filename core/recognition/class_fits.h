@@ -19,6 +19,7 @@ namespace palpate {
 struct ClassFit {
   CurveClass curve_class = CurveClass::Unclassified;
   double chi2 = 0.0;
+  bool weighed = false;  ///< chi2 is that of all points, not what the reduced ones tell
   bool on_all =
       false;  ///< refined on all points; until then it has foot points of the reduced ones
   /// The class has no interior optimum: chi2 is that of the neighbour it runs away to (an ellipse
@@ -55,15 +56,5 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts = nul
 /// A class whose criterion (evidence.h) is this much above another's is out: odds of
 /// exp(20/2), or 1 to 22000.
 inline constexpr double kHopeless = 20.0;
-
-/// Refines one of them on all points, tip radii and all; nullopt if its optimum there is no such
-/// curve (an ellipse that turned into a hyperbola or into a needle around straight points).
-/// `reduced`: the surface points that `fit` was found on. O(points).
-std::optional<ClassFit> refine_on_all(const ClassFit& fit, const FitData& reduced,
-                                      const SmoothModel& smooth, const FitData& data,
-                                      const RefineEffort& effort = kOnAllEffort);
-
-/// Takes a fit on all points to its optimum as far as rounding goes; nullopt as above. O(points).
-std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data);
 
 }  // namespace palpate

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -207,17 +208,25 @@ double conic_deviation(std::span<const FitPoint> points, const ConicCoefficients
 }
 
 double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot) {
-  // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}; its first step from the point is
-  // the first-order (Sampson) foot point.
-  constexpr int kMaxIterations = 6;
-  constexpr double kLastStep = 1e-6;  // of the normalised extent: after it the error is its square
+  // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}, whose first step from the point
+  // itself is the first-order (Sampson) foot point.
+  constexpr int kMoreIterations = 5;
+  // After a last step s the foot point is off by about s^2 in normalised extents: by so much at
+  // most, absolute and of the distance.
+  constexpr double kAbsoluteError = 1e-12;
+  constexpr double kRelativeError = 1e-8;
   Vec2 f = point;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  Vec2 g = conic_gradient(q, f);
+  double g2 = g.squaredNorm();
+  if (g2 > 0.0) {  // otherwise the centre of a conic: no direction to go
+    f -= value(q, f) / g2 * g;
+  }
+  for (int iteration = 0; iteration < kMoreIterations; ++iteration) {
     const double v = value(q, f);
-    const Vec2 g = conic_gradient(q, f);
-    const double g2 = g.squaredNorm();
+    g = conic_gradient(q, f);
+    g2 = g.squaredNorm();
     if (g2 <= 0.0) {
-      break;  // centre of a conic: no direction to go
+      break;
     }
     const Vec2 away = point - f;
     const double c = away.x() * g.y() - away.y() * g.x();
@@ -232,7 +241,7 @@ double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot
       step = -v / g2 * g;  // beyond the centre of curvature: stay with the first-order foot point
     }
     f += step;
-    if (step.squaredNorm() < kLastStep * kLastStep) {
+    if (step.squaredNorm() < std::min(kAbsoluteError, kRelativeError * away.norm())) {
       break;
     }
   }

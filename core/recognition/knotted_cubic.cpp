@@ -7,8 +7,8 @@
 
 #include "core/curves/plane_curve.h"
 #include "core/recognition/axis_fit.h"
-#include "core/recognition/class_fits.h"
 #include "core/recognition/least_squares.h"
+#include "core/recognition/on_all_points.h"
 #include "core/recognition/smooth_model.h"
 
 namespace palpate {
@@ -175,7 +175,7 @@ KnottedCubicFit fit_single_cubic(const FitData& data) {
     if (!coarse || !coarse->polynomial) {
       continue;
     }
-    const auto refined = refine_on_all(*coarse, smooth.reduced, smooth, points);
+    const auto refined = refine_on_all(settled(*coarse, smooth.reduced), smooth, points);
     PolynomialFit polynomial =
         refined && refined->polynomial ? *refined->polynomial : *coarse->polynomial;
     if (polynomial.t.size() != points.points.size()) {

@@ -12,7 +12,7 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   const CanonicalFit* fit = nullptr;
   double best = -1.0;
   for (std::size_t i = 1; i < weighing.canonical.size(); ++i) {
-    if (weighing.canonical[i] && weighing.probabilities[i] > best) {
+    if (weighing.canonical[i] && weighing.fits[i]->on_all && weighing.probabilities[i] > best) {
       best = weighing.probabilities[i];
       fit = &*weighing.canonical[i];
     }

@@ -27,7 +27,7 @@ constexpr auto exponents() {
 /// Follows the foot point of `p` by Newton's method on (C(t) - p) . C'(t) = 0 from `t`.
 PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, double t) {
   constexpr int kMaxIterations = 5;
-  constexpr double kLastStep = 1e-6;    // after it the error is its square
+  constexpr double kLastStep = 1e-5;    // after it the error is its square
   constexpr double kLongestStep = 0.5;  // of the data's parameter range, about [-1, 1]
   Vec2 away;
   Vec2 first;

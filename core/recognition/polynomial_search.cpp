@@ -193,6 +193,14 @@ void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
   for (const AxisFit& seed : fits->seeds.semi_cubical_parabola) {
     improve(&fits->semi_cubical_parabola, seed);
   }
+  if (auto& cubic = fits->cubical_parabola) {
+    keep_better(&cubic, refine_polynomial(PolynomialModel::CubicalParabola, reduced.points, *cubic,
+                                          kSurfacePoints, kThorough));
+  }
+  if (auto& parabola = fits->parabola) {
+    keep_better(&parabola, refine_polynomial(PolynomialModel::Parabola, reduced.points, *parabola,
+                                             kSurfacePoints, kThorough));
+  }
 }
 
 }  // namespace palpate

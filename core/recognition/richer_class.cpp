@@ -41,6 +41,21 @@ double departure_of_the_parabola_itself(const Weighing& w) {
 
 }  // namespace
 
+bool is_limit_of(CurveClass limit, CurveClass richer) {
+  switch (limit) {
+    case CurveClass::Line:
+      return richer == CurveClass::Circle;
+    case CurveClass::Circle:
+      return richer == CurveClass::Ellipse;
+    case CurveClass::Parabola:
+      return richer == CurveClass::Ellipse || richer == CurveClass::Hyperbola;
+    case CurveClass::SemiCubicalParabola:
+      return richer == CurveClass::CubicSpline;
+    default:
+      return false;
+  }
+}
+
 double largest_departure(const Weighing& w, CurveClass limit) {
   const auto fit_of = [&](CurveClass curve_class) -> const CanonicalFit* {
     const auto& fit = w.canonical[static_cast<std::size_t>(curve_class)];

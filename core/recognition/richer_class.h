@@ -6,6 +6,9 @@
 
 namespace palpate {
 
+/// Whether `largest_departure` of `limit` asks for the fit of `richer`.
+bool is_limit_of(CurveClass limit, CurveClass richer);
+
 /// How far the richer class may depart from `limit` within two standard deviations of its own fit, as a
 /// pure number (RecognizerOptions::excluded_departure tells which). 0 for classes that are no limit of
 /// a richer one; infinite where the richer class has no determined fit of its own.

@@ -33,7 +33,7 @@ class NearestPlace {
  private:
   // The points were within [-1, 1] (normalise_parameter); they may have grown beyond it by a
   // quarter.
-  static constexpr std::size_t kPlaces = 65;
+  static constexpr std::size_t kPlaces = 33;
   static constexpr double kFarthest = 1.6;
   static double parameter(std::size_t k) {
     return kFarthest * (2.0 * static_cast<double>(k) / (kPlaces - 1) - 1.0);

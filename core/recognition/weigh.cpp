@@ -5,7 +5,9 @@
 #include <limits>
 #include <vector>
 
+#include "core/recognition/on_all_points.h"
 #include "core/recognition/residual_correlation.h"
+#include "core/recognition/richer_class.h"
 #include "core/recognition/tip_sides.h"
 
 namespace palpate {
@@ -73,7 +75,7 @@ ClassFits fit_over_sides(std::span<const StoredPatch> patches, const FitData& da
     ClassFits fits = fit_classes(reduced, nullptr, options.classes);
     const CurveClass candidate = best_class(fits, scale);
     const auto& fit = fits[static_cast<std::size_t>(candidate)];
-    const auto refined = fit ? refine_on_all(*fit, reduced, smooth, data) : std::nullopt;
+    const auto refined = fit ? refine_on_all(settled(*fit, reduced), smooth, data) : std::nullopt;
     const bool first = &sides == &ways.front();
     // A line has no bend to be outside of.
     const double price = first || candidate == CurveClass::Line ? 0.0 : price_of_inside;
@@ -91,36 +93,108 @@ ClassFits fit_over_sides(std::span<const StoredPatch> patches, const FitData& da
   return best;
 }
 
-/// Refines on all points what is plausible and not yet refined there. The others keep the
-/// chi-square that the reduced points tell.
-void refine_plausible(const FitData& data, const FitData& reduced, const SmoothModel& smooth,
-                      const EvidenceScale& scale, ClassFits* fits) {
-  // No reduction error brings a hopeless class back. Where the smooth model itself misfits, neither
-  // it nor the reduced points can be trusted that far.
-  const double hopeless = kHopeless * std::max(1.0, smooth.noise_ratio() * smooth.noise_ratio());
+/// Whether a class, as the reduced points tell its chi-square, might keep the best from being
+/// RECOGNIZED. `margin`: odds that keep it from that, as a difference of criteria; `error`: by how
+/// much chi-square may be lower on all points.
+bool is_plausible(const ClassFit& told, double lowest_criterion, double margin, double error,
+                  const EvidenceScale& scale) {
+  ClassFit at_best = told;
+  at_best.chi2 = std::max(told.chi2 - error, 0.0);
+  return std::isfinite(told.chi2) && criterion_of(at_best, scale) < lowest_criterion + margin;
+}
+
+/// A class fitted to the reduced points, as these tell its chi-square of all points.
+ClassFit as_told(const ClassFit& coarse, const SmoothModel& smooth) {
+  ClassFit fit = coarse;
+  fit.chi2 += smooth.chi2;
+  return fit;
+}
+
+/// A class that is no such curve on all points.
+ClassFit out(const ClassFit& coarse) {
+  ClassFit fit = coarse;
+  fit.weighed = true;
+  fit.chi2 = std::numeric_limits<double>::infinity();
+  return fit;
+}
+
+/// A class at its very optimum on all points.
+ClassFit polished(const ClassFit& fit, const SmoothModel& smooth, const FitData& data) {
+  const auto refined = fit.on_all ? std::optional(fit) : refine_on_all(fit, smooth, data);
+  return refined ? polish(*refined, data).value_or(out(fit)) : out(fit);
+}
+
+/// A class as all points see it. Where they agree with the reduced points, and did so about the
+/// best
+/// (`trusted`), it is left at its optimum there; otherwise (sections bent too sharply to be
+/// followed to the noise, feet on the wrong arm) it has another one.
+ClassFit weighed(const ClassFit& coarse, bool trusted, const SmoothModel& smooth,
+                 const FitData& data) {
+  constexpr double kAgreement = 1.0;  // of chi-square: odds are right to a factor of 1.6
+  if (trusted) {
+    ClassFit fit = coarse;
+    fit.chi2 = chi2_on_all(coarse, smooth, data);
+    fit.weighed = true;
+    if (std::abs(fit.chi2 - (coarse.chi2 + smooth.chi2)) <= kAgreement) {
+      return fit;
+    }
+  }
+  return refine_on_all(coarse, smooth, data).value_or(out(coarse));
+}
+
+/// Weighs on all points what the reduced points leave plausible, and polishes the best. The others
+/// keep the chi-square that the reduced points tell. Settles w->coarse where it has to do with it.
+void weigh_plausible(const FitData& data, const FitData& reduced, const EvidenceScale& scale,
+                     const RecognizerOptions& options, Weighing* w) {
+  // Where the smooth model itself misfits, neither it nor the reduced points can be trusted that
+  // far.
+  const double misfit_ratio = std::max(1.0, w->smooth.noise_ratio() * w->smooth.noise_ratio());
+  const double p = options.recognized_probability;
+  const double margin = misfit_ratio * std::max(2.0 * std::log(p / (1.0 - p)), 0.0);
+  // Sections that bend too much to be followed to the noise err by much the same for all classes:
+  // twice as much as for the best, and some units of chi-square anyhow.
+  constexpr double kLeastError = 4.0;
+  double error = misfit_ratio * kLeastError;
+  bool trusted = true;
+  const auto settle = [&](std::size_t i) -> const ClassFit& {
+    auto& coarse = w->coarse[i];
+    if (!w->fits[i]->weighed) {
+      coarse = settled(*coarse, reduced);
+    }
+    return *coarse;
+  };
+  std::size_t at_optimum = w->fits.size();  // the class that is
   for (bool changed = true; changed;) {
     changed = false;
-    double lowest = std::numeric_limits<double>::infinity();
-    for (const auto& fit : *fits) {
-      lowest = fit ? std::min(lowest, criterion_of(*fit, scale)) : lowest;
-    }
-    for (auto& fit : *fits) {
-      if (!fit || fit->on_all || fit->at_limit || !std::isfinite(fit->chi2) ||
-          !(criterion_of(*fit, scale) < lowest + hopeless)) {
-        continue;
+    const auto b = static_cast<std::size_t>(best_class(w->fits, scale));
+    auto& best = w->fits[b];
+    if (best && b != at_optimum) {
+      const double told = best->chi2;
+      best = polished(best->on_all ? *best : settle(b), w->smooth, data);
+      if (std::isfinite(best->chi2)) {
+        error = std::max(error, 2.0 * (told - best->chi2));
+        const double settled_chi2 = w->coarse[b]->chi2 + w->smooth.chi2;
+        trusted = trusted && settled_chi2 - best->chi2 <= kLeastError;
       }
+      at_optimum = b;
       changed = true;
-      if (auto refined = refine_on_all(*fit, reduced, smooth, data)) {
-        fit = std::move(refined);
-      } else {
-        fit->chi2 = std::numeric_limits<double>::infinity();
+      continue;
+    }
+    const double lowest =
+        best ? criterion_of(*best, scale) : -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < w->fits.size(); ++i) {
+      auto& fit = w->fits[i];
+      if (fit && !fit->weighed && !fit->at_limit &&
+          is_plausible(*fit, lowest, margin, error, scale)) {
+        fit = weighed(settle(i), trusted, w->smooth, data);
+        changed = true;
       }
     }
   }
   // Ellipse and hyperbola at their limit are the parabola.
-  const auto& parabola = (*fits)[static_cast<std::size_t>(CurveClass::Parabola)];
+  const auto& parabola = w->fits[static_cast<std::size_t>(CurveClass::Parabola)];
   for (const CurveClass curve_class : {CurveClass::Ellipse, CurveClass::Hyperbola}) {
-    auto& fit = (*fits)[static_cast<std::size_t>(curve_class)];
+    auto& fit = w->fits[static_cast<std::size_t>(curve_class)];
     if (fit && parabola && (fit->at_limit || !std::isfinite(fit->chi2))) {
       fit = parabola;
       fit->curve_class = curve_class;
@@ -130,16 +204,16 @@ void refine_plausible(const FitData& data, const FitData& reduced, const SmoothM
 }
 
 /// Spares no effort on the models with sharp bends.
-void refine_sharp_bends(const ClassFits& coarse, const FitData& data, const FitData& reduced,
-                        const SmoothModel& smooth, ClassFits* fits) {
+void refine_sharp_bends(const FitData& data, const FitData& reduced, Weighing* w) {
   for (const CurveClass curve_class : {CurveClass::SemiCubicalParabola, CurveClass::CubicSpline}) {
     const auto i = static_cast<std::size_t>(curve_class);
-    if (!coarse[i]) {
+    if (!w->coarse[i]) {
       continue;
     }
-    auto refined = refine_on_all(*coarse[i], reduced, smooth, data, RefineEffort{});
-    if (refined && refined->chi2 < (*fits)[i]->chi2) {
-      (*fits)[i] = std::move(refined);
+    constexpr RefineEffort kAll{};
+    auto refined = refine_on_all(settled(*w->coarse[i], reduced, kAll), w->smooth, data, kAll);
+    if (refined && refined->chi2 < w->fits[i]->chi2) {
+      w->fits[i] = std::move(refined);
     }
   }
 }
@@ -169,36 +243,27 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   scale.chi2_floor = sigma_known ? 0.0 : n * rounding * rounding;
 
   w.coarse = fit_over_sides(patches, data, scale, options, warm, &w);
-  w.fits = w.coarse;
   for (const CurveClass curve_class : kCurveClasses) {
     // A class must leave something over to test it with.
     const auto i = static_cast<std::size_t>(curve_class);
     const bool wanted = (options.classes & (1U << i)) != 0;
     if (!wanted || static_cast<int>(data.points.size()) <= degrees_of_freedom(curve_class)) {
-      w.fits[i].reset();
       w.coarse[i].reset();
     }
-  }
-  for (auto& fit : w.fits) {
-    if (fit) {
-      fit->chi2 += w.smooth.chi2;  // as the reduced points tell it
+    if (w.coarse[i]) {
+      w.fits[i] = as_told(*w.coarse[i], w.smooth);
     }
   }
   const FitData reduced = on_surface(w.smooth.reduced, w.sides);
-  refine_plausible(data, reduced, w.smooth, scale, &w.fits);
+  weigh_plausible(data, reduced, scale, options, &w);
   w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
   if (most_probable(w.probabilities) == CurveClass::Unclassified) {
     // Where nothing fits, a narrow valley may not have been walked to its end.
-    refine_sharp_bends(w.coarse, data, reduced, w.smooth, &w.fits);
+    refine_sharp_bends(data, reduced, &w);
     w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
   }
   const CurveClass candidate = best_class(w.fits, scale);
   const auto c = static_cast<std::size_t>(candidate);
-  if (w.fits[c] && w.fits[c]->on_all) {
-    if (auto polished = polish(*w.fits[c], data)) {
-      w.fits[c] = std::move(polished);
-    }
-  }
   if (w.fits[c] && w.fits[c]->on_all) {
     w.canonical[c] = to_canonical(*w.fits[c], data);
   }
@@ -226,7 +291,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
       tempered.sigma_known = true;
       tempered.samples = std::max(n / correlation.time, 1.0);
       tempered.tempering = variance * correlation.time;
-      refine_plausible(data, reduced, w.smooth, tempered, &w.fits);
+      weigh_plausible(data, reduced, tempered, options, &w);
       w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, tempered);
       w.inflation = variance * correlation.time;
       w.correlation_length = correlation.length;
@@ -238,8 +303,17 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     constexpr double kNegligible = 1e-6;
-    if (w.fits[i] && w.fits[i]->on_all && !w.canonical[i] && w.probabilities[i] > kNegligible) {
+    const bool wanted = w.probabilities[i] > kNegligible || is_limit_of(w.best, curve_class);
+    if (!w.fits[i] || w.canonical[i] || !wanted) {
+      continue;
+    }
+    if (w.fits[i]->on_all) {
       w.canonical[i] = to_canonical(*w.fits[i], data);
+    } else {
+      if (!w.fits[i]->weighed) {
+        w.coarse[i] = settled(*w.coarse[i], reduced);
+      }
+      w.canonical[i] = to_canonical(*w.coarse[i], reduced);
     }
   }
   w.data = std::move(data);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/curves/curve.h"
+#include "core/recognition/on_all_points.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 
@@ -26,22 +27,22 @@ TEST_P(CanonicalFitOf, ExactPointsGiveShapeAndPoseBack) {
     FitData data = test::fit_data(scene, sigma_m);
     const SmoothModel smooth = fit_smooth_model(&data, true);
     const ClassFits fits = fit_classes(smooth.reduced);
-    const auto refined =
-        refine_on_all(*fits[static_cast<std::size_t>(GetParam())], smooth.reduced, smooth, data);
+    const auto refined = refine_on_all(
+        settled(*fits[static_cast<std::size_t>(GetParam())], smooth.reduced), smooth, data);
     ASSERT_TRUE(refined.has_value());
     const auto polished = polish(*refined, data);
     ASSERT_TRUE(polished.has_value());
     const auto canonical = to_canonical(*polished, data);
     ASSERT_TRUE(canonical.has_value());
-    // Every sample lies on the curve so placed, where it is said to lie, to the fit's own precision.
+    // Every sample lies on the curve so placed, where it is said to lie, to the fit's own
+    // precision.
     const auto curve = make_curve(canonical->shape.curve_class, canonical->shape.values);
     ASSERT_TRUE(curve.has_value());
     std::size_t i = 0;
     double worst = 0.0;
     for (const auto& patch : scene.patches) {
       for (const Vec2& sample : patch) {
-        const Vec2 placed =
-            canonical->world_T_curve * position(*curve, canonical->points[i++].t);
+        const Vec2 placed = canonical->world_T_curve * position(*curve, canonical->points[i++].t);
         worst = std::max(worst, (placed - sample).norm());
       }
     }
@@ -52,8 +53,8 @@ TEST_P(CanonicalFitOf, ExactPointsGiveShapeAndPoseBack) {
     const Eigen::VectorXd error = test::error_of(hypothesis, scene);
     const bool free_turn = pose_symmetry(GetParam()) == 0;
     const Eigen::Index compared = GetParam() == CurveClass::Line ? 0
-                                  : free_turn                   ? error.size() - 1
-                                                                : error.size();
+                                  : free_turn                    ? error.size() - 1
+                                                                 : error.size();
     for (Eigen::Index k = 0; k < compared; ++k) {
       // Within the error that residuals of a tenth of the stated sigma can cause.
       EXPECT_LE(std::abs(error[k]), 0.1 * std::sqrt(canonical->covariance(k, k)) + 1e-12)
@@ -70,8 +71,8 @@ TEST_P(CanonicalFitOf, CovarianceIsPositiveAndScalesWithTheNoise) {
     FitData data = test::fit_data(scene, factor * scene.sigma_m);
     const SmoothModel smooth = fit_smooth_model(&data, true);
     const ClassFits fits = fit_classes(smooth.reduced);
-    const auto refined =
-        refine_on_all(*fits[static_cast<std::size_t>(GetParam())], smooth.reduced, smooth, data);
+    const auto refined = refine_on_all(
+        settled(*fits[static_cast<std::size_t>(GetParam())], smooth.reduced), smooth, data);
     return to_canonical(*refined, data)->covariance;
   };
   const ShapePoseCovariance one = covariance_for(1.0);

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/recognition/class_fits.h"
+#include "core/recognition/on_all_points.h"
 #include "core/recognition/implicit_fit.h"
 #include "core/recognition/polynomial_fit.h"
 #include "tests/support/scene_data.h"
@@ -52,7 +52,7 @@ TEST(PolynomialFit, RefinementFindsExactCurvesFromTheSearch) {
       const ClassFits fits = fit_classes(smooth.reduced);
       const auto& fit = fits[static_cast<std::size_t>(curve_class)];
       ASSERT_TRUE(fit.has_value());
-      const auto refined = refine_on_all(*fit, smooth.reduced, smooth, data);
+      const auto refined = refine_on_all(settled(*fit, smooth.reduced), smooth, data);
       ++scenes;
       // Less than a thousandth of sigma = 1e-6 m off, root mean square.
       found += refined && refined->chi2 < 222.0 * 1e-6 ? 1 : 0;
@@ -72,7 +72,8 @@ TEST(PolynomialFit, InformationMatchesFiniteDifferencesOfTheResiduals) {
   const SmoothModel smooth = fit_smooth_model(&data, true);
   const ClassFits fits = fit_classes(smooth.reduced);
   const auto refined =
-      refine_on_all(*fits[static_cast<std::size_t>(CurveClass::Parabola)], smooth.reduced, smooth, data);
+      refine_on_all(
+            settled(*fits[static_cast<std::size_t>(CurveClass::Parabola)], smooth.reduced), smooth, data);
   ASSERT_TRUE(refined.has_value());
   const PolynomialFit& fit = *refined->polynomial;
   const auto chi2_of = [&](const PolynomialCoefficients& c) {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/recognition/class_fits.h"
+#include "core/recognition/on_all_points.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 
@@ -51,7 +51,7 @@ TEST(SmoothModel, ReducedPointsTellWhatAllPointsTell) {
       if (fit->at_limit) {
         continue;
       }
-      const auto refined = refine_on_all(*fit, model.reduced, model, data);
+      const auto refined = refine_on_all(settled(*fit, model.reduced), model, data);
       if (!refined) {
         continue;  // straight points: no such conic
       }
