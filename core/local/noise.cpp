@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "core/local/normal_law.h"
 #include "core/local/residual_block.h"
 
 namespace palpate {
@@ -24,30 +24,6 @@ constexpr double kCut = 4.0;
 /// The shorter blocks are used where the longer ones' variance exceeds theirs by more than
 /// kExcess standard deviations of the ratio (one-sided 1 %).
 constexpr double kExcess = 2.33;
-
-/// Mean square of a standard normal variable given |x| <= kCut.
-double mean_square_within_cut() {
-  const double density = std::exp(-0.5 * kCut * kCut) / std::sqrt(2.0 * std::numbers::pi);
-  return 1.0 - 2.0 * kCut * density / std::erf(kCut / std::numbers::sqrt2);
-}
-
-double robust_sigma(std::vector<double>& sizes) {
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  const double scale = *middle / kMedianOfNormal;
-  // More than half of the residuals exactly zero (quantised samples): no scale to cut by.
-  const double limit = scale > 0.0 ? kCut * scale : std::numeric_limits<double>::infinity();
-  double sum = 0.0;
-  int kept = 0;
-  for (const double size : sizes) {
-    if (size <= limit) {
-      sum += size * size;
-      ++kept;
-    }
-  }
-  const double within = scale > 0.0 ? mean_square_within_cut() : 1.0;
-  return std::sqrt(sum / (kept * within));
-}
 
 struct BlockNoise {
   NoiseEstimate noise;
@@ -106,6 +82,24 @@ NoiseEstimate from_resolved_blocks(std::span<const Vec2> samples, std::size_t bl
 }
 
 }  // namespace
+
+double robust_sigma(std::vector<double>& sizes) {
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  const double scale = *middle / kMedianOfNormal;
+  // More than half of the residuals exactly zero (quantised samples): no scale to cut by.
+  const double limit = scale > 0.0 ? kCut * scale : std::numeric_limits<double>::infinity();
+  double sum = 0.0;
+  int kept = 0;
+  for (const double size : sizes) {
+    if (size <= limit) {
+      sum += size * size;
+      ++kept;
+    }
+  }
+  const double within = scale > 0.0 ? mean_square_within(kCut) : 1.0;
+  return std::sqrt(sum / (kept * within));
+}
 
 NoiseEstimate estimate_noise(std::span<const Vec2> samples) {
   std::vector<Vec2> distinct;

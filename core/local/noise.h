@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "core/local/local_status.h"
 
@@ -21,5 +22,9 @@ struct NoiseEstimate {
 /// error, drift) is not seen. Samples so coarse that 8 of them turn by a right angle have no
 /// estimate. Needs 8 distinct samples. Cost O(samples log(samples)) at most.
 NoiseEstimate estimate_noise(std::span<const Vec2> samples);
+
+/// Standard deviation of residuals of equal variance by their sizes, some of which are spikes': a
+/// median, then the mean square of what lies within 4 of it, corrected for the cut. Reorders them.
+double robust_sigma(std::vector<double>& sizes);
 
 }  // namespace palpate

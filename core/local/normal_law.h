@@ -1,4 +1,4 @@
-// Quantiles of the standard normal law.
+// Quantiles and cuts of the standard normal law.
 #pragma once
 
 #include <cmath>
@@ -26,6 +26,12 @@ inline double two_sided_normal_quantile(double probability) {
     }
   }
   return z;
+}
+
+/// Mean square of a standard normal variable x given |x| <= cut, cut > 0.
+inline double mean_square_within(double cut) {
+  const double density = std::exp(-0.5 * cut * cut) / std::sqrt(2.0 * std::numbers::pi);
+  return 1.0 - 2.0 * cut * density / std::erf(cut / std::numbers::sqrt2);
 }
 
 }  // namespace palpate

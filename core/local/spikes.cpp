@@ -3,127 +3,78 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/local/noise.h"
+#include "core/local/block_survey.h"
 #include "core/local/normal_law.h"
-#include "core/local/residual_block.h"
+#include "core/local/spike_search.h"
 
 namespace palpate {
 namespace {
 
-constexpr std::size_t kBlock = 16;
-constexpr std::size_t kMinBlock = 8;
+constexpr std::size_t kFewestSamples = 8;
 
-/// Noise is taken as at least kFormFactor * slope^4 * extent, which is what a quartic leaves of a
-/// curve that turns by `slope` either way and whose curvature doubles along it: the fifth-degree
-/// term 15 kappa^2 kappa_s / 5! has 8/63 of P_5 in it, that is 0.8 % of slope^4 extents.
-constexpr double kFormFactor = 0.01;
-/// ... and as this part of the extent: no touched part is truer to a quartic.
-constexpr double kFormResolution = 1e-5;
+/// Samples that are no spikes so far, and their numbers as given.
+struct Kept {
+  std::vector<Vec2> samples;
+  std::vector<std::size_t> numbers;
 
-/// Spikes of one block: the worst sample leaves until none is beyond the threshold; those that the
-/// last fit explains after all come back.
-void find_in_block(std::span<const Vec2> block, double sigma_m, double threshold,
-                   ResidualBlock& residuals, std::vector<bool>& spike) {
-  std::vector<bool> use(block.size(), true);
-  spike.assign(block.size(), false);
-  std::size_t found = 0;
-  double limit = 0.0;
-  while (true) {
-    if (residuals.fit(block, use) != LocalStatus::Ok) {
-      return;
-    }
-    const double turned = std::pow(std::min(residuals.steepest(), 1.0), 4);
-    const double form = (kFormResolution + kFormFactor * turned) * residuals.extent_m();
-    limit = threshold * std::max(sigma_m, form);
-    std::size_t worst = block.size();
-    double largest = limit;
-    for (std::size_t i = 0; i < block.size(); ++i) {
-      if (use[i] && std::abs(residuals.studentised(i)) > largest) {
-        largest = std::abs(residuals.studentised(i));
-        worst = i;
+  void drop(std::span<const std::uint8_t> is_spike, std::vector<std::size_t>* dropped) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (is_spike[i] != 0) {
+        dropped->push_back(numbers[i]);
+      } else {
+        samples[kept] = samples[i];
+        numbers[kept++] = numbers[i];
       }
     }
-    if (worst == block.size()) {
-      break;
-    }
-    if (++found > block.size() / 4) {
-      return;
-    }
-    use[worst] = false;
+    samples.resize(kept);
+    numbers.resize(kept);
   }
-  if (residuals.steepest() > ResidualBlock::kMaxSlope) {
-    return;
-  }
-  for (std::size_t i = 0; i < block.size(); ++i) {
-    spike[i] = !use[i] && std::abs(residuals.studentised(i)) > limit;
-  }
-}
-
-/// 16 samples, or twice that and so on until a block of mean spacing is long against the noise; at
-/// most all samples.
-std::size_t block_length(std::span<const Vec2> samples, double sigma_m) {
-  std::size_t length = kBlock;
-  while (length < samples.size()) {
-    double extent = 0.0;
-    int blocks = 0;
-    for (std::size_t i = 0; i + length <= samples.size(); i += length) {
-      extent += (samples[i + length - 1] - samples[i]).norm();
-      ++blocks;
-    }
-    if (extent > blocks * ResidualBlock::kMinExtentSigmas * sigma_m) {
-      break;
-    }
-    length *= 2;
-  }
-  return std::min(length, samples.size());
-}
+};
 
 }  // namespace
 
 Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
   Spikes result;
-  std::vector<Vec2> finite;
-  std::vector<std::size_t> origin;
-  finite.reserve(samples.size());
-  origin.reserve(samples.size());
+  Kept kept;
+  kept.samples.reserve(samples.size());
+  kept.numbers.reserve(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples[i].allFinite()) {
-      finite.push_back(samples[i]);
-      origin.push_back(i);
+      kept.samples.push_back(samples[i]);
+      kept.numbers.push_back(i);
     } else {
       result.indices.push_back(i);
     }
   }
   result.sigma_m = options.sigma_m;
-  result.status = finite.size() < kMinBlock ? LocalStatus::TooFewSamples : LocalStatus::Ok;
-  if (result.status == LocalStatus::Ok && !(options.sigma_m > 0.0)) {
-    const NoiseEstimate noise = estimate_noise(finite);
-    result.status = noise.status;
-    result.sigma_m = noise.sigma_m;
-  }
-  if (result.status != LocalStatus::Ok) {
+  if (kept.samples.size() < kFewestSamples) {
     return result;
   }
   result.threshold = two_sided_normal_quantile(options.false_alarms_per_patch /
-                                               static_cast<double>(finite.size()));
-
-  // Each block answers for its middle half, the first and last ones also for the patch's ends.
-  const std::size_t length = block_length(finite, result.sigma_m);
-  ResidualBlock residuals;
-  std::vector<bool> spike;
-  std::size_t answered = 0;
-  for (std::size_t first = 0; answered < finite.size(); first += length / 2) {
-    const std::size_t start = std::min(first, finite.size() - length);
-    const bool last = start + length == finite.size();
-    const std::size_t until = last ? finite.size() : start + length - length / 4;
-    find_in_block(std::span(finite).subspan(start, length), result.sigma_m, result.threshold,
-                  residuals, spike);
-    for (std::size_t i = answered; i < until; ++i) {
-      if (spike[i - start]) {
-        result.indices.push_back(origin[i]);
-      }
+                                               static_cast<double>(kept.samples.size()));
+  // Each pass without the spikes found before, which take places in the blocks.
+  constexpr int kMostPasses = 6;
+  for (int pass = 0; pass < kMostPasses && kept.samples.size() >= kFewestSamples; ++pass) {
+    const BlockSurvey survey = survey_blocks(kept.samples, options.sigma_m, result.threshold);
+    if (pass == 0) {
+      result.status = survey.status;
     }
-    answered = until;
+    if (survey.status != LocalStatus::Ok) {
+      break;
+    }
+    result.sigma_m = survey.sigma_m;
+    if (!survey.is_any_off && !survey.is_noise_spiked) {
+      break;
+    }
+    const SpikeSearch found =
+        search_spikes(kept.samples, survey, options.sigma_m, result.threshold);
+    result.sigma_m = found.sigma_m;
+    const std::size_t before = kept.samples.size();
+    kept.drop(found.is_spike, &result.indices);
+    if (kept.samples.size() == before) {
+      break;
+    }
   }
   std::sort(result.indices.begin(), result.indices.end());
   return result;

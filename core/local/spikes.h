@@ -9,7 +9,7 @@
 namespace palpate {
 
 struct SpikeOptions {
-  /// Noise, one standard deviation of a coordinate; 0 = estimate_noise of the patch. [m]
+  /// Noise, one standard deviation of a coordinate; 0 = by the patch itself. [m]
   double sigma_m = 0.0;
   /// Probability that a patch of white Gaussian noise loses any sample. A sample is a spike where
   /// |residual| > z * its standard deviation, z the two-sided normal quantile of this rate over
@@ -24,11 +24,21 @@ struct Spikes {
   double threshold = 0.0;                           ///< z, in standard deviations
 };
 
-/// Tests each sample against a quartic through the 15 around it (blocks of 16 that overlap by half,
-/// longer where 16 samples span less than 20 sigma; the worst leaves, the fit is made again, until
-/// none is beyond the threshold). Blocks that turn by
-/// more than 45 degrees from their axis or would lose more than a quarter are left as they are: a
-/// corner or a step is form, not a spike. Samples that are not finite are spikes. Cost O(samples).
+/// Tests each sample against a quartic through those of the 15 around it that are no spikes. Three
+/// steps, each only where the one before asks for it:
+/// 1. Least squares in all blocks of 16 (longer where 16 samples span less than 20 sigma; they
+/// overlap
+///    by half). Nothing beyond the threshold, nothing behind an earlier sample and the noise not
+///    suspicious: no spikes (block_survey.h). O(samples), and all that a clean patch costs.
+/// 2. In blocks that overlap by three quarters, a start that spikes in up to half of the block
+///    cannot bend (least_median_parabola.h).
+/// 3. From it the quartic's own inliers, and the test (spike_search.h): the deletion residual
+///    against z, for those within the fit and those outside alike. 1 to 3 are repeated without the
+///    spikes found.
+/// A corner, a step or a bend is form and no spike: a block does not judge what goes on beyond its
+/// own inliers, and blocks that turn by more than 45 degrees judge nothing. Samples that are not
+/// finite are spikes; so is a patch's last (first) sample alone beyond a gap of a quarter of its
+/// block. Needs 8 finite samples.
 Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options = {});
 
 }  // namespace palpate

@@ -5,12 +5,11 @@
 #include <optional>
 #include <vector>
 
-#include "core/local/spikes.h"
 #include "core/recognition/explained_spikes.h"
 #include "core/recognition/normal_quantile.h"
 #include "core/recognition/outliers.h"
 #include "core/recognition/richer_class.h"
-#include "core/recognition/spikes.h"
+#include "core/recognition/stored_spikes.h"
 #include "core/recognition/weigh.h"
 
 namespace palpate {
@@ -198,17 +197,12 @@ class Recognizer::Impl {
                         clean_[p].context.patch == patch.context.patch;
       if (!same) {
         clean_[p] = patch;
-        drop_spikes(&clean_[p]);
+        clean_[p].samples = without_spikes(
+            patch.samples, spikes_of(patch.samples, options_.false_outlier_probability));
         state = {patch.samples.size(), patch.contacts_per_sample, patch.newest_m};
       }
     }
     return clean_;
-  }
-
-  void drop_spikes(StoredPatch* patch) const {
-    patch->samples = without_spikes(
-        patch->samples, find_spikes_in_passes(patch->samples, options_.false_outlier_probability));
-    drop_single_spikes(patch);
   }
 
   ContactOptions contact_options() const {
@@ -275,20 +269,6 @@ class Recognizer::Impl {
       localise_contacts(answer->shape, answer->world_T_curve, &answer->contacts);
     }
     answer->hypotheses.push_back(only);
-  }
-
-  /// What is left where spikes were few: the sharper test of core/local.
-  void drop_single_spikes(StoredPatch* patch) const {
-    std::vector<Vec2> positions;
-    for (const StoredSample& sample : patch->samples) {
-      positions.push_back(sample.position_m);
-    }
-    SpikeOptions options;
-    options.false_alarms_per_patch = options_.false_outlier_probability;
-    const Spikes spikes = find_spikes(std::span<const Vec2>(positions), options);
-    for (auto index = spikes.indices.rbegin(); index != spikes.indices.rend(); ++index) {
-      patch->samples.erase(patch->samples.begin() + static_cast<std::ptrdiff_t>(*index));
-    }
   }
 
   void fill(const Weighing& w, Recognition* answer) const {

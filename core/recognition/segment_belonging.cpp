@@ -8,7 +8,7 @@
 #include "core/recognition/chi_square.h"
 #include "core/recognition/knotted_cubic.h"
 #include "core/recognition/smooth_model.h"
-#include "core/recognition/spikes.h"
+#include "core/recognition/stored_spikes.h"
 
 namespace palpate {
 namespace {
@@ -214,7 +214,7 @@ double noise_of(const StoredPatch& patch, double sigma_m) {
 SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, double significance) {
   SegmentBelonging result;
   constexpr double kFalseSpikes = 0.01;  // probability that a patch without spikes loses a sample
-  const std::vector<bool> is_spike = find_spikes(patch.samples, kFalseSpikes);
+  const std::vector<bool> is_spike = spikes_of(patch.samples, kFalseSpikes);
   StoredPatch kept = patch;
   kept.samples = without_spikes(patch.samples, is_spike);
   std::vector<std::size_t> numbers;  // of the samples kept

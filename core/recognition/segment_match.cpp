@@ -9,7 +9,7 @@
 #include "core/recognition/chi_square.h"
 #include "core/recognition/part_slides.h"
 #include "core/recognition/smooth_model.h"
-#include "core/recognition/spikes.h"
+#include "core/recognition/stored_spikes.h"
 
 namespace palpate {
 namespace {
@@ -28,7 +28,7 @@ struct CleanPatches {
 CleanPatches clean_patches(std::span<const StoredPatch> patches, double false_alarm) {
   CleanPatches clean;
   for (const StoredPatch& patch : patches) {
-    clean.is_spike.push_back(find_spikes(patch.samples, false_alarm));
+    clean.is_spike.push_back(spikes_of(patch.samples, false_alarm));
     StoredPatch kept = patch;
     kept.samples = without_spikes(patch.samples, clean.is_spike.back());
     clean.patches.push_back(std::move(kept));

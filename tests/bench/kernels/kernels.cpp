@@ -100,6 +100,24 @@ std::vector<std::vector<Vec2>> windows() {
   return all;
 }
 
+/// The same with a tenth of the samples up to 5 mm off.
+std::vector<std::vector<Vec2>> spiked_windows() {
+  std::vector<std::vector<Vec2>> all = windows();
+  std::mt19937_64 rng(2);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (auto& window : all) {
+    for (Vec2& p : window) {
+      const double chance = uniform(rng);
+      const double x = uniform(rng) - 0.5;
+      const double y = uniform(rng) - 0.5;
+      if (chance < 0.1) {
+        p += 0.01 * Vec2(x, y);
+      }
+    }
+  }
+  return all;
+}
+
 void add_local(std::vector<Kernel>* kernels) {
   const auto add = [&](const std::string& name, auto function) {
     kernels->push_back(over("local/" + name, kWindows, windows, function));
@@ -123,6 +141,9 @@ void add_local(std::vector<Kernel>* kernels) {
   add("adaptive-jet", [](const auto& w) { return adaptive_jet(w, PatchPlace::Centre, kSigma); });
   add("noise", [](const auto& w) { return estimate_noise(w); });
   add("spikes", [](const auto& w) { return find_spikes(w, {.sigma_m = kSigma}); });
+  add("spikes-noise-unknown", [](const auto& w) { return find_spikes(w); });
+  kernels->push_back(over("local/spikes-in-a-tenth", kWindows, spiked_windows,
+                          [](const auto& w) { return find_spikes(w); }));
   const auto estimates = [] {
     std::vector<LocalEstimate> all;
     for (const auto& window : windows()) {

@@ -1,4 +1,4 @@
-#include "core/recognition/spikes.h"
+#include "core/recognition/stored_spikes.h"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ TEST(Spikes, CleanArcsLoseAlmostNothing) {
   std::size_t flagged = 0;
   constexpr int kTrials = 300;
   for (int trial = 0; trial < kTrials; ++trial) {
-    const auto spikes = find_spikes(arc(120, 0.1, rng), 0.01);
+    const auto spikes = spikes_of(arc(120, 0.1, rng), 0.01);
     flagged += static_cast<std::size_t>(std::count(spikes.begin(), spikes.end(), true));
   }
   // At most one scene in a hundred is meant to lose a sample, more because the scale is estimated from
@@ -52,7 +52,7 @@ TEST(Spikes, NineInTenAreFoundEvenWhereAThirdOfSamplesAreSpikes) {
       }
     }
     for (int pass = 0; pass < 6; ++pass) {
-      const auto spikes = find_spikes(samples, 0.01);
+      const auto spikes = spikes_of(samples, 0.01);
       std::size_t i = 0;
       std::erase_if(samples, [&](const StoredSample&) { return spikes[i++]; });
     }
@@ -69,16 +69,16 @@ TEST(Spikes, NineInTenAreFoundEvenWhereAThirdOfSamplesAreSpikes) {
 
 TEST(Spikes, SharpBendsAndStraightEdgesAndDwellingAreNone) {
   std::mt19937_64 rng = test::test_rng();
-  const auto bend = find_spikes(arc(60, 0.01, rng), 0.01);  // 12 degrees from sample to sample
+  const auto bend = spikes_of(arc(60, 0.01, rng), 0.01);  // 12 degrees from sample to sample
   EXPECT_LE(std::count(bend.begin(), bend.end(), true), 1);
   std::vector<StoredSample> line;
   for (int i = 0; i < 50; ++i) {
     line.push_back({{1e-3 * i, 0.0}, 0.0, 1.0});
   }
-  const auto straight = find_spikes(line, 0.01);
+  const auto straight = spikes_of(line, 0.01);
   EXPECT_EQ(std::count(straight.begin(), straight.end(), true), 0);
   const std::vector<StoredSample> dwelling(50, StoredSample{{1.0, 2.0}, 0.0, 1.0});
-  const auto dwell = find_spikes(dwelling, 0.01);
+  const auto dwell = spikes_of(dwelling, 0.01);
   EXPECT_EQ(std::count(dwell.begin(), dwell.end(), true), 0);
 }
 

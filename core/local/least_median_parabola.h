@@ -1,0 +1,35 @@
+// The parabola that half of a block's samples lie nearest to: a start that spikes cannot bend.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/curves/pose2.h"
+
+namespace palpate {
+
+/// Least median of squares (P. J. Rousseeuw, "Least median of squares regression", 1984): of the
+/// parabolas through three samples, one from each third of the block, that one whose distance to
+/// the nearer half of the samples is least. Up to half of the samples may be anywhere.
+class LeastMedianParabola {
+ public:
+  /// False where no three samples follow each other in their order within 45 degrees. O(samples).
+  bool fit(std::span<const Vec2> samples);
+
+  /// Standard deviation of the noise by the nearer half's largest distance: for 16 samples within a
+  /// factor of two, and too large where more than a few are spikes. [m]
+  double scale_m() const { return scale_m_; }
+
+  /// One flag per sample: whether it is of the nearer half.
+  std::span<const std::uint8_t> nearer_half() const { return nearer_; }
+
+ private:
+  void try_curve(double curve, std::size_t half, double* best);
+
+  double scale_m_ = 0.0;
+  std::vector<std::uint8_t> nearer_;
+  std::vector<double> across_, product_, distances_, best_, sorted_;
+};
+
+}  // namespace palpate

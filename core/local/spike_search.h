@@ -1,0 +1,26 @@
+// The search for spikes in a patch that has any: a start that they cannot bend, then a sharp test.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/local/block_survey.h"
+
+namespace palpate {
+
+struct SpikeSearch {
+  std::vector<std::uint8_t> is_spike;  ///< one flag per sample
+  double sigma_m = 0.0;                ///< noise used [m]
+};
+
+/// In blocks that overlap by three quarters: the half of the samples nearest to a common parabola
+/// first, then a quartic (a cubic where more than a quarter is lost) that samples within the
+/// threshold join and others leave until none does either. A block in which fewer than half join,
+/// or which turns by more than 45 degrees, says nothing. No block condemns what goes on beyond its
+/// own samples, a bend or a step; each sample is judged by the block that loses least. `sigma_m`: 0
+/// = by the residuals of samples that joined.
+SpikeSearch search_spikes(std::span<const Vec2> samples, const BlockSurvey& survey, double sigma_m,
+                          double threshold);
+
+}  // namespace palpate
