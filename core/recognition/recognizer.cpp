@@ -114,31 +114,36 @@ class Recognizer::Impl {
   /// What the last weighing left.
   struct Last {
     WarmStart warm;
-    CurveClass best = CurveClass::Unclassified;
+    ClassProbabilities probabilities{};
     std::size_t samples = 0;  ///< at the last search
     std::size_t patches = 0;
     std::vector<Decision> decisions;  ///< of the tree, at the last search
   };
 
   /// From the last weighing while the object is touched on in the same patches; from a new search
-  /// where they have grown by this, where there is another patch, and where the answer would
-  /// change.
+  /// where they have grown by this, where there is another patch, and where a class comes out best
+  /// that was out.
   Weighing weigh_once_more(const FitData& data, bool sigma_known,
                            std::span<const StoredPatch> patches) {
     constexpr double kGrowth = 1.25;
+    constexpr double kOut = 0.01;  // probability
     const std::size_t samples = memory_.sample_count();
     const bool warm = last_ && last_->patches == data.patches.size() &&
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
     if (warm) {
       Weighing w = weigh_without_outliers(data, sigma_known, patches, &last_->warm);
-      if (w.best == last_->best) {
+      if (last_->probabilities[static_cast<std::size_t>(w.best)] > kOut) {
         last_->warm = warm_start_from(w.coarse, w.smooth.reduced);
+        last_->probabilities = w.probabilities;
         return w;
       }
     }
     Weighing w = weigh_without_outliers(data, sigma_known, patches, nullptr);
-    last_ =
-        Last{warm_start_from(w.coarse, w.smooth.reduced), w.best, samples, data.patches.size(), {}};
+    last_ = Last{warm_start_from(w.coarse, w.smooth.reduced),
+                 w.probabilities,
+                 samples,
+                 data.patches.size(),
+                 {}};
     return w;
   }
 
@@ -307,7 +312,8 @@ class Recognizer::Impl {
       return Doubt::Misfit;
     }
     if (curve_class == CurveClass::Unclassified) {
-      return many_spikes ? Doubt::Misfit : Doubt::None;
+      // What not even the smooth model follows says nothing about classes.
+      return many_spikes || !is_noise(best.chi2, best.dof) ? Doubt::Misfit : Doubt::None;
     }
     if (best.at_limit || best.covariance.size() == 0) {
       return Doubt::AtLimit;

@@ -303,18 +303,18 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     constexpr double kNegligible = 1e-6;
-    const bool wanted = w.probabilities[i] > kNegligible || is_limit_of(w.best, curve_class);
-    if (!w.fits[i] || w.canonical[i] || !wanted) {
+    const bool asked_for = is_limit_of(w.best, curve_class);
+    if (!w.fits[i] || w.canonical[i] || !(asked_for || w.probabilities[i] > kNegligible)) {
       continue;
     }
     if (w.fits[i]->on_all) {
       w.canonical[i] = to_canonical(*w.fits[i], data);
-    } else {
-      if (!w.fits[i]->weighed) {
-        w.coarse[i] = settled(*w.coarse[i], reduced);
-      }
-      w.canonical[i] = to_canonical(*w.coarse[i], reduced);
+      continue;
     }
+    if (asked_for && !w.fits[i]->weighed) {
+      w.coarse[i] = settled(*w.coarse[i], reduced);
+    }
+    w.canonical[i] = to_canonical(*w.coarse[i], reduced);
   }
   w.data = std::move(data);
   return w;
