@@ -150,20 +150,24 @@ PolynomialFits search_parabola(const FitData& reduced) {
 }
 
 PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts) {
-  // A step or two; what is plausible goes on from there (refine_on_all).
+  // A step or two; what was plausible goes as far as it takes to stay so, and not to need a search.
   constexpr RefineEffort kFollow{5, 1, 1e-2};
+  constexpr RefineEffort kFarther{15, 1, 1e-2};
+  constexpr double kPlausible = 20.0;  // odds of exp(10)
   // Odds of exp(50) or more: the few points that may be added before the next search (a quarter of
   // all) do not turn them.
   constexpr double kFarOut = 100.0;
   PolynomialFits fits;
   fits.every_seed = starts.every_seed;
   const double highest_chi2 = starts.lowest_chi2 + kFarOut;
-  const auto follow = [&](const std::optional<PolynomialFit>& start, PolynomialModel model) {
-    return !start ? std::nullopt
-           : start->chi2 > highest_chi2
-               ? std::optional(placed_on(reduced.points, *start))
-               : std::optional(
-                     refine_polynomial(model, reduced.points, *start, kSurfacePoints, kFollow));
+  const auto follow = [&](const std::optional<PolynomialFit>& start,
+                          PolynomialModel model) -> std::optional<PolynomialFit> {
+    if (!start || start->chi2 > highest_chi2) {
+      return start ? std::optional(placed_on(reduced.points, *start)) : std::nullopt;
+    }
+    const bool was_plausible = start->chi2 <= starts.lowest_chi2 + kPlausible;
+    return refine_polynomial(model, reduced.points, *start, kSurfacePoints,
+                             was_plausible ? kFarther : kFollow);
   };
   fits.parabola = follow(starts.parabola, PolynomialModel::Parabola);
   fits.cubical_parabola = follow(starts.cubical_parabola, PolynomialModel::CubicalParabola);

@@ -7,39 +7,42 @@
 namespace palpate {
 namespace {
 
-/// The parameter of the place nearest to a point, among places along the curve.
+/// The parameter of the place nearest to a point, among places along the curve: so dense that a
+/// sharp bend has places on both its arms.
 class NearestPlace {
  public:
   explicit NearestPlace(const PolynomialCoefficients& c) {
     for (std::size_t k = 0; k < kPlaces; ++k) {
       const double t = parameter(k);
-      places_[k] = c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3)));
+      const Vec2 place = c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3)));
+      x_[k] = static_cast<float>(place.x());
+      y_[k] = static_cast<float>(place.y());
     }
   }
 
-  double operator()(const Vec2& point) const {
-    std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
+  double operator()(const Vec2& point) {
+    const auto x = static_cast<float>(point.x());
+    const auto y = static_cast<float>(point.y());
     for (std::size_t k = 0; k < kPlaces; ++k) {
-      const double distance = (places_[k] - point).squaredNorm();
-      if (distance < least) {
-        least = distance;
-        nearest = k;
-      }
+      squares_[k] = (x_[k] - x) * (x_[k] - x) + (y_[k] - y) * (y_[k] - y);
     }
-    return parameter(nearest);
+    const auto nearest = std::min_element(squares_.begin(), squares_.end()) - squares_.begin();
+    return parameter(static_cast<std::size_t>(nearest));
   }
 
  private:
   // The points were within [-1, 1] (normalise_parameter); they may have grown beyond it by a
   // quarter.
-  static constexpr std::size_t kPlaces = 33;
+  static constexpr std::size_t kPlaces = 129;
   static constexpr double kFarthest = 1.6;
   static double parameter(std::size_t k) {
     return kFarthest * (2.0 * static_cast<double>(k) / (kPlaces - 1) - 1.0);
   }
 
-  std::array<Vec2, kPlaces> places_;
+  // Single precision is plenty for a start, and twice as fast.
+  std::array<float, kPlaces> x_;
+  std::array<float, kPlaces> y_;
+  std::array<float, kPlaces> squares_;  ///< of distances from the point last asked for
 };
 
 std::optional<PolynomialFit> carried(const std::optional<PolynomialFit>& fit, const WarmStart& warm,
@@ -55,7 +58,7 @@ std::optional<PolynomialFit> carried(const std::optional<PolynomialFit>& fit, co
                                         : reduced.frame.rotate_back(warm.frame.rotate(scaled))) /
                                 reduced.scale;
   }
-  const NearestPlace nearest(start.coefficients);
+  NearestPlace nearest(start.coefficients);
   start.t.reserve(reduced.points.size());
   for (const FitPoint& point : reduced.points) {
     start.t.push_back(nearest(point.position));
