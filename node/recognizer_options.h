@@ -43,6 +43,9 @@ void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& vi
   visit({"determined_fraction",
          "RECOGNIZED needs each parameter's standard deviation within this fraction of it", 0, 1e3},
         recognizer.determined_fraction);
+  visit({"determined_nonlinearity",
+         "RECOGNIZED needs what the covariance leaves out to be at most this fraction of what it describes"},
+        recognizer.determined_nonlinearity);
   visit({"parsimony", "Price of a parameter in units of log(n)", 0, 1e3}, recognizer.parsimony);
   visit({"excluded_departure",
          "RECOGNIZED as a limit of a richer class needs larger departures excluded", 0, 1},

@@ -28,7 +28,7 @@ enum class Doubt {
   Misfit,          ///< the residuals are larger than the noise can be
   TwoShapes,       ///< two shapes fit alike (a spline and its rival; tips on either side)
   RicherClass,     ///< the arc is too short to exclude a class of which this one is a limit
-  Undetermined,    ///< the shape's standard deviations are too large
+  Undetermined,    ///< the shape's standard deviations are too large, or no covariance describes them
 };
 
 /// Lower-case name with underscores ("several_classes").
@@ -47,6 +47,8 @@ using ShapePoseCovariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic
 struct Hypothesis {
   ShapeParameters shape;
   Pose2 world_T_curve;
+  /// The Kanatani-Cramer-Rao bound; of the most probable hypothesis of RecognitionMethod::
+  /// MaximumLikelihood with what the bend of its valley adds (core/README.md, "Evidence").
   ShapePoseCovariance covariance;
   double probability = 0.0;  ///< posterior among all hypotheses, "unclassified" included
   double chi2 = 0.0;         ///< sum of squared normalised residuals of the samples in use
@@ -76,7 +78,7 @@ struct Recognition {
   Doubt doubt = Doubt::None;  ///< unless AMBIGUOUS
   ShapeParameters shape;
   Pose2 world_T_curve;
-  ShapePoseCovariance covariance;
+  ShapePoseCovariance covariance;      ///< of the most probable hypothesis
   std::vector<Hypothesis> hypotheses;  ///< most probable first
   std::vector<LocalizedContact> contacts;
   std::vector<Decision> decisions;

@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/recognition/bend.h"
+#include "core/recognition/determined.h"
 #include "core/recognition/explained_spikes.h"
 #include "core/recognition/normal_quantile.h"
 #include "core/recognition/outliers.h"
@@ -17,27 +19,6 @@ namespace {
 
 /// Fewer points than this fit almost anything.
 constexpr std::size_t kFewestSamples = 8;
-
-/// Whether the linearised covariance of the shape means something.
-bool is_determined(const ShapeParameters& shape, const ShapePoseCovariance& covariance,
-                   double extent_m, double fraction) {
-  const std::string_view letters = parameter_letters(shape.curve_class);
-  for (std::size_t i = 0; i < letters.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    double natural = std::abs(shape.values[k]);
-    if (shape.curve_class == CurveClass::CubicSpline && letters[i] == 'c') {
-      natural = std::max(natural, std::sqrt(extent_m));  // c t against x = t^2
-    } else if (degrees_of_freedom(shape.curve_class) >= 5 && letters[i] != 'a' &&
-               shape.curve_class != CurveClass::Ellipse &&
-               shape.curve_class != CurveClass::Hyperbola) {
-      natural = std::max(natural, 1.0);  // slopes
-    }
-    if (!(std::sqrt(covariance(k, k)) <= fraction * natural)) {
-      return false;
-    }
-  }
-  return true;
-}
 
 /// Whether noise of the stated size can have left this chi-square (five standard deviations).
 bool is_noise(double chi2, double dof) { return chi2 <= dof + 5.0 * std::sqrt(2.0 * dof); }
@@ -285,20 +266,26 @@ class Recognizer::Impl {
     std::stable_sort(
         answer->hypotheses.begin(), answer->hypotheses.end(),
         [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
-    const Hypothesis& best = answer->hypotheses.front();
+    Hypothesis& best = answer->hypotheses.front();
+    const auto& canonical = w.canonical[static_cast<std::size_t>(best.shape.curve_class)];
+    const auto bend = canonical ? bend_of(*canonical, w.data, w.inflation) : std::nullopt;
+    if (bend) {
+      best.covariance = with_bend(best.covariance, *bend);
+    }
     answer->shape = best.shape;
     answer->world_T_curve = best.world_T_curve;
     answer->covariance = best.covariance;
     answer->sigma_m =
         w.sigma * w.data.scale * (w.correlation_length > 0.0 ? 1.0 : std::sqrt(w.inflation));
     answer->noise_correlation_m = w.correlation_length * w.data.scale;
-    answer->doubt = doubt_about(w, best);
+    answer->doubt = doubt_about(w, best, bend);
     answer->status =
         answer->doubt == Doubt::None ? RecognitionStatus::Recognized : RecognitionStatus::Ambiguous;
   }
 
   /// What speaks against a class that is more probable than all others.
-  Doubt doubt_about(const Weighing& w, const Hypothesis& best) const {
+  Doubt doubt_about(const Weighing& w, const Hypothesis& best,
+                    const std::optional<Bend>& bend) const {
     if (best.probability < options_.recognized_probability) {
       return Doubt::SeveralClasses;
     }
@@ -340,9 +327,10 @@ class Recognizer::Impl {
     if (!(largest_departure(w, curve_class) <= excluded)) {
       return Doubt::RicherClass;
     }
-    return is_determined(best.shape, best.covariance, w.data.scale, options_.determined_fraction)
-               ? Doubt::None
-               : Doubt::Undetermined;
+    const bool means_something =
+        is_determined(best.shape, best.covariance, w.data.scale, options_.determined_fraction) &&
+        bend && bend->nonlinearity <= options_.determined_nonlinearity;
+    return means_something ? Doubt::None : Doubt::Undetermined;
   }
 
   RecognizerOptions options_;
