@@ -287,19 +287,28 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
         correlation.time == 1.0 && variance > kMuchLarger * noise && excess <= kLargestNoise;
     const bool form_error = correlation.time > 1.0 && excess <= options.form_error_fraction;
     if (misfits && (noisy || form_error)) {
-      EvidenceScale tempered = scale;
-      tempered.sigma_known = true;
-      tempered.samples = std::max(n / correlation.time, 1.0);
-      tempered.tempering = variance * correlation.time;
-      weigh_plausible(data, reduced, tempered, options, &w);
-      w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, tempered);
+      scale.sigma_known = true;
+      scale.samples = std::max(n / correlation.time, 1.0);
+      scale.tempering = variance * correlation.time;
+      weigh_plausible(data, reduced, scale, options, &w);
+      w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
       w.inflation = variance * correlation.time;
       w.correlation_length = correlation.length;
     } else if (!sigma_known) {
       w.inflation = variance;
     }
   }
-  w.best = most_probable(w.probabilities);
+  // A conic's evidence is divided at the parabola: the most probable class, which is published,
+  // need not be that of the lowest criterion.
+  const auto best_fit = [&]() -> std::optional<ClassFit>& {
+    w.best = most_probable(w.probabilities);
+    return w.fits[static_cast<std::size_t>(w.best)];
+  };
+  while (best_fit() && !best_fit()->on_all && !best_fit()->at_limit) {
+    best_fit() =
+        polished(settled(*w.coarse[static_cast<std::size_t>(w.best)], reduced), w.smooth, data);
+    w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
+  }
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     constexpr double kNegligible = 1e-6;
