@@ -32,7 +32,7 @@ template <typename Words, typename Recognizer, typename Visit>
 void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& visit) {
   constexpr double kMostSamples = 1e6;
   visit(
-      {"method", "ml (maximum likelihood: all classes on all points) or tree (local estimates alone)"},
+      {"method", "ml (maximum likelihood: all classes fitted and weighed) or tree (local estimates alone)"},
       words.method);
   visit({"classes", "Class to consider, e.g. ellipse; may be repeated; none = all"},
         words.classes);

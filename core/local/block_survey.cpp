@@ -49,10 +49,7 @@ double low_noise_of(std::span<const Vec2> samples, std::vector<double>& sizes) {
     const double length = chord.norm();
     sizes.push_back(length > 0.0 ? std::abs(cross(chord, difference)) / length : 0.0);
   }
-  const auto place =
-      sizes.begin() + static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(sizes.size()));
-  std::nth_element(sizes.begin(), place, sizes.end());
-  return *place / (kQuantileOfNormal * kNorm);
+  return quantile(sizes, kQuantile) / (kQuantileOfNormal * kNorm);
 }
 
 /// The length of blocks for that noise, by their chords' lower quartile: spikes at their ends
@@ -179,8 +176,15 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
   if (survey.status != LocalStatus::Ok) {
     return survey;
   }
-  survey.is_any_off = blocks.largest > threshold || blocks.end_gap > kLonelyGap ||
-                      blocks.backtrack_m > kBacktrackSigmas * std::sqrt(2.0) * survey.sigma_m;
+  if (!is_resolved() && !(sigma_m > 0.0)) {
+    survey.status = LocalStatus::Unresolved;
+    return survey;
+  }
+  // Where noise scatters samples along the axis as well, their order there tells nothing.
+  const bool is_out_of_order =
+      blocks.end_gap > kLonelyGap ||
+      blocks.backtrack_m > kBacktrackSigmas * std::sqrt(2.0) * survey.sigma_m;
+  survey.is_any_off = blocks.largest > threshold || (is_resolved() && is_out_of_order);
   if (!(sigma_m > 0.0)) {
     look_for_spiked_noise(samples, blocks.largest, &survey);
   }

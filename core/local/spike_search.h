@@ -14,12 +14,12 @@ struct SpikeSearch {
   double sigma_m = 0.0;                ///< noise used [m]
 };
 
-/// In blocks that overlap by three quarters: the half of the samples nearest to a common parabola
-/// first, then a quartic (a cubic where more than a quarter is lost) that samples within the
-/// threshold join and others leave until none does either. A block in which fewer than half join,
-/// or which turns by more than 45 degrees, says nothing. No block condemns what goes on beyond its
-/// own samples, a bend or a step; each sample is judged by the block that loses least. `sigma_m`: 0
-/// = by the residuals of samples that joined.
+/// In blocks that overlap by three quarters: a quartic (a cubic where more than a quarter is lost)
+/// that samples within the threshold join and others leave until none does either, first from all
+/// samples, and where more than an eighth would leave, from the half nearest to a common parabola.
+/// A block in which no more than half join, or which turns by more than 45 degrees, says nothing.
+/// No block condemns what goes on beyond its own samples, a bend or a step; each sample is judged
+/// by the block that loses least. `sigma_m`: 0 = by the residuals of samples that joined.
 SpikeSearch search_spikes(std::span<const Vec2> samples, const BlockSurvey& survey, double sigma_m,
                           double threshold);
 

@@ -24,12 +24,12 @@ struct Spikes {
   double threshold = 0.0;                           ///< z, in standard deviations
 };
 
-/// Tests each sample against a quartic through those of the 15 around it that are no spikes. Three
+/// Tests each sample against a quartic (a cubic where spikes are many) through those of the block
+/// around it that are no spikes. Three
 /// steps, each only where the one before asks for it:
-/// 1. Least squares in all blocks of 16 (longer where 16 samples span less than 20 sigma; they
-/// overlap
-///    by half). Nothing beyond the threshold, nothing behind an earlier sample and the noise not
-///    suspicious: no spikes (block_survey.h). O(samples), and all that a clean patch costs.
+/// 1. Least squares in all blocks of 16 (longer where 16 samples span less than 20 sigma), which
+///    overlap by half. Nothing beyond the threshold, nothing behind an earlier sample and the noise
+///    not suspicious: no spikes (block_survey.h). O(samples), and all that a clean patch costs.
 /// 2. In blocks that overlap by three quarters, a start that spikes in up to half of the block
 ///    cannot bend (least_median_parabola.h).
 /// 3. From it the quartic's own inliers, and the test (spike_search.h): the deletion residual

@@ -15,8 +15,8 @@ namespace {
 constexpr double kDeviations = 2.0;
 /// E[(k / 2)^4] of a standard normal k.
 constexpr double kSecondMoment = 3.0 / 16.0;
-/// The bend is smooth along the arcs, and nearly all of it an error of shape and pose: least squares
-/// over twice as many points as these have components tell it.
+/// The bend is smooth along the arcs, and nearly all of it an error of shape and pose: least
+/// squares over twice as many points as these have components tell it.
 constexpr int kMostAsked = 12;
 
 using Offsets = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostAsked, 1>;
@@ -82,11 +82,13 @@ Offsets offsets(const Moved& moved, const std::vector<Asked>& asked) {
 std::vector<Asked> ask(const Curve& curve, const CanonicalFit& fit, const FitData& data,
                        double inflation) {
   const std::size_t n = fit.points.size();
-  const std::size_t stride = (n + kMostAsked - 1) / kMostAsked;
-  const double scale = std::sqrt(static_cast<double>(stride) / inflation) / data.scale;
+  const std::size_t count = std::min<std::size_t>(n, kMostAsked);
+  const double share = static_cast<double>(n) / static_cast<double>(count);
+  const double scale = std::sqrt(share / inflation) / data.scale;
   std::vector<Asked> asked;
-  asked.reserve(kMostAsked);
-  for (std::size_t i = stride / 2; i < n; i += stride) {
+  asked.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = (2 * k + 1) * n / (2 * count);
     const FittedPoint& point = fit.points[i];
     asked.push_back({point.t, position(curve, point.t), fit.world_T_curve.rotate_back(point.normal),
                      scale * data.points[i].inverse_sigma});
@@ -113,7 +115,8 @@ Rows jacobian(const Curve& curve, const CanonicalFit& fit, const std::vector<Ask
 
 /// A step of r of the natural size bends the curve by some r^2 / 2 of the extent: with r one
 /// standard deviation, at two of them by twice that r^2 over the noise of the mean of all points.
-/// Where that is below this limit, the square of a standard deviation grows by a thousandth or so.
+/// Where that is below this limit, the square of a standard deviation grows by less than a
+/// hundredth.
 bool may_bend(double relative_variance, const FitData& data, double inflation) {
   constexpr double kLeastBend = 0.1;
   double weight = 0.0;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <cassert>
 #include <cmath>
 
 #include "core/curves/canonical_conic.h"
@@ -144,6 +145,8 @@ ShapePoseCovariance invert(const ShapePoseCovariance& information, int rank) {
 }  // namespace
 
 std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& data) {
+  assert((fit.implicit ? fit.implicit->feet.size() : fit.polynomial->t.size()) ==
+         data.points.size());
   auto placement = place_of(fit, data);
   if (!placement || !placement->shape.values.allFinite()) {
     return std::nullopt;

@@ -11,9 +11,9 @@ namespace palpate {
 
 /// A contact point's place on the fitted curve.
 struct FittedPoint {
-  double t = 0.0;                ///< canonical curve parameter
-  double residual = 0.0;         ///< signed distance less tip radius, in units of sigma
-  Vec2 normal = Vec2::Zero();    ///< unit normal at the foot point, world frame
+  double t = 0.0;              ///< canonical curve parameter
+  double residual = 0.0;       ///< signed distance less tip radius, in units of sigma
+  Vec2 normal = Vec2::Zero();  ///< unit normal at the foot point, world frame
 };
 
 struct CanonicalFit {
@@ -26,9 +26,9 @@ struct CanonicalFit {
   std::vector<FittedPoint> points;
 };
 
-/// `data`: all points where `fit` is refined on all, otherwise the reduced ones, which carry the same
-/// information. nullopt where there is no such curve: a class at its limit, a circle as flat as a line, a parabola
-/// or cubic without extent across its axis.
+/// `data`: all points where `fit` is refined on all, otherwise the reduced ones, which carry the
+/// same information. nullopt where there is no such curve: a class at its limit, a circle as flat
+/// as a line, a parabola or cubic without extent across its axis.
 std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& data);
 
 }  // namespace palpate

@@ -60,7 +60,8 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsi
     result[static_cast<std::size_t>(fit.curve_class)] = std::move(fit);
   };
 
-  set(implicit_class(CurveClass::Line, refine_line(points, algebraic_line(points), side, kNearEnough)));
+  set(implicit_class(CurveClass::Line,
+                     refine_line(points, algebraic_line(points), side, kNearEnough)));
   const ImplicitFit circle = refine_circle(points, algebraic_circle(points), side, kNearEnough);
   set(implicit_class(CurveClass::Circle, circle));
 

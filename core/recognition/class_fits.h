@@ -1,4 +1,4 @@
-// Every class refined on all points: the material that evidence is weighed on.
+// Every class fitted to the reduced points: the material that evidence is weighed on.
 #pragma once
 
 #include <array>
@@ -48,13 +48,9 @@ inline constexpr unsigned kAllClasses = ~0U;
 
 /// Fits every class to the smooth model's reduced points, taken as surface points: seeds by
 /// exhaustive coarse search, or `starts` (for these points) where given and anything then fits;
-/// least orthogonal distances, polynomials with coarse effort. What `classes` leaves out may be
-/// missing.
+/// least orthogonal distances, as far as telling plausible classes from others takes. What
+/// `classes` leaves out may be missing.
 ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts = nullptr,
                       unsigned classes = kAllClasses);
-
-/// A class whose criterion (evidence.h) is this much above another's is out: odds of
-/// exp(20/2), or 1 to 22000.
-inline constexpr double kHopeless = 20.0;
 
 }  // namespace palpate

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -71,6 +73,11 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
                                 [](const FitPoint& point) { return point.offset > 0.0; });
   ClassFit start = fit;
   start.weighed = start.on_all = true;
+  // Odds of exp(10): no shape to doubt the best one for.
+  constexpr double kHopeless = 20.0;
+  if (start.rival && start.rival->chi2 > start.polynomial->chi2 + kHopeless) {
+    start.rival.reset();
+  }
   if (start.implicit && tips) {
     start.implicit->side = side_of_tips(distances_from(*start.implicit, points), points);
   }
@@ -111,7 +118,8 @@ ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const Refi
   return fit;
 }
 
-/// Whether a fit to all points is still the curve that it is called.
+}  // namespace
+
 bool is_what_it_says(const ClassFit& fit, const FitData& data) {
   if (fit.polynomial) {
     return is_touchable(*fit.polynomial, data);
@@ -124,17 +132,11 @@ bool is_what_it_says(const ClassFit& fit, const FitData& data) {
          is_touchable(*fit.implicit, data);
 }
 
-}  // namespace
-
 ClassFit settled(const ClassFit& fit, const FitData& reduced, const RefineEffort& effort) {
   constexpr int kMoreOnReduced = 10;  // the points are few
   RefineEffort on_reduced = effort;
   on_reduced.iterations *= kMoreOnReduced;
-  ClassFit result = refine_parts(fit, reduced.points, on_reduced);
-  if (result.rival && result.rival->chi2 > result.chi2 + kHopeless) {
-    result.rival.reset();
-  }
-  return result;
+  return refine_parts(fit, reduced.points, on_reduced);
 }
 
 double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data) {

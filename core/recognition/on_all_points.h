@@ -7,6 +7,9 @@
 
 namespace palpate {
 
+/// Whether a fit to `data` is still the curve that it is called, and one that can be touched so.
+bool is_what_it_says(const ClassFit& fit, const FitData& data);
+
 /// Takes a fit on the reduced points to its optimum there.
 ClassFit settled(const ClassFit& fit, const FitData& reduced,
                  const RefineEffort& effort = kOnAllEffort);

@@ -33,8 +33,8 @@ PolynomialFits search_parabola(const FitData& reduced);
 /// were out by far stay as they are, their chi2 that of the new points.
 PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts);
 
-/// The last resort for the models with arms, whose sharp bends make narrow valleys: refines every seed
-/// thoroughly.
+/// The last resort where nothing fits: refines thoroughly every seed of the models with arms, whose
+/// sharp bends make narrow valleys, and the best of the others.
 void refine_every_seed(const FitData& reduced, PolynomialFits* fits);
 
 }  // namespace palpate

@@ -24,11 +24,11 @@ enum class Doubt {
   None,
   SeveralClasses,  ///< no class is probable enough
   AtLimit,         ///< the class fits best where it turns into another
-  FormError,       ///< residuals are correlated along the arc: form error, or a class not known here
-  Misfit,          ///< the residuals are larger than the noise can be
-  TwoShapes,       ///< two shapes fit alike (a spline and its rival; tips on either side)
-  RicherClass,     ///< the arc is too short to exclude a class of which this one is a limit
-  Undetermined,    ///< the shape's standard deviations are too large, or no covariance describes them
+  FormError,     ///< residuals are correlated along the arc: form error, or a class not known here
+  Misfit,        ///< the residuals are larger than the noise can be
+  TwoShapes,     ///< two shapes fit alike (a spline and its rival; tips on either side)
+  RicherClass,   ///< the arc is too short to exclude a class of which this one is a limit
+  Undetermined,  ///< the shape's standard deviations are too large, or no covariance describes them
 };
 
 /// Lower-case name with underscores ("several_classes").
@@ -43,7 +43,9 @@ struct ShapeParameters {
 /// Covariance of [shape parameters; x; y; theta]; at most 6 x 6, no heap.
 using ShapePoseCovariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 
-/// One class refined on all samples, whether it won or not.
+/// One class, whether it won or not. The most probable one is refined on all samples; the others on
+/// what stands for them (core/README.md, "Refinement and the bound"), those that evidence has ruled
+/// out only roughly.
 struct Hypothesis {
   ShapeParameters shape;
   Pose2 world_T_curve;

@@ -16,8 +16,8 @@ struct RefineEffort {
 /// before, and what wanders along a valley is not determined.
 inline constexpr RefineEffort kCoarseEffort{20, 1, 1e-3};
 
-/// Weighs the plausible ones: to a tenth of a standard deviation of the optimum, from which the
-/// best goes on to the end (polish).
+/// For the plausible ones: to a tenth of a standard deviation of the optimum, from which the best
+/// goes on to the end (polish).
 inline constexpr RefineEffort kOnAllEffort{8, 1, 1e-2};
 
 }  // namespace palpate

@@ -39,7 +39,7 @@ class NearestPlace {
     return kFarthest * (2.0 * static_cast<double>(k) / (kPlaces - 1) - 1.0);
   }
 
-  // Single precision is plenty for a start, and twice as fast.
+  // Single precision is plenty for a start.
   std::array<float, kPlaces> x_;
   std::array<float, kPlaces> y_;
   std::array<float, kPlaces> squares_;  ///< of distances from the point last asked for

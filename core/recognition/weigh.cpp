@@ -27,6 +27,10 @@ bool estimate_noise(FitData* data, SmoothModel* smooth) {
   return estimate <= rounding;
 }
 
+double criterion_of(const ClassFit& fit, const EvidenceScale& scale) {
+  return information_criterion(fit.chi2, degrees_of_freedom(fit.curve_class), scale);
+}
+
 /// The class of the lowest criterion: probabilities beside "unclassified" may all have vanished.
 CurveClass best_class(const ClassFits& fits, const EvidenceScale& scale) {
   CurveClass best = CurveClass::Unclassified;
@@ -34,8 +38,7 @@ CurveClass best_class(const ClassFits& fits, const EvidenceScale& scale) {
   for (const CurveClass curve_class : kCurveClasses) {
     const auto& fit = fits[static_cast<std::size_t>(curve_class)];
     if (fit && !fit->at_limit) {
-      const double criterion =
-          information_criterion(fit->chi2, degrees_of_freedom(curve_class), scale);
+      const double criterion = criterion_of(*fit, scale);
       if (criterion < lowest) {
         lowest = criterion;
         best = curve_class;
@@ -43,10 +46,6 @@ CurveClass best_class(const ClassFits& fits, const EvidenceScale& scale) {
     }
   }
   return best;
-}
-
-double criterion_of(const ClassFit& fit, const EvidenceScale& scale) {
-  return information_criterion(fit.chi2, degrees_of_freedom(fit.curve_class), scale);
 }
 
 /// Fits to the reduced points for the way the material lies beside the patches: where the probes do
@@ -98,9 +97,10 @@ ClassFits fit_over_sides(std::span<const StoredPatch> patches, const FitData& da
 /// much chi-square may be lower on all points.
 bool is_plausible(const ClassFit& told, double lowest_criterion, double margin, double error,
                   const EvidenceScale& scale) {
-  ClassFit at_best = told;
-  at_best.chi2 = std::max(told.chi2 - error, 0.0);
-  return std::isfinite(told.chi2) && criterion_of(at_best, scale) < lowest_criterion + margin;
+  const double chi2 = std::max(told.chi2 - error, 0.0);
+  return std::isfinite(told.chi2) &&
+         information_criterion(chi2, degrees_of_freedom(told.curve_class), scale) <
+             lowest_criterion + margin;
 }
 
 /// A class fitted to the reduced points, as these tell its chi-square of all points.
@@ -125,13 +125,12 @@ ClassFit polished(const ClassFit& fit, const SmoothModel& smooth, const FitData&
 }
 
 /// A class as all points see it. Where they agree with the reduced points, and did so about the
-/// best
-/// (`trusted`), it is left at its optimum there; otherwise (sections bent too sharply to be
-/// followed to the noise, feet on the wrong arm) it has another one.
-ClassFit weighed(const ClassFit& coarse, bool trusted, const SmoothModel& smooth,
-                 const FitData& data) {
+/// best (`trusted`), it is left at its optimum there; otherwise (sections bent too sharply to be
+/// followed to the noise, feet on the wrong arm) it has another one, or none.
+ClassFit weighed(const ClassFit& coarse, const FitData& reduced, bool trusted,
+                 const SmoothModel& smooth, const FitData& data) {
   constexpr double kAgreement = 1.0;  // of chi-square: odds are right to a factor of 1.6
-  if (trusted) {
+  if (trusted && is_what_it_says(coarse, reduced)) {
     ClassFit fit = coarse;
     fit.chi2 = chi2_on_all(coarse, smooth, data);
     fit.weighed = true;
@@ -140,6 +139,27 @@ ClassFit weighed(const ClassFit& coarse, bool trusted, const SmoothModel& smooth
     }
   }
   return refine_on_all(coarse, smooth, data).value_or(out(coarse));
+}
+
+/// Takes w->coarse of a class to its optimum on the reduced points, unless it is there.
+const ClassFit& settle(std::size_t i, const FitData& reduced, Weighing* w) {
+  if (!w->fits[i]->weighed) {
+    w->coarse[i] = settled(*w->coarse[i], reduced);
+  }
+  return *w->coarse[i];
+}
+
+/// Ellipse and hyperbola at their limit are the parabola.
+void take_limits(ClassFits* fits) {
+  const auto& parabola = (*fits)[static_cast<std::size_t>(CurveClass::Parabola)];
+  for (const CurveClass curve_class : {CurveClass::Ellipse, CurveClass::Hyperbola}) {
+    auto& fit = (*fits)[static_cast<std::size_t>(curve_class)];
+    if (fit && parabola && (fit->at_limit || !std::isfinite(fit->chi2))) {
+      fit = parabola;
+      fit->curve_class = curve_class;
+      fit->at_limit = true;
+    }
+  }
 }
 
 /// Weighs on all points what the reduced points leave plausible, and polishes the best. The others
@@ -156,13 +176,6 @@ void weigh_plausible(const FitData& data, const FitData& reduced, const Evidence
   constexpr double kLeastError = 4.0;
   double error = misfit_ratio * kLeastError;
   bool trusted = true;
-  const auto settle = [&](std::size_t i) -> const ClassFit& {
-    auto& coarse = w->coarse[i];
-    if (!w->fits[i]->weighed) {
-      coarse = settled(*coarse, reduced);
-    }
-    return *coarse;
-  };
   std::size_t at_optimum = w->fits.size();  // the class that is
   for (bool changed = true; changed;) {
     changed = false;
@@ -170,11 +183,11 @@ void weigh_plausible(const FitData& data, const FitData& reduced, const Evidence
     auto& best = w->fits[b];
     if (best && b != at_optimum) {
       const double told = best->chi2;
-      best = polished(best->on_all ? *best : settle(b), w->smooth, data);
+      best = polished(best->on_all ? *best : settle(b, reduced, w), w->smooth, data);
       if (std::isfinite(best->chi2)) {
         error = std::max(error, 2.0 * (told - best->chi2));
         const double settled_chi2 = w->coarse[b]->chi2 + w->smooth.chi2;
-        trusted = trusted && settled_chi2 - best->chi2 <= kLeastError;
+        trusted = trusted && std::abs(settled_chi2 - best->chi2) <= misfit_ratio * kLeastError;
       }
       at_optimum = b;
       changed = true;
@@ -186,21 +199,12 @@ void weigh_plausible(const FitData& data, const FitData& reduced, const Evidence
       auto& fit = w->fits[i];
       if (fit && !fit->weighed && !fit->at_limit &&
           is_plausible(*fit, lowest, margin, error, scale)) {
-        fit = weighed(settle(i), trusted, w->smooth, data);
+        fit = weighed(settle(i, reduced, w), reduced, trusted, w->smooth, data);
         changed = true;
       }
     }
   }
-  // Ellipse and hyperbola at their limit are the parabola.
-  const auto& parabola = w->fits[static_cast<std::size_t>(CurveClass::Parabola)];
-  for (const CurveClass curve_class : {CurveClass::Ellipse, CurveClass::Hyperbola}) {
-    auto& fit = w->fits[static_cast<std::size_t>(curve_class)];
-    if (fit && parabola && (fit->at_limit || !std::isfinite(fit->chi2))) {
-      fit = parabola;
-      fit->curve_class = curve_class;
-      fit->at_limit = true;
-    }
-  }
+  take_limits(&w->fits);
 }
 
 /// Spares no effort on the models with sharp bends.
@@ -211,9 +215,11 @@ void refine_sharp_bends(const FitData& data, const FitData& reduced, Weighing* w
       continue;
     }
     constexpr RefineEffort kAll{};
-    auto refined = refine_on_all(settled(*w->coarse[i], reduced, kAll), w->smooth, data, kAll);
+    ClassFit start = settled(*w->coarse[i], reduced, kAll);
+    auto refined = refine_on_all(start, w->smooth, data, kAll);
     if (refined && refined->chi2 < w->fits[i]->chi2) {
       w->fits[i] = std::move(refined);
+      w->coarse[i] = std::move(start);
     }
   }
 }
@@ -292,6 +298,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
       scale.tempering = variance * correlation.time;
       weigh_plausible(data, reduced, scale, options, &w);
       w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
+      w.canonical[c].reset();  // it may have been polished once more
       w.inflation = variance * correlation.time;
       w.correlation_length = correlation.length;
     } else if (!sigma_known) {
@@ -300,30 +307,31 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   }
   // A conic's evidence is divided at the parabola: the most probable class, which is published,
   // need not be that of the lowest criterion.
-  const auto best_fit = [&]() -> std::optional<ClassFit>& {
+  while (true) {
     w.best = most_probable(w.probabilities);
-    return w.fits[static_cast<std::size_t>(w.best)];
-  };
-  while (best_fit() && !best_fit()->on_all && !best_fit()->at_limit) {
-    best_fit() =
-        polished(settled(*w.coarse[static_cast<std::size_t>(w.best)], reduced), w.smooth, data);
+    const auto i = static_cast<std::size_t>(w.best);
+    auto& fit = w.fits[i];
+    if (!fit || fit->on_all || fit->at_limit) {
+      break;
+    }
+    fit = polished(settle(i, reduced, &w), w.smooth, data);
+    take_limits(&w.fits);
     w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
   }
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     constexpr double kNegligible = 1e-6;
+    const auto& fit = w.fits[i];
     const bool asked_for = is_limit_of(w.best, curve_class);
-    if (!w.fits[i] || w.canonical[i] || !(asked_for || w.probabilities[i] > kNegligible)) {
+    if (!fit || fit->at_limit || !std::isfinite(fit->chi2) || w.canonical[i] ||
+        !(asked_for || w.probabilities[i] > kNegligible)) {
       continue;
     }
-    if (w.fits[i]->on_all) {
-      w.canonical[i] = to_canonical(*w.fits[i], data);
-      continue;
+    if (fit->on_all) {
+      w.canonical[i] = to_canonical(*fit, data);
+    } else {
+      w.canonical[i] = to_canonical(asked_for ? settle(i, reduced, &w) : *w.coarse[i], reduced);
     }
-    if (asked_for && !w.fits[i]->weighed) {
-      w.coarse[i] = settled(*w.coarse[i], reduced);
-    }
-    w.canonical[i] = to_canonical(*w.coarse[i], reduced);
   }
   w.data = std::move(data);
   return w;

@@ -19,13 +19,15 @@ struct Weighing {
   FitData data;  ///< noise set, tangents set
   SmoothModel smooth;
   ClassFits coarse;  ///< on the smooth model's reduced points
-  ClassFits fits;    ///< chi2 on all points; refined there where plausible
+  ClassFits fits;    ///< plausible ones weighed on all points, the best refined there
+  /// Of what is not negligible; the points are those of `data` where fits[i]->on_all, otherwise the
+  /// reduced ones.
   std::array<std::optional<CanonicalFit>, 9> canonical;
   ClassProbabilities probabilities{};
   /// Per patch the side of travel on which the tip centres were taken to lie (tip_sides.h).
   std::vector<int> sides;
-  /// By how much the criterion (evidence.h) of another way for them to lie is worse, priors included;
-  /// infinite where the probes told.
+  /// By how much the criterion (evidence.h) of another way for them to lie is worse, priors
+  /// included; infinite where the probes told.
   double sides_margin = 0.0;
   CurveClass best = CurveClass::Unclassified;  ///< most probable, "unclassified" included
   double sigma = 0.0;                          ///< noise of the typical point, normalised

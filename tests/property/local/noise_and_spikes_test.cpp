@@ -126,6 +126,25 @@ TEST_P(SpikesOf, NoneOnNoiselessCurves) {
   }
 }
 
+TEST(Spikes, AProbeThatDwellsOrHardlyMovesLosesNothing) {
+  // Within 20 sigma noise scatters samples along the travel as well: no order, no gap tells a
+  // spike.
+  for (const double extent : {0.0, 5.0 * kSigma}) {
+    for (const std::size_t count : {40U, 111U}) {
+      auto rng = test::test_rng(count);
+      std::vector<Vec2> exact(count);
+      for (std::size_t i = 0; i < count; ++i) {
+        exact[i] = {extent * static_cast<double>(i) / static_cast<double>(count), 0.0};
+      }
+      for (int i = 0; i < 100; ++i) {
+        const Spikes spikes = find_spikes(test::with_noise(exact, kSigma, rng));
+        EXPECT_EQ(spikes.status, LocalStatus::Unresolved);
+        EXPECT_TRUE(spikes.indices.empty());
+      }
+    }
+  }
+}
+
 TEST(NormalQuantile, InvertsTheTail) {
   for (double z = 0.05; z < 30.0; z *= 1.3) {
     const double tail = std::erfc(z / std::sqrt(2.0));

@@ -118,6 +118,7 @@ void add(const Recognition& answer, const test::Scene& scene, Count* count) {
   const double threshold = chi_square_threshold(kSignificance, dof);
   const Weighing w = weigh(test::fit_data(scene, scene.sigma_m), true, {}, RecognizerOptions{});
   const auto& fit = w.canonical[static_cast<std::size_t>(scene.curve_class)];
+  ASSERT_EQ(w.best, scene.curve_class);
   ASSERT_TRUE(fit.has_value());
   const auto bend = bend_of(*fit, w.data, w.inflation);
   ASSERT_TRUE(bend.has_value());

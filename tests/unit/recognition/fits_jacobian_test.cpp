@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "core/recognition/on_all_points.h"
 #include "core/recognition/implicit_fit.h"
+#include "core/recognition/on_all_points.h"
 #include "core/recognition/polynomial_fit.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
@@ -42,9 +42,8 @@ TEST(PolynomialFit, RefinementFindsExactCurvesFromTheSearch) {
   options.sigma_over_size = 0.0;
   int found = 0;
   int scenes = 0;
-  for (const CurveClass curve_class :
-       {CurveClass::Parabola, CurveClass::CubicalParabola, CurveClass::SemiCubicalParabola,
-        CurveClass::CubicSpline}) {
+  for (const CurveClass curve_class : {CurveClass::Parabola, CurveClass::CubicalParabola,
+                                       CurveClass::SemiCubicalParabola, CurveClass::CubicSpline}) {
     for (int i = 0; i < 25; ++i) {
       const test::Scene scene = test::random_scene(curve_class, options, rng);
       FitData data = test::fit_data(scene, 1e-6);
@@ -71,9 +70,8 @@ TEST(PolynomialFit, InformationMatchesFiniteDifferencesOfTheResiduals) {
   FitData data = test::fit_data(scene, scene.sigma_m);
   const SmoothModel smooth = fit_smooth_model(&data, true);
   const ClassFits fits = fit_classes(smooth.reduced);
-  const auto refined =
-      refine_on_all(
-            settled(*fits[static_cast<std::size_t>(CurveClass::Parabola)], smooth.reduced), smooth, data);
+  const auto refined = refine_on_all(
+      settled(*fits[static_cast<std::size_t>(CurveClass::Parabola)], smooth.reduced), smooth, data);
   ASSERT_TRUE(refined.has_value());
   const PolynomialFit& fit = *refined->polynomial;
   const auto chi2_of = [&](const PolynomialCoefficients& c) {
