@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <sstream>
 #include <type_traits>
 
@@ -196,12 +194,10 @@ std::string set_option(v1::NodeConfig& config, const std::string& name, const st
 }
 
 Result<v1::NodeConfig> read_config_file(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) return Result<v1::NodeConfig>::fail(path + ": " + std::strerror(errno));
-  std::stringstream content;
-  content << file.rdbuf();
+  const Result<std::string> text = read_file(path);
+  if (!text) return Result<v1::NodeConfig>::fail(text.error);
   v1::NodeConfig config;
-  if (std::string error = parse_text(content.str(), path, config); !error.empty()) {
+  if (std::string error = parse_text(*text.value, path, config); !error.empty()) {
     return Result<v1::NodeConfig>::fail(std::move(error));
   }
   return Result<v1::NodeConfig>::ok(std::move(config));

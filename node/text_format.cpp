@@ -2,6 +2,8 @@
 
 #include <google/protobuf/io/tokenizer.h>
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -44,8 +46,13 @@ std::string parse_text(const std::string& text, const std::string& name, google:
 Result<std::string> read_file(const std::string& path) {
   std::ifstream in(path);
   std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) {
-    return Result<std::string>::fail(path + ": cannot be read");
+  if (in) {
+    errno = 0;
+    text << in.rdbuf();
+  }
+  // Nothing to insert fails as well: an empty file, which is none of errno's errors.
+  if (!in || (!text && errno != 0)) {
+    return Result<std::string>::fail(path + ": cannot be read: " + std::strerror(errno));
   }
   return Result<std::string>::ok(text.str());
 }

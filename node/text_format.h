@@ -14,7 +14,7 @@ namespace palpate {
 std::string parse_text(const std::string& text, const std::string& name, google::protobuf::Message& message,
                        google::protobuf::TextFormat::ParseInfoTree* locations = nullptr);
 
-/// A whole file; an error reads "PATH: cannot be read".
+/// A whole file; an error reads "PATH: cannot be read: why".
 Result<std::string> read_file(const std::string& path);
 
 }  // namespace palpate

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/local/normal_law.h"
+
 namespace palpate {
 namespace {
 
@@ -17,8 +19,6 @@ constexpr double kLeastShare = 0.15;
 
 /// Slope of the parabola at its ends against its chord: 45 degrees.
 constexpr double kMaxSlope = 1.0;
-
-constexpr double kMedianOfNormal = 0.6744897501960817;  // of |normal variable|
 
 /// The best of so many parabolas is nearer than the true one, by 1 - kFew / samples: a tenth off at
 /// most for 16 to 64 samples (local_hard_cases_test prints it). Below kFewest it would vanish.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/local/normal_law.h"
@@ -10,12 +11,8 @@
 namespace palpate {
 namespace {
 
-constexpr int kUnknowns = ResidualBlock::kDegree + 1;
 constexpr std::size_t kLongBlock = 16;
 constexpr std::size_t kShortBlock = 8;  // the unknowns and three residuals
-
-/// Median of |normal variable| in standard deviations.
-constexpr double kMedianOfNormal = 0.6744897501960817;
 
 /// Residuals with |r| <= kCut * (median / kMedianOfNormal) are kept: 6 in 10^5 of a normal law are
 /// not, nearly all spikes that matter are not.
@@ -52,7 +49,7 @@ BlockNoise from_blocks(std::span<const Vec2> samples, std::size_t block) {
     for (std::size_t i = 0; i < count; ++i) {
       sizes.push_back(std::abs(residuals.studentised(i)));
     }
-    result.noise.dof += static_cast<int>(count) - kUnknowns;
+    result.noise.dof += static_cast<int>(count) - ResidualBlock::kUnknowns;
     result.mean_extent_m += residuals.extent_m();
     ++fitted;
   }

@@ -6,6 +6,9 @@
 
 namespace palpate {
 
+/// Median of |normal variable|.
+inline constexpr double kMedianOfNormal = 0.6744897501960817;
+
 /// The z that |normal variable| exceeds with `probability` in (0, 1]: Newton's iteration on the
 /// logarithm of erfc, which is concave, from the tail's leading term. Relative error below 1e-12
 /// for probabilities down to 1e-300.

@@ -32,7 +32,6 @@ class ResidualBlock {
   double studentised(std::size_t i) const {
     return lanes_[i / kWidth].studentised_m[static_cast<Eigen::Index>(i % kWidth)];
   }
-  std::size_t size() const { return size_; }
 
   /// Largest |studentised(i)|. [m]
   double largest() const { return largest_m_; }

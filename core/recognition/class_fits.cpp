@@ -1,8 +1,6 @@
 #include "core/recognition/class_fits.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <utility>
 
 #include "core/recognition/touchable.h"
 

@@ -17,8 +17,8 @@ void divide_conic(const ClassFits& fits, const EvidenceScale& scale,
   }
   const ClassFit& inside = ellipse->at_limit ? *hyperbola : *ellipse;
   const ClassFit& beyond = ellipse->at_limit ? *ellipse : *hyperbola;
-  const double distance = std::sqrt(
-      std::max(0.0, misfit(beyond.chi2, scale) - misfit(inside.chi2, scale)));
+  const double distance =
+      std::sqrt(std::max(0.0, misfit(beyond.chi2, scale) - misfit(inside.chi2, scale)));
   // Phi(-z) without losing small tails, and its complement.
   const double share_beyond = 0.5 * std::erfc(distance / std::sqrt(2.0));
   double& conic = (*criterion)[static_cast<std::size_t>(inside.curve_class)];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "core/curves/curve_class.h"
 #include "core/recognition/class_fits.h"
@@ -21,17 +22,22 @@ struct EvidenceScale {
 using ClassProbabilities = std::array<double, 9>;
 
 /// Information criterion of a model: -2 log(evidence) up to a constant. With the noise known
-/// chi2 + k log n, otherwise n log(chi2) + k log n (G. Schwarz, "Estimating the dimension of a model",
-/// 1978; core/README.md, "Evidence").
+/// chi2 + k log n, otherwise n log(chi2) + k log n (G. Schwarz, "Estimating the dimension of a
+/// model", 1978; core/README.md, "Evidence").
 double information_criterion(double chi2, double parameters, const EvidenceScale& scale);
+
+/// The difference of criteria at which the better of two has this probability, in (0, 1).
+inline double criterion_of_odds(double probability) {
+  return 2.0 * std::log(probability / (1.0 - probability));
+}
 
 /// -2 log(likelihood) up to a constant.
 double misfit(double chi2, const EvidenceScale& scale);
 
-/// Posterior probabilities of the classes that were fitted and of "unclassified", whose model is the
-/// smooth one. Classes that were not fitted get 0. Ellipse and hyperbola are the two sides of one
-/// family of conics: where it has a single optimum, its evidence is divided between them in the ratio
-/// of the normal probabilities on either side of the parabola, Phi(+-sqrt(chi2 difference)).
+/// Posterior probabilities of the classes that were fitted and of "unclassified", whose model is
+/// the smooth one. Classes that were not fitted get 0. Ellipse and hyperbola are the two sides of
+/// one family of conics: where it has a single optimum, its evidence is divided between them in the
+/// ratio of the normal probabilities on either side of the parabola, Phi(+-sqrt(chi2 difference)).
 ClassProbabilities probabilities(const ClassFits& fits, double smooth_chi2, int smooth_parameters,
                                  const EvidenceScale& scale);
 

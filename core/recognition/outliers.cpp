@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/recognition/normal_quantile.h"
+#include "core/local/normal_law.h"
 
 namespace palpate {
 std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,
@@ -29,8 +29,7 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   std::vector<double> sorted = magnitude;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n / 2),
                    sorted.end());
-  constexpr double kMedianOfMagnitude = 0.6745;  // of a standard normal
-  const double scale = std::max(1.0, sorted[n / 2] / kMedianOfMagnitude);
+  const double scale = std::max(1.0, sorted[n / 2] / kMedianOfNormal);
   const double limit =
       scale * two_sided_normal_quantile(options.false_outlier_probability / static_cast<double>(n));
   constexpr std::size_t kLongestRun = 3;

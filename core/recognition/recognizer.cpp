@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include "core/local/normal_law.h"
 #include "core/recognition/bend.h"
 #include "core/recognition/determined.h"
 #include "core/recognition/explained_spikes.h"
-#include "core/recognition/normal_quantile.h"
 #include "core/recognition/outliers.h"
 #include "core/recognition/richer_class.h"
 #include "core/recognition/stored_spikes.h"
@@ -22,6 +22,11 @@ constexpr std::size_t kFewestSamples = 8;
 
 /// Whether noise of the stated size can have left this chi-square (five standard deviations).
 bool is_noise(double chi2, double dof) { return chi2 <= dof + 5.0 * std::sqrt(2.0 * dof); }
+
+/// Noise of the typical sample; where it was estimated, by the best class's residuals. [m]
+double residual_noise_m(const Weighing& w) {
+  return w.sigma * w.data.scale * (w.correlation_length > 0.0 ? 1.0 : std::sqrt(w.inflation));
+}
 
 Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
   const auto i = static_cast<std::size_t>(curve_class);
@@ -145,8 +150,7 @@ class Recognizer::Impl {
     if (!curve) {
       return;
     }
-    const double noise_m =
-        w->sigma * w->data.scale * (w->correlation_length > 0.0 ? 1.0 : std::sqrt(w->inflation));
+    const double noise_m = residual_noise_m(*w);
     const double limit = two_sided_normal_quantile(options_.false_outlier_probability /
                                                    static_cast<double>(memory_.stored_count()));
     const auto more = with_explained_spikes(memory_.patches(), patches, *curve, best->world_T_curve,
@@ -275,8 +279,7 @@ class Recognizer::Impl {
     answer->shape = best.shape;
     answer->world_T_curve = best.world_T_curve;
     answer->covariance = best.covariance;
-    answer->sigma_m =
-        w.sigma * w.data.scale * (w.correlation_length > 0.0 ? 1.0 : std::sqrt(w.inflation));
+    answer->sigma_m = residual_noise_m(w);
     answer->noise_correlation_m = w.correlation_length * w.data.scale;
     answer->doubt = doubt_about(w, best, bend);
     answer->status =
@@ -315,8 +318,7 @@ class Recognizer::Impl {
     const auto& fit = *w.fits[static_cast<std::size_t>(curve_class)];
     // Odds of the recognition's own level between a spline and its rival across c = 0, and between
     // the two sides that the tips may have touched.
-    const double odds =
-        2.0 * std::log(options_.recognized_probability / (1.0 - options_.recognized_probability));
+    const double odds = criterion_of_odds(options_.recognized_probability);
     const bool has_rival = fit.rival && (fit.rival->chi2 - fit.chi2) / w.inflation <= odds &&
                            !is_same_curve(*fit.polynomial, *fit.rival);
     if (has_rival || w.sides_margin / w.inflation <= odds) {

@@ -13,8 +13,7 @@
 namespace palpate {
 
 enum class RecognitionMethod {
-  MaximumLikelihood,  ///< all classes refined on all points, evidence weighed; the tree reports its
-                      ///< path
+  MaximumLikelihood,  ///< all classes fitted and weighed; the tree reports its path
   Tree,               ///< the recognition tree on local estimates alone, as in the paper
 };
 

@@ -64,8 +64,7 @@ ClassFits fit_over_sides(std::span<const StoredPatch> patches, const FitData& da
     const auto starts = warm != nullptr ? std::optional(carried_to(*warm, reduced)) : std::nullopt;
     return fit_classes(reduced, starts ? &*starts : nullptr, options.classes);
   }
-  const double inside = options.inside_probability;
-  const double price_of_inside = 2.0 * std::log((1.0 - inside) / inside);
+  const double price_of_inside = criterion_of_odds(1.0 - options.inside_probability);
   ClassFits best;
   double lowest = kInfinity;
   double second = kInfinity;
@@ -169,8 +168,8 @@ void weigh_plausible(const FitData& data, const FitData& reduced, const Evidence
   // Where the smooth model itself misfits, neither it nor the reduced points can be trusted that
   // far.
   const double misfit_ratio = std::max(1.0, w->smooth.noise_ratio() * w->smooth.noise_ratio());
-  const double p = options.recognized_probability;
-  const double margin = misfit_ratio * std::max(2.0 * std::log(p / (1.0 - p)), 0.0);
+  const double margin =
+      misfit_ratio * std::max(criterion_of_odds(options.recognized_probability), 0.0);
   // Sections that bend too much to be followed to the noise err by much the same for all classes:
   // twice as much as for the best, and some units of chi-square anyhow.
   constexpr double kLeastError = 4.0;
@@ -227,6 +226,42 @@ void refine_sharp_bends(const FitData& data, const FitData& reduced, Weighing* w
 CurveClass most_probable(const ClassProbabilities& probabilities) {
   return static_cast<CurveClass>(std::max_element(probabilities.begin(), probabilities.end()) -
                                  probabilities.begin());
+}
+
+/// Sets w->best, and refines it if it is not yet. A conic's evidence is divided at the parabola:
+/// the most probable class, which is published, need not be that of the lowest criterion.
+void choose_best(const FitData& data, const FitData& reduced, const EvidenceScale& scale,
+                 Weighing* w) {
+  while (true) {
+    w->best = most_probable(w->probabilities);
+    const auto i = static_cast<std::size_t>(w->best);
+    auto& fit = w->fits[i];
+    if (!fit || fit->on_all || fit->at_limit) {
+      break;
+    }
+    fit = polished(settle(i, reduced, w), w->smooth, data);
+    take_limits(&w->fits);
+    w->probabilities = probabilities(w->fits, w->smooth.chi2, w->smooth.parameters, scale);
+  }
+}
+
+/// Shape, pose and covariance of what is not negligible or asked for by the best.
+void place_canonically(const FitData& data, const FitData& reduced, Weighing* w) {
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    constexpr double kNegligible = 1e-6;
+    const auto& fit = w->fits[i];
+    const bool asked_for = is_limit_of(w->best, curve_class);
+    if (!fit || fit->at_limit || !std::isfinite(fit->chi2) || w->canonical[i] ||
+        !(asked_for || w->probabilities[i] > kNegligible)) {
+      continue;
+    }
+    if (fit->on_all) {
+      w->canonical[i] = to_canonical(*fit, data);
+    } else {
+      w->canonical[i] = to_canonical(asked_for ? settle(i, reduced, w) : *w->coarse[i], reduced);
+    }
+  }
 }
 
 }  // namespace
@@ -305,34 +340,8 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
       w.inflation = variance;
     }
   }
-  // A conic's evidence is divided at the parabola: the most probable class, which is published,
-  // need not be that of the lowest criterion.
-  while (true) {
-    w.best = most_probable(w.probabilities);
-    const auto i = static_cast<std::size_t>(w.best);
-    auto& fit = w.fits[i];
-    if (!fit || fit->on_all || fit->at_limit) {
-      break;
-    }
-    fit = polished(settle(i, reduced, &w), w.smooth, data);
-    take_limits(&w.fits);
-    w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
-  }
-  for (const CurveClass curve_class : kCurveClasses) {
-    const auto i = static_cast<std::size_t>(curve_class);
-    constexpr double kNegligible = 1e-6;
-    const auto& fit = w.fits[i];
-    const bool asked_for = is_limit_of(w.best, curve_class);
-    if (!fit || fit->at_limit || !std::isfinite(fit->chi2) || w.canonical[i] ||
-        !(asked_for || w.probabilities[i] > kNegligible)) {
-      continue;
-    }
-    if (fit->on_all) {
-      w.canonical[i] = to_canonical(*fit, data);
-    } else {
-      w.canonical[i] = to_canonical(asked_for ? settle(i, reduced, &w) : *w.coarse[i], reduced);
-    }
-  }
+  choose_best(data, reduced, scale, &w);
+  place_canonically(data, reduced, &w);
   w.data = std::move(data);
   return w;
 }
