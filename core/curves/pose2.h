@@ -62,4 +62,21 @@ struct Pose2 {
   }
 };
 
+/// Pose2::to_local for many points: sine and cosine once.
+class ToLocal {
+ public:
+  explicit ToLocal(const Pose2& pose)
+      : origin_(pose.x, pose.y), cosine_(std::cos(pose.theta)), sine_(std::sin(pose.theta)) {}
+
+  Vec2 operator()(const Vec2& p) const {
+    const Vec2 d = p - origin_;
+    return {cosine_ * d.x() + sine_ * d.y(), -sine_ * d.x() + cosine_ * d.y()};
+  }
+
+ private:
+  Vec2 origin_;
+  double cosine_;
+  double sine_;
+};
+
 }  // namespace palpate

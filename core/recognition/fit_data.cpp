@@ -44,13 +44,13 @@ std::optional<Extents> extents_of(std::span<const StoredPatch> patches) {
     const Vec2 d = sample.position_m - mean;
     scatter += sample.weight * d * d.transpose();
   });
-  const double angle =
-      0.5 * std::atan2(2.0 * scatter(0, 1), scatter(0, 0) - scatter(1, 1));
+  const double angle = 0.5 * std::atan2(2.0 * scatter(0, 1), scatter(0, 0) - scatter(1, 1));
   const Pose2 axes{mean.x(), mean.y(), angle};
+  const ToLocal to_axes(axes);
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
   Vec2 high = -low;
   for_each_sample(patches, [&](const StoredSample& sample) {
-    const Vec2 p = axes.to_local(sample.position_m);
+    const Vec2 p = to_axes(sample.position_m);
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   });
@@ -86,6 +86,7 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
   data.frame = extents->frame;
   data.scale = extents->half_extent > 0.0 ? extents->half_extent : 1.0;
   const double least_sigma = rounding_level(data);
+  const ToLocal to_frame(data.frame);
   for (const StoredPatch& patch : patches) {
     if (patch.samples.empty()) {
       continue;
@@ -95,7 +96,7 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
       const double sigma_m = sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
       *sigma_known = *sigma_known && sigma_m > 0.0;
       FitPoint point;
-      point.position = data.frame.to_local(sample.position_m) / data.scale;
+      point.position = to_frame(sample.position_m) / data.scale;
       point.offset = patch.context.tip_radius_m / data.scale;
       const double sigma = sigma_m > 0.0 ? std::max(sigma_m / data.scale, least_sigma) : 1.0;
       point.inverse_sigma = std::sqrt(sample.weight) / sigma;

@@ -90,14 +90,15 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
   return start;
 }
 
-/// The fit's own parts refined, their sides as they are.
-ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const RefineEffort& effort) {
+/// The fit's own parts refined, their sides as they are. A rival that is left out keeps its place.
+ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const RefineEffort& effort,
+                      RivalOf rival = RivalOf::Best) {
   if (fit.polynomial) {
     const auto refine = [&](PolynomialFit& part) {
       part = refine_polynomial(polynomial_model(fit), points, std::move(part), part.side, effort);
     };
     refine(*fit.polynomial);
-    if (fit.rival) {
+    if (fit.rival && (rival == RivalOf::Best || fit.rival->chi2 < fit.polynomial->chi2)) {
       refine(*fit.rival);
       if (fit.rival->chi2 < fit.polynomial->chi2) {
         std::swap(*fit.polynomial, *fit.rival);
@@ -132,11 +133,12 @@ bool is_what_it_says(const ClassFit& fit, const FitData& data) {
          is_touchable(*fit.implicit, data);
 }
 
-ClassFit settled(const ClassFit& fit, const FitData& reduced, const RefineEffort& effort) {
+ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival,
+                 const RefineEffort& effort) {
   constexpr int kMoreOnReduced = 10;  // the points are few
   RefineEffort on_reduced = effort;
   on_reduced.iterations *= kMoreOnReduced;
-  return refine_parts(fit, reduced.points, on_reduced);
+  return refine_parts(fit, reduced.points, on_reduced, rival);
 }
 
 double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data) {
@@ -170,12 +172,11 @@ std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data) {
   if (fit.implicit) {
     return fit;  // these converge at once
   }
-  constexpr RefineEffort kPolish{50, 3, 1e-6};
   ClassFit start = fit;
   if (start.rival && is_same_curve(*start.polynomial, *start.rival)) {
     start.rival.reset();  // one optimum: it need not be walked to twice
   }
-  const ClassFit polished = refine_parts(std::move(start), data.points, kPolish);
+  const ClassFit polished = refine_parts(std::move(start), data.points, kPolishEffort);
   return is_what_it_says(polished, data) ? std::optional(polished) : std::nullopt;
 }
 

@@ -10,8 +10,11 @@ namespace palpate {
 /// Whether a fit to `data` is still the curve that it is called, and one that can be touched so.
 bool is_what_it_says(const ClassFit& fit, const FitData& data);
 
+/// A spline's rival makes its shape doubtful, which matters to the best class alone.
+enum class RivalOf { Best, Other };
+
 /// Takes a fit on the reduced points to its optimum there.
-ClassFit settled(const ClassFit& fit, const FitData& reduced,
+ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival = RivalOf::Best,
                  const RefineEffort& effort = kOnAllEffort);
 
 /// Chi-square of all points about a fit on the reduced ones as it is. O(points).

@@ -174,9 +174,12 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
   fits.semi_cubical_parabola =
       follow(starts.semi_cubical_parabola, PolynomialModel::SemiCubicalParabola);
   fits.cubic_spline = follow(starts.cubic_spline, PolynomialModel::CubicSpline);
-  fits.rival = follow(starts.rival, PolynomialModel::CubicSpline);
-  if (fits.rival && fits.cubic_spline && fits.rival->chi2 < fits.cubic_spline->chi2) {
-    std::swap(fits.rival, fits.cubic_spline);
+  // Where it was: whether it is a rival, only a spline that comes out best has to ask.
+  if (starts.rival && fits.cubic_spline) {
+    fits.rival = placed_on(reduced.points, *starts.rival);
+    if (fits.rival->chi2 < fits.cubic_spline->chi2) {
+      std::swap(fits.rival, fits.cubic_spline);
+    }
   }
   start_from_limits(reduced, highest_chi2, &fits);
   return fits;

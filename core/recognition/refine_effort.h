@@ -20,4 +20,8 @@ inline constexpr RefineEffort kCoarseEffort{20, 1, 1e-3};
 /// goes on to the end (polish).
 inline constexpr RefineEffort kOnAllEffort{8, 1, 1e-2};
 
+/// For the best class: to its very optimum. What has none within so many steps runs along a valley
+/// that is as good as flat.
+inline constexpr RefineEffort kPolishEffort{40, 2, 1e-6};
+
 }  // namespace palpate

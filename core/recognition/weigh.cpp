@@ -73,7 +73,8 @@ ClassFits fit_over_sides(std::span<const StoredPatch> patches, const FitData& da
     ClassFits fits = fit_classes(reduced, nullptr, options.classes);
     const CurveClass candidate = best_class(fits, scale);
     const auto& fit = fits[static_cast<std::size_t>(candidate)];
-    const auto refined = fit ? refine_on_all(settled(*fit, reduced), smooth, data) : std::nullopt;
+    const auto refined =
+        fit ? refine_on_all(settled(*fit, reduced, RivalOf::Best), smooth, data) : std::nullopt;
     const bool first = &sides == &ways.front();
     // A line has no bend to be outside of.
     const double price = first || candidate == CurveClass::Line ? 0.0 : price_of_inside;
@@ -119,6 +120,10 @@ ClassFit out(const ClassFit& coarse) {
 
 /// A class at its very optimum on all points.
 ClassFit polished(const ClassFit& fit, const SmoothModel& smooth, const FitData& data) {
+  if (!fit.on_all && !fit.rival) {
+    return refine_on_all(fit, smooth, data, kPolishEffort).value_or(out(fit));
+  }
+  // With a rival not at once: it may be on its way to the same optimum.
   const auto refined = fit.on_all ? std::optional(fit) : refine_on_all(fit, smooth, data);
   return refined ? polish(*refined, data).value_or(out(fit)) : out(fit);
 }
@@ -141,9 +146,9 @@ ClassFit weighed(const ClassFit& coarse, const FitData& reduced, bool trusted,
 }
 
 /// Takes w->coarse of a class to its optimum on the reduced points, unless it is there.
-const ClassFit& settle(std::size_t i, const FitData& reduced, Weighing* w) {
-  if (!w->fits[i]->weighed) {
-    w->coarse[i] = settled(*w->coarse[i], reduced);
+const ClassFit& settle(std::size_t i, RivalOf rival, const FitData& reduced, Weighing* w) {
+  if (!w->fits[i]->weighed || (rival == RivalOf::Best && w->coarse[i]->rival)) {
+    w->coarse[i] = settled(*w->coarse[i], reduced, rival);
   }
   return *w->coarse[i];
 }
@@ -182,7 +187,7 @@ void weigh_plausible(const FitData& data, const FitData& reduced, const Evidence
     auto& best = w->fits[b];
     if (best && b != at_optimum) {
       const double told = best->chi2;
-      best = polished(best->on_all ? *best : settle(b, reduced, w), w->smooth, data);
+      best = polished(best->on_all ? *best : settle(b, RivalOf::Best, reduced, w), w->smooth, data);
       if (std::isfinite(best->chi2)) {
         error = std::max(error, 2.0 * (told - best->chi2));
         const double settled_chi2 = w->coarse[b]->chi2 + w->smooth.chi2;
@@ -198,7 +203,7 @@ void weigh_plausible(const FitData& data, const FitData& reduced, const Evidence
       auto& fit = w->fits[i];
       if (fit && !fit->weighed && !fit->at_limit &&
           is_plausible(*fit, lowest, margin, error, scale)) {
-        fit = weighed(settle(i, reduced, w), reduced, trusted, w->smooth, data);
+        fit = weighed(settle(i, RivalOf::Other, reduced, w), reduced, trusted, w->smooth, data);
         changed = true;
       }
     }
@@ -214,7 +219,7 @@ void refine_sharp_bends(const FitData& data, const FitData& reduced, Weighing* w
       continue;
     }
     constexpr RefineEffort kAll{};
-    ClassFit start = settled(*w->coarse[i], reduced, kAll);
+    ClassFit start = settled(*w->coarse[i], reduced, RivalOf::Best, kAll);
     auto refined = refine_on_all(start, w->smooth, data, kAll);
     if (refined && refined->chi2 < w->fits[i]->chi2) {
       w->fits[i] = std::move(refined);
@@ -239,7 +244,7 @@ void choose_best(const FitData& data, const FitData& reduced, const EvidenceScal
     if (!fit || fit->on_all || fit->at_limit) {
       break;
     }
-    fit = polished(settle(i, reduced, w), w->smooth, data);
+    fit = polished(settle(i, RivalOf::Best, reduced, w), w->smooth, data);
     take_limits(&w->fits);
     w->probabilities = probabilities(w->fits, w->smooth.chi2, w->smooth.parameters, scale);
   }
@@ -259,7 +264,8 @@ void place_canonically(const FitData& data, const FitData& reduced, Weighing* w)
     if (fit->on_all) {
       w->canonical[i] = to_canonical(*fit, data);
     } else {
-      w->canonical[i] = to_canonical(asked_for ? settle(i, reduced, w) : *w->coarse[i], reduced);
+      w->canonical[i] =
+          to_canonical(asked_for ? settle(i, RivalOf::Other, reduced, w) : *w->coarse[i], reduced);
     }
   }
 }

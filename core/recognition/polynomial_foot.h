@@ -1,0 +1,88 @@
+// A point against a polynomial curve: the foot point near a given parameter.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "core/curves/pose2.h"
+
+namespace palpate {
+
+/// Column k holds the coefficients of t^k; columns of powers that the model lacks are 0.
+using PolynomialCoefficients = Eigen::Matrix<double, 2, 4>;
+
+/// A point against the curve at its foot point parameter.
+struct PlacedPoint {
+  double t = 0.0;                ///< followed from the given one to the foot point
+  double signed_distance = 0.0;  ///< positive to the left of increasing t
+  Vec2 normal = Vec2::Zero();    ///< unit, along the distance: left of increasing t but at a cusp
+};
+
+// Inlined always: the foot points of all fits take a good part of a recognition's time.
+[[gnu::always_inline]] inline Vec2 place(const PolynomialCoefficients& c, double t) {
+  return c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3)));
+}
+
+[[gnu::always_inline]] inline Vec2 first_derivative(const PolynomialCoefficients& c, double t) {
+  return c.col(1) + t * (2.0 * c.col(2) + 3.0 * t * c.col(3));
+}
+
+[[gnu::always_inline]] inline Vec2 second_derivative(const PolynomialCoefficients& c, double t) {
+  return 2.0 * c.col(2) + 6.0 * t * c.col(3);
+}
+
+/// What the derivative of (C(t) - p) . C'(t) must have at least of the square of the speed: at the
+/// centre of curvature, where the foot point is no minimum any more, it is 0.
+inline constexpr double kLeastSlope = 0.1;
+
+/// Follows the foot point of `p` by Halley's method on (C(t) - p) . C'(t) = 0 from `t`.
+inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, double t) {
+  constexpr int kMaxIterations = 5;
+  constexpr double kLastStep = 1e-3;    // after it the error is its cube
+  constexpr double kLongestStep = 0.5;  // of the data's parameter range, about [-1, 1]
+  Vec2 away;
+  Vec2 first;
+  double speed2 = 0.0;
+  bool last = false;
+  for (int iteration = 0;; ++iteration) {
+    away = p - place(c, t);
+    first = first_derivative(c, t);
+    speed2 = first.squaredNorm();
+    if (last || iteration == kMaxIterations || speed2 <= 0.0) {
+      break;
+    }
+    const Vec2 second = second_derivative(c, t);
+    const double along = away.dot(first);
+    const double slope = speed2 - away.dot(second);
+    double step = 0.0;
+    if (slope < kLeastSlope * speed2) {
+      step = along / speed2;  // a Gauss-Newton step is safe
+    } else {
+      // With the bend of (C - p) . C' where it is no more than a correction.
+      const double bend = along * (3.0 * first.dot(second) - 6.0 * away.dot(c.col(3)));
+      const double halley = 2.0 * slope * slope + bend;
+      step = halley > slope * slope ? 2.0 * along * slope / halley : along / slope;
+    }
+    step = std::clamp(step, -kLongestStep, kLongestStep);
+    last = std::abs(step) < kLastStep;
+    t += step;
+  }
+  PlacedPoint placed;
+  placed.t = t;
+  if (speed2 > 0.0) {
+    placed.normal = left_of(first) / std::sqrt(speed2);
+    placed.signed_distance = away.dot(placed.normal);
+  }
+  // At a cusp, or where the foot point is not stationary, the normal does not point along the
+  // distance: take the distance itself.
+  constexpr double kPerpendicular = 0.9;
+  const double square = away.squaredNorm();
+  if (placed.signed_distance * placed.signed_distance < kPerpendicular * kPerpendicular * square) {
+    placed.signed_distance = std::sqrt(square);
+    placed.normal = away / placed.signed_distance;
+  }
+  return placed;
+}
+
+}  // namespace palpate

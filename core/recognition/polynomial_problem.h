@@ -1,0 +1,175 @@
+// Orthogonal distances from a polynomial curve, as levenberg_marquardt.h asks for them.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/recognition/fit_data.h"
+#include "core/recognition/polynomial_foot.h"
+
+namespace palpate {
+
+/// Which powers of t a model has. Up to SE(2) and an affine change of t these are exactly the
+/// canonical classes (core/README.md, "Refinement and the bound"): no class has a singular limit
+/// in these coefficients.
+enum class PolynomialModel {
+  Parabola,             ///< 1, t, t^2
+  CubicalParabola,      ///< 1, t, t^3
+  SemiCubicalParabola,  ///< 1, t^2, t^3
+  CubicSpline,          ///< 1, t, t^2, t^3
+};
+
+template <PolynomialModel kModel>
+constexpr auto exponents_of_model() {
+  if constexpr (kModel == PolynomialModel::Parabola) {
+    return std::array{0, 1, 2};
+  } else if constexpr (kModel == PolynomialModel::CubicalParabola) {
+    return std::array{0, 1, 3};
+  } else if constexpr (kModel == PolynomialModel::SemiCubicalParabola) {
+    return std::array{0, 2, 3};
+  } else {
+    return std::array{0, 1, 2, 3};
+  }
+}
+
+/// Orthogonal distances over the model's coefficients, as `minimise` asks.
+template <PolynomialModel kModel>
+class PolynomialProblem {
+ public:
+  static constexpr auto kExponents = exponents_of_model<kModel>();
+  static constexpr int kPowers = static_cast<int>(kExponents.size());
+  static constexpr int kParameters = 2 * kPowers;
+  using Vector = Eigen::Matrix<double, kParameters, 1>;
+  using Matrix = Eigen::Matrix<double, kParameters, kParameters>;
+
+  PolynomialProblem(std::span<const FitPoint> points, std::vector<double> t, int side)
+      : points_(points), side_(side), t_(std::move(t)), feet_(points.size()) {}
+
+  static PolynomialCoefficients coefficients(const Vector& x) {
+    PolynomialCoefficients c = PolynomialCoefficients::Zero();
+    for (int k = 0; k < kPowers; ++k) {
+      c.col(exponent(k)) = x.template segment<2>(2 * k);
+    }
+    return c;
+  }
+
+  static Vector parameters(const PolynomialCoefficients& c) {
+    Vector x;
+    for (int k = 0; k < kPowers; ++k) {
+      x.template segment<2>(2 * k) = c.col(exponent(k));
+    }
+    return x;
+  }
+
+  double chi2_at(const Vector& x) {
+    coefficients_ = coefficients(x);
+    double chi2 = 0.0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      feet_[i] = follow_foot_point(coefficients_, points_[i].position, t_[i]);
+      const double residual = residual_of(i);
+      chi2 += residual * residual;
+    }
+    return chi2;
+  }
+
+  /// A place that is not accepted must not move the foot points that the next one starts from.
+  void accept() {
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      t_[i] = feet_[i].t;
+    }
+    accepted_ = coefficients_;
+    accepted_feet_ = feet_;
+  }
+
+  /// By the envelope theorem a residual changes by -n . (1, t, t^2, t^3): sums over the points of
+  /// n n^T t^k hold all of J^T J.
+  void linearise(Matrix* information, Vector* gradient) const {
+    constexpr int kSums = 2 * kExponents.back() + 1;
+    Eigen::Matrix<double, 3, kSums> squares = Eigen::Matrix<double, 3, kSums>::Zero();
+    Eigen::Matrix<double, 2, kExponents.back() + 1> sums;
+    sums.setZero();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const PlacedPoint& foot = accepted_feet_[i];
+      const double weight = points_[i].inverse_sigma;
+      const Vec2 n = weight * foot.normal;
+      Eigen::Vector3d square(n.x() * n.x(), n.x() * n.y(), n.y() * n.y());
+      Vec2 pull = -accepted_residual(i) * n;
+      for (int k = 0; k < kSums; ++k) {
+        squares.col(k) += square;
+        square *= foot.t;
+      }
+      for (int k = 0; k <= kExponents.back(); ++k) {
+        sums.col(k) += pull;
+        pull *= foot.t;
+      }
+    }
+    for (int j = 0; j < kPowers; ++j) {
+      gradient->template segment<2>(2 * j) = sums.col(exponent(j));
+      for (int k = 0; k < kPowers; ++k) {
+        const auto s = squares.col(exponent(j) + exponent(k));
+        information->template block<2, 2>(2 * j, 2 * k) << s[0], s[1], s[1], s[2];
+      }
+    }
+  }
+
+  /// The foot point moves with the curve, which turns the normal: r'' of core/README.md,
+  /// "Refinement and the bound", step 4.
+  Vector bend(const Vector& step) const {
+    const PolynomialCoefficients v = coefficients(step);
+    Eigen::Matrix<double, 2, kExponents.back() + 1> sums;
+    sums.setZero();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const PlacedPoint& foot = accepted_feet_[i];
+      const Vec2 first = first_derivative(accepted_, foot.t);
+      const Vec2 second = second_derivative(accepted_, foot.t);
+      const double speed2 = first.squaredNorm();
+      const Vec2 away = foot.signed_distance * foot.normal;
+      const double slope = speed2 - away.dot(second);
+      if (!(slope >= kLeastSlope * speed2) || speed2 <= 0.0) {
+        continue;  // no foot point to follow
+      }
+      const Vec2 shift = place(v, foot.t);
+      const Vec2 shift_by_t = first_derivative(v, foot.t);
+      const double t_rate = (away.dot(shift_by_t) - shift.dot(first)) / slope;
+      const double turn = foot.normal.dot(second * t_rate + shift_by_t);  // times the speed
+      const double weight = points_[i].inverse_sigma;
+      const double second_residual =
+          weight * (turn * shift.dot(first) / speed2 - t_rate * foot.normal.dot(shift_by_t));
+      Vec2 pull = -second_residual * weight * foot.normal;
+      for (int k = 0; k <= kExponents.back(); ++k) {
+        sums.col(k) += pull;
+        pull *= foot.t;
+      }
+    }
+    Vector gradient;
+    for (int j = 0; j < kPowers; ++j) {
+      gradient.template segment<2>(2 * j) = sums.col(exponent(j));
+    }
+    return gradient;
+  }
+
+  std::vector<double> take_t() { return std::move(t_); }
+
+ private:
+  static constexpr int exponent(int k) { return kExponents[static_cast<std::size_t>(k)]; }
+
+  double residual(const PlacedPoint& foot, std::size_t i) const {
+    return (foot.signed_distance - side_ * points_[i].offset) * points_[i].inverse_sigma;
+  }
+  double residual_of(std::size_t i) const { return residual(feet_[i], i); }
+  double accepted_residual(std::size_t i) const { return residual(accepted_feet_[i], i); }
+
+  std::span<const FitPoint> points_;
+  int side_;
+  std::vector<double> t_;
+  std::vector<PlacedPoint> feet_;  ///< at the place tried last
+  std::vector<PlacedPoint> accepted_feet_;
+  PolynomialCoefficients coefficients_;  ///< tried last
+  PolynomialCoefficients accepted_;
+};
+
+}  // namespace palpate
