@@ -54,6 +54,9 @@ void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& vi
         recognizer.excluded_turn_rad);
   visit({"form_error_fraction", "Form error of a real part, of the touched half extent", 0, 1},
         recognizer.form_error_fraction);
+  visit({"form_deviation_m",
+         "Stated form error of the parts, a standard deviation: half of a +- tolerance [m]", 0, 1e3},
+        recognizer.form_deviation_m);
   visit({"false_outlier_probability", "Chance that a clean scene loses a sample as a spike", 0, 1},
         recognizer.false_outlier_probability);
   visit({"inside_probability", "Prior that tips whose probe tells no side touched from within a bend",

@@ -29,7 +29,14 @@ void divide_conic(const ClassFits& fits, const EvidenceScale& scale,
 
 }  // namespace
 
+double without_form_error(double chi2, const EvidenceScale& scale) {
+  return scale.coherent_variance > 0.0
+             ? scale.noise_chi2 + (chi2 - scale.noise_chi2) / (1.0 + scale.coherent_variance)
+             : chi2;
+}
+
 double misfit(double chi2, const EvidenceScale& scale) {
+  chi2 = without_form_error(chi2, scale);
   if (scale.sigma_known) {
     return chi2 / scale.tempering;
   }

@@ -16,6 +16,11 @@ struct EvidenceScale {
   double tempering = 1.0;   ///< correlation time and misfit: chi-square counts 1 / tempering
   double chi2_floor = 0.0;  ///< chi-square that rounding alone leaves (noise profiled out)
   double parsimony = 1.0;   ///< price of a parameter, in units of Schwarz's log(n)
+  /// What the stated form error may add to the variance of a residuals' combination, beside the
+  /// noise's 1: what chi-square differs by from `noise_chi2`, the smooth model's, counts
+  /// 1 / (1 + coherent_variance).
+  double coherent_variance = 0.0;
+  double noise_chi2 = 0.0;
 };
 
 /// Indexed by CurveClass; entry 0 is "unclassified".
@@ -30,6 +35,9 @@ double information_criterion(double chi2, double parameters, const EvidenceScale
 inline double criterion_of_odds(double probability) {
   return 2.0 * std::log(probability / (1.0 - probability));
 }
+
+/// Chi-square with what may be stated form error tempered (core/README.md, "Stated form error").
+double without_form_error(double chi2, const EvidenceScale& scale);
 
 /// -2 log(likelihood) up to a constant.
 double misfit(double chi2, const EvidenceScale& scale);

@@ -25,7 +25,7 @@ bool is_noise(double chi2, double dof) { return chi2 <= dof + 5.0 * std::sqrt(2.
 
 /// Noise of the typical sample; where it was estimated, by the best class's residuals. [m]
 double residual_noise_m(const Weighing& w) {
-  return w.sigma * w.data.scale * (w.correlation_length > 0.0 ? 1.0 : std::sqrt(w.inflation));
+  return w.sigma * w.data.scale * (w.correlation_length > 0.0 ? 1.0 : std::sqrt(w.noise_inflation));
 }
 
 Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
@@ -298,7 +298,7 @@ class Recognizer::Impl {
     const auto stored = static_cast<double>(memory_.stored_count());
     const bool many_spikes =
         stored - static_cast<double>(w.data.points.size()) > kManySpikes * stored;
-    if (many_spikes && !is_noise(best.chi2, best.dof)) {
+    if (many_spikes && !is_noise(w.counted_chi2, best.dof)) {
       return Doubt::Misfit;
     }
     if (curve_class == CurveClass::Unclassified) {
@@ -312,7 +312,7 @@ class Recognizer::Impl {
     if (w.correlation_length > 0.0) {
       return Doubt::FormError;
     }
-    if (!is_noise(best.chi2 / w.inflation, best.dof)) {
+    if (!is_noise(w.counted_chi2 / w.noise_inflation, best.dof)) {
       return Doubt::Misfit;
     }
     const auto& fit = *w.fits[static_cast<std::size_t>(curve_class)];
@@ -321,7 +321,8 @@ class Recognizer::Impl {
     const double odds = criterion_of_odds(options_.recognized_probability);
     const bool has_rival = fit.rival && (fit.rival->chi2 - fit.chi2) / w.inflation <= odds &&
                            !is_same_curve(*fit.polynomial, *fit.rival);
-    if (has_rival || w.sides_margin / w.inflation <= odds) {
+    // The criteria of the sides have the stated form error in them.
+    if (has_rival || w.sides_margin / w.noise_inflation <= odds) {
       return Doubt::TwoShapes;
     }
     const double excluded =

@@ -43,10 +43,17 @@ struct RecognizerOptions {
   double excluded_departure = 0.15;
   /// The same for a line: turns of the arc larger than this. [rad]
   double excluded_turn_rad = 0.03;
-  /// Deviations of a real part from its ideal curve up to this fraction of the touched half extent
-  /// count as form error, which is correlated along the arc and lowers the certainty; larger ones
-  /// as another shape.
+  /// Unstated deviations of a real part from its ideal curve up to this fraction of the touched
+  /// half extent count as form error, which is correlated along the arc and lowers the certainty;
+  /// larger ones as another shape.
   double form_error_fraction = 1e-3;
+  /// What is known of the part's making: the standard deviation of its surface from its ideal
+  /// curve, smooth along the arc in whatever way (half of a drawing's +- tolerance); drift of the
+  /// probe counts the same. Classes that differ by no more are not told apart, however many the
+  /// samples, and covariances hold it. Residuals cannot show form error that a class of more
+  /// parameters takes for shape: 0 says that parts are exactly of their class. Maximum likelihood
+  /// only. [m]
+  double form_deviation_m = 0.0;
   /// Probability that a scene without spikes loses a sample to outlier rejection.
   double false_outlier_probability = 0.01;
   /// Prior probability that tips of a stated radius touched the part from within a bend where the

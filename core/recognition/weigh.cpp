@@ -8,6 +8,7 @@
 #include "core/recognition/on_all_points.h"
 #include "core/recognition/residual_correlation.h"
 #include "core/recognition/richer_class.h"
+#include "core/recognition/stated_form_error.h"
 #include "core/recognition/tip_sides.h"
 
 namespace palpate {
@@ -288,6 +289,9 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   w.sigma = rms_sigma(data);
   const double rounding = rounding_level(data) / w.sigma;
   scale.chi2_floor = sigma_known ? 0.0 : n * rounding * rounding;
+  const double stated = coherent_variance(data, options.form_deviation_m / data.scale);
+  scale.coherent_variance = stated;
+  scale.noise_chi2 = w.smooth.chi2;
 
   w.coarse = fit_over_sides(patches, data, scale, options, warm, &w);
   for (const CurveClass curve_class : kCurveClasses) {
@@ -336,17 +340,21 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
     if (misfits && (noisy || form_error)) {
       scale.sigma_known = true;
       scale.samples = std::max(n / correlation.time, 1.0);
-      scale.tempering = variance * correlation.time;
+      scale.tempering = variance * correlation.time + stated;
+      scale.coherent_variance = 0.0;
       weigh_plausible(data, reduced, scale, options, &w);
       w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
       w.canonical[c].reset();  // it may have been polished once more
-      w.inflation = variance * correlation.time;
+      w.noise_inflation = variance * correlation.time;
       w.correlation_length = correlation.length;
     } else if (!sigma_known) {
-      w.inflation = variance;
+      w.noise_inflation = without_form_error(w.fits[c]->chi2, scale) / dof;
     }
   }
+  w.inflation = w.noise_inflation + stated;
   choose_best(data, reduced, scale, &w);
+  const auto& best = w.fits[static_cast<std::size_t>(w.best)];
+  w.counted_chi2 = without_form_error(best ? best->chi2 : w.smooth.chi2, scale);
   place_canonically(data, reduced, &w);
   w.data = std::move(data);
   return w;

@@ -31,8 +31,10 @@ struct Weighing {
   double sides_margin = 0.0;
   CurveClass best = CurveClass::Unclassified;  ///< most probable, "unclassified" included
   double sigma = 0.0;                          ///< noise of the typical point, normalised
-  /// What covariances are to be multiplied with: correlation and misfit.
+  /// What covariances are to be multiplied with: correlation, misfit and stated form error.
   double inflation = 1.0;
+  double noise_inflation = 1.0;     ///< of it, without the stated form error
+  double counted_chi2 = 0.0;        ///< of `best`, with what may be stated form error tempered
   double correlation_length = 0.0;  ///< normalised; 0 = white
 };
 

@@ -59,6 +59,12 @@ std::vector<Vec2> arc(const std::vector<Polar>& contacts, double start, double w
   return points;
 }
 
+void write_arc(std::ostream& out, int degrees, int start, const std::vector<Vec2>& points) {
+  for (const Vec2& point : points) {
+    out << degrees << ',' << start << ',' << point.x() << ',' << point.y() << '\n';
+  }
+}
+
 /// Relative error of the worse axis; infinite without a shape.
 double worse_axis(const ShapeParameters& shape, const EllipsePart& part) {
   return std::max(std::abs(shape.values[0] / part.semi_major_m - 1.0),
@@ -116,10 +122,33 @@ std::string joined(const std::map<std::string, int>& answers) {
   return out.str();
 }
 
-void write_arc(std::ostream& out, int degrees, int start, const std::vector<Vec2>& points) {
-  for (const Vec2& point : points) {
-    out << degrees << ',' << start << ',' << point.x() << ',' << point.y() << '\n';
+/// Rows of the table where the recognizer is told `form_deviation_m`; returns the wrong answers.
+std::vector<std::string> print_rows(const EllipsePart& part, const PatchContext& context,
+                                    const std::vector<Polar>& contacts, double form_deviation_m,
+                                    std::ostream& out) {
+  RecognizerOptions options;
+  options.form_deviation_m = form_deviation_m;
+  std::vector<std::string> wrong;
+  for (const int degrees : kArcDegrees) {
+    Counts counts;
+    for (int i = 0; i < kArcs; ++i) {
+      const int start = i * 360 / kArcs;
+      const auto points = arc(contacts, start * kPi / 180.0, degrees * kPi / 180.0);
+      std::ostringstream name;
+      name << degrees << " deg from " << start << " deg, form deviation " << form_deviation_m
+           << " m";
+      add(name.str(), recognise(context, points, options), part, &counts);
+    }
+    out << "| " << form_deviation_m << " | " << degrees << " | " << std::setprecision(3)
+        << 100.0 * median(counts.errors) << " | "
+        << std::count(counts.errors.begin(), counts.errors.end(),
+                      std::numeric_limits<double>::infinity())
+        << " | " << joined(counts.answers) << " | " << counts.other_class << " | "
+        << counts.wrong_axis << " |\n"
+        << std::flush;
+    wrong.insert(wrong.end(), counts.wrong.begin(), counts.wrong.end());
   }
+  return wrong;
 }
 
 }  // namespace
@@ -144,33 +173,28 @@ void print_ellipse_part(const EllipsePart& part,
   out << "Ellipse of " << part.semi_major_m << " and " << part.semi_minor_m << " m, "
       << contacts.size() << " contacts, tip radius " << part.recording.context.tip_radius_m
       << " m, side " << (part.side_known ? "known" : "not known") << "; " << kArcs
-      << " arcs a row. The error is the worse axis's of the ellipse hypothesis, whether it won or "
+      << " arcs a row. Form deviation: what the recognizer is told of the part's making. The error "
+         "is the worse axis's of the ellipse hypothesis, whether it won or "
          "not. Wrong: RECOGNIZED as another class, or with an axis off by more than "
       << 100.0 * kWrongAxis << " %.\n\n"
-      << "| arc [deg] | median error [%] | no ellipse | answers | RECOGNIZED, another class | "
-         "RECOGNIZED, wrong axis |\n|---|---|---|---|---|---|\n";
-  std::vector<std::string> wrong;
-  for (const int degrees : kArcDegrees) {
-    Counts counts;
-    for (int i = 0; i < kArcs; ++i) {
-      const int start = i * 360 / kArcs;
-      const auto points = arc(contacts, start * kPi / 180.0, degrees * kPi / 180.0);
-      add(std::to_string(degrees) + " deg from " + std::to_string(start) + " deg",
-          recognise(context, points), part, &counts);
-      write_arc(arcs, degrees, start, points);
-    }
-    out << "| " << degrees << " | " << std::setprecision(3) << 100.0 * median(counts.errors)
-        << " | "
-        << std::count(counts.errors.begin(), counts.errors.end(),
-                      std::numeric_limits<double>::infinity())
-        << " | " << joined(counts.answers) << " | " << counts.other_class << " | "
-        << counts.wrong_axis << " |\n"
-        << std::flush;
-    wrong.insert(wrong.end(), counts.wrong.begin(), counts.wrong.end());
+      << "| form deviation [m] | arc [deg] | median error [%] | no ellipse | answers | RECOGNIZED, "
+         "another class | RECOGNIZED, wrong axis |\n|---|---|---|---|---|---|---|\n";
+  std::vector<std::string> wrong = print_rows(part, context, contacts, 0.0, out);
+  if (part.form_deviation_m > 0.0) {
+    const auto more = print_rows(part, context, contacts, part.form_deviation_m, out);
+    wrong.insert(wrong.end(), more.begin(), more.end());
   }
   out << "\nThe wrong ones (" << wrong.size() << "), by polar angle of the arc's start:\n";
   for (const std::string& line : wrong) {
     out << "- " << line << '\n';
+  }
+  if (arcs_csv) {
+    for (const int degrees : kArcDegrees) {
+      for (int i = 0; i < kArcs; ++i) {
+        const int start = i * 360 / kArcs;
+        write_arc(arcs, degrees, start, arc(contacts, start * kPi / 180.0, degrees * kPi / 180.0));
+      }
+    }
   }
   if (arcs_csv && !arcs.flush()) {
     throw std::runtime_error("cannot write " + arcs_csv->string());

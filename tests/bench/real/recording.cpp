@@ -25,12 +25,13 @@ Recording read_recording(const std::filesystem::path& path) {
   return recording;
 }
 
-Recognition recognise(const PatchContext& context, const std::vector<Vec2>& points) {
+Recognition recognise(const PatchContext& context, const std::vector<Vec2>& points,
+                      const RecognizerOptions& options) {
   std::vector<ContactSample> samples;
   for (const Vec2& point : points) {
     samples.push_back({point, 0.0, 0});
   }
-  Recognizer recognizer;
+  Recognizer recognizer(options);
   recognizer.add(context, samples);
   return recognizer.recognize();
 }

@@ -16,8 +16,9 @@ struct Recording {
 };
 Recording read_recording(const std::filesystem::path& path);
 
-/// The answer of a new recognizer with defaults; the noise is not told.
-Recognition recognise(const PatchContext& context, const std::vector<Vec2>& points);
+/// The answer of a new recognizer; the noise is not told.
+Recognition recognise(const PatchContext& context, const std::vector<Vec2>& points,
+                      const RecognizerOptions& options = {});
 
 /// "RECOGNIZED", "AMBIGUOUS", "COLLECTING".
 std::string_view name_of(RecognitionStatus status);

@@ -53,6 +53,16 @@ TEST(Config, DefaultsAreTheStructs) {
   EXPECT_EQ(options.value->intake.recognizer.classes, RecognizerOptions().classes);
 }
 
+TEST(Config, OptionsReachTheRecognizer) {
+  v1::NodeConfig config;
+  ASSERT_EQ(set_option(config, "form_deviation_m", "5e-5"), "");
+  const Result<NodeOptions> options = make_options(config);
+  ASSERT_TRUE(options) << options.error;
+  EXPECT_EQ(options.value->intake.recognizer.form_deviation_m, 5e-5);
+  ASSERT_EQ(set_option(config, "form_deviation_m", "-5e-5"), "");
+  EXPECT_THAT(make_options(config).error, HasSubstr("form_deviation_m"));
+}
+
 TEST(Config, WhatIsPrintedIsReadBack) {
   v1::NodeConfig config;
   ASSERT_EQ(set_option(config, "max_groups", "7"), "");

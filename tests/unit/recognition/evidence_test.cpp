@@ -62,6 +62,26 @@ TEST(Evidence, AConicIsDividedAtTheParabola) {
   EXPECT_NEAR(of(p, CurveClass::Hyperbola), 0.5 * std::erfc(1.0 / std::sqrt(2.0)), 1e-12);
 }
 
+TEST(Evidence, StatedFormErrorTempersWhatTheSmoothModelLeavesOut) {
+  EvidenceScale scale = scale_of(100.0);
+  scale.noise_chi2 = 1e16;
+  const double chi2 = 0.3;
+  EXPECT_EQ(without_form_error(chi2, scale), chi2);  // to the last bit, where none is stated
+  scale.noise_chi2 = 90.0;
+  scale.coherent_variance = 3.0;
+  ClassFits fits;
+  set(&fits, fit_of(CurveClass::Ellipse, 100.0));
+  set(&fits, fit_of(CurveClass::Hyperbola, 108.0));
+  const auto odds = [&](const EvidenceScale& of_scale) {
+    const ClassProbabilities p = probabilities(fits, 90.0, 12, of_scale);
+    return of(p, CurveClass::Ellipse) / of(p, CurveClass::Hyperbola);
+  };
+  EXPECT_NEAR(odds(scale), std::exp(0.5 * 8.0 / 4.0), 1e-12);
+  // With the noise profiled out as well, where it is what the smooth model leaves.
+  scale.sigma_known = false;
+  EXPECT_NEAR(odds(scale), std::pow((90.0 + 18.0 / 4.0) / (90.0 + 10.0 / 4.0), 50.0), 1e-12);
+}
+
 TEST(Evidence, ProfiledNoiseIsScaleFree) {
   EvidenceScale scale = scale_of(200.0);
   scale.sigma_known = false;
