@@ -229,6 +229,12 @@ void refine_sharp_bends(const FitData& data, const FitData& reduced, Weighing* w
   }
 }
 
+/// Chi-square as a misfit is judged by it. A class that leaves less than the smooth model (which
+/// cannot follow every bend) has no form error in it.
+double counted(double chi2, const EvidenceScale& scale) {
+  return std::min(chi2, without_form_error(chi2, scale));
+}
+
 CurveClass most_probable(const ClassProbabilities& probabilities) {
   return static_cast<CurveClass>(std::max_element(probabilities.begin(), probabilities.end()) -
                                  probabilities.begin());
@@ -348,13 +354,13 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
       w.noise_inflation = variance * correlation.time;
       w.correlation_length = correlation.length;
     } else if (!sigma_known) {
-      w.noise_inflation = without_form_error(w.fits[c]->chi2, scale) / dof;
+      w.noise_inflation = counted(w.fits[c]->chi2, scale) / dof;
     }
   }
   w.inflation = w.noise_inflation + stated;
   choose_best(data, reduced, scale, &w);
   const auto& best = w.fits[static_cast<std::size_t>(w.best)];
-  w.counted_chi2 = without_form_error(best ? best->chi2 : w.smooth.chi2, scale);
+  w.counted_chi2 = counted(best ? best->chi2 : w.smooth.chi2, scale);
   place_canonically(data, reduced, &w);
   w.data = std::move(data);
   return w;

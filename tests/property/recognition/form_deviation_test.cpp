@@ -18,7 +18,7 @@ namespace {
 /// normal: the standard deviation is `deviation_m` at every t, and the same wave runs through all
 /// patches.
 test::Scene with_form_error(test::Scene scene, double deviation_m, std::mt19937_64& rng) {
-  constexpr int kLowest = 2;  // three lobes and less are what clamping leaves
+  constexpr int kLowest = 2;  // the first would be a shift
   constexpr int kHighest = 5;
   std::normal_distribution<double> normal(
       0.0, deviation_m / std::sqrt(static_cast<double>(kHighest - kLowest + 1)));
@@ -97,6 +97,14 @@ void add(const Recognition& answer, const test::Scene& scene, Count* count) {
   count->wrong += beyond && std::max(a, b) > kWrongAxis ? 1 : 0;
 }
 
+void print(const Count& count) {
+  std::cout << "\t" << count.recognized << " of " << count.scenes << "\t" << count.wrong << "\t";
+  if (count.ellipses > 0) {
+    std::cout << count.squares / count.ellipses;
+  }
+  std::cout << "\t" << count.beyond << " |";
+}
+
 struct Setting {
   const char* name;
   double sigma_over_size;
@@ -134,20 +142,18 @@ TEST(FormDeviation, StatedItMakesRecognizedAnswersRight) {
           add(test::recognise(scene, sigma_m), scene, &unstated);
         }
         std::cout << "  " << setting.name << (noise_told ? ", told\t" : ", not told\t") << degrees;
-        for (const Count& count : {stated, unstated}) {
-          std::cout << "\t" << count.recognized << " of " << count.scenes << "\t" << count.wrong
-                    << "\t" << count.squares / count.ellipses << "\t" << count.beyond << " |";
-        }
+        print(stated);
+        print(unstated);
         std::cout << "\n";
         all_stated += stated;
         all_unstated += unstated;
       }
     }
   }
-  for (const Count& count : {all_stated, all_unstated}) {
-    std::cout << "  all\t" << count.recognized << " of " << count.scenes << "\t" << count.wrong
-              << "\t" << count.squares / count.ellipses << "\t" << count.beyond << "\n";
-  }
+  std::cout << "  all\t";
+  print(all_stated);
+  print(all_unstated);
+  std::cout << "\n";
   // Stated, it leaves few wrong, and covariances no smaller than the errors...
   EXPECT_LT(100 * all_stated.wrong, all_stated.recognized);
   EXPECT_LE(all_stated.squares, kDof * all_stated.ellipses);
@@ -177,6 +183,29 @@ double samples_of(const test::Scene& scene) {
   return count;
 }
 
+/// Rivals are sought on a grid, and on reduced points that depend on the noise: probabilities agree
+/// to this, and a decision is compared unless it hangs on it.
+constexpr double kProbability = 0.03;
+
+void expect_same_certainty(const Recognition& answer, const Recognition& expected) {
+  const double probability = expected.hypotheses.front().probability;
+  EXPECT_NEAR(answer.hypotheses.front().probability, probability, kProbability);
+  if (std::abs(probability - RecognizerOptions{}.recognized_probability) > kProbability) {
+    EXPECT_EQ(answer.status, expected.status);
+  }
+}
+
+/// Of the pose, whose last component is an angle, up to a factor of lengths.
+void expect_same_covariance(const Recognition& answer, const Recognition& expected, double factor,
+                            double tolerance) {
+  ASSERT_EQ(answer.covariance.rows(), expected.covariance.rows());
+  for (Eigen::Index k = 1; k <= std::min<Eigen::Index>(3, expected.covariance.rows()); ++k) {
+    const Eigen::Index i = expected.covariance.rows() - k;
+    const double variance = (k == 1 ? 1.0 : factor * factor) * expected.covariance(i, i);
+    EXPECT_NEAR(answer.covariance(i, i), variance, tolerance * variance);
+  }
+}
+
 TEST_P(FormDeviationOf, NextToNothingChangesNextToNothing) {
   std::mt19937_64 rng = test::test_rng();
   for (int i = 0; i < 5; ++i) {
@@ -192,8 +221,28 @@ TEST_P(FormDeviationOf, NextToNothingChangesNextToNothing) {
       EXPECT_NEAR(stated.hypotheses.front().probability, exact.hypotheses.front().probability,
                   1e-5);
       EXPECT_NEAR(stated.sigma_m, exact.sigma_m, 1e-6 * exact.sigma_m);
-      for (Eigen::Index k = 0; k < exact.covariance.rows(); ++k) {
-        EXPECT_NEAR(stated.covariance(k, k), exact.covariance(k, k), 1e-6 * exact.covariance(k, k));
+      expect_same_covariance(stated, exact, 1.0, 1e-6);
+    }
+  }
+}
+
+TEST_P(FormDeviationOf, SaysWhatWhiteNoiseOfTheBoundWouldSay) {
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < 5; ++i) {
+    const test::Scene scene = two_patches(GetParam(), rng);
+    for (const double deviations : {0.3, 3.0}) {
+      const double n = samples_of(scene);
+      RecognizerOptions options;
+      options.form_deviation_m = deviations * scene.sigma_m / std::sqrt(n);
+      const Recognition stated = test::recognise(scene, scene.sigma_m, options);
+      const Recognition white = test::recognise(scene, scene.sigma_m * std::hypot(1.0, deviations));
+      ASSERT_EQ(stated.shape.curve_class, white.shape.curve_class);
+      EXPECT_NEAR(stated.hypotheses.front().probability, white.hypotheses.front().probability,
+                  kProbability);
+      // The smooth model follows no sharp bend to the noise: that is no misfit of the class.
+      EXPECT_EQ(stated.doubt == Doubt::Misfit, white.doubt == Doubt::Misfit);
+      if (white.status == RecognitionStatus::Recognized && stated.status == white.status) {
+        expect_same_covariance(stated, white, 1.0, 0.01);
       }
     }
   }
@@ -217,19 +266,9 @@ TEST_P(FormDeviationOf, ScalesWithThePart) {
       for_large.form_deviation_m = factor * options.form_deviation_m;
       const Recognition scaled = test::recognise(large, factor * scene.sigma_m, for_large);
       ASSERT_EQ(scaled.shape.curve_class, answer.shape.curve_class);
-      // Rivals are sought on a grid: a decision is compared unless it hangs on this.
-      constexpr double kProbability = 0.03;
-      const double probability = answer.hypotheses.front().probability;
-      EXPECT_NEAR(scaled.hypotheses.front().probability, probability, kProbability);
-      if (std::abs(probability - options.recognized_probability) > kProbability) {
-        EXPECT_EQ(scaled.status, answer.status);
-      }
+      expect_same_certainty(scaled, answer);
       EXPECT_NEAR(scaled.sigma_m, factor * answer.sigma_m, 1e-6 * factor * answer.sigma_m);
-      const Eigen::Index x = answer.covariance.rows() - 3;
-      if (x > 0) {
-        EXPECT_NEAR(scaled.covariance(x, x), factor * factor * answer.covariance(x, x),
-                    0.01 * factor * factor * answer.covariance(x, x));
-      }
+      expect_same_covariance(scaled, answer, factor, 0.01);
     }
   }
 }
