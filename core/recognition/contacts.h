@@ -24,12 +24,14 @@ struct ContactOptions {
   bool with_bias = false;
 };
 
-/// Per patch an estimate at the centre of each window and one at each end of the patch, in the order of
-/// travel, taken back from tip centres to the surface where `sides` says so (+1: the tip lies left of
-/// travel, -1: right; one entry per patch, may be empty). t is 0.
-std::vector<LocalizedContact> estimate_contacts(std::span<const StoredPatch> patches,
-                                                std::span<const int> sides,
-                                                const ContactOptions& options);
+/// Windows that each of so many patches is to have where its samples suffice.
+std::size_t windows_of_a_patch(std::size_t patches, const ContactOptions& options);
+
+/// Adds an estimate at the centre of each window of a patch and one at each of its ends, in the order
+/// of travel, taken back from tip centres to the surface (`side` +1: the tip lies left of travel, -1:
+/// right, 0: the samples are on the surface). t is 0.
+void add_contacts(const StoredPatch& patch, std::size_t most_windows, int side,
+                  const ContactOptions& options, std::vector<LocalizedContact>* contacts);
 
 /// Sets t of each contact to that of its foot point on the curve.
 void localise_contacts(const ShapeParameters& shape, const Pose2& world_T_curve,

@@ -152,7 +152,7 @@ PolynomialFits search_parabola(const FitData& reduced) {
 PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts) {
   // A step or two; what was plausible goes as far as it takes to stay so, and not to need a search.
   constexpr RefineEffort kFollow{5, 1, 1e-2};
-  constexpr RefineEffort kFarther{15, 1, 1e-2};
+  constexpr RefineEffort kFarther{8, 1, 1e-2};
   constexpr double kPlausible = 20.0;  // odds of exp(10)
   // Odds of exp(50) or more: the few points that may be added before the next search (a quarter of
   // all) do not turn them.

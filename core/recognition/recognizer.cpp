@@ -77,7 +77,7 @@ class Recognizer::Impl {
     }
     if (options_.method == RecognitionMethod::Tree) {
       answer.outlier_count = memory_.stored_count() - data.points.size();
-      answer.contacts = estimate_contacts(patches, {}, contact_options());
+      answer.contacts = contacts_of(patches, {});
       walk_tree(data.scale, &answer);
       return answer;
     }
@@ -87,7 +87,7 @@ class Recognizer::Impl {
     }
     answer.outlier_count = memory_.stored_count() - w.data.points.size();
     fill(w, &answer);
-    answer.contacts = estimate_contacts(patches, w.sides, contact_options());
+    answer.contacts = contacts_of(patches, w.sides);
     if (last_->decisions.empty()) {
       last_->decisions = tree_of(answer.contacts).decisions;
     }
@@ -166,11 +166,14 @@ class Recognizer::Impl {
     }
   }
 
-  /// A patch without its spikes, as long as the patch stays as it is.
+  /// What is known of a patch without its spikes, as long as the patch stays as it is.
   struct CleanPatch {
     std::size_t stored = 0;
     double contacts_per_sample = 0.0;
     Vec2 newest_m = Vec2::Zero();
+    std::vector<LocalizedContact> contacts = {};
+    std::size_t windows = 0;  ///< that the contacts are of; 0 = there are none yet
+    int side = 0;
   };
 
   const std::vector<StoredPatch>& clean_patches() {
@@ -193,6 +196,26 @@ class Recognizer::Impl {
       }
     }
     return clean_;
+  }
+
+  /// Of the clean patches: what was estimated of a patch stays while the patch does.
+  std::vector<LocalizedContact> contacts_of(const std::vector<StoredPatch>& patches,
+                                            const std::vector<int>& sides) {
+    const ContactOptions options = contact_options();
+    const std::size_t windows = windows_of_a_patch(patches.size(), options);
+    std::vector<LocalizedContact> contacts;
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+      CleanPatch& state = clean_states_[p];
+      const int side = p < sides.size() ? sides[p] : 0;
+      if (state.windows != windows || state.side != side) {
+        state.contacts.clear();
+        add_contacts(patches[p], windows, side, options, &state.contacts);
+        state.windows = windows;
+        state.side = side;
+      }
+      contacts.insert(contacts.end(), state.contacts.begin(), state.contacts.end());
+    }
+    return contacts;
   }
 
   ContactOptions contact_options() const {
