@@ -22,6 +22,7 @@ struct ClassFit {
   bool weighed = false;  ///< chi2 is that of all points, not what the reduced ones tell
   bool on_all =
       false;  ///< refined on all points; until then it has foot points of the reduced ones
+  bool polished = false;  ///< at its very optimum there, and so is its rival
   /// The class has no interior optimum: chi2 is that of the neighbour it runs away to (an ellipse
   /// or hyperbola that wants to be a parabola), and there is no shape to report.
   bool at_limit = false;

@@ -68,6 +68,14 @@ double rms_sigma(const FitData& data) {
   return std::sqrt(sum / static_cast<double>(data.points.size()));
 }
 
+double least_sigma(std::span<const FitPoint> points) {
+  double sharpest = 0.0;
+  for (const FitPoint& point : points) {
+    sharpest = std::max(sharpest, point.inverse_sigma);
+  }
+  return 1.0 / sharpest;
+}
+
 double rounding_level(const FitData& data) {
   // A coordinate carries half a unit in the last place; a few such errors meet in a residual.
   constexpr double kRoundings = 4.0;

@@ -49,6 +49,9 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
 /// Root mean square of the points' noise, in normalised units. At least one point.
 double rms_sigma(const FitData& data);
 
+/// The least noise of any of the points, normalised; infinite without points.
+double least_sigma(std::span<const FitPoint> points);
+
 /// Rounding of the data's coordinates, in normalised units: no noise is smaller than that.
 double rounding_level(const FitData& data);
 

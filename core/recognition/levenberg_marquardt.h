@@ -22,6 +22,8 @@ struct MinimiseSummary {
   int iterations = 0;
   double initial_chi2 = 0.0;
   double chi2 = 0.0;
+  /// Ended with nothing to gain and no more damping than a fresh start has: that would not go on.
+  bool converged = false;
 };
 
 /// Minimises `problem`'s sum of squares r(x)^T r(x) from `*x`. With r' the derivatives of the
@@ -75,6 +77,7 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
     const Vector velocity = -solver.solve(gradient);
     const double promised = velocity.dot(damping * diagonal.cwiseProduct(velocity) - gradient);
     if (!(promised > kNothing * options.chi2_tolerance)) {
+      summary.converged = damping <= kFirstDamping;
       break;
     }
     Vector step = velocity;
@@ -91,6 +94,7 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
       summary.chi2 = chi2;
       problem->accept();
       if (gain < options.chi2_tolerance) {
+        summary.converged = damping <= kFirstDamping;
         break;
       }
       linearise();

@@ -13,6 +13,9 @@
 namespace palpate {
 namespace {
 
+/// How far above a spline's chi-square its rival's may be: odds of exp(10).
+constexpr double kHopeless = 20.0;
+
 /// An ellipse or hyperbola at its limit is a parabola.
 PolynomialModel polynomial_model(const ClassFit& fit) {
   switch (fit.curve_class) {
@@ -31,8 +34,9 @@ PolynomialModel polynomial_model(const ClassFit& fit) {
 std::vector<double> distances_from(const PolynomialFit& curve, std::span<const FitPoint> points) {
   std::vector<double> distances;
   distances.reserve(points.size());
+  const double last_step = last_foot_step(least_sigma(points));
   for (std::size_t i = 0; i < points.size(); ++i) {
-    distances.push_back(place_on(curve, curve.t[i], points[i].position).signed_distance);
+    distances.push_back(place_on(curve, curve.t[i], points[i].position, last_step).signed_distance);
   }
   return distances;
 }
@@ -73,8 +77,6 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
                                 [](const FitPoint& point) { return point.offset > 0.0; });
   ClassFit start = fit;
   start.weighed = start.on_all = true;
-  // Odds of exp(10): no shape to doubt the best one for.
-  constexpr double kHopeless = 20.0;
   if (start.rival && start.rival->chi2 > start.polynomial->chi2 + kHopeless) {
     start.rival.reset();
   }
@@ -90,7 +92,8 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
   return start;
 }
 
-/// The fit's own parts refined, their sides as they are. A rival that is left out keeps its place.
+/// The fit's own parts refined, their sides as they are. A hopeless rival of what is not the best
+/// keeps its place.
 ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const RefineEffort& effort,
                       RivalOf rival = RivalOf::Best) {
   if (fit.polynomial) {
@@ -98,7 +101,8 @@ ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const Refi
       part = refine_polynomial(polynomial_model(fit), points, std::move(part), part.side, effort);
     };
     refine(*fit.polynomial);
-    if (fit.rival && (rival == RivalOf::Best || fit.rival->chi2 < fit.polynomial->chi2)) {
+    if (fit.rival &&
+        (rival == RivalOf::Best || fit.rival->chi2 < fit.polynomial->chi2 + kHopeless)) {
       refine(*fit.rival);
       if (fit.rival->chi2 < fit.polynomial->chi2) {
         std::swap(*fit.polynomial, *fit.rival);

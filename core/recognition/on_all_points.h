@@ -10,7 +10,8 @@ namespace palpate {
 /// Whether a fit to `data` is still the curve that it is called, and one that can be touched so.
 bool is_what_it_says(const ClassFit& fit, const FitData& data);
 
-/// A spline's rival makes its shape doubtful, which matters to the best class alone.
+/// A spline's rival far behind it may still come near: that makes the shape doubtful, which matters
+/// to the best class alone.
 enum class RivalOf { Best, Other };
 
 /// Takes a fit on the reduced points to its optimum there.

@@ -40,10 +40,12 @@ PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int 
       fit.chi2 = summary.initial_chi2;
     }
     fit.iterations += summary.iterations;
-    const bool settled = !(summary.chi2 < fit.chi2 - left * kSettled) &&
-                         (start_number > 0 || !(summary.chi2 < kExact * n));
+    const bool nothing_left = summary.converged || !(summary.chi2 < fit.chi2 - left * kSettled);
+    const bool settled = nothing_left && (start_number > 0 || !(summary.chi2 < kExact * n));
     fit.chi2 = std::min(fit.chi2, summary.chi2);
-    if (settled || !std::isfinite(summary.chi2)) {
+    // What has not arrived by then runs along a valley that is as good as flat.
+    const bool too_far = summary.iterations >= effort.iterations;
+    if (settled || too_far || !std::isfinite(summary.chi2)) {
       break;
     }
   }
@@ -108,8 +110,8 @@ bool is_same_curve(const PolynomialFit& a, const PolynomialFit& b) {
   return std::abs(a.chi2 - b.chi2) <= kSameChi2 && std::abs(cross(u, v)) <= kSameAngle;
 }
 
-PlacedPoint place_on(const PolynomialFit& fit, double t, const Vec2& point) {
-  return follow_foot_point(fit.coefficients, point, t);
+PlacedPoint place_on(const PolynomialFit& fit, double t, const Vec2& point, double last_step) {
+  return follow_foot_point(fit.coefficients, point, t, last_step);
 }
 
 }  // namespace palpate

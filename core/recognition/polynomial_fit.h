@@ -35,7 +35,9 @@ Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> polynomial_information(
 /// of the cubic axis alike, as far as the optimiser's tolerance goes.
 bool is_same_curve(const PolynomialFit& a, const PolynomialFit& b);
 
-/// A point against the fit, its foot point followed from `t`.
-PlacedPoint place_on(const PolynomialFit& fit, double t, const Vec2& point);
+/// A point against the fit, its foot point followed from `t` until a step is shorter than
+/// `last_step`.
+PlacedPoint place_on(const PolynomialFit& fit, double t, const Vec2& point,
+                     double last_step = kExactFootStep);
 
 }  // namespace palpate

@@ -36,10 +36,23 @@ struct PlacedPoint {
 /// centre of curvature, where the foot point is no minimum any more, it is 0.
 inline constexpr double kLeastSlope = 0.1;
 
-/// Follows the foot point of `p` by Halley's method on (C(t) - p) . C'(t) = 0 from `t`.
-inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, double t) {
+/// The step after which a foot point is good enough where noise is of standard deviation `sigma`,
+/// normalised: the parameter's error is then the step's cube times a factor that sharp bends make
+/// large, and the distance's error, which is of second order, a small part of the noise.
+inline double last_foot_step(double sigma) {
+  constexpr double kSharpest = 1e5;
+  constexpr double kPart = 1e-3;
+  return std::cbrt(std::sqrt(kPart * sigma) / kSharpest);
+}
+
+/// For exact points: as far as rounding goes.
+inline constexpr double kExactFootStep = 1e-5;
+
+/// Follows the foot point of `p` by Halley's method on (C(t) - p) . C'(t) = 0 from `t`, until a
+/// step is shorter than `last_step`.
+inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, double t,
+                                     double last_step = kExactFootStep) {
   constexpr int kMaxIterations = 5;
-  constexpr double kLastStep = 1e-3;    // after it the error is its cube
   constexpr double kLongestStep = 0.5;  // of the data's parameter range, about [-1, 1]
   Vec2 away;
   Vec2 first;
@@ -65,7 +78,7 @@ inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2
       step = halley > slope * slope ? 2.0 * along * slope / halley : along / slope;
     }
     step = std::clamp(step, -kLongestStep, kLongestStep);
-    last = std::abs(step) < kLastStep;
+    last = std::abs(step) < last_step;
     t += step;
   }
   PlacedPoint placed;

@@ -47,7 +47,11 @@ class PolynomialProblem {
   using Matrix = Eigen::Matrix<double, kParameters, kParameters>;
 
   PolynomialProblem(std::span<const FitPoint> points, std::vector<double> t, int side)
-      : points_(points), side_(side), t_(std::move(t)), feet_(points.size()) {}
+      : points_(points),
+        side_(side),
+        t_(std::move(t)),
+        feet_(points.size()),
+        last_step_(last_foot_step(least_sigma(points))) {}
 
   static PolynomialCoefficients coefficients(const Vector& x) {
     PolynomialCoefficients c = PolynomialCoefficients::Zero();
@@ -69,7 +73,7 @@ class PolynomialProblem {
     coefficients_ = coefficients(x);
     double chi2 = 0.0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      feet_[i] = follow_foot_point(coefficients_, points_[i].position, t_[i]);
+      feet_[i] = follow_foot_point(coefficients_, points_[i].position, t_[i], last_step_);
       const double residual = residual_of(i);
       chi2 += residual * residual;
     }
@@ -170,6 +174,7 @@ class PolynomialProblem {
   std::vector<PlacedPoint> accepted_feet_;
   PolynomialCoefficients coefficients_;  ///< tried last
   PolynomialCoefficients accepted_;
+  double last_step_;  ///< of foot points
 };
 
 }  // namespace palpate

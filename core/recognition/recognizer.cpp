@@ -138,7 +138,11 @@ class Recognizer::Impl {
                                   const WarmStart* warm) const {
     Weighing w = weigh(data, sigma_known, patches, options_, warm);
     if (const auto kept = without_outliers(w, data, options_)) {
-      w = weigh(*kept, sigma_known, patches, options_, warm);
+      // A search is not followed: the outliers may have led it astray.
+      const auto nearer = warm != nullptr
+                              ? std::optional(warm_start_from(w.coarse, w.smooth.reduced))
+                              : std::nullopt;
+      w = weigh(*kept, sigma_known, patches, options_, nearer ? &*nearer : nullptr);
     }
     return w;
   }

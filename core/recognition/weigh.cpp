@@ -119,14 +119,18 @@ ClassFit out(const ClassFit& coarse) {
   return fit;
 }
 
-/// A class at its very optimum on all points.
-ClassFit polished(const ClassFit& fit, const SmoothModel& smooth, const FitData& data) {
-  if (!fit.on_all && !fit.rival) {
-    return refine_on_all(fit, smooth, data, kPolishEffort).value_or(out(fit));
+/// A class at its very optimum on all points, from its optimum on the reduced ones.
+ClassFit polished(const ClassFit& settled, const SmoothModel& smooth, const FitData& data) {
+  std::optional<ClassFit> fit;
+  if (!settled.rival) {
+    fit = refine_on_all(settled, smooth, data, kPolishEffort);
+  } else if (const auto refined = refine_on_all(settled, smooth, data)) {
+    // Not at once: the rival may be on its way to the same optimum.
+    fit = polish(*refined, data);
   }
-  // With a rival not at once: it may be on its way to the same optimum.
-  const auto refined = fit.on_all ? std::optional(fit) : refine_on_all(fit, smooth, data);
-  return refined ? polish(*refined, data).value_or(out(fit)) : out(fit);
+  ClassFit result = fit.value_or(out(settled));
+  result.polished = true;
+  return result;
 }
 
 /// A class as all points see it. Where they agree with the reduced points, and did so about the
@@ -181,20 +185,18 @@ void weigh_plausible(const FitData& data, const FitData& reduced, const Evidence
   constexpr double kLeastError = 4.0;
   double error = misfit_ratio * kLeastError;
   bool trusted = true;
-  std::size_t at_optimum = w->fits.size();  // the class that is
   for (bool changed = true; changed;) {
     changed = false;
     const auto b = static_cast<std::size_t>(best_class(w->fits, scale));
     auto& best = w->fits[b];
-    if (best && b != at_optimum) {
+    if (best && !best->polished) {
       const double told = best->chi2;
-      best = polished(best->on_all ? *best : settle(b, RivalOf::Best, reduced, w), w->smooth, data);
+      best = polished(settle(b, RivalOf::Best, reduced, w), w->smooth, data);
       if (std::isfinite(best->chi2)) {
         error = std::max(error, 2.0 * (told - best->chi2));
         const double settled_chi2 = w->coarse[b]->chi2 + w->smooth.chi2;
         trusted = trusted && std::abs(settled_chi2 - best->chi2) <= misfit_ratio * kLeastError;
       }
-      at_optimum = b;
       changed = true;
       continue;
     }
@@ -223,6 +225,7 @@ void refine_sharp_bends(const FitData& data, const FitData& reduced, Weighing* w
     ClassFit start = settled(*w->coarse[i], reduced, RivalOf::Best, kAll);
     auto refined = refine_on_all(start, w->smooth, data, kAll);
     if (refined && refined->chi2 < w->fits[i]->chi2) {
+      refined->polished = true;
       w->fits[i] = std::move(refined);
       w->coarse[i] = std::move(start);
     }
@@ -248,7 +251,7 @@ void choose_best(const FitData& data, const FitData& reduced, const EvidenceScal
     w->best = most_probable(w->probabilities);
     const auto i = static_cast<std::size_t>(w->best);
     auto& fit = w->fits[i];
-    if (!fit || fit->on_all || fit->at_limit) {
+    if (!fit || fit->polished || fit->at_limit) {
       break;
     }
     fit = polished(settle(i, RivalOf::Best, reduced, w), w->smooth, data);
@@ -350,7 +353,6 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
       scale.coherent_variance = 0.0;
       weigh_plausible(data, reduced, scale, options, &w);
       w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
-      w.canonical[c].reset();  // it may have been polished once more
       w.noise_inflation = variance * correlation.time;
       w.correlation_length = correlation.length;
     } else if (!sigma_known) {
