@@ -1,6 +1,6 @@
 #include "core/recognition/axis_fit.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,6 +28,10 @@ constexpr auto powers() {
   }
 }
 
+/// Residuals across the axis at the best coefficients of y, as ceres::TinySolver asks. The few
+/// linear unknowns are eliminated by modified Gram-Schmidt, the right side as one more column,
+/// which is as stable as Householder's QR (A. Bjorck, 1967), and a row a point keeps its columns
+/// side by side.
 template <PolynomialModel kModel>
 class AxisResiduals {
  public:
@@ -36,14 +40,10 @@ class AxisResiduals {
   static constexpr int kLinear = static_cast<int>(kPowers.size());
   using Scalar = double;
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = kArms ? 2 : 1 };
-  using Design = Eigen::Matrix<double, Eigen::Dynamic, kLinear>;
   using Coefficients = Eigen::Matrix<double, kLinear, 1>;
 
   AxisResiduals(std::span<const FitPoint> points, std::span<const double> arms)
-      : points_(points),
-        arms_(arms),
-        design_(static_cast<Eigen::Index>(points.size()), kLinear),
-        right_(static_cast<Eigen::Index>(points.size()), 1 + NUM_PARAMETERS) {}
+      : points_(points), arms_(arms), rows_(points.size()) {}
 
   int NumResiduals() const { return static_cast<int>(points_.size()); }
 
@@ -51,82 +51,134 @@ class AxisResiduals {
   const Coefficients& coefficients() const { return coefficients_; }
 
   bool operator()(const double* x, double* residuals, double* jacobian) const {
-    const Vec2 axis(std::cos(x[0]), std::sin(x[0]));
-    const double x0 = kArms ? x[NUM_PARAMETERS - 1] : 0.0;
-    const Eigen::Index n = NumResiduals();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const FitPoint& point = points_[static_cast<std::size_t>(i)];
-      const double w = point.inverse_sigma * verticality(point, axis);
-      double u = point.position.dot(axis);
-      if constexpr (kArms) {
-        u = arms_[static_cast<std::size_t>(i)] * std::sqrt(std::max(u - x0, 0.0));
-      }
-      const double power[4] = {1.0, u, u * u, u * u * u};
-      for (int k = 0; k < kLinear; ++k) {
-        design_(i, k) = w * power[kPowers[static_cast<std::size_t>(k)]];
-      }
-      right_(i, 0) = w * cross(axis, point.position);
+    const std::size_t n = points_.size();
+    // The Jacobian is asked for at an accepted trial: everything else is there already.
+    const bool same = jacobian != nullptr && std::equal(x, x + NUM_PARAMETERS, at_.begin());
+    if (!same) {
+      std::copy(x, x + NUM_PARAMETERS, at_.begin());
+      solved_ = solve();
     }
-    const Eigen::HouseholderQR<Design> qr(design_);
-    const Eigen::Matrix<double, kLinear, kLinear> r =
-        qr.matrixQR().template topRows<kLinear>().template triangularView<Eigen::Upper>();
-    if (!(r.diagonal().cwiseAbs().minCoeff() > 0.0)) {
+    if (!solved_) {
       // All points alike, as when the vertex passes beyond them: no curve. The solver does not look
       // at the return value, but rejects a step to such residuals.
       std::fill(residuals, residuals + n,
                 std::sqrt(std::numeric_limits<double>::max() / static_cast<double>(4 * n)));
       return false;
     }
-    Eigen::Matrix<double, Eigen::Dynamic, 1> rotated = right_.col(0);
-    rotated.applyOnTheLeft(qr.householderQ().adjoint());
-    coefficients_ =
-        r.template triangularView<Eigen::Upper>().solve(rotated.template head<kLinear>());
-    rotated.template head<kLinear>().setZero();
-    std::copy(rotated.data(), rotated.data() + n, residuals);
-    if (jacobian == nullptr) {
-      return true;
+    for (std::size_t i = 0; i < n; ++i) {
+      residuals[i] = rows_[i].columns[kLinear];
     }
-    // Kaufman's form: the derivative at fixed coefficients, projected off the columns.
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const FitPoint& point = points_[static_cast<std::size_t>(i)];
-      const double along = point.position.dot(axis);
-      const double across = cross(axis, point.position);
-      const double w = point.inverse_sigma * verticality(point, axis);
-      double slope = 0.0;  // dy/dx of the curve
-      double u = along;
-      double u_by_x = 1.0;
+    if (jacobian != nullptr) {
+      differentiate(jacobian);
+    }
+    return true;
+  }
+
+ private:
+  /// The columns and the right side, an even number: two doubles are one operation.
+  static constexpr int kWidth = kLinear + 1 + (kLinear + 1) % 2;
+  using Columns = Eigen::Matrix<double, kWidth, 1>;
+
+  struct Row {
+    Columns columns;      ///< w u^k, orthogonal to one another after `solve`; then y's residual
+    Vec2 by_parameters;   ///< of the residual; after `differentiate` off the columns
+    double along = 0.0;   ///< the axis
+    double across = 0.0;  ///< the axis
+    double weight = 0.0;
+    double u = 0.0;
+  };
+
+  /// Fills and orthogonalises the columns. False where they are dependent.
+  bool solve() const {
+    const Vec2 axis(std::cos(at_[0]), std::sin(at_[0]));
+    const double x0 = at_[1];
+    Columns products = Columns::Zero();  // of the first column with all
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const FitPoint& point = points_[i];
+      Row& row = rows_[i];
+      row.weight = point.inverse_sigma * verticality(point, axis);
+      row.along = point.position.dot(axis);
+      row.across = cross(axis, point.position);
+      row.u = row.along;
       if constexpr (kArms) {
-        u = arms_[static_cast<std::size_t>(i)] * std::sqrt(std::max(along - x0, 0.0));
-        u_by_x = u != 0.0 ? 0.5 / u : 0.0;
+        row.u = arms_[i] * std::sqrt(std::max(row.along - x0, 0.0));
       }
+      const double power[4] = {1.0, row.u, row.u * row.u, row.u * row.u * row.u};
+      for (int k = 0; k < kLinear; ++k) {
+        row.columns[k] = row.weight * power[kPowers[static_cast<std::size_t>(k)]];
+      }
+      row.columns[kLinear] = row.weight * row.across;
+      if constexpr (kWidth > kLinear + 1) {
+        row.columns[kWidth - 1] = 0.0;
+      }
+      products += row.columns[0] * row.columns;
+    }
+    Eigen::Matrix<double, kWidth, kLinear> factors;  // column k: of column k in the later ones
+    for (int k = 0; k < kLinear; ++k) {
+      squares_[k] = products[k];
+      if (!(products[k] > 0.0)) {
+        return false;
+      }
+      Columns off = products / products[k];
+      off.head(k + 1).setZero();
+      factors.col(k) = off;
+      products.setZero();
+      for (Row& row : rows_) {
+        row.columns -= row.columns[k] * off;
+        products += row.columns[k + 1] * row.columns;
+      }
+    }
+    for (int k = kLinear - 1; k >= 0; --k) {
+      coefficients_[k] = factors(kLinear, k);
+      for (int j = k + 1; j < kLinear; ++j) {
+        coefficients_[k] -= factors(j, k) * coefficients_[j];
+      }
+    }
+    return true;
+  }
+
+  /// Kaufman's form: the derivative at fixed coefficients, projected off the columns.
+  void differentiate(double* jacobian) const {
+    Vec2 products = Vec2::Zero();  // of the first column with the derivatives
+    for (Row& row : rows_) {
+      double slope = 0.0;  // dy/dx of the curve
+      const double u_by_x = !kArms ? 1.0 : row.u != 0.0 ? 0.5 / row.u : 0.0;
       double power = 1.0;
       int degree = 0;
       for (int k = 0; k < kLinear; ++k) {
         const int wanted = kPowers[static_cast<std::size_t>(k)];
         for (; degree + 1 < wanted; ++degree) {
-          power *= u;
+          power *= row.u;
         }
         slope += wanted > 0 ? wanted * coefficients_[k] * power * u_by_x : 0.0;
       }
       // Turning the axis by d: across falls by along d, along grows by across d.
-      right_(i, 1) = w * (-along - slope * across);
-      if constexpr (kArms) {
-        right_(i, 2) = w * slope;
+      row.by_parameters = row.weight * Vec2(-row.along - slope * row.across, slope);
+      products += row.columns[0] * row.by_parameters;
+    }
+    for (int k = 0; k < kLinear; ++k) {
+      const Vec2 off = products / squares_[k];
+      products.setZero();
+      for (Row& row : rows_) {
+        row.by_parameters -= row.columns[k] * off;
+        products += row.columns[k + 1] * row.by_parameters;
       }
     }
-    Eigen::Matrix<double, Eigen::Dynamic, NUM_PARAMETERS> columns =
-        right_.template rightCols<NUM_PARAMETERS>();
-    columns.applyOnTheLeft(qr.householderQ().adjoint());
-    columns.template topRows<kLinear>().setZero();
-    std::copy(columns.data(), columns.data() + n * NUM_PARAMETERS, jacobian);
-    return true;
+    const std::size_t n = points_.size();
+    for (std::size_t j = 0; j < NUM_PARAMETERS; ++j) {
+      for (std::size_t i = 0; i < n; ++i) {
+        jacobian[j * n + i] = rows_[i].by_parameters[static_cast<Eigen::Index>(j)];
+      }
+    }
   }
 
- private:
   std::span<const FitPoint> points_;
   std::span<const double> arms_;
-  mutable Design design_;
-  mutable Eigen::Matrix<double, Eigen::Dynamic, 1 + NUM_PARAMETERS> right_;
+  // At the last evaluation:
+  mutable std::array<double, 2> at_ = {std::numeric_limits<double>::quiet_NaN(), 0.0};
+  mutable bool solved_ = false;
+  mutable std::vector<Row> rows_;
+  mutable Coefficients squares_ = Coefficients::Zero();  ///< of the orthogonal columns
   mutable Coefficients coefficients_ = Coefficients::Zero();
 };
 
