@@ -28,7 +28,7 @@ constexpr auto powers() {
   }
 }
 
-/// Residuals across the axis at the best coefficients of y, as ceres::TinySolver asks. The few
+/// Residuals across the axis at the best coefficients of y, for LeastSquares. The few
 /// linear unknowns are eliminated by modified Gram-Schmidt, the right side as one more column,
 /// which is as stable as Householder's QR (A. Bjorck, 1967), and a row a point keeps its columns
 /// side by side.
@@ -59,11 +59,7 @@ class AxisResiduals {
       solved_ = solve();
     }
     if (!solved_) {
-      // All points alike, as when the vertex passes beyond them: no curve. The solver does not look
-      // at the return value, but rejects a step to such residuals.
-      std::fill(residuals, residuals + n,
-                std::sqrt(std::numeric_limits<double>::max() / static_cast<double>(4 * n)));
-      return false;
+      return false;  // all points alike, as when the vertex passes beyond them: no curve
     }
     for (std::size_t i = 0; i < n; ++i) {
       residuals[i] = rows_[i].columns[kLinear];
@@ -186,17 +182,18 @@ template <PolynomialModel kModel>
 AxisFit refine(std::span<const FitPoint> points, AxisFit fit, int max_iterations) {
   using Residuals = AxisResiduals<kModel>;
   const Residuals residuals(points, fit.arms);
-  ceres::TinySolver<Residuals> solver{};
   // A start for the refinement proper: chi-square to a tenth is plenty.
   constexpr double kChi2Tolerance = 0.1;
-  solver.options = least_squares_options<Residuals>(max_iterations, kChi2Tolerance);
-  solver.options.initial_trust_region_radius = 1e6;
+  LeastSquaresOptions options;
+  options.max_iterations = max_iterations;
+  options.chi2_tolerance = kChi2Tolerance;
+  options.trust_radius = 1e6;
   Eigen::Matrix<double, Residuals::NUM_PARAMETERS, 1> x;
   x[0] = fit.theta;
   if constexpr (Residuals::kArms) {
     x[1] = fit.x0;
   }
-  fit.chi2 = 2.0 * solver.Solve(residuals, &x).final_cost;
+  fit.chi2 = LeastSquares<Residuals>().minimise(residuals, options, &x).chi2;
   fit.theta = x[0];
   if constexpr (Residuals::kArms) {
     fit.x0 = x[1];

@@ -41,7 +41,7 @@ ModelBasis<3> line_basis() {
   return basis;
 }
 
-/// Residuals over the tangent space of the unit sphere at `start`, as ceres::TinySolver asks.
+/// Residuals over the tangent space of the unit sphere at `start`, for LeastSquares.
 template <int K>
 class SphereResiduals {
  public:
@@ -148,12 +148,12 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
                    const ConicCoefficients& start, int side, const RefineEffort& effort) {
   const Eigen::Matrix<double, K, 1> start_in_model = basis.transpose() * start;
   const SphereResiduals<K> residuals(points, basis, start_in_model, side);
-  ceres::TinySolver<SphereResiduals<K>> solver{};
-  solver.options =
-      least_squares_options<SphereResiduals<K>>(effort.iterations, effort.chi2_tolerance);
+  LeastSquaresOptions options;
+  options.max_iterations = effort.iterations;
+  options.chi2_tolerance = effort.chi2_tolerance;
   Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
-  const auto& summary = solver.Solve(residuals, &step);
-  return {residuals.coefficients(step), 2.0 * summary.final_cost, summary.iterations, side,
+  const auto summary = LeastSquares<SphereResiduals<K>>().minimise(residuals, options, &step);
+  return {residuals.coefficients(step), summary.chi2, summary.iterations, side,
           residuals.feet(step)};
 }
 

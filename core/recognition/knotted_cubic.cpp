@@ -125,15 +125,16 @@ template <int kParameters>
 KnottedCubicFit refine(std::span<const FitPoint> points, const KnottedCubicFit& start) {
   using Residuals = KnottedResiduals<kParameters>;
   const Residuals residuals(points, start);
-  ceres::TinySolver<Residuals> solver{};
   constexpr int kMostIterations = 30;
   constexpr double kChi2Tolerance = 1e-6;
-  solver.options = least_squares_options<Residuals>(kMostIterations, kChi2Tolerance);
+  LeastSquaresOptions options;
+  options.max_iterations = kMostIterations;
+  options.chi2_tolerance = kChi2Tolerance;
   typename Residuals::Parameters x = residuals.parameters();
-  const auto& summary = solver.Solve(residuals, &x);
+  const auto summary = LeastSquares<Residuals>().minimise(residuals, options, &x);
   KnottedCubicFit fit = start;
   fit.curve = residuals.curve(x);
-  fit.chi2 = 2.0 * summary.final_cost;
+  fit.chi2 = summary.chi2;
   for (std::size_t i = 0; i < points.size(); ++i) {
     fit.t[i] = follow_foot(fit.curve, points[i].position, start.t[i]);
   }

@@ -69,14 +69,15 @@ PartFit fit(const ScaledPart& part, std::span<const FitPoint> points, const Pose
             const PartMotions& motions, int most_iterations) {
   using Residuals = PartResiduals<kMotions>;
   const Residuals residuals(part, points, start, motions);
-  ceres::TinySolver<Residuals> solver{};
   // The last step is far shorter than this tells: Gauss-Newton converges quadratically where the
   // part fits.
   constexpr double kChi2Tolerance = 1e-9;
-  solver.options = least_squares_options<Residuals>(most_iterations, kChi2Tolerance);
-  solver.options.parameter_tolerance = 1e-15;
+  LeastSquaresOptions options;
+  options.max_iterations = most_iterations;
+  options.chi2_tolerance = kChi2Tolerance;
+  options.step_tolerance = 1e-15;
   typename Residuals::Parameters x = Residuals::Parameters::Zero();
-  solver.Solve(residuals, &x);
+  LeastSquares<Residuals>().minimise(residuals, options, &x);
   PartFit result;
   result.data_T_part = residuals.pose(x);
   const auto n = static_cast<Eigen::Index>(points.size());
