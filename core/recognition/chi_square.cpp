@@ -27,17 +27,28 @@ double chi_square_threshold(double significance, int dof) {
   if (dof <= 0) {
     return 0.0;
   }
+  // Newton's method for log Q(x) = log(significance), from above: P(chi2 > k + 2 sqrt(k u) + 2 u)
+  // <= exp(-u) (B. Laurent, P. Massart, 2000). -Q' is the density.
+  const double k = dof;
+  const double log_significance = std::log(significance);
+  const double log_norm = std::lgamma(0.5 * k) + std::log(2.0);
   double low = 0.0;
-  double high = dof + 10.0;
-  while (chi_square_survival(high, dof) > significance) {
-    low = high;
-    high *= 2.0;
+  double high = k + 2.0 * std::sqrt(-k * log_significance) - 2.0 * log_significance;
+  double x = high;
+  constexpr int kMostIterations = 200;
+  constexpr double kRelativeStep = 1e-14;
+  for (int i = 0; i < kMostIterations && high - low > kRelativeStep * high; ++i) {
+    const double survival = chi_square_survival(x, dof);
+    (survival > significance ? low : high) = x;
+    const double density = std::exp((0.5 * k - 1.0) * std::log(0.5 * x) - 0.5 * x - log_norm);
+    const double next = x + (std::log(survival) - log_significance) * survival / density;
+    const double before = x;
+    x = next > low && next < high ? next : 0.5 * (low + high);
+    if (std::abs(x - before) <= kRelativeStep * x) {
+      break;
+    }
   }
-  for (int i = 0; i < 200 && high - low > 1e-13 * high; ++i) {
-    const double middle = 0.5 * (low + high);
-    (chi_square_survival(middle, dof) > significance ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  return x;
 }
 
 }  // namespace palpate
