@@ -1,5 +1,6 @@
 #include "core/recognition/polynomial_seeds.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,66 +11,88 @@ namespace {
 
 double square(double x) { return x * x; }
 
-/// Weighted moments for a least-squares polynomial in u of degree 3: sums of w u^k, w v u^k.
+/// Weighted moments for a least-squares polynomial in u of degree 3: sums of w u^k, w v u^k. An
+/// even and an odd power at a time: two doubles are one operation.
 struct Moments {
-  std::array<double, 7> u{};
-  std::array<double, 4> vu{};
+  using Pair = Eigen::Array2d;
+  std::array<Pair, 4> u = {Pair::Zero(), Pair::Zero(), Pair::Zero(), Pair::Zero()};
+  std::array<Pair, 2> vu = {Pair::Zero(), Pair::Zero()};
   double vv = 0.0;
 
-  void add(double w, double x, double v) {
-    double power = w;
-    for (std::size_t k = 0; k < 7; ++k) {
-      u[k] += power;
-      if (k < 4) {
-        vu[k] += power * v;
-      }
-      power *= x;
-    }
+  /// `x2` is x^2.
+  void add(double w, double x, double x2, double v) {
+    Pair powers(w, w * x);
     vv += w * v * v;
+    u[0] += powers;
+    vu[0] += v * powers;
+    powers *= x2;
+    u[1] += powers;
+    vu[1] += v * powers;
+    powers *= x2;
+    u[2] += powers;
+    powers *= x2;
+    u[3] += powers;
   }
 
   /// Adds another patch's moments, taken on the arm of the given sign: u -> sign u.
   void add(const Moments& other, double sign) {
-    double s = 1.0;
-    for (std::size_t k = 0; k < 7; ++k) {
-      u[k] += s * other.u[k];
-      if (k < 4) {
-        vu[k] += s * other.vu[k];
-      }
-      s *= sign;
+    const Pair signs(1.0, sign);
+    for (std::size_t k = 0; k < 4; ++k) {
+      u[k] += signs * other.u[k];
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+      vu[k] += signs * other.vu[k];
     }
     vv += other.vv;
   }
+
+  double of_u(std::size_t k) const { return u[k / 2][static_cast<Eigen::Index>(k % 2)]; }
+  double of_vu(std::size_t k) const { return vu[k / 2][static_cast<Eigen::Index>(k % 2)]; }
 };
 
-/// Least squares of v over the powers of u given by `exponents`; returns the residual sum.
-template <std::size_t N>
-double residual_sum(const Moments& m, const std::array<std::size_t, N>& exponents) {
+/// Sums of squares that two models leave, one of which has a power more.
+struct ResidualSums {
+  double of_three = std::numeric_limits<double>::infinity();
+  double of_four = std::numeric_limits<double>::infinity();
+};
+
+/// Least squares of v over the first three and over all four of the powers of u, in the order
+/// given.
+ResidualSums residual_sums(const Moments& m, const std::array<std::size_t, 4>& powers) {
   // Near-empty directions (all points alike) must not blow up: a ridge at the level of rounding.
   constexpr double kRidge = 1e-12;
+  constexpr std::size_t kRight = 4;
   // Gaussian elimination of the normal equations: each pivot takes its part off the sum of squares.
-  std::array<std::array<double, N + 1>, N> rows;
-  for (std::size_t i = 0; i < N; ++i) {
-    for (std::size_t j = i; j < N; ++j) {
-      rows[i][j] = m.u[exponents[i] + exponents[j]];
+  std::array<std::array<double, 5>, 4> rows;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i; j < 4; ++j) {
+      rows[i][j] = m.of_u(powers[i] + powers[j]);
     }
-    rows[i][i] += kRidge * m.u[2 * exponents[i]];
-    rows[i][N] = m.vu[exponents[i]];
+    rows[i][i] += kRidge * m.of_u(2 * powers[i]);
+    rows[i][kRight] = m.of_vu(powers[i]);
   }
+  const auto at_least_zero = [](double cost) {
+    return std::isfinite(cost) ? std::max(cost, 0.0) : std::numeric_limits<double>::infinity();
+  };
+  ResidualSums sums;
   double cost = m.vv;
-  for (std::size_t k = 0; k < N; ++k) {
-    if (!(rows[k][k] > 0.0)) {
-      continue;
-    }
-    for (std::size_t i = k + 1; i < N; ++i) {
-      const double factor = rows[k][i] / rows[k][k];
-      for (std::size_t j = i; j <= N; ++j) {
-        rows[i][j] -= factor * rows[k][j];
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (rows[k][k] > 0.0) {
+      const double inverse = 1.0 / rows[k][k];
+      for (std::size_t i = k + 1; i < 4; ++i) {
+        const double factor = rows[k][i] * inverse;
+        for (std::size_t j = i; j <= kRight; ++j) {
+          rows[i][j] -= factor * rows[k][j];
+        }
       }
+      cost -= rows[k][kRight] * rows[k][kRight] * inverse;
     }
-    cost -= rows[k][N] * rows[k][N] / rows[k][k];
+    if (k == 2) {
+      sums.of_three = at_least_zero(cost);
+    }
   }
-  return std::isfinite(cost) ? std::max(cost, 0.0) : std::numeric_limits<double>::infinity();
+  sums.of_four = at_least_zero(cost);
+  return sums;
 }
 
 /// One cell of the coarse search.
@@ -158,8 +181,9 @@ class ArmSearch {
       Candidate& semi_cubical = semi_cubicals[v] = {kNone, theta, x0};
       Candidate& spline = splines[v] = {kNone, theta, x0};
       for_each_pattern(x0, [&](const Moments& sum) {
-        semi_cubical.cost = std::min(semi_cubical.cost, residual_sum(sum, kSemiCubical));
-        spline.cost = std::min(spline.cost, residual_sum(sum, kSpline));
+        const ResidualSums sums = residual_sums(sum, kPowersOfT);
+        semi_cubical.cost = std::min(semi_cubical.cost, sums.of_three);
+        spline.cost = std::min(spline.cost, sums.of_four);
       });
     }
   }
@@ -170,9 +194,8 @@ class ArmSearch {
     double best = kNone;
     std::vector<double> arms;
     for_each_pattern(seed.x0, [&](const Moments& sum) {
-      const double cost = seed.model == PolynomialModel::CubicSpline
-                              ? residual_sum(sum, kSpline)
-                              : residual_sum(sum, kSemiCubical);
+      const ResidualSums sums = residual_sums(sum, kPowersOfT);
+      const double cost = seed.model == PolynomialModel::CubicSpline ? sums.of_four : sums.of_three;
       if (cost < best) {
         best = cost;
         arms = point_arms();
@@ -183,8 +206,8 @@ class ArmSearch {
 
  private:
   static constexpr double kNone = std::numeric_limits<double>::infinity();
-  static constexpr std::array<std::size_t, 3> kSemiCubical = {0, 2, 3};  // powers of t
-  static constexpr std::array<std::size_t, 4> kSpline = {0, 1, 2, 3};
+  /// A spline is a semi-cubical parabola and a linear term.
+  static constexpr std::array<std::size_t, 4> kPowersOfT = {0, 2, 3, 1};
 
   void look_along(double theta) {
     const Vec2 axis(std::cos(theta), std::sin(theta));
@@ -244,8 +267,9 @@ class ArmSearch {
     const std::size_t change = turns ? leftmost + 1 : patch.end;
     Moments moments;
     for (std::size_t i = patch.begin; i < patch.end; ++i) {
-      const double t = std::sqrt(x_[i] - x0);
-      moments.add(w_[i], i < change ? t : -t, y_[i]);
+      const double t2 = x_[i] - x0;
+      const double t = std::sqrt(t2);
+      moments.add(w_[i], i < change ? t : -t, t2, y_[i]);
     }
     return {moments, change};
   }
@@ -255,8 +279,10 @@ class ArmSearch {
     with_positive.add(patch, 1.0);
     Moments with_negative = so_far;
     with_negative.add(patch, -1.0);
-    return residual_sum(with_positive, kSpline) <= residual_sum(with_negative, kSpline) ? 1.0
-                                                                                        : -1.0;
+    return residual_sums(with_positive, kPowersOfT).of_four <=
+                   residual_sums(with_negative, kPowersOfT).of_four
+               ? 1.0
+               : -1.0;
   }
 
   std::vector<double> point_arms() const {
@@ -294,12 +320,13 @@ void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds) {
     const Vec2 axis(std::cos(theta), std::sin(theta));
     Moments moments;
     for (const FitPoint& point : points) {
-      moments.add(square(point.inverse_sigma * verticality(point, axis)), point.position.dot(axis),
+      const double along = point.position.dot(axis);
+      moments.add(square(point.inverse_sigma * verticality(point, axis)), along, along * along,
                   cross(axis, point.position));
     }
-    parabolas[d].theta = cubics[d].theta = theta;
-    parabolas[d].cost = residual_sum<3>(moments, {0, 1, 2});
-    cubics[d].cost = residual_sum<4>(moments, {0, 1, 2, 3});
+    const ResidualSums sums = residual_sums(moments, {0, 1, 2, 3});
+    parabolas[d] = {sums.of_three, theta, 0.0};
+    cubics[d] = {sums.of_four, theta, 0.0};
   }
   take_minima(parabolas, 1, PolynomialSeeds::kGraphSeeds, PolynomialModel::Parabola,
               &seeds->parabola);
