@@ -13,6 +13,9 @@ inline constexpr double kPi = std::numbers::pi;
 
 /// Wraps an angle to (-pi, pi]. [rad]
 inline double wrap_angle(double angle) {
+  if (std::abs(angle) < kPi) {
+    return angle;  // as the remainder, which takes a division
+  }
   const double wrapped = std::remainder(angle, 2.0 * kPi);
   return wrapped <= -kPi ? kPi : wrapped;
 }

@@ -1,6 +1,7 @@
 #include "core/invariants/semi_signature_fit.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -112,6 +113,14 @@ void fit_model(const std::vector<detail::WhitePoint>& points, double unit, int m
   fit.status = fitter.solve(max_iterations);
   if (fit.status == InvariantStatus::NotFinite) {
     return;
+  }
+  // At infinity every curve but an ellipse is straight: such a fit has no place and no pose.
+  constexpr double kInfinitelyFar = 1e6;  // normalised: its powers leave nothing of a double
+  const bool somewhere =
+      std::all_of(fit.places.begin(), fit.places.end(),
+                  [](const LocalParameter& place) { return std::abs(place.t) <= kInfinitelyFar; });
+  if (fit.status == InvariantStatus::Ok && !somewhere) {
+    fit.status = InvariantStatus::NotConverged;
   }
   fit.chi2 = fitter.chi2();
   const auto covariance = fitter.covariance();
