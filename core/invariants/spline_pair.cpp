@@ -167,37 +167,43 @@ std::optional<SplineSeed> canonical_seed(const BaseCubic& cubic, double base_ang
   return seed.parameters.allFinite() ? std::optional(seed) : std::nullopt;
 }
 
-/// Places the distance u at step k: k > 0 forward, k < 0 backward along the base's travel.
-double distance_at(int side, double step) {
+/// The distances that are tried on either side.
+std::array<double, kStepsPerSide> distances() {
+  std::array<double, kStepsPerSide> result;
   const double decades = std::log10(kLargestDistance / kSmallestDistance);
-  return side * kSmallestDistance * std::pow(10.0, decades * step / (kStepsPerSide - 1));
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    result[k] =
+        kSmallestDistance * std::pow(10.0, decades * static_cast<double>(k) / (kStepsPerSide - 1));
+  }
+  return result;
 }
 
 class SeedSearch {
  public:
   SeedSearch(std::span<const MeasuredGeometry> points, int wanted)
-      : points_(points), wanted_(static_cast<std::size_t>(wanted)) {}
+      : points_(points), wanted_(static_cast<std::size_t>(wanted)), distances_(distances()) {}
 
   void search_pair(std::size_t base, std::size_t partner) {
     base_ = &points_[base];
     const Other other = seen_from(*base_, points_[partner]);
-    for (const int side : {1, -1}) {
+    for (const double side : {1.0, -1.0}) {  // forward and backward along the base's travel
       for (const double branch : {1.0, -1.0}) {
         std::optional<double> before;
         std::optional<double> previous;
-        for (int step = 0; step < kStepsPerSide; ++step) {
-          const double u = distance_at(side, step);
+        double u_before = 0.0;
+        for (const double distance : distances_) {
+          const double u = side * distance;
           const std::optional<double> misfit = misfit_at(other, u, branch);
           if (misfit && previous && *misfit * *previous <= 0.0) {
-            offer(root(other, branch, distance_at(side, step - 1), *previous, u, *misfit), other,
-                  branch, partner);
+            offer(root(other, branch, u_before, *previous, u, *misfit), other, branch, partner);
           } else if (misfit && previous && before && std::abs(*previous) < kNearRoot &&
                      std::abs(*previous) < std::abs(*before) &&
                      std::abs(*previous) < std::abs(*misfit)) {
-            offer(distance_at(side, step - 1), other, branch, partner);
+            offer(u_before, other, branch, partner);
           }
           before = previous;
           previous = misfit;
+          u_before = u;
         }
       }
     }
@@ -265,6 +271,7 @@ class SeedSearch {
 
   std::span<const MeasuredGeometry> points_;
   std::size_t wanted_;
+  std::array<double, kStepsPerSide> distances_;
   const MeasuredGeometry* base_ = nullptr;
   std::vector<SplineSeed> seeds_;
 };
