@@ -27,6 +27,33 @@ void divide_conic(const ClassFits& fits, const EvidenceScale& scale,
   conic -= 2.0 * std::log1p(-share_beyond);
 }
 
+/// Whether the points lie on one arm of the curve, far from its vertex beside their extent along
+/// the axis: t^2 is the distance from the vertex along it.
+bool is_far_from_vertex(const PolynomialFit& semi_cubical) {
+  constexpr double kFarthest = 25.0;  // extents of the points
+  const auto [low, high] = std::minmax_element(semi_cubical.t.begin(), semi_cubical.t.end());
+  if (low == semi_cubical.t.end() || *low * *high <= 0.0) {
+    return false;
+  }
+  const double nearest = std::min(*low * *low, *high * *high);
+  const double extent = std::abs(*high * *high - *low * *low);
+  return nearest > kFarthest * extent;
+}
+
+/// See probabilities().
+void count_once(const ClassFits& fits, const EvidenceScale& scale,
+                std::array<double, 9>* criterion) {
+  constexpr double kSame = 1.0;  // of chi-square: odds are right to a factor of 1.6
+  const auto& cubical = fits[static_cast<std::size_t>(CurveClass::CubicalParabola)];
+  const auto& semi_cubical = fits[static_cast<std::size_t>(CurveClass::SemiCubicalParabola)];
+  if (cubical && semi_cubical && semi_cubical->polynomial &&
+      misfit(cubical->chi2, scale) <= misfit(semi_cubical->chi2, scale) + kSame &&
+      is_far_from_vertex(*semi_cubical->polynomial)) {
+    (*criterion)[static_cast<std::size_t>(CurveClass::SemiCubicalParabola)] =
+        std::numeric_limits<double>::infinity();
+  }
+}
+
 }  // namespace
 
 double without_form_error(double chi2, const EvidenceScale& scale) {
@@ -61,6 +88,7 @@ ClassProbabilities probabilities(const ClassFits& fits, double smooth_chi2, int 
     }
   }
   divide_conic(fits, scale, &criterion);
+  count_once(fits, scale, &criterion);
   const double best = *std::min_element(criterion.begin(), criterion.end());
   ClassProbabilities result{};
   double sum = 0.0;

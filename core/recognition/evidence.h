@@ -46,6 +46,8 @@ double misfit(double chi2, const EvidenceScale& scale);
 /// the smooth one. Classes that were not fitted get 0. Ellipse and hyperbola are the two sides of
 /// one family of conics: where it has a single optimum, its evidence is divided between them in the
 /// ratio of the normal probabilities on either side of the parabola, Phi(+-sqrt(chi2 difference)).
+/// A semi-cubical parabola far from its vertex is a parabola and a small cubic term, as a cubical
+/// parabola far from its inflection is: where both fit alike they are one hypothesis, counted once.
 ClassProbabilities probabilities(const ClassFits& fits, double smooth_chi2, int smooth_parameters,
                                  const EvidenceScale& scale);
 

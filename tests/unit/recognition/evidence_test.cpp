@@ -38,7 +38,8 @@ TEST(Evidence, ProbabilitiesSumToOneAndFollowTheCriterion) {
   EXPECT_NEAR(std::accumulate(p.begin(), p.end(), 0.0), 1.0, 1e-15);
   EXPECT_EQ(of(p, CurveClass::Ellipse), 0.0);
   // Circle against unclassified: (100 + 3 log 100) against (90 + 12 log 100).
-  const double log_odds = -0.5 * ((100.0 + 3.0 * std::log(100.0)) - (90.0 + 12.0 * std::log(100.0)));
+  const double log_odds =
+      -0.5 * ((100.0 + 3.0 * std::log(100.0)) - (90.0 + 12.0 * std::log(100.0)));
   EXPECT_NEAR(of(p, CurveClass::Circle) / of(p, CurveClass::Unclassified), std::exp(log_odds),
               1e-12 * std::exp(log_odds));
 }
@@ -50,6 +51,31 @@ TEST(Evidence, SmallerModelWinsUnlessTheDataPay) {
   EXPECT_GT(of(probabilities(fits, 95.0, 14, scale_of(111.0)), CurveClass::Parabola), 0.9);
   set(&fits, fit_of(CurveClass::CubicSpline, 60.0));
   EXPECT_GT(of(probabilities(fits, 55.0, 14, scale_of(111.0)), CurveClass::CubicSpline), 0.9);
+}
+
+/// A semi-cubical parabola whose points lie from `nearest` to 1 along the axis from its vertex.
+ClassFit semi_cubical_from(double nearest, double chi2) {
+  ClassFit fit = fit_of(CurveClass::SemiCubicalParabola, chi2);
+  fit.polynomial.emplace();
+  fit.polynomial->t = {std::sqrt(nearest), 1.0};
+  return fit;
+}
+
+TEST(Evidence, ASemiCubicalParabolaFarFromItsVertexIsACubicalOne) {
+  ClassFits fits;
+  set(&fits, fit_of(CurveClass::Parabola, 100.0));
+  set(&fits, fit_of(CurveClass::CubicalParabola, 100.0));
+  const EvidenceScale scale = scale_of(222.0);
+  const double alone = of(probabilities(fits, 1e6, 14, scale), CurveClass::Parabola);
+  set(&fits, semi_cubical_from(0.98, 100.0));
+  const ClassProbabilities far = probabilities(fits, 1e6, 14, scale);
+  EXPECT_EQ(of(far, CurveClass::SemiCubicalParabola), 0.0);
+  EXPECT_EQ(of(far, CurveClass::Parabola), alone);
+  // Nearer, or where it fits better, it is a hypothesis of its own.
+  set(&fits, semi_cubical_from(0.9, 100.0));
+  EXPECT_LT(of(probabilities(fits, 1e6, 14, scale), CurveClass::Parabola), alone);
+  set(&fits, semi_cubical_from(0.98, 90.0));
+  EXPECT_LT(of(probabilities(fits, 1e6, 14, scale), CurveClass::Parabola), alone);
 }
 
 TEST(Evidence, AConicIsDividedAtTheParabola) {
