@@ -28,7 +28,7 @@ constexpr auto powers() {
   }
 }
 
-/// Residuals across the axis at the best coefficients of y, for LeastSquares. The few
+/// Residuals across the axis at the best coefficients of y, for minimise_residuals. The few
 /// linear unknowns are eliminated by modified Gram-Schmidt, the right side as one more column,
 /// which is as stable as Householder's QR (A. Bjorck, 1967), and a row a point keeps its columns
 /// side by side.
@@ -184,16 +184,14 @@ AxisFit refine(std::span<const FitPoint> points, AxisFit fit, int max_iterations
   const Residuals residuals(points, fit.arms);
   // A start for the refinement proper: chi-square to a tenth is plenty.
   constexpr double kChi2Tolerance = 0.1;
-  LeastSquaresOptions options;
-  options.max_iterations = max_iterations;
-  options.chi2_tolerance = kChi2Tolerance;
-  options.trust_radius = 1e6;
+  constexpr double kFirstDamping = 1e-6;
   Eigen::Matrix<double, Residuals::NUM_PARAMETERS, 1> x;
   x[0] = fit.theta;
   if constexpr (Residuals::kArms) {
     x[1] = fit.x0;
   }
-  fit.chi2 = LeastSquares<Residuals>().minimise(residuals, options, &x).chi2;
+  fit.chi2 =
+      minimise_residuals(residuals, {max_iterations, kChi2Tolerance, kFirstDamping}, &x).chi2;
   fit.theta = x[0];
   if constexpr (Residuals::kArms) {
     fit.x0 = x[1];

@@ -41,7 +41,7 @@ ModelBasis<3> line_basis() {
   return basis;
 }
 
-/// Residuals over the tangent space of the unit sphere at `start`, for LeastSquares.
+/// Residuals over the tangent space of the unit sphere at `start`, for minimise_residuals.
 template <int K>
 class SphereResiduals {
  public:
@@ -148,11 +148,9 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
                    const ConicCoefficients& start, int side, const RefineEffort& effort) {
   const Eigen::Matrix<double, K, 1> start_in_model = basis.transpose() * start;
   const SphereResiduals<K> residuals(points, basis, start_in_model, side);
-  LeastSquaresOptions options;
-  options.max_iterations = effort.iterations;
-  options.chi2_tolerance = effort.chi2_tolerance;
   Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
-  const auto summary = LeastSquares<SphereResiduals<K>>().minimise(residuals, options, &step);
+  const auto summary =
+      minimise_residuals(residuals, {effort.iterations, effort.chi2_tolerance}, &step);
   return {residuals.coefficients(step), summary.chi2, summary.iterations, side,
           residuals.feet(step)};
 }

@@ -127,11 +127,8 @@ KnottedCubicFit refine(std::span<const FitPoint> points, const KnottedCubicFit& 
   const Residuals residuals(points, start);
   constexpr int kMostIterations = 30;
   constexpr double kChi2Tolerance = 1e-6;
-  LeastSquaresOptions options;
-  options.max_iterations = kMostIterations;
-  options.chi2_tolerance = kChi2Tolerance;
   typename Residuals::Parameters x = residuals.parameters();
-  const auto summary = LeastSquares<Residuals>().minimise(residuals, options, &x);
+  const auto summary = minimise_residuals(residuals, {kMostIterations, kChi2Tolerance}, &x);
   KnottedCubicFit fit = start;
   fit.curve = residuals.curve(x);
   fit.chi2 = summary.chi2;

@@ -16,6 +16,8 @@ namespace palpate {
 struct MinimiseOptions {
   int iterations = 100;          ///< steps tried, at most
   double chi2_tolerance = 1e-7;  ///< change of chi-square by a step at which to end
+  /// Of the diagonal of J^T J. Little: the valleys of short arcs are long.
+  double first_damping = 1e-8;
 };
 
 struct MinimiseSummary {
@@ -32,7 +34,9 @@ struct MinimiseSummary {
 ///   double chi2_at(const Vector& x);   // tries x
 ///   void accept();                     // the place tried last is where we are
 ///   void linearise(Matrix* information, Vector* gradient) const;  // J^T J and J^T r there
+/// and may have
 ///   Vector bend(const Vector& step) const;  // J^T r'', r'' the second derivatives along `step`
+/// without which the steps are those of Levenberg and Marquardt alone.
 /// Directions that leave the residuals as they are may be among the parameters: the damping takes
 /// care of them.
 template <typename Problem>
@@ -40,8 +44,6 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
                          const MinimiseOptions& options) {
   using Vector = Eigen::Matrix<double, Problem::kParameters, 1>;
   using Matrix = Eigen::Matrix<double, Problem::kParameters, Problem::kParameters>;
-  // Little damping to begin with: the valleys of short arcs are long.
-  constexpr double kFirstDamping = 1e-8;  // of the diagonal of J^T J
   constexpr double kLeastDiagonal = 1e-6;
   // Beyond it the second-order term is no correction any more (Transtrum and Sethna).
   constexpr double kLargestRatio = 0.75;  // of accelerations to velocities
@@ -50,6 +52,9 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
 
   MinimiseSummary summary;
   summary.initial_chi2 = summary.chi2 = problem->chi2_at(*x);
+  if (!std::isfinite(summary.chi2)) {
+    return summary;
+  }
   problem->accept();
   Matrix information;
   Vector gradient;
@@ -59,7 +64,7 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
     diagonal = information.diagonal().cwiseMax(kLeastDiagonal);
   };
   linearise();
-  double damping = kFirstDamping;
+  double damping = options.first_damping;
   double growth = 2.0;
   while (summary.iterations < options.iterations) {
     ++summary.iterations;
@@ -77,14 +82,16 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
     const Vector velocity = -solver.solve(gradient);
     const double promised = velocity.dot(damping * diagonal.cwiseProduct(velocity) - gradient);
     if (!(promised > kNothing * options.chi2_tolerance)) {
-      summary.converged = damping <= kFirstDamping;
+      summary.converged = damping <= options.first_damping;
       break;
     }
     Vector step = velocity;
-    const Vector acceleration = -solver.solve(problem->bend(velocity));
-    const auto length2 = [&](const Vector& v) { return v.cwiseAbs2().dot(diagonal); };
-    if (length2(acceleration) <= kLargestRatio * kLargestRatio * length2(velocity)) {
-      step += 0.5 * acceleration;
+    if constexpr (requires { problem->bend(velocity); }) {
+      const Vector acceleration = -solver.solve(problem->bend(velocity));
+      const auto length2 = [&](const Vector& v) { return v.cwiseAbs2().dot(diagonal); };
+      if (length2(acceleration) <= kLargestRatio * kLargestRatio * length2(velocity)) {
+        step += 0.5 * acceleration;
+      }
     }
     const Vector there = *x + step;
     const double chi2 = problem->chi2_at(there);
@@ -94,7 +101,7 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
       summary.chi2 = chi2;
       problem->accept();
       if (gain < options.chi2_tolerance) {
-        summary.converged = damping <= kFirstDamping;
+        summary.converged = damping <= options.first_damping;
         break;
       }
       linearise();

@@ -72,12 +72,8 @@ PartFit fit(const ScaledPart& part, std::span<const FitPoint> points, const Pose
   // The last step is far shorter than this tells: Gauss-Newton converges quadratically where the
   // part fits.
   constexpr double kChi2Tolerance = 1e-9;
-  LeastSquaresOptions options;
-  options.max_iterations = most_iterations;
-  options.chi2_tolerance = kChi2Tolerance;
-  options.step_tolerance = 1e-15;
   typename Residuals::Parameters x = Residuals::Parameters::Zero();
-  LeastSquares<Residuals>().minimise(residuals, options, &x);
+  minimise_residuals(residuals, {most_iterations, kChi2Tolerance}, &x);
   PartFit result;
   result.data_T_part = residuals.pose(x);
   const auto n = static_cast<Eigen::Index>(points.size());
