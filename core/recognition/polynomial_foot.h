@@ -88,10 +88,12 @@ inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2
     placed.signed_distance = away.dot(placed.normal);
   }
   // At a cusp, or where the foot point is not stationary, the normal does not point along the
-  // distance: take the distance itself.
+  // distance: take the distance itself. (Next to the curve a small error along it looks the same.)
   constexpr double kPerpendicular = 0.9;
   const double square = away.squaredNorm();
-  if (placed.signed_distance * placed.signed_distance < kPerpendicular * kPerpendicular * square) {
+  const bool stationary = std::abs(away.dot(first)) < last_step * speed2;
+  if (!stationary &&
+      placed.signed_distance * placed.signed_distance < kPerpendicular * kPerpendicular * square) {
     placed.signed_distance = std::sqrt(square);
     placed.normal = away / placed.signed_distance;
   }

@@ -1,0 +1,64 @@
+// Foot points as good as the noise asks for.
+#include "core/recognition/polynomial_foot.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+/// The largest curvature next to t.
+double sharpest_bend(const PolynomialCoefficients& c, double t) {
+  double sharpest = 0.0;
+  for (int i = -10; i <= 10; ++i) {
+    const Vec2 first = first_derivative(c, t + 2e-3 * i);
+    const double speed = first.norm();
+    const double bend = cross(first, second_derivative(c, t + 2e-3 * i));
+    sharpest = std::max(sharpest, std::abs(bend) / (speed * speed * speed));
+  }
+  return sharpest;
+}
+
+TEST(PolynomialFoot, DistancesErrByLittleBesideTheNoise) {
+  std::mt19937_64 rng = test::test_rng();
+  std::uniform_real_distribution<double> within(-1.0, 1.0);
+  std::normal_distribution<double> normal;
+  for (const double sigma : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    for (int i = 0; i < 1000; ++i) {
+      PolynomialCoefficients c;
+      for (Eigen::Index k = 0; k < 4; ++k) {
+        c.col(k) = Vec2(within(rng), within(rng));
+      }
+      const double t = within(rng);
+      const Vec2 first = first_derivative(c, t);
+      if (sharpest_bend(c, t) > 30.0) {
+        continue;  // its third-order terms are beyond what foot points are followed for
+      }
+      const Vec2 point = place(c, t) + sigma * normal(rng) * left_of(first) / first.norm();
+      const double start = t + 0.01 * within(rng);
+      const PlacedPoint exact = follow_foot_point(c, point, start, 0.0);
+      const PlacedPoint placed = follow_foot_point(c, point, start, last_foot_step(sigma));
+      // A thousandth, and the rounding of coordinates of some units.
+      EXPECT_NEAR(placed.signed_distance, exact.signed_distance, 1e-3 * sigma + 4e-15);
+    }
+  }
+}
+
+TEST(PolynomialFoot, ReachesTheFootPointFromAfar) {
+  // The parabola y = x^2 and the point (0, 1 / 4): its foot is the vertex, wherever one starts.
+  PolynomialCoefficients c = PolynomialCoefficients::Zero();
+  c.col(1) = Vec2(1.0, 0.0);
+  c.col(2) = Vec2(0.0, 1.0);
+  for (const double start : {-0.9, -0.3, 0.0, 0.2, 0.8}) {
+    const PlacedPoint placed = follow_foot_point(c, Vec2(0.0, 0.25), start);
+    EXPECT_NEAR(placed.t, 0.0, 1e-9);
+    EXPECT_NEAR(placed.signed_distance, 0.25, 1e-15);
+    EXPECT_NEAR(placed.normal.y(), 1.0, 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace palpate
