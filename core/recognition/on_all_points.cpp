@@ -137,12 +137,9 @@ bool is_what_it_says(const ClassFit& fit, const FitData& data) {
          is_touchable(*fit.implicit, data);
 }
 
-ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival,
-                 const RefineEffort& effort) {
-  constexpr int kMoreOnReduced = 10;  // the points are few
-  RefineEffort on_reduced = effort;
-  on_reduced.iterations *= kMoreOnReduced;
-  return refine_parts(fit, reduced.points, on_reduced, rival);
+ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival) {
+  const RefineEffort& effort = rival == RivalOf::Best ? kBestOnReducedEffort : kOnReducedEffort;
+  return refine_parts(fit, reduced.points, effort, rival);
 }
 
 double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data) {

@@ -15,8 +15,7 @@ bool is_what_it_says(const ClassFit& fit, const FitData& data);
 enum class RivalOf { Best, Other };
 
 /// Takes a fit on the reduced points to its optimum there.
-ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival = RivalOf::Best,
-                 const RefineEffort& effort = kOnAllEffort);
+ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival = RivalOf::Best);
 
 /// Chi-square of all points about a fit on the reduced ones as it is. O(points).
 double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data);

@@ -16,12 +16,16 @@ struct RefineEffort {
 /// before, and what wanders along a valley is not determined.
 inline constexpr RefineEffort kCoarseEffort{20, 1, 1e-3};
 
-/// For the plausible ones: to a tenth of a standard deviation of the optimum, from which the best
-/// goes on to the end (polish).
+/// For the plausible ones on the reduced points, and on all where these disagree: to a tenth of a
+/// standard deviation of the optimum.
+inline constexpr RefineEffort kOnReducedEffort{80, 1, 1e-2};
 inline constexpr RefineEffort kOnAllEffort{8, 1, 1e-2};
 
-/// For the best class: to its very optimum. What has none within so many steps runs along a valley
-/// that is as good as flat.
-inline constexpr RefineEffort kPolishEffort{40, 2, 1e-6};
+/// For the best class on the reduced points: these are few, so that long valleys are walked here.
+inline constexpr RefineEffort kBestOnReducedEffort{120, 1, 1e-5};
+
+/// For the best class on all points: to its very optimum. What has none within so many steps runs
+/// along a valley that is as good as flat.
+inline constexpr RefineEffort kPolishEffort{20, 2, 1e-6};
 
 }  // namespace palpate

@@ -222,7 +222,7 @@ void refine_sharp_bends(const FitData& data, const FitData& reduced, Weighing* w
       continue;
     }
     constexpr RefineEffort kAll{};
-    ClassFit start = settled(*w->coarse[i], reduced, RivalOf::Best, kAll);
+    ClassFit start = settled(*w->coarse[i], reduced, RivalOf::Best);
     auto refined = refine_on_all(start, w->smooth, data, kAll);
     if (refined && refined->chi2 < w->fits[i]->chi2) {
       refined->polished = true;
