@@ -7,27 +7,39 @@
 
 namespace palpate {
 
+/// Column k holds the coefficients of t^k.
+using PolynomialCoefficients = Eigen::Matrix<double, 2, 4>;
+
+// Inlined always: the foot points of all fits take a good part of a recognition's time.
+[[gnu::always_inline]] inline Vec2 position_at(const PolynomialCoefficients& c, double t) {
+  return c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3)));
+}
+
+[[gnu::always_inline]] inline Vec2 first_derivative(const PolynomialCoefficients& c, double t) {
+  return c.col(1) + t * (2.0 * c.col(2) + 3.0 * t * c.col(3));
+}
+
+[[gnu::always_inline]] inline Vec2 second_derivative(const PolynomialCoefficients& c, double t) {
+  return 2.0 * c.col(2) + 6.0 * t * c.col(3);
+}
+
 /// x(t) = sum c(0, k) t^k, y(t) = sum c(1, k) t^k, k = 0 ... 3. [m]
 struct PolynomialCurve2 {
-  using Coefficients = Eigen::Matrix<double, 2, 4>;
+  using Coefficients = PolynomialCoefficients;
   Coefficients coefficients = Coefficients::Zero();
 
-  Vec2 position(double t) const {
-    const Coefficients& c = coefficients;
-    return c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3)));
-  }
+  Vec2 position(double t) const { return position_at(coefficients, t); }
 
   CurveDerivatives derivatives(double t) const {
     const Coefficients& c = coefficients;
-    return {position(t), c.col(1) + t * (2.0 * c.col(2) + 3.0 * t * c.col(3)),
-            2.0 * c.col(2) + 6.0 * t * c.col(3), 6.0 * c.col(3)};
+    return {position_at(c, t), first_derivative(c, t), second_derivative(c, t), 6.0 * c.col(3)};
   }
 
   /// The same curve over u = t - t0.
   PolynomialCurve2 shifted(double t0) const {
     const Coefficients& c = coefficients;
     PolynomialCurve2 result;
-    result.coefficients << position(t0), c.col(1) + t0 * (2.0 * c.col(2) + 3.0 * t0 * c.col(3)),
+    result.coefficients << position_at(c, t0), first_derivative(c, t0),
         c.col(2) + 3.0 * t0 * c.col(3), c.col(3);
     return result;
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/curves/polynomial_curve.h"
 #include "core/recognition/least_squares.h"
 
 namespace palpate {
@@ -16,16 +17,13 @@ constexpr bool has_arms() {
   return kModel == PolynomialModel::SemiCubicalParabola || kModel == PolynomialModel::CubicSpline;
 }
 
-/// Powers of x (graph models) or t (arm models) that y is made of.
+/// Powers of x (graph models) or t (arm models) that y is made of. A cubical parabola's inflection
+/// may lie anywhere along the axis: its graph has all.
 template <PolynomialModel kModel>
 constexpr auto powers() {
-  if constexpr (kModel == PolynomialModel::Parabola) {
-    return std::array{0, 1, 2};
-  } else if constexpr (kModel == PolynomialModel::SemiCubicalParabola) {
-    return std::array{0, 2, 3};
-  } else {
-    return std::array{0, 1, 2, 3};
-  }
+  return exponents_of_model < kModel == PolynomialModel::CubicalParabola
+             ? PolynomialModel::CubicSpline
+             : kModel > ();
 }
 
 /// Residuals across the axis at the best coefficients of y, for minimise_residuals. The few
@@ -38,8 +36,7 @@ class AxisResiduals {
   static constexpr auto kPowers = powers<kModel>();
   static constexpr bool kArms = has_arms<kModel>();
   static constexpr int kLinear = static_cast<int>(kPowers.size());
-  using Scalar = double;
-  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = kArms ? 2 : 1 };
+  enum { NUM_PARAMETERS = kArms ? 2 : 1 };
   using Coefficients = Eigen::Matrix<double, kLinear, 1>;
 
   AxisResiduals(std::span<const FitPoint> points, std::span<const double> arms)
@@ -364,10 +361,7 @@ void normalise_parameter(PolynomialModel model, PolynomialFit* fit) {
   double shift = 0.0;
   if (model == PolynomialModel::Parabola || model == PolynomialModel::CubicSpline) {
     shift = 0.5 * (least + most);
-    const PolynomialCoefficients old = c;
-    c.col(0) = old.col(0) + shift * (old.col(1) + shift * (old.col(2) + shift * old.col(3)));
-    c.col(1) = old.col(1) + shift * (2.0 * old.col(2) + 3.0 * shift * old.col(3));
-    c.col(2) = old.col(2) + 3.0 * shift * old.col(3);
+    c = PolynomialCurve2{c}.shifted(shift).coefficients;
   }
   const double scale = std::max(std::abs(least - shift), std::abs(most - shift));
   if (!(scale > 0.0)) {

@@ -45,8 +45,7 @@ ModelBasis<3> line_basis() {
 template <int K>
 class SphereResiduals {
  public:
-  using Scalar = double;
-  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = K - 1 };
+  enum { NUM_PARAMETERS = K - 1 };
   using Start = Eigen::Matrix<double, K, 1>;
   using Step = Eigen::Matrix<double, K - 1, 1>;
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/curves/plane_curve.h"
+#include "core/curves/polynomial_curve.h"
 #include "core/recognition/axis_fit.h"
 #include "core/recognition/least_squares.h"
 #include "core/recognition/on_all_points.h"
@@ -15,10 +15,7 @@ namespace palpate {
 namespace {
 
 CurveDerivatives derivatives(const KnottedCubic& curve, double t) {
-  const auto& c = curve.coefficients;
-  CurveDerivatives d{c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3))),
-                     c.col(1) + t * (2.0 * c.col(2) + 3.0 * t * c.col(3)),
-                     2.0 * c.col(2) + 6.0 * t * c.col(3), 6.0 * c.col(3)};
+  CurveDerivatives d = PolynomialCurve2{curve.coefficients}.derivatives(t);
   const double beyond = t - curve.knot;
   if (beyond > 0.0) {
     d.position += beyond * beyond * beyond * curve.bend;
@@ -57,8 +54,7 @@ double follow_foot(const KnottedCubic& curve, const Vec2& point, double t) {
 template <int kParameters>
 class KnottedResiduals {
  public:
-  using Scalar = double;
-  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = kParameters };
+  enum { NUM_PARAMETERS = kParameters };
   using Parameters = Eigen::Matrix<double, kParameters, 1>;
 
   KnottedResiduals(std::span<const FitPoint> points, const KnottedCubicFit& start)

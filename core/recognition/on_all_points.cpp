@@ -170,9 +170,6 @@ std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& sm
 
 std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data) {
   assert(fit.on_all);
-  if (fit.implicit) {
-    return fit;  // these converge at once
-  }
   ClassFit start = fit;
   if (start.rival && is_same_curve(*start.polynomial, *start.rival)) {
     start.rival.reset();  // one optimum: it need not be walked to twice

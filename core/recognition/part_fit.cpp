@@ -21,8 +21,7 @@ Pose2 moved(const Pose2& pose, const Vec2& pivot, const Eigen::Vector3d& motion)
 template <int kMotions>
 class PartResiduals {
  public:
-  using Scalar = double;
-  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = kMotions };
+  enum { NUM_PARAMETERS = kMotions };
   using Parameters = Eigen::Matrix<double, kMotions, 1>;
 
   PartResiduals(const ScaledPart& part, std::span<const FitPoint> points, const Pose2& start,

@@ -15,7 +15,7 @@ template <PolynomialModel kModel>
 PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int side,
                      const RefineEffort& effort) {
   using Problem = PolynomialProblem<kModel>;
-  Problem problem(points, std::move(start.t), side);
+  Problem problem(points, start.t, side);
   typename Problem::Vector x = Problem::parameters(start.coefficients);
   PolynomialFit fit;
   fit.chi2 = std::numeric_limits<double>::infinity();
@@ -51,7 +51,7 @@ PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int 
   }
   fit.coefficients = Problem::coefficients(x);
   fit.side = side;
-  fit.t = problem.take_t();
+  fit.t = problem.t();
   return fit;
 }
 

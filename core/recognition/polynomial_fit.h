@@ -12,7 +12,8 @@
 namespace palpate {
 
 struct PolynomialFit {
-  PolynomialCoefficients coefficients = PolynomialCoefficients::Zero();  ///< normalised frame
+  /// In the normalised frame; columns of powers that the model lacks are 0.
+  PolynomialCoefficients coefficients = PolynomialCoefficients::Zero();
   std::vector<double> t;  ///< curve parameter of every point's foot point
   double chi2 = 0.0;
   int iterations = 0;

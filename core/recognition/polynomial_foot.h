@@ -1,16 +1,12 @@
 // A point against a polynomial curve: the foot point near a given parameter.
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
-#include "core/curves/pose2.h"
+#include "core/curves/polynomial_curve.h"
 
 namespace palpate {
-
-/// Column k holds the coefficients of t^k; columns of powers that the model lacks are 0.
-using PolynomialCoefficients = Eigen::Matrix<double, 2, 4>;
 
 /// A point against the curve at its foot point parameter.
 struct PlacedPoint {
@@ -18,19 +14,6 @@ struct PlacedPoint {
   double signed_distance = 0.0;  ///< positive to the left of increasing t
   Vec2 normal = Vec2::Zero();    ///< unit, along the distance: left of increasing t but at a cusp
 };
-
-// Inlined always: the foot points of all fits take a good part of a recognition's time.
-[[gnu::always_inline]] inline Vec2 place(const PolynomialCoefficients& c, double t) {
-  return c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3)));
-}
-
-[[gnu::always_inline]] inline Vec2 first_derivative(const PolynomialCoefficients& c, double t) {
-  return c.col(1) + t * (2.0 * c.col(2) + 3.0 * t * c.col(3));
-}
-
-[[gnu::always_inline]] inline Vec2 second_derivative(const PolynomialCoefficients& c, double t) {
-  return 2.0 * c.col(2) + 6.0 * t * c.col(3);
-}
 
 /// What the derivative of (C(t) - p) . C'(t) must have at least of the square of the speed: at the
 /// centre of curvature, where the foot point is no minimum any more, it is 0.
@@ -59,7 +42,7 @@ inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2
   double speed2 = 0.0;
   bool last = false;
   for (int iteration = 0;; ++iteration) {
-    away = p - place(c, t);
+    away = p - position_at(c, t);
     first = first_derivative(c, t);
     speed2 = first.squaredNorm();
     if (last || iteration == kMaxIterations || speed2 <= 0.0) {

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "core/recognition/fit_data.h"
@@ -46,12 +45,17 @@ class PolynomialProblem {
   using Vector = Eigen::Matrix<double, kParameters, 1>;
   using Matrix = Eigen::Matrix<double, kParameters, kParameters>;
 
-  PolynomialProblem(std::span<const FitPoint> points, std::vector<double> t, int side)
+  /// `t`: a parameter near each point's foot point.
+  PolynomialProblem(std::span<const FitPoint> points, std::span<const double> t, int side)
       : points_(points),
         side_(side),
-        t_(std::move(t)),
         feet_(points.size()),
-        last_step_(last_foot_step(least_sigma(points))) {}
+        tried_feet_(points.size()),
+        last_step_(last_foot_step(least_sigma(points))) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      feet_[i].t = t[i];
+    }
+  }
 
   static PolynomialCoefficients coefficients(const Vector& x) {
     PolynomialCoefficients c = PolynomialCoefficients::Zero();
@@ -70,11 +74,11 @@ class PolynomialProblem {
   }
 
   double chi2_at(const Vector& x) {
-    coefficients_ = coefficients(x);
+    tried_ = coefficients(x);
     double chi2 = 0.0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      feet_[i] = follow_foot_point(coefficients_, points_[i].position, t_[i], last_step_);
-      const double residual = residual_of(i);
+      tried_feet_[i] = follow_foot_point(tried_, points_[i].position, feet_[i].t, last_step_);
+      const double residual = residual_at(tried_feet_[i], i);
       chi2 += residual * residual;
     }
     return chi2;
@@ -82,11 +86,8 @@ class PolynomialProblem {
 
   /// A place that is not accepted must not move the foot points that the next one starts from.
   void accept() {
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      t_[i] = feet_[i].t;
-    }
-    accepted_ = coefficients_;
-    accepted_feet_ = feet_;
+    coefficients_ = tried_;
+    feet_.swap(tried_feet_);
   }
 
   /// By the envelope theorem a residual changes by -n . (1, t, t^2, t^3): sums over the points of
@@ -97,11 +98,11 @@ class PolynomialProblem {
     Eigen::Matrix<double, 2, kExponents.back() + 1> sums;
     sums.setZero();
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const PlacedPoint& foot = accepted_feet_[i];
+      const PlacedPoint& foot = feet_[i];
       const double weight = points_[i].inverse_sigma;
       const Vec2 n = weight * foot.normal;
       Eigen::Vector3d square(n.x() * n.x(), n.x() * n.y(), n.y() * n.y());
-      Vec2 pull = -accepted_residual(i) * n;
+      Vec2 pull = -residual_at(foot, i) * n;
       for (int k = 0; k < kSums; ++k) {
         squares.col(k) += square;
         square *= foot.t;
@@ -127,16 +128,16 @@ class PolynomialProblem {
     Eigen::Matrix<double, 2, kExponents.back() + 1> sums;
     sums.setZero();
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const PlacedPoint& foot = accepted_feet_[i];
-      const Vec2 first = first_derivative(accepted_, foot.t);
-      const Vec2 second = second_derivative(accepted_, foot.t);
+      const PlacedPoint& foot = feet_[i];
+      const Vec2 first = first_derivative(coefficients_, foot.t);
+      const Vec2 second = second_derivative(coefficients_, foot.t);
       const double speed2 = first.squaredNorm();
       const Vec2 away = foot.signed_distance * foot.normal;
       const double slope = speed2 - away.dot(second);
       if (!(slope >= kLeastSlope * speed2) || speed2 <= 0.0) {
         continue;  // no foot point to follow
       }
-      const Vec2 shift = place(v, foot.t);
+      const Vec2 shift = position_at(v, foot.t);
       const Vec2 shift_by_t = first_derivative(v, foot.t);
       const double t_rate = (away.dot(shift_by_t) - shift.dot(first)) / slope;
       const double turn = foot.normal.dot(second * t_rate + shift_by_t);  // times the speed
@@ -156,24 +157,29 @@ class PolynomialProblem {
     return gradient;
   }
 
-  std::vector<double> take_t() { return std::move(t_); }
+  /// Parameters of the foot points.
+  std::vector<double> t() const {
+    std::vector<double> t;
+    t.reserve(feet_.size());
+    for (const PlacedPoint& foot : feet_) {
+      t.push_back(foot.t);
+    }
+    return t;
+  }
 
  private:
   static constexpr int exponent(int k) { return kExponents[static_cast<std::size_t>(k)]; }
 
-  double residual(const PlacedPoint& foot, std::size_t i) const {
+  double residual_at(const PlacedPoint& foot, std::size_t i) const {
     return (foot.signed_distance - side_ * points_[i].offset) * points_[i].inverse_sigma;
   }
-  double residual_of(std::size_t i) const { return residual(feet_[i], i); }
-  double accepted_residual(std::size_t i) const { return residual(accepted_feet_[i], i); }
 
   std::span<const FitPoint> points_;
   int side_;
-  std::vector<double> t_;
-  std::vector<PlacedPoint> feet_;  ///< at the place tried last
-  std::vector<PlacedPoint> accepted_feet_;
-  PolynomialCoefficients coefficients_;  ///< tried last
-  PolynomialCoefficients accepted_;
+  PolynomialCoefficients coefficients_;  ///< where we are
+  std::vector<PlacedPoint> feet_;
+  PolynomialCoefficients tried_;  ///< the place tried last
+  std::vector<PlacedPoint> tried_feet_;
   double last_step_;  ///< of foot points
 };
 

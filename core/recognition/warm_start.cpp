@@ -15,7 +15,7 @@ class NearestPlace {
   explicit NearestPlace(const PolynomialCoefficients& c) {
     for (std::size_t k = 0; k < kPlaces; ++k) {
       const double t = parameter(k);
-      const Vec2 place = c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3)));
+      const Vec2 place = position_at(c, t);
       x_[k] = static_cast<float>(place.x());
       y_[k] = static_cast<float>(place.y());
     }

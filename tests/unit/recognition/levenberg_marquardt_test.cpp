@@ -100,9 +100,9 @@ void expect_derivatives_of_one_point(std::mt19937_64& rng) {
       continue;  // the differences below need a foot point that moves slowly
     }
     FitPoint point;
-    point.position = place(c, t) + 0.1 * left_of(first) / speed;
+    point.position = position_at(c, t) + 0.1 * left_of(first) / speed;
     point.inverse_sigma = 3.0;
-    Problem problem(std::span(&point, 1), {t}, 0);
+    Problem problem(std::span(&point, 1), std::span(&t, 1), 0);
     const double chi2 = problem.chi2_at(x);
     problem.accept();
     typename Problem::Matrix information;

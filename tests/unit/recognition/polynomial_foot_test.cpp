@@ -37,7 +37,7 @@ TEST(PolynomialFoot, DistancesErrByLittleBesideTheNoise) {
       if (sharpest_bend(c, t) > 30.0) {
         continue;  // its third-order terms are beyond what foot points are followed for
       }
-      const Vec2 point = place(c, t) + sigma * normal(rng) * left_of(first) / first.norm();
+      const Vec2 point = position_at(c, t) + sigma * normal(rng) * left_of(first) / first.norm();
       const double start = t + 0.01 * within(rng);
       const PlacedPoint exact = follow_foot_point(c, point, start, 0.0);
       const PlacedPoint placed = follow_foot_point(c, point, start, last_foot_step(sigma));
