@@ -1,6 +1,5 @@
 #include "core/recognition/canonical_fit.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cassert>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include "core/curves/canonical_conic.h"
 #include "core/curves/canonical_cubic.h"
 #include "core/curves/curve.h"
+#include "core/recognition/symmetric_eigen.h"
 
 namespace palpate {
 namespace {
@@ -130,14 +130,14 @@ ShapePoseCovariance invert(const ShapePoseCovariance& information, int rank) {
     scale[i] = information(i, i) > 0.0 ? 1.0 / std::sqrt(information(i, i)) : 0.0;
   }
   const ShapePoseCovariance scaled = scale.asDiagonal() * information * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<ShapePoseCovariance> solver(scaled);
+  const SymmetricEigen eigen = symmetric_eigen(scaled);
   ShapePoseCovariance inverse = ShapePoseCovariance::Zero(n, n);
   for (Eigen::Index k = n - rank; k < n; ++k) {
     // Rounding leaves the weakest direction no smaller than this; beyond it the variance is as good
     // as infinite, and says so by its size.
     const double least = std::numeric_limits<double>::epsilon();
-    const double value = std::max(solver.eigenvalues()[k], least);
-    inverse += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose() / value;
+    const double value = std::max(eigen.values[k], least);
+    inverse += eigen.vectors.col(k) * eigen.vectors.col(k).transpose() / value;
   }
   return scale.asDiagonal() * inverse * scale.asDiagonal();
 }

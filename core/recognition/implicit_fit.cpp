@@ -1,13 +1,13 @@
 #include "core/recognition/implicit_fit.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "core/recognition/least_squares.h"
+#include "core/recognition/symmetric_eigen.h"
 
 namespace palpate {
 namespace {
@@ -41,6 +41,22 @@ ModelBasis<3> line_basis() {
   return basis;
 }
 
+/// Orthonormal columns across `unit`: all but the first column of the Householder reflection that
+/// turns it into the first axis.
+template <int K>
+Eigen::Matrix<double, K, K - 1> tangent_space(const Eigen::Matrix<double, K, 1>& unit) {
+  Eigen::Matrix<double, K, K - 1> tangent;
+  const double sign = unit[0] >= 0.0 ? 1.0 : -1.0;
+  for (int j = 1; j < K; ++j) {
+    const double share = unit[j] / (1.0 + std::abs(unit[0]));
+    tangent(0, j - 1) = -sign * unit[j];
+    for (int i = 1; i < K; ++i) {
+      tangent(i, j - 1) = (i == j ? 1.0 : 0.0) - unit[i] * share;
+    }
+  }
+  return tangent;
+}
+
 /// Residuals over the tangent space of the unit sphere at `start`, for minimise_residuals.
 template <int K>
 class SphereResiduals {
@@ -57,9 +73,7 @@ class SphereResiduals {
         side_(side),
         feet_(points.size()) {
     trial_.setConstant(std::numeric_limits<double>::quiet_NaN());
-    const Eigen::HouseholderQR<Start> qr(start_);
-    const Eigen::Matrix<double, K, K> q = qr.householderQ();
-    tangent_ = q.template rightCols<K - 1>();
+    tangent_ = tangent_space<K>(start_);
   }
 
   int NumResiduals() const { return static_cast<int>(points_.size()); }
@@ -172,9 +186,7 @@ template <int K>
 InformationSpectrum spectrum(std::span<const FitPoint> points, const ModelBasis<K>& basis,
                              const ConicCoefficients& q) {
   const Eigen::Matrix<double, K, 1> start = basis.transpose() * q;
-  const Eigen::SelfAdjointEigenSolver<Information<K>> solver(
-      information(SphereResiduals<K>(points, basis, start, 0)), Eigen::EigenvaluesOnly);
-  return solver.eigenvalues();
+  return symmetric_eigenvalues(information(SphereResiduals<K>(points, basis, start, 0)));
 }
 
 }  // namespace
@@ -276,9 +288,8 @@ ConicCoefficients algebraic_conic(std::span<const FitPoint> points) {
   // eigenproblem defined.
   constexpr double kRidge = 1e-14;
   gradients.diagonal().array() += kRidge * gradients.trace();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix5> solver(scatter, gradients);
   ConicCoefficients q;
-  q.head<5>() = solver.eigenvectors().col(0);
+  q.head<5>() = least_generalised_eigenvector(scatter, gradients);
   q[5] = -q.head<5>().dot(mean.head<5>());
   return q.normalized();
 }
@@ -307,8 +318,7 @@ ConicCoefficients algebraic_circle(std::span<const FitPoint> points) {
     d << 2.0 * p.x(), 2.0 * p.y(), 1.0, 0.0, 0.0, 1.0;
     gradients.noalias() += w * d * d.transpose();
   }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter, gradients);
-  const Eigen::Vector3d v = solver.eigenvectors().col(0);
+  const Eigen::Vector3d v = least_generalised_eigenvector(scatter, gradients);
   ConicCoefficients q;
   q << v[0], 0.0, v[0], v[1], v[2], -v.dot(mean);
   return q.normalized();
@@ -328,8 +338,7 @@ ConicCoefficients algebraic_line(std::span<const FitPoint> points) {
     const double w = point.inverse_sigma * point.inverse_sigma / weight_sum;
     scatter.noalias() += w * (point.position - mean) * (point.position - mean).transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(scatter);
-  const Vec2 normal = solver.eigenvectors().col(0);
+  const Vec2 normal = symmetric_eigen(scatter).vectors.col(0);
   ConicCoefficients q;
   q << 0.0, 0.0, 0.0, normal.x(), normal.y(), -normal.dot(mean);
   return q.normalized();

@@ -1,12 +1,12 @@
 #include "core/recognition/polynomial_fit.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/recognition/levenberg_marquardt.h"
 #include "core/recognition/polynomial_problem.h"
+#include "core/recognition/symmetric_eigen.h"
 
 namespace palpate {
 namespace {
@@ -65,9 +65,7 @@ Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> spectrum(std::span<const FitPo
   typename Problem::Matrix information;
   typename Problem::Vector gradient;
   problem.linearise(&information, &gradient);
-  const Eigen::SelfAdjointEigenSolver<typename Problem::Matrix> solver(information,
-                                                                       Eigen::EigenvaluesOnly);
-  return solver.eigenvalues();
+  return symmetric_eigenvalues(information);
 }
 
 }  // namespace
