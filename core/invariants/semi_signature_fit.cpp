@@ -1,12 +1,12 @@
 #include "core/invariants/semi_signature_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 
 #include "core/curves/pose2.h"
+#include "core/curves/small_cholesky.h"
 #include "core/invariants/canonical_models.h"
 #include "core/invariants/semi_signature_fitter.h"
 
@@ -188,12 +188,12 @@ SemiSignatureFit fit_semi_signature(CurveClass curve_class,
         Eigen::Vector3d(1.0, size > 0.0 ? size : 1.0, size > 0.0 ? size * size : 1.0);
     Eigen::Matrix3d covariance = white.measured.covariance;
     covariance.diagonal() += floor.cwiseAbs2();
-    const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
-    if (factor.info() != Eigen::Success) {
+    Eigen::Matrix3d factor;
+    if (!cholesky(covariance, &factor)) {
       fit.status = InvariantStatus::NotFinite;  // not a covariance
       return fit;
     }
-    white.whitening = factor.matrixL().solve(Eigen::Matrix3d::Identity());
+    white.whitening = inverse_lower(factor);
     points.push_back(white);
   }
   switch (curve_class) {

@@ -7,7 +7,6 @@
 
 #include <ceres/jet.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "core/curves/pose2.h"
+#include "core/curves/small_ldlt.h"
 #include "core/invariants/canonical_models.h"
 #include "core/invariants/invariant_status.h"
 #include "core/invariants/local_parameter.h"
@@ -139,13 +139,11 @@ class SemiSignatureFitter {
     linearise();
     const Hessian reduced = reduced_hessian(0.0).first;
     const Global scale = reduced.diagonal().cwiseMax(0.0).cwiseSqrt();
-    const Hessian unit_diagonal =
-        scale.cwiseInverse().asDiagonal() * reduced * scale.cwiseInverse().asDiagonal();
-    const Eigen::LDLT<Hessian> factor(unit_diagonal);
-    const Hessian inverse = scale.cwiseInverse().asDiagonal() * factor.solve(Hessian::Identity()) *
-                            scale.cwiseInverse().asDiagonal();
-    const bool regular = unit_diagonal.allFinite() && factor.isPositive() &&
-                         factor.vectorD().minCoeff() > kGlobal * kEpsilon && inverse.allFinite();
+    const Hessian unit_diagonal = reduced.cwiseQuotient(scale * scale.transpose());
+    const SmallLdlt<kGlobal> factor(unit_diagonal);
+    const Hessian inverse = factor.inverse().cwiseQuotient(scale * scale.transpose());
+    const bool regular = unit_diagonal.allFinite() &&
+                         factor.pivots().minCoeff() > kGlobal * kEpsilon && inverse.allFinite();
     if (regular) {
       return inverse;
     }
@@ -240,7 +238,7 @@ class SemiSignatureFitter {
 
   Global reduced_step(double damping) {
     const auto [hessian, gradient] = reduced_hessian(damping);
-    const Global step = -hessian.ldlt().solve(gradient);
+    const Global step = -SmallLdlt<kGlobal>(hessian).solve(gradient);
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       const Block& block = blocks_[i];
       const double own = block.t_squared * (1.0 + damping);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/curves/small_cholesky.h"
 #include "core/local/aligned_frame.h"
 #include "core/local/graph_geometry.h"
 #include "core/local/jet_estimator.h"
@@ -147,11 +148,11 @@ struct Posterior {
 };
 
 Posterior average(const Window& window) {
-  const auto lower = window.fit.factor().triangularView<Eigen::Lower>();
-  const Matrix normal = window.fit.factor() * window.fit.factor().transpose();
-  const Vector moments = lower * window.fit.scores();
+  const Matrix& lower = window.fit.factor();
+  const Matrix& normal = window.fit.normal();
+  const Vector& moments = window.fit.moments();
   const double noise = window.sigma * window.sigma;
-  const Matrix inverse_factor = lower.solve(Matrix::Identity());
+  const Matrix inverse_factor = inverse_lower(lower);
   const Vector variance = noise * inverse_factor.colwise().squaredNorm().transpose();
   const Priors priors = weigh_priors(window.fit.coefficients(), variance);
 
@@ -166,11 +167,12 @@ Posterior average(const Window& window) {
     for (int k = kFirstPrior; k < kSize; ++k) {
       precision(k, k) += noise / (prior.sd[k] * prior.sd[k]);
     }
-    const Eigen::LLT<Matrix> llt(precision);
-    const Vector c = llt.solve(moments);
+    Matrix factor;
+    cholesky(precision, &factor);
+    const Vector c = solve_cholesky(factor, moments);
     posterior.mean += prior.evidence * c;
     squares += prior.evidence * c * c.transpose();
-    posterior.covariance += prior.evidence * noise * llt.solve(Matrix::Identity());
+    posterior.covariance += prior.evidence * noise * inverse_cholesky(factor);
     total += prior.evidence;
   }
   posterior.mean /= total;

@@ -4,9 +4,10 @@
 // fit is a leading block of it.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <limits>
+
+#include "core/curves/small_cholesky.h"
 
 namespace palpate {
 
@@ -71,11 +72,9 @@ class LegendreFit {
   /// sigma^2 k (k + 1) / 2 to the mean square of P_k, and shrinks the coefficient of P_k by that
   /// relative to what the lower degrees leave of P_k. Refused where any is above kMaxShrinkage.
   bool factorise(double sigma) {
-    const Eigen::LLT<Matrix, Eigen::Lower> llt(gram_.template selfadjointView<Eigen::Lower>());
-    if (llt.info() != Eigen::Success) {
+    if (!cholesky(gram_, &factor_)) {
       return false;
     }
-    factor_ = llt.matrixL();
     for (int k = 1; k < kSize; ++k) {
       const double left = factor_(k, k) * factor_(k, k) / weight_;
       const double blur = sigma * sigma * 0.5 * k * (k + 1);
@@ -84,17 +83,14 @@ class LegendreFit {
         return false;
       }
     }
-    scores_ = factor_.template triangularView<Eigen::Lower>().solve(moment_);
+    scores_ = solve_lower<kSize>(factor_, moment_);
     return true;
   }
 
   /// Coefficients c_0 ... c_Lower of the fit of degree Lower <= Degree.
   template <int Lower = Degree>
   LegendreVector<Lower + 1> coefficients() const {
-    return factor_.template topLeftCorner<Lower + 1, Lower + 1>()
-        .template triangularView<Eigen::Lower>()
-        .transpose()
-        .solve(scores_.template head<Lower + 1>());
+    return solve_lower_transposed<Lower + 1, kSize>(factor_, scores_.template head<Lower + 1>());
   }
 
   /// J with J^T J = rows * (covariance of the coefficients / sigma^2) * rows^T, for functions of
@@ -102,17 +98,20 @@ class LegendreFit {
   template <int Lower = Degree, int Rows>
   Eigen::Matrix<double, Lower + 1, Rows> whitened(
       const Eigen::Matrix<double, Rows, Lower + 1>& rows) const {
-    return factor_.template topLeftCorner<Lower + 1, Lower + 1>()
-        .template triangularView<Eigen::Lower>()
-        .solve(rows.transpose());
+    Eigen::Matrix<double, Lower + 1, Rows> columns;
+    for (int i = 0; i < Rows; ++i) {
+      columns.col(i) = solve_lower<Lower + 1, kSize>(factor_, rows.row(i).transpose());
+    }
+    return columns;
   }
 
   /// (normal matrix)^-1 gradient: its product with (P_0(u_i) ... P_Degree(u_i)) w_i is what a unit
   /// error of v_i does to the function of the coefficients that has this gradient.
-  Vector influence(const Vector& gradient) const {
-    const auto lower = factor_.template triangularView<Eigen::Lower>();
-    return lower.transpose().solve(lower.solve(gradient));
-  }
+  Vector influence(const Vector& gradient) const { return solve_cholesky(factor_, gradient); }
+
+  /// The normal matrix, of which the lower triangle is held, and the right hand side.
+  const Matrix& normal() const { return gram_; }
+  const Vector& moments() const { return moment_; }
 
   /// The normal matrix's Cholesky factor, lower triangular.
   const Matrix& factor() const { return factor_; }

@@ -1,11 +1,11 @@
 #include "core/recognition/implicit_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "core/curves/small_cholesky.h"
 #include "core/recognition/least_squares.h"
 #include "core/recognition/symmetric_eigen.h"
 
@@ -179,7 +179,13 @@ Information<K> information(const SphereResiduals<K>& residuals) {
   Eigen::VectorXd values(n);
   Eigen::Matrix<double, Eigen::Dynamic, K - 1> jacobian(n, K - 1);
   residuals(step.data(), values.data(), jacobian.data());
-  return jacobian.transpose() * jacobian;
+  Information<K> information;
+  for (Eigen::Index i = 0; i < K - 1; ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      information(i, j) = information(j, i) = jacobian.col(i).dot(jacobian.col(j));
+    }
+  }
+  return information;
 }
 
 template <int K>
@@ -208,12 +214,13 @@ InformationSpectrum line_information(std::span<const FitPoint> points, const Con
 double conic_deviation(std::span<const FitPoint> points, const ConicCoefficients& q,
                        const ConicCoefficients& gradient) {
   const SphereResiduals<6> residuals(points, conic_basis(), q, 0);
-  const Eigen::LDLT<Information<6>> solver(information(residuals));
   const Eigen::Matrix<double, 5, 1> by_step = residuals.tangent().transpose() * gradient;
-  const double variance = by_step.dot(solver.solve(by_step));
-  return solver.isPositive() && std::isfinite(variance) && variance >= 0.0
-             ? std::sqrt(variance)
-             : std::numeric_limits<double>::infinity();
+  Information<6> factor;
+  if (!cholesky(information(residuals), &factor)) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const double deviation = solve_lower<5>(factor, by_step).norm();
+  return std::isfinite(deviation) ? deviation : std::numeric_limits<double>::infinity();
 }
 
 double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot) {

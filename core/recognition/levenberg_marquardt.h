@@ -6,10 +6,11 @@
 // Levenberg-Marquardt algorithm for nonlinear least-squares minimization", follows the bend.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+
+#include "core/curves/small_cholesky.h"
 
 namespace palpate {
 
@@ -74,12 +75,12 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
       damping *= growth;
       growth *= 2.0;
     };
-    const Eigen::LLT<Matrix> solver(damped);
-    if (solver.info() != Eigen::Success) {  // by rounding, where next to nothing is damped
+    Matrix factor;
+    if (!cholesky(damped, &factor)) {  // by rounding, where next to nothing is damped
       refuse();
       continue;
     }
-    const Vector velocity = -solver.solve(gradient);
+    const Vector velocity = -solve_cholesky(factor, gradient);
     const double promised = velocity.dot(damping * diagonal.cwiseProduct(velocity) - gradient);
     if (!(promised > kNothing * options.chi2_tolerance)) {
       summary.converged = damping <= options.first_damping;
@@ -87,7 +88,7 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
     }
     Vector step = velocity;
     if constexpr (requires { problem->bend(velocity); }) {
-      const Vector acceleration = -solver.solve(problem->bend(velocity));
+      const Vector acceleration = -solve_cholesky(factor, problem->bend(velocity));
       const auto length2 = [&](const Vector& v) { return v.cwiseAbs2().dot(diagonal); };
       if (length2(acceleration) <= kLargestRatio * kLargestRatio * length2(velocity)) {
         step += 0.5 * acceleration;
