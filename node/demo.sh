@@ -23,7 +23,10 @@ if [ ${#missing[@]} -gt 0 ]; then
     "${missing[@]}" >/dev/null
 fi
 
-step "building (release)"
+source tests/support/how_long.sh
+calibrate
+step "building (release): about $(how_long $demo_build_cost) on this machine, $(nproc) cores$(
+  command -v ccache >/dev/null && echo '; less where ccache has the objects')"
 cmake --preset release -DPALPATE_BUILD_TESTS=OFF >/dev/null
 cmake --build --preset release -j "$(nproc)" --target palpate palpate-node palpate-sim
 palpate=build/release/node/tool/palpate

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 
@@ -11,6 +13,11 @@ namespace {
 std::uint64_t environment_number(const char* name, std::uint64_t fallback) {
   const char* text = std::getenv(name);
   return text == nullptr ? fallback : std::strtoull(text, nullptr, 10);
+}
+
+double stress() {
+  const char* text = std::getenv("PALPATE_TEST_STRESS");
+  return text == nullptr ? 1.0 : std::strtod(text, nullptr);
 }
 
 }  // namespace
@@ -37,8 +44,8 @@ std::mt19937_64 test_rng(std::uint64_t stream) {
   return std::mt19937_64(sequence);
 }
 
-int stress_count(int base) {
-  return base * static_cast<int>(environment_number("PALPATE_TEST_STRESS", 1));
-}
+int stress_count(int base) { return std::max(1, static_cast<int>(std::ceil(base * stress()))); }
+
+bool counts_tell() { return stress() >= 1.0; }
 
 }  // namespace palpate::test

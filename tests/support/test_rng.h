@@ -14,7 +14,12 @@ std::uint64_t test_seed();
 /// Generator seeded by test_seed(); `stream` separates independent sequences within one test.
 std::mt19937_64 test_rng(std::uint64_t stream = 0);
 
-/// Number of random cases: `base` times PALPATE_TEST_STRESS (default 1) from the environment.
+/// Number of random cases: `base` times PALPATE_TEST_STRESS (default 1) from the environment, at
+/// least one. Under a sanitizer it is a fraction: the same code runs on fewer scenes.
 int stress_count(int base);
+
+/// Whether there are as many cases as bounds on their counts and means are for: not with a fraction
+/// of them. What each case must fulfil alone is asked in any run.
+bool counts_tell();
 
 }  // namespace palpate::test

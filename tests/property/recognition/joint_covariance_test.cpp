@@ -179,13 +179,18 @@ TEST(JointCovariance, OfRecognizedAnswersHoldsTheTruth) {
     std::cout << "  " << name_of(curve_class) << "\t" << count.beyond << " of " << count.recognized
               << "\t" << count.beyond_bound << "\t" << count.most() << "\t"
               << count.recognized + unasked << "\n";
-    EXPECT_GT(count.recognized, 0) << name_of(curve_class);
+    if (test::counts_tell()) {
+      EXPECT_GT(count.recognized, 0) << name_of(curve_class);
+    }
     EXPECT_LE(count.beyond, count.most()) << name_of(curve_class);
     all += count;
   }
   std::cout << "  all\t" << all.beyond << " of " << all.recognized << "\t" << all.beyond_bound
             << "\t" << all.most() << "\n";
   EXPECT_LE(all.beyond, all.most());
+  if (!test::counts_tell()) {
+    return;
+  }
   // The same count finds the bends where they are left out.
   EXPECT_GT(all.beyond_bound, all.most());
 }

@@ -196,6 +196,9 @@ void expect_calibrated(const char* name, double sigma_m, double arc_m, int patch
       name, 1e3 * sigma_m, patches, 1e3 * arc_m, t.count, t.determined, t.determined_wrong,
       t.expected_wrong, t.segment_wrong, t.segment_expected, t.no_match,
       right > 0 ? t.squares / right : 0.0, right > 0 ? static_cast<double>(t.in_95) / right : 0.0);
+  if (!test::counts_tell()) {
+    return;
+  }
   // Rare events beside their expectation: Poisson, with one more where next to none is expected.
   EXPECT_LE(t.determined_wrong, t.expected_wrong + 4.0 * std::sqrt(t.expected_wrong) + 1.0);
   EXPECT_NEAR(t.segment_wrong, t.segment_expected, 4.0 * std::sqrt(t.segment_variance) + 1.0);
@@ -227,6 +230,9 @@ TEST(LongestSegmentStatistics, FalseJointsAreNoMoreThanTheSignificance) {
     }
     std::printf("sigma %g mm: joints in %d of %d patches of one segment\n", 1e3 * sigma_m, found,
                 count);
+    if (!test::counts_tell()) {
+      continue;
+    }
     EXPECT_LE(found, 0.01 * count + 4.0 * std::sqrt(0.01 * count));
   }
 }
@@ -255,6 +261,9 @@ TEST(LongestSegmentStatistics, JointsAreFoundAndLieInTheirIntervals) {
     }
     std::printf("sigma %g mm: joint found in %d of %d patches, true one in the interval %d\n",
                 1e3 * sigma_m, found, count, inside);
+    if (!test::counts_tell()) {
+      continue;
+    }
     if (sigma_m == 1e-6) {
       EXPECT_EQ(found, count);
     }
@@ -276,6 +285,9 @@ TEST(LongestSegmentStatistics, SeveralJointsAreCounted) {
     }
     std::printf("%g mm, sigma 0.001 mm: all joints and no more in %d of %d patches\n", 1e3 * arc_m,
                 right, count);
+    if (!test::counts_tell()) {
+      continue;
+    }
     EXPECT_GE(right, 0.9 * count);  // each run is tested at 1 %
   }
 }

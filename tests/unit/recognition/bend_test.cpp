@@ -118,6 +118,9 @@ TEST(Bend, IsThatOfAllPoints) {
   std::cout << "compared: " << compared << ", different: " << different << ", largest difference "
             << largest_difference << ", largest variance ratio where not asked: " << largest_unasked
             << "\n";
+  if (!test::counts_tell()) {
+    return;
+  }
   EXPECT_GT(compared, 100);
   EXPECT_LE(50 * different, compared);  // arcs with a sharp bend between the points asked
   EXPECT_LT(largest_unasked, 0.01);

@@ -1,0 +1,45 @@
+# Sourced by node/demo.sh and tests/run.sh: how long a part takes on this machine, said before it starts.
+#
+# A part's cost is known in seconds of one core of the machine that the table in tests/README.md was measured
+# on. What this machine is beside that one, and how busy it is now, a small program tells that is compiled on
+# all cores at once.
+
+# Seconds that the program below took there, on an idle core.
+calibration_reference_s=2.0
+# Core seconds there of what the scripts do, from empty folders.
+demo_build_cost=380
+strict_build_cost=800
+strict_test_cost=600
+sanitize_cost=2400
+fuzz_cost=500
+
+calibrate() {  # sets calibration_s, the seconds that it takes here and now
+  local LC_ALL=C  # a point in EPOCHREALTIME
+  local folder start=$EPOCHREALTIME
+  folder=$(mktemp -d)
+  cat >"$folder/calibrate.cpp" <<'EOF'
+#include <iostream>
+#include <map>
+#include <regex>
+#include <string>
+int main() {
+  std::map<std::string, int> counts;
+  for (std::string line; std::getline(std::cin, line);) {
+    if (std::regex_search(line, std::regex("[a-z]+"))) ++counts[line];
+  }
+  return static_cast<int>(counts.size());
+}
+EOF
+  local core
+  for core in $(seq "$(nproc)"); do
+    c++ -std=c++20 -O2 -c "$folder/calibrate.cpp" -o "$folder/$core.o" &
+  done
+  wait
+  rm -rf "$folder"
+  calibration_s=$(awk -v a="$start" -v b="$EPOCHREALTIME" 'BEGIN { print b - a }')
+}
+
+how_long() {  # core seconds there: prints about how many minutes here
+  awk -v cost="$1" -v here="$calibration_s" -v there="$calibration_reference_s" -v cores="$(nproc)" \
+    'BEGIN { minutes = cost * here / there / cores / 60; printf minutes < 1 ? "a minute" : "%.0f minutes", minutes + 0.5 }'
+}
