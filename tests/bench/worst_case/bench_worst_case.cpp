@@ -30,8 +30,10 @@ using bench::InputRecipe;
 using bench::TouchedInput;
 
 constexpr int kRepetitions = 3;
-/// Local changes without a worse one before a new start.
-constexpr int kPatience = 40;
+/// A climb begins at the worst of so many random inputs, and ends after so many changes that make
+/// it no worse.
+constexpr int kStarts = 12;
+constexpr int kPatience = 20;
 /// Share of new starts from the worst input found so far rather than from anywhere.
 constexpr double kFromWorst = 0.3;
 
@@ -152,23 +154,25 @@ int search(const Options& options, const std::string& program) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   Found worst;
   Found current;
-  int idle = 0;
+  int starts = 0;  // of this climb
+  int idle = 0;    // changes in a row
   long tries = 0;
   std::vector<double> ratios_of_starts;
   for (; tries < options.tries && elapsed() < options.seconds; ++tries) {
-    const bool restart = tries == 0 || idle >= kPatience;
-    if (restart) {
+    if (idle >= kPatience) {
+      const bool again = uniform(rng) < kFromWorst;
+      current = again ? worst : Found{};
+      starts = again ? kStarts : 0;
       idle = 0;
-      current = {};
-      if (worst.ratio > 0.0 && uniform(rng) < kFromWorst) current = worst;
     }
-    const InputRecipe recipe = current.ratio > 0.0
-                                   ? bench::mutated(current.recipe, rng, options.most_samples)
-                                   : bench::random_recipe(rng, options.most_samples);
-    const auto found = measured(recipe, current.ratio);
-    if (current.ratio == 0.0 && found) ratios_of_starts.push_back(found->ratio);
-    if (!found) {
-      ++idle;
+    const bool climbs = starts >= kStarts;
+    const InputRecipe recipe = climbs ? bench::mutated(current.recipe, rng, options.most_samples)
+                                      : bench::random_recipe(rng, options.most_samples);
+    starts += climbs ? 0 : 1;
+    const auto found = measured(recipe, climbs ? current.ratio : 0.0);
+    if (!climbs && found) ratios_of_starts.push_back(found->ratio);
+    if (!found || found->ratio <= current.ratio) {
+      idle += climbs ? 1 : 0;
       continue;
     }
     idle = 0;
