@@ -15,10 +15,11 @@ namespace {
 
 using namespace palpate;
 
-/// So that an input takes milliseconds: what the work grows to is bench_worst_case's to find.
-constexpr std::size_t kMostSamples = 400;
-constexpr int kMostPatches = 24;
-constexpr int kMostSamplesOfAPatch = 120;
+/// Few samples, so that many inputs are tried in a minute even under the sanitizers: what the work
+/// grows to is bench_worst_case's to find.
+constexpr std::size_t kMostSamples = 120;
+constexpr int kMostPatches = 10;
+constexpr int kMostSamplesOfAPatch = 48;
 /// Powers of ten of lengths in metres; squares of the extreme ones leave the range of a double.
 constexpr double kUsualPower = 4.0;
 constexpr double kExtremePower = 160.0;

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "core/recognition/recognizer.h"
@@ -142,6 +145,42 @@ TEST(DegenerateInput, IdenticalCollinearSteps) {
       }
       const Recognition apart = touched_apart(positions, sigma_m);
       EXPECT_EQ(broken(apart, positions), "");
+    }
+  }
+}
+
+// Every sample of the last patch may be set aside as a spike, which leaves a patch of none.
+TEST(DegenerateInput, APatchOfSpikesOnly) {
+  const std::vector<Vec2> good = quarter_of_ellipse(0.025, {0.1, -0.03});
+  for (const std::size_t count : {1U, 2U, 3U}) {
+    for (const bool first : {false, true}) {
+      SCOPED_TRACE(testing::Message() << count << (first ? " first" : " last"));
+      Recognizer recognizer;
+      std::vector<Vec2> positions = good;
+      const auto add = [&](std::uint32_t patch, std::span<const Vec2> places) {
+        std::vector<ContactSample> samples;
+        for (const Vec2& place : places) {
+          samples.push_back({place, 2e-6, 0});
+        }
+        PatchContext context;
+        context.patch = patch;
+        recognizer.add(context, samples);
+      };
+      std::vector<Vec2> spikes;
+      for (std::size_t i = 0; i < count; ++i) {
+        spikes.emplace_back(0.16 + 0.004 * static_cast<double>(i * i),
+                            0.02 * static_cast<double>(i));
+      }
+      positions.insert(positions.end(), spikes.begin(), spikes.end());
+      if (first) {
+        add(9, spikes);
+      }
+      add(1, std::span(good).first(55));
+      add(2, std::span(good).subspan(55));
+      if (!first) {
+        add(9, spikes);
+      }
+      EXPECT_EQ(broken(recognizer.recognize(), positions), "");
     }
   }
 }
