@@ -11,21 +11,27 @@ Group* GroupRegistry::find(std::string_view name) {
 }
 
 GroupRegistry::Entries::const_iterator GroupRegistry::most_idle() const {
-  return std::min_element(groups_.begin(), groups_.end(), [](const auto& a, const auto& b) {
-    return a.second.group.last_taken() < b.second.group.last_taken();
-  });
+  auto idle = groups_.end();
+  for (auto entry = groups_.begin(); entry != groups_.end(); ++entry) {
+    const Group& group = entry->second.group;
+    if (group.is_in_work()) continue;  // somebody else's for now
+    if (idle == groups_.end() || group.last_taken() < idle->second.group.last_taken()) idle = entry;
+  }
+  return idle;
 }
 
 bool GroupRegistry::has_room(SteadyTime now) const {
-  if (groups_.size() < max_groups_) return true;
+  if (groups_.size() < bounds_.max_groups) return true;
   const auto idle = most_idle();
-  return idle != groups_.end() && now - idle->second.group.last_taken() > evict_idle_;
+  return idle != groups_.end() && now - idle->second.group.last_taken() > bounds_.evict_idle;
 }
 
 Group& GroupRegistry::add(std::string_view name, std::string& evicted) {
   evicted.clear();
-  if (groups_.size() >= max_groups_) {
+  if (groups_.size() >= bounds_.max_groups) {
     const auto idle = most_idle();
+    assert(idle != groups_.end());
+    queued_bytes_ -= idle->second.group.queued_bytes();
     evicted = idle->first;
     groups_.erase(idle);
     ++evicted_count_;
@@ -36,7 +42,11 @@ Group& GroupRegistry::add(std::string_view name, std::string& evicted) {
   return entry->second.group;
 }
 
-void GroupRegistry::mark_waiting(const Group& group) {
+void GroupRegistry::take(Group& group, const ContactMessage& message, Continuity continuity,
+                         SteadyTime now) {
+  queued_bytes_ -= group.queued_bytes();
+  group.take(message, continuity, now);
+  queued_bytes_ += group.queued_bytes();
   Entry& entry = groups_.find(group.name())->second;
   if (entry.waiting) return;
   entry.waiting = true;
@@ -45,10 +55,11 @@ void GroupRegistry::mark_waiting(const Group& group) {
   entry.served_ns = std::max(entry.served_ns, served_floor_ns_);
 }
 
-Group* GroupRegistry::next_waiting() {
+Group* GroupRegistry::next_waiting(bool only_quick) {
   Entry* next = nullptr;
   for (auto& [name, entry] : groups_) {
-    if (!entry.waiting) continue;
+    if (!entry.waiting || entry.group.is_in_work()) continue;
+    if (only_quick && !entry.group.is_quick()) continue;
     if (next == nullptr || entry.served_ns < next->served_ns ||
         (entry.served_ns == next->served_ns && entry.waiting_since < next->waiting_since)) {
       next = &entry;
@@ -57,11 +68,25 @@ Group* GroupRegistry::next_waiting() {
   return next == nullptr ? nullptr : &next->group;
 }
 
-void GroupRegistry::mark_served(const Group& group, std::int64_t compute_ns) {
+std::shared_ptr<GroupRecognizer> GroupRegistry::begin_work(Group& group) {
+  groups_.find(group.name())->second.waiting = false;
+  return group.begin_work();
+}
+
+GroupRecognizer::Answer& GroupRegistry::end_work(Group& group) {
+  queued_bytes_ -= group.queued_bytes();
+  GroupRecognizer::Answer& answer = group.end_work();
+  queued_bytes_ += group.queued_bytes();
   Entry& entry = groups_.find(group.name())->second;
-  entry.waiting = false;
   served_floor_ns_ = std::max(served_floor_ns_, entry.served_ns);
-  entry.served_ns += compute_ns;
+  entry.served_ns += answer.compute_ns;
+  return answer;
+}
+
+bool GroupRegistry::has_work() const {
+  return std::any_of(groups_.begin(), groups_.end(), [](const auto& entry) {
+    return entry.second.waiting || entry.second.group.is_in_work();
+  });
 }
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <string>
 
@@ -98,16 +99,20 @@ int serve(const NodeOptions& options, const palpate::NodeKeys& keys) {
     spdlog::error("no signalfd");
     return kFailed;
   }
+  bool unfinished = false;
   try {
     palpate::Node node(options, keys);
     spdlog::info("contacts on {}, results on {}{}", node.contacts_address(), node.results_address(),
                  keys.own ? ", CURVE" : "");
     node.run(stop_fd);
+    unfinished = node.unfinished_count() > 0;
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
     return kFailed;
   }
   ::close(stop_fd);
+  // What still computes must not meet the end of static objects.
+  if (unfinished) std::quick_exit(kStopped);
   return kStopped;
 }
 

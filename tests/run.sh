@@ -59,11 +59,11 @@ if [ "$sanitize" = yes ]; then
   # The processes' own tests measure time; their twin in one process is among the others. The long
   # statistics were taken above: laws, units and hard cases run the same code.
   GTEST_FILTER='-SegmentMatchStatistics.*:LongestSegmentStatistics.*:JointCovariance*:FormDeviation.*' ctest --test-dir build/asan --output-on-failure -j "$jobs" -LE processes
-  build tsan twin_test
+  build tsan twin_test node_unit_test
   step "testing (thread sanitizer)"
   # libzmq is not instrumented: its hand-over between threads looks like a race.
   TSAN_OPTIONS="suppressions=$PWD/tests/processes/tsan.supp" \
-    ctest --test-dir build/tsan --output-on-failure -R '^twin_test$'
+    ctest --test-dir build/tsan --output-on-failure -R '^(twin_test|node_unit_test)$'
 fi
 
 if [ "$fuzz" != 0 ]; then
