@@ -62,6 +62,7 @@ class Group {
 
   const std::string& name() const { return name_; }
   std::uint64_t object() const { return object_; }
+  std::size_t probe_count() const { return members_.size(); }
   SteadyTime last_taken() const { return last_taken_; }
 
  private:

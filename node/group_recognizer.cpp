@@ -12,7 +12,6 @@ std::size_t GroupRecognizer::take(const QueuedContacts& message,
     members_.clear();
     frame_ = message.frame;
     object_ = message.object;
-    newest_.sample_stamp_ns = message.newest_sample_stamp_ns;
   }
   auto member = std::find_if(members_.begin(), members_.end(),
                              [&](const Member& known) { return known.probe == message.probe; });
@@ -34,7 +33,7 @@ std::size_t GroupRecognizer::take(const QueuedContacts& message,
   newest_.source = message.probe;
   newest_.epoch = message.epoch;
   newest_.seq = message.seq;
-  newest_.sample_stamp_ns = std::max(newest_.sample_stamp_ns, message.newest_sample_stamp_ns);
+  newest_.sample_stamp_ns = message.newest_sample_stamp_ns;  // of this alone: a wild one does not stay
   return samples.size() - added.accepted;
 }
 

@@ -56,7 +56,7 @@ class GroupRecognizer : public Work {
     std::string source;
     std::uint64_t epoch = 0;
     std::uint64_t seq = 0;
-    std::int64_t sample_stamp_ns = 0;  // the latest of all samples of the object
+    std::int64_t sample_stamp_ns = 0;
   };
 
   std::size_t take(const QueuedContacts& message, std::span<const ContactSample> samples);

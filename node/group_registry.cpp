@@ -10,34 +10,44 @@ Group* GroupRegistry::find(std::string_view name) {
   return found == groups_.end() ? nullptr : &found->second.group;
 }
 
-GroupRegistry::Entries::const_iterator GroupRegistry::most_idle() const {
-  auto idle = groups_.end();
+std::optional<GroupRegistry::Entries::const_iterator> GroupRegistry::place_for(
+    std::string_view probe, SteadyTime now) const {
+  auto idle = groups_.end();  // of all
+  auto own = groups_.end();   // of those that only this probe touches
+  std::size_t opened = 0;     // by this probe
+  const auto older = [&](Entries::const_iterator entry, Entries::const_iterator than) {
+    return than == groups_.end() || entry->second.group.last_taken() < than->second.group.last_taken();
+  };
   for (auto entry = groups_.begin(); entry != groups_.end(); ++entry) {
-    const Group& group = entry->second.group;
-    if (group.is_in_work()) continue;  // somebody else's for now
-    if (idle == groups_.end() || group.last_taken() < idle->second.group.last_taken()) idle = entry;
+    const bool is_own = entry->second.opened_by == probe;
+    if (is_own) ++opened;
+    if (entry->second.group.is_in_work()) continue;  // a worker's for now
+    if (older(entry, idle)) idle = entry;
+    if (is_own && entry->second.group.probe_count() <= 1 && older(entry, own)) own = entry;
+  }
+  if (opened >= bounds_.max_groups_per_probe) {
+    return own == groups_.end() ? std::nullopt : std::optional(own);
+  }
+  if (groups_.size() < bounds_.max_groups) return groups_.end();
+  if (idle == groups_.end() || now - idle->second.group.last_taken() <= bounds_.evict_idle) {
+    return std::nullopt;
   }
   return idle;
 }
 
-bool GroupRegistry::has_room(SteadyTime now) const {
-  if (groups_.size() < bounds_.max_groups) return true;
-  const auto idle = most_idle();
-  return idle != groups_.end() && now - idle->second.group.last_taken() > bounds_.evict_idle;
-}
-
-Group& GroupRegistry::add(std::string_view name, std::string& evicted) {
+Group& GroupRegistry::add(std::string_view name, std::string_view probe, SteadyTime now,
+                          std::string& evicted) {
   evicted.clear();
-  if (groups_.size() >= bounds_.max_groups) {
-    const auto idle = most_idle();
-    assert(idle != groups_.end());
-    queued_bytes_ -= idle->second.group.queued_bytes();
-    evicted = idle->first;
-    groups_.erase(idle);
+  const std::optional<Entries::const_iterator> place = place_for(probe, now);
+  assert(place);
+  if (*place != groups_.end()) {
+    evicted = (*place)->first;
+    queued_bytes_ -= (*place)->second.group.queued_bytes();
+    groups_.erase(*place);
     ++evicted_count_;
   }
   const auto [entry, added] = groups_.try_emplace(
-      std::string(name), Entry{Group(name, recognizer_options_, group_options_)});
+      std::string(name), Entry{Group(name, recognizer_options_, group_options_), std::string(probe)});
   assert(added);
   return entry->second.group;
 }

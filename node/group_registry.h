@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,7 @@ namespace palpate {
 
 struct GroupBounds {
   std::size_t max_groups = 64;
+  std::size_t max_groups_per_probe = 8;  ///< that it has opened
   /// Memory of the messages that wait for recognition, of all groups together. [bytes]
   std::size_t max_waiting_bytes = std::size_t{32} << 20;
   /// Who is silent for longer may be forgotten to make room for another.
@@ -33,12 +35,16 @@ class GroupRegistry {
 
   Group* find(std::string_view name);
 
-  /// True where add() would find room: a free place, or a group idle for long enough.
-  bool has_room(SteadyTime now) const;
+  /// True where add() would find room for a group that this probe opens.
+  bool has_room(std::string_view probe, SteadyTime now) const {
+    return place_for(probe, now).has_value();
+  }
 
-  /// Adds an unknown group, in place of the one idle for longest where there is no free place; that
-  /// one's name goes to `evicted`. Needs has_room().
-  Group& add(std::string_view name, std::string& evicted);
+  /// Adds an unknown group on a free place or, where there is none, on that of the one idle for
+  /// longest, if that is long enough. A probe that has opened as many as it may loses the oldest of
+  /// them that it touches alone: a flood of invented names costs nobody else a place. The name of
+  /// who goes is put into `evicted`. Needs has_room().
+  Group& add(std::string_view name, std::string_view probe, SteadyTime now, std::string& evicted);
 
   /// Whether so much more may wait for the group (nullptr: a new one). Nobody may hold more than is
   /// left to all others: who has had no answer yet always finds room.
@@ -70,13 +76,15 @@ class GroupRegistry {
  private:
   struct Entry {
     Group group;
+    std::string opened_by;
     bool waiting = false;
     std::uint64_t waiting_since = 0;  // in order of arrival
     std::int64_t served_ns = 0;
   };
   using Entries = std::map<std::string, Entry, std::less<>>;
 
-  Entries::const_iterator most_idle() const;
+  // That of another group, or end() for a free one; nullopt where there is none.
+  std::optional<Entries::const_iterator> place_for(std::string_view probe, SteadyTime now) const;
 
   GroupBounds bounds_;
   RecognizerOptions recognizer_options_;

@@ -31,10 +31,12 @@ RejectReason Intake::judge(const Probe* probe, const Group* group, SteadyTime no
   if (probe == nullptr && !probes_.has_room(now)) return v1::REJECT_REASON_TOO_MANY_PROBES;
   if (probe != nullptr) {
     const SequenceEvent event = probe->sequence.judge(message.epoch, message.seq);
-    if (event == SequenceEvent::NotNewer) return v1::REJECT_REASON_SEQUENCE;
     if (event == SequenceEvent::StaleEpoch) return v1::REJECT_REASON_STALE_EPOCH;
+    if (!is_news(event)) return v1::REJECT_REASON_SEQUENCE;
   }
-  if (group == nullptr && !groups_.has_room(now)) return v1::REJECT_REASON_TOO_MANY_GROUPS;
+  if (group == nullptr && !groups_.has_room(message.probe, now)) {
+    return v1::REJECT_REASON_TOO_MANY_GROUPS;
+  }
   if (group != nullptr) {
     const RejectReason reason = group->judge(message, probe, now);
     if (reason != v1::REJECT_REASON_UNSPECIFIED) return reason;
@@ -67,7 +69,7 @@ RejectReason Intake::take(std::size_t frame_count, std::string_view topic, std::
     if (!evicted.empty()) forgotten_.probes.push_back(std::move(evicted));
   }
   if (group == nullptr) {
-    group = &groups_.add(message.group, evicted);
+    group = &groups_.add(message.group, message.probe, now, evicted);
     if (!evicted.empty()) forgotten_.groups.push_back(std::move(evicted));
   }
   const SequenceEvent event = probe->sequence.take(message.epoch, message.seq);

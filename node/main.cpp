@@ -1,18 +1,21 @@
 // palpate-node: the recognizer node. Exit codes: 0 stopped as asked, 1 failed at run time (an
 // endpoint is taken), 2 usage, 6 configuration.
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <google/protobuf/text_format.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <string>
 
 #include "node/config.h"
+#include "node/log_sink.h"
 #include "node/node.h"
+#include "node/quiet_protobuf.h"
 #include "node/stop_signals.h"
 
 namespace {
@@ -119,7 +122,11 @@ int serve(const NodeOptions& options, const palpate::NodeKeys& keys) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  spdlog::set_default_logger(spdlog::stderr_logger_st("palpate-node"));
+  palpate::silence_protobuf();
+  // Who reads our log or our output may go: that is an error of a write, no end.
+  std::signal(SIGPIPE, SIG_IGN);
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>(
+      "palpate-node", std::make_shared<palpate::LogSink>(STDERR_FILENO)));
   CLI::App app(
       "Recognises and locates curved parts: contacts in, recognitions out.\n"
       "Each option may also be set by PALPATE_<NAME> in the environment and by <name> in the\n"
@@ -154,6 +161,10 @@ int main(int argc, char** argv) {
   }
   if (command_line.print_config) {
     std::fputs(palpate::to_text(palpate::to_config(*options.value)).c_str(), stdout);
+    if (std::fflush(stdout) != 0) {
+      spdlog::error("standard output: cannot be written");
+      return kFailed;
+    }
   }
   if (command_line.print_config || command_line.check_config) return kStopped;
   return serve(*options.value, *keys.value);

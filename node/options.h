@@ -64,6 +64,9 @@ void for_each_option(Options& options, Visit&& visit) {
         intake.limits.max_samples_per_batch);
   visit({"max_probes", "Most probes known at a time", 1, kMostThings}, intake.max_probes);
   visit({"max_groups", "Most groups in memory", 1, kMostThings}, intake.groups.max_groups);
+  visit({"max_groups_per_probe",
+         "Groups a probe may have opened; a further one takes the place of its oldest", 1, kMostThings},
+        intake.groups.max_groups_per_probe);
   visit({"max_probes_per_group", "Most probes that touch one object", 1, kMostThings},
         intake.group.max_probes_per_group);
   visit({"max_waiting_bytes",

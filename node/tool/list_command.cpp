@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "node/printable.h"
 #include "node/stop_signals.h"
 #include "node/tool/topic_counts.h"
 
@@ -23,7 +24,7 @@ int run(const ListCommand& command) {
     return complain(counts.error, kUsage);
   }
   for (const auto& [topic, count] : *counts.value) {
-    std::printf("%s\t%llu messages\n", topic.c_str(),
+    std::printf("%s\t%llu messages\n", printable(topic).c_str(),
                 static_cast<unsigned long long>(count.messages));
   }
   return counts.value->empty()

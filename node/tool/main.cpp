@@ -1,9 +1,11 @@
 // palpate: the tool beside the recognizer node. Each subcommand has a file <name>_command.cpp.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 
 #include "node/client/connection.h"
+#include "node/quiet_protobuf.h"
 #include "node/tool/command.h"
 
 namespace palpate {
@@ -39,7 +41,9 @@ Result<std::optional<CurveClient>> curve_of(const Connection& connection) {
 
 }  // namespace palpate
 
-int main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
   CLI::App app(
       "Recognises and locates curved parts by touch: offline from files, and beside a running "
       "palpate-node.\n"
@@ -63,6 +67,20 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? palpate::kDone : palpate::kUsage;
   } catch (const std::exception& error) {
     return palpate::complain(error.what(), palpate::kFailed);
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  palpate::silence_protobuf();
+  const int exit_code = run(argc, argv);
+  // What was said has to have arrived: a full disk is known only now.
+  const bool written =
+      std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (!written && exit_code == palpate::kDone) {
+    return palpate::complain("standard output: cannot be written", palpate::kFailed);
   }
   return exit_code;
 }

@@ -213,6 +213,29 @@ TEST_F(IntakeTest, TheIdleMakeRoom) {
   EXPECT_EQ(intake.probes().evicted_count(), 1U);
 }
 
+TEST_F(IntakeTest, AProbeThatOpensGroupAfterGroupLosesItsOwnOnly) {
+  IntakeOptions options;
+  options.groups.max_groups_per_probe = 3;
+  Intake intake(options);
+  give(intake, "good", in_group("good", 1, line_batch("good", 1, 0)));
+  for (std::uint64_t seq = 0; seq < 500; ++seq) {
+    now_ += milliseconds(1);
+    EXPECT_EQ(give(intake, "greedy", in_group(std::to_string(seq), 1, line_batch("greedy", 1, seq))),
+              kTaken);
+  }
+  EXPECT_EQ(intake.groups().size(), 4U);
+  EXPECT_NE(intake.groups().find("good"), nullptr);
+  EXPECT_NE(intake.groups().find("499"), nullptr);
+  EXPECT_EQ(intake.groups().find("496"), nullptr);
+  // A group that somebody else touches too is not given up for one more.
+  for (const char* name : {"497", "498", "499"}) {
+    const std::string helper = std::string("helper").append(name);
+    EXPECT_EQ(give(intake, helper, in_group(name, 1, line_batch(helper, 1, 0))), kTaken);
+  }
+  EXPECT_EQ(give(intake, "greedy", in_group("more", 1, line_batch("greedy", 1, 500))),
+            v1::REJECT_REASON_TOO_MANY_GROUPS);
+}
+
 TEST_F(IntakeTest, AGroupHasSoManyProbes) {
   IntakeOptions options;
   options.group.max_probes_per_group = 2;
