@@ -24,7 +24,10 @@ using std::chrono::milliseconds;
 constexpr milliseconds kTick{100};
 // Under a flood, answers and all else get their turn after this long.
 constexpr milliseconds kDrainTime{1};
-constexpr int kSubscriptionsPerTurn = 1000;
+constexpr int kSubscriptionsPerTurn = 100;
+// libzmq takes in all that waits before it gives us the first: a few at a time, so that who asks for
+// too much is noticed, and nobody waits, while it asks.
+constexpr int kSubscriptionsWaiting = 4;
 // Subscriptions are a topic and a byte; libzmq's own commands fit too.
 constexpr std::int64_t kMaxSubscriptionBytes = 1024;
 // What has been received is finished within this, or given up: with the sockets' linger the
@@ -47,6 +50,7 @@ SocketSettings contacts_settings(const NodeOptions& options, const NodeKeys& key
 SocketSettings results_settings(const NodeOptions& options, const NodeKeys& keys) {
   SocketSettings settings;
   settings.send_high_water_mark = static_cast<int>(options.results_high_water_mark);
+  settings.receive_high_water_mark = kSubscriptionsWaiting;
   settings.max_message_bytes = kMaxSubscriptionBytes;
   settings.curve_server = keys.own;
   return settings;
@@ -76,8 +80,8 @@ Node::Node(const NodeOptions& options, const NodeKeys& keys)
       started_(now_steady()),
       next_tick_(started_),
       next_status_(started_) {
-  guard(contacts_, options.contacts);
-  guard(results_, options.results);
+  contact_peers_ = guard(contacts_, options.contacts, "contacts");
+  result_peers_ = guard(results_, options.results, "results");
 }
 
 zmq::socket_t Node::open(zmq::socket_type type, const std::vector<std::string>& endpoints,
@@ -90,7 +94,7 @@ zmq::socket_t Node::open(zmq::socket_type type, const std::vector<std::string>& 
     }
     if (options_.probe_prefixes.empty()) socket.set(zmq::sockopt::subscribe, all);
   } else {
-    socket.set(zmq::sockopt::xpub_verbose, true);
+    socket.set(zmq::sockopt::xpub_verboser, true);
   }
   for (const std::string& text : endpoints) {
     const Result<Endpoint> endpoint = parse_endpoint(text, /*bind_by_default=*/true);
@@ -108,14 +112,20 @@ zmq::socket_t Node::open(zmq::socket_type type, const std::vector<std::string>& 
   return socket;
 }
 
-void Node::guard(zmq::socket_t& socket, const std::vector<std::string>& endpoints) {
+std::unique_ptr<PeerGuard> Node::guard(zmq::socket_t& socket,
+                                       const std::vector<std::string>& endpoints,
+                                       const char* what) {
   std::vector<std::string> connected;
   for (const std::string& text : endpoints) {
     const Result<Endpoint> endpoint = parse_endpoint(text, /*bind_by_default=*/true);
     if (endpoint && !endpoint.value->bind) connected.push_back(endpoint.value->address);
   }
-  if (connected.empty()) return;
+  // libzmq tells a socket's events to one listener: the peers of one that connects are of its choice.
+  if (connected.empty()) {
+    return std::make_unique<PeerGuard>(context_, socket, options_.peers, what);
+  }
   guards_.push_back(std::make_unique<ReconnectGuard>(context_, socket, std::move(connected)));
+  return nullptr;
 }
 
 void Node::run(const std::stop_token& stop) {
@@ -133,6 +143,9 @@ void Node::run(int stop_fd) {
                                      {contacts_.handle(), 0, ZMQ_POLLIN, 0},
                                      {results_.handle(), 0, ZMQ_POLLIN, 0},
                                      {nullptr, workers_.finished_fd(), ZMQ_POLLIN, 0}};
+  for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
+    if (peers != nullptr) items.push_back({peers->events().handle(), 0, ZMQ_POLLIN, 0});
+  }
   if (zap_) items.push_back({zap_->socket().handle(), 0, ZMQ_POLLIN, 0});
   for (;;) {
     const SteadyTime before = now_steady();
@@ -146,8 +159,11 @@ void Node::run(int stop_fd) {
     const SteadyTime now = now_steady();
     if (items[3].revents != 0) take_answers();
     if (items[1].revents != 0) drain_contacts(now + kDrainTime);
-    if (items[2].revents != 0) publisher_.serve_subscriptions(kSubscriptionsPerTurn);
-    if (zap_ && items[4].revents != 0) zap_->serve();
+    if (contact_peers_) contact_peers_->tend(now);
+    if (result_peers_) result_peers_->tend(now);
+    publisher_.serve_subscriptions(items[2].revents != 0 ? kSubscriptionsPerTurn : 0,
+                                   result_peers_.get(), now);
+    if (zap_ && items.back().revents != 0) zap_->serve();
     give_out_work(now_steady());
     if (now >= next_tick_) tick(now);
   }
@@ -159,6 +175,7 @@ bool Node::drain_contacts(SteadyTime deadline) {
   SteadyTime now = now_steady();
   bool more = true;
   while (now < deadline && (more = receive_now(contacts_, incoming_))) {
+    if (contact_peers_) contact_peers_->hear(descriptor_of(incoming_.topic));
     intake_.take(incoming_.frame_count, view_of(incoming_.topic), view_of(incoming_.payload), now,
                  unix_time_ns());
     now = now_steady();
@@ -240,6 +257,9 @@ void Node::publish_status(SteadyTime now) {
   vitals.version = PALPATE_VERSION;
   vitals.recognitions_published = recognitions_published_;
   vitals.clients_denied = zap_ ? zap_->denied_count() : 0;
+  for (const PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
+    if (peers != nullptr) vitals.connections_cut += peers->cut_count();
+  }
   fill_status(intake_, compute_times_, vitals, now, status_message_);
   publisher_.publish(TopicKind::Status, options_.name, *status_message_.mutable_header(),
                      status_message_);
@@ -254,6 +274,10 @@ void Node::log_rejections() {
                  v1::RejectReason_Name(static_cast<v1::RejectReason>(i)));
   }
   rejections_logged_ = rejected;
+  for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
+    const std::string report = peers == nullptr ? std::string() : peers->take_report();
+    if (!report.empty()) spdlog::warn("{}", report);
+  }
 }
 
 void Node::finish() {

@@ -16,6 +16,7 @@
 #include "node/node_keys.h"
 #include "node/options.h"
 #include "node/path_lock.h"
+#include "node/peer_guard.h"
 #include "node/reconnect_guard.h"
 #include "node/result.h"
 #include "node/result_publisher.h"
@@ -56,7 +57,8 @@ class Node {
 
   zmq::socket_t open(zmq::socket_type type, const std::vector<std::string>& endpoints,
                      const SocketSettings& settings);
-  void guard(zmq::socket_t& socket, const std::vector<std::string>& endpoints);
+  std::unique_ptr<PeerGuard> guard(zmq::socket_t& socket, const std::vector<std::string>& endpoints,
+                                   const char* what);
   bool drain_contacts(SteadyTime deadline);
   void give_out_work(SteadyTime now);
   std::size_t slow_count(SteadyTime now) const;
@@ -75,6 +77,8 @@ class Node {
   zmq::socket_t contacts_;
   zmq::socket_t results_;
   std::vector<std::unique_ptr<ReconnectGuard>> guards_;
+  std::unique_ptr<PeerGuard> contact_peers_;  // nullptr where the socket connects
+  std::unique_ptr<PeerGuard> result_peers_;
   Intake intake_;
   ResultPublisher publisher_;
   ComputeTimes compute_times_;

@@ -8,6 +8,7 @@
 
 #include "node/endpoint.h"
 #include "node/intake.h"
+#include "node/peer_guard.h"
 #include "node/recognizer_options.h"
 
 namespace palpate {
@@ -30,6 +31,7 @@ struct NodeOptions {
   bool publish_estimates = false;
   std::string log_level = "info";
   RecognizerWords words;
+  PeerBounds peers;
   IntakeOptions intake;
 };
 
@@ -58,6 +60,11 @@ void for_each_option(Options& options, Visit&& visit) {
         options.contacts_high_water_mark);
   visit({"results_high_water_mark", "Messages that may wait for one planner", 1, kMostMessages},
         options.results_high_water_mark);
+  visit({"max_peers", "Most connections to each socket", 1, kMostThings}, options.peers.max_peers);
+  visit({"max_subscription_bytes",
+         "Subscriptions of one planner, 32 bytes counted beside each; of all 16 times as much [bytes]",
+         1024, 1e8},
+        options.peers.max_subscription_bytes);
   visit({"max_message_bytes", "Longest contact message [bytes]", 1024, 1e8},
         intake.limits.max_message_bytes);
   visit({"max_samples_per_batch", "Most samples of one message", 1, kMostMessages},
