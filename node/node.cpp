@@ -99,13 +99,8 @@ zmq::socket_t Node::open(zmq::socket_type type, const std::vector<std::string>& 
   for (const std::string& text : endpoints) {
     const Result<Endpoint> endpoint = parse_endpoint(text, /*bind_by_default=*/true);
     if (!endpoint) throw std::runtime_error(endpoint.error);
-    if (const std::string path = ipc_path(endpoint.value->address);
-        endpoint.value->bind && !path.empty()) {
-      Result<PathLock> lock = PathLock::acquire(path);
-      if (!lock) throw std::runtime_error(lock.error);
-      locks_.push_back(std::move(*lock.value));
-    }
-    if (const std::string error = attach(socket, *endpoint.value); !error.empty()) {
+    if (const std::string error = attach(socket, *endpoint.value, &locks_.emplace_back());
+        !error.empty()) {
       throw std::runtime_error(error);
     }
   }

@@ -23,7 +23,7 @@ step() { printf '\n== %s\n' "$*"; }
 
 packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-dev libgmock-dev
           libbenchmark-dev protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev
-          libcli11-dev python3 python3-protobuf python3-zmq)
+          libcli11-dev zlib1g-dev python3 python3-protobuf python3-zmq)
 if [ "$fuzz" != 0 ]; then packages+=(clang); fi
 missing=()
 for package in "${packages[@]}"; do

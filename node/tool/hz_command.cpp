@@ -57,7 +57,7 @@ void add_hz_command(CLI::App& app, int& exit_code) {
       "hz", "Show how often the recognizer publishes on each topic, once a second.");
   add_connection_flags(*command, "--results", "The recognizer's results endpoint", hz->connection);
   command->add_option("--seconds", hz->seconds, "Listen so long, then show it once; 0 = for ever [s]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(non_negative_number())
       ->capture_default_str()
       ->type_name("S");
   command->callback([hz, &exit_code] { exit_code = run(*hz); });

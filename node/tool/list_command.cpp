@@ -40,7 +40,7 @@ void add_list_command(CLI::App& app, int& exit_code) {
       app.add_subcommand("list", "List the topics on which the recognizer publishes.");
   add_connection_flags(*command, "--results", "The recognizer's results endpoint", list->connection);
   command->add_option("--seconds", list->seconds, "How long to listen [s]")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str()
       ->type_name("S");
   command->callback([list, &exit_code] { exit_code = run(*list); });

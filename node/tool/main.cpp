@@ -1,5 +1,6 @@
 // palpate: the tool beside the recognizer node. Each subcommand has a file <name>_command.cpp.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -14,6 +15,23 @@ int complain(const std::string& why, int exit_code) {
   std::cerr << "palpate: " << why << "\n";
   return exit_code;
 }
+
+namespace {
+
+CLI::Validator number_check(const char* name, bool zero_is_good) {
+  const auto check = [zero_is_good](const std::string& text) -> std::string {
+    double value = 0.0;
+    const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) &&
+                      (value > 0.0 || (zero_is_good && value == 0.0));
+    return good ? "" : "\"" + text + "\" is no finite number " + (zero_is_good ? ">= 0" : "> 0");
+  };
+  return CLI::Validator(check, name);
+}
+
+}  // namespace
+
+CLI::Validator positive_number() { return number_check("POSITIVE", false); }
+CLI::Validator non_negative_number() { return number_check("NONNEGATIVE", true); }
 
 void add_connection_flags(CLI::App& command, const char* flag, const char* help,
                           Connection& connection) {

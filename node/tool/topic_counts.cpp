@@ -57,11 +57,13 @@ Result<std::map<std::string, TopicCount>> count_topics(
   while (!until(counts)) {
     constexpr int kStepMs = 50;
     poll(items, kStepMs);
-    while (receive_now(socket, message)) {
+    constexpr int kMostAtOnce = 1000;
+    const auto turn = std::chrono::steady_clock::now() + std::chrono::milliseconds(kStepMs);
+    drain(socket, message, kMostAtOnce, turn, [&](const TwoFrames&) {
       std::string topic = message.topic.to_string();
       if (counts.size() >= kMostTopics && !counts.contains(topic)) topic = "(further topics)";
       counts[topic].take(message.payload.size(), std::chrono::steady_clock::now());
-    }
+    });
   }
   return Counts::ok(std::move(counts));
 }

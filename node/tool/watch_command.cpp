@@ -233,7 +233,7 @@ void add_watch_command(CLI::App& app, int& exit_code) {
       ->capture_default_str()
       ->type_name("FORMAT");
   command->add_option("--interval", watch->interval_s, "Text: least time between a group's lines [s]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(non_negative_number())
       ->capture_default_str()
       ->type_name("S");
   command->add_option("--count", watch->count, "End after so many recognitions; 0 = never")
@@ -242,7 +242,7 @@ void add_watch_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--timeout", watch->timeout_s,
                    "Fail where nothing (with --count: no recognition) is heard for so long; 0 = wait for ever [s]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(non_negative_number())
       ->capture_default_str()
       ->type_name("S");
   command->callback([watch, &exit_code] { exit_code = run(*watch); });
