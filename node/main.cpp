@@ -16,6 +16,7 @@
 #include "node/log_sink.h"
 #include "node/node.h"
 #include "node/quiet_protobuf.h"
+#include "node/reload_signal.h"
 #include "node/stop_signals.h"
 
 namespace {
@@ -102,12 +103,13 @@ int serve(const NodeOptions& options, const palpate::NodeKeys& keys) {
     spdlog::error("no signalfd");
     return kFailed;
   }
+  const int reload_fd = palpate::take_reload_signal();
   bool unfinished = false;
   try {
     palpate::Node node(options, keys);
     spdlog::info("contacts on {}, results on {}{}", node.contacts_address(), node.results_address(),
                  keys.own ? ", CURVE" : "");
-    node.run(stop_fd);
+    node.run(stop_fd, reload_fd);
     unfinished = node.unfinished_count() > 0;
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());

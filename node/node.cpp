@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "node/clock.h"
+#include "node/reload_signal.h"
 #include "node/socket.h"
 #include "node/status.h"
 
@@ -133,7 +134,7 @@ void Node::run(const std::stop_token& stop) {
   ::close(fd);
 }
 
-void Node::run(int stop_fd) {
+void Node::run(int stop_fd, int reload_fd) {
   std::vector<zmq::pollitem_t> items{{nullptr, stop_fd, ZMQ_POLLIN, 0},
                                      {contacts_.handle(), 0, ZMQ_POLLIN, 0},
                                      {results_.handle(), 0, ZMQ_POLLIN, 0},
@@ -160,7 +161,11 @@ void Node::run(int stop_fd) {
                                    result_peers_.get(), now);
     if (zap_ && items.back().revents != 0) zap_->serve();
     give_out_work(now_steady());
-    if (now >= next_tick_) tick(now);
+    if (now >= next_tick_) {
+      tick(now);
+      // Nobody waits for this: a tick's time is soon enough.
+      if (reload_fd >= 0 && reload_requested(reload_fd)) reload_clients();
+    }
   }
   finish();
 }
@@ -272,6 +277,26 @@ void Node::log_rejections() {
   for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
     const std::string report = peers == nullptr ? std::string() : peers->take_report();
     if (!report.empty()) spdlog::warn("{}", report);
+  }
+}
+
+void Node::reload_clients() {
+  if (!zap_) {
+    spdlog::info("asked to reread the allowed clients: without CURVE there are none");
+    return;
+  }
+  const Result<std::vector<std::string>> keys = read_public_keys(options_.allow_clients);
+  if (!keys) {
+    spdlog::error("allowed clients stay as they were: {}", keys.error);
+    return;
+  }
+  ClientList clients(*keys.value);
+  const bool somebody_left = !clients.allows_all_of(zap_->clients());
+  zap_->allow(std::move(clients));
+  spdlog::info("{} allowed clients reread", keys.value->size());
+  // Whose connection is whose cannot be told: who may, is back within 50 ms.
+  for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
+    if (somebody_left && peers != nullptr) peers->cut_all("keys have been taken off the list");
   }
 }
 

@@ -35,7 +35,8 @@ class Node {
 
   /// Serves until `stop_fd` is readable; then takes what has been received, recognises and
   /// publishes it, as far as that is done within 0.3 s, and returns.
-  void run(int stop_fd);
+  /// Where `reload_fd` (take_reload_signal) says so, the list of allowed clients is read again.
+  void run(int stop_fd, int reload_fd = -1);
 
   /// The same, until a stop is requested.
   void run(const std::stop_token& stop);
@@ -68,6 +69,7 @@ class Node {
   void tick(SteadyTime now);
   void publish_status(SteadyTime now);
   void log_rejections();
+  void reload_clients();
   void finish();
 
   NodeOptions options_;

@@ -125,6 +125,10 @@ void PeerGuard::count_subscription(int descriptor, bool begins, std::size_t byte
   }
 }
 
+void PeerGuard::cut_all(const std::string& why) {
+  while (!peers_.empty()) cut(peers_.begin(), why);
+}
+
 // By its descriptor, as libzmq has no call for it: its connection ends as if the peer had left.
 void PeerGuard::cut(Peers::iterator peer, const std::string& why) {
   last_cut_ = name_of_peer(peer->first);

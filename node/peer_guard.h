@@ -49,6 +49,9 @@ class PeerGuard {
   /// It has subscribed to so many bytes, or ended that subscription. Cuts who has too much.
   void count_subscription(int descriptor, bool begins, std::size_t bytes);
 
+  /// Cuts all: who may, comes back at once.
+  void cut_all(const std::string& why);
+
   std::size_t peer_count() const { return peers_.size(); }
   std::uint64_t cut_count() const { return cut_count_; }
 

@@ -38,7 +38,7 @@ install() {  # packages that are missing
     "${missing[@]}" >/dev/null
 }
 install g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-dev libgmock-dev libbenchmark-dev \
-  protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev python3 python3-protobuf \
+  protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev zlib1g-dev python3 python3-protobuf \
   python3-zmq python3-matplotlib python3-numpy
 for peer in python3-opencv python3-scipy; do
   install "$peer" || echo "$peer cannot be installed: its peers are skipped"
