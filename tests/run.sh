@@ -67,7 +67,7 @@ if [ "$sanitize" = yes ]; then
 fi
 
 if [ "$fuzz" != 0 ]; then
-  targets=(contact_csv ingest recording)
+  targets=(config contact_csv ingest keys recording scene)
   build fuzz "${targets[@]/#/fuzz_}"
   for target in "${targets[@]}"; do
     step "fuzzing $target for $fuzz s"
