@@ -94,8 +94,6 @@ v1::RecognitionDoubt to_wire(Doubt doubt) {
       return v1::RECOGNITION_DOUBT_MISFIT;
     case Doubt::TwoShapes:
       return v1::RECOGNITION_DOUBT_TWO_SHAPES;
-    case Doubt::RicherClass:
-      return v1::RECOGNITION_DOUBT_RICHER_CLASS;
     case Doubt::Undetermined:
       return v1::RECOGNITION_DOUBT_UNDETERMINED;
   }

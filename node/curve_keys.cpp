@@ -9,8 +9,10 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
+#include <sstream>
 #include <string_view>
+
+#include "node/bounded_file.h"
 
 namespace palpate {
 namespace {
@@ -21,6 +23,7 @@ constexpr std::string_view kPublicKey = "public-key ";
 constexpr std::string_view kSecretKey = "secret-key ";
 // Larger than any list of keys that a person keeps; bounds what a wrong path makes us read.
 constexpr std::size_t kMaxKeys = 10000;
+constexpr std::size_t kMostKeyFileBytes = std::size_t{4} << 20;
 
 bool is_z85_key(const std::string& text) {
   std::array<std::uint8_t, kKeyBytes> bytes{};
@@ -33,8 +36,9 @@ struct KeyLines {
 };
 
 Result<KeyLines> read_key_lines(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) return Result<KeyLines>::fail(path + ": " + std::strerror(errno));
+  const Result<std::string> text = read_bounded(path, kMostKeyFileBytes);
+  if (!text) return Result<KeyLines>::fail(text.error);
+  std::istringstream file(*text.value);
   KeyLines keys;
   std::string line;
   for (std::size_t number = 1; std::getline(file, line); ++number) {

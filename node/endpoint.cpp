@@ -1,5 +1,9 @@
 #include "node/endpoint.h"
 
+#include <charconv>
+#include <cstdint>
+#include <system_error>
+
 namespace palpate {
 namespace {
 
@@ -8,6 +12,16 @@ constexpr std::string_view kConnect = "connect:";
 constexpr std::string_view kTcp = "tcp://";
 constexpr std::string_view kIpc = "ipc://";
 constexpr std::string_view kInproc = "inproc://";
+
+// What follows the last colon: libzmq would take 99999 for 34463.
+bool has_port(std::string_view tcp_address) {
+  const std::size_t colon = tcp_address.rfind(':');
+  if (colon == kTcp.size() - std::string_view("://").size()) return false;  // that of "tcp://"
+  const std::string_view port = tcp_address.substr(colon + 1);
+  std::uint16_t number = 0;
+  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
+  return port == "*" || (error == std::errc() && end == port.data() + port.size());
+}
 
 }  // namespace
 
@@ -24,6 +38,10 @@ Result<Endpoint> parse_endpoint(std::string_view text, bool bind_by_default) {
   }
   for (const std::string_view transport : {kTcp, kIpc, kInproc}) {
     if (text.starts_with(transport) && text.size() > transport.size()) {
+      if (transport == kTcp && !has_port(text)) {
+        return Result<Endpoint>::fail("\"" + original +
+                                      "\": the port must be a number of 0 to 65535, or *");
+      }
       endpoint.address = text;
       return Result<Endpoint>::ok(std::move(endpoint));
     }

@@ -1,7 +1,8 @@
 #include "node/group.h"
 
 #include <algorithm>
-#include <span>
+#include <cassert>
+#include <utility>
 
 namespace palpate {
 
@@ -37,43 +38,39 @@ v1::RejectReason Group::judge(const ContactMessage& message, const Probe* probe,
   return v1::REJECT_REASON_UNSPECIFIED;
 }
 
-void Group::begin_object(const ContactMessage& message) {
-  recognizer_.reset();
-  members_.clear();
-  frame_ = message.frame;
-  object_ = message.object;
-  newest_.sample_stamp_ns = message.newest_sample_stamp_ns;
-}
-
-std::size_t Group::take(const ContactMessage& message, Continuity continuity, SteadyTime now) {
-  if (members_.empty() || message.object != object_) begin_object(message);
-  if (find_member(message.probe) == nullptr) {
-    members_.push_back({std::string(message.probe), PatchNumbering(), now});
+void Group::take(const ContactMessage& message, Continuity continuity, SteadyTime now) {
+  const bool begins_object = members_.empty() || message.object != object_;
+  if (begins_object) {
+    waiting_.clear();
+    members_.clear();
+    frame_ = message.frame;
+    object_ = message.object;
   }
-  const auto index = static_cast<std::size_t>(find_member(message.probe) - members_.data());
-  Member& member = members_[index];
-  if (continuity == Continuity::Anew) member.patches.end_run();
-  member.last_taken = now;
+  auto member = std::find_if(members_.begin(), members_.end(),
+                             [&](const Member& known) { return known.probe == message.probe; });
+  if (member == members_.end()) {
+    members_.push_back({std::string(message.probe), now});
+  } else {
+    member->last_taken = now;
+  }
   last_taken_ = now;
-
-  PatchContext context;
-  context.probe = static_cast<std::uint32_t>(index);
-  context.patch = member.patches.run_of(message.patch, continuity == Continuity::SamplesMissing,
-                                        options_.gap_break_spacings, message.samples);
-  context.tip_radius_m = message.tip_radius_m;
-  context.material_side = message.material_side;
-  const AddResult added = recognizer_.add(context, message.samples);
-
-  newest_.source = message.probe;
-  newest_.epoch = message.epoch;
-  newest_.seq = message.seq;
-  newest_.sample_stamp_ns = std::max(newest_.sample_stamp_ns, message.newest_sample_stamp_ns);
-  return message.samples.size() - added.accepted;
+  waiting_.push(message, continuity, begins_object);
 }
 
-ContactSource Group::source_of(std::uint32_t probe, std::uint32_t run) const {
-  if (probe >= members_.size()) return {};
-  return {members_[probe].probe, members_[probe].patches.wire_patch(run).value_or(0)};
+std::shared_ptr<GroupRecognizer> Group::begin_work() {
+  assert(!in_work_);
+  in_work_ = true;
+  in_work_bytes_ = waiting_.bytes();
+  std::swap(recognizer_->contacts, waiting_);  // theirs is empty: they have taken it in
+  return recognizer_;
+}
+
+GroupRecognizer::Answer& Group::end_work() {
+  assert(in_work_);
+  in_work_ = false;
+  in_work_bytes_ = 0;
+  last_compute_ns_ = recognizer_->answer.compute_ns;
+  return recognizer_->answer;
 }
 
 }  // namespace palpate

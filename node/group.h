@@ -1,18 +1,17 @@
-// The probes that touch one object, and its recognizer.
+// The probes that touch one object: which of their messages count, and what waits for the recognizer.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/recognition/recognizer.h"
-#include "node/convert.h"
+#include "node/contact_queue.h"
+#include "node/group_recognizer.h"
 #include "node/ingest.h"
-#include "node/patch_numbering.h"
 #include "node/probe_registry.h"
 
 namespace palpate {
@@ -25,62 +24,67 @@ struct GroupOptions {
   double gap_break_spacings = 10.0;
 };
 
+/// Belongs to the node's thread. Its recognizer works on a worker's, on one answer at a time: what
+/// comes meanwhile waits, and is answered for at once. Load makes answers coarser, never later.
 class Group {
  public:
-  /// A probe that has touched the present object. Its index is its number in the recognizer.
-  struct Member {
-    std::string probe;
-    PatchNumbering patches;
-    SteadyTime last_taken;
-  };
-
-  /// Where the samples taken last came from.
-  struct Newest {
-    std::string source;
-    std::uint64_t epoch = 0;
-    std::uint64_t seq = 0;
-    std::int64_t sample_stamp_ns = 0;  ///< the latest of all samples of the object
-  };
-
   Group(std::string_view name, const RecognizerOptions& recognizer, const GroupOptions& options)
-      : name_(name), options_(options), recognizer_(recognizer) {}
+      : name_(name),
+        options_(options),
+        recognizer_(
+            std::make_shared<GroupRecognizer>(name, recognizer, options.gap_break_spacings)) {}
 
   /// Whether the message may be taken; REJECT_REASON_UNSPECIFIED = yes. `probe` is its sender,
   /// nullptr where unknown so far. Changes nothing.
   v1::RejectReason judge(const ContactMessage& message, const Probe* probe, SteadyTime now) const;
 
-  /// How a message follows the one that its probe sent to this group before.
-  enum class Continuity { Unbroken, SamplesMissing, Anew };
+  /// Takes a message that judge() lets pass; it waits for the recognizer. An object that ends
+  /// before its turn is not recognised any more.
+  void take(const ContactMessage& message, Continuity continuity, SteadyTime now);
 
-  /// Takes a message that judge() lets pass. Returns the number of samples that the recognizer
-  /// refused.
-  std::size_t take(const ContactMessage& message, Continuity continuity, SteadyTime now);
+  /// Gives all that waits to the recognizer, which is to run() next. Until end_work() it belongs to
+  /// the thread that runs it.
+  std::shared_ptr<GroupRecognizer> begin_work();
 
-  Recognition recognize() { return recognizer_.recognize(); }
+  /// The recognizer is back; it holds the answer until the next begin_work().
+  GroupRecognizer::Answer& end_work();
 
-  /// Name of a probe and its own patch number, for the recognizer's numbers of both. Views a name
-  /// that lives until the next take().
-  ContactSource source_of(std::uint32_t probe, std::uint32_t run) const;
+  bool is_in_work() const { return in_work_; }
+
+  /// Its last answer took no longer than kQuickCompute, or it has had none yet.
+  bool is_quick() const { return last_compute_ns_ <= std::chrono::nanoseconds(kQuickCompute).count(); }
+
+  /// An answer that a planner of 50 Hz has in its next period.
+  static constexpr std::chrono::milliseconds kQuickCompute{20};
+
+  /// Memory of the messages that wait or are being taken in. [bytes]
+  std::size_t queued_bytes() const { return waiting_.bytes() + in_work_bytes_; }
 
   const std::string& name() const { return name_; }
-  const std::string& frame() const { return frame_; }
   std::uint64_t object() const { return object_; }
-  const std::vector<Member>& members() const { return members_; }
-  const Newest& newest() const { return newest_; }
+  std::size_t probe_count() const { return members_.size(); }
   SteadyTime last_taken() const { return last_taken_; }
 
  private:
+  // A probe that has touched the present object.
+  struct Member {
+    std::string probe;
+    SteadyTime last_taken;
+  };
+
   bool is_stale_object(const ContactMessage& message, const Probe* probe, SteadyTime now) const;
   const Member* find_member(std::string_view probe) const;
-  void begin_object(const ContactMessage& message);
 
   std::string name_;
   GroupOptions options_;
-  Recognizer recognizer_;
+  std::shared_ptr<GroupRecognizer> recognizer_;
+  ContactQueue waiting_;
+  bool in_work_ = false;
+  std::size_t in_work_bytes_ = 0;
+  std::int64_t last_compute_ns_ = 0;
   std::string frame_;
   std::uint64_t object_ = 0;
   std::vector<Member> members_;  ///< empty = no object yet
-  Newest newest_;
   SteadyTime last_taken_;
 };
 

@@ -7,10 +7,10 @@ namespace {
 
 using v1::RejectReason;
 
-Group::Continuity continuity_of(SequenceEvent event, bool same_group) {
-  if (same_group && event == SequenceEvent::Next) return Group::Continuity::Unbroken;
-  if (same_group && event == SequenceEvent::Gap) return Group::Continuity::SamplesMissing;
-  return Group::Continuity::Anew;
+Continuity continuity_of(SequenceEvent event, bool same_group) {
+  if (same_group && event == SequenceEvent::Next) return Continuity::Unbroken;
+  if (same_group && event == SequenceEvent::Gap) return Continuity::SamplesMissing;
+  return Continuity::Anew;
 }
 
 // A sender may claim any stamp; what cannot be subtracted is shown as 0.
@@ -23,22 +23,27 @@ std::int64_t latency_between(std::int64_t sent_ns, std::int64_t received_ns) {
 
 Intake::Intake(const IntakeOptions& options)
     : decoder_(options.limits),
-      probes_(options.max_probes, options.evict_idle),
-      groups_(options.max_groups, options.evict_idle, options.recognizer, options.group) {}
+      probes_(options.max_probes, options.groups.evict_idle),
+      groups_(options.groups, options.recognizer, options.group) {}
 
 RejectReason Intake::judge(const Probe* probe, const Group* group, SteadyTime now) const {
   const ContactMessage& message = decoder_.message();
   if (probe == nullptr && !probes_.has_room(now)) return v1::REJECT_REASON_TOO_MANY_PROBES;
   if (probe != nullptr) {
     const SequenceEvent event = probe->sequence.judge(message.epoch, message.seq);
-    if (event == SequenceEvent::NotNewer) return v1::REJECT_REASON_SEQUENCE;
     if (event == SequenceEvent::StaleEpoch) return v1::REJECT_REASON_STALE_EPOCH;
+    if (!is_news(event)) return v1::REJECT_REASON_SEQUENCE;
   }
-  if (group == nullptr) {
-    return groups_.has_room(now) ? v1::REJECT_REASON_UNSPECIFIED
-                                 : v1::REJECT_REASON_TOO_MANY_GROUPS;
+  if (group == nullptr && !groups_.has_room(message.probe, now)) {
+    return v1::REJECT_REASON_TOO_MANY_GROUPS;
   }
-  return group->judge(message, probe, now);
+  if (group != nullptr) {
+    const RejectReason reason = group->judge(message, probe, now);
+    if (reason != v1::REJECT_REASON_UNSPECIFIED) return reason;
+  }
+  return groups_.has_room_to_wait(group, ContactQueue::bytes_of(message))
+             ? v1::REJECT_REASON_UNSPECIFIED
+             : v1::REJECT_REASON_OVERLOAD;
 }
 
 RejectReason Intake::take(std::size_t frame_count, std::string_view topic, std::string_view payload,
@@ -64,13 +69,11 @@ RejectReason Intake::take(std::size_t frame_count, std::string_view topic, std::
     if (!evicted.empty()) forgotten_.probes.push_back(std::move(evicted));
   }
   if (group == nullptr) {
-    group = &groups_.add(message.group, evicted);
+    group = &groups_.add(message.group, message.probe, now, evicted);
     if (!evicted.empty()) forgotten_.groups.push_back(std::move(evicted));
   }
   const SequenceEvent event = probe->sequence.take(message.epoch, message.seq);
-  const Group::Continuity continuity = continuity_of(event, probe->group == message.group);
-  counters_.samples_refused += group->take(message, continuity, now);
-  groups_.mark_waiting(*group);
+  groups_.take(*group, message, continuity_of(event, probe->group == message.group), now);
 
   const std::size_t count = message.samples.size();
   probe->group = message.group;

@@ -17,9 +17,7 @@ namespace palpate {
 struct IntakeOptions {
   IngestLimits limits;
   std::size_t max_probes = 256;
-  std::size_t max_groups = 64;
-  /// Who is silent for longer may be forgotten to make room for another.
-  std::chrono::duration<double> evict_idle{10.0};
+  GroupBounds groups;  ///< its evict_idle holds for probes too
   GroupOptions group;
   RecognizerOptions recognizer;
 };
@@ -46,6 +44,9 @@ class Intake {
   const GroupRegistry& groups() const { return groups_; }
   const ProbeRegistry& probes() const { return probes_; }
   const IntakeCounters& counters() const { return counters_; }
+
+  /// The recognizer has refused so many of the samples taken.
+  void count_refused(std::size_t samples) { counters_.samples_refused += samples; }
 
   /// Names of groups and probes forgotten since the last call.
   struct Forgotten {

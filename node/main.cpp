@@ -1,17 +1,22 @@
 // palpate-node: the recognizer node. Exit codes: 0 stopped as asked, 1 failed at run time (an
 // endpoint is taken), 2 usage, 6 configuration.
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <google/protobuf/text_format.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <memory>
 #include <string>
 
 #include "node/config.h"
+#include "node/log_sink.h"
 #include "node/node.h"
+#include "node/quiet_protobuf.h"
+#include "node/reload_signal.h"
 #include "node/stop_signals.h"
 
 namespace {
@@ -98,23 +103,32 @@ int serve(const NodeOptions& options, const palpate::NodeKeys& keys) {
     spdlog::error("no signalfd");
     return kFailed;
   }
+  const int reload_fd = palpate::take_reload_signal();
+  bool unfinished = false;
   try {
     palpate::Node node(options, keys);
     spdlog::info("contacts on {}, results on {}{}", node.contacts_address(), node.results_address(),
                  keys.own ? ", CURVE" : "");
-    node.run(stop_fd);
+    node.run(stop_fd, reload_fd);
+    unfinished = node.unfinished_count() > 0;
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
     return kFailed;
   }
   ::close(stop_fd);
+  // What still computes must not meet the end of static objects.
+  if (unfinished) std::quick_exit(kStopped);
   return kStopped;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  spdlog::set_default_logger(spdlog::stderr_logger_st("palpate-node"));
+  palpate::silence_protobuf();
+  // Who reads our log or our output may go: that is an error of a write, no end.
+  std::signal(SIGPIPE, SIG_IGN);
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>(
+      "palpate-node", std::make_shared<palpate::LogSink>(STDERR_FILENO)));
   CLI::App app(
       "Recognises and locates curved parts: contacts in, recognitions out.\n"
       "Each option may also be set by PALPATE_<NAME> in the environment and by <name> in the\n"
@@ -149,6 +163,10 @@ int main(int argc, char** argv) {
   }
   if (command_line.print_config) {
     std::fputs(palpate::to_text(palpate::to_config(*options.value)).c_str(), stdout);
+    if (std::fflush(stdout) != 0) {
+      spdlog::error("standard output: cannot be written");
+      return kFailed;
+    }
   }
   if (command_line.print_config || command_line.check_config) return kStopped;
   return serve(*options.value, *keys.value);

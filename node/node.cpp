@@ -5,11 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
 #include <string_view>
+#include <thread>
+#include <utility>
 
 #include "node/clock.h"
-#include "node/convert.h"
+#include "node/reload_signal.h"
 #include "node/socket.h"
 #include "node/status.h"
 
@@ -20,14 +23,18 @@ using std::chrono::milliseconds;
 
 // Liveness is looked at this often; with the default timeout a frozen probe shows within 0.6 s.
 constexpr milliseconds kTick{100};
-// Under a flood, recognition gets its turn after this long.
-constexpr milliseconds kDrainTime{5};
-constexpr int kSubscriptionsPerTurn = 1000;
+// Under a flood, answers and all else get their turn after this long.
+constexpr milliseconds kDrainTime{1};
+constexpr int kSubscriptionsPerTurn = 100;
+// libzmq takes in all that waits before it gives us the first: a few at a time, so that who asks for
+// too much is noticed, and nobody waits, while it asks.
+constexpr int kSubscriptionsWaiting = 4;
 // Subscriptions are a topic and a byte; libzmq's own commands fit too.
 constexpr std::int64_t kMaxSubscriptionBytes = 1024;
 // What has been received is finished within this, or given up: with the sockets' linger the
 // process ends within half a second.
 constexpr milliseconds kFinishTime{300};
+constexpr milliseconds kFinishDrainTime{100};
 
 SteadyTime now_steady() { return std::chrono::steady_clock::now(); }
 
@@ -44,9 +51,18 @@ SocketSettings contacts_settings(const NodeOptions& options, const NodeKeys& key
 SocketSettings results_settings(const NodeOptions& options, const NodeKeys& keys) {
   SocketSettings settings;
   settings.send_high_water_mark = static_cast<int>(options.results_high_water_mark);
+  settings.receive_high_water_mark = kSubscriptionsWaiting;
   settings.max_message_bytes = kMaxSubscriptionBytes;
   settings.curve_server = keys.own;
   return settings;
+}
+
+// Slow recognitions nobody expected, as those of new groups, that may run beside as many as run at a
+// time anyway without keeping quick ones waiting.
+constexpr std::size_t kSpareWorkers = 4;
+
+std::size_t recognitions_at_a_time(const NodeOptions& options) {
+  return options.workers > 0 ? options.workers : std::max(std::thread::hardware_concurrency(), 1U);
 }
 
 }  // namespace
@@ -59,11 +75,14 @@ Node::Node(const NodeOptions& options, const NodeKeys& keys)
       results_(open(zmq::socket_type::xpub, options.results, results_settings(options, keys))),
       intake_(options.intake),
       publisher_(results_, options.name),
+      at_a_time_(recognitions_at_a_time(options)),
+      workers_(2 * at_a_time_ + kSpareWorkers),
+      in_work_(workers_.size()),
       started_(now_steady()),
       next_tick_(started_),
       next_status_(started_) {
-  guard(contacts_, options.contacts);
-  guard(results_, options.results);
+  contact_peers_ = guard(contacts_, options.contacts, "contacts");
+  result_peers_ = guard(results_, options.results, "results");
 }
 
 zmq::socket_t Node::open(zmq::socket_type type, const std::vector<std::string>& endpoints,
@@ -76,32 +95,33 @@ zmq::socket_t Node::open(zmq::socket_type type, const std::vector<std::string>& 
     }
     if (options_.probe_prefixes.empty()) socket.set(zmq::sockopt::subscribe, all);
   } else {
-    socket.set(zmq::sockopt::xpub_verbose, true);
+    socket.set(zmq::sockopt::xpub_verboser, true);
   }
   for (const std::string& text : endpoints) {
     const Result<Endpoint> endpoint = parse_endpoint(text, /*bind_by_default=*/true);
     if (!endpoint) throw std::runtime_error(endpoint.error);
-    if (const std::string path = ipc_path(endpoint.value->address);
-        endpoint.value->bind && !path.empty()) {
-      Result<PathLock> lock = PathLock::acquire(path);
-      if (!lock) throw std::runtime_error(lock.error);
-      locks_.push_back(std::move(*lock.value));
-    }
-    if (const std::string error = attach(socket, *endpoint.value); !error.empty()) {
+    if (const std::string error = attach(socket, *endpoint.value, &locks_.emplace_back());
+        !error.empty()) {
       throw std::runtime_error(error);
     }
   }
   return socket;
 }
 
-void Node::guard(zmq::socket_t& socket, const std::vector<std::string>& endpoints) {
+std::unique_ptr<PeerGuard> Node::guard(zmq::socket_t& socket,
+                                       const std::vector<std::string>& endpoints,
+                                       const char* what) {
   std::vector<std::string> connected;
   for (const std::string& text : endpoints) {
     const Result<Endpoint> endpoint = parse_endpoint(text, /*bind_by_default=*/true);
     if (endpoint && !endpoint.value->bind) connected.push_back(endpoint.value->address);
   }
-  if (connected.empty()) return;
+  // libzmq tells a socket's events to one listener: the peers of one that connects are of its choice.
+  if (connected.empty()) {
+    return std::make_unique<PeerGuard>(context_, socket, options_.peers, what);
+  }
   guards_.push_back(std::make_unique<ReconnectGuard>(context_, socket, std::move(connected)));
+  return nullptr;
 }
 
 void Node::run(const std::stop_token& stop) {
@@ -114,36 +134,54 @@ void Node::run(const std::stop_token& stop) {
   ::close(fd);
 }
 
-void Node::run(int stop_fd) {
+void Node::run(int stop_fd, int reload_fd) {
   std::vector<zmq::pollitem_t> items{{nullptr, stop_fd, ZMQ_POLLIN, 0},
                                      {contacts_.handle(), 0, ZMQ_POLLIN, 0},
-                                     {results_.handle(), 0, ZMQ_POLLIN, 0}};
+                                     {results_.handle(), 0, ZMQ_POLLIN, 0},
+                                     {nullptr, workers_.finished_fd(), ZMQ_POLLIN, 0}};
+  for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
+    if (peers != nullptr) items.push_back({peers->events().handle(), 0, ZMQ_POLLIN, 0});
+  }
   if (zap_) items.push_back({zap_->socket().handle(), 0, ZMQ_POLLIN, 0});
   for (;;) {
     const SteadyTime before = now_steady();
     const auto until_tick =
         std::chrono::ceil<milliseconds>(std::max(next_tick_ - before, SteadyTime::duration(0)));
-    const bool has_work = intake_.groups().next_waiting() != nullptr;
-    poll(items, has_work ? 0 : static_cast<int>(until_tick.count()));
+    // Where a quick group waits for a worker, one is freed by time alone: see slow_count().
+    const bool waits = intake_.groups().next_waiting() != nullptr;
+    const auto timeout = waits ? std::min(until_tick, Group::kQuickCompute) : until_tick;
+    poll(items, static_cast<int>(timeout.count()));
     if (items[0].revents != 0) break;
     const SteadyTime now = now_steady();
+    if (items[3].revents != 0) take_answers();
     if (items[1].revents != 0) drain_contacts(now + kDrainTime);
-    if (items[2].revents != 0) publisher_.serve_subscriptions(kSubscriptionsPerTurn);
-    if (zap_ && items[3].revents != 0) zap_->serve();
-    recognize_next();
-    if (now >= next_tick_) tick(now);
+    if (contact_peers_) contact_peers_->tend(now);
+    if (result_peers_) result_peers_->tend(now);
+    publisher_.serve_subscriptions(items[2].revents != 0 ? kSubscriptionsPerTurn : 0,
+                                   result_peers_.get(), now);
+    if (zap_ && items.back().revents != 0) zap_->serve();
+    give_out_work(now_steady());
+    if (now >= next_tick_) {
+      tick(now);
+      // Nobody waits for this: a tick's time is soon enough.
+      if (reload_fd >= 0 && reload_requested(reload_fd)) reload_clients();
+    }
   }
   finish();
 }
 
-void Node::drain_contacts(SteadyTime deadline) {
+// False where nothing more waits.
+bool Node::drain_contacts(SteadyTime deadline) {
   SteadyTime now = now_steady();
-  while (now < deadline && receive_now(contacts_, incoming_)) {
+  bool more = true;
+  while (now < deadline && (more = receive_now(contacts_, incoming_))) {
+    if (contact_peers_) contact_peers_->hear(descriptor_of(incoming_.topic));
     intake_.take(incoming_.frame_count, view_of(incoming_.topic), view_of(incoming_.payload), now,
                  unix_time_ns());
     now = now_steady();
   }
   forget_evicted();
+  return more;
 }
 
 void Node::forget_evicted() {
@@ -154,50 +192,45 @@ void Node::forget_evicted() {
   for (const std::string& probe : forgotten.probes) publisher_.forget(TopicKind::Estimate, probe);
 }
 
-void Node::recognize_next() {
-  Group* group = intake_.groups().next_waiting();
-  if (group == nullptr) return;
-  const SteadyTime start = now_steady();
-  const Recognition recognition = group->recognize();
-  const std::int64_t compute_ns = std::chrono::nanoseconds(now_steady() - start).count();
-  compute_times_.add(compute_ns);
-  publish(recognition, *group, compute_ns);
-  if (options_.publish_estimates) publish_estimates(recognition, *group);
-  intake_.groups().mark_served(*group, compute_ns);
+// Recognitions that take long, as their last one did or as they do already.
+std::size_t Node::slow_count(SteadyTime now) const {
+  return static_cast<std::size_t>(
+      std::count_if(in_work_.begin(), in_work_.end(), [&](const InWork& work) {
+        return work.group != nullptr && (work.is_slow || now - work.since > Group::kQuickCompute);
+      }));
 }
 
-void Node::publish(const Recognition& recognition, const Group& group, std::int64_t compute_ns) {
-  v1::Recognition& message = recognition_message_;
-  to_wire(
-      recognition,
-      [&](std::uint32_t probe, std::uint32_t run) { return group.source_of(probe, run); }, message);
-  message.mutable_header()->set_frame(group.frame());
-  message.set_group(group.name());
-  message.set_object(group.object());
-  message.set_newest_sample_stamp_ns(group.newest().sample_stamp_ns);
-  message.set_newest_batch_seq(group.newest().seq);
-  message.set_newest_batch_epoch(group.newest().epoch);
-  message.set_newest_batch_source(group.newest().source);
-  message.set_compute_ns(compute_ns);
-  publisher_.publish(TopicKind::Recognition, group.name(), *message.mutable_header(), message);
-  ++recognitions_published_;
-}
-
-// The latest place of each probe.
-void Node::publish_estimates(const Recognition& recognition, const Group& group) {
-  std::vector<const LocalizedContact*> latest(group.members().size(), nullptr);
-  for (const LocalizedContact& contact : recognition.contacts) {
-    if (contact.probe >= latest.size()) continue;
-    const LocalizedContact*& known = latest[contact.probe];
-    if (known == nullptr || contact.patch >= known->patch) known = &contact;
+// As many at a time as there are cores to compute them, and one more for each that is slow: the
+// quick ones go on beside them, and share the cores.
+void Node::give_out_work(SteadyTime now) {
+  while (workers_.idle_count() > 0) {
+    const std::size_t slow = slow_count(now);
+    if (workers_.busy_count() >= at_a_time_ + slow) return;
+    Group* group = intake_.groups().next_waiting(/*only_quick=*/slow >= at_a_time_);
+    if (group == nullptr) return;
+    std::shared_ptr<GroupRecognizer> recognizer = intake_.groups().begin_work(*group);
+    recognizer->wants_estimates = options_.publish_estimates;
+    in_work_[workers_.start(std::move(recognizer))] = {group, !group->is_quick(), now};
   }
-  for (const LocalizedContact* contact : latest) {
-    if (contact == nullptr) continue;
-    const ContactSource source = group.source_of(contact->probe, contact->patch);
-    to_wire(contact->estimate, source, estimate_message_);
-    estimate_message_.mutable_header()->set_frame(group.frame());
-    publisher_.publish(TopicKind::Estimate, source.probe, *estimate_message_.mutable_header(),
-                       estimate_message_);
+}
+
+void Node::take_answers() {
+  while (const std::optional<std::size_t> worker = workers_.take_finished()) {
+    Group& group = *std::exchange(in_work_[*worker].group, nullptr);
+    publish(group);
+  }
+}
+
+void Node::publish(Group& group) {
+  GroupRecognizer::Answer& answer = intake_.groups().end_work(group);
+  intake_.count_refused(answer.samples_refused);
+  compute_times_.add(answer.compute_ns);
+  v1::Recognition& recognition = answer.recognition;
+  publisher_.publish(TopicKind::Recognition, group.name(), *recognition.mutable_header(),
+                     recognition);
+  ++recognitions_published_;
+  for (v1::LocalEstimate& estimate : answer.estimates) {
+    publisher_.publish(TopicKind::Estimate, estimate.probe(), *estimate.mutable_header(), estimate);
   }
 }
 
@@ -224,6 +257,9 @@ void Node::publish_status(SteadyTime now) {
   vitals.version = PALPATE_VERSION;
   vitals.recognitions_published = recognitions_published_;
   vitals.clients_denied = zap_ ? zap_->denied_count() : 0;
+  for (const PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
+    if (peers != nullptr) vitals.connections_cut += peers->cut_count();
+  }
   fill_status(intake_, compute_times_, vitals, now, status_message_);
   publisher_.publish(TopicKind::Status, options_.name, *status_message_.mutable_header(),
                      status_message_);
@@ -238,15 +274,51 @@ void Node::log_rejections() {
                  v1::RejectReason_Name(static_cast<v1::RejectReason>(i)));
   }
   rejections_logged_ = rejected;
+  for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
+    const std::string report = peers == nullptr ? std::string() : peers->take_report();
+    if (!report.empty()) spdlog::warn("{}", report);
+  }
+}
+
+void Node::reload_clients() {
+  if (!zap_) {
+    spdlog::info("asked to reread the allowed clients: without CURVE there are none");
+    return;
+  }
+  const Result<std::vector<std::string>> keys = read_public_keys(options_.allow_clients);
+  if (!keys) {
+    spdlog::error("allowed clients stay as they were: {}", keys.error);
+    return;
+  }
+  ClientList clients(*keys.value);
+  const bool somebody_left = !clients.allows_all_of(zap_->clients());
+  zap_->allow(std::move(clients));
+  spdlog::info("{} allowed clients reread", keys.value->size());
+  // Whose connection is whose cannot be told: who may, is back within 50 ms.
+  for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
+    if (somebody_left && peers != nullptr) peers->cut_all("keys have been taken off the list");
+  }
 }
 
 void Node::finish() {
   const SteadyTime deadline = now_steady() + kFinishTime;
-  drain_contacts(deadline);
-  while (now_steady() < deadline && intake_.groups().next_waiting() != nullptr) recognize_next();
+  // What flows on for longer is not what was received when the stop came.
+  const SteadyTime drained = now_steady() + kFinishDrainTime;
+  while (now_steady() < drained && drain_contacts(now_steady() + kDrainTime)) {
+    give_out_work(now_steady());
+  }
+  std::vector<zmq::pollitem_t> items{{nullptr, workers_.finished_fd(), ZMQ_POLLIN, 0}};
+  for (;;) {
+    take_answers();
+    give_out_work(now_steady());
+    const auto left = std::chrono::ceil<milliseconds>(deadline - now_steady());
+    if (!intake_.groups().has_work() || left.count() <= 0) break;
+    poll(items, static_cast<int>(left.count()));
+  }
   publish_status(now_steady());
   spdlog::info("stopped: {} messages received, {} recognitions published",
                intake_.counters().messages_received, recognitions_published_);
+  if (intake_.groups().has_work()) spdlog::warn("stopped before all recognitions had ended");
 }
 
 }  // namespace palpate

@@ -1,4 +1,5 @@
-// The recognizer as a process: contacts in, recognitions out. One thread, one poll.
+// The recognizer as a process: contacts in, recognitions out. One thread and one poll for all sockets,
+// workers for what takes long.
 #pragma once
 
 #include <chrono>
@@ -15,14 +16,14 @@
 #include "node/node_keys.h"
 #include "node/options.h"
 #include "node/path_lock.h"
+#include "node/peer_guard.h"
 #include "node/reconnect_guard.h"
 #include "node/result.h"
 #include "node/result_publisher.h"
 #include "node/socket.h"
+#include "node/workers.h"
 #include "node/zap_handler.h"
-#include "palpate/v1/local_estimate.pb.h"
 #include "palpate/v1/node_status.pb.h"
-#include "palpate/v1/recognition.pb.h"
 
 namespace palpate {
 
@@ -33,28 +34,42 @@ class Node {
   Node(const NodeOptions& options, const NodeKeys& keys);
 
   /// Serves until `stop_fd` is readable; then takes what has been received, recognises and
-  /// publishes it, and returns.
-  void run(int stop_fd);
+  /// publishes it, as far as that is done within 0.3 s, and returns.
+  /// Where `reload_fd` (take_reload_signal) says so, the list of allowed clients is read again.
+  void run(int stop_fd, int reload_fd = -1);
 
   /// The same, until a stop is requested.
   void run(const std::stop_token& stop);
+
+  /// Recognitions that run() has left behind, because they took too long.
+  std::size_t unfinished_count() const { return workers_.busy_count(); }
 
   /// Addresses bound last: with "tcp://127.0.0.1:*" the port that the system chose.
   std::string contacts_address() const { return contacts_.get(zmq::sockopt::last_endpoint); }
   std::string results_address() const { return results_.get(zmq::sockopt::last_endpoint); }
 
  private:
+  // What a worker computes; no group where it is idle.
+  struct InWork {
+    Group* group = nullptr;
+    bool is_slow = false;  // as far as its last answer tells
+    SteadyTime since;
+  };
+
   zmq::socket_t open(zmq::socket_type type, const std::vector<std::string>& endpoints,
                      const SocketSettings& settings);
-  void guard(zmq::socket_t& socket, const std::vector<std::string>& endpoints);
-  void drain_contacts(SteadyTime deadline);
-  void recognize_next();
-  void publish(const Recognition& recognition, const Group& group, std::int64_t compute_ns);
-  void publish_estimates(const Recognition& recognition, const Group& group);
+  std::unique_ptr<PeerGuard> guard(zmq::socket_t& socket, const std::vector<std::string>& endpoints,
+                                   const char* what);
+  bool drain_contacts(SteadyTime deadline);
+  void give_out_work(SteadyTime now);
+  std::size_t slow_count(SteadyTime now) const;
+  void take_answers();
+  void publish(Group& group);
   void forget_evicted();
   void tick(SteadyTime now);
   void publish_status(SteadyTime now);
   void log_rejections();
+  void reload_clients();
   void finish();
 
   NodeOptions options_;
@@ -64,10 +79,15 @@ class Node {
   zmq::socket_t contacts_;
   zmq::socket_t results_;
   std::vector<std::unique_ptr<ReconnectGuard>> guards_;
+  std::unique_ptr<PeerGuard> contact_peers_;  // nullptr where the socket connects
+  std::unique_ptr<PeerGuard> result_peers_;
   Intake intake_;
   ResultPublisher publisher_;
   ComputeTimes compute_times_;
   std::uint64_t recognitions_published_ = 0;
+  std::size_t at_a_time_;  // recognitions, where none is slow
+  Workers workers_;
+  std::vector<InWork> in_work_;  // by worker
   SteadyTime started_;
   SteadyTime next_tick_;
   SteadyTime next_status_;
@@ -75,8 +95,6 @@ class Node {
 
   // Reused: parsing and filling them again allocates nothing.
   TwoFrames incoming_;
-  v1::Recognition recognition_message_;
-  v1::LocalEstimate estimate_message_;
   v1::NodeStatus status_message_;
 };
 

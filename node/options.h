@@ -8,6 +8,7 @@
 
 #include "node/endpoint.h"
 #include "node/intake.h"
+#include "node/peer_guard.h"
 #include "node/recognizer_options.h"
 
 namespace palpate {
@@ -26,9 +27,11 @@ struct NodeOptions {
   std::uint32_t results_high_water_mark = 1000;
   double probe_timeout_s = 0.5;
   double status_period_s = 1.0;
+  std::uint32_t workers = 0;  ///< 0 = as many as there are cores
   bool publish_estimates = false;
   std::string log_level = "info";
   RecognizerWords words;
+  PeerBounds peers;
   IntakeOptions intake;
 };
 
@@ -57,14 +60,27 @@ void for_each_option(Options& options, Visit&& visit) {
         options.contacts_high_water_mark);
   visit({"results_high_water_mark", "Messages that may wait for one planner", 1, kMostMessages},
         options.results_high_water_mark);
+  visit({"max_peers", "Most connections to each socket", 1, kMostThings}, options.peers.max_peers);
+  visit({"max_subscription_bytes",
+         "Subscriptions of one planner, 32 bytes counted beside each; of all 16 times as much [bytes]",
+         1024, 1e8},
+        options.peers.max_subscription_bytes);
   visit({"max_message_bytes", "Longest contact message [bytes]", 1024, 1e8},
         intake.limits.max_message_bytes);
   visit({"max_samples_per_batch", "Most samples of one message", 1, kMostMessages},
         intake.limits.max_samples_per_batch);
   visit({"max_probes", "Most probes known at a time", 1, kMostThings}, intake.max_probes);
-  visit({"max_groups", "Most groups in memory", 1, kMostThings}, intake.max_groups);
+  visit({"max_groups", "Most groups in memory", 1, kMostThings}, intake.groups.max_groups);
+  visit({"max_groups_per_probe",
+         "Groups a probe may have opened; a further one takes the place of its oldest", 1, kMostThings},
+        intake.groups.max_groups_per_probe);
   visit({"max_probes_per_group", "Most probes that touch one object", 1, kMostThings},
         intake.group.max_probes_per_group);
+  visit({"max_waiting_bytes",
+         "Memory of messages that wait for recognition, of all groups together [bytes]", 1 << 16, 4e9},
+        intake.groups.max_waiting_bytes);
+  visit({"workers", "Recognitions computed at a time; 0 = as many as there are cores", 0, 1024},
+        options.workers);
   visit({"max_coordinate_m", "Largest |x| and |y| [m]", 1e-9, 1e9}, intake.limits.max_coordinate_m);
   visit({"max_sigma_m", "Largest sigma of a sample [m]", 1e-9, 1e9}, intake.limits.max_sigma_m);
   visit({"max_tip_radius_m", "Largest tip radius [m]", 1e-9, 1e9}, intake.limits.max_tip_radius_m);
@@ -74,7 +90,7 @@ void for_each_option(Options& options, Visit&& visit) {
          3600},
         options.status_period_s);
   visit({"evict_idle_s", "Who is silent for longer may be forgotten to make room [s]", 0, kLongest},
-        intake.evict_idle);
+        intake.groups.evict_idle);
   visit({"object_takeover_s",
          "A probe with another object number than its group's is heard after the others' silence "
          "of this [s]",

@@ -15,6 +15,7 @@ class PathLock {
   /// Fails where another process, or another lock in this one, holds it.
   static Result<PathLock> acquire(const std::string& path);
 
+  PathLock() = default;  ///< holds nothing
   PathLock(PathLock&& other) noexcept;
   PathLock& operator=(PathLock&& other) noexcept;
   ~PathLock();

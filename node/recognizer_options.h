@@ -43,25 +43,11 @@ void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& vi
   visit({"determined_fraction",
          "RECOGNIZED needs each parameter's standard deviation within this fraction of it", 0, 1e3},
         recognizer.determined_fraction);
-  visit({"determined_nonlinearity",
-         "RECOGNIZED needs what the covariance leaves out to be at most this fraction of what it describes"},
-        recognizer.determined_nonlinearity);
-  visit({"parsimony", "Price of a parameter in units of log(n)", 0, 1e3}, recognizer.parsimony);
-  visit({"excluded_departure",
-         "RECOGNIZED as a limit of a richer class needs larger departures excluded", 0, 1},
-        recognizer.excluded_departure);
-  visit({"excluded_turn_rad", "RECOGNIZED as a line needs larger turns excluded [rad]", 0, 7},
-        recognizer.excluded_turn_rad);
-  visit({"form_error_fraction", "Form error of a real part, of the touched half extent", 0, 1},
-        recognizer.form_error_fraction);
   visit({"form_deviation_m",
          "Stated form error of the parts, a standard deviation: half of a +- tolerance [m]", 0, 1e3},
         recognizer.form_deviation_m);
   visit({"false_outlier_probability", "Chance that a clean scene loses a sample as a spike", 0, 1},
         recognizer.false_outlier_probability);
-  visit({"inside_probability", "Prior that tips whose probe tells no side touched from within a bend",
-         1e-12, 1 - 1e-12},
-        recognizer.inside_probability);
   visit({"most_samples_per_patch", "Samples of a patch before neighbours are merged", 8,
          kMostSamples},
         recognizer.memory.most_samples_per_patch);

@@ -28,22 +28,30 @@ void ResultPublisher::publish(TopicKind kind, std::string_view name, v1::Header&
   ++published_count_;
 }
 
-void ResultPublisher::serve_subscriptions(int max_messages) {
-  bool any = false;
+void ResultPublisher::serve_subscriptions(int max_messages, PeerGuard* peers,
+                                          std::chrono::steady_clock::time_point now) {
   TwoFrames message;
   for (int count = 0; count < max_messages && receive_now(socket_, message); ++count) {
     const std::string_view text(message.topic.data<char>(), message.topic.size());
     // First byte 1 and then the prefix; 0 ends a subscription; anything else is no business of
     // ours.
-    if (message.frame_count != 1 || text.empty() || text.front() != '\1') continue;
+    const bool begins = !text.empty() && text.front() == '\1';
+    const bool ends = !text.empty() && text.front() == '\0';
+    if (message.frame_count != 1 || (!begins && !ends)) continue;
     const std::string_view prefix = text.substr(1);
+    if (peers != nullptr) {
+      peers->count_subscription(descriptor_of(message.topic), begins, prefix.size());
+    }
+    if (ends) continue;
     for (auto feed = feeds_.lower_bound(prefix);
          feed != feeds_.end() && feed->first.starts_with(prefix); ++feed) {
       feed->second.asked_for = true;
-      any = true;
+      any_asked_for_ = true;
     }
   }
-  if (!any) return;
+  if (!any_asked_for_ || now < next_repeat_) return;
+  any_asked_for_ = false;
+  next_repeat_ = now + kLeastRepeat;
   for (auto& [topic, feed] : feeds_) {
     if (feed.asked_for) send_now(socket_, topic, feed.payload);
     feed.asked_for = false;

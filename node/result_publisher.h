@@ -3,12 +3,14 @@
 
 #include <google/protobuf/message_lite.h>
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
 #include <zmq.hpp>
 
+#include "node/peer_guard.h"
 #include "node/topics.h"
 #include "palpate/v1/header.pb.h"
 
@@ -27,8 +29,13 @@ class ResultPublisher {
                const google::protobuf::MessageLite& message);
 
   /// Takes the subscriptions that have come, at most `max_messages`, and sends the subscribers the
-  /// latest of every topic that they ask for, each once however many ask.
-  void serve_subscriptions(int max_messages);
+  /// latest of every topic that they ask for: each once however many ask, and as it reaches all of
+  /// them, no oftener than every kLeastRepeat. What comes too soon waits for the next call. `peers`
+  /// counts them; nullptr = nobody does.
+  void serve_subscriptions(int max_messages, PeerGuard* peers,
+                           std::chrono::steady_clock::time_point now);
+
+  static constexpr std::chrono::milliseconds kLeastRepeat{50};
 
   /// Sends the latest of all topics again: a planner that has lost the newest message to a full
   /// queue would otherwise stay with an old answer until the next touch.
@@ -53,6 +60,8 @@ class ResultPublisher {
   std::uint64_t epoch_;
   bool has_forgotten_ = false;
   std::map<std::string, Feed, std::less<>> feeds_;  // by topic: a prefix is a range
+  bool any_asked_for_ = false;
+  std::chrono::steady_clock::time_point next_repeat_;
   std::uint64_t published_count_ = 0;
 };
 

@@ -11,14 +11,16 @@ enum class SequenceEvent {
   First,       ///< nothing was known of this sender
   Next,        ///< follows the last one
   Gap,         ///< messages before it are missing
-  Restart,     ///< a new epoch
+  Restart,     ///< a new epoch, or the same one counted anew
   NotNewer,    ///< a duplicate, or out of order: not to be used
+  TooFarAhead, ///< more missing than anybody can have sent: not to be used
   StaleEpoch,  ///< from before a restart: not to be used
 };
 
 /// True where the message is to be used.
 constexpr bool is_news(SequenceEvent event) {
-  return event != SequenceEvent::NotNewer && event != SequenceEvent::StaleEpoch;
+  return event != SequenceEvent::NotNewer && event != SequenceEvent::TooFarAhead &&
+         event != SequenceEvent::StaleEpoch;
 }
 
 class SequenceTracker {
@@ -32,6 +34,10 @@ class SequenceTracker {
       }
       return SequenceEvent::Restart;
     }
+    if (seq > seq_ && seq - seq_ > kLargestGap) return SequenceEvent::TooFarAhead;
+    // One wild number must not shut a sender out that counts on from where it was. And a sender
+    // that never sets its epoch has no other way to say that it has restarted.
+    if (seq < seq_ && (seq_ - seq > kLargestGap || epoch == 0)) return SequenceEvent::Restart;
     if (seq <= seq_) return SequenceEvent::NotNewer;
     return seq == seq_ + 1 ? SequenceEvent::Next : SequenceEvent::Gap;
   }
@@ -49,9 +55,7 @@ class SequenceTracker {
     missing_ += lost;
     if (event == SequenceEvent::Restart) {
       ++restarts_;
-      retired_[next_retired_] = epoch_;
-      next_retired_ = (next_retired_ + 1) % retired_.size();
-      if (retired_count_ < retired_.size()) ++retired_count_;
+      if (epoch != epoch_) retire(epoch_);
     }
     started_ = true;
     epoch_ = epoch;
@@ -66,6 +70,14 @@ class SequenceTracker {
   std::uint64_t restarts() const { return restarts_; }  ///< changes of epoch
 
  private:
+  void retire(std::uint64_t epoch) {
+    retired_[next_retired_] = epoch;
+    next_retired_ = (next_retired_ + 1) % retired_.size();
+    if (retired_count_ < retired_.size()) ++retired_count_;
+  }
+
+  // What a sender of 1 kHz sends in 50 days unheard.
+  static constexpr std::uint64_t kLargestGap = std::uint64_t{1} << 32U;
   // Epochs left behind. Old connections drain within seconds: a handful of restarts is enough.
   static constexpr std::size_t kRetiredEpochs = 8;
 

@@ -1,6 +1,8 @@
 #include "node/socket.h"
 
 #include <cerrno>
+#include <mutex>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -24,6 +26,19 @@ constexpr int kReconnectMaxMs = 32;
 constexpr int kLingerMs = 100;
 // ZMQ_ZAP_ENFORCE_DOMAIN: libzmq 4.3 has it, zmq.h shows it among the drafts only.
 constexpr int kZapEnforceDomain = 93;
+
+// Of those who bind once and for all.
+class PathLocks {
+ public:
+  void keep(PathLock lock) {
+    const std::lock_guard guard(mutex_);
+    locks_.push_back(std::move(lock));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<PathLock> locks_;
+};
 
 }  // namespace
 
@@ -63,7 +78,18 @@ zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
   return socket;
 }
 
-std::string attach(zmq::socket_t& socket, const Endpoint& endpoint) {
+std::string attach(zmq::socket_t& socket, const Endpoint& endpoint, PathLock* lock) {
+  // libzmq would take the path from whoever has bound it, and leave that one deaf.
+  if (const std::string path = ipc_path(endpoint.address); endpoint.bind && !path.empty()) {
+    Result<PathLock> locked = PathLock::acquire(path);
+    if (!locked) return "cannot bind to " + endpoint.address + ": " + locked.error;
+    static PathLocks kept;
+    if (lock != nullptr) {
+      *lock = std::move(*locked.value);
+    } else {
+      kept.keep(std::move(*locked.value));
+    }
+  }
   // Only where an address says so: else IPv4 addresses would be shown as mapped ones.
   socket.set(zmq::sockopt::ipv6, endpoint.address.find('[') != std::string::npos);
   const int rc = endpoint.bind ? zmq_bind(socket.handle(), endpoint.address.c_str())

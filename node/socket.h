@@ -1,6 +1,7 @@
 // ZeroMQ sockets with this project's settings, and the two-frame message.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "node/curve_keys.h"
 #include "node/endpoint.h"
+#include "node/path_lock.h"
 
 namespace palpate {
 
@@ -25,8 +27,9 @@ struct CurveClient {
 struct SocketSettings {
   int send_high_water_mark = 1000;     ///< messages waiting for one peer
   int receive_high_water_mark = 1000;  ///< messages waiting from one peer
-  /// Longest frame accepted; a longer one costs its sender the connection. -1 = any. [bytes]
-  std::int64_t max_message_bytes = -1;
+  /// Longest frame accepted; a longer one costs its sender the connection. The longest that the
+  /// recognizer sends, a Recognition with 1,000 contacts, is a fortieth of this. [bytes]
+  std::int64_t max_message_bytes = std::int64_t{16} << 20;
   std::optional<CurveKeyPair> curve_server;  ///< set on the recognizer's side: needs a ZapHandler
   std::optional<CurveClient> curve_client;   ///< set on the other side
 };
@@ -36,8 +39,9 @@ struct SocketSettings {
 zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
                           const SocketSettings& settings);
 
-/// Binds or connects. Returns an empty string, or what went wrong.
-std::string attach(zmq::socket_t& socket, const Endpoint& endpoint);
+/// Binds or connects. Returns an empty string, or what went wrong. Who binds an ipc path locks it: in
+/// `lock`, to be kept as long as the socket, or without it until the process ends.
+std::string attach(zmq::socket_t& socket, const Endpoint& endpoint, PathLock* lock = nullptr);
 
 /// What one receive brought. Frames beyond the second are dropped and counted only.
 struct TwoFrames {
@@ -48,6 +52,18 @@ struct TwoFrames {
 
 /// Takes one waiting message; false where none waits. Never blocks, never throws on a signal.
 bool receive_now(zmq::socket_t& socket, TwoFrames& message);
+
+/// Takes what waits and gives it to take(message), at most `most` messages and until `deadline`: a
+/// flood ends no loop. True where more may wait.
+template <typename Take>
+bool drain(zmq::socket_t& socket, TwoFrames& message, int most,
+           std::chrono::steady_clock::time_point deadline, Take&& take) {
+  for (int count = 0; count < most && std::chrono::steady_clock::now() < deadline; ++count) {
+    if (!receive_now(socket, message)) return false;
+    take(message);
+  }
+  return true;
+}
 
 /// Sends without blocking; false where the peer's high-water mark (or no peer) drops it.
 bool send_now(zmq::socket_t& socket, std::string_view topic, std::string_view payload);

@@ -56,6 +56,7 @@ void fill_status(Intake& intake, ComputeTimes& compute_times, const NodeVitals& 
   out.set_groups_evicted(intake.groups().evicted_count());
   out.set_recognitions_published(vitals.recognitions_published);
   out.set_clients_denied(vitals.clients_denied);
+  out.set_connections_cut(vitals.connections_cut);
   constexpr double kMedian = 0.5;
   constexpr double kTail = 0.99;
   out.set_compute_p50_ns(compute_times.quantile(kMedian));

@@ -16,6 +16,7 @@ struct NodeVitals {
   std::string_view version;
   std::uint64_t recognitions_published = 0;
   std::uint64_t clients_denied = 0;
+  std::uint64_t connections_cut = 0;
 };
 
 /// All but the header. Clears `out` first.

@@ -2,10 +2,7 @@
 
 #include <google/protobuf/io/tokenizer.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
+#include "node/bounded_file.h"
 
 namespace palpate {
 namespace {
@@ -44,17 +41,9 @@ std::string parse_text(const std::string& text, const std::string& name, google:
 }
 
 Result<std::string> read_file(const std::string& path) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (in) {
-    errno = 0;
-    text << in.rdbuf();
-  }
-  // Nothing to insert fails as well: an empty file, which is none of errno's errors.
-  if (!in || (!text && errno != 0)) {
-    return Result<std::string>::fail(path + ": cannot be read: " + std::strerror(errno));
-  }
-  return Result<std::string>::ok(text.str());
+  // Far more than a person writes. [bytes]
+  constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+  return read_bounded(path, kMostBytes);
 }
 
 }  // namespace palpate

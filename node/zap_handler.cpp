@@ -2,6 +2,8 @@
 
 #include <zmq.h>
 
+#include <algorithm>
+
 #include "node/socket.h"
 
 namespace palpate {
@@ -24,6 +26,10 @@ ClientList::ClientList(const std::vector<std::string>& public_keys) {
 }
 
 bool ClientList::allows(std::string_view key) const { return keys_.find(key) != keys_.end(); }
+
+bool ClientList::allows_all_of(const ClientList& other) const {
+  return std::includes(keys_.begin(), keys_.end(), other.keys_.begin(), other.keys_.end());
+}
 
 std::array<std::string, 6> zap_reply(std::span<const std::string> frames,
                                      const ClientList& clients) {

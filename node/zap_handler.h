@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 #include <zmq.hpp>
 
@@ -20,6 +21,9 @@ class ClientList {
 
   /// `key`: 32 raw bytes, as ZAP gives them.
   bool allows(std::string_view key) const;
+
+  /// Whether all of the other's keys may connect here too.
+  bool allows_all_of(const ClientList& other) const;
 
  private:
   std::set<std::string, std::less<>> keys_;  // raw bytes
@@ -39,6 +43,10 @@ class ZapHandler {
 
   /// Answers what has been asked so far.
   void serve();
+
+  /// Who may connect from now on.
+  void allow(ClientList clients) { clients_ = std::move(clients); }
+  const ClientList& clients() const { return clients_; }
 
   /// To be polled for input.
   zmq::socket_t& socket() { return socket_; }

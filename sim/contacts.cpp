@@ -14,14 +14,14 @@ constexpr double kDefaultLiftOffS = 0.2;
 
 double or_default(double value, double standard) { return value > 0.0 ? value : standard; }
 
+double rate_of(const v1::SceneProbe& probe) { return or_default(probe.rate_hz(), kDefaultRateHz); }
+
 /// Places that a patch touches, at equal arc lengths.
 class PatchWalk {
  public:
   PatchWalk(const Shape& shape, const v1::SceneProbe& probe, const v1::ScenePatch& patch)
-      : shape_(shape), rate_hz_(or_default(probe.rate_hz(), kDefaultRateHz)) {
-    const double spacing = patch.pace_case() == v1::ScenePatch::kSpeedMPerS
-                               ? patch.speed_m_per_s() / rate_hz_
-                               : patch.spacing_m();
+      : shape_(shape), rate_hz_(rate_of(probe)) {
+    const double spacing = spacing_of(probe, patch);
     // A spacing that divides the arc but for rounding reaches its end.
     count_ = static_cast<std::size_t>(std::floor(patch.arc_m() / spacing * (1.0 + 1e-12))) + 1;
     step_ = patch.backwards() ? -spacing : spacing;
@@ -112,6 +112,11 @@ double duration_s(const Shape& shape, const v1::SceneProbe& probe, const v1::Sce
 }
 
 }  // namespace
+
+double spacing_of(const v1::SceneProbe& probe, const v1::ScenePatch& patch) {
+  return patch.pace_case() == v1::ScenePatch::kSpeedMPerS ? patch.speed_m_per_s() / rate_of(probe)
+                                                          : patch.spacing_m();
+}
 
 std::vector<SimulatedProbe> simulate_contacts(const Scene& scene, std::uint64_t repetition) {
   std::vector<SimulatedProbe> probes;

@@ -40,6 +40,9 @@ struct SimulatedProbe {
 /// the patch's start. `repetition` gives the same touches with other noise. O(samples).
 std::vector<SimulatedProbe> simulate_contacts(const Scene& scene, std::uint64_t repetition = 0);
 
+/// Distance between two samples of a patch. [m]
+double spacing_of(const v1::SceneProbe& probe, const v1::ScenePatch& patch);
+
 /// Why a probe's round tip cannot be where the patch wants it (it would cut into the material), or
 /// an empty string. Looked at every sample.
 std::string tip_trouble(const v1::Scene& scene, const Shape& shape, const v1::SceneProbe& probe,

@@ -13,6 +13,7 @@
 #include "node/client/connection.h"
 #include "node/clock.h"
 #include "node/csv/contact_csv.h"
+#include "node/quiet_protobuf.h"
 #include "node/stop_signals.h"
 #include "sim/contact_export.h"
 #include "sim/contacts.h"
@@ -87,7 +88,7 @@ void add_options(CLI::App& app, CommandLine& options) {
   app.add_flag("--quiet", options.quiet, "Say nothing unless it fails");
 }
 
-//// A file, or standard output for "-".
+/// A file, or standard output for "-".
 class Output {
  public:
   bool open(const std::string& path) {
@@ -243,6 +244,7 @@ int run(const CLI::App& app, const CommandLine& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  silence_protobuf();
   CLI::App app(
       "Simulates touch probes: publishes the contacts of scenes, or writes them to a file.\n"
       "Exit codes: 0 all played (or stopped as asked), 1 failed at run time, 2 usage or bad scene.",

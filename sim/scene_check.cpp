@@ -49,10 +49,12 @@ struct SceneCheck::Place {
 
   /// Of the field, or of the message where the field is not mentioned.
   int line_of(const char* name, int index = -1) const {
-    if (tree == nullptr) {
+    const FieldDescriptor* field = field_of(message, name);
+    // protobuf aborts where a repeated field is asked for as a whole.
+    if (tree == nullptr || (field->is_repeated() && index < 0)) {
       return line;
     }
-    const int at = tree->GetLocation(field_of(message, name), index).line;
+    const int at = tree->GetLocation(field, index).line;
     return at < 0 ? line : at;
   }
 };
@@ -242,7 +244,7 @@ bool SceneCheck::check_probe(const Place& probe, const Shape& shape) {
   }
   for (int i = 0; i < described.patches_size(); ++i) {
     const Place patch = probe.child("patches", i);
-    if (!check_patch(patch)) {
+    if (!check_patch(patch, described)) {
       return false;
     }
     if (const std::string why = tip_trouble(scene_, shape, described, described.patches(i));
@@ -253,7 +255,7 @@ bool SceneCheck::check_probe(const Place& probe, const Shape& shape) {
   return true;
 }
 
-bool SceneCheck::check_patch(const Place& patch) {
+bool SceneCheck::check_patch(const Place& patch, const v1::SceneProbe& probe) {
   const auto& described = static_cast<const v1::ScenePatch&>(patch.message);
   if (described.start_case() == v1::ScenePatch::START_NOT_SET) {
     return fail(patch, "start_t", "give start_t or start_arc_m");
@@ -271,10 +273,10 @@ bool SceneCheck::check_patch(const Place& patch) {
   if (!positive(patch, "arc_m") || !positive(patch, pace) || !not_negative(patch, "lift_off_s")) {
     return false;
   }
+  samples_ += described.arc_m() / spacing_of(probe, described);
   constexpr double kMostSamples = 1e7;
-  if (described.pace_case() == v1::ScenePatch::kSpacingM &&
-      described.arc_m() / described.spacing_m() > kMostSamples) {
-    return fail(patch, pace, "more than 10 million samples");
+  if (!(samples_ <= kMostSamples)) {
+    return fail(patch, pace, "the scene has more than 10 million samples");
   }
   return true;
 }

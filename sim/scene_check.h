@@ -33,7 +33,7 @@ class SceneCheck {
   bool check_pose(const Place& scene);
   bool check_noise(const Place& noise);
   bool check_probe(const Place& probe, const Shape& shape);
-  bool check_patch(const Place& patch);
+  bool check_patch(const Place& patch, const v1::SceneProbe& probe);
 
   bool fail(const Place& place, const char* field, const std::string& why);
   bool not_negative(const Place& place, const char* field);
@@ -44,6 +44,7 @@ class SceneCheck {
   const ParseInfoTree& tree_;
   std::string file_;
   std::string error_;
+  double samples_ = 0.0;  // of the patches checked so far
 };
 
 }  // namespace palpate::sim

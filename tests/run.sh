@@ -40,7 +40,7 @@ begin_part() {  # name, seconds
 
 packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-dev libgmock-dev
           libbenchmark-dev protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev
-          libcli11-dev python3 python3-protobuf python3-zmq)
+          libcli11-dev zlib1g-dev python3 python3-protobuf python3-zmq)
 if [ "$fuzz" != 0 ]; then packages+=(clang); fi
 missing=()
 for package in "${packages[@]}"; do
@@ -87,15 +87,15 @@ if [ "$sanitize" = yes ]; then
   PALPATE_TEST_STRESS=0.1 \
     ctest --test-dir build/asan --output-on-failure -j "$jobs" -L 'core|recognition'
   begin_part "building (thread)" 300
-  build tsan twin_test
+  build tsan twin_test node_unit_test
   begin_part "testing (thread)" 60
   # libzmq is not instrumented: its hand-over between threads looks like a race.
   TSAN_OPTIONS="suppressions=$PWD/tests/processes/tsan.supp" \
-    ctest --test-dir build/tsan --output-on-failure -R '^twin_test$'
+    ctest --test-dir build/tsan --output-on-failure -R '^(twin_test|node_unit_test)$'
 fi
 
 if [ "$fuzz" != 0 ]; then
-  targets=(contact_csv ingest recording)
+  targets=(config contact_csv ingest keys recognizer recording scene)
   begin_part "building (fuzz)" 300
   build fuzz "${targets[@]/#/fuzz_}"
   begin_part "fuzzing" $((${#targets[@]} * (fuzz + 5)))

@@ -36,20 +36,4 @@ bool is_determined(const ShapeParameters& shape, const ShapePoseCovariance& cova
   return true;
 }
 
-LoosestComponent loosest_component(const ShapeParameters& shape,
-                                   const ShapePoseCovariance& covariance, double extent_m) {
-  const Eigen::Index letters = letters_of(shape.curve_class);
-  LoosestComponent loosest;
-  for (Eigen::Index k = 0; k < letters + 3; ++k) {
-    const double size = k < letters       ? natural_size(shape, k, extent_m)
-                        : k < letters + 2 ? extent_m
-                                          : 1.0;
-    const double relative_variance = covariance(k, k) / (size * size);
-    if (relative_variance > loosest.relative_variance) {
-      loosest = {k, relative_variance};
-    }
-  }
-  return loosest;
-}
-
 }  // namespace palpate

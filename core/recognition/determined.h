@@ -1,4 +1,4 @@
-// How well shape and pose are known beside their natural sizes.
+// How well the shape is known beside its natural size.
 #pragma once
 
 #include "core/recognition/recognition.h"
@@ -10,16 +10,5 @@ namespace palpate {
 /// against x = t^2).
 bool is_determined(const ShapeParameters& shape, const ShapePoseCovariance& covariance,
                    double extent_m, double fraction);
-
-/// A component of [shape; x; y; theta].
-struct LoosestComponent {
-  Eigen::Index index = 0;
-  double relative_variance = 0.0;  ///< over the square of its natural size
-};
-
-/// The component that is known the least beside its natural size: for the pose, `extent_m` and a
-/// radian.
-LoosestComponent loosest_component(const ShapeParameters& shape,
-                                   const ShapePoseCovariance& covariance, double extent_m);
 
 }  // namespace palpate

@@ -186,18 +186,24 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
 }
 
 void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
-  constexpr RefineEffort kThorough{100, 2, 1e-4};
+  // The search has walked every seed to its valley, best first: beyond the first ones a valley was
+  // narrower than the noise only by chance. As many as bound the time of what no class fits.
+  constexpr std::size_t kMostSeeds = 2;
+  constexpr RefineEffort kThorough{50, 1, 1e-4};
   fits->every_seed = true;
   const auto improve = [&](std::optional<PolynomialFit>* fit, const AxisFit& seed) {
     keep_better(fit,
                 refine_polynomial(seed.model, reduced.points, to_polynomial(seed, reduced.points),
                                   kSurfacePoints, kThorough));
   };
-  for (const AxisFit& seed : fits->seeds.cubic_spline) {
+  const auto first_of = [&](const std::vector<AxisFit>& seeds) {
+    return std::span(seeds).first(std::min(seeds.size(), kMostSeeds));
+  };
+  for (const AxisFit& seed : first_of(fits->seeds.cubic_spline)) {
     improve(&fits->cubic_spline, seed);
     improve(&fits->cubic_spline, twin_of(seed, reduced.points));
   }
-  for (const AxisFit& seed : fits->seeds.semi_cubical_parabola) {
+  for (const AxisFit& seed : first_of(fits->seeds.semi_cubical_parabola)) {
     improve(&fits->semi_cubical_parabola, seed);
   }
   if (auto& cubic = fits->cubical_parabola) {

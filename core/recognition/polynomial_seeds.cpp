@@ -223,6 +223,9 @@ class ArmSearch {
     span_ = most - least_;
     for (std::size_t p = 0; p < patches_.size(); ++p) {
       const PatchSpan& patch = patches_[p];
+      if (patch.size() == 0) {
+        continue;  // every sample of it was set aside as a spike
+      }
       std::size_t leftmost = patch.begin;
       for (std::size_t i = patch.begin; i < patch.end; ++i) {
         leftmost = x_[i] < x_[leftmost] ? i : leftmost;
@@ -260,6 +263,9 @@ class ArmSearch {
 
   PatchArms patch_arms(std::size_t p, double x0) const {
     const PatchSpan& patch = patches_[p];
+    if (patch.size() == 0) {
+      return {Moments(), patch.end};
+    }
     // A patch that turns round its leftmost point near the vertex passes from arm to arm there.
     constexpr double kNearVertex = 0.03;  // of the span of all points
     const auto [leftmost, depth] = turns_[p];

@@ -16,8 +16,6 @@ std::string_view name_of(Doubt doubt) {
       return "misfit";
     case Doubt::TwoShapes:
       return "two_shapes";
-    case Doubt::RicherClass:
-      return "richer_class";
     case Doubt::Undetermined:
       return "undetermined";
   }

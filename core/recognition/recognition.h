@@ -22,12 +22,11 @@ enum class RecognitionStatus {
 /// Why an answer is AMBIGUOUS; the first that applies, in this order.
 enum class Doubt {
   None,
+  FormError,     ///< residuals are correlated along the arc: form error, or a class not known here
   SeveralClasses,  ///< no class is probable enough
   AtLimit,         ///< the class fits best where it turns into another
-  FormError,     ///< residuals are correlated along the arc: form error, or a class not known here
   Misfit,        ///< the residuals are larger than the noise can be
   TwoShapes,     ///< two shapes fit alike (a spline and its rival; tips on either side)
-  RicherClass,   ///< the arc is too short to exclude a class of which this one is a limit
   Undetermined,  ///< the shape's standard deviations are too large, or no covariance describes them
 };
 
@@ -50,7 +49,7 @@ struct Hypothesis {
   ShapeParameters shape;
   Pose2 world_T_curve;
   /// The Kanatani-Cramer-Rao bound; of the most probable hypothesis of RecognitionMethod::
-  /// MaximumLikelihood with what the bend of its valley adds (core/README.md, "Evidence").
+  /// MaximumLikelihood with what the bend of its valley adds (core/README.md, "The posterior").
   ShapePoseCovariance covariance;
   double probability = 0.0;  ///< posterior among all hypotheses, "unclassified" included
   double chi2 = 0.0;         ///< sum of squared normalised residuals of the samples in use

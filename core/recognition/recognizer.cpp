@@ -1,16 +1,15 @@
 #include "core/recognition/recognizer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "core/local/normal_law.h"
-#include "core/recognition/bend.h"
 #include "core/recognition/determined.h"
 #include "core/recognition/explained_spikes.h"
 #include "core/recognition/outliers.h"
-#include "core/recognition/richer_class.h"
 #include "core/recognition/stored_spikes.h"
 #include "core/recognition/weigh.h"
 
@@ -19,6 +18,29 @@ namespace {
 
 /// Fewer points than this fit almost anything.
 constexpr std::size_t kFewestSamples = 8;
+
+/// Whether the points lie at enough different places, over an extent that double precision resolves,
+/// to have a shape at all.
+bool have_extent(const FitData& data) {
+  std::array<Vec2, kFewestSamples> places;
+  std::size_t distinct = 0;
+  for (const FitPoint& point : data.points) {
+    const auto end = places.begin() + static_cast<std::ptrdiff_t>(distinct);
+    if (std::find(places.begin(), end, point.position) == end) {
+      places[distinct++] = point.position;
+      if (distinct == kFewestSamples) {
+        break;
+      }
+    }
+  }
+  // A shape of five parameters needs digits: a thousand roundings across.
+  constexpr double kMostRounding = 1e-3;
+  // Squares of coordinates and of their inverses must be numbers.
+  constexpr double kSmallest = 1e-100;
+  constexpr double kLargest = 1e100;
+  return distinct == kFewestSamples && rounding_level(data) < kMostRounding &&
+         data.scale > kSmallest && data.scale < kLargest;
+}
 
 /// Whether noise of the stated size can have left this chi-square (five standard deviations).
 bool is_noise(double chi2, double dof) { return chi2 <= dof + 5.0 * std::sqrt(2.0 * dof); }
@@ -72,7 +94,7 @@ class Recognizer::Impl {
     const std::vector<StoredPatch>& patches = clean_patches();
     bool sigma_known = false;
     const FitData data = make_fit_data(patches, options_.sigma_m, &sigma_known);
-    if (data.points.size() < kFewestSamples) {
+    if (data.points.size() < kFewestSamples || !have_extent(data)) {
       return answer;
     }
     if (options_.method == RecognitionMethod::Tree) {
@@ -299,24 +321,26 @@ class Recognizer::Impl {
         [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
     Hypothesis& best = answer->hypotheses.front();
     const auto& canonical = w.canonical[static_cast<std::size_t>(best.shape.curve_class)];
-    const auto bend = canonical ? bend_of(*canonical, w.data, w.inflation) : std::nullopt;
-    if (bend) {
-      best.covariance = with_bend(best.covariance, *bend);
+    if (canonical && w.moment) {
+      best.covariance = *w.moment;
     }
     answer->shape = best.shape;
     answer->world_T_curve = best.world_T_curve;
     answer->covariance = best.covariance;
     answer->sigma_m = residual_noise_m(w);
     answer->noise_correlation_m = w.correlation_length * w.data.scale;
-    answer->doubt = doubt_about(w, best, bend);
+    answer->doubt = doubt_about(w, best);
     answer->status =
         answer->doubt == Doubt::None ? RecognitionStatus::Recognized : RecognitionStatus::Ambiguous;
   }
 
   /// What speaks against a class that is more probable than all others.
-  Doubt doubt_about(const Weighing& w, const Hypothesis& best,
-                    const std::optional<Bend>& bend) const {
-    if (best.probability < options_.recognized_probability) {
+  Doubt doubt_about(const Weighing& w, const Hypothesis& best) const {
+    // A misfit that is no noise may be form error, or another class: the data cannot tell.
+    if (w.correlation_length > 0.0) {
+      return Doubt::FormError;
+    }
+    if (!(best.probability >= options_.recognized_probability)) {
       return Doubt::SeveralClasses;
     }
     const CurveClass curve_class = best.shape.curve_class;
@@ -335,31 +359,18 @@ class Recognizer::Impl {
     if (best.at_limit || best.covariance.size() == 0) {
       return Doubt::AtLimit;
     }
-    // A misfit that is no noise may be form error, or another class: the data cannot tell.
-    if (w.correlation_length > 0.0) {
-      return Doubt::FormError;
-    }
     if (!is_noise(w.counted_chi2 / w.noise_inflation, best.dof)) {
       return Doubt::Misfit;
     }
-    const auto& fit = *w.fits[static_cast<std::size_t>(curve_class)];
-    // Odds of the recognition's own level between a spline and its rival across c = 0, and between
-    // the two sides that the tips may have touched.
-    const double odds = criterion_of_odds(options_.recognized_probability);
-    const bool has_rival = fit.rival && (fit.rival->chi2 - fit.chi2) / w.inflation <= odds &&
-                           !is_same_curve(*fit.polynomial, *fit.rival);
-    // The criteria of the sides have the stated form error in them.
+    // A second mode that has more than what RECOGNIZED leaves to doubt.
+    const double odds = log_odds(options_.recognized_probability);
+    const bool has_rival = curve_class == CurveClass::CubicSpline &&
+                           w.rival_share > 1.0 - options_.recognized_probability;
     if (has_rival || w.sides_margin / w.noise_inflation <= odds) {
       return Doubt::TwoShapes;
     }
-    const double excluded =
-        curve_class == CurveClass::Line ? options_.excluded_turn_rad : options_.excluded_departure;
-    if (!(largest_departure(w, curve_class) <= excluded)) {
-      return Doubt::RicherClass;
-    }
     const bool means_something =
-        is_determined(best.shape, best.covariance, w.data.scale, options_.determined_fraction) &&
-        bend && bend->nonlinearity <= options_.determined_nonlinearity;
+        is_determined(best.shape, best.covariance, w.data.scale, options_.determined_fraction);
     return means_something ? Doubt::None : Doubt::Undetermined;
   }
 

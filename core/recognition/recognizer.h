@@ -27,26 +27,8 @@ struct RecognizerOptions {
   /// (of 1 for the dimensionless b and c of the cubics): beyond it the linearised covariance means
   /// little.
   double determined_fraction = 0.3;
-  /// RECOGNIZED needs the valley of chi-square to bend as that covariance counts it: two standard
-  /// deviations along, the squared distance by the covariance of what is left out is to be at most
-  /// this fraction of the distance of what is described. At 1, where the description means nothing
-  /// any more, a 95 % ellipsoid still holds the truth in seven cases of eight. Infinite: only that
-  /// the class does not end within the two deviations.
-  double determined_nonlinearity = 1.0;
-  /// Price of a parameter in units of the Bayesian information criterion's log(n). With 1, the five
-  /// rivals of one more parameter that a parabola has would together always leave it in doubt.
-  double parsimony = 1.5;
-  /// RECOGNIZED as a limit of a richer class (a circle, say) needs the data to exclude, at two
-  /// standard deviations, departures larger than this: 1 - b/a of an ellipse, b^2/a^2 of an ellipse
-  /// or hyperbola that might be a parabola, c over the root of the half extent for a spline that
-  /// might be semi-cubical. Otherwise the arc is too short to tell.
-  double excluded_departure = 0.15;
-  /// The same for a line: turns of the arc larger than this. [rad]
-  double excluded_turn_rad = 0.03;
   /// Unstated deviations of a real part from its ideal curve up to this fraction of the touched
   /// half extent count as form error, which is correlated along the arc and lowers the certainty;
-  /// larger ones as another shape.
-  double form_error_fraction = 1e-3;
   /// What is known of the part's making: the standard deviation of its surface from its ideal
   /// curve, smooth along the arc in whatever way (half of a drawing's +- tolerance); drift of the
   /// probe counts the same. Classes that differ by no more are not told apart, however many the
@@ -56,10 +38,6 @@ struct RecognizerOptions {
   double form_deviation_m = 0.0;
   /// Probability that a scene without spikes loses a sample to outlier rejection.
   double false_outlier_probability = 0.01;
-  /// Prior probability that tips of a stated radius touched the part from within a bend where the
-  /// probe does not say on which side the material lies: the offsets of a curve to its two sides
-  /// fit a short arc alike. In (0, 1).
-  double inside_probability = 0.01;
   /// Classes to consider, by bit 1 << CurveClass; all by default.
   unsigned classes = ~0U;
   MemoryOptions memory;

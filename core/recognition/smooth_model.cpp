@@ -55,6 +55,13 @@ std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch) 
 
 /// A section too short to be smoothed stands for itself.
 void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
+  const Vec2 first = data->points[section.begin].position;
+  const Vec2 along = data->points[section.end - 1].position - first;
+  const double whole = along.norm();
+  model->sections.push_back({model->reduced.points.size(),
+                             model->reduced.points.size() + section.size(),
+                             first + 0.5 * along, whole > 0.0 ? Vec2(along / whole) : Vec2(1.0, 0.0),
+                             whole > 0.0 ? 0.5 * whole : 1.0, false});
   for (std::size_t i = section.begin; i < section.end; ++i) {
     const std::size_t before = i > section.begin ? i - 1 : i;
     const std::size_t after = i + 1 < section.end ? i + 1 : i;
@@ -148,6 +155,8 @@ void add_section(FitData* data, const SectionFit& fit, SmoothModel* model) {
   const auto rule = polynomials.gauss_rule(degree);
   const std::size_t begin = model->reduced.points.size();
   const double offset = data->points[fit.section.begin].offset;
+  model->sections.push_back({begin, begin + rule.size(), fit.frame.middle, fit.frame.axis,
+                             fit.frame.half_length, false});
   for (const auto& node : rule) {
     const auto value = polynomials.evaluate(node.x, degree);
     const double slope = value.derivative / fit.frame.half_length;
@@ -198,8 +207,12 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known) {
   model.reduced.scale = data->scale;
   for (const PatchSpan& patch : data->patches) {
     const std::size_t begin = model.reduced.points.size();
+    const std::size_t first_section = model.sections.size();
     for (const PatchSpan& section : sections_of(*data, patch)) {
       smooth_section(data, section, sigma_known, &model);
+    }
+    for (std::size_t s = first_section + 1; s < model.sections.size(); ++s) {
+      model.sections[s].joined = true;
     }
     model.reduced.patches.push_back({begin, model.reduced.points.size()});
   }

@@ -12,6 +12,16 @@ namespace palpate {
 /// what they say. Its residuals are noise alone, whatever the class (as long as the curve is smooth
 /// on the scale of a section); a class that leaves much more behind does not fit, and one that
 /// leaves no more cannot be bettered.
+/// The reduced points of one section and the chord frame that they were smoothed in.
+struct ReducedSection {
+  std::size_t begin = 0;  ///< of the reduced points
+  std::size_t end = 0;
+  Vec2 middle = Vec2::Zero();
+  Vec2 axis = Vec2::UnitX();
+  double half_length = 0.0;
+  bool joined = false;  ///< continues the section before it, in the same patch
+};
+
 struct SmoothModel {
   double chi2 = 0.0;   ///< sum of squared normalised residuals
   int parameters = 0;  ///< polynomial coefficients used in all sections
@@ -22,6 +32,7 @@ struct SmoothModel {
   /// up to rounding (core/README.md, "Refinement and the bound"). A dozen points stand for
   /// hundreds.
   FitData reduced;
+  std::vector<ReducedSection> sections;  ///< all reduced points, in their order
   /// For every point the reduced point nearest to it along its section.
   std::vector<std::uint32_t> nearest_reduced;
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
+#include "core/recognition/chi_square.h"
 #include "core/recognition/on_all_points.h"
 #include "core/recognition/residual_correlation.h"
-#include "core/recognition/richer_class.h"
 #include "core/recognition/stated_form_error.h"
 #include "core/recognition/tip_sides.h"
 
@@ -28,34 +28,54 @@ bool estimate_noise(FitData* data, SmoothModel* smooth) {
   return estimate <= rounding;
 }
 
-double criterion_of(const ClassFit& fit, const EvidenceScale& scale) {
-  return information_criterion(fit.chi2, degrees_of_freedom(fit.curve_class), scale);
+double log_evidence_of(const ClassFit& fit, const Likelihood& likelihood,
+                       const Evidences& evidences) {
+  return log_evidence(likelihood, evidences, fit.curve_class, fit.chi2);
 }
 
-/// The class of the lowest criterion: probabilities beside "unclassified" may all have vanished.
-CurveClass best_class(const ClassFits& fits, const EvidenceScale& scale) {
+/// The class of the highest evidence, "unclassified" aside; where none has any, the one that fits
+/// best.
+CurveClass best_class(const ClassFits& fits, const Likelihood& likelihood,
+                      const Evidences& evidences) {
   CurveClass best = CurveClass::Unclassified;
-  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -std::numeric_limits<double>::infinity();
+  double lowest_chi2 = std::numeric_limits<double>::infinity();
   for (const CurveClass curve_class : kCurveClasses) {
     const auto& fit = fits[static_cast<std::size_t>(curve_class)];
-    if (fit && !fit->at_limit) {
-      const double criterion = criterion_of(*fit, scale);
-      if (criterion < lowest) {
-        lowest = criterion;
-        best = curve_class;
-      }
+    if (!fit || fit->at_limit) {
+      continue;
+    }
+    const double evidence = log_evidence_of(*fit, likelihood, evidences);
+    if (evidence > highest ||
+        (!std::isfinite(highest) && evidence == highest && fit->chi2 < lowest_chi2)) {
+      highest = evidence;
+      lowest_chi2 = fit->chi2;
+      best = curve_class;
     }
   }
   return best;
 }
 
+/// Fits to the reduced points, as these tell their chi-squares of all points.
+ClassFits as_told(const ClassFits& coarse, const SmoothModel& smooth) {
+  ClassFits told = coarse;
+  for (auto& fit : told) {
+    if (fit) {
+      fit->chi2 += smooth.chi2;
+    }
+  }
+  return told;
+}
+
 /// Fits to the reduced points for the way the material lies beside the patches: where the probes do
-/// not say it, the way under which all points are fitted best, the first (from outside the bends)
-/// at the odds of the prior. Sets w->sides and w->sides_margin.
+/// not say it, the way of the highest evidence, the first (from outside the bends) at the odds of the
+/// prior. Sets w->sides and w->sides_margin.
 ClassFits fit_over_sides(std::span<const StoredPatch> patches, const FitData& data,
-                         const EvidenceScale& scale, const RecognizerOptions& options,
+                         const Likelihood& likelihood, const RecognizerOptions& options,
                          const WarmStart* warm, Weighing* w) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  // Tips that touch a part from within a bend are rare: probes come from outside.
+  constexpr double kInsideProbability = 0.01;
   const SmoothModel& smooth = w->smooth;
   const auto ways = possible_sides(patches, smooth.reduced);
   if (ways.size() == 1) {
@@ -65,50 +85,46 @@ ClassFits fit_over_sides(std::span<const StoredPatch> patches, const FitData& da
     const auto starts = warm != nullptr ? std::optional(carried_to(*warm, reduced)) : std::nullopt;
     return fit_classes(reduced, starts ? &*starts : nullptr, options.classes);
   }
-  const double price_of_inside = criterion_of_odds(1.0 - options.inside_probability);
+  const double log_price_of_inside = log_odds(1.0 - kInsideProbability);
   ClassFits best;
-  double lowest = kInfinity;
-  double second = kInfinity;
+  double highest = -kInfinity;
+  double second = -kInfinity;
   for (const std::vector<int>& sides : ways) {
     const FitData reduced = on_surface(smooth.reduced, sides);
     ClassFits fits = fit_classes(reduced, nullptr, options.classes);
-    const CurveClass candidate = best_class(fits, scale);
+    const ClassFits told = as_told(fits, smooth);
+    const Evidences evidences =
+        evidences_of(told, fits, smooth, reduced, likelihood);
+    const CurveClass candidate = best_class(told, likelihood, evidences);
     const auto& fit = fits[static_cast<std::size_t>(candidate)];
     const auto refined =
         fit ? refine_on_all(settled(*fit, reduced, RivalOf::Best), smooth, data) : std::nullopt;
     const bool first = &sides == &ways.front();
     // A line has no bend to be outside of.
-    const double price = first || candidate == CurveClass::Line ? 0.0 : price_of_inside;
-    const double criterion = refined ? criterion_of(*refined, scale) + price : kInfinity;
-    if (first || criterion < lowest) {
-      second = lowest;
-      lowest = criterion;
+    const double price = first || candidate == CurveClass::Line ? 0.0 : log_price_of_inside;
+    const double evidence =
+        refined ? log_evidence_of(*refined, likelihood, evidences) - price : -kInfinity;
+    if (first || evidence > highest) {
+      second = highest;
+      highest = evidence;
       best = std::move(fits);
       w->sides = sides;
     } else {
-      second = std::min(second, criterion);
+      second = std::max(second, evidence);
     }
   }
-  w->sides_margin = std::isfinite(second) ? second - lowest : kInfinity;
+  w->sides_margin = std::isfinite(second) ? highest - second : kInfinity;
   return best;
 }
 
 /// Whether a class, as the reduced points tell its chi-square, might keep the best from being
-/// RECOGNIZED. `margin`: odds that keep it from that, as a difference of criteria; `error`: by how
-/// much chi-square may be lower on all points.
-bool is_plausible(const ClassFit& told, double lowest_criterion, double margin, double error,
-                  const EvidenceScale& scale) {
+/// RECOGNIZED. `margin`: log odds that keep it from that; `error`: by how much chi-square may be lower
+/// on all points.
+bool is_plausible(const ClassFit& told, double highest, double margin, double error,
+                  const Likelihood& likelihood, const Evidences& evidences) {
   const double chi2 = std::max(told.chi2 - error, 0.0);
   return std::isfinite(told.chi2) &&
-         information_criterion(chi2, degrees_of_freedom(told.curve_class), scale) <
-             lowest_criterion + margin;
-}
-
-/// A class fitted to the reduced points, as these tell its chi-square of all points.
-ClassFit as_told(const ClassFit& coarse, const SmoothModel& smooth) {
-  ClassFit fit = coarse;
-  fit.chi2 += smooth.chi2;
-  return fit;
+         log_evidence(likelihood, evidences, told.curve_class, chi2) > highest - margin;
 }
 
 /// A class that is no such curve on all points.
@@ -173,13 +189,13 @@ void take_limits(ClassFits* fits) {
 
 /// Weighs on all points what the reduced points leave plausible, and polishes the best. The others
 /// keep the chi-square that the reduced points tell. Settles w->coarse where it has to do with it.
-void weigh_plausible(const FitData& data, const FitData& reduced, const EvidenceScale& scale,
+void weigh_plausible(const FitData& data, const FitData& reduced, const Likelihood& likelihood,
                      const RecognizerOptions& options, Weighing* w) {
   // Where the smooth model itself misfits, neither it nor the reduced points can be trusted that
   // far.
   const double misfit_ratio = std::max(1.0, w->smooth.noise_ratio() * w->smooth.noise_ratio());
   const double margin =
-      misfit_ratio * std::max(criterion_of_odds(options.recognized_probability), 0.0);
+      misfit_ratio * std::max(log_odds(options.recognized_probability), 0.0);
   // Sections that bend too much to be followed to the noise err by much the same for all classes:
   // twice as much as for the best, and some units of chi-square anyhow.
   constexpr double kLeastError = 4.0;
@@ -187,7 +203,7 @@ void weigh_plausible(const FitData& data, const FitData& reduced, const Evidence
   bool trusted = true;
   for (bool changed = true; changed;) {
     changed = false;
-    const auto b = static_cast<std::size_t>(best_class(w->fits, scale));
+    const auto b = static_cast<std::size_t>(best_class(w->fits, likelihood, w->evidences));
     auto& best = w->fits[b];
     if (best && !best->polished) {
       const double told = best->chi2;
@@ -200,12 +216,12 @@ void weigh_plausible(const FitData& data, const FitData& reduced, const Evidence
       changed = true;
       continue;
     }
-    const double lowest =
-        best ? criterion_of(*best, scale) : -std::numeric_limits<double>::infinity();
+    const double highest = best ? log_evidence_of(*best, likelihood, w->evidences)
+                                : -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < w->fits.size(); ++i) {
       auto& fit = w->fits[i];
       if (fit && !fit->weighed && !fit->at_limit &&
-          is_plausible(*fit, lowest, margin, error, scale)) {
+          is_plausible(*fit, highest, margin, error, likelihood, w->evidences)) {
         fit = weighed(settle(i, RivalOf::Other, reduced, w), reduced, trusted, w->smooth, data);
         changed = true;
       }
@@ -234,8 +250,10 @@ void refine_sharp_bends(const FitData& data, const FitData& reduced, Weighing* w
 
 /// Chi-square as a misfit is judged by it. A class that leaves less than the smooth model (which
 /// cannot follow every bend) has no form error in it.
-double counted(double chi2, const EvidenceScale& scale) {
-  return std::min(chi2, without_form_error(chi2, scale));
+double counted(double chi2, const Likelihood& likelihood) {
+  Likelihood untempered = likelihood;
+  untempered.tempering = 1.0;
+  return std::min(chi2, untempered.counted(chi2));
 }
 
 CurveClass most_probable(const ClassProbabilities& probabilities) {
@@ -243,11 +261,14 @@ CurveClass most_probable(const ClassProbabilities& probabilities) {
                                  probabilities.begin());
 }
 
-/// Sets w->best, and refines it if it is not yet. A conic's evidence is divided at the parabola:
-/// the most probable class, which is published, need not be that of the lowest criterion.
-void choose_best(const FitData& data, const FitData& reduced, const EvidenceScale& scale,
+/// Sets w->evidences, w->probabilities and w->best, and refines it if it is not yet.
+void choose_best(const FitData& data, const FitData& reduced, const Likelihood& likelihood,
                  Weighing* w) {
   while (true) {
+    w->evidences =
+        integrated(evidences_of(w->fits, w->coarse, w->smooth, reduced, likelihood), w->fits,
+                   w->coarse, reduced, likelihood);
+    w->probabilities = probabilities_of(w->fits, w->smooth.chi2, likelihood, w->evidences);
     w->best = most_probable(w->probabilities);
     const auto i = static_cast<std::size_t>(w->best);
     auto& fit = w->fits[i];
@@ -256,26 +277,23 @@ void choose_best(const FitData& data, const FitData& reduced, const EvidenceScal
     }
     fit = polished(settle(i, RivalOf::Best, reduced, w), w->smooth, data);
     take_limits(&w->fits);
-    w->probabilities = probabilities(w->fits, w->smooth.chi2, w->smooth.parameters, scale);
   }
 }
 
-/// Shape, pose and covariance of what is not negligible or asked for by the best.
+/// Shape, pose and covariance of what is not negligible.
 void place_canonically(const FitData& data, const FitData& reduced, Weighing* w) {
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     constexpr double kNegligible = 1e-6;
     const auto& fit = w->fits[i];
-    const bool asked_for = is_limit_of(w->best, curve_class);
     if (!fit || fit->at_limit || !std::isfinite(fit->chi2) || w->canonical[i] ||
-        !(asked_for || w->probabilities[i] > kNegligible)) {
+        !(w->probabilities[i] > kNegligible)) {
       continue;
     }
     if (fit->on_all) {
       w->canonical[i] = to_canonical(*fit, data);
     } else {
-      w->canonical[i] =
-          to_canonical(asked_for ? settle(i, RivalOf::Other, reduced, w) : *w->coarse[i], reduced);
+      w->canonical[i] = to_canonical(*w->coarse[i], reduced);
     }
   }
 }
@@ -290,19 +308,18 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
     sigma_known = estimate_noise(&data, &w.smooth);
   }
   const double n = static_cast<double>(data.points.size());
-  EvidenceScale scale;
-  scale.sigma_known = sigma_known;
-  scale.samples = n;
-  scale.parsimony = options.parsimony;
+  Likelihood likelihood;
+  likelihood.sigma_known = sigma_known;
+  likelihood.samples = n;
   // Residuals below the rounding of the coordinates say nothing.
   w.sigma = rms_sigma(data);
   const double rounding = rounding_level(data) / w.sigma;
-  scale.chi2_floor = sigma_known ? 0.0 : n * rounding * rounding;
+  likelihood.chi2_floor = sigma_known ? 0.0 : n * rounding * rounding;
   const double stated = coherent_variance(data, options.form_deviation_m / data.scale);
-  scale.coherent_variance = stated;
-  scale.noise_chi2 = w.smooth.chi2;
+  likelihood.coherent_variance = stated;
+  likelihood.noise_chi2 = w.smooth.chi2;
 
-  w.coarse = fit_over_sides(patches, data, scale, options, warm, &w);
+  w.coarse = fit_over_sides(patches, data, likelihood, options, warm, &w);
   for (const CurveClass curve_class : kCurveClasses) {
     // A class must leave something over to test it with.
     const auto i = static_cast<std::size_t>(curve_class);
@@ -310,19 +327,22 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
     if (!wanted || static_cast<int>(data.points.size()) <= degrees_of_freedom(curve_class)) {
       w.coarse[i].reset();
     }
-    if (w.coarse[i]) {
-      w.fits[i] = as_told(*w.coarse[i], w.smooth);
-    }
   }
+  w.fits = as_told(w.coarse, w.smooth);
   const FitData reduced = on_surface(w.smooth.reduced, w.sides);
-  weigh_plausible(data, reduced, scale, options, &w);
-  w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
+  const auto weigh_all = [&] {
+    w.evidences = evidences_of(w.fits, w.coarse, w.smooth, reduced, likelihood);
+    w.probabilities = probabilities_of(w.fits, w.smooth.chi2, likelihood, w.evidences);
+  };
+  weigh_all();
+  weigh_plausible(data, reduced, likelihood, options, &w);
+  w.probabilities = probabilities_of(w.fits, w.smooth.chi2, likelihood, w.evidences);
   if (most_probable(w.probabilities) == CurveClass::Unclassified) {
     // Where nothing fits, a narrow valley may not have been walked to its end.
     refine_sharp_bends(data, reduced, &w);
-    w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
+    weigh_all();
   }
-  const CurveClass candidate = best_class(w.fits, scale);
+  const CurveClass candidate = best_class(w.fits, likelihood, w.evidences);
   const auto c = static_cast<std::size_t>(candidate);
   if (w.fits[c] && w.fits[c]->on_all) {
     w.canonical[c] = to_canonical(*w.fits[c], data);
@@ -332,7 +352,14 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
     const double variance = w.fits[c]->chi2 / dof;  // of the residuals, in units of sigma^2
     const double noise = w.smooth.dof() > 0 ? w.smooth.chi2 / w.smooth.dof() : 1.0;
     const double excess = w.sigma * std::sqrt(std::max(0.0, variance - noise));
-    const bool misfits = most_probable(w.probabilities) == CurveClass::Unclassified;
+    // What the smooth model explains and the class does not, beyond what noise gives the smooth model's
+    // further coefficients; a false alarm costs an answer its certainty.
+    constexpr double kFalseAlarm = 1e-6;
+    const int more = w.smooth.parameters - degrees_of_freedom(candidate);
+    const bool misfits =
+        most_probable(w.probabilities) == CurveClass::Unclassified ||
+        (more > 0 && chi_square_survival((w.fits[c]->chi2 - w.smooth.chi2) / likelihood.inflation(),
+                                         more) < kFalseAlarm);
     std::vector<double> residuals;
     for (const FittedPoint& point : w.canonical[c]->points) {
       residuals.push_back(point.residual);
@@ -343,27 +370,40 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
     // erring together, so that only one in `time` counts.
     constexpr double kMuchLarger = 1.5;
     constexpr double kLargestNoise = 0.01;  // of the half extent: beyond it nothing is measured
+    constexpr double kLargestFormError = 1e-3;  // likewise: beyond it, it is another shape
     const bool noisy =
         correlation.time == 1.0 && variance > kMuchLarger * noise && excess <= kLargestNoise;
-    const bool form_error = correlation.time > 1.0 && excess <= options.form_error_fraction;
+    const bool form_error = correlation.time > 1.0 && excess <= kLargestFormError;
     if (misfits && (noisy || form_error)) {
-      scale.sigma_known = true;
-      scale.samples = std::max(n / correlation.time, 1.0);
-      scale.tempering = variance * correlation.time + stated;
-      scale.coherent_variance = 0.0;
-      weigh_plausible(data, reduced, scale, options, &w);
-      w.probabilities = probabilities(w.fits, w.smooth.chi2, w.smooth.parameters, scale);
+      likelihood.sigma_known = true;
+      likelihood.samples = std::max(n / correlation.time, 1.0);
+      likelihood.tempering = variance * correlation.time + stated;
+      likelihood.coherent_variance = 0.0;
+      likelihood.coherent_or_other = form_error;
+      weigh_all();
+      weigh_plausible(data, reduced, likelihood, options, &w);
       w.noise_inflation = variance * correlation.time;
       w.correlation_length = correlation.length;
     } else if (!sigma_known) {
-      w.noise_inflation = counted(w.fits[c]->chi2, scale) / dof;
+      w.noise_inflation = counted(w.fits[c]->chi2, likelihood) / dof;
     }
   }
   w.inflation = w.noise_inflation + stated;
-  choose_best(data, reduced, scale, &w);
+  choose_best(data, reduced, likelihood, &w);
+  w.rival_share = rival_share(w.fits, likelihood, w.evidences);
   const auto& best = w.fits[static_cast<std::size_t>(w.best)];
-  w.counted_chi2 = counted(best ? best->chi2 : w.smooth.chi2, scale);
+  w.counted_chi2 = counted(best ? best->chi2 : w.smooth.chi2, likelihood);
   place_canonically(data, reduced, &w);
+  if (const auto& placed = w.canonical[static_cast<std::size_t>(w.best)]) {
+    const auto on_reduced = to_canonical(*w.coarse[static_cast<std::size_t>(w.best)], reduced);
+    const auto valley =
+        on_reduced ? evidence_of(*on_reduced, reduced, w.inflation, Integration::Valley)
+                   : std::nullopt;
+    if (valley && valley->widest >= 0) {
+      w.moment = with_bend(w.inflation * placed->covariance, w.inflation * on_reduced->covariance,
+                           second_moment(*on_reduced, *valley, reduced));
+    }
+  }
   w.data = std::move(data);
   return w;
 }

@@ -8,7 +8,8 @@
 
 #include "core/recognition/canonical_fit.h"
 #include "core/recognition/class_fits.h"
-#include "core/recognition/evidence.h"
+#include "core/recognition/posterior/moments.h"
+#include "core/recognition/posterior/posterior.h"
 #include "core/recognition/recognizer.h"
 #include "core/recognition/smooth_model.h"
 #include "core/recognition/warm_start.h"
@@ -24,10 +25,14 @@ struct Weighing {
   /// reduced ones.
   std::array<std::optional<CanonicalFit>, 9> canonical;
   ClassProbabilities probabilities{};
+  Evidences evidences;  ///< of classes that are not out by far
+  /// Of the spline's posterior, that its mode on the other side of c = 0 has.
+  double rival_share = 0.0;
+  /// Of the best class about its estimate, where a covariance linear about it does not hold it.
+  std::optional<ShapePoseCovariance> moment;
   /// Per patch the side of travel on which the tip centres were taken to lie (tip_sides.h).
   std::vector<int> sides;
-  /// By how much the criterion (evidence.h) of another way for them to lie is worse, priors
-  /// included; infinite where the probes told.
+  /// log odds over the next best way for them to lie, priors included; infinite where the probes told.
   double sides_margin = 0.0;
   CurveClass best = CurveClass::Unclassified;  ///< most probable, "unclassified" included
   double sigma = 0.0;                          ///< noise of the typical point, normalised

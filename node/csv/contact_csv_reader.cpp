@@ -2,15 +2,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iostream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <tuple>
 
+#include "node/bounded_file.h"
 #include "node/csv/contact_csv.h"
 #include "node/csv/csv_columns.h"
+#include "node/printable.h"
 #include "node/topics.h"
 
 namespace palpate {
@@ -26,6 +25,8 @@ constexpr double kMaxCoordinateM = 1e7;
 constexpr double kMinSigmaM = 1e-15;
 constexpr double kMaxSigmaM = 1e3;
 constexpr double kMaxTipRadiusM = 1e3;
+// Seven million samples with all their digits; what is longer is no file of contacts. [bytes]
+constexpr std::size_t kMostFileBytes = std::size_t{512} << 20;
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
@@ -38,11 +39,9 @@ std::string_view trim(std::string_view text) {
 /// As it may be shown in an error: short and printable.
 std::string shown(std::string_view text) {
   constexpr std::size_t kLongest = 40;
-  std::string result = "'";
-  for (const char c : text.substr(0, kLongest)) {
-    result += c >= ' ' && c <= '~' ? c : '?';
-  }
-  return result + (text.size() > kLongest ? "...'" : "'");
+  std::string quoted(1, '\'');
+  quoted.append(printable(text, kLongest)).push_back('\'');
+  return quoted;
 }
 
 class Reader {
@@ -65,6 +64,9 @@ class Reader {
     }
     if (error_.empty() && !has_header) {
       fail(line_begin_, "no header line; it names the columns: probe,patch,x_m,y_m");
+    }
+    if (error_.empty() && table_.rows.empty()) {
+      fail(line_begin_, "no samples after the header line");
     }
     if (!error_.empty()) {
       return Result<ContactTable>::fail(std::move(error_));
@@ -315,26 +317,12 @@ Result<ContactTable> parse_contact_csv(std::string_view text, std::string_view n
 }
 
 Result<ContactTable> read_contact_csv(const std::string& path) {
-  std::string text;
-  if (path == "-") {
-    text.assign(std::istreambuf_iterator<char>(std::cin), {});
-    return parse_contact_csv(text, "standard input");
-  }
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = in ? static_cast<std::streamoff>(in.tellg()) : -1;
-  if (size >= 0 && in.seekg(0)) {
-    text.resize(static_cast<std::size_t>(size));
-    in.read(text.data(), size);
-    text.resize(static_cast<std::size_t>(in.gcount()));
-    return parse_contact_csv(text, path);
-  }
-  // A pipe has no size.
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    return Result<ContactTable>::fail(path + ": cannot be read");
-  }
-  text.assign(std::istreambuf_iterator<char>(stream), {});
-  return parse_contact_csv(text, path);
+  const bool is_standard_input = path == "-";
+  const std::string name = is_standard_input ? "standard input" : path;
+  const Result<std::string> text = is_standard_input
+                                       ? read_bounded(STDIN_FILENO, name, kMostFileBytes)
+                                       : read_bounded(path, kMostFileBytes);
+  return text ? parse_contact_csv(*text.value, name) : Result<ContactTable>::fail(text.error);
 }
 
 }  // namespace palpate

@@ -23,6 +23,11 @@ void add_record_command(CLI::App& app, int& exit_code);
 void add_replay_command(CLI::App& app, int& exit_code);
 void add_watch_command(CLI::App& app, int& exit_code);
 
+/// For options: numbers above 0, or not below it; infinity and NaN are none. CLI11's own checks let a
+/// NaN pass.
+CLI::Validator positive_number();
+CLI::Validator non_negative_number();
+
 /// Says on standard error what is wrong.
 int complain(const std::string& why, int exit_code);
 

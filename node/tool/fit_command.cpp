@@ -178,7 +178,8 @@ int run(FitCommand& fit) {
       const std::string path = plot_path(fit.plot, number);
       std::ofstream plot(path, std::ios::trunc);
       if (!(plot << svg_plot(group, answer.recognition,
-                             group.file + ": " + summary_text(answer.message)))) {
+                             group.file + ": " + summary_text(answer.message))
+            << std::flush)) {
         return complain(path + ": cannot be written", kFailed);
       }
     }

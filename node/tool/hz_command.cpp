@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "node/printable.h"
 #include "node/stop_signals.h"
 #include "node/tool/topic_counts.h"
 
@@ -15,7 +16,7 @@ struct HzCommand {
 
 void print(const std::map<std::string, TopicCount>& counts) {
   for (const auto& [topic, count] : counts) {
-    std::printf("%-40s %8.1f Hz  intervals %.1f to %.1f ms  %llu messages\n", topic.c_str(),
+    std::printf("%-40s %8.1f Hz  intervals %.1f to %.1f ms  %llu messages\n", printable(topic).c_str(),
                 count.rate_hz(), 1e3 * count.shortest_s, 1e3 * count.longest_s,
                 static_cast<unsigned long long>(count.messages));
   }
@@ -30,7 +31,7 @@ int run(const HzCommand& command) {
   const auto counts = count_topics(command.connection, [&](const auto& so_far) {
     const auto now = Clock::now();
     const bool end =
-        stop_requested(stop_fd) ||
+        stop_requested(stop_fd) || std::ferror(stdout) != 0 ||
         (command.seconds > 0.0 && now - start >= std::chrono::duration<double>(command.seconds));
     if (!end && command.seconds == 0.0 && now >= next) {
       print(so_far);
@@ -56,7 +57,7 @@ void add_hz_command(CLI::App& app, int& exit_code) {
       "hz", "Show how often the recognizer publishes on each topic, once a second.");
   add_connection_flags(*command, "--results", "The recognizer's results endpoint", hz->connection);
   command->add_option("--seconds", hz->seconds, "Listen so long, then show it once; 0 = for ever [s]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(non_negative_number())
       ->capture_default_str()
       ->type_name("S");
   command->callback([hz, &exit_code] { exit_code = run(*hz); });

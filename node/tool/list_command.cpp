@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "node/printable.h"
 #include "node/stop_signals.h"
 #include "node/tool/topic_counts.h"
 
@@ -23,7 +24,7 @@ int run(const ListCommand& command) {
     return complain(counts.error, kUsage);
   }
   for (const auto& [topic, count] : *counts.value) {
-    std::printf("%s\t%llu messages\n", topic.c_str(),
+    std::printf("%s\t%llu messages\n", printable(topic).c_str(),
                 static_cast<unsigned long long>(count.messages));
   }
   return counts.value->empty()
@@ -39,7 +40,7 @@ void add_list_command(CLI::App& app, int& exit_code) {
       app.add_subcommand("list", "List the topics on which the recognizer publishes.");
   add_connection_flags(*command, "--results", "The recognizer's results endpoint", list->connection);
   command->add_option("--seconds", list->seconds, "How long to listen [s]")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str()
       ->type_name("S");
   command->callback([list, &exit_code] { exit_code = run(*list); });

@@ -1,9 +1,12 @@
 // palpate: the tool beside the recognizer node. Each subcommand has a file <name>_command.cpp.
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 
 #include "node/client/connection.h"
+#include "node/quiet_protobuf.h"
 #include "node/tool/command.h"
 
 namespace palpate {
@@ -12,6 +15,23 @@ int complain(const std::string& why, int exit_code) {
   std::cerr << "palpate: " << why << "\n";
   return exit_code;
 }
+
+namespace {
+
+CLI::Validator number_check(const char* name, bool zero_is_good) {
+  const auto check = [zero_is_good](const std::string& text) -> std::string {
+    double value = 0.0;
+    const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) &&
+                      (value > 0.0 || (zero_is_good && value == 0.0));
+    return good ? "" : "\"" + text + "\" is no finite number " + (zero_is_good ? ">= 0" : "> 0");
+  };
+  return CLI::Validator(check, name);
+}
+
+}  // namespace
+
+CLI::Validator positive_number() { return number_check("POSITIVE", false); }
+CLI::Validator non_negative_number() { return number_check("NONNEGATIVE", true); }
 
 void add_connection_flags(CLI::App& command, const char* flag, const char* help,
                           Connection& connection) {
@@ -39,7 +59,9 @@ Result<std::optional<CurveClient>> curve_of(const Connection& connection) {
 
 }  // namespace palpate
 
-int main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
   CLI::App app(
       "Recognises and locates curved parts by touch: offline from files, and beside a running "
       "palpate-node.\n"
@@ -63,6 +85,20 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? palpate::kDone : palpate::kUsage;
   } catch (const std::exception& error) {
     return palpate::complain(error.what(), palpate::kFailed);
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  palpate::silence_protobuf();
+  const int exit_code = run(argc, argv);
+  // What was said has to have arrived: a full disk is known only now.
+  const bool written =
+      std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (!written && exit_code == palpate::kDone) {
+    return palpate::complain("standard output: cannot be written", palpate::kFailed);
   }
   return exit_code;
 }

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <vector>
 
+#include "node/printable.h"
 #include "node/tool/quantity.h"
 
 namespace palpate {
@@ -41,9 +43,8 @@ std::vector<Named> parameters_of(const v1::Parameters& parameters) {
 double sigma_of(const v1::Recognition& answer, std::size_t i) {
   const auto count = static_cast<std::size_t>(answer.covariance_size());
   const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(count))));
-  if (i >= n) {
-    return 0.0;
-  }
+  if (n * n != count) return std::numeric_limits<double>::infinity();  // no matrix
+  if (i >= n) return 0.0;
   return std::sqrt(std::max(answer.covariance(static_cast<int>(i * n + i)), 0.0));
 }
 
@@ -134,7 +135,7 @@ void add_contacts(const v1::Recognition& answer, std::string& text) {
   add_row(text, "  %-16s %5s %11s %11s %9s %11s %22s %26s\n", "contact", "patch", "t", "x [m]",
           "y [m]", "tangent [deg]", "kappa [1/m]", "kappa_s [1/m^2]");
   for (const v1::LocalizedContact& contact : answer.contacts()) {
-    add_row(text, "    %-14s %5u %11.5g %11.6f %9.6f %11.2f %22s %26s\n", contact.probe().c_str(),
+    add_row(text, "    %-14s %5u %11.5g %11.6f %9.6f %11.2f %22s %26s\n", printable(contact.probe()).c_str(),
             contact.patch(), contact.t(), contact.x_m(), contact.y_m(),
             contact.tangent_rad() * kDegrees,
             with_sigma(contact.kappa_per_m(), contact.kappa_sigma_per_m()).c_str(),
@@ -148,7 +149,7 @@ void add_decisions(const v1::Recognition& answer, std::string& text) {
   }
   text += "  recognition tree\n";
   for (const v1::Decision& decision : answer.decisions()) {
-    add_row(text, "    %-34s %12.5g against %-12.5g %s\n", decision.test().c_str(),
+    add_row(text, "    %-34s %12.5g against %-12.5g %s\n", printable(decision.test()).c_str(),
             decision.value(), decision.threshold(), decision.passed() ? "passed" : "failed");
   }
 }
@@ -214,7 +215,7 @@ std::string summary_text(const v1::Recognition& answer) {
 }
 
 std::string report_text(const v1::Recognition& answer) {
-  std::string text = "group " + answer.group() + ", object " + std::to_string(answer.object()) + ": " +
+  std::string text = "group " + printable(answer.group()) + ", object " + std::to_string(answer.object()) + ": " +
                      spoken_name(answer.curve_class()) + "\n";
   add_line(text, "status", status_text(answer));
   std::size_t i = 0;

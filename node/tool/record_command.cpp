@@ -1,11 +1,13 @@
 // palpate record: messages of the bus into a file.
+#include <chrono>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "node/clock.h"
-#include "node/endpoint.h"
 #include "node/stop_signals.h"
 #include "node/tool/command.h"
+#include "node/tool/listening_place.h"
 #include "node/tool/recording.h"
 
 namespace palpate {
@@ -15,56 +17,73 @@ struct RecordCommand {
   std::string file;
   Connection connection{std::string(kDefaultResultsEndpoint), "", ""};
   std::string contacts;
+  std::string allow_clients;
+  bool insecure = false;
   double seconds = 0.0;
   std::uint64_t count = 0;
 };
 
-int run(const RecordCommand& command) {
+/// Unix time, by a clock that never steps back.
+class SteadyUnixClock {
+ public:
+  std::int64_t now_ns() const {
+    return unix_start_ns_ +
+           std::chrono::nanoseconds(std::chrono::steady_clock::now() - steady_start_).count();
+  }
+
+ private:
+  std::int64_t unix_start_ns_ = unix_time_ns();
+  std::chrono::steady_clock::time_point steady_start_ = std::chrono::steady_clock::now();
+};
+
+int open(const RecordCommand& command, ListeningPlace& place) {
+  if (!command.contacts.empty()) {
+    if (!command.connection.recognizer_key.empty()) {
+      return complain("--curve-server-key: with --contacts the recorder is the server: give "
+                      "--curve-secret-key and --allow-clients",
+                      kUsage);
+    }
+    return place.open_as_recognizer(
+        {command.contacts, command.connection.own_key, command.allow_clients, command.insecure});
+  }
   const auto curve = curve_of(command.connection);
   if (!curve) {
     return complain(curve.error, kUsage);
   }
-  const bool from_probes = !command.contacts.empty();
-  const Result<Endpoint> endpoint =
-      from_probes ? parse_endpoint(command.contacts, /*bind_by_default=*/true)
-                  : parse_endpoint(command.connection.endpoint, /*bind_by_default=*/false);
-  if (!endpoint) {
-    return complain(endpoint.error, kUsage);
-  }
+  return place.open_as_client(command.connection.endpoint, *curve.value);
+}
+
+int run(const RecordCommand& command) {
   const int stop_fd = take_stop_signals();
-  zmq::context_t context(1);
-  SocketSettings settings;
-  settings.receive_high_water_mark = 100000;  // a disk may pause
-  settings.curve_client = *curve.value;
-  zmq::socket_t socket = make_socket(context, zmq::socket_type::sub, settings);
-  socket.set(zmq::sockopt::subscribe, "");
-  if (const std::string error = attach(socket, *endpoint.value); !error.empty()) {
-    return complain(error, kFailed);
+  ListeningPlace place;
+  if (const int code = open(command, place); code != kDone) {
+    return code;
   }
   RecordingWriter writer;
   if (const std::string error = writer.open(command.file); !error.empty()) {
     return complain(error, kFailed);
   }
-  const auto end =
-      std::chrono::steady_clock::now() + std::chrono::duration<double>(command.seconds);
-  std::vector<zmq::pollitem_t> items{{socket.handle(), 0, ZMQ_POLLIN, 0}};
-  TwoFrames frames;
+  using Clock = std::chrono::steady_clock;
+  std::optional<Clock::time_point> end;
+  if (command.seconds > 0.0) {
+    end = Clock::now() +
+          std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(command.seconds));
+  }
+  const SteadyUnixClock clock;
+  RecordedMessage message;
   std::uint64_t recorded = 0;
-  v1::RecordedMessage message;
-  while (!stop_requested(stop_fd) &&
-         (command.seconds == 0.0 || std::chrono::steady_clock::now() < end) &&
-         (command.count == 0 || recorded < command.count)) {
-    constexpr int kStepMs = 50;
-    poll(items, kStepMs);
-    while ((command.count == 0 || recorded < command.count) && receive_now(socket, frames)) {
-      message.set_received_ns(unix_time_ns());
-      message.set_topic(frames.topic.to_string());
-      message.set_payload(frames.payload.to_string());
-      if (!writer.write(message)) {
-        return complain(command.file + ": cannot be written", kFailed);
-      }
-      ++recorded;
-    }
+  bool good = true;
+  place.listen(stop_fd, end, [&](const TwoFrames& frames) {
+    message.received_ns = clock.now_ns();
+    message.frame_count = static_cast<std::uint32_t>(frames.frame_count);
+    message.topic = frames.topic.to_string();
+    message.payload = frames.payload.to_string();
+    good = writer.write(message);
+    recorded += good ? 1 : 0;
+    return good && (command.count == 0 || recorded < command.count);
+  });
+  if (!good) {
+    return complain(command.file + ": cannot be written", kFailed);
   }
   std::cerr << command.file << ": " << recorded << " messages\n";
   return kDone;
@@ -85,8 +104,14 @@ void add_record_command(CLI::App& app, int& exit_code) {
       ->add_option("--contacts", record->contacts,
                    "Bind here, as the recognizer would, and record the probes instead")
       ->type_name("ENDPOINT");
+  command
+      ->add_option("--allow-clients", record->allow_clients,
+                   "CURVE with --contacts: file of the public keys that may connect")
+      ->type_name("FILE");
+  command->add_flag("--insecure", record->insecure,
+                    "With --contacts: permit a bind beyond this machine without CURVE");
   command->add_option("--seconds", record->seconds, "Record so long; 0 = for ever [s]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(non_negative_number())
       ->capture_default_str()
       ->type_name("S");
   command->add_option("--count", record->count, "Record so many messages; 0 = any number")

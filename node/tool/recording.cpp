@@ -1,19 +1,56 @@
 #include "node/tool/recording.h"
 
 #include <google/protobuf/io/coded_stream.h>
-#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <iterator>
-#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "palpate/v1/recording.pb.h"
 
 namespace palpate {
 namespace {
 
-constexpr std::string_view kMagic = "palpate1";
+constexpr std::string_view kMagic = "palpate2";
+constexpr std::string_view kFormerMagic = "palpate1";
+constexpr std::string_view kMark = "\xA7rec";
+// Mark, received_ns, frame_count, topic size, payload size, checksum.
+constexpr std::size_t kTimeAt = kMark.size();
+constexpr std::size_t kFramesAt = kTimeAt + 8;
+constexpr std::size_t kTopicAt = kFramesAt + 4;
+constexpr std::size_t kPayloadAt = kTopicAt + 4;
+constexpr std::size_t kChecksumAt = kPayloadAt + 4;
+constexpr std::size_t kHeaderBytes = kChecksumAt + 4;
+constexpr std::size_t kReadBytes = 64 * 1024;
+// Of the former format: a message with its fields' tags and lengths.
+constexpr std::size_t kMostFormerBytes = kMostRecordBytes + 64;
+constexpr std::size_t kLongestVarint = 10;
+
+void put(std::string& out, std::uint64_t value, int bytes) {
+  for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i) & 0xFFU);
+}
+
+std::uint64_t get(std::string_view in, std::size_t at, int bytes) {
+  std::uint64_t value = 0;
+  for (int i = 0; i < bytes; ++i) {
+    value |= std::uint64_t{static_cast<unsigned char>(in[at + static_cast<std::size_t>(i)])} << (8 * i);
+  }
+  return value;
+}
+
+/// Of a record's header, but for mark and checksum, and of what follows it.
+std::uint32_t checksum(std::string_view header, std::string_view body) {
+  const auto bytes = [](std::string_view text) { return reinterpret_cast<const Bytef*>(text.data()); };
+  const std::string_view fields = header.substr(kTimeAt, kChecksumAt - kTimeAt);
+  uLong crc = ::crc32(0, bytes(fields), static_cast<uInt>(fields.size()));
+  if (!body.empty()) crc = ::crc32(crc, bytes(body), static_cast<uInt>(body.size()));
+  return static_cast<std::uint32_t>(crc);
+}
 
 }  // namespace
 
@@ -28,65 +65,147 @@ std::string RecordingWriter::open(const std::string& path) {
   return {};
 }
 
-bool RecordingWriter::write(const v1::RecordedMessage& message) {
-  buffer_.clear();
-  {
-    google::protobuf::io::StringOutputStream stream(&buffer_);
-    google::protobuf::io::CodedOutputStream coded(&stream);
-    coded.WriteVarint64(message.ByteSizeLong());
-    message.SerializeWithCachedSizes(&coded);
-  }
-  return static_cast<bool>(file_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()))
-                               .flush());
+bool RecordingWriter::write(const RecordedMessage& message) {
+  buffer_ = kMark;
+  put(buffer_, static_cast<std::uint64_t>(message.received_ns), 8);
+  put(buffer_, message.frame_count, 4);
+  put(buffer_, message.topic.size(), 4);
+  put(buffer_, message.payload.size(), 4);
+  const std::string body = message.topic + message.payload;
+  put(buffer_, checksum(buffer_ + std::string(4, '\0'), body), 4);
+  buffer_ += body;
+  return static_cast<bool>(
+      file_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size())).flush());
 }
 
 bool is_recording(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<char, kMagic.size()> start{};
   file.read(start.data(), start.size());
-  return file && std::string_view(start.data(), start.size()) == kMagic;
+  const std::string_view magic(start.data(), start.size());
+  return file && (magic == kMagic || magic == kFormerMagic);
 }
 
-Result<Recording> read_recording(const std::string& path) {
-  using Read = Result<Recording>;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    return Read::fail(path + ": " + std::strerror(errno));
+std::string RecordingReader::open(const std::string& path) {
+  file_.open(path, std::ios::binary);
+  if (!file_) return path + ": " + std::strerror(errno);
+  if (!fill(kMagic.size()) || (!rest().starts_with(kMagic) && !rest().starts_with(kFormerMagic))) {
+    return path + ": no recording: it does not begin with \"palpate2\" or \"palpate1\"";
   }
-  const std::string text(std::istreambuf_iterator<char>(file), {});
-  if (!std::string_view(text).starts_with(kMagic)) {
-    return Read::fail(path + ": no recording: it does not begin with \"palpate1\"");
+  former_ = rest().starts_with(kFormerMagic);
+  consume(kMagic.size());
+  return {};
+}
+
+/// False where the file has no more so many bytes; then all that it has are there.
+bool RecordingReader::fill(std::size_t bytes) {
+  while (rest().size() < bytes && file_) {
+    if (at_ > kReadBytes) {
+      buffer_.erase(0, at_);
+      at_ = 0;
+    }
+    const std::size_t length = buffer_.size();
+    buffer_.resize(length + std::max(kReadBytes, bytes - rest().size()));
+    file_.read(buffer_.data() + length, static_cast<std::streamsize>(buffer_.size() - length));
+    buffer_.resize(length + static_cast<std::size_t>(file_.gcount()));
   }
-  if (text.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-    return Read::fail(path + ": longer than 2 GiB");
-  }
-  Recording recording;
-  std::size_t at = kMagic.size();
-  while (at < text.size()) {
-    google::protobuf::io::CodedInputStream coded(
-        reinterpret_cast<const std::uint8_t*>(text.data()) + at, static_cast<int>(text.size() - at));
-    std::uint64_t length = 0;
-    constexpr std::size_t kLongestVarint = 10;
-    if (!coded.ReadVarint64(&length)) {
-      if (text.size() - at < kLongestVarint) {
-        recording.truncated_at = at;
-        break;
+  return rest().size() >= bytes;
+}
+
+void RecordingReader::consume(std::size_t bytes) {
+  at_ += bytes;
+  in_damage_ = false;
+}
+
+void RecordingReader::skip(std::size_t bytes) {
+  if (!in_damage_) ++damaged_;
+  at_ += bytes;
+  in_damage_ = true;
+  skipped_bytes_ += bytes;
+}
+
+bool RecordingReader::next(RecordedMessage& message) {
+  const bool found = former_ ? next_former(message) : next_checked(message);
+  if (found) ++messages_;
+  return found;
+}
+
+bool RecordingReader::next_checked(RecordedMessage& message) {
+  while (fill(1)) {
+    const bool whole_header = fill(kHeaderBytes);
+    const std::string_view start = rest();
+    if (!start.starts_with(kMark.substr(0, start.size()))) {
+      // On to the next mark, or where one may begin.
+      const std::size_t mark = start.find(kMark.front(), 1);
+      skip(std::min(mark, start.size()));
+      continue;
+    }
+    bool whole = whole_header;
+    if (whole_header) {
+      const std::size_t topic_size = get(start, kTopicAt, 4);
+      const std::size_t payload_size = get(start, kPayloadAt, 4);
+      if (topic_size + payload_size > kMostRecordBytes) {
+        skip(1);
+        continue;
       }
-      return Read::fail(path + ": byte " + std::to_string(at) + ": no length of a message");
+      whole = fill(kHeaderBytes + topic_size + payload_size);
+      if (whole) {
+        const std::string_view header = rest().substr(0, kHeaderBytes);
+        const std::string_view body = rest().substr(kHeaderBytes, topic_size + payload_size);
+        if (checksum(header, body) != get(header, kChecksumAt, 4)) {
+          skip(1);
+          continue;
+        }
+        message.received_ns = static_cast<std::int64_t>(get(header, kTimeAt, 8));
+        message.frame_count = static_cast<std::uint32_t>(get(header, kFramesAt, 4));
+        message.topic = body.substr(0, topic_size);
+        message.payload = body.substr(topic_size);
+        consume(kHeaderBytes + body.size());
+        return true;
+      }
     }
-    const std::size_t begin = at + static_cast<std::size_t>(coded.CurrentPosition());
-    if (length > text.size() - begin) {
-      recording.truncated_at = at;
-      break;
+    // Broken off here; or a length is damaged, and whole records follow.
+    if (rest().find(kMark, 1) == std::string_view::npos) {
+      breaks_off_ = true;
+      return false;
     }
-    v1::RecordedMessage message;
-    if (!message.ParseFromArray(text.data() + begin, static_cast<int>(length))) {
-      return Read::fail(path + ": byte " + std::to_string(begin) + ": no recorded message");
-    }
-    recording.messages.push_back(std::move(message));
-    at = begin + static_cast<std::size_t>(length);
+    skip(1);
   }
-  return Read::ok(std::move(recording));
+  return false;
+}
+
+bool RecordingReader::next_former(RecordedMessage& message) {
+  while (fill(1)) {
+    fill(kLongestVarint);
+    const auto here = std::min(rest().size(), kLongestVarint);
+    google::protobuf::io::CodedInputStream coded(
+        reinterpret_cast<const std::uint8_t*>(rest().data()), static_cast<int>(here));
+    std::uint64_t length = 0;
+    const bool has_length = coded.ReadVarint64(&length);
+    const auto begin = static_cast<std::size_t>(coded.CurrentPosition());
+    if ((!has_length && here < kLongestVarint) ||
+        (has_length && length <= kMostFormerBytes && !fill(begin + length))) {
+      breaks_off_ = true;
+      return false;
+    }
+    if (!has_length || length > kMostFormerBytes) {
+      // Nothing says where the next message begins.
+      while (fill(1)) skip(rest().size());
+      return false;
+    }
+    v1::RecordedMessage recorded;
+    if (!recorded.ParseFromArray(rest().data() + begin, static_cast<int>(length))) {
+      skip(begin + length);
+      continue;
+    }
+    message.received_ns = recorded.received_ns();
+    message.frame_count = 2;
+    message.topic = std::move(*recorded.mutable_topic());
+    message.payload = std::move(*recorded.mutable_payload());
+    consume(begin + length);
+    return true;
+  }
+  return false;
 }
 
 }  // namespace palpate

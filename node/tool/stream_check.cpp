@@ -12,6 +12,8 @@ namespace {
 /// Samples of a patch that are kept for judgement: enough for every estimate below.
 constexpr std::size_t kMostKept = 4096;
 constexpr std::size_t kMostPatches = 256;
+/// More than stand around one part.
+constexpr std::size_t kMostProbes = 64;
 
 std::string length_text(double metres) {
   const LengthUnit unit = length_unit_for(metres);
@@ -78,11 +80,17 @@ void StreamCheck::take(std::size_t frame_count, std::string_view topic, std::str
   ++messages_;
   const v1::RejectReason reason = decoder_.decode(frame_count, topic, payload);
   if (reason != v1::REJECT_REASON_UNSPECIFIED) {
-    ++rejected_[{std::string(decoder_.probe()), reason}];
+    const bool is_known = probes_.contains(decoder_.probe()) || rejected_.size() < kMostProbes;
+    ++rejected_[{std::string(is_known ? decoder_.probe() : std::string_view()), reason}];
     return;
   }
   const ContactMessage& message = decoder_.message();
+  if (probes_.size() >= kMostProbes && !probes_.contains(message.probe)) {
+    ++rejected_[{std::string(), v1::REJECT_REASON_TOO_MANY_PROBES}];
+    return;
+  }
   Probe& probe = probes_[std::string(message.probe)];
+  probe.without_epoch += message.epoch == 0 ? 1 : 0;
   if (!is_news(probe.sequence.take(message.epoch, message.seq))) {
     ++rejected_[{std::string(message.probe), v1::REJECT_REASON_SEQUENCE}];
     return;
@@ -264,6 +272,10 @@ std::vector<Finding> StreamCheck::findings() const {
         count_text(probe.messages, "messages, ") + count_text(probe.samples, "samples, ") +
             count_text(probe.patches.size(), "patches"),
         "");
+    if (probe.without_epoch > 0) {
+      add(Severity::Error, count_text(probe.without_epoch, "messages without header.epoch"),
+          "set it to a random number at each start: else a restart looks like old messages");
+    }
     if (probe.sequence.gaps() > 0) {
       add(Severity::Warning,
           count_text(probe.sequence.gaps(), "gaps in seq, ") +

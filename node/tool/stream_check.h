@@ -46,6 +46,7 @@ class StreamCheck {
     SequenceTracker sequence;
     std::uint64_t samples = 0;
     std::uint64_t messages = 0;
+    std::uint64_t without_epoch = 0;
     std::uint64_t stamps_backwards = 0;
     std::uint64_t stamps_missing = 0;
     std::uint64_t stamps_in_future = 0;

@@ -6,6 +6,12 @@
 #include "node/socket.h"
 
 namespace palpate {
+namespace {
+
+// Ten times what a recognizer with all its groups and probes publishes on.
+constexpr std::size_t kMostTopics = 10'000;
+
+}  // namespace
 
 double TopicCount::rate_hz() const {
   const double span = std::chrono::duration<double>(last - first).count();
@@ -51,10 +57,13 @@ Result<std::map<std::string, TopicCount>> count_topics(
   while (!until(counts)) {
     constexpr int kStepMs = 50;
     poll(items, kStepMs);
-    while (receive_now(socket, message)) {
-      counts[message.topic.to_string()].take(message.payload.size(),
-                                             std::chrono::steady_clock::now());
-    }
+    constexpr int kMostAtOnce = 1000;
+    const auto turn = std::chrono::steady_clock::now() + std::chrono::milliseconds(kStepMs);
+    drain(socket, message, kMostAtOnce, turn, [&](const TwoFrames&) {
+      std::string topic = message.topic.to_string();
+      if (counts.size() >= kMostTopics && !counts.contains(topic)) topic = "(further topics)";
+      counts[topic].take(message.payload.size(), std::chrono::steady_clock::now());
+    });
   }
   return Counts::ok(std::move(counts));
 }

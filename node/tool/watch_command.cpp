@@ -13,6 +13,7 @@
 
 #include "node/client/result_subscriber.h"
 #include "node/clock.h"
+#include "node/printable.h"
 #include "node/stop_signals.h"
 #include "node/tool/command.h"
 #include "node/tool/quantity.h"
@@ -46,7 +47,9 @@ std::string latency_text(const v1::Recognition& answer) {
   if (answer.newest_sample_stamp_ns() == 0) {
     return "";
   }
-  const double ms = 1e-6 * static_cast<double>(unix_time_ns() - answer.newest_sample_stamp_ns());
+  // As doubles: a sender may claim any stamp.
+  const double ms = 1e-6 * (static_cast<double>(unix_time_ns()) -
+                            static_cast<double>(answer.newest_sample_stamp_ns()));
   char text[48];
   std::snprintf(text, sizeof text, " [%.2f ms after the touch]", ms);
   return text;
@@ -114,7 +117,7 @@ class Watch {
       if (shown.is_held &&
           (all || now - shown.at >= std::chrono::duration<double>(command_.interval_s))) {
         clear_table();
-        std::cout << group << " object " << shown.held.object() << ": " << summary_text(shown.held)
+        std::cout << printable(group) << " object " << shown.held.object() << ": " << summary_text(shown.held)
                   << ", " << shown.held.sample_count() << " samples" << shown.latency
                   << std::endl;
         shown.at = now;
@@ -153,7 +156,7 @@ class Watch {
     std::snprintf(text, sizeof text,
                   "probe %s: %s, %.0f samples/s, heard %.2f s ago, %llu gaps (%llu lost), %llu rejected, "
                   "%llu restarts",
-                  probe.probe().c_str(), probe.alive() ? "alive" : "SILENT", probe.sample_rate_hz(),
+                  printable(probe.probe()).c_str(), probe.alive() ? "alive" : "SILENT", probe.sample_rate_hz(),
                   std::max(probe.age_s(), 0.0), static_cast<unsigned long long>(probe.gaps()),
                   static_cast<unsigned long long>(probe.missing()),
                   static_cast<unsigned long long>(probe.rejected()),
@@ -230,7 +233,7 @@ void add_watch_command(CLI::App& app, int& exit_code) {
       ->capture_default_str()
       ->type_name("FORMAT");
   command->add_option("--interval", watch->interval_s, "Text: least time between a group's lines [s]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(non_negative_number())
       ->capture_default_str()
       ->type_name("S");
   command->add_option("--count", watch->count, "End after so many recognitions; 0 = never")
@@ -239,7 +242,7 @@ void add_watch_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--timeout", watch->timeout_s,
                    "Fail where nothing (with --count: no recognition) is heard for so long; 0 = wait for ever [s]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(non_negative_number())
       ->capture_default_str()
       ->type_name("S");
   command->callback([watch, &exit_code] { exit_code = run(*watch); });

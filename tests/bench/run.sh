@@ -38,7 +38,7 @@ install() {  # packages that are missing
     "${missing[@]}" >/dev/null
 }
 install g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-dev libgmock-dev libbenchmark-dev \
-  protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev python3 python3-protobuf \
+  protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev zlib1g-dev python3 python3-protobuf \
   python3-zmq python3-matplotlib python3-numpy
 for peer in python3-opencv python3-scipy; do
   install "$peer" || echo "$peer cannot be installed: its peers are skipped"
@@ -53,9 +53,9 @@ rm -rf "$out"
 mkdir -p "$out"
 
 if [ $scale = quick ]; then
-  pareto=6 sweeps=10 calibration=4 rounds=1000 load=1 least_time=0.05 peers=4
+  pareto=6 sweeps=10 calibration=4 rounds=1000 load=1 least_time=0.05 peers=4 posterior=150 worst=20
 else
-  pareto=40 sweeps=100 calibration=40 rounds=10000 load=5 least_time=0.5 peers=40
+  pareto=40 sweeps=100 calibration=40 rounds=10000 load=5 least_time=0.5 peers=40 posterior=600 worst=120
 fi
 measure() {  # title, file, command...
   local title=$1 file=$2
@@ -72,6 +72,14 @@ measure "time of the local estimators" local.csv "$bench/core/bench_local" --ben
 measure "speed against error" pareto.csv "$bench/accuracy/bench_pareto" --scenes $pareto
 measure "hard cases" sweeps.csv "$bench/accuracy/bench_sweeps" --scenes $sweeps
 measure "noise honesty" calibration.csv "$bench/accuracy/bench_calibration" --scenes $calibration
+measure "certainty, calibration and time on scenes of a stated prior" posterior.txt \
+  "$bench/accuracy/bench_posterior" --scenes $posterior
+measure "the same where scenes come from another prior" posterior_other.txt "$bench/accuracy/bench_posterior" \
+  --scenes $posterior --other-prior
+measure "what makes a recognition dearer" factors.txt "$bench/worst_case/bench_factors" --scenes $posterior
+measure "inputs found to cost the most" hostile.txt "$bench/worst_case/bench_worst_case" tests/data/hostile/*.csv
+measure "search for the worst case" worst_case.txt "$bench/worst_case/bench_worst_case" --seconds $worst \
+  --save "$out/worst_case.csv"
 measure "the paper's tables" paper.md build/strict/tests/paper/paper_tables
 measure "signature curves" signatures.csv "$bench/accuracy/bench_signatures"
 measure "real recordings" real.md "$bench/real/bench_real"

@@ -1,5 +1,7 @@
 """CURVE: the right key works, a wrong one or none gets nothing and is counted."""
+import signal
 import subprocess
+import time
 import unittest
 
 from bus import Bus, Probe, wait_for
@@ -37,6 +39,44 @@ class Curve(unittest.TestCase):
                 self.assertEqual((code, out), (1, ""), key)
             _, out, _ = watch("friend")
             self.assertIn("CURVE_CLASS_CIRCLE", out)
+
+    def test_sighup_rereads_who_may_connect(self):
+        with Bus("tcp") as bus:
+            for name in ("node", "friend", "other"):
+                self.assertEqual(run(TOOL, "keygen", bus.folder / name)[0], 0)
+            allowed = bus.folder / "allowed"
+            allowed.write_text((bus.folder / "friend.public").read_text())
+            node = bus.start_node("--curve-secret-key", bus.folder / "node.secret", "--allow-clients", allowed)
+
+            def play(key):
+                return run(SIM, SOURCE / "sim/scenes/circle.textproto", "--contacts", bus.contacts, "--fast",
+                           "--wait", "1.5", "--curve-secret-key", bus.folder / f"{key}.secret",
+                           "--curve-server-key", bus.folder / "node.public")[0]
+
+            def reread(text, said):
+                allowed.write_text(text)
+                node.send_signal(signal.SIGHUP)
+                deadline = time.monotonic() + 10
+                while said not in node.log_path.read_text():
+                    self.assertLess(time.monotonic(), deadline, node.log_path.read_text())
+                    time.sleep(0.01)
+
+            self.assertEqual((play("friend"), play("other")), (0, 1))
+            watch = bus.start(TOOL, "watch", "--results", bus.results, "--timeout", "3", "--curve-secret-key",
+                              bus.folder / "friend.secret", "--curve-server-key", bus.folder / "node.public",
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            both = (bus.folder / "friend.public").read_text() + (bus.folder / "other.public").read_text()
+            reread(both, "2 allowed clients reread")
+            self.assertEqual((play("friend"), play("other")), (0, 0))
+            # A file that is none changes nothing.
+            reread("nonsense\n", "stay as they were")
+            self.assertEqual(play("friend"), 0)
+            self.assertIsNone(watch.poll())
+            # Who is taken off is cut off, connected as it may be.
+            reread((bus.folder / "other.public").read_text(), "1 allowed clients reread")
+            self.assertEqual((play("friend"), play("other")), (1, 0))
+            self.assertEqual(watch.wait(20), 1)
+            self.assertIsNone(node.poll())
 
     def test_check_takes_the_recognizers_place_with_its_keys(self):
         with Bus() as bus:

@@ -127,14 +127,23 @@ struct ArcTable {
 
   double parameter_at(double arc) const {
     const auto upper = std::upper_bound(s.begin(), s.end(), arc);
-    const auto i = std::clamp<std::ptrdiff_t>(upper - s.begin(), 1,
-                                              static_cast<std::ptrdiff_t>(s.size()) - 1);
+    const auto i =
+        std::clamp<std::ptrdiff_t>(upper - s.begin(), 1, static_cast<std::ptrdiff_t>(s.size()) - 1);
     const auto k = static_cast<std::size_t>(i);
     const double span = s[k] - s[k - 1];
     const double f = span > 0.0 ? (arc - s[k - 1]) / span : 0.0;
     return t[k - 1] + f * (t[k] - t[k - 1]);
   }
 };
+
+/// Arc of a patch: of a piece whose arc is `total` and whose half diagonal is `size`.
+double random_arc(const SceneOptions& options, double total, double size, std::mt19937_64& rng) {
+  if (options.most_arc_over_size > 0.0) {
+    return size * std::exp(uniform(rng, std::log(options.least_arc_over_size),
+                                   std::log(options.most_arc_over_size)));
+  }
+  return total * uniform(rng, options.least_fraction, options.most_fraction);
+}
 
 void touch(const Piece& piece, const SceneOptions& options, double scale, std::mt19937_64& rng,
            Scene* scene) {
@@ -146,8 +155,8 @@ void touch(const Piece& piece, const SceneOptions& options, double scale, std::m
     double begin = 0.0;
     double end = 0.0;
     for (;;) {
-      const double arc = std::min(
-          total * uniform(rng, options.least_fraction, options.most_fraction), 0.98 * stratum);
+      const double arc =
+          std::min(random_arc(options, total, options.size_m / scale, rng), 0.98 * stratum);
       begin = p * stratum + uniform(rng, 0.0, stratum - arc);
       end = begin + arc;
       const double t_begin = table.parameter_at(begin);

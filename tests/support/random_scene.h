@@ -18,6 +18,10 @@ struct SceneOptions {
   /// Arc of each patch as a fraction of the whole curve piece, uniform in [least, most].
   double least_fraction = 0.06;
   double most_fraction = 0.25;
+  /// Where most_arc_over_size > 0, the arc of each patch in units of size_m instead, log-uniform in
+  /// [least, most].
+  double least_arc_over_size = 0.0;
+  double most_arc_over_size = 0.0;
   double size_m = 0.05;  ///< half diagonal of the whole curve piece [m]
 };
 
@@ -26,8 +30,8 @@ struct Scene {
   Eigen::Vector3d values = Eigen::Vector3d::Zero();
   Pose2 world_T_curve;
   double sigma_m = 0.0;
-  std::vector<std::vector<Vec2>> patches;     ///< noisy samples in the world frame [m]
-  std::vector<std::vector<double>> t;         ///< true curve parameter of each sample
+  std::vector<std::vector<Vec2>> patches;  ///< noisy samples in the world frame [m]
+  std::vector<std::vector<double>> t;      ///< true curve parameter of each sample
 };
 
 /// Classes outside the eight, for "never confidently wrong".
@@ -35,8 +39,8 @@ enum class OutsideShape { Sinusoid, Superellipse, LogSpiral, Quartic };
 
 /// Patches lie in disjoint parts of the curve, in random order and directions of travel.
 Scene random_scene(CurveClass curve_class, const SceneOptions& options, std::mt19937_64& rng);
-/// One stretch of an ellipse, arc_rad of its eccentric angle t from a random start. The patches share
-/// it: each covers 98 per cent of its part (least_fraction, most_fraction are not used).
+/// One stretch of an ellipse, arc_rad of its eccentric angle t from a random start. The patches
+/// share it: each covers 98 per cent of its part (least_fraction, most_fraction are not used).
 Scene random_ellipse_arc(double arc_rad, const SceneOptions& options, std::mt19937_64& rng);
 Scene random_outside_scene(OutsideShape shape, const SceneOptions& options, std::mt19937_64& rng);
 

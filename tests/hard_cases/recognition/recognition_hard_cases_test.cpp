@@ -59,13 +59,25 @@ TEST(RecognitionHardCases, PaperScene) {
   EXPECT_EQ(answer.sample_count, 222U);
 }
 
+// Without noise a parabola leaves a chi-square of 8 on this patch and a semi-cubical parabola of
+// 0.6: no posterior is sure of the ellipse, nor of anything else, but by a noise of one in twenty;
+// and none gives the truth less than a thousandth.
 TEST(RecognitionHardCases, OnePatchOfItCannotTell) {
   std::mt19937_64 rng = test::test_rng();
-  for (int i = 0; i < 20; ++i) {
+  constexpr int kPatches = 40;
+  int recognised = 0;
+  for (int i = 0; i < kPatches; ++i) {
     const Recognition answer = recognise({elliptic_arc(0.3, rng)});
-    EXPECT_TRUE(answer.status == RecognitionStatus::Ambiguous ||
-                answer.shape.curve_class == CurveClass::Ellipse);
+    ASSERT_NE(answer.status, RecognitionStatus::Collecting);
+    const Hypothesis* ellipse = test::hypothesis_of(answer, CurveClass::Ellipse);
+    ASSERT_NE(ellipse, nullptr);
+    EXPECT_GT(ellipse->probability, 1e-3) << i;
+    if (answer.status == RecognitionStatus::Recognized) {
+      ++recognised;
+      EXPECT_EQ(answer.shape.curve_class, CurveClass::Ellipse) << i;
+    }
   }
+  EXPECT_LE(recognised, 6);  // 2 expected of 40; more with a probability of 0.3 %
 }
 
 TEST(RecognitionHardCases, UnknownNoiseIsEstimated) {

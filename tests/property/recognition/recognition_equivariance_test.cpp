@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/curves/curve.h"
+#include "tests/support/canonical_points.h"
+#include "tests/support/joint_error.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 
@@ -21,12 +23,28 @@ test::Scene told_scene(CurveClass curve_class, std::mt19937_64& rng) {
   return test::random_scene(curve_class, options, rng);
 }
 
-/// Rivals that are not nested in one another are sought on a grid that turns with the frame, and a sample
-/// at the edge of the spike test may fall on either side: probabilities agree to a few hundredths, and a
-/// decision is compared unless it hangs on those.
+/// Rivals that are not nested in one another are sought on a grid that turns with the frame, and a
+/// sample at the edge of the spike test may fall on either side: probabilities agree to a few
+/// hundredths, and a decision is compared unless it hangs on those.
 constexpr double kProbability = 0.03;
 
-void expect_same(const Recognition& answer, const Recognition& other) {
+/// The answer as a truth that another answer is measured against: moved, then enlarged.
+test::Scene as_truth(const Recognition& answer, const Pose2& motion, double factor) {
+  test::Scene truth;
+  truth.curve_class = answer.shape.curve_class;
+  const Eigen::Vector3d powers = test::length_powers(truth.curve_class);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    truth.values[k] = answer.shape.values[k] * std::pow(factor, powers[k]);
+  }
+  truth.world_T_curve = motion * answer.world_T_curve;
+  truth.world_T_curve.x *= factor;
+  truth.world_T_curve.y *= factor;
+  return truth;
+}
+
+/// `other` answers the samples of `answer` moved, then enlarged by `factor`, or in another order.
+void expect_same(const Recognition& answer, const Recognition& other, const Pose2& motion = {},
+                 double factor = 1.0) {
   const double threshold = RecognizerOptions{}.recognized_probability;
   const double probability = answer.hypotheses.front().probability;
   ASSERT_EQ(other.shape.curve_class, answer.shape.curve_class);
@@ -34,10 +52,35 @@ void expect_same(const Recognition& answer, const Recognition& other) {
   if (std::abs(probability - threshold) > kProbability) {
     EXPECT_EQ(other.status, answer.status);
   }
-  const double allowed = other.outlier_count == answer.outlier_count ? 0.05 : 1.0;  // sd
-  for (Eigen::Index k = 0; k < answer.covariance.rows() - 3; ++k) {
-    EXPECT_NEAR(other.shape.values[k], answer.shape.values[k],
-                allowed * std::sqrt(answer.covariance(k, k)));
+  if (answer.shape.curve_class == CurveClass::Unclassified) {
+    return;
+  }
+  const bool same_samples = other.outlier_count == answer.outlier_count;
+  const double allowed = same_samples ? 0.05 : 1.0;  // standard deviations
+  const test::Scene truth = as_truth(answer, motion, factor);
+  const test::JointError joint = test::joint_error(other.hypotheses.front(), truth);
+  for (Eigen::Index k = 0; k < joint.error.size(); ++k) {
+    EXPECT_LE(std::abs(joint.error[k]), allowed * std::sqrt(joint.covariance(k, k)))
+        << "component " << k;
+  }
+  // Shape and pose together, in the covariance that both are to have.
+  EXPECT_LE(test::squared_distance(joint),
+            allowed * allowed * static_cast<double>(joint.error.size()));
+  test::Scene unmoved = truth;
+  unmoved.world_T_curve = answer.world_T_curve;
+  const test::JointError own = test::joint_error(answer.hypotheses.front(), unmoved);
+  if (same_samples) {
+    // Shape parameters only: a motion mixes the variances of the pose.
+    const auto letters =
+        static_cast<Eigen::Index>(parameter_letters(answer.shape.curve_class).size());
+    const Eigen::Vector3d powers = test::length_powers(answer.shape.curve_class);
+    for (Eigen::Index k = 0; k < letters; ++k) {
+      constexpr double kSameDeviation = 0.02;  // relative
+      EXPECT_NEAR(
+          std::sqrt(joint.covariance(k, k) / own.covariance(k, k)) / std::pow(factor, powers[k]),
+          1.0, kSameDeviation)
+          << "component " << k;
+    }
   }
 }
 
@@ -56,12 +99,8 @@ TEST_P(Equivariance, ScaleAndMotionCarryTheAnswerAlong) {
         }
       }
       const Recognition scaled = test::recognise(large, scene.sigma_m * factor);
-      ASSERT_EQ(scaled.shape.curve_class, answer.shape.curve_class);
-      EXPECT_NEAR(scaled.hypotheses.front().probability, answer.hypotheses.front().probability,
-                  kProbability);
-      EXPECT_NEAR(scaled.world_T_curve.x / factor, answer.world_T_curve.x,
-                  0.05 * std::sqrt(answer.covariance(answer.covariance.rows() - 3,
-                                                     answer.covariance.rows() - 3)) + 1e-9);
+      SCOPED_TRACE(testing::Message() << "scaled by " << factor);
+      expect_same(answer, scaled, {}, factor);
     }
     const Pose2 motion{3.0, -2.0, 2.2};
     test::Scene moved = scene;
@@ -71,7 +110,8 @@ TEST_P(Equivariance, ScaleAndMotionCarryTheAnswerAlong) {
       }
     }
     const Recognition turned = test::recognise(moved, scene.sigma_m);
-    expect_same(answer, turned);
+    SCOPED_TRACE("moved");
+    expect_same(answer, turned, motion);
   }
 }
 

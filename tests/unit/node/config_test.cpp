@@ -49,7 +49,8 @@ TEST(Config, DefaultsAreTheStructs) {
   const Result<NodeOptions> options = make_options(v1::NodeConfig());
   ASSERT_TRUE(options) << options.error;
   EXPECT_EQ(to_text(to_config(*options.value)), to_text(to_config(NodeOptions())));
-  EXPECT_EQ(options.value->intake.recognizer.parsimony, RecognizerOptions().parsimony);
+  EXPECT_EQ(options.value->intake.recognizer.determined_fraction,
+            RecognizerOptions().determined_fraction);
   EXPECT_EQ(options.value->intake.recognizer.classes, RecognizerOptions().classes);
 }
 
@@ -72,8 +73,8 @@ TEST(Config, WhatIsPrintedIsReadBack) {
   ASSERT_EQ(set_option(config, "contacts", "ipc:///tmp/x"), "");
   const Result<NodeOptions> options = make_options(config);
   ASSERT_TRUE(options) << options.error;
-  EXPECT_EQ(options.value->intake.max_groups, 7U);
-  EXPECT_EQ(options.value->intake.evict_idle.count(), 2.5);
+  EXPECT_EQ(options.value->intake.groups.max_groups, 7U);
+  EXPECT_EQ(options.value->intake.groups.evict_idle.count(), 2.5);
   EXPECT_EQ(options.value->contacts.size(), 2U);
   const std::string text = to_text(to_config(*options.value));
   const Result<NodeOptions> again = make_options(read(text));
@@ -94,7 +95,7 @@ TEST(Config, FlagBeforeEnvironmentBeforeFile) {
   ASSERT_EQ(set_option(flags, "contacts", "ipc:///c"), "");
   const Result<NodeOptions> options = make_options(merge(merge(file, *environment.value), flags));
   ASSERT_TRUE(options) << options.error;
-  EXPECT_EQ(options.value->intake.max_groups, 3U);           // flag
+  EXPECT_EQ(options.value->intake.groups.max_groups, 3U);           // flag
   EXPECT_EQ(options.value->intake.max_probes, 2U);           // environment
   EXPECT_EQ(options.value->intake.recognizer.sigma_m, 1.0);  // file
   EXPECT_EQ(options.value->contacts, std::vector<std::string>{"ipc:///c"});

@@ -41,6 +41,27 @@ class IntakeTest : public ::testing::Test {
     return std::accumulate(rejected.begin(), rejected.end(), std::uint64_t{0});
   }
 
+  // What a worker would do.
+  std::shared_ptr<GroupRecognizer> recognize(const std::string& group) {
+    std::shared_ptr<GroupRecognizer> recognizer =
+        intake_.groups().begin_work(*intake_.groups().find(group));
+    recognizer->run();
+    intake_.groups().end_work(*intake_.groups().find(group));
+    return recognizer;
+  }
+
+  // The same without the computation, as if it had cost so much.
+  void serve(Group& group, std::int64_t cost_ns) {
+    const std::shared_ptr<GroupRecognizer> recognizer = intake_.groups().begin_work(group);
+    recognizer->contacts.clear();
+    recognizer->answer.compute_ns = cost_ns;
+    intake_.groups().end_work(group);
+  }
+
+  std::uint64_t recognized_samples(const std::string& group) {
+    return recognize(group)->answer.recognition.sample_count();
+  }
+
   SteadyTime now_ = SteadyTime(seconds(1000));
   Intake intake_{IntakeOptions()};
 };
@@ -89,17 +110,16 @@ TEST_F(IntakeTest, AStampThatCannotBeSubtractedIsShownAsZero) {
 
 TEST_F(IntakeTest, ANewObjectForgetsTheOld) {
   give("p", in_group("cup", 1, line_batch("p", 1, 0, 50)));
-  EXPECT_EQ(intake_.groups().find("cup")->recognize().sample_count, 50U);
+  EXPECT_EQ(recognized_samples("cup"), 50U);
   EXPECT_EQ(give("p", in_group("cup", 2, line_batch("p", 1, 1, 30))), kTaken);
-  const Group& group = *intake_.groups().find("cup");
-  EXPECT_EQ(group.object(), 2U);
-  EXPECT_EQ(intake_.groups().find("cup")->recognize().sample_count, 30U);
+  EXPECT_EQ(intake_.groups().find("cup")->object(), 2U);
+  EXPECT_EQ(recognized_samples("cup"), 30U);
 }
 
 TEST_F(IntakeTest, ARestartedProbeGoesOnWithItsObject) {
   give("p", in_group("cup", 1, line_batch("p", 1, 7, 50)));
   EXPECT_EQ(give("p", in_group("cup", 1, line_batch("p", 2, 0, 30, 1.0))), kTaken);
-  EXPECT_EQ(intake_.groups().find("cup")->recognize().sample_count, 80U);
+  EXPECT_EQ(recognized_samples("cup"), 80U);
 }
 
 TEST_F(IntakeTest, StragglersOfTheOldObjectNeitherMixNorReturn) {
@@ -109,9 +129,9 @@ TEST_F(IntakeTest, StragglersOfTheOldObjectNeitherMixNorReturn) {
   EXPECT_EQ(give("b", in_group("cup", 1, line_batch("b", 1, 1, 50, 1.1))),
             v1::REJECT_REASON_STALE_OBJECT);
   EXPECT_EQ(intake_.groups().find("cup")->object(), 2U);
-  EXPECT_EQ(intake_.groups().find("cup")->recognize().sample_count, 30U);
+  EXPECT_EQ(recognized_samples("cup"), 30U);
   EXPECT_EQ(give("b", in_group("cup", 2, line_batch("b", 1, 2, 20, 1.2))), kTaken);
-  EXPECT_EQ(intake_.groups().find("cup")->recognize().sample_count, 50U);
+  EXPECT_EQ(recognized_samples("cup"), 50U);
 }
 
 TEST_F(IntakeTest, AProbeOfAnotherMindIsHeardAfterTheOthersSilence) {
@@ -127,7 +147,7 @@ TEST_F(IntakeTest, FramesAreNotMixed) {
   batch.mutable_header()->set_frame("table");
   EXPECT_EQ(give("p", batch), kTaken);
   EXPECT_EQ(give("p", line_batch("p", 1, 1)), v1::REJECT_REASON_FRAME_NAME);
-  EXPECT_EQ(intake_.groups().find("p")->frame(), "table");
+  EXPECT_EQ(recognize("p")->answer.recognition.header().frame(), "table");
 }
 
 TEST_F(IntakeTest, ContactsAreNamedAsTheProbeNamesThem) {
@@ -140,18 +160,18 @@ TEST_F(IntakeTest, ContactsAreNamedAsTheProbeNamesThem) {
   batch = in_group("cup", 1, line_batch("right", 1, 1, 10, 2.0));
   batch.set_patch(10);
   give("right", batch);
-  const Group& group = *intake_.groups().find("cup");
-  EXPECT_EQ(group.source_of(0, 0).probe, "left");
-  EXPECT_EQ(group.source_of(0, 0).patch, 5U);
-  EXPECT_EQ(group.source_of(1, 1).probe, "right");
-  EXPECT_EQ(group.source_of(1, 1).patch, 10U);
-  EXPECT_EQ(group.source_of(2, 0).probe, "");
+  const std::shared_ptr<GroupRecognizer> group = recognize("cup");
+  EXPECT_EQ(group->source_of(0, 0).probe, "left");
+  EXPECT_EQ(group->source_of(0, 0).patch, 5U);
+  EXPECT_EQ(group->source_of(1, 1).probe, "right");
+  EXPECT_EQ(group->source_of(1, 1).patch, 10U);
+  EXPECT_EQ(group->source_of(2, 0).probe, "");
 }
 
 TEST_F(IntakeTest, TenThousandNamesStayWithinTheBoundsAndDisplaceNobody) {
   IntakeOptions options;
   options.max_probes = 8;
-  options.max_groups = 4;
+  options.groups.max_groups = 4;
   Intake intake(options);
   EXPECT_EQ(give(intake, "good", line_batch("good", 1, 0)), kTaken);
   for (int i = 0; i < 10000; ++i) {
@@ -174,7 +194,7 @@ TEST_F(IntakeTest, TenThousandNamesStayWithinTheBoundsAndDisplaceNobody) {
 TEST_F(IntakeTest, TheIdleMakeRoom) {
   IntakeOptions options;
   options.max_probes = 2;
-  options.max_groups = 2;
+  options.groups.max_groups = 2;
   Intake intake(options);
   give(intake, "a", line_batch("a", 1, 0));
   now_ += seconds(1);
@@ -193,6 +213,29 @@ TEST_F(IntakeTest, TheIdleMakeRoom) {
   EXPECT_EQ(intake.probes().evicted_count(), 1U);
 }
 
+TEST_F(IntakeTest, AProbeThatOpensGroupAfterGroupLosesItsOwnOnly) {
+  IntakeOptions options;
+  options.groups.max_groups_per_probe = 3;
+  Intake intake(options);
+  give(intake, "good", in_group("good", 1, line_batch("good", 1, 0)));
+  for (std::uint64_t seq = 0; seq < 500; ++seq) {
+    now_ += milliseconds(1);
+    EXPECT_EQ(give(intake, "greedy", in_group(std::to_string(seq), 1, line_batch("greedy", 1, seq))),
+              kTaken);
+  }
+  EXPECT_EQ(intake.groups().size(), 4U);
+  EXPECT_NE(intake.groups().find("good"), nullptr);
+  EXPECT_NE(intake.groups().find("499"), nullptr);
+  EXPECT_EQ(intake.groups().find("496"), nullptr);
+  // A group that somebody else touches too is not given up for one more.
+  for (const char* name : {"497", "498", "499"}) {
+    const std::string helper = std::string("helper").append(name);
+    EXPECT_EQ(give(intake, helper, in_group(name, 1, line_batch(helper, 1, 0))), kTaken);
+  }
+  EXPECT_EQ(give(intake, "greedy", in_group("more", 1, line_batch("greedy", 1, 500))),
+            v1::REJECT_REASON_TOO_MANY_GROUPS);
+}
+
 TEST_F(IntakeTest, AGroupHasSoManyProbes) {
   IntakeOptions options;
   options.group.max_probes_per_group = 2;
@@ -206,6 +249,7 @@ TEST_F(IntakeTest, AGroupHasSoManyProbes) {
 TEST_F(IntakeTest, AModestGroupIsServedBeforeBusyOnes) {
   constexpr std::int64_t kCost = 1'000'000;
   std::uint64_t seq = 0;
+  const auto serve_next = [&](std::int64_t cost_ns) { serve(*intake_.groups().next_waiting(), cost_ns); };
   const auto all_busy_ones_wait = [&] {
     for (const char* name : {"busy1", "busy2", "busy3"}) give(name, line_batch(name, 1, seq));
     ++seq;
@@ -213,21 +257,109 @@ TEST_F(IntakeTest, AModestGroupIsServedBeforeBusyOnes) {
   GroupRegistry& groups = intake_.groups();
   all_busy_ones_wait();
   for (int turn = 0; turn < 100; ++turn) {
-    Group* next = groups.next_waiting();
-    ASSERT_NE(next, nullptr);
-    groups.mark_served(*next, kCost);
+    ASSERT_NE(groups.next_waiting(), nullptr);
+    serve_next(kCost);
     all_busy_ones_wait();
   }
   // Comes anew, with nothing saved up, and waits for nobody who has had as much.
   give("modest", line_batch("modest", 1, 0));
   int turns = 0;
   while (groups.next_waiting()->name() != "modest") {
-    groups.mark_served(*groups.next_waiting(), kCost);
+    serve_next(kCost);
     all_busy_ones_wait();
     ASSERT_LE(++turns, 3);  // at most those that stood at the same level before it
   }
-  groups.mark_served(*groups.next_waiting(), kCost / 10);
+  serve_next(kCost / 10);
   EXPECT_NE(groups.next_waiting()->name(), "modest");
+}
+
+TEST_F(IntakeTest, WhatComesDuringARecognitionIsAnsweredAtOnceAfterIt) {
+  GroupRegistry& groups = intake_.groups();
+  give("p", line_batch("p", 1, 0, 20));
+  Group& group = *groups.next_waiting();
+  const std::shared_ptr<GroupRecognizer> recognizer = groups.begin_work(group);
+  for (std::uint64_t seq = 1; seq <= 5; ++seq) {
+    give("p", line_batch("p", 1, seq, 10, 0.02 + 0.01 * static_cast<double>(seq - 1)));
+    EXPECT_EQ(groups.next_waiting(), nullptr);  // one answer of a group at a time
+  }
+  recognizer->run();
+  EXPECT_EQ(groups.end_work(group).recognition.sample_count(), 20U);
+  EXPECT_EQ(groups.next_waiting(), &group);
+  EXPECT_EQ(recognized_samples("p"), 70U);
+  EXPECT_EQ(groups.next_waiting(), nullptr);
+  EXPECT_FALSE(groups.has_work());
+}
+
+TEST_F(IntakeTest, AnObjectThatEndsDuringARecognitionIsAnsweredUnderItsOwnNumber) {
+  give("a", in_group("cup", 1, line_batch("a", 1, 0, 20)));
+  Group& group = *intake_.groups().next_waiting();
+  const std::shared_ptr<GroupRecognizer> recognizer = intake_.groups().begin_work(group);
+  give("a", in_group("cup", 1, line_batch("a", 1, 1, 20, 0.02)));
+  give("a", in_group("cup", 2, line_batch("a", 1, 2, 30)));
+  recognizer->run();
+  EXPECT_EQ(intake_.groups().end_work(group).recognition.object(), 1U);
+  const std::shared_ptr<GroupRecognizer> next = recognize("cup");
+  EXPECT_EQ(next->answer.recognition.object(), 2U);
+  EXPECT_EQ(next->answer.recognition.sample_count(), 30U);
+}
+
+TEST_F(IntakeTest, AGroupAtAWorkersIsNotForgotten) {
+  IntakeOptions options;
+  options.groups.max_groups = 1;
+  Intake intake(options);
+  give(intake, "a", line_batch("a", 1, 0));
+  Group& group = *intake.groups().next_waiting();
+  const std::shared_ptr<GroupRecognizer> recognizer = intake.groups().begin_work(group);
+  now_ += seconds(20);
+  EXPECT_EQ(give(intake, "b", line_batch("b", 1, 0)), v1::REJECT_REASON_TOO_MANY_GROUPS);
+  recognizer->run();
+  intake.groups().end_work(group);
+  EXPECT_EQ(give(intake, "b", line_batch("b", 1, 0)), kTaken);
+  EXPECT_EQ(intake.groups().find("a"), nullptr);
+}
+
+TEST_F(IntakeTest, WhatWaitsIsBoundedAndNobodyTakesAllOfIt) {
+  IntakeOptions options;
+  options.groups.max_waiting_bytes = 100'000;
+  Intake intake(options);
+  const auto flood = [&](const std::string& name) {
+    std::uint64_t taken = 0;
+    for (std::uint64_t seq = 0; seq < 1000; ++seq) {
+      taken += give(intake, name, line_batch(name, 1, seq)) == kTaken ? 1 : 0;
+    }
+    return taken;
+  };
+  // Each has as much as is left to all others: a half, a quarter, an eighth.
+  const std::uint64_t first = flood("a");
+  const std::uint64_t second = flood("b");
+  const std::uint64_t third = flood("c");
+  EXPECT_GT(first, second);
+  EXPECT_GT(second, third);
+  EXPECT_GT(third, 0U);
+  EXPECT_EQ(give(intake, "good", line_batch("good", 1, 0)), kTaken);
+  std::size_t queued = 0;
+  for (const char* name : {"a", "b", "c", "good"}) queued += intake.groups().find(name)->queued_bytes();
+  EXPECT_LE(queued, options.groups.max_waiting_bytes);
+  const IntakeCounters& counters = intake.counters();
+  EXPECT_EQ(counters.rejected[v1::REJECT_REASON_OVERLOAD], 3000 - first - second - third);
+  EXPECT_EQ(counters.messages_accepted + rejected_sum(intake), counters.messages_received);
+  // What did not fit is a hole in seq like any other loss.
+  Group& group = *intake.groups().find("a");
+  intake.groups().begin_work(group)->run();
+  intake.groups().end_work(group);
+  EXPECT_EQ(give(intake, "a", line_batch("a", 1, 1000)), kTaken);
+  EXPECT_EQ(intake.probes().missing(), 1000 - first);
+}
+
+TEST_F(IntakeTest, SlowGroupsAreKnownByTheirLastAnswer) {
+  give("slow", line_batch("slow", 1, 0));
+  serve(*intake_.groups().next_waiting(), 2 * std::chrono::nanoseconds(Group::kQuickCompute).count());
+  give("slow", line_batch("slow", 1, 1));
+  EXPECT_EQ(intake_.groups().next_waiting(/*only_quick=*/true), nullptr);
+  give("quick", line_batch("quick", 1, 0));
+  ASSERT_NE(intake_.groups().next_waiting(/*only_quick=*/true), nullptr);
+  EXPECT_EQ(intake_.groups().next_waiting(/*only_quick=*/true)->name(), "quick");
+  EXPECT_NE(intake_.groups().next_waiting(), nullptr);
 }
 
 }  // namespace

@@ -58,10 +58,29 @@ TEST(SequenceTracker, JudgingTakesNothing) {
   EXPECT_EQ(tracker.missing(), 0U);
 }
 
-TEST(SequenceTracker, TheLastNumberEndsAnEpoch) {
+TEST(SequenceTracker, AWildNumberShutsNobodyOut) {
+  constexpr std::uint64_t kLast = std::numeric_limits<std::uint64_t>::max();
   SequenceTracker tracker;
-  tracker.take(kEpoch, std::numeric_limits<std::uint64_t>::max());
-  EXPECT_EQ(tracker.take(kEpoch, 0), SequenceEvent::NotNewer);
+  tracker.take(kEpoch, 5);
+  EXPECT_EQ(tracker.take(kEpoch, kLast), SequenceEvent::TooFarAhead);
+  EXPECT_EQ(tracker.take(kEpoch, 6), SequenceEvent::Next);
+  EXPECT_EQ(tracker.missing(), 0U);
+  // Where it comes first, nobody can know; but it does not stay.
+  SequenceTracker begun_badly;
+  EXPECT_EQ(begun_badly.take(kEpoch, kLast), SequenceEvent::First);
+  EXPECT_EQ(begun_badly.take(kEpoch, 0), SequenceEvent::Restart);
+  EXPECT_EQ(begun_badly.take(kEpoch, 1), SequenceEvent::Next);
+  EXPECT_EQ(begun_badly.take(kEpoch, kLast), SequenceEvent::TooFarAhead);
+}
+
+TEST(SequenceTracker, ASenderWithoutEpochsRestartsByCountingAnew) {
+  SequenceTracker tracker;
+  tracker.take(0, 50);
+  EXPECT_EQ(tracker.take(0, 50), SequenceEvent::NotNewer);
+  EXPECT_EQ(tracker.take(0, 0), SequenceEvent::Restart);
+  EXPECT_EQ(tracker.take(0, 1), SequenceEvent::Next);
+  EXPECT_EQ(tracker.restarts(), 1U);
+  EXPECT_EQ(tracker.missing(), 0U);
 }
 
 }  // namespace

@@ -53,6 +53,27 @@ bool has(const std::vector<Finding>& findings, Severity severity, const std::str
   return false;
 }
 
+TEST(StreamCheck, AStreamWithoutEpochIsNotFit) {
+  const auto findings = findings_of(
+      [](std::size_t, v1::ContactBatch& batch) { batch.mutable_header()->clear_epoch(); });
+  EXPECT_TRUE(has(findings, Severity::Error, "without header.epoch"));
+}
+
+TEST(StreamCheck, InventedNamesAreCountedNotKept) {
+  StreamCheck check;
+  v1::ContactBatch batch;
+  batch.mutable_header()->set_epoch(1);
+  batch.add_samples();
+  for (int i = 0; i < 10'000; ++i) {
+    const std::string topic = "contact/p" + std::to_string(i) + "/";
+    check.take(2, topic, batch.SerializeAsString(), kNow);
+    check.take(2, topic, "no message", kNow);
+  }
+  const std::vector<Finding> findings = check.findings();
+  EXPECT_TRUE(has(findings, Severity::Error, "TOO_MANY_PROBES"));
+  EXPECT_LT(findings.size(), 1000U);
+}
+
 TEST(StreamCheck, AGoodStreamHasNotesOnly) {
   for (const Finding& finding : findings_of([](std::size_t, v1::ContactBatch&) {})) {
     EXPECT_EQ(finding.severity, Severity::Note) << finding.what;

@@ -1,0 +1,288 @@
+#include "core/recognition/posterior/class_evidence.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+/// -log of likelihood times prior.
+double potential(const TouchedCurve& curve) { return 0.5 * curve.chi2 - curve.log_prior; }
+
+/// J^T J and the prior's curvature, that of normal laws as high, in units of the widths; `fixed` (or
+/// -1) does not move.
+TouchedMatrix hessian_of(const TouchedCurve& curve, int fixed) {
+  TouchedMatrix hessian = curve.information;
+  hessian.diagonal().array() += 1.0;
+  if (fixed >= 0) {
+    hessian.row(fixed).setZero();
+    hessian.col(fixed).setZero();
+    hessian(fixed, fixed) = 1.0;
+  }
+  return hessian;
+}
+
+double log_determinant(const Eigen::LLT<TouchedMatrix>& llt) {
+  return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
+}
+
+TouchedVector prior_gradient(const Touch& touch, const TouchedCurve& curve) {
+  constexpr double kStep = 1e-4;
+  TouchedVector gradient = TouchedVector::Zero();
+  for (int k = 0; k < shape_coordinates(touch.curve_class); ++k) {
+    TouchedVector ahead = curve.z;
+    TouchedVector behind = curve.z;
+    ahead[k] += kStep;
+    behind[k] -= kStep;
+    gradient[k] = (log_prior(touch.curve_class, ahead) - log_prior(touch.curve_class, behind)) /
+                  (2.0 * kStep);
+  }
+  return gradient.cwiseProduct(curve.widths);
+}
+
+/// Gauss-Newton steps down the potential, coordinate `fixed` staying.
+TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed) {
+  constexpr int kMostSteps = 4;
+  constexpr double kSettled = 2e-2;  // of the potential: odds right to a fiftieth
+  double halving = 1.0;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Eigen::LLT<TouchedMatrix> llt(hessian_of(curve, fixed));
+    TouchedVector slope = curve.gradient - prior_gradient(touch, curve);
+    if (fixed >= 0) {
+      slope[fixed] = 0.0;
+    }
+    const TouchedVector step = llt.solve(slope);
+    if (!(0.5 * halving * slope.dot(step) > kSettled)) {
+      break;
+    }
+    auto there = curve_at(touch, curve.z - halving * step.cwiseProduct(curve.widths), curve, data);
+    if (there && potential(*there) < potential(curve)) {
+      curve = std::move(*there);
+      halving = std::min(1.0, 2.0 * halving);
+    } else {
+      halving *= 0.25;
+    }
+  }
+  return curve;
+}
+
+/// The curve with coordinate k moved to `value`, the others at their best.
+std::optional<TouchedCurve> slice(const Touch& touch, const FitData& data, const TouchedCurve& from,
+                                  int k, double value) {
+  // The others follow as the linear model says.
+  const double moved = (value - from.z[k]) / from.widths[k];
+  TouchedVector pull = from.information.col(k);
+  pull[k] = 0.0;
+  const Eigen::LLT<TouchedMatrix> llt(hessian_of(from, k));
+  TouchedVector step = -moved * llt.solve(pull);
+  step[k] = 0.0;
+  for (const double part : {1.0, 0.0}) {
+    TouchedVector z = from.z + part * step.cwiseProduct(from.widths);
+    z[k] = value;
+    if (auto curve = curve_at(touch, z, from, data)) {
+      return descend(touch, data, std::move(*curve), k);
+    }
+  }
+  return std::nullopt;
+}
+
+/// log of the density at a slice: the others integrated by Laplace's formula, coordinate k in units
+/// of its width at the optimum.
+double log_density(const TouchedCurve& curve, int k) {
+  const Eigen::LLT<TouchedMatrix> llt(hessian_of(curve, k));
+  return -potential(curve) - 0.5 * log_determinant(llt) - std::log(curve.widths[k]);
+}
+
+struct Slice {
+  TouchedCurve curve;
+  double log_density = 0.0;
+};
+
+/// How far a coordinate may be walked: half a turn for directions that come round again.
+double longest_walk(CurveClass curve_class, int k) {
+  return curve_class == CurveClass::Ellipse && k == 2 ? 0.5 * std::numbers::pi
+                                                       : std::numeric_limits<double>::infinity();
+}
+
+/// Slices from `start` (not included) in one direction, `step` at first, until the density has
+/// fallen to nothing or the class ends. The step is doubled where the log density changes by less than
+/// `smallest_change`.
+std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& start, int k,
+                        double step, double smallest_change) {
+  constexpr std::size_t kMostSlices = 14;
+  constexpr int kMostTries = 20;
+  constexpr double kNothing = 7.0;        // of the log density: a thousandth
+  constexpr double kLargestChange = 2.0;  // of it, from slice to slice
+  const double longest = longest_walk(touch.curve_class, k);
+  std::vector<Slice> slices;
+  slices.reserve(kMostSlices);
+  const Slice* last = &start;
+  double top = start.log_density;
+  for (int tried = 0; tried < kMostTries && slices.size() < kMostSlices; ++tried) {
+    const double room = longest - std::abs(last->curve.z[k] - start.curve.z[k]);
+    if (!(room > 0.0)) {
+      break;
+    }
+    const double length = std::copysign(std::min(std::abs(step), room), step);
+    auto curve = slice(touch, data, last->curve, k, last->curve.z[k] + length);
+    if (!curve) {
+      step *= 0.5;  // towards the end of the class
+      continue;
+    }
+    const double density = log_density(*curve, k);
+    const double change = std::abs(density - last->log_density);
+    if (change > kLargestChange && last->log_density > top - 0.5 * kNothing) {
+      step *= 0.5;
+      continue;
+    }
+    slices.push_back({std::move(*curve), density});
+    last = &slices.back();
+    top = std::max(top, density);
+    if (density < top - kNothing) {
+      break;
+    }
+    if (change < smallest_change) {
+      step *= 2.0;
+    }
+  }
+  return slices;
+}
+
+/// The coordinate of the shape that the data leave the widest, where that is too wide for a normal
+/// law; -1 where none is.
+int widest_coordinate(const Touch& touch, const TouchedCurve& best,
+                      const TouchedMatrix& covariance, const FitData& data,
+                      Integration integration) {
+  // Coordinates are logarithms, slopes and angles: over a tenth of their unit, the second-order term
+  // of a residual is a twentieth of the first.
+  constexpr double kLinear = 0.1;
+  // Where a class ends (m = 0, 1) or the data resolve the square alone (c of the spline), this many
+  // deviations around.
+  constexpr double kFarFromEnd = 4.0;
+  // A deviation of d bends the curve by some d^2 / 2 of the extent; over the noise of the mean of all
+  // points that is how many deviations the narrow coordinates move. A tenth adds a hundredth to their
+  // variance.
+  constexpr double kLeastBend = 0.1;
+  double information = 0.0;
+  for (const FitPoint& point : data.points) {
+    information += point.inverse_sigma * point.inverse_sigma;
+  }
+  const double narrow = touch.weight * std::sqrt(information);
+  const CurveClass curve_class = touch.curve_class;
+  int widest = -1;
+  double most = 1.0;
+  for (int k = 0; k < shape_coordinates(curve_class); ++k) {
+    const double deviation = std::sqrt(covariance(k, k)) * best.widths[k];
+    const bool conic = curve_class == CurveClass::Ellipse || curve_class == CurveClass::Hyperbola;
+    const bool ends_at_zero =
+        (curve_class == CurveClass::CubicSpline && k == 3) || (conic && k == 1);
+    double nonlinear = deviation / kLinear;
+    if (ends_at_zero && std::abs(best.z[k]) < kFarFromEnd * deviation) {
+      nonlinear = std::max(nonlinear, 1.0);
+    }
+    if (integration == Integration::Valley) {
+      nonlinear = std::max(nonlinear, deviation * deviation * narrow / kLeastBend);
+    }
+    if (nonlinear >= most) {
+      most = nonlinear;
+      widest = k;
+    }
+  }
+  return widest;
+}
+
+/// The integral over coordinate k by trapezoids between slices.
+void integrate(const FitData& data, TouchedCurve best, double first_step, double smallest_change,
+               ClassEvidence* evidence) {
+  const int k = evidence->widest;
+  const double density = log_density(best, k);
+  std::vector<Slice> slices;
+  slices.push_back({std::move(best), density});
+  const Slice start = slices.front();
+  std::vector<Slice> behind = walk(evidence->touch, data, start, k, -first_step, smallest_change);
+  std::vector<Slice> ahead = walk(evidence->touch, data, start, k, first_step, smallest_change);
+  slices.insert(slices.begin(), std::make_move_iterator(behind.rbegin()),
+                std::make_move_iterator(behind.rend()));
+  slices.insert(slices.end(), std::make_move_iterator(ahead.begin()),
+                std::make_move_iterator(ahead.end()));
+  double top = density;
+  for (const Slice& s : slices) {
+    top = std::max(top, s.log_density);
+  }
+  const std::size_t n = slices.size();
+  std::vector<double> shares(n);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double low = slices[i == 0 ? 0 : i - 1].curve.z[k];
+    const double high = slices[i + 1 == n ? i : i + 1].curve.z[k];
+    shares[i] = 0.5 * (high - low) * std::exp(slices[i].log_density - top);
+    sum += shares[i];
+  }
+  if (!(sum > 0.0)) {
+    return;  // the class is a single slice wide: Laplace's formula stands
+  }
+  evidence->nodes.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (shares[i] > 0.0) {
+      evidence->nodes.push_back({std::move(slices[i].curve), shares[i] / sum});
+    }
+  }
+  evidence->log_occam = top + std::log(sum) - 0.5 * std::log(2.0 * std::numbers::pi);
+}
+
+}  // namespace
+
+std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
+                                         double inflation, Integration integration) {
+  auto touch = touch_of(fit, data);
+  if (!touch) {
+    return std::nullopt;
+  }
+  touch->weight = 1.0 / std::sqrt(inflation);
+  auto first = curve_at(*touch, fit, data);
+  double fitted_chi2 = 0.0;
+  for (const FittedPoint& point : fit.points) {
+    fitted_chi2 += point.residual * point.residual;
+  }
+  fitted_chi2 /= inflation;
+  // Canonical coordinates of a vertex far away lose digits. What is left must still tell the points
+  // apart as well as the noise does.
+  constexpr double kPartRounding = 1e-3;  // of a chi-square that has no chance
+  const double rounding = static_cast<double>(data.points.size()) + kPartRounding * fitted_chi2;
+  if (!first || !(std::abs(first->chi2 - fitted_chi2) <= rounding)) {
+    return std::nullopt;
+  }
+  const double first_chi2 = first->chi2;
+  ClassEvidence evidence;
+  evidence.touch = *touch;
+  TouchedCurve best = descend(*touch, data, std::move(*first), -1);
+  const Eigen::LLT<TouchedMatrix> llt(hessian_of(best, -1));
+  const TouchedMatrix covariance = llt.solve(TouchedMatrix::Identity());
+  evidence.determined = static_cast<double>(kMostCoordinates) - covariance.trace();
+  evidence.log_prior = best.log_prior;
+  evidence.log_occam = -potential(best) - 0.5 * log_determinant(llt);
+  evidence.nodes.push_back({best, 1.0});
+  if (integration != Integration::Laplace) {
+    evidence.widest = widest_coordinate(*touch, best, covariance, data, integration);
+    if (const int k = evidence.widest; k >= 0) {
+      // A second moment needs finer slices than a mass.
+      const bool moment = integration == Integration::Valley;
+      const double deviation = std::sqrt(covariance(k, k)) * best.widths[k];
+      integrate(data, std::move(best), (moment ? 0.5 : 1.0) * deviation, moment ? 0.05 : 0.5,
+                &evidence);
+    }
+  }
+  evidence.log_occam += 0.5 * first_chi2;
+  // A prior cannot leave more than all of the likelihood: with that, the fit was no optimum.
+  constexpr double kLeft = 1.0;
+  if (!(evidence.log_occam <= kLeft)) {
+    return std::nullopt;
+  }
+  return evidence;
+}
+
+}  // namespace palpate

@@ -1,0 +1,30 @@
+#include "core/recognition/posterior/likelihood.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+
+double Likelihood::counted(double chi2) const {
+  if (coherent_variance > 0.0) {
+    chi2 = noise_chi2 + (chi2 - noise_chi2) / (1.0 + coherent_variance);
+  }
+  return chi2 / tempering;
+}
+
+double Likelihood::log_evidence(double chi2, double log_occam, double determined) const {
+  if (sigma_known) {
+    return log_occam - 0.5 * counted(chi2);
+  }
+  // Integral of sigma^-(n - d) exp(-chi2 / (2 sigma^2)) d(log sigma): each determined coordinate
+  // narrows as sigma does.
+  const double left =
+      std::max(counted(chi2) + chi2_floor, std::numeric_limits<double>::min());
+  const double half = 0.5 * std::max(samples - determined, 1.0);
+  return log_occam - half * std::log(0.5 * left) + std::lgamma(half);
+}
+
+double log_odds(double probability) { return std::log(probability / (1.0 - probability)); }
+
+}  // namespace palpate

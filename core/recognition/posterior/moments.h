@@ -1,0 +1,22 @@
+// Second moments of shape and pose over the valley that a class's likelihood has.
+#pragma once
+
+#include "core/recognition/canonical_fit.h"
+#include "core/recognition/posterior/class_evidence.h"
+
+namespace palpate {
+
+/// E[(x - estimate)(x - estimate)^T] of x = [shape; x; y; theta] over the slices of `evidence`:
+/// what a covariance linear about the estimate leaves out where the valley is wide and bent. By the
+/// likelihood alone: an uncertainty must hold whatever the prior.
+/// `data` as `evidence` was taken from. Metres and radians, world frame.
+ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvidence& evidence,
+                                  const FitData& data);
+
+/// The bound of all points with what the valley's moment adds to the bound of the reduced points, which
+/// carry a little less; the moment itself where that would be no covariance.
+ShapePoseCovariance with_bend(const ShapePoseCovariance& bound,
+                              const ShapePoseCovariance& bound_on_reduced,
+                              const ShapePoseCovariance& moment);
+
+}  // namespace palpate

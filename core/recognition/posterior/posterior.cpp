@@ -1,0 +1,190 @@
+#include "core/recognition/posterior/posterior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+constexpr double kNone = -std::numeric_limits<double>::infinity();
+
+/// log of odds that no answer depends on: a millionth.
+constexpr double kNegligible = 14.0;
+
+/// log of the prior's density by m = e^2 - 1 next to the parabola, beyond it over on this side:
+/// ellipses have 1, hyperbolas Cauchy's law about 1 cut at 0 (touched_coordinates.cpp).
+double log_density_ratio_at_parabola(CurveClass beyond) {
+  const double of_hyperbolas = std::log(0.5 / (0.75 * kPi));
+  return beyond == CurveClass::Hyperbola ? of_hyperbolas : -of_hyperbolas;
+}
+
+double log_evidence_of_free_form(const Likelihood& likelihood, const Evidences& evidences,
+                                 double smooth_chi2) {
+  const FreeForm& paths = evidences.free_form;
+  return likelihood.log_evidence(smooth_chi2 + likelihood.inflation() * paths.chi2, paths.log_occam,
+                                 paths.determined);
+}
+
+/// The mode of the spline across c = 0, if it is not within the slices of the first.
+std::optional<ClassEvidence> rival_of(const ClassFit& spline, const ClassEvidence& first,
+                                      const FitData& reduced, double inflation,
+                                      Integration integration) {
+  if (!spline.rival || is_same_curve(*spline.polynomial, *spline.rival)) {
+    return std::nullopt;
+  }
+  ClassFit fit;
+  fit.curve_class = spline.curve_class;
+  fit.chi2 = spline.rival->chi2;
+  fit.polynomial = spline.rival;
+  const auto canonical = to_canonical(fit, reduced);
+  auto evidence =
+      canonical ? evidence_of(*canonical, reduced, inflation, integration) : std::nullopt;
+  constexpr int kBend = 3;  // the coordinate c
+  if (evidence && first.widest == kBend) {
+    const double c = evidence->touch.shape.values[2];
+    if (c >= first.nodes.front().curve.z[kBend] && c <= first.nodes.back().curve.z[kBend]) {
+      return std::nullopt;
+    }
+  }
+  return evidence;
+}
+
+}  // namespace
+
+double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
+                    CurveClass curve_class, double chi2) {
+  const auto& evidence = evidences.classes[static_cast<std::size_t>(curve_class)];
+  return evidence && std::isfinite(chi2)
+             ? likelihood.log_evidence(chi2, evidence->log_occam, evidence->determined)
+             : kNone;
+}
+
+Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced, const SmoothModel& smooth,
+                       const FitData& reduced, const Likelihood& likelihood) {
+  Evidences evidences;
+  const double inflation = likelihood.inflation();
+  evidences.free_form = free_form(smooth, inflation);
+  double best = log_evidence_of_free_form(likelihood, evidences, smooth.chi2);
+  // The best fits first: what the prior leaves is at most all, so that the rest can be told by
+  // chi-square alone.
+  std::vector<CurveClass> order(kCurveClasses.begin(), kCurveClasses.end());
+  std::erase_if(order, [&](CurveClass c) {
+    const auto& fit = fits[static_cast<std::size_t>(c)];
+    return !fit || fit->at_limit || !std::isfinite(fit->chi2);
+  });
+  std::sort(order.begin(), order.end(), [&](CurveClass a, CurveClass b) {
+    return fits[static_cast<std::size_t>(a)]->chi2 < fits[static_cast<std::size_t>(b)]->chi2;
+  });
+  for (const CurveClass curve_class : order) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    if (likelihood.log_evidence(fits[i]->chi2, 0.0, 0.0) < best - kNegligible) {
+      continue;
+    }
+    const auto canonical = to_canonical(*on_reduced[i], reduced);
+    auto& evidence = evidences.classes[i];
+    evidence = canonical
+                   ? evidence_of(*canonical, reduced, inflation, Integration::Laplace)
+                   : std::nullopt;
+    if (evidence && curve_class == CurveClass::CubicSpline) {
+      evidences.rival =
+          rival_of(*on_reduced[i], *evidence, reduced, inflation, Integration::Laplace);
+    }
+    best = std::max(best, log_evidence(likelihood, evidences, curve_class, fits[i]->chi2));
+  }
+  return evidences;
+}
+
+Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits& on_reduced,
+                     const FitData& reduced, const Likelihood& likelihood) {
+  // A hundred times what could matter to an answer at 0.95; slices seldom change a mass by ten.
+  constexpr double kMatters = 8.0;
+  double best = kNone;
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto& fit = fits[static_cast<std::size_t>(curve_class)];
+    if (fit) {
+      best = std::max(best, log_evidence(likelihood, evidences, curve_class, fit->chi2));
+    }
+  }
+  const double inflation = likelihood.inflation();
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    if (!fits[i] ||
+        !(log_evidence(likelihood, evidences, curve_class, fits[i]->chi2) >= best - kMatters)) {
+      continue;
+    }
+    const auto canonical = to_canonical(*on_reduced[i], reduced);
+    auto evidence = canonical ? evidence_of(*canonical, reduced, inflation, Integration::Quadrature)
+                              : std::nullopt;
+    if (!evidence) {
+      continue;
+    }
+    if (curve_class == CurveClass::CubicSpline) {
+      evidences.rival =
+          rival_of(*on_reduced[i], *evidence, reduced, inflation, Integration::Quadrature);
+    }
+    evidences.classes[i] = std::move(evidence);
+  }
+  return evidences;
+}
+
+ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
+                                    const Likelihood& likelihood, const Evidences& evidences) {
+  std::array<double, 9> log_of;
+  log_of.fill(kNone);
+  log_of[0] = log_evidence_of_free_form(likelihood, evidences, smooth_chi2);
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    if (fits[i] && !fits[i]->at_limit) {
+      log_of[i] = log_evidence(likelihood, evidences, curve_class, fits[i]->chi2);
+    }
+  }
+  // Both modes of the spline.
+  const double share = rival_share(fits, likelihood, evidences);
+  log_of[static_cast<std::size_t>(CurveClass::CubicSpline)] -= std::log1p(-share);
+  for (const auto& [beyond, inside] :
+       {std::pair(CurveClass::Ellipse, CurveClass::Hyperbola),
+        std::pair(CurveClass::Hyperbola, CurveClass::Ellipse)}) {
+    const auto b = static_cast<std::size_t>(beyond);
+    const auto i = static_cast<std::size_t>(inside);
+    if (fits[b] && fits[i] && fits[b]->at_limit && std::isfinite(log_of[i])) {
+      // To first order chi-square goes on beyond the parabola as it came: a normal law's tail.
+      const double rise = likelihood.counted(fits[b]->chi2) - likelihood.counted(fits[i]->chi2);
+      const double tail = 0.5 * std::erfc(std::sqrt(0.5 * std::max(rise, 0.0)));
+      log_of[b] = log_of[i] - std::log1p(-tail) + std::log(std::max(tail, 1e-300)) +
+                  log_density_ratio_at_parabola(beyond);
+    }
+  }
+  if (likelihood.coherent_or_other) {
+    // What the class leaves is form error of the part, or another shape: even odds.
+    log_of[0] = std::nextafter(*std::max_element(log_of.begin() + 1, log_of.end()), kNone);
+  }
+  const double best = *std::max_element(log_of.begin(), log_of.end());
+  ClassProbabilities result{};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < log_of.size(); ++i) {
+    result[i] = std::exp(log_of[i] - best);
+    sum += result[i];
+  }
+  for (double& p : result) {
+    p /= sum;
+  }
+  return result;
+}
+
+double rival_share(const ClassFits& fits, const Likelihood& likelihood,
+                   const Evidences& evidences) {
+  const auto& spline = fits[static_cast<std::size_t>(CurveClass::CubicSpline)];
+  const auto& own = evidences.classes[static_cast<std::size_t>(CurveClass::CubicSpline)];
+  if (!spline || !own || !evidences.rival || !spline->rival || !std::isfinite(spline->chi2)) {
+    return 0.0;
+  }
+  const double rise = (spline->rival->chi2 - spline->polynomial->chi2) / likelihood.inflation();
+  const double log_ratio = evidences.rival->log_occam - own->log_occam - 0.5 * rise;
+  // The rival fits worse; where its evidence says much more all the same, the two are one mode.
+  return 1.0 / (1.0 + std::exp(-std::min(log_ratio, kNegligible)));
+}
+
+}  // namespace palpate

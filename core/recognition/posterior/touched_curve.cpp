@@ -1,0 +1,201 @@
+#include "core/recognition/posterior/touched_curve.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/curves/curve.h"
+
+namespace palpate {
+namespace {
+
+/// The middle point of the longest patch.
+std::size_t reference_point(const FitData& data) {
+  const auto longest =
+      std::max_element(data.patches.begin(), data.patches.end(),
+                       [](const PatchSpan& a, const PatchSpan& b) { return a.size() < b.size(); });
+  return longest->begin + longest->size() / 2;
+}
+
+/// The foot of `point` (curve's frame) near t: Newton's method on (C - p) . C' = 0.
+double follow_foot(const Curve& curve, const Vec2& point, double t, CurveDerivatives* at) {
+  constexpr int kMostSteps = 6;
+  // In half extents: an error along the curve is its square across, which is then below rounding.
+  constexpr double kLastStep = 1e-9;
+  for (int i = 0;; ++i) {
+    *at = derivatives(curve, t);
+    const Vec2 away = at->position - point;
+    const double along = away.dot(at->first);
+    const double speed2 = at->first.squaredNorm();
+    const double slope = speed2 + away.dot(at->second);
+    // At the centre of curvature the slope is 0; a Gauss-Newton step is safe.
+    const double step = -along / (slope > 0.1 * speed2 ? slope : speed2);
+    if (i == kMostSteps || !(std::abs(step) * std::sqrt(speed2) > kLastStep)) {
+      return t;
+    }
+    t += step;
+  }
+}
+
+/// How the shape, the place and the tangent there move with each coordinate of the shape, by
+/// central differences.
+struct Motions {
+  std::array<Eigen::Vector3d, 4> shape;
+  std::array<double, 4> t{};
+  std::array<double, 4> turn{};
+};
+
+std::optional<Motions> motions_at(const Touch& touch, const TouchedVector& z) {
+  constexpr double kStep = 1e-5;  // errors of 1e-10 and of rounding, 1e-11
+  Motions motions;
+  const int own = shape_coordinates(touch.curve_class);
+  for (int k = 0; k < own; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    std::array<TouchedShape, 2> ends;
+    std::array<Vec2, 2> tangents;
+    double width = 0.0;
+    for (const int side : {0, 1}) {
+      TouchedVector there = z;
+      there[k] += side == 0 ? -kStep : kStep;
+      auto shape = shape_at(touch.curve_class, there, touch.shape);
+      const bool outside = !shape;
+      if (outside) {
+        shape = shape_at(touch.curve_class, z, touch.shape);  // one-sided at the class's limit
+      }
+      const auto curve = shape ? make_curve(touch.curve_class, shape->values) : std::nullopt;
+      if (!curve) {
+        return std::nullopt;
+      }
+      width += outside ? 0.0 : kStep;
+      ends[static_cast<std::size_t>(side)] = *shape;
+      tangents[static_cast<std::size_t>(side)] = derivatives(*curve, shape->t).first;
+    }
+    if (!(width > 0.0)) {
+      return std::nullopt;
+    }
+    motions.shape[i] = (ends[1].values - ends[0].values) / width;
+    // Eccentric angles may wrap.
+    const double dt = touch.curve_class == CurveClass::Ellipse ? wrap_angle(ends[1].t - ends[0].t)
+                                                               : ends[1].t - ends[0].t;
+    motions.t[i] = dt / width;
+    motions.turn[i] =
+        std::atan2(cross(tangents[0], tangents[1]), tangents[0].dot(tangents[1])) / width;
+  }
+  return motions;
+}
+
+/// Feet, chi-square and derivatives of `curve`, whose z, shape and starting t are set.
+bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
+  const auto canonical = make_curve(touch.curve_class, curve->shape.values);
+  const auto motions = motions_at(touch, curve->z);
+  if (!canonical || !motions) {
+    return false;
+  }
+  const int own = shape_coordinates(touch.curve_class);
+  const CurveDerivatives at = derivatives(*canonical, curve->shape.t);
+  const double speed = at.first.norm();
+  if (!(speed > 0.0)) {
+    return false;  // the cusp itself has no tangent
+  }
+  const Vec2 tangent = at.first / speed;
+  Pose2& pose = curve->frame_T_curve;
+  pose = pose_of(touch, curve->z, *canonical, curve->shape.t);
+  curve->widths = prior_widths(touch.curve_class, curve->z);
+  curve->log_prior = log_prior(touch.curve_class, curve->z);
+  curve->chi2 = 0.0;
+  const Eigen::Matrix<double, 2, 3> by_shape0 =
+      position_by_parameters(*canonical, curve->shape.t);
+  const Vec2 offset_direction = pose.rotate_back(left_of(touch.tangent));
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    CurveDerivatives foot;
+    const Vec2 point = pose.to_local(data.points[i].position);
+    curve->t[i] = follow_foot(*canonical, point, curve->t[i], &foot);
+    const Vec2 away = point - foot.position;
+    const double foot_speed = foot.first.norm();
+    const double distance = away.norm();
+    // At a cusp the distance has no normal of the curve; it is its own.
+    const Vec2 normal = foot_speed > 0.0 ? Vec2(left_of(foot.first) / foot_speed)
+                        : distance > 0.0 ? Vec2(away / distance)
+                                         : Vec2(0.0, 1.0);
+    const double weight = touch.weight * data.points[i].inverse_sigma;
+    const double residual = weight * away.dot(normal);
+    curve->chi2 += residual * residual;
+    const Vec2 lever = left_of(foot.position - at.position);
+    const Eigen::Matrix<double, 2, 3> by_shape =
+        position_by_parameters(*canonical, curve->t[i]) - by_shape0;
+    TouchedVector row = TouchedVector::Zero();
+    for (int k = 0; k < own; ++k) {
+      const auto j = static_cast<std::size_t>(k);
+      row[k] = normal.dot(by_shape * motions->shape[j] - motions->turn[j] * lever -
+                          speed * motions->t[j] * tangent);
+    }
+    row[own] = normal.dot(offset_direction);
+    row[own + 1] = normal.dot(lever);
+    row = -weight * row.cwiseProduct(curve->widths);
+    curve->information.noalias() += row * row.transpose();
+    curve->gradient += residual * row;
+  }
+  return std::isfinite(curve->chi2) && curve->information.allFinite();
+}
+
+}  // namespace
+
+Pose2 pose_of(const Touch& touch, const TouchedVector& z, const Curve& curve, double t) {
+  const int own = shape_coordinates(touch.curve_class);
+  const CurveDerivatives at = derivatives(curve, t);
+  Pose2 pose;
+  pose.theta = std::atan2(cross(at.first, touch.tangent), at.first.dot(touch.tangent)) + z[own + 1];
+  const Vec2 shift =
+      touch.place + z[own] * left_of(touch.tangent) - pose.rotate(at.position);
+  pose.x = shift.x();
+  pose.y = shift.y();
+  return pose;
+}
+
+std::optional<Touch> touch_of(const CanonicalFit& fit, const FitData& data) {
+  Touch touch;
+  touch.curve_class = fit.shape.curve_class;
+  touch.shape = normalised_shape(
+      touch.curve_class, {fit.shape.values, fit.points[reference_point(data)].t}, data.scale);
+  const auto curve = make_curve(touch.curve_class, touch.shape.values);
+  if (!curve) {
+    return std::nullopt;
+  }
+  const CurveDerivatives at = derivatives(*curve, touch.shape.t);
+  const double speed = at.first.norm();
+  if (!(speed > 0.0)) {
+    return std::nullopt;
+  }
+  const Pose2 pose = data.frame.inverse() * fit.world_T_curve;
+  touch.place = pose.rotate(at.position) + pose.translation() / data.scale;
+  touch.tangent = pose.rotate(at.first / speed);
+  return touch;
+}
+
+std::optional<TouchedCurve> curve_at(const Touch& touch, const CanonicalFit& fit,
+                                     const FitData& data) {
+  TouchedCurve curve;
+  curve.z = coordinates_of(touch.curve_class, touch.shape);
+  curve.shape = touch.shape;
+  curve.t.reserve(data.points.size());
+  for (const FittedPoint& point : fit.points) {
+    curve.t.push_back(
+        normalised_shape(touch.curve_class, {fit.shape.values, point.t}, data.scale).t);
+  }
+  return place_on(touch, data, &curve) ? std::optional(std::move(curve)) : std::nullopt;
+}
+
+std::optional<TouchedCurve> curve_at(const Touch& touch, const TouchedVector& z,
+                                     const TouchedCurve& from, const FitData& data) {
+  const auto shape = shape_at(touch.curve_class, z, touch.shape);
+  if (!shape) {
+    return std::nullopt;
+  }
+  TouchedCurve curve;
+  curve.z = z;
+  curve.shape = *shape;
+  curve.t = from.t;
+  return place_on(touch, data, &curve) ? std::optional(std::move(curve)) : std::nullopt;
+}
+
+}  // namespace palpate

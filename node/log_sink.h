@@ -1,0 +1,58 @@
+// Where the node's log goes: standard error, but never for longer than nobody reads it.
+#pragma once
+
+#include <poll.h>
+#include <spdlog/details/null_mutex.h>
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/sinks/base_sink.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <climits>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace palpate {
+
+/// Writes to a descriptor where it takes a line at once: a pipe that nobody empties or a terminal
+/// that is held must not stop the node. Lines lost are counted, and told with the next that goes
+/// out. One thread's.
+class LogSink : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
+ public:
+  explicit LogSink(int fd) : fd_(fd) {}
+
+  std::uint64_t lost() const { return lost_; }
+
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t line;
+    formatter_->format(message, line);
+    std::string text;
+    if (lost_ > 0) text = fmt::format("({} lines of log lost: nobody read them)\n", lost_);
+    text.append(line.data(), line.size());
+    if (write(text)) {
+      lost_ = 0;
+    } else {
+      ++lost_;
+    }
+  }
+
+  void flush_() override {}
+
+ private:
+  // A pipe that is ready takes so many bytes without blocking.
+  static constexpr std::size_t kMostBytes = PIPE_BUF;
+
+  bool write(std::string_view text) const {
+    pollfd ready{fd_, POLLOUT, 0};
+    if (::poll(&ready, 1, 0) != 1 || (ready.revents & POLLOUT) == 0) return false;
+    return ::write(fd_, text.data(), std::min(text.size(), kMostBytes)) > 0;
+  }
+
+  int fd_;
+  std::uint64_t lost_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,17 @@
+// Something that takes long, to be done on another thread.
+#pragma once
+
+namespace palpate {
+
+class Work {
+ public:
+  Work() = default;
+  virtual ~Work() = default;
+  Work(const Work&) = delete;
+  Work& operator=(const Work&) = delete;
+
+  /// Called on a worker's thread. Whatever this touches belongs to that thread until it returns.
+  virtual void run() = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,133 @@
+// By what factor one thing makes recognize() dearer, over random scenes that are otherwise the
+// same: tips whose side is not told, spikes in 30 % of the samples, both; and what the updates of a
+// stream cost beside their median.
+//   bench_factors [--scenes N] [--seed S]
+// Costs are processor times of this thread, the least of three.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/bench/worst_case/touched_input.h"
+
+namespace {
+
+using namespace palpate;
+using bench::InputRecipe;
+using bench::TouchedInput;
+
+constexpr int kRepetitions = 3;
+constexpr std::size_t kSamplesPerUpdate = 10;
+
+double thread_us() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
+double recognize_us(Recognizer& recognizer) {
+  const double start = thread_us();
+  recognizer.recognize();
+  return thread_us() - start;
+}
+
+double cost_us(const TouchedInput& input) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kRepetitions; ++i) {
+    Recognizer recognizer;
+    for (const bench::TouchedPatch& patch : input) {
+      recognizer.add(patch.context, patch.samples);
+    }
+    least = std::min(least, recognize_us(recognizer));
+  }
+  return least;
+}
+
+/// A part of one of the eight classes or of none: 1 to 4 patches of 111 samples, honest noise,
+/// round tips whose side is told.
+InputRecipe plain_recipe(std::mt19937_64& rng) {
+  const auto uniform = [&](double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(rng);
+  };
+  constexpr int kWithFormula = 12;  // the shapes up to Quartic
+  InputRecipe recipe;
+  recipe.shape =
+      static_cast<bench::Shape>(std::uniform_int_distribution<int>(0, kWithFormula - 1)(rng));
+  recipe.seed = rng();
+  recipe.patches = std::uniform_int_distribution<int>(1, 4)(rng);
+  recipe.arc = std::pow(10.0, uniform(-1.0, 0.3));
+  recipe.sigma = std::pow(10.0, uniform(-5.0, -2.7));
+  recipe.tip = 0.1;
+  return recipe;
+}
+
+void print(const std::string& what, std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double fraction) {
+    return values[static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1))];
+  };
+  std::printf("%-44s %8zu %8.2f %8.2f %8.2f %8.2f\n", what.c_str(), values.size(), at(0.5), at(0.9),
+              at(0.99), at(1.0));
+}
+
+/// Costs of the updates of one stream over their median; the first answer is no update.
+std::vector<double> updates_over_median(const TouchedInput& input) {
+  Recognizer recognizer;
+  std::vector<double> us;
+  for (const bench::TouchedPatch& patch : input) {
+    for (std::size_t begin = 0; begin < patch.samples.size(); begin += kSamplesPerUpdate) {
+      const std::size_t count = std::min(kSamplesPerUpdate, patch.samples.size() - begin);
+      recognizer.add(patch.context, std::span(patch.samples).subspan(begin, count));
+      us.push_back(recognize_us(recognizer));
+    }
+  }
+  std::vector<double> sorted = us;
+  std::sort(sorted.begin(), sorted.end());
+  const double median = sorted[sorted.size() / 2];
+  for (double& value : us) {
+    value /= median;
+  }
+  return us;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("What makes recognize() dearer, and by how much");
+  int scenes = 300;
+  std::uint64_t seed = 1;
+  app.add_option("--scenes", scenes, "Number of scenes")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--seed", seed, "Seed")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  std::mt19937_64 rng(seed);
+  std::vector<double> plain, sides, spikes, both, updates;
+  for (int i = 0; i < scenes; ++i) {
+    const InputRecipe recipe = plain_recipe(rng);
+    const TouchedInput input = bench::input_of(recipe);
+    const double us = cost_us(input);
+    plain.push_back(us);
+    const auto factor = [&](double sides_told, double share) {
+      InputRecipe other = recipe;
+      other.sides_told = sides_told;
+      other.spikes = share;
+      return cost_us(bench::input_of(other)) / us;
+    };
+    sides.push_back(factor(0.0, 0.0));
+    spikes.push_back(factor(1.0, 0.3));
+    both.push_back(factor(0.0, 0.3));
+    for (const double ratio : updates_over_median(input)) updates.push_back(ratio);
+  }
+  std::printf("%-44s %8s %8s %8s %8s %8s\n", "", "values", "median", "90 %", "99 %", "maximum");
+  print("us, tips whose side is told", plain);
+  print("factor of sides not told", sides);
+  print("factor of spikes in 30 % of the samples", spikes);
+  print("factor of both", both);
+  print("updates of a stream over its median", updates);
+  return 0;
+}

@@ -1,0 +1,78 @@
+// Inputs of the recogniser by a few numbers that a search can change: any shape or none, noise,
+// tips, patches, spikes.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/recognition/recognizer.h"
+
+namespace palpate::bench {
+
+struct TouchedPatch {
+  PatchContext context;
+  std::vector<ContactSample> samples;
+};
+
+using TouchedInput = std::vector<TouchedPatch>;
+
+std::size_t sample_count(const TouchedInput& input);
+
+enum class Shape {
+  Line,
+  Circle,
+  Ellipse,
+  Parabola,
+  Hyperbola,
+  CubicalParabola,
+  SemiCubicalParabola,
+  CubicSpline,
+  Sinusoid,
+  Superellipse,
+  LogSpiral,
+  Quartic,
+  FreeForm,    ///< a closed curve of random harmonics
+  Polygon,     ///< corners
+  RandomWalk,  ///< no curve at all
+};
+inline constexpr int kShapes = 15;
+
+/// What an input is made from. Lengths are in units of the part's half extent unless said
+/// otherwise.
+struct InputRecipe {
+  Shape shape = Shape::Ellipse;
+  std::uint64_t seed = 0;  ///< of everything random below
+  int patches = 2;         ///< 1 to 64
+  int samples = 111;       ///< of a patch, 8 to 4096
+  double size_m = 0.025;
+  double arc = 0.5;               ///< of each patch
+  double coverage = 1.0;          ///< patches begin within this share of the curve
+  double sigma = 1e-3;            ///< white noise of the samples
+  double stated_over_true = 1.0;  ///< of sigma; 0 = not stated
+  double spikes = 0.0;            ///< share of samples, 0 to 0.3
+  double spike_size = 0.1;
+  double tip = 0.0;           ///< tip radius; 0 = samples on the surface
+  double sides_told = 1.0;    ///< share of patches whose material side is told
+  double misplacement = 0.0;  ///< standard deviation of each patch's shift
+  double wave = 0.0;          ///< amplitude of a form deviation, smooth along the arc
+  double dwelling = 0.0;      ///< share of samples that stay at the place of the one before
+  double offset = 0.0;        ///< of the part from the origin
+};
+
+/// Within the bounds stated at each member.
+InputRecipe random_recipe(std::mt19937_64& rng, std::size_t most_samples);
+
+/// One to three members of the recipe drawn again or changed by a little.
+InputRecipe mutated(InputRecipe recipe, std::mt19937_64& rng, std::size_t most_samples);
+
+TouchedInput input_of(const InputRecipe& recipe);
+
+/// A clean ellipse, touched all around in as many patches of as many samples as the input has.
+TouchedInput clean_ellipse_like(const TouchedInput& input);
+
+/// The recipe on one line.
+std::string to_text(const InputRecipe& recipe);
+
+}  // namespace palpate::bench

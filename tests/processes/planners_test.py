@@ -1,0 +1,115 @@
+"""The planner's side, and peers: whoever asks for too much is cut and named, and nobody else notices."""
+import os
+import pathlib
+import re
+import socket
+import time
+import unittest
+
+import zmq
+from bus import Bus, Probe, memory_kb, wait_for
+
+
+def cpu_s(process):
+    fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rsplit(") ", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+class Planners(unittest.TestCase):
+    def latency(self, probe, planner, object_number):
+        start = time.monotonic()
+        probe.send(probe.batch(0, 20, object_number=object_number))
+        wait_for(planner, lambda m: hasattr(m, "curve_class") and m.object == object_number, 30)
+        return time.monotonic() - start
+
+    def test_a_flood_of_subscriptions_is_cut_and_named(self):
+        with Bus() as bus:
+            node = bus.start_node()
+            planner = bus.subscriber("recognition/finger/", "status/")
+            probe = Probe(bus.publisher())
+            self.latency(probe, planner, 1)
+            before = memory_kb(node)
+            flood = bus.context.socket(zmq.XSUB)
+            flood.setsockopt(zmq.SNDHWM, 0)
+            flood.setsockopt(zmq.LINGER, 0)
+            flood.connect(bus.results)
+            for number in range(20_000):
+                flood.send(b"\1" + f"{number:08d}".encode() + os.urandom(492).hex().encode())
+            slowest = max(self.latency(probe, planner, 2 + n) for n in range(100))
+            status = wait_for(planner, lambda m: hasattr(m, "connections_cut") and m.connections_cut > 0)
+            peak = memory_kb(node)
+            flood.close()
+            slowest = max(slowest, *(self.latency(probe, planner, 1000 + n) for n in range(100)))
+            print(f"20,000 subscriptions of 1,000 bytes: {status.connections_cut} cuts, memory {before} -> "
+                  f"{peak} kB, slowest answer {1e3 * slowest:.1f} ms")
+            # 64 kB are permitted, 32 bytes of memory each, and what is on its way while it is cut.
+            self.assertLess(peak - before, 16 * 1024)
+            self.assertLess(slowest, 1.0)
+            self.assertRegex(node.log_path.read_text(),
+                             rf"connections to results cut, the last of process {os.getpid()}: .*max_subscription_bytes")
+
+    def test_an_ordinary_planner_may_change_its_mind_for_ever(self):
+        with Bus() as bus:
+            bus.start_node()
+            planner = bus.subscriber("status/")
+            fickle = bus.subscriber("recognition/x/")
+            for _ in range(5000):
+                fickle.setsockopt_string(zmq.SUBSCRIBE, "recognition/" + "y" * 64 + "/")
+                fickle.setsockopt_string(zmq.UNSUBSCRIBE, "recognition/" + "y" * 64 + "/")
+            Probe(bus.publisher(), "x").stroke(batches=2)
+            wait_for(fickle, lambda a: a.sample_count == 20)
+            self.assertEqual(wait_for(planner, lambda s: s.recognitions_published > 0).connections_cut, 0)
+
+    def test_asking_again_and_again_multiplies_nothing(self):
+        with Bus() as bus:
+            bus.start_node()
+            probe_socket = bus.publisher()
+            for number in range(8):
+                Probe(probe_socket, f"p{number}").stroke(batches=2)
+            planner = bus.subscriber("recognition/")
+            wait_for(planner, lambda a: a.group == "p7" and a.sample_count == 20)
+            insistent = bus.context.socket(zmq.XSUB)
+            insistent.setsockopt(zmq.LINGER, 0)
+            insistent.setsockopt(zmq.SNDHWM, 0)
+            insistent.connect(bus.results)
+            while planner.poll(0):
+                planner.recv_multipart()
+            start = time.monotonic()
+            received = 0
+            while time.monotonic() - start < 2.0:
+                for _ in range(1000):
+                    insistent.send(b"\1")
+                    insistent.send(b"\0")
+                while planner.poll(0):
+                    planner.recv_multipart()
+                    received += 1
+            taken = time.monotonic() - start
+            print(f"{received / taken:.0f} repeats a second of 8 answers")
+            # At most every 50 ms, and once a status period.
+            self.assertLess(received, 8 * (taken / 0.05 + taken + 2))
+
+    def test_idle_peers_shut_nobody_out(self):
+        with Bus() as bus:
+            node = bus.start_node("--max-peers", "20")
+            idle = []
+            for _ in range(60):
+                peer = socket.socket(socket.AF_UNIX)
+                peer.connect(bus.contacts.removeprefix("ipc://"))
+                idle.append(peer)
+            early = [Probe(bus.publisher(), f"early{number}") for number in range(4)]
+            planner = bus.subscriber("recognition/", "status/")
+            for probe in early:
+                probe.stroke(batches=2)
+            wait_for(planner, lambda m: hasattr(m, "connections_cut") and m.connections_cut >= 40)
+            before = cpu_s(node)
+            start = time.monotonic()
+            wait_for(planner, lambda m: hasattr(m, "groups") and m.groups == 4)
+            time.sleep(1.0)
+            self.assertLess((cpu_s(node) - before) / (time.monotonic() - start), 0.5)
+            self.assertIn("connections to contacts cut", node.log_path.read_text())
+            for peer in idle:
+                peer.close()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,148 @@
+"""palpate record, check and replay: beside a running node, under floods, with keys, with damage."""
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+import zmq
+from bus import Bus, Probe, memory_kb, stop, wait_for
+from programs import SIM, SOURCE, TOOL, run
+
+SCENE = SOURCE / "sim/scenes/ellipse.textproto"
+
+
+class Place(unittest.TestCase):
+    def test_the_path_of_a_running_node_is_not_taken(self):
+        with Bus() as bus:
+            bus.start_node()
+            for command in (("check", "--seconds", "0.2"), ("record", bus.folder / "r", "--seconds", "0.2")):
+                code, _, err = run(TOOL, *command, "--contacts", bus.contacts)
+                self.assertEqual(code, 1, err)
+                self.assertIn("another process has bound it", err)
+            # It still hears.
+            planner = bus.subscriber()
+            Probe(bus.publisher()).stroke(batches=2)
+            wait_for(planner, lambda a: a.sample_count == 20)
+
+    def test_nothing_is_open_to_the_network_unless_it_is_said(self):
+        with Bus() as bus:
+            code, _, err = run(TOOL, "record", bus.folder / "r", "--contacts", "tcp://0.0.0.0:*", "--seconds", "1")
+            self.assertEqual(code, 2, err)
+            self.assertIn("open to the network", err)
+            code, _, err = run(TOOL, "record", bus.folder / "r", "--contacts", "tcp://0.0.0.0:*", "--insecure",
+                               "--seconds", "0.1")
+            self.assertEqual(code, 0, err)
+
+    def test_probes_with_keys_are_recorded_in_the_nodes_place(self):
+        with Bus() as bus:
+            for name in ("node", "friend", "stranger"):
+                self.assertEqual(run(TOOL, "keygen", bus.folder / name)[0], 0)
+            (bus.folder / "allowed").write_text((bus.folder / "friend.public").read_text())
+            for player, expected in (("friend", 1), ("stranger", 0)):
+                file = bus.folder / f"{player}.rec"
+                record = bus.start(TOOL, "record", file, "--contacts", bus.contacts, "--curve-secret-key",
+                                   bus.folder / "node.secret", "--allow-clients", bus.folder / "allowed",
+                                   "--seconds", "1.5", stderr=subprocess.PIPE)
+                run(SIM, SCENE, "--contacts", bus.contacts, "--fast", "--wait", "1", "--curve-secret-key",
+                    bus.folder / f"{player}.secret", "--curve-server-key", bus.folder / "node.public")
+                _, err = record.communicate(timeout=10)
+                self.assertEqual(record.returncode, 0, err)
+                self.assertEqual(file.stat().st_size > 8, expected == 1, player)
+
+
+class Floods(unittest.TestCase):
+    def flood(self, bus, listener):
+        """Sends as fast as it can until the listener ends; gives the seconds that it ran."""
+        socket = bus.publisher()
+        start = time.monotonic()
+        message = [b"contact/p/", b"x" * 200]
+        while listener.poll() is None and time.monotonic() - start < 15:
+            for _ in range(500):
+                socket.send_multipart(message)
+        return time.monotonic() - start
+
+    def test_the_end_comes_in_time(self):
+        for command in ("record", "check"):
+            with Bus() as bus:
+                file = [bus.folder / "r"] if command == "record" else []
+                listener = bus.start(TOOL, command, *file, "--contacts", bus.contacts, "--seconds", "1",
+                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                self.assertLess(self.flood(bus, listener), 3.0, command)
+
+    def test_a_stop_is_heard(self):
+        with Bus() as bus:
+            listener = bus.start(TOOL, "record", bus.folder / "r", "--contacts", bus.contacts,
+                                 stderr=subprocess.DEVNULL)
+            socket = bus.publisher()
+            for _ in range(100_000):
+                socket.send_multipart([b"contact/p/", b"x" * 200])
+            code, seconds = stop(listener, signal.SIGTERM)
+            self.assertEqual(code, 0)
+            self.assertLess(seconds, 1.0)
+
+    def test_a_huge_message_is_not_taken_in(self):
+        with Bus() as bus:
+            listener = bus.start(TOOL, "record", bus.folder / "r", "--contacts", bus.contacts,
+                                 stderr=subprocess.DEVNULL)
+            socket = bus.publisher()
+            before = memory_kb(listener)
+            socket.send_multipart([b"contact/p/", bytes(200 << 20)])
+            time.sleep(1.0)
+            self.assertLess(memory_kb(listener) - before, 32 * 1024)
+            self.assertEqual(stop(listener)[0], 0)
+            self.assertEqual((bus.folder / "r").stat().st_size, 8)
+
+
+class Replays(unittest.TestCase):
+    def replay(self, bus, file, *arguments):
+        return run(TOOL, "replay", file, "--contacts", bus.contacts, "--wait", "5", *arguments)
+
+    def test_what_is_no_message_is_recorded_and_left_out(self):
+        with Bus() as bus:
+            file = bus.folder / "mixed.rec"
+            record = bus.start(TOOL, "record", file, "--contacts", bus.contacts, "--count", "7",
+                               stderr=subprocess.PIPE)
+            socket = bus.publisher()
+            probe = Probe(socket)
+            probe.send(probe.batch(0))
+            socket.send_multipart([b"contact/\xff\xfe/", b"payload"])
+            socket.send_multipart([b"contact/p/", b"\x12\x05ab"])
+            socket.send_multipart([b"contact/one_frame/"])
+            for first in (10, 20, 30):
+                probe.send(probe.batch(first))
+            self.assertEqual(record.wait(10), 0)
+            record.stderr.close()
+            bus.start_node()
+            planner = bus.subscriber()
+            code, _, err = self.replay(bus, file, "--fast")
+            self.assertEqual(code, 0, err)
+            self.assertIn("4 messages, 40 samples", err)
+            self.assertIn("3 messages left out", err)
+            wait_for(planner, lambda a: a.sample_count == 40)
+            # A damaged byte costs its message, and is said.
+            damaged = bytearray(file.read_bytes())
+            damaged[len(damaged) // 2] ^= 1
+            file.write_bytes(damaged)
+            code, _, err = self.replay(bus, file, "--fast")
+            self.assertEqual(code, 1, err)
+            self.assertIn("damaged in 1 places", err)
+
+    def test_stamps_of_strangers(self):
+        with Bus() as bus:
+            bus.start_node()
+            code, _, err = self.replay(bus, SOURCE / "tests/data/hostile/stamps_ub.rec")
+            self.assertIn("messages", err)
+            self.assertEqual(code, 0, err)
+
+    def test_a_speed_that_is_no_number(self):
+        for value in ("nan", "inf", "0", "-1", "fast"):
+            code, _, err = run(TOOL, "replay", "absent", "--speed", value)
+            self.assertEqual(code, 2, err)
+            self.assertIn("--speed", err)
+        self.assertEqual(run(TOOL, "check", "--seconds", "nan")[0], 2)
+        self.assertEqual(run(TOOL, "record", "never", "--seconds", "nan")[0], 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,90 @@
+// Stated probabilities are true: of the answers that are given with a probability, so many are
+// right.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <string>
+
+#include "tests/support/calibration.h"
+#include "tests/support/scene_data.h"
+#include "tests/support/scene_prior.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kScenes = 2400;
+constexpr double kCoverage = 0.999;
+
+/// Of the most probable hypothesis, over all answers and by the class that it names.
+struct Calibrations {
+  test::Calibration pooled;
+  std::array<test::Calibration, 9> by_class;
+};
+
+Calibrations run(const test::ScenePrior& prior, bool sigma_known) {
+  Calibrations result;
+  const int scenes = test::stress_count(kScenes);
+  for (int i = 0; i < scenes; ++i) {
+    const test::PriorScene drawn =
+        test::scene_from(prior, test::test_seed(), static_cast<std::uint32_t>(i));
+    const Recognition answer =
+        test::recognise(drawn.scene, sigma_known ? drawn.scene.sigma_m : 0.0);
+    EXPECT_FALSE(answer.hypotheses.empty()) << "scene " << i;
+    if (answer.hypotheses.empty()) {
+      continue;
+    }
+    const double probability = answer.hypotheses.front().probability;
+    EXPECT_TRUE(std::isfinite(probability)) << "scene " << i;
+    const bool right = answer.shape.curve_class == drawn.scene.curve_class;
+    result.pooled.add(probability, right);
+    result.by_class[static_cast<std::size_t>(answer.shape.curve_class)].add(probability, right);
+  }
+  return result;
+}
+
+/// A bin of few answers, whose band holds every frequency, says nothing and cannot fail.
+void expect_true(const test::Calibration& calibration, const std::string& title, double from) {
+  for (std::size_t b = 0; b < test::kProbabilityBins; ++b) {
+    const test::Calibration::Bin& bin = calibration.bins()[b];
+    const test::Band band = bin.band(kCoverage);
+    if (band.least == 0 && band.most == bin.count()) {
+      continue;
+    }
+    std::cout << "  " << title << " " << test::kProbabilityBounds[b] << " to "
+              << test::kProbabilityBounds[b + 1] << ": stated " << bin.mean_stated() << ", right "
+              << bin.right << " of " << bin.count() << ", band " << band.least << " to "
+              << band.most << "\n";
+    if (test::kProbabilityBounds[b] < from) {
+      continue;  // printed
+    }
+    EXPECT_GE(bin.right, band.least)
+        << title << ", bin from " << test::kProbabilityBounds[b] << ": too sure";
+    EXPECT_LE(bin.right, band.most)
+        << title << ", bin from " << test::kProbabilityBounds[b] << ": not sure enough";
+  }
+}
+
+void expect_true(const Calibrations& calibrations) {
+  // The prior of sizes and places is not that of the scenes, which shows where the data leave much to
+  // it: below these bounds.
+  constexpr double kPooledFrom = 0.8;
+  constexpr double kClassesFrom = 0.95;
+  expect_true(calibrations.pooled, "all", kPooledFrom);
+  // No scene is of no class here: what is stated of "unclassified" is true under another prior.
+  for (std::size_t i = 1; i < calibrations.by_class.size(); ++i) {
+    expect_true(calibrations.by_class[i], std::string(name_of(static_cast<CurveClass>(i))),
+                kClassesFrom);
+  }
+  // Else the bins above would say nothing of sure answers.
+  EXPECT_GT(calibrations.pooled.bins().back().count(), test::stress_count(kScenes) / 4);
+}
+
+TEST(PosteriorCalibration, WithTheNoiseStated) { expect_true(run(test::classes_only(test::even_prior()), true)); }
+
+TEST(PosteriorCalibration, WithTheNoiseUnknown) { expect_true(run(test::classes_only(test::even_prior()), false)); }
+
+}  // namespace
+}  // namespace palpate

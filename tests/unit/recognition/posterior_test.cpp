@@ -1,0 +1,251 @@
+// The evidence against integrals by brute force, and what follows from it.
+#include "core/recognition/posterior/posterior.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "tests/support/scene_data.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+/// A scene's reduced points and a class fitted to them.
+struct Fitted {
+  SmoothModel smooth;
+  ClassFits fits;
+
+  explicit Fitted(const test::Scene& scene) {
+    FitData data = test::fit_data(scene, scene.sigma_m);
+    smooth = fit_smooth_model(&data, true);
+    fits = fit_classes(smooth.reduced);
+  }
+  std::optional<CanonicalFit> canonical(CurveClass curve_class) const {
+    const auto& fit = fits[static_cast<std::size_t>(curve_class)];
+    return fit && !fit->at_limit ? to_canonical(*fit, smooth.reduced) : std::nullopt;
+  }
+};
+
+test::Scene scene_of(CurveClass curve_class, double arc, double sigma, int patches,
+                     std::mt19937_64& rng) {
+  test::SceneOptions options;
+  options.patches = patches;
+  options.sigma_over_size = sigma;
+  options.least_fraction = options.most_fraction = arc;
+  return test::random_scene(curve_class, options, rng);
+}
+
+/// log of the mean of exp(-(chi2 - fitted) / 2) over the prior, on a grid over shape, offset and
+/// turn: no gradient, no Gauss-Newton step.
+double log_occam_by_grid(const ClassEvidence& evidence, const TouchedCurve& centre,
+                         const FitData& data, const TouchedVector& low, const TouchedVector& high,
+                         int steps, double fitted_chi2) {
+  const Touch& touch = evidence.touch;
+  const int n = shape_coordinates(touch.curve_class) + 2;
+  std::vector<int> index(static_cast<std::size_t>(n), 0);
+  double cell = 1.0;
+  for (int k = 0; k < n; ++k) {
+    cell *= (high[k] - low[k]) / steps / std::sqrt(2.0 * kPi);
+  }
+  double sum = 0.0;
+  while (true) {
+    TouchedVector z = TouchedVector::Zero();
+    for (int k = 0; k < n; ++k) {
+      z[k] = low[k] + (index[static_cast<std::size_t>(k)] + 0.5) * (high[k] - low[k]) / steps;
+    }
+    if (const auto curve = curve_at(touch, z, centre, data)) {
+      sum += std::exp(-0.5 * (curve->chi2 - fitted_chi2) + curve->log_prior) /
+             curve->widths.head(n).prod();
+    }
+    int k = 0;
+    while (k < n && ++index[static_cast<std::size_t>(k)] == steps) {
+      index[static_cast<std::size_t>(k++)] = 0;
+    }
+    if (k == n) {
+      return std::log(sum * cell);
+    }
+  }
+}
+
+TEST(ClassEvidence, OfACircleIsTheIntegralOverItsPrior) {
+  // From well determined to as good as a line, where the radius runs over decades.
+  std::mt19937_64 rng = test::test_rng();
+  for (const double arc : {0.3, 0.05, 0.01, 0.003}) {
+    const Fitted fitted(scene_of(CurveClass::Circle, arc, 1e-3, 1, rng));
+    const auto canonical = fitted.canonical(CurveClass::Circle);
+    ASSERT_TRUE(canonical.has_value());
+    const FitData& data = fitted.smooth.reduced;
+    const auto evidence = evidence_of(*canonical, data, 1.0, Integration::Quadrature);
+    ASSERT_TRUE(evidence.has_value());
+    const TouchedCurve& centre = evidence->nodes[evidence->nodes.size() / 2].curve;
+    TouchedVector low = TouchedVector::Zero();
+    TouchedVector high = TouchedVector::Zero();
+    low[0] = evidence->nodes.front().curve.z[0];
+    high[0] = evidence->nodes.back().curve.z[0];
+    if (evidence->nodes.size() == 1) {
+      const double deviation = centre.widths[0] / std::sqrt(centre.information(0, 0));
+      low[0] -= 40.0 * deviation;
+      high[0] += 40.0 * deviation;
+    }
+    for (int k = 1; k < 3; ++k) {
+      // The offset bends with the radius: four times its own deviations.
+      const double deviation = centre.widths[k] / std::sqrt(centre.information(k, k));
+      low[k] = -12.0 * deviation;
+      high[k] = 12.0 * deviation;
+    }
+    double fitted_chi2 = 0.0;
+    for (const FittedPoint& point : canonical->points) {
+      fitted_chi2 += point.residual * point.residual;
+    }
+    const double by_grid =
+        log_occam_by_grid(*evidence, centre, data, low, high, 100, fitted_chi2);
+    // Slices end where the density is a thousandth; trapezoids between changes of up to e^2.
+    EXPECT_NEAR(evidence->log_occam, by_grid, 0.15) << "arc " << arc;
+  }
+}
+
+TEST(ClassEvidence, DoesNotChangeWithTheUnitOrThePlace) {
+  std::mt19937_64 rng = test::test_rng();
+  for (const CurveClass curve_class : kCurveClasses) {
+    const test::Scene scene = scene_of(curve_class, 0.2, 1e-4, 2, rng);
+    test::Scene moved = scene;
+    const Pose2 motion{-0.7, 0.4, 2.0};
+    for (auto& patch : moved.patches) {
+      for (Vec2& p : patch) {
+        p = 1000.0 * (motion * p);
+      }
+    }
+    moved.sigma_m *= 1000.0;
+    const auto a = Fitted(scene).canonical(curve_class);
+    const auto b = Fitted(moved).canonical(curve_class);
+    if (!a || !b) {
+      continue;
+    }
+    const auto ea = evidence_of(*a, Fitted(scene).smooth.reduced, 1.0, Integration::Quadrature);
+    const auto eb = evidence_of(*b, Fitted(moved).smooth.reduced, 1.0, Integration::Quadrature);
+    ASSERT_EQ(ea.has_value(), eb.has_value()) << name_of(curve_class);
+    if (ea) {
+      EXPECT_NEAR(ea->log_occam, eb->log_occam, 0.02) << name_of(curve_class);
+    }
+  }
+}
+
+TEST(ClassEvidence, ABetterProbeLeavesLessOfThePrior) {
+  // Each determined coordinate is worth a factor of ten for noise of a tenth.
+  std::mt19937_64 rng = test::test_rng();
+  for (const CurveClass curve_class : {CurveClass::Line, CurveClass::Circle, CurveClass::Parabola,
+                                       CurveClass::Ellipse, CurveClass::CubicSpline}) {
+    const test::Scene scene = scene_of(curve_class, 0.2, 1e-5, 3, rng);
+    const auto fit = Fitted(scene).canonical(curve_class);
+    ASSERT_TRUE(fit.has_value());
+    const FitData reduced = Fitted(scene).smooth.reduced;
+    const auto evidence = evidence_of(*fit, reduced, 1.0, Integration::Laplace);
+    const auto coarser = evidence_of(*fit, reduced, 100.0, Integration::Laplace);
+    ASSERT_TRUE(evidence && coarser);
+    const double per_decade = (coarser->log_occam - evidence->log_occam) / std::log(10.0);
+    EXPECT_NEAR(per_decade, degrees_of_freedom(curve_class), 0.1) << name_of(curve_class);
+    EXPECT_NEAR(evidence->determined, degrees_of_freedom(curve_class), 0.1);
+  }
+}
+
+TEST(Likelihood, UnknownNoiseIsIntegratedOut) {
+  // Against the integral over log sigma by the trapezoidal rule, two models' ratio.
+  Likelihood likelihood;
+  likelihood.sigma_known = false;
+  likelihood.samples = 40.0;
+  const auto by_rule = [](double chi2, double exponent) {
+    double sum = 0.0;
+    constexpr double kStep = 1e-3;
+    for (double x = -6.0; x < 6.0; x += kStep) {
+      sum += kStep * std::exp(-exponent * x - 0.5 * chi2 * std::exp(-2.0 * x));
+    }
+    return std::log(sum);
+  };
+  const double ratio = likelihood.log_evidence(35.0, 0.0, 3.0) -
+                       likelihood.log_evidence(44.0, 0.0, 3.0);
+  EXPECT_NEAR(ratio, by_rule(35.0, 37.0) - by_rule(44.0, 37.0), 1e-6);
+}
+
+TEST(Likelihood, NoStatedFormErrorChangesNothing) {
+  Likelihood likelihood;
+  likelihood.noise_chi2 = 90.0;
+  EXPECT_EQ(likelihood.counted(123.0), 123.0);
+  EXPECT_EQ(likelihood.inflation(), 1.0);
+  likelihood.coherent_variance = 9.0;
+  EXPECT_DOUBLE_EQ(likelihood.counted(100.0), 91.0);  // only what exceeds the noise
+}
+
+TEST(Posterior, SumsToOneAndFollowsTheEvidence) {
+  std::mt19937_64 rng = test::test_rng();
+  const Fitted fitted(scene_of(CurveClass::Ellipse, 0.2, 1e-4, 3, rng));
+  ClassFits fits = fitted.fits;
+  for (auto& fit : fits) {
+    if (fit) {
+      fit->chi2 += fitted.smooth.chi2;
+    }
+  }
+  Likelihood likelihood;
+  const Evidences evidences =
+      evidences_of(fits, fitted.fits, fitted.smooth, fitted.smooth.reduced, likelihood);
+  const ClassProbabilities p =
+      probabilities_of(fits, fitted.smooth.chi2, likelihood, evidences);
+  EXPECT_NEAR(std::accumulate(p.begin(), p.end(), 0.0), 1.0, 1e-12);
+  EXPECT_GT(p[static_cast<std::size_t>(CurveClass::Ellipse)], 0.95);
+  // Ten units of chi-square are odds of exp(5), whatever else is probable.
+  const auto e = static_cast<std::size_t>(CurveClass::Ellipse);
+  fits[e]->chi2 += 10.0;
+  const ClassProbabilities after =
+      probabilities_of(fits, fitted.smooth.chi2, likelihood, evidences);
+  EXPECT_NEAR(std::log(p[e] / p[0]) - std::log(after[e] / after[0]), 5.0, 1e-6);
+}
+
+TEST(FreeForm, PathsOfNoClassAreTakenAndRoughOnesCost) {
+  std::mt19937_64 rng = test::test_rng();
+  test::SceneOptions options;
+  options.patches = 2;
+  options.sigma_over_size = 1e-4;
+  options.least_fraction = options.most_fraction = 0.3;
+  const test::Scene scene =
+      test::random_outside_scene(test::OutsideShape::LogSpiral, options, rng);
+  const Fitted fitted(scene);
+  const FreeForm paths = free_form(fitted.smooth, 1.0);
+  EXPECT_LT(paths.log_occam, 0.0);
+  ClassFits fits = fitted.fits;
+  for (auto& fit : fits) {
+    if (fit) {
+      fit->chi2 += fitted.smooth.chi2;
+    }
+  }
+  Likelihood likelihood;
+  const Evidences evidences =
+      evidences_of(fits, fitted.fits, fitted.smooth, fitted.smooth.reduced, likelihood);
+  EXPECT_GT(probabilities_of(fits, fitted.smooth.chi2, likelihood, evidences)[0], 0.95);
+  // Noise a tenth as large determines more of the path, at a price.
+  EXPECT_LT(free_form(fitted.smooth, 0.01).log_occam, paths.log_occam);
+}
+
+TEST(FreeForm, IsTheSameAlongAndAgainstTravel) {
+  std::mt19937_64 rng = test::test_rng();
+  int single = 0;
+  for (int i = 0; i < 20; ++i) {
+    test::Scene scene = scene_of(CurveClass::Parabola, 0.1, 1e-4, 1, rng);
+    const SmoothModel smooth = Fitted(scene).smooth;
+    std::reverse(scene.patches[0].begin(), scene.patches[0].end());
+    const SmoothModel reversed = Fitted(scene).smooth;
+    if (smooth.sections.size() > 1 || reversed.sections.size() > 1) {
+      continue;
+    }
+    ++single;
+    const FreeForm along = free_form(smooth, 1.0);
+    const FreeForm against = free_form(reversed, 1.0);
+    // The chord's frame is turned by half a turn: the same powers, up to their signs.
+    EXPECT_NEAR(along.log_occam - 0.5 * along.chi2, against.log_occam - 0.5 * against.chi2, 1e-6);
+  }
+  EXPECT_GT(single, 5);
+}
+
+}  // namespace
+}  // namespace palpate

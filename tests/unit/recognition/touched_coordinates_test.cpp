@@ -1,0 +1,152 @@
+#include "core/recognition/posterior/touched_coordinates.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/recognition/posterior/touched_curve.h"
+#include "tests/support/scene_data.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+TouchedShape random_shape(CurveClass curve_class, std::mt19937_64& rng) {
+  const auto in = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(rng);
+  };
+  switch (curve_class) {
+    case CurveClass::Ellipse:
+      return {{2.0, in(0.2, 1.9), 0.0}, in(-3.0, 3.0)};
+    case CurveClass::CubicalParabola:
+      return {{std::copysign(in(0.1, 3.0), in(-1.0, 1.0)), in(-2.0, 2.0), 0.0}, in(-1.0, 1.0)};
+    case CurveClass::CubicSpline:
+      return {{in(0.1, 3.0), in(-2.0, 2.0), in(-2.0, 2.0)}, in(-1.0, 1.0)};
+    case CurveClass::SemiCubicalParabola:
+      return {{in(0.1, 3.0), in(-2.0, 2.0), 0.0}, in(0.2, 2.0)};
+    default:
+      return {{in(0.1, 3.0), in(0.1, 3.0), 0.0}, in(-2.0, 2.0)};
+  }
+}
+
+class TouchedCoordinatesOf : public testing::TestWithParam<CurveClass> {};
+
+TEST_P(TouchedCoordinatesOf, ThereAndBack) {
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < 100; ++i) {
+    const TouchedShape shape = random_shape(GetParam(), rng);
+    const auto back = shape_at(GetParam(), coordinates_of(GetParam(), shape), shape);
+    ASSERT_TRUE(back.has_value());
+    const auto letters = static_cast<int>(parameter_letters(GetParam()).size());
+    for (int k = 0; k < letters; ++k) {
+      // Logarithms and squares of numbers of order 1: a few roundings.
+      EXPECT_NEAR(back->values[k], shape.values[k], 1e-14 * (1.0 + std::abs(shape.values[k])));
+    }
+    if (shape_coordinates(GetParam()) > letters) {  // the place is a coordinate
+      EXPECT_NEAR(wrap_angle(back->t - shape.t), 0.0, 1e-13);
+    }
+  }
+}
+
+/// Integral over coordinate k of the prior's density, the others at the centre.
+double mass_along(CurveClass curve_class, TouchedVector centre, int k, double low, double high) {
+  constexpr int kSteps = 400000;
+  const double at_centre = log_prior(curve_class, centre);
+  const double width = prior_widths(curve_class, centre)[k];
+  double sum = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    TouchedVector z = centre;
+    z[k] = low + (i + 0.5) * (high - low) / kSteps;
+    sum += std::exp(log_prior(curve_class, z) - at_centre);
+  }
+  return sum * (high - low) / kSteps / (width * std::sqrt(2.0 * kPi));
+}
+
+TEST(TouchedCoordinates, EveryFactorOfThePriorIsADensity) {
+  // Cauchy's tails hold 2 / (pi kFar) beyond kFar scales.
+  constexpr double kFar = 2000.0;
+  constexpr double kTail = 2.0 * 2.0 / (3.14 * kFar) + 1e-4;
+  const double log_size = 0.5 * std::log(20.0);
+  const auto centre_of = [&](CurveClass curve_class) {
+    TouchedVector z = TouchedVector::Zero();
+    z[0] = log_size + log_length_over_size(curve_class);
+    return z;
+  };
+  TouchedVector z = centre_of(CurveClass::Circle);
+  EXPECT_NEAR(mass_along(CurveClass::Circle, z, 0, -40, 40), 1.0, 1e-6);
+  z = centre_of(CurveClass::Parabola);
+  EXPECT_NEAR(mass_along(CurveClass::Parabola, z, 0, -40, 40), 1.0, 1e-6);
+  EXPECT_NEAR(mass_along(CurveClass::Parabola, z, 1, -kFar, kFar), 1.0, kTail);
+  const TouchedVector spline = centre_of(CurveClass::CubicSpline);
+  EXPECT_NEAR(mass_along(CurveClass::CubicSpline, spline, 0, -40, 40), 1.0, 1e-6);
+  EXPECT_NEAR(mass_along(CurveClass::CubicSpline, spline, 1, -kFar, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass_along(CurveClass::CubicSpline, spline, 2, -kFar, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass_along(CurveClass::CubicSpline, spline, 3, -kFar, kFar), 1.0, kTail);
+  z = centre_of(CurveClass::CubicalParabola);
+  // Cubical parabola: half for either sign of a; a place and the one opposite are the same curve.
+  EXPECT_NEAR(mass_along(CurveClass::CubicalParabola, z, 0, -40, 40), 0.5, 1e-6);
+  EXPECT_NEAR(mass_along(CurveClass::CubicalParabola, z, 1, -kFar, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass_along(CurveClass::CubicalParabola, z, 2, -kFar, kFar), 2.0, 2.0 * kTail);
+  // Ellipse: m over (0, 1); half a turn of directions is all of them, whatever the ellipse.
+  TouchedVector ellipse = centre_of(CurveClass::Ellipse);
+  ellipse[2] = 0.5 * kPi;
+  for (const double m : {0.01, 0.3, 0.99}) {
+    ellipse[1] = m;
+    EXPECT_NEAR(mass_along(CurveClass::Ellipse, ellipse, 2, 0.0, kPi), 1.0, 1e-6) << m;
+  }
+  ellipse[1] = 0.5;
+  EXPECT_NEAR(mass_along(CurveClass::Ellipse, ellipse, 1, 0.0, 1.0), 1.0, 1e-6);
+  TouchedVector hyperbola = centre_of(CurveClass::Hyperbola);
+  hyperbola[1] = 1.0;
+  EXPECT_NEAR(mass_along(CurveClass::Hyperbola, hyperbola, 1, 0.0, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass_along(CurveClass::Hyperbola, hyperbola, 2, -kFar, kFar), 1.0, kTail);
+}
+
+TEST_P(TouchedCoordinatesOf, DerivativesOfChiSquareAreThoseOfDifferences) {
+  std::mt19937_64 rng = test::test_rng();
+  int compared = 0;
+  for (int i = 0; i < 20; ++i) {
+    test::SceneOptions options;
+    options.patches = 2;
+    options.sigma_over_size = 1e-3;
+    const test::Scene scene = test::random_scene(GetParam(), options, rng);
+    FitData data = test::fit_data(scene, scene.sigma_m);
+    CanonicalFit truth;
+    truth.shape = {GetParam(), scene.values};
+    truth.world_T_curve = scene.world_T_curve;
+    for (const auto& patch : scene.t) {
+      for (const double t : patch) {
+        truth.points.push_back({t, 0.0, Vec2::Zero()});
+      }
+    }
+    const auto touch = touch_of(truth, data);
+    const auto curve = touch ? curve_at(*touch, truth, data) : std::nullopt;
+    ASSERT_TRUE(curve.has_value());
+    for (int k = 0; k < shape_coordinates(GetParam()) + 2; ++k) {
+      constexpr double kStep = 1e-6;
+      TouchedVector ahead = curve->z;
+      TouchedVector behind = curve->z;
+      ahead[k] += kStep;
+      behind[k] -= kStep;
+      const auto f = curve_at(*touch, ahead, *curve, data);
+      const auto g = curve_at(*touch, behind, *curve, data);
+      ASSERT_TRUE(f && g);
+      const double difference = (f->chi2 - g->chi2) / (2.0 * kStep) * curve->widths[k];
+      // Third derivatives, and residuals that leave the curve's own bend out: relative to the
+      // largest slope that a residual per point could have.
+      const double scale = std::sqrt(curve->information(k, k) * curve->chi2);
+      EXPECT_NEAR(2.0 * curve->gradient[k], difference, 1e-4 * scale) << k;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllClasses, TouchedCoordinatesOf, testing::ValuesIn(kCurveClasses),
+                         [](const auto& param_info) {
+                           return std::string(name_of(param_info.param));
+                         });
+
+}  // namespace
+}  // namespace palpate
