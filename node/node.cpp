@@ -139,8 +139,10 @@ void Node::run(int stop_fd) {
 void Node::drain_contacts(SteadyTime deadline) {
   SteadyTime now = now_steady();
   while (now < deadline && receive_now(contacts_, incoming_)) {
-    intake_.take(incoming_.frame_count, view_of(incoming_.topic), view_of(incoming_.payload), now,
-                 unix_time_ns());
+    const v1::RejectReason reason =
+        intake_.take(incoming_.frame_count, view_of(incoming_.topic), view_of(incoming_.payload),
+                     now, unix_time_ns());
+    if (reason == v1::REJECT_REASON_UNSPECIFIED) publisher_.forward(incoming_);
     now = now_steady();
   }
   forget_evicted();
