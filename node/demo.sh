@@ -8,7 +8,7 @@ cd "$(dirname "$(readlink -f "$0")")/.."
 step() { printf '\n== %s\n' "$*"; }
 
 packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev protobuf-compiler libprotobuf-dev
-          libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev python3)
+          libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev libboost-dev nlohmann-json3-dev python3)
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' ||

@@ -1,5 +1,4 @@
 // palpate fit: the recognizer's answer for files, without a network.
-#include <google/protobuf/util/json_util.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 #include "node/recognizer_options.h"
 #include "node/tool/command.h"
 #include "node/tool/contact_groups.h"
+#include "node/tool/message_json.h"
 #include "node/tool/part_match.h"
 #include "node/tool/recognition_text.h"
 #include "node/tool/svg_plot.h"
@@ -92,16 +92,6 @@ Answer recognise(const ContactGroup& group, const RecognizerOptions& options) {
   answer.message.set_compute_ns(
       std::chrono::duration_cast<std::chrono::nanoseconds>(taken).count());
   return answer;
-}
-
-std::string json_line(const google::protobuf::Message& message) {
-  google::protobuf::util::JsonPrintOptions options;
-  options.preserve_proto_field_names = true;
-  options.always_print_primitive_fields = true;
-  std::string text;
-  // Cannot fail: the message has no Any.
-  (void)google::protobuf::util::MessageToJsonString(message, &text, options);
-  return text + "\n";
 }
 
 /// PLOT.svg for the first group, PLOT-2.svg for the second, ...

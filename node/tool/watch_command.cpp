@@ -1,5 +1,4 @@
 // palpate watch: what the recognizer says, live.
-#include <google/protobuf/util/json_util.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -15,6 +14,7 @@
 #include "node/clock.h"
 #include "node/stop_signals.h"
 #include "node/tool/command.h"
+#include "node/tool/message_json.h"
 #include "node/tool/quantity.h"
 #include "node/tool/recognition_text.h"
 
@@ -31,15 +31,6 @@ struct WatchCommand {
   double timeout_s = 0.0;
   double interval_s = 0.2;
 };
-
-std::string json_line(const google::protobuf::Message& message) {
-  google::protobuf::util::JsonPrintOptions options;
-  options.preserve_proto_field_names = true;
-  options.always_print_primitive_fields = true;
-  std::string text;
-  (void)google::protobuf::util::MessageToJsonString(message, &text, options);
-  return text + "\n";
-}
 
 /// Since the newest sample was taken, by the two clocks.
 std::string latency_text(const v1::Recognition& answer) {
