@@ -3,26 +3,34 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <optional>
 
-#include "core/curves/curve.h"
+#include "node/tool/advice.h"
+#include "node/tool/drawing/drawing.h"
+#include "node/tool/drawing/enlarged_residuals.h"
+#include "node/tool/drawing/visible_samples.h"
 #include "node/tool/quantity.h"
+#include "node/tool/recognition_text.h"
 
 namespace palpate {
 namespace {
 
-constexpr double kWidth = 900.0;  // of the drawing, all in pixels
+constexpr double kWidth = 1024.0;  // of the document, all in pixels
 constexpr double kHeight = 680.0;
 constexpr double kLeft = 80.0;
-constexpr double kTop = 70.0;
-constexpr double kRight = 190.0;  // the legend's place
+constexpr double kTop = 24.0;
+constexpr double kRight = 324.0;  // the table's place
 constexpr double kBottom = 60.0;
 
-constexpr const char* kPatchColours[] = {"#1b6ca8", "#d1495b", "#2e933c", "#8e5aa8",
-                                         "#c97b12", "#4a7c89", "#7a4b2b", "#5b5b5b"};
-constexpr const char* kCurveColour = "#222222";
-constexpr const char* kContactColour = "#e08e00";
+constexpr const char* kPatchColours[] = {"#0072b2", "#d55e00", "#008f6b", "#a64d8b",
+                                         "#9a7200", "#3a7f9c", "#7a4b2b", "#5b5b5b"};
+constexpr const char* kCurveColour = "#1b1f24";
+constexpr const char* kBandColour = "#2f7fd6";
+constexpr const char* kRivalColour = "#8a5cc2";
+constexpr const char* kResidualColour = "#c2185b";
+constexpr const char* kContactColour = "#b36b00";
 constexpr const char* kXAxisColour = "#c00000";
 constexpr const char* kYAxisColour = "#008000";
 
@@ -96,36 +104,34 @@ double tick_step(double length, double count) {
   return 10.0 * power;
 }
 
-View view_of(const ContactGroup& group, const Recognition& answer) {
+View view_of(const ContactGroup& group, const v1::Recognition& answer, const Drawing& drawing) {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
   Vec2 high = -low;
-  for (const ContactRun& run : group.runs) {
-    for (const ContactSample& sample : run.samples) {
-      low = low.cwiseMin(sample.position_m);
-      high = high.cwiseMax(sample.position_m);
-    }
-  }
-  // A closed curve is shown whole, and the frame where it is not far away.
-  const double size = (high - low).maxCoeff();
   const auto include = [&](const Vec2& p) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   };
-  const Pose2& pose = answer.world_T_curve;
-  const CurveClass curve_class = answer.shape.curve_class;
-  const double radius = answer.shape.values[0];
-  constexpr double kNotFar = 3.0;  // sizes of what was touched
-  if ((curve_class == CurveClass::Circle || curve_class == CurveClass::Ellipse) &&
-      radius < kNotFar * size) {
-    const double b = curve_class == CurveClass::Circle ? radius : answer.shape.values[1];
-    const Vec2 reach(std::hypot(radius * std::cos(pose.theta), b * std::sin(pose.theta)),
-                     std::hypot(radius * std::sin(pose.theta), b * std::cos(pose.theta)));
-    include(pose.translation() - reach);
-    include(pose.translation() + reach);
-  } else if (make_curve(curve_class, answer.shape.values) && curve_class != CurveClass::Line &&
-             (pose.translation() - 0.5 * (low + high)).norm() < 0.5 * kNotFar * size) {
-    include(pose.translation());
+  for (const ContactRun& run : group.runs) {
+    for (const ContactSample& sample : run.samples) include(sample.position_m);
   }
+  if (!drawing.curve) return View(low, high);
+  // A curve that is not far larger than what was touched is shown whole; of another one, as of an arc
+  // that is not yet determined, what is near.
+  const double size = (high - low).maxCoeff();
+  const Vec2 centre = 0.5 * (low + high);
+  const auto distance = [&](const Vec2& p) { return (p - centre).cwiseAbs().maxCoeff() / size; };
+  constexpr double kWhole = 3.0;  // sizes of what was touched
+  constexpr double kNear = 1.0;
+  double furthest = 0.0;
+  for (const CurvePlace& place : drawing.curve->places) {
+    furthest = std::max(furthest, distance(place.position));
+  }
+  const double shown = furthest < kWhole ? kWhole : kNear;
+  for (const CurvePlace& place : drawing.curve->places) {
+    if (distance(place.position) < shown) include(place.position);
+  }
+  const Vec2 origin(answer.pose().x_m(), answer.pose().y_m());
+  if (answer.curve_class() != v1::CURVE_CLASS_LINE && distance(origin) < shown) include(origin);
   return View(low, high);
 }
 
@@ -166,52 +172,60 @@ std::string axes_svg(const View& view) {
   return svg;
 }
 
-/// The parameters to draw: all of a closed curve, else what the contacts span and a little more.
-std::pair<double, double> range_of(const Recognition& answer) {
-  if (answer.shape.curve_class == CurveClass::Circle ||
-      answer.shape.curve_class == CurveClass::Ellipse) {
-    return {-kPi, kPi};
-  }
-  double least = std::numeric_limits<double>::infinity();
-  double most = -least;
-  for (const LocalizedContact& contact : answer.contacts) {
-    least = std::min(least, contact.t);
-    most = std::max(most, contact.t);
-  }
-  constexpr double kMore = 0.15;
-  const double more = kMore * (most - least);
-  return {least - more, most + more};
+/// SVG's numbers are single precision: what is far outside is cut.
+std::string point_text(const View& view, const Vec2& place) {
+  constexpr double kFar = 1e5;
+  const Vec2 at = view(place).cwiseMin(kFar).cwiseMax(-kFar);
+  return format("%.2f,%.2f ", at.x(), at.y());
 }
 
-std::string curve_svg(const View& view, const Recognition& answer) {
-  const auto curve = make_curve(answer.shape.curve_class, answer.shape.values);
-  if (!curve || answer.contacts.empty()) {
-    return {};
-  }
-  constexpr int kSteps = 400;
-  const auto [from, to] = range_of(answer);
-  std::string svg = "<polyline clip-path=\"url(#picture)\" fill=\"none\" stroke=\"" +
-                    std::string(kCurveColour) + "\" stroke-width=\"1.5\" points=\"";
-  for (int i = 0; i <= kSteps; ++i) {
-    const double t = from + (to - from) * i / kSteps;
-    const Vec2 at = view(answer.world_T_curve * position(*curve, t));
-    svg += format("%.2f,%.2f ", at.x(), at.y());
-  }
+std::string polyline(const View& view, const DrawnCurve& curve, const char* style) {
+  std::string svg = "<polyline clip-path=\"url(#picture)\" fill=\"none\" " + std::string(style) +
+                    " points=\"";
+  for (const CurvePlace& place : curve.places) svg += point_text(view, place.position);
   return svg + "\"/>\n";
 }
 
-std::string frame_svg(const View& view, const Recognition& answer) {
-  if (!make_curve(answer.shape.curve_class, answer.shape.values)) {
-    return {};
+/// The area between the band's borders, as a closed line to and fro.
+std::string band_svg(const View& view, const DrawnCurve& curve) {
+  std::string left;
+  std::string right;
+  for (const CurvePlace& place : curve.places) {
+    if (!place.band) return {};
+    left += point_text(view, place.position + place.band->left_m * place.left);
+    right = point_text(view, place.position + place.band->right_m * place.left) + right;
   }
+  return format("<polygon class=\"band\" clip-path=\"url(#picture)\" fill=\"%s\" fill-opacity=\"0.3\" "
+                "points=\"",
+                kBandColour) +
+         left + right + "\"/>\n";
+}
+
+std::string curves_svg(const View& view, const Drawing& drawing) {
+  std::string svg = drawing.curve ? band_svg(view, *drawing.curve) : "";
+  for (const DrawnCurve& rival : drawing.rivals) {
+    svg += polyline(view, rival,
+                    format("class=\"rival\" stroke=\"%s\" stroke-width=\"1.2\" stroke-dasharray=\"6 4\" "
+                           "stroke-opacity=\"%.2f\"",
+                           kRivalColour, 0.25 + 0.65 * rival.probability)
+                        .c_str());
+  }
+  if (drawing.curve) {
+    svg += polyline(view, *drawing.curve,
+                    format("class=\"curve\" stroke=\"%s\" stroke-width=\"1.5\"", kCurveColour).c_str());
+  }
+  return svg;
+}
+
+std::string frame_svg(const View& view, const v1::Recognition& answer, const Drawing& drawing) {
+  if (!drawing.curve) return {};
   constexpr double kArrow = 50.0;
-  const Vec2 origin = view(answer.world_T_curve.translation());
+  const Pose2 pose{answer.pose().x_m(), answer.pose().y_m(), answer.pose().theta_rad()};
+  const Vec2 origin = view(pose.translation());
   std::string svg;
   for (int axis = 0; axis < 2; ++axis) {
     const Vec2 unit = axis == 0 ? Vec2(1.0, 0.0) : Vec2(0.0, 1.0);
-    const Vec2 tip =
-        view(answer.world_T_curve.translation() +
-             answer.world_T_curve.rotate(view.metres(kArrow) * unit));
+    const Vec2 tip = view(pose.translation() + pose.rotate(view.metres(kArrow) * unit));
     svg += format(
         "<line clip-path=\"url(#picture)\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\" "
         "stroke-width=\"2\"/>\n",
@@ -220,26 +234,47 @@ std::string frame_svg(const View& view, const Recognition& answer) {
   return svg;
 }
 
-std::string points_svg(const View& view, const ContactGroup& group) {
+/// Dots as the round ends of lines without length: a few bytes each.
+std::string samples_svg(const View& view, const ContactGroup& group, const VisibleSamples& visible) {
   std::string svg;
-  std::size_t colour = 0;
-  for (const ContactRun& run : group.runs) {
-    svg += format("<g fill=\"%s\">\n", kPatchColours[colour++ % std::size(kPatchColours)]);
-    for (const ContactSample& sample : run.samples) {
-      const Vec2 at = view(sample.position_m);
-      svg += format("<circle cx=\"%.2f\" cy=\"%.2f\" r=\"1.8\"/>\n", at.x(), at.y());
+  for (std::size_t number = 0; number < group.runs.size(); ++number) {
+    if (visible.of_run[number].empty()) continue;
+    svg += format("<path class=\"samples\" fill=\"none\" stroke=\"%s\" stroke-width=\"3.6\" "
+                  "stroke-linecap=\"round\" d=\"",
+                  kPatchColours[number % std::size(kPatchColours)]);
+    for (const std::size_t i : visible.of_run[number]) {
+      const Vec2 at = view(group.runs[number].samples[i].position_m);
+      svg += format("M%.1f,%.1fh0", at.x(), at.y());
     }
-    svg += "</g>\n";
+    svg += "\"/>\n";
   }
   return svg;
 }
 
-std::string contacts_svg(const View& view, const Recognition& answer) {
+std::string residuals_svg(const View& view, const EnlargedResiduals& residuals) {
+  std::string svg = format("<path class=\"residuals\" clip-path=\"url(#picture)\" fill=\"none\" "
+                           "stroke=\"%s\" stroke-opacity=\"0.6\" d=\"",
+                           kResidualColour);
+  for (const EnlargedResiduals::Line& line : residuals.lines) {
+    const Vec2 foot = view(line.foot);
+    const Vec2 end = view(line.end);
+    svg += format("M%.1f,%.1fL%.1f,%.1f", foot.x(), foot.y(), end.x(), end.y());
+  }
+  svg += format("\"/>\n<path class=\"far\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.8\" d=\"",
+                kResidualColour);
+  for (const Vec2& place : residuals.far) {
+    const Vec2 at = view(place);
+    svg += format("M%.1f,%.1fl8,8m0,-8l-8,8", at.x() - 4.0, at.y() - 4.0);
+  }
+  return svg + "\"/>\n";
+}
+
+std::string contacts_svg(const View& view, const v1::Recognition& answer) {
   constexpr double kTangent = 22.0;
   std::string svg;
-  for (const LocalizedContact& contact : answer.contacts) {
-    const Vec2 at = view(contact.estimate.position);
-    const double angle = contact.estimate.tangent_angle;
+  for (const v1::LocalizedContact& contact : answer.contacts()) {
+    const Vec2 at = view({contact.x_m(), contact.y_m()});
+    const double angle = contact.tangent_rad();
     svg += format(
         "<line x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\" stroke=\"%s\" stroke-width=\"1.5\"/>\n",
         at.x(), at.y(), at.x() + kTangent * std::cos(angle), at.y() - kTangent * std::sin(angle),
@@ -250,40 +285,145 @@ std::string contacts_svg(const View& view, const Recognition& answer) {
   return svg;
 }
 
-std::string legend_svg(const ContactGroup& group, const Recognition& answer) {
-  const double x = kWidth - kRight + 16.0;
-  double y = kTop + 12.0;
-  std::string svg;
-  const auto entry = [&](const char* colour, const std::string& label) {
-    svg += format("<rect x=\"%.1f\" y=\"%.1f\" width=\"12\" height=\"4\" fill=\"%s\"/>\n", x, y - 6.0, colour);
-    svg += format("<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", x + 18.0, y, escaped(label).c_str());
-    y += 20.0;
-  };
-  std::size_t colour = 0;
-  constexpr std::size_t kMostListed = 16;
-  for (const ContactRun& run : group.runs) {
-    if (colour == kMostListed) {
-      break;
+/// The right side: what is known, and what the colours mean.
+class Table {
+ public:
+  void heading(const std::string& text) {
+    svg_ += format("<text x=\"%.1f\" y=\"%.1f\" font-size=\"15\" font-weight=\"bold\">%s</text>\n", kX, y_,
+                   escaped(text).c_str());
+    y_ += 20.0;
+  }
+
+  void row(const std::string& name, const std::string& value) {
+    svg_ += format("<text x=\"%.1f\" y=\"%.1f\" fill=\"#5b6470\">%s</text>", kX, y_,
+                   escaped(name).c_str());
+    svg_ += format("<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", kX + 62.0, y_, escaped(value).c_str());
+    y_ += 18.0;
+  }
+
+  /// In lines that fit.
+  void words(const std::string& text) {
+    constexpr std::size_t kLineLength = 44;
+    std::string rest = text;
+    while (!rest.empty()) {
+      std::size_t cut = rest.size() <= kLineLength ? rest.size() : rest.rfind(' ', kLineLength);
+      if (cut == std::string::npos) cut = std::min(rest.size(), kLineLength);
+      svg_ += format("<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", kX, y_,
+                     escaped(rest.substr(0, cut)).c_str());
+      rest.erase(0, cut + 1);
+      y_ += 16.0;
     }
-    entry(kPatchColours[colour++ % std::size(kPatchColours)],
-          group.probes[run.context.probe] + ", patch " + std::to_string(run.context.patch));
   }
-  if (make_curve(answer.shape.curve_class, answer.shape.values)) {
-    entry(kCurveColour, "recognised curve");
-    entry(kXAxisColour, "its x axis");
-    entry(kYAxisColour, "its y axis");
+
+  void key(const char* colour, const std::string& label) {
+    svg_ += format("<rect x=\"%.1f\" y=\"%.1f\" width=\"12\" height=\"4\" fill=\"%s\"/>\n", kX, y_ - 6.0,
+                   colour);
+    svg_ += format("<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", kX + 18.0, y_, escaped(label).c_str());
+    y_ += 18.0;
   }
-  if (!answer.contacts.empty()) {
-    entry(kContactColour, "contacts, tangents");
+
+  void gap() { y_ += 8.0; }
+  const std::string& svg() const { return svg_; }
+
+ private:
+  static constexpr double kX = kWidth - kRight + 16.0;
+  double y_ = kTop + 12.0;
+  std::string svg_;
+};
+
+void add_answer(const ContactGroup& group, const v1::Recognition& answer, Table& table) {
+  table.heading(spoken_name(answer.curve_class()));
+  table.words(status_text(answer));
+  table.gap();
+  for (const Quantity& quantity : quantities_of(answer)) table.row(quantity.name, quantity.text);
+  std::string samples = std::to_string(answer.sample_count());
+  if (answer.outlier_count() > 0) {
+    samples += ", " + std::to_string(answer.outlier_count()) + " set aside as spikes";
   }
-  return svg;
+  table.row("samples", samples);
+  const LengthUnit unit = length_unit_for(answer.sigma_m());
+  table.row("noise", number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name));
+  table.row("group", group.name + ", object " + std::to_string(group.object));
+  // Of a long path the end tells more.
+  constexpr std::size_t kMostOfPath = 36;
+  const bool is_long = group.file.size() > kMostOfPath;
+  table.row("file", is_long ? "..." + group.file.substr(group.file.size() - kMostOfPath) : group.file);
+  table.gap();
+  table.words(advice_text(answer));
+  table.gap();
+}
+
+std::string band_label(const DrawnCurve& curve) {
+  double widest_m = 0.0;
+  for (const CurvePlace& place : curve.places) {
+    if (place.band) widest_m = std::max({widest_m, place.band->left_m, -place.band->right_m});
+  }
+  const LengthUnit unit = length_unit_for(widest_m);
+  return format("its 95 %% band, +- %.2g ", widest_m * unit.per_m) + std::string(unit.name) +
+         " where widest";
+}
+
+void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSamples& visible,
+              const EnlargedResiduals& residuals, Table& table) {
+  constexpr std::size_t kMostListed = 8;
+  for (std::size_t i = 0; i < std::min(group.runs.size(), kMostListed); ++i) {
+    const PatchContext& context = group.runs[i].context;
+    table.key(kPatchColours[i % std::size(kPatchColours)],
+              group.probes[context.probe] + ", patch " + std::to_string(context.patch));
+  }
+  if (group.runs.size() > kMostListed) {
+    table.words("and " + std::to_string(group.runs.size() - kMostListed) + " more patches");
+  }
+  if (drawing.curve) {
+    table.key(kCurveColour, "most probable curve");
+    if (drawing.curve->places.front().band) table.key(kBandColour, band_label(*drawing.curve));
+    table.key(kXAxisColour, "its x axis");
+    table.key(kYAxisColour, "its y axis");
+  }
+  for (const DrawnCurve& rival : drawing.rivals) {
+    table.key(kRivalColour, spoken_name(rival.curve_class) +
+                                format(", %.3g %%", 100.0 * rival.probability));
+  }
+  if (!drawing.contacts.empty()) table.key(kContactColour, "contacts, tangents");
+  if (!residuals.lines.empty()) {
+    table.key(kResidualColour, "residuals, " + number(residuals.gain) + " times enlarged");
+  }
+  if (!residuals.far.empty()) {
+    table.key(kResidualColour, format("x: %zu beyond %.0f sigma", residuals.far.size(), kFarSigmas));
+  }
+  if (visible.left_out > 0) {
+    const LengthUnit unit = length_unit_for(visible.cell_m);
+    table.gap();
+    table.words(std::to_string(visible.drawn) + " samples drawn; " + std::to_string(visible.left_out) +
+                " lie within " + format("%.2g ", visible.cell_m * unit.per_m) + std::string(unit.name) +
+                " of one of them.");
+  }
+}
+
+EnlargedResiduals residuals_of_picture(const ContactGroup& group, const v1::Recognition& answer,
+                                       const Drawing& drawing, const View& view) {
+  const std::optional<CurveModel> model =
+      drawing.curve ? model_of(answer) : std::optional<CurveModel>();
+  if (!model) return {};
+  constexpr std::size_t kMostLines = 2000;
+  return enlarged_residuals(*model, group, answer.sigma_m(), (view.high() - view.low()).maxCoeff(),
+                            kMostLines);
 }
 
 }  // namespace
 
-std::string svg_plot(const ContactGroup& group, const Recognition& answer,
-                     const std::string& title) {
-  const View view = view_of(group, answer);
+std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer) {
+  const Drawing drawing = make_drawing(group, answer);
+  const View view = view_of(group, answer, drawing);
+  // Dots are 3.6 pixels wide: half a pixel beside another one, one is not seen.
+  constexpr double kCellPixels = 0.5;
+  constexpr std::size_t kMostDots = 50000;
+  const VisibleSamples visible = visible_samples(group, view.metres(kCellPixels), kMostDots,
+                                                 std::size(kPatchColours));
+  const EnlargedResiduals residuals = residuals_of_picture(group, answer, drawing, view);
+  Table table;
+  add_answer(group, answer, table);
+  add_keys(group, drawing, visible, residuals, table);
   std::string svg = format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f %.0f\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n",
@@ -293,16 +433,9 @@ std::string svg_plot(const ContactGroup& group, const Recognition& answer,
       "<clipPath id=\"picture\"><rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/></clipPath>\n",
       kLeft, kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom);
   svg += "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
-  // Long titles go on in a second line.
-  constexpr std::size_t kLineLength = 120;
-  const std::size_t cut =
-      title.size() > kLineLength ? title.rfind(", ", kLineLength) : std::string::npos;
-  const std::string first = title.substr(0, cut);
-  const std::string second = cut == std::string::npos ? "" : title.substr(cut + 2);
-  svg += "<text x=\"16\" y=\"26\" font-size=\"13\">" + escaped(first) + "</text>\n";
-  svg += "<text x=\"16\" y=\"46\" font-size=\"13\">" + escaped(second) + "</text>\n";
-  svg += axes_svg(view) + curve_svg(view, answer) + frame_svg(view, answer) +
-         points_svg(view, group) + contacts_svg(view, answer) + legend_svg(group, answer);
+  svg += axes_svg(view) + curves_svg(view, drawing) + residuals_svg(view, residuals) +
+         samples_svg(view, group, visible) + contacts_svg(view, answer) +
+         frame_svg(view, answer, drawing) + table.svg();
   return svg + "</svg>\n";
 }
 

@@ -13,6 +13,8 @@ const CHUNK = 500;
 const COLOURS = 8;
 const AXIS_PIXELS = 46;
 const TANGENT_PIXELS = 20;
+const WHOLE = 3;  // sizes of what was touched
+const NEAR = 1;
 const MARGIN = 46;  // for the ticks' numbers [px]
 
 /** @param {number[]} points @param {boolean} closed */
@@ -191,12 +193,16 @@ export class Plane {
     for (const contact of this.picture?.contacts ?? []) include(contact.at[0] * MM, -contact.at[1] * MM);
     const touched = Math.max(high[0] - low[0], high[1] - low[1]);
     const centre = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
-    // Of the curve as much as is not far from what was touched: an arc not yet determined runs far off.
-    const near = 4 * touched;
+    // A curve that is not far larger than what was touched is shown whole; of another one, as of an arc that
+    // is not yet determined, what is near.
     const points = this.picture?.curve?.points ?? [];
+    const distance = (/** @type {number} */ i) => touched > 0 ?
+        Math.max(Math.abs(points[i] * MM - centre[0]), Math.abs(points[i + 1] * MM + centre[1])) / touched : 0;
+    let furthest = 0;
+    for (let i = 0; i < points.length; i += 2) furthest = Math.max(furthest, distance(i));
+    const shown = furthest < WHOLE ? WHOLE : NEAR;
     for (let i = 0; i < points.length; i += 2) {
-      const x = points[i] * MM, y = -points[i + 1] * MM;
-      if (!(touched > 0) || Math.max(Math.abs(x - centre[0]), Math.abs(y - centre[1])) < near) include(x, y);
+      if (distance(i) < shown) include(points[i] * MM, -points[i + 1] * MM);
     }
     return low[0] <= high[0] ? {low, high} : null;
   }
