@@ -68,7 +68,7 @@ if [ "$sanitize" = yes ]; then
 fi
 
 if [ "$fuzz" != 0 ]; then
-  targets=(contact_csv ingest recording)
+  targets=(contact_csv http_border ingest recording)
   build fuzz "${targets[@]/#/fuzz_}"
   for target in "${targets[@]}"; do
     step "fuzzing $target for $fuzz s"

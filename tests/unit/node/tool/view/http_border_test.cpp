@@ -15,9 +15,9 @@ TEST(ListenAddress, IsAnIpAddressAndAPort) {
   }
   EXPECT_EQ(parse_listen_address("[::1]:0")->host, "::1");
   EXPECT_EQ(parse_listen_address("localhost:1")->host, "localhost");
-  for (const char* const text :
-       {"", ":", ":80", "127.0.0.1", "127.0.0.1:", "127.0.0.1:65536", "127.0.0.1:-1",
-        "127.0.0.1:8o", "example.org:80", "::1:80", "[127.0.0.1]:80", "[]:80", "1:2:3"}) {
+  for (const char* const text : {"", ":", ":80", "127.0.0.1", "127.0.0.1:", "127.0.0.1:65536",
+                                 "127.0.0.1:-1", "127.0.0.1:8o", "example.org:80", "::1:80",
+                                 "[127.0.0.1]:80", "[]:80", "[fe80::1%lo]:80", "1:2:3"}) {
     EXPECT_FALSE(parse_listen_address(text)) << text;
   }
 }
