@@ -38,13 +38,21 @@ export class Chart {
     const clip = svg("clipPath", {id: `${root.id}-clip`}, svg("defs", {}, root));
     this.clipRect = svg("rect", {}, clip);
     this.body = svg("g", {}, root);
-    this.drawn = "";
+    this.size = {width: 300, height: 140};
+    /** @type {{lines: Line[], dots: Dot[]}} */
+    this.shown = {lines: [], dots: []};
+    // Asking for the size while drawing would lay the whole page out each time.
+    new ResizeObserver((entries) => {
+      const box = entries[0].contentRect;
+      this.size = {width: Math.max(box.width, 120), height: Math.max(box.height, 90)};
+      this.show(this.shown.lines, this.shown.dots);
+    }).observe(root);
   }
 
   /** @param {Line[]} lines @param {Dot[]} dots */
   show(lines, dots) {
-    const box = this.root.getBoundingClientRect();
-    const width = Math.max(box.width, 120), height = Math.max(box.height, 90);
+    this.shown = {lines, dots};
+    const {width, height} = this.size;
     this.root.setAttribute("viewBox", `0 0 ${width} ${height}`);
     this.body.replaceChildren();
     const usable = dots.filter((dot) => dot.dy === undefined || dot.dy !== null);

@@ -21,6 +21,7 @@ const live = {picture: null, store: null, overview: null, group: ""};
 let isPaused = false;
 let isOpen = false;
 let isScheduled = false;
+let isHealthNew = true;
 /** The picture follows every answer; words and numbers are read, and change a few times a second. */
 const PANELS_INTERVAL_MS = 120;
 let panelsVersion = -1;
@@ -53,6 +54,7 @@ function takeSamples(samples) {
 /** @param {Message} message */
 function take(message) {
   if (message.group !== live.group) {
+    isHealthNew = true;
     live.group = message.group;
     live.picture = null;
     live.store = null;
@@ -61,7 +63,10 @@ function take(message) {
   if (message.picture) {
     live.picture = message.picture;
   }
-  if (message.overview) live.overview = message.overview;
+  if (message.overview) {
+    live.overview = message.overview;
+    isHealthNew = true;
+  }
   if (message.picture || message.samples) history.add(live.picture, live.store);
   schedule();
 }
@@ -77,7 +82,8 @@ function schedule() {
 }
 
 function draw() {
-  showHealth();
+  if (isHealthNew) showHealth();
+  isHealthNew = false;
   if (isPaused) return showMoment();
   plane.show(live.picture, live.store, null);
   panels.showSampleCounts(live.store);
@@ -218,6 +224,7 @@ function readLink() {
   if (wanted.view) plane.setView(wanted.view);
   else plane.isFitted = true;
   connection.want(wanted.group);
+  isHealthNew = true;
   schedule();
 }
 
@@ -234,6 +241,8 @@ function wireControls() {
   byId("zoom-out").onclick = () => plane.zoom(1 / 1.4);
   byId("group").onchange = () => {
     connection.want(byId("group").value);
+    isHealthNew = true;
+    schedule();
     plane.isFitted = true;
     writeLink();
   };
@@ -283,6 +292,7 @@ function wireControls() {
 
 const connection = new Connection(take, (open) => {
   isOpen = open;
+  isHealthNew = true;
   if (!open && live.overview) {
     // Everything comes anew.
     live.store = null;

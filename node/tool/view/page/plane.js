@@ -196,13 +196,17 @@ export class Plane {
     // A curve that is not far larger than what was touched is shown whole; of another one, as of an arc that
     // is not yet determined, what is near.
     const points = this.picture?.curve?.points ?? [];
-    const distance = (/** @type {number} */ i) => touched > 0 ?
-        Math.max(Math.abs(points[i] * MM - centre[0]), Math.abs(points[i + 1] * MM + centre[1])) / touched : 0;
+    const distance = (/** @type {number[]} */ at, /** @type {number} */ i) => touched > 0 ?
+        Math.max(Math.abs(at[i] * MM - centre[0]), Math.abs(at[i + 1] * MM + centre[1])) / touched : 0;
     let furthest = 0;
-    for (let i = 0; i < points.length; i += 2) furthest = Math.max(furthest, distance(i));
+    for (let i = 0; i < points.length; i += 2) furthest = Math.max(furthest, distance(points, i));
     const shown = furthest < WHOLE ? WHOLE : NEAR;
     for (let i = 0; i < points.length; i += 2) {
-      if (distance(i) < shown) include(points[i] * MM, -points[i + 1] * MM);
+      if (distance(points, i) < shown) include(points[i] * MM, -points[i + 1] * MM);
+    }
+    const origin = this.picture?.pose?.at;
+    if (origin && this.picture?.class !== "line" && distance(origin, 0) < shown) {
+      include(origin[0] * MM, -origin[1] * MM);
     }
     return low[0] <= high[0] ? {low, high} : null;
   }
