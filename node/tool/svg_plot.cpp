@@ -115,8 +115,8 @@ View view_of(const ContactGroup& group, const v1::Recognition& answer, const Dra
     for (const ContactSample& sample : run.samples) include(sample.position_m);
   }
   if (!drawing.curve) return View(low, high);
-  // A curve that is not far larger than what was touched is shown whole; of another one, as of an arc
-  // that is not yet determined, what is near.
+  // A curve that is not far larger than what was touched is shown whole; of another one, as of an
+  // arc that is not yet determined, what is near.
   const double size = (high - low).maxCoeff();
   const Vec2 centre = 0.5 * (low + high);
   const auto distance = [&](const Vec2& p) { return (p - centre).cwiseAbs().maxCoeff() / size; };
@@ -148,13 +148,13 @@ std::string axes_svg(const View& view) {
       const Vec2 at = view(place);
       const std::string label = number(k * step == 0.0 ? 0.0 : k * step);
       if (axis == 0) {
-        svg += format("<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n", at.x(),
-                      kTop, at.x(), kHeight - kBottom);
+        svg += format("<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n",
+                      at.x(), kTop, at.x(), kHeight - kBottom);
         svg += format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%s</text>\n", at.x(),
                       kHeight - kBottom + 18.0, label.c_str());
       } else {
-        svg += format("<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n", kLeft,
-                      at.y(), kWidth - kRight, at.y());
+        svg += format("<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n",
+                      kLeft, at.y(), kWidth - kRight, at.y());
         svg += format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%s</text>\n", kLeft - 6.0,
                       at.y() + 4.0, label.c_str());
       }
@@ -164,11 +164,13 @@ std::string axes_svg(const View& view) {
   svg += format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">x [%s]</text>\n",
                 0.5 * (kLeft + kWidth - kRight), kHeight - 18.0, name.c_str());
   svg += format(
-      "<text x=\"20\" y=\"%.1f\" text-anchor=\"middle\" transform=\"rotate(-90 20 %.1f)\">y [%s]</text>\n",
+      "<text x=\"20\" y=\"%.1f\" text-anchor=\"middle\" transform=\"rotate(-90 20 %.1f)\">y "
+      "[%s]</text>\n",
       0.5 * (kTop + kHeight - kBottom), 0.5 * (kTop + kHeight - kBottom), name.c_str());
   svg += format(
-      "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"none\" stroke=\"#888\"/>\n", kLeft,
-      kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom);
+      "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"none\" "
+      "stroke=\"#888\"/>\n",
+      kLeft, kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom);
   return svg;
 }
 
@@ -180,8 +182,8 @@ std::string point_text(const View& view, const Vec2& place) {
 }
 
 std::string polyline(const View& view, const DrawnCurve& curve, const char* style) {
-  std::string svg = "<polyline clip-path=\"url(#picture)\" fill=\"none\" " + std::string(style) +
-                    " points=\"";
+  std::string svg =
+      "<polyline clip-path=\"url(#picture)\" fill=\"none\" " + std::string(style) + " points=\"";
   for (const CurvePlace& place : curve.places) svg += point_text(view, place.position);
   return svg + "\"/>\n";
 }
@@ -195,24 +197,27 @@ std::string band_svg(const View& view, const DrawnCurve& curve) {
     left += point_text(view, place.position + place.band->left_m * place.left);
     right = point_text(view, place.position + place.band->right_m * place.left) + right;
   }
-  return format("<polygon class=\"band\" clip-path=\"url(#picture)\" fill=\"%s\" fill-opacity=\"0.3\" "
-                "points=\"",
-                kBandColour) +
+  return format(
+             "<polygon class=\"band\" clip-path=\"url(#picture)\" fill=\"%s\" fill-opacity=\"0.3\" "
+             "points=\"",
+             kBandColour) +
          left + right + "\"/>\n";
 }
 
 std::string curves_svg(const View& view, const Drawing& drawing) {
   std::string svg = drawing.curve ? band_svg(view, *drawing.curve) : "";
   for (const DrawnCurve& rival : drawing.rivals) {
-    svg += polyline(view, rival,
-                    format("class=\"rival\" stroke=\"%s\" stroke-width=\"1.2\" stroke-dasharray=\"6 4\" "
-                           "stroke-opacity=\"%.2f\"",
-                           kRivalColour, 0.25 + 0.65 * rival.probability)
-                        .c_str());
+    svg += polyline(
+        view, rival,
+        format("class=\"rival\" stroke=\"%s\" stroke-width=\"1.2\" stroke-dasharray=\"6 4\" "
+               "stroke-opacity=\"%.2f\"",
+               kRivalColour, 0.25 + 0.65 * rival.probability)
+            .c_str());
   }
   if (drawing.curve) {
-    svg += polyline(view, *drawing.curve,
-                    format("class=\"curve\" stroke=\"%s\" stroke-width=\"1.5\"", kCurveColour).c_str());
+    svg += polyline(
+        view, *drawing.curve,
+        format("class=\"curve\" stroke=\"%s\" stroke-width=\"1.5\"", kCurveColour).c_str());
   }
   return svg;
 }
@@ -227,7 +232,8 @@ std::string frame_svg(const View& view, const v1::Recognition& answer, const Dra
     const Vec2 unit = axis == 0 ? Vec2(1.0, 0.0) : Vec2(0.0, 1.0);
     const Vec2 tip = view(pose.translation() + pose.rotate(view.metres(kArrow) * unit));
     svg += format(
-        "<line clip-path=\"url(#picture)\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"%s\" "
+        "<line clip-path=\"url(#picture)\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" "
+        "stroke=\"%s\" "
         "stroke-width=\"2\"/>\n",
         origin.x(), origin.y(), tip.x(), tip.y(), axis == 0 ? kXAxisColour : kYAxisColour);
   }
@@ -235,13 +241,15 @@ std::string frame_svg(const View& view, const v1::Recognition& answer, const Dra
 }
 
 /// Dots as the round ends of lines without length: a few bytes each.
-std::string samples_svg(const View& view, const ContactGroup& group, const VisibleSamples& visible) {
+std::string samples_svg(const View& view, const ContactGroup& group,
+                        const VisibleSamples& visible) {
   std::string svg;
   for (std::size_t number = 0; number < group.runs.size(); ++number) {
     if (visible.of_run[number].empty()) continue;
-    svg += format("<path class=\"samples\" fill=\"none\" stroke=\"%s\" stroke-width=\"3.6\" "
-                  "stroke-linecap=\"round\" d=\"",
-                  kPatchColours[number % std::size(kPatchColours)]);
+    svg += format(
+        "<path class=\"samples\" fill=\"none\" stroke=\"%s\" stroke-width=\"3.6\" "
+        "stroke-linecap=\"round\" d=\"",
+        kPatchColours[number % std::size(kPatchColours)]);
     for (const std::size_t i : visible.of_run[number]) {
       const Vec2 at = view(group.runs[number].samples[i].position_m);
       svg += format("M%.1f,%.1fh0", at.x(), at.y());
@@ -252,9 +260,10 @@ std::string samples_svg(const View& view, const ContactGroup& group, const Visib
 }
 
 std::string residuals_svg(const View& view, const EnlargedResiduals& residuals) {
-  std::string svg = format("<path class=\"residuals\" clip-path=\"url(#picture)\" fill=\"none\" "
-                           "stroke=\"%s\" stroke-opacity=\"0.6\" d=\"",
-                           kResidualColour);
+  std::string svg = format(
+      "<path class=\"residuals\" clip-path=\"url(#picture)\" fill=\"none\" "
+      "stroke=\"%s\" stroke-opacity=\"0.6\" d=\"",
+      kResidualColour);
   for (const EnlargedResiduals::Line& line : residuals.lines) {
     const Vec2 foot = view(line.foot);
     const Vec2 end = view(line.end);
@@ -276,11 +285,14 @@ std::string contacts_svg(const View& view, const v1::Recognition& answer) {
     const Vec2 at = view({contact.x_m(), contact.y_m()});
     const double angle = contact.tangent_rad();
     svg += format(
-        "<line x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\" stroke=\"%s\" stroke-width=\"1.5\"/>\n",
+        "<line x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\" stroke=\"%s\" "
+        "stroke-width=\"1.5\"/>\n",
         at.x(), at.y(), at.x() + kTangent * std::cos(angle), at.y() - kTangent * std::sin(angle),
         kContactColour);
-    svg += format("<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.5\"/>\n",
-                  at.x(), at.y(), kContactColour);
+    svg += format(
+        "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"none\" stroke=\"%s\" "
+        "stroke-width=\"1.5\"/>\n",
+        at.x(), at.y(), kContactColour);
   }
   return svg;
 }
@@ -289,15 +301,16 @@ std::string contacts_svg(const View& view, const v1::Recognition& answer) {
 class Table {
  public:
   void heading(const std::string& text) {
-    svg_ += format("<text x=\"%.1f\" y=\"%.1f\" font-size=\"15\" font-weight=\"bold\">%s</text>\n", kX, y_,
-                   escaped(text).c_str());
+    svg_ += format("<text x=\"%.1f\" y=\"%.1f\" font-size=\"15\" font-weight=\"bold\">%s</text>\n",
+                   kX, y_, escaped(text).c_str());
     y_ += 20.0;
   }
 
   void row(const std::string& name, const std::string& value) {
     svg_ += format("<text x=\"%.1f\" y=\"%.1f\" fill=\"#5b6470\">%s</text>", kX, y_,
                    escaped(name).c_str());
-    svg_ += format("<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", kX + 62.0, y_, escaped(value).c_str());
+    svg_ +=
+        format("<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", kX + 62.0, y_, escaped(value).c_str());
     y_ += 18.0;
   }
 
@@ -316,9 +329,10 @@ class Table {
   }
 
   void key(const char* colour, const std::string& label) {
-    svg_ += format("<rect x=\"%.1f\" y=\"%.1f\" width=\"12\" height=\"4\" fill=\"%s\"/>\n", kX, y_ - 6.0,
-                   colour);
-    svg_ += format("<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", kX + 18.0, y_, escaped(label).c_str());
+    svg_ += format("<rect x=\"%.1f\" y=\"%.1f\" width=\"12\" height=\"4\" fill=\"%s\"/>\n", kX,
+                   y_ - 6.0, colour);
+    svg_ +=
+        format("<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", kX + 18.0, y_, escaped(label).c_str());
     y_ += 18.0;
   }
 
@@ -347,7 +361,8 @@ void add_answer(const ContactGroup& group, const v1::Recognition& answer, Table&
   // Of a long path the end tells more.
   constexpr std::size_t kMostOfPath = 36;
   const bool is_long = group.file.size() > kMostOfPath;
-  table.row("file", is_long ? "..." + group.file.substr(group.file.size() - kMostOfPath) : group.file);
+  table.row("file",
+            is_long ? "..." + group.file.substr(group.file.size() - kMostOfPath) : group.file);
   table.gap();
   table.words(advice_text(answer));
   table.gap();
@@ -381,21 +396,23 @@ void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSa
     table.key(kYAxisColour, "its y axis");
   }
   for (const DrawnCurve& rival : drawing.rivals) {
-    table.key(kRivalColour, spoken_name(rival.curve_class) +
-                                format(", %.3g %%", 100.0 * rival.probability));
+    table.key(kRivalColour,
+              spoken_name(rival.curve_class) + format(", %.3g %%", 100.0 * rival.probability));
   }
   if (!drawing.contacts.empty()) table.key(kContactColour, "contacts, tangents");
   if (!residuals.lines.empty()) {
     table.key(kResidualColour, "residuals, " + number(residuals.gain) + " times enlarged");
   }
   if (!residuals.far.empty()) {
-    table.key(kResidualColour, format("x: %zu beyond %.0f sigma", residuals.far.size(), kFarSigmas));
+    table.key(kResidualColour,
+              format("x: %zu beyond %.0f sigma", residuals.far.size(), kFarSigmas));
   }
   if (visible.left_out > 0) {
     const LengthUnit unit = length_unit_for(visible.cell_m);
     table.gap();
-    table.words(std::to_string(visible.drawn) + " samples drawn; " + std::to_string(visible.left_out) +
-                " lie within " + format("%.2g ", visible.cell_m * unit.per_m) + std::string(unit.name) +
+    table.words(std::to_string(visible.drawn) + " samples drawn; " +
+                std::to_string(visible.left_out) + " lie within " +
+                format("%.2g ", visible.cell_m * unit.per_m) + std::string(unit.name) +
                 " of one of them.");
   }
 }
@@ -418,19 +435,21 @@ std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer) {
   // Dots are 3.6 pixels wide: half a pixel beside another one, one is not seen.
   constexpr double kCellPixels = 0.5;
   constexpr std::size_t kMostDots = 50000;
-  const VisibleSamples visible = visible_samples(group, view.metres(kCellPixels), kMostDots,
-                                                 std::size(kPatchColours));
+  const VisibleSamples visible =
+      visible_samples(group, view.metres(kCellPixels), kMostDots, std::size(kPatchColours));
   const EnlargedResiduals residuals = residuals_of_picture(group, answer, drawing, view);
   Table table;
   add_answer(group, answer, table);
   add_keys(group, drawing, visible, residuals, table);
   std::string svg = format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f %.0f\" "
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f "
+      "%.0f\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n",
       kWidth, kHeight, kWidth, kHeight);
   svg += "<style>.grid{stroke:#e4e4e4}</style>\n";
   svg += format(
-      "<clipPath id=\"picture\"><rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/></clipPath>\n",
+      "<clipPath id=\"picture\"><rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" "
+      "height=\"%.1f\"/></clipPath>\n",
       kLeft, kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom);
   svg += "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
   svg += axes_svg(view) + curves_svg(view, drawing) + residuals_svg(view, residuals) +

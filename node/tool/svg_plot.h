@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// An SVG document of at most a few megabytes: of samples that lie on one another's dots one is drawn,
-/// and the picture says how many are left out.
+/// An SVG document of at most a few megabytes: of samples that lie on one another's dots one is
+/// drawn, and the picture says how many are left out.
 std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer);
 
 }  // namespace palpate

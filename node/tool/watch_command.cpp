@@ -59,14 +59,17 @@ class WatchOutput {
   virtual ~WatchOutput() = default;
   virtual void take(const v1::Recognition& answer) = 0;
   virtual void take(const v1::NodeStatus& status) = 0;
-  /// Called at least every 50 ms. `silent_s`: since anything was heard; `last`: nothing comes after.
+  /// Called at least every 50 ms. `silent_s`: since anything was heard; `last`: nothing comes
+  /// after.
   virtual void refresh(Clock::time_point now, double silent_s, bool last) = 0;
 };
 
 /// Every message of the wire contract, one a line.
 class JsonLines : public WatchOutput {
  public:
-  void take(const v1::Recognition& answer) override { std::cout << json_line(answer) << std::flush; }
+  void take(const v1::Recognition& answer) override {
+    std::cout << json_line(answer) << std::flush;
+  }
   void take(const v1::NodeStatus& status) override { std::cout << json_line(status) << std::flush; }
   void refresh(Clock::time_point, double, bool) override {}
 };
@@ -131,14 +134,15 @@ class TextLines : public WatchOutput {
 
   static std::string probe_line(const v1::ProbeStatus& probe) {
     char text[256];
-    std::snprintf(text, sizeof text,
-                  "probe %s: %s, %.0f samples/s, heard %.2f s ago, %llu gaps (%llu lost), %llu rejected, "
-                  "%llu restarts",
-                  probe.probe().c_str(), probe.alive() ? "alive" : "SILENT", probe.sample_rate_hz(),
-                  std::max(probe.age_s(), 0.0), static_cast<unsigned long long>(probe.gaps()),
-                  static_cast<unsigned long long>(probe.missing()),
-                  static_cast<unsigned long long>(probe.rejected()),
-                  static_cast<unsigned long long>(probe.restarts()));
+    std::snprintf(
+        text, sizeof text,
+        "probe %s: %s, %.0f samples/s, heard %.2f s ago, %llu gaps (%llu lost), %llu rejected, "
+        "%llu restarts",
+        probe.probe().c_str(), probe.alive() ? "alive" : "SILENT", probe.sample_rate_hz(),
+        std::max(probe.age_s(), 0.0), static_cast<unsigned long long>(probe.gaps()),
+        static_cast<unsigned long long>(probe.missing()),
+        static_cast<unsigned long long>(probe.rejected()),
+        static_cast<unsigned long long>(probe.restarts()));
     return text;
   }
 
@@ -257,19 +261,24 @@ void add_watch_command(CLI::App& app, int& exit_code) {
   auto watch = std::make_shared<WatchCommand>();
   CLI::App* command = app.add_subcommand(
       "watch",
-      "Show what the recognizer says: class, parameters and pose with their standard deviations, time\n"
-      "since the touch, and the probes: on a terminal one table that is drawn anew; elsewhere a line where\n"
+      "Show what the recognizer says: class, parameters and pose with their standard deviations, "
+      "time\n"
+      "since the touch, and the probes: on a terminal one table that is drawn anew; elsewhere a "
+      "line where\n"
       "there is an answer, and where a probe falls silent, comes back or loses messages.");
   command->add_option("GROUP", watch->groups, "Groups to watch; none = all")->type_name("");
   add_connection_flags(*command, "--results", "The recognizer's results endpoint",
                        watch->connection);
   command
-      ->add_option("--format", watch->format,
-                   "text, or json: every Recognition and NodeStatus of the wire contract, one a line")
+      ->add_option(
+          "--format", watch->format,
+          "text, or json: every Recognition and NodeStatus of the wire contract, one a line")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str()
       ->type_name("FORMAT");
-  command->add_option("--interval", watch->interval_s, "Text: least time between a group's lines, and between two tables [s]")
+  command
+      ->add_option("--interval", watch->interval_s,
+                   "Text: least time between a group's lines, and between two tables [s]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->type_name("S");
@@ -278,7 +287,8 @@ void add_watch_command(CLI::App& app, int& exit_code) {
       ->type_name("N");
   command
       ->add_option("--timeout", watch->timeout_s,
-                   "Fail where nothing (with --count: no recognition) is heard for so long; 0 = wait for ever [s]")
+                   "Fail where nothing (with --count: no recognition) is heard for so long; 0 = "
+                   "wait for ever [s]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->type_name("S");

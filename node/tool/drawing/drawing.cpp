@@ -36,8 +36,24 @@ std::vector<Vec2> touched_points(const ContactGroup& group, const v1::Recognitio
   return points;
 }
 
-std::vector<CurvePlace> sampled(const CurveModel& model, const CurveSpan& span, int pieces) {
+/// The curvature's deviation changes slowly along the curve: computed at every fourth place, which
+/// is most of a picture's work, and interpolated between.
+void add_curvature_deviations(const CurveModel& model, std::vector<CurvePlace>& places) {
+  constexpr std::size_t kStep = 4;
+  static_assert(kCurvePieces % kStep == 0);
   const CurvatureDeviation deviation(model);
+  for (std::size_t i = 0; i < places.size(); i += kStep) {
+    places[i].kappa_sigma = deviation.at(places[i].t);
+    if (!places[i].kappa_sigma) return;
+    for (std::size_t k = 1; i > 0 && k < kStep; ++k) {
+      const double part = static_cast<double>(k) / kStep;
+      places[i - kStep + k].kappa_sigma =
+          (1.0 - part) * *places[i - kStep].kappa_sigma + part * *places[i].kappa_sigma;
+    }
+  }
+}
+
+std::vector<CurvePlace> sampled(const CurveModel& model, const CurveSpan& span, int pieces) {
   std::vector<CurvePlace> places;
   places.reserve(static_cast<std::size_t>(pieces) + 1);
   double arc = 0.0;
@@ -47,8 +63,9 @@ std::vector<CurvePlace> sampled(const CurveModel& model, const CurveSpan& span, 
     if (!places.empty()) arc += (position - places.back().position).norm();
     const LocalGeometry local = geometry(model.curve, t);
     places.push_back({t, position, model.world_left(t), arc, band_at(model, t), local.kappa,
-                      local.kappa_s, deviation.at(t)});
+                      local.kappa_s, std::nullopt});
   }
+  add_curvature_deviations(model, places);
   return places;
 }
 

@@ -11,8 +11,8 @@ namespace palpate {
 namespace {
 
 bool is_ip_address(std::string_view host) {
-  // No zone of a link-local address ("%eth0"), which may be any text, and no zero byte, at which the
-  // library stops reading.
+  // No zone of a link-local address ("%eth0"), which may be any text, and no zero byte, at which
+  // the library stops reading.
   if (host.find_first_not_of("0123456789abcdefABCDEF.:") != std::string_view::npos) return false;
   boost::system::error_code error;
   boost::asio::ip::make_address(host, error);

@@ -33,7 +33,10 @@ v1::Recognition message_of(const Recognition& answer) {
   v1::Recognition message;
   to_wire(
       answer,
-      [](std::uint32_t, std::uint32_t patch) { return ContactSource{"probe", patch}; }, message);
+      [](std::uint32_t, std::uint32_t patch) {
+        return ContactSource{"probe", patch};
+      },
+      message);
   return message;
 }
 
