@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "node/tool/drawing/visible_samples.h"
 #include "node/tool/quantity.h"
 #include "node/tool/recognition_text.h"
+#include "node/tool/svg_table.h"
 
 namespace palpate {
 namespace {
@@ -33,36 +33,6 @@ constexpr const char* kResidualColour = "#c2185b";
 constexpr const char* kContactColour = "#b36b00";
 constexpr const char* kXAxisColour = "#c00000";
 constexpr const char* kYAxisColour = "#008000";
-
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[512];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '&':
-        safe += "&amp;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
-}
 
 /// From metres to pixels, equal scales on both axes, y upwards.
 class View {
@@ -148,26 +118,26 @@ std::string axes_svg(const View& view) {
       const Vec2 at = view(place);
       const std::string label = number(k * step == 0.0 ? 0.0 : k * step);
       if (axis == 0) {
-        svg += format("<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n",
-                      at.x(), kTop, at.x(), kHeight - kBottom);
-        svg += format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%s</text>\n", at.x(),
-                      kHeight - kBottom + 18.0, label.c_str());
+        svg += formatted("<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n",
+                         at.x(), kTop, at.x(), kHeight - kBottom);
+        svg += formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%s</text>\n", at.x(),
+                         kHeight - kBottom + 18.0, label.c_str());
       } else {
-        svg += format("<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n",
-                      kLeft, at.y(), kWidth - kRight, at.y());
-        svg += format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%s</text>\n", kLeft - 6.0,
-                      at.y() + 4.0, label.c_str());
+        svg += formatted("<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n",
+                         kLeft, at.y(), kWidth - kRight, at.y());
+        svg += formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%s</text>\n", kLeft - 6.0,
+                         at.y() + 4.0, label.c_str());
       }
     }
   }
   const std::string name(unit.name);
-  svg += format("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">x [%s]</text>\n",
-                0.5 * (kLeft + kWidth - kRight), kHeight - 18.0, name.c_str());
-  svg += format(
+  svg += formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">x [%s]</text>\n",
+                   0.5 * (kLeft + kWidth - kRight), kHeight - 18.0, name.c_str());
+  svg += formatted(
       "<text x=\"20\" y=\"%.1f\" text-anchor=\"middle\" transform=\"rotate(-90 20 %.1f)\">y "
       "[%s]</text>\n",
       0.5 * (kTop + kHeight - kBottom), 0.5 * (kTop + kHeight - kBottom), name.c_str());
-  svg += format(
+  svg += formatted(
       "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"none\" "
       "stroke=\"#888\"/>\n",
       kLeft, kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom);
@@ -178,7 +148,7 @@ std::string axes_svg(const View& view) {
 std::string point_text(const View& view, const Vec2& place) {
   constexpr double kFar = 1e5;
   const Vec2 at = view(place).cwiseMin(kFar).cwiseMax(-kFar);
-  return format("%.2f,%.2f ", at.x(), at.y());
+  return formatted("%.2f,%.2f ", at.x(), at.y());
 }
 
 std::string polyline(const View& view, const DrawnCurve& curve, const char* style) {
@@ -197,7 +167,7 @@ std::string band_svg(const View& view, const DrawnCurve& curve) {
     left += point_text(view, place.position + place.band->left_m * place.left);
     right = point_text(view, place.position + place.band->right_m * place.left) + right;
   }
-  return format(
+  return formatted(
              "<polygon class=\"band\" clip-path=\"url(#picture)\" fill=\"%s\" fill-opacity=\"0.3\" "
              "points=\"",
              kBandColour) +
@@ -209,15 +179,15 @@ std::string curves_svg(const View& view, const Drawing& drawing) {
   for (const DrawnCurve& rival : drawing.rivals) {
     svg += polyline(
         view, rival,
-        format("class=\"rival\" stroke=\"%s\" stroke-width=\"1.2\" stroke-dasharray=\"6 4\" "
-               "stroke-opacity=\"%.2f\"",
-               kRivalColour, 0.25 + 0.65 * rival.probability)
+        formatted("class=\"rival\" stroke=\"%s\" stroke-width=\"1.2\" stroke-dasharray=\"6 4\" "
+                  "stroke-opacity=\"%.2f\"",
+                  kRivalColour, 0.25 + 0.65 * rival.probability)
             .c_str());
   }
   if (drawing.curve) {
     svg += polyline(
         view, *drawing.curve,
-        format("class=\"curve\" stroke=\"%s\" stroke-width=\"1.5\"", kCurveColour).c_str());
+        formatted("class=\"curve\" stroke=\"%s\" stroke-width=\"1.5\"", kCurveColour).c_str());
   }
   return svg;
 }
@@ -231,7 +201,7 @@ std::string frame_svg(const View& view, const v1::Recognition& answer, const Dra
   for (int axis = 0; axis < 2; ++axis) {
     const Vec2 unit = axis == 0 ? Vec2(1.0, 0.0) : Vec2(0.0, 1.0);
     const Vec2 tip = view(pose.translation() + pose.rotate(view.metres(kArrow) * unit));
-    svg += format(
+    svg += formatted(
         "<line clip-path=\"url(#picture)\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" "
         "stroke=\"%s\" "
         "stroke-width=\"2\"/>\n",
@@ -246,13 +216,13 @@ std::string samples_svg(const View& view, const ContactGroup& group,
   std::string svg;
   for (std::size_t number = 0; number < group.runs.size(); ++number) {
     if (visible.of_run[number].empty()) continue;
-    svg += format(
+    svg += formatted(
         "<path class=\"samples\" fill=\"none\" stroke=\"%s\" stroke-width=\"3.6\" "
         "stroke-linecap=\"round\" d=\"",
         kPatchColours[number % std::size(kPatchColours)]);
     for (const std::size_t i : visible.of_run[number]) {
       const Vec2 at = view(group.runs[number].samples[i].position_m);
-      svg += format("M%.1f,%.1fh0", at.x(), at.y());
+      svg += formatted("M%.1f,%.1fh0", at.x(), at.y());
     }
     svg += "\"/>\n";
   }
@@ -260,20 +230,21 @@ std::string samples_svg(const View& view, const ContactGroup& group,
 }
 
 std::string residuals_svg(const View& view, const EnlargedResiduals& residuals) {
-  std::string svg = format(
+  std::string svg = formatted(
       "<path class=\"residuals\" clip-path=\"url(#picture)\" fill=\"none\" "
       "stroke=\"%s\" stroke-opacity=\"0.6\" d=\"",
       kResidualColour);
   for (const EnlargedResiduals::Line& line : residuals.lines) {
     const Vec2 foot = view(line.foot);
     const Vec2 end = view(line.end);
-    svg += format("M%.1f,%.1fL%.1f,%.1f", foot.x(), foot.y(), end.x(), end.y());
+    svg += formatted("M%.1f,%.1fL%.1f,%.1f", foot.x(), foot.y(), end.x(), end.y());
   }
-  svg += format("\"/>\n<path class=\"far\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.8\" d=\"",
+  svg +=
+      formatted("\"/>\n<path class=\"far\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.8\" d=\"",
                 kResidualColour);
   for (const Vec2& place : residuals.far) {
     const Vec2 at = view(place);
-    svg += format("M%.1f,%.1fl8,8m0,-8l-8,8", at.x() - 4.0, at.y() - 4.0);
+    svg += formatted("M%.1f,%.1fl8,8m0,-8l-8,8", at.x() - 4.0, at.y() - 4.0);
   }
   return svg + "\"/>\n";
 }
@@ -284,12 +255,12 @@ std::string contacts_svg(const View& view, const v1::Recognition& answer) {
   for (const v1::LocalizedContact& contact : answer.contacts()) {
     const Vec2 at = view({contact.x_m(), contact.y_m()});
     const double angle = contact.tangent_rad();
-    svg += format(
+    svg += formatted(
         "<line x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\" stroke=\"%s\" "
         "stroke-width=\"1.5\"/>\n",
         at.x(), at.y(), at.x() + kTangent * std::cos(angle), at.y() - kTangent * std::sin(angle),
         kContactColour);
-    svg += format(
+    svg += formatted(
         "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"none\" stroke=\"%s\" "
         "stroke-width=\"1.5\"/>\n",
         at.x(), at.y(), kContactColour);
@@ -297,55 +268,7 @@ std::string contacts_svg(const View& view, const v1::Recognition& answer) {
   return svg;
 }
 
-/// The right side: what is known, and what the colours mean.
-class Table {
- public:
-  void heading(const std::string& text) {
-    svg_ += format("<text x=\"%.1f\" y=\"%.1f\" font-size=\"15\" font-weight=\"bold\">%s</text>\n",
-                   kX, y_, escaped(text).c_str());
-    y_ += 20.0;
-  }
-
-  void row(const std::string& name, const std::string& value) {
-    svg_ += format("<text x=\"%.1f\" y=\"%.1f\" fill=\"#5b6470\">%s</text>", kX, y_,
-                   escaped(name).c_str());
-    svg_ +=
-        format("<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", kX + 62.0, y_, escaped(value).c_str());
-    y_ += 18.0;
-  }
-
-  /// In lines that fit.
-  void words(const std::string& text) {
-    constexpr std::size_t kLineLength = 44;
-    std::string rest = text;
-    while (!rest.empty()) {
-      std::size_t cut = rest.size() <= kLineLength ? rest.size() : rest.rfind(' ', kLineLength);
-      if (cut == std::string::npos) cut = std::min(rest.size(), kLineLength);
-      svg_ += format("<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", kX, y_,
-                     escaped(rest.substr(0, cut)).c_str());
-      rest.erase(0, cut + 1);
-      y_ += 16.0;
-    }
-  }
-
-  void key(const char* colour, const std::string& label) {
-    svg_ += format("<rect x=\"%.1f\" y=\"%.1f\" width=\"12\" height=\"4\" fill=\"%s\"/>\n", kX,
-                   y_ - 6.0, colour);
-    svg_ +=
-        format("<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", kX + 18.0, y_, escaped(label).c_str());
-    y_ += 18.0;
-  }
-
-  void gap() { y_ += 8.0; }
-  const std::string& svg() const { return svg_; }
-
- private:
-  static constexpr double kX = kWidth - kRight + 16.0;
-  double y_ = kTop + 12.0;
-  std::string svg_;
-};
-
-void add_answer(const ContactGroup& group, const v1::Recognition& answer, Table& table) {
+void add_answer(const ContactGroup& group, const v1::Recognition& answer, SvgTable& table) {
   table.heading(spoken_name(answer.curve_class()));
   table.words(status_text(answer));
   table.gap();
@@ -374,12 +297,12 @@ std::string band_label(const DrawnCurve& curve) {
     if (place.band) widest_m = std::max({widest_m, place.band->left_m, -place.band->right_m});
   }
   const LengthUnit unit = length_unit_for(widest_m);
-  return format("its 95 %% band, +- %.2g ", widest_m * unit.per_m) + std::string(unit.name) +
+  return formatted("its 95 %% band, +- %.2g ", widest_m * unit.per_m) + std::string(unit.name) +
          " where widest";
 }
 
 void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSamples& visible,
-              const EnlargedResiduals& residuals, Table& table) {
+              const EnlargedResiduals& residuals, SvgTable& table) {
   constexpr std::size_t kMostListed = 8;
   for (std::size_t i = 0; i < std::min(group.runs.size(), kMostListed); ++i) {
     const PatchContext& context = group.runs[i].context;
@@ -397,7 +320,7 @@ void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSa
   }
   for (const DrawnCurve& rival : drawing.rivals) {
     table.key(kRivalColour,
-              spoken_name(rival.curve_class) + format(", %.3g %%", 100.0 * rival.probability));
+              spoken_name(rival.curve_class) + formatted(", %.3g %%", 100.0 * rival.probability));
   }
   if (!drawing.contacts.empty()) table.key(kContactColour, "contacts, tangents");
   if (!residuals.lines.empty()) {
@@ -405,14 +328,14 @@ void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSa
   }
   if (!residuals.far.empty()) {
     table.key(kResidualColour,
-              format("x: %zu beyond %.0f sigma", residuals.far.size(), kFarSigmas));
+              formatted("x: %zu beyond %.0f sigma", residuals.far.size(), kFarSigmas));
   }
   if (visible.left_out > 0) {
     const LengthUnit unit = length_unit_for(visible.cell_m);
     table.gap();
     table.words(std::to_string(visible.drawn) + " samples drawn; " +
                 std::to_string(visible.left_out) + " lie within " +
-                format("%.2g ", visible.cell_m * unit.per_m) + std::string(unit.name) +
+                formatted("%.2g ", visible.cell_m * unit.per_m) + std::string(unit.name) +
                 " of one of them.");
   }
 }
@@ -438,16 +361,16 @@ std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer) {
   const VisibleSamples visible =
       visible_samples(group, view.metres(kCellPixels), kMostDots, std::size(kPatchColours));
   const EnlargedResiduals residuals = residuals_of_picture(group, answer, drawing, view);
-  Table table;
+  SvgTable table(kWidth - kRight + 16.0, kTop + 12.0);
   add_answer(group, answer, table);
   add_keys(group, drawing, visible, residuals, table);
-  std::string svg = format(
+  std::string svg = formatted(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f "
       "%.0f\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n",
       kWidth, kHeight, kWidth, kHeight);
   svg += "<style>.grid{stroke:#e4e4e4}</style>\n";
-  svg += format(
+  svg += formatted(
       "<clipPath id=\"picture\"><rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" "
       "height=\"%.1f\"/></clipPath>\n",
       kLeft, kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom);

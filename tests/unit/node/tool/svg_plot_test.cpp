@@ -98,6 +98,16 @@ TEST(SvgPlot, ShowsTheCurveOfTouchesThatAreTooShortForAContact) {
   EXPECT_THAT(svg, HasSubstr("and 92 more patches"));
 }
 
+TEST(SvgPlot, NamesOfAnyLengthAndBytesLeaveItWellFormed) {
+  ContactGroup group{"file", std::string(2000, '<') + "\x01", 1, {std::string(3000, '&')}, {{}}};
+  group.runs[0].samples.push_back({{0.3, 0.1}, 0.0, 0});
+  const std::string svg = svg_plot(group, {});
+  EXPECT_EQ(count(svg, "<text"), count(svg, "</text>"));
+  EXPECT_EQ(count(svg, "&lt;"), 2000U);
+  EXPECT_EQ(count(svg, "&amp;"), 3000U);
+  EXPECT_EQ(svg.find('\x01'), std::string::npos);
+}
+
 TEST(SvgPlot, DrawsSpikesUnlikeSamples) {
   std::mt19937_64 rng = test::test_rng();
   test::SceneOptions options;
