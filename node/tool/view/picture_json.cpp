@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "node/tool/advice.h"
 #include "node/tool/drawing/drawing.h"
@@ -74,6 +75,20 @@ std::string band_width_text(const DrawnCurve& curve) {
   }
   const LengthUnit unit = length_unit_for(widest_m);
   return number(significant(widest_m * unit.per_m, 2)) + " " + std::string(unit.name);
+}
+
+/// Of what was touched; an arc not yet determined makes the drawn curve far larger.
+double touched_size_of(const LiveGroup& group, double drawn_size_m) {
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
+  Vec2 high = -low;
+  for (const ContactRun& run : group.touched.runs) {
+    for (const ContactSample& sample : run.samples) {
+      low = low.cwiseMin(sample.position_m);
+      high = high.cwiseMax(sample.position_m);
+    }
+  }
+  const double size = (high - low).maxCoeff();
+  return size > 0.0 ? std::min(size, drawn_size_m) : drawn_size_m;
 }
 
 json curve_json(const DrawnCurve& curve, const Place& place) {
@@ -295,7 +310,7 @@ json picture_json(LiveGroup& group, SteadyTime now) {
     place.add(at, {answer.pose().x_m(), answer.pose().y_m()});
     picture["pose"] = {{"at", std::move(at)}, {"theta", answer.pose().theta_rad()}};
   }
-  add_residuals(group, drawing, place, size_m, picture);
+  add_residuals(group, drawing, place, touched_size_of(group, size_m), picture);
   return picture;
 }
 
