@@ -1,14 +1,27 @@
 #!/usr/bin/env bash
-# Shows the whole system: simulator, recognizer node and a planner's watch as three processes on loopback,
-# scene after scene against its truth, then a real recording against its design. Installs what is missing
-# (Debian) and builds Release first; ends by itself about a minute after the build.
+# Shows the whole system: simulator, recognizer node, a planner's watch and a live picture for the browser as
+# four processes on loopback, scene after scene against its truth, then a real recording against its design.
+# Installs what is missing (Debian) and builds Release first; ends by itself about a minute after the build.
+#
+#   node/demo.sh             with the live picture on http://127.0.0.1:8090
+#   node/demo.sh --no-view   without
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
+
+view=yes
+for argument in "$@"; do
+  case "$argument" in
+    --no-view) view=no ;;
+    -h|--help) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) echo "node/demo.sh: unknown argument '$argument' (try --help)" >&2; exit 2 ;;
+  esac
+done
 
 step() { printf '\n== %s\n' "$*"; }
 
 packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev protobuf-compiler libprotobuf-dev
-          libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev zlib1g-dev python3)
+          libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev libboost-dev nlohmann-json3-dev zlib1g-dev
+          python3)
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' ||
@@ -41,6 +54,11 @@ trap 'kill $(jobs -p) 2>/dev/null || true; wait; rm -rf "$bus"' EXIT
 step "starting the recognizer (palpate-node) and a planner (palpate watch)"
 build/release/node/palpate-node --contacts "$contacts" --results "$results" --log-level warning &
 "$palpate" watch --results "$results" --interval 0.5 | sed -u 's/^/   watch | /' &
+if [ "$view" = yes ]; then
+  step "the live picture (palpate view): open its address in a browser; it stays while the scenes play"
+  # Where its port is taken, the rest is shown all the same.
+  "$palpate" view --results "$results" 2>&1 | sed -u 's/^/    view | /' &
+fi
 sleep 0.5
 
 truth() {  # of a file that palpate-sim --truth wrote

@@ -176,8 +176,10 @@ bool Node::drain_contacts(SteadyTime deadline) {
   bool more = true;
   while (now < deadline && (more = receive_now(contacts_, incoming_))) {
     if (contact_peers_) contact_peers_->hear(descriptor_of(incoming_.topic));
-    intake_.take(incoming_.frame_count, view_of(incoming_.topic), view_of(incoming_.payload), now,
-                 unix_time_ns());
+    const v1::RejectReason reason =
+        intake_.take(incoming_.frame_count, view_of(incoming_.topic), view_of(incoming_.payload),
+                     now, unix_time_ns());
+    if (reason == v1::REJECT_REASON_UNSPECIFIED) publisher_.forward(incoming_);
     now = now_steady();
   }
   forget_evicted();

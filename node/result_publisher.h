@@ -11,6 +11,7 @@
 #include <zmq.hpp>
 
 #include "node/peer_guard.h"
+#include "node/socket.h"
 #include "node/topics.h"
 #include "palpate/v1/header.pb.h"
 
@@ -27,6 +28,11 @@ class ResultPublisher {
   /// Fills in the header (a part of `message`; the frame stays as given), sends and remembers.
   void publish(TopicKind kind, std::string_view name, v1::Header& header,
                const google::protobuf::MessageLite& message);
+
+  /// Sends an accepted contact message on under its own topic, the bytes as they came, to those who
+  /// subscribe to it: without a subscriber the socket drops it uncopied. It is not kept for those who
+  /// come late, and its header stays the probe's.
+  void forward(TwoFrames& contact) { forward_now(socket_, contact); }
 
   /// Takes the subscriptions that have come, at most `max_messages`, and sends the subscribers the
   /// latest of every topic that they ask for: each once however many ask, and as it reaches all of

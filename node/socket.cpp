@@ -120,6 +120,18 @@ bool receive_now(zmq::socket_t& socket, TwoFrames& message) {
   return true;
 }
 
+bool forward_now(zmq::socket_t& socket, TwoFrames& message) {
+  int rc = 0;
+  do {
+    rc = zmq_msg_send(message.topic.handle(), socket.handle(), ZMQ_SNDMORE | ZMQ_DONTWAIT);
+  } while (rc < 0 && zmq_errno() == EINTR);
+  if (rc < 0) return false;
+  do {
+    rc = zmq_msg_send(message.payload.handle(), socket.handle(), ZMQ_DONTWAIT);
+  } while (rc < 0 && zmq_errno() == EINTR);
+  return rc >= 0;
+}
+
 bool send_now(zmq::socket_t& socket, std::string_view topic, std::string_view payload) {
   int rc = 0;
   do {

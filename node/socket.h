@@ -68,6 +68,10 @@ bool drain(zmq::socket_t& socket, TwoFrames& message, int most,
 /// Sends without blocking; false where the peer's high-water mark (or no peer) drops it.
 bool send_now(zmq::socket_t& socket, std::string_view topic, std::string_view payload);
 
+/// Sends a message that has come on as it is, without copying it; its frames are empty afterwards.
+/// Never blocks; false where the peer's high-water mark drops it.
+bool forward_now(zmq::socket_t& socket, TwoFrames& message);
+
 /// Polls for at most `timeout_ms`; a signal ends it early like a timeout.
 void poll(std::vector<zmq::pollitem_t>& items, int timeout_ms);
 

@@ -40,7 +40,8 @@ begin_part() {  # name, seconds
 
 packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-dev libgmock-dev
           libbenchmark-dev protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev
-          libcli11-dev zlib1g-dev python3 python3-protobuf python3-zmq)
+          libcli11-dev libboost-dev nlohmann-json3-dev zlib1g-dev python3 python3-protobuf python3-zmq
+          chromium chromium-driver)
 if [ "$fuzz" != 0 ]; then packages+=(clang); fi
 missing=()
 for package in "${packages[@]}"; do
@@ -95,7 +96,7 @@ if [ "$sanitize" = yes ]; then
 fi
 
 if [ "$fuzz" != 0 ]; then
-  targets=(config contact_csv ingest keys recognizer recording scene)
+  targets=(config contact_csv http_border ingest keys recognizer recording scene)
   begin_part "building (fuzz)" 300
   build fuzz "${targets[@]/#/fuzz_}"
   begin_part "fuzzing" $((${#targets[@]} * (fuzz + 5)))

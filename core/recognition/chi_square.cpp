@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/recognition/log_gamma.h"
+
 namespace palpate {
 namespace {
 
@@ -32,7 +34,7 @@ double log_deviance(double n, double h) {
 double stirling_error(double n) {
   constexpr double kSeries = 16.0;  // the first term left out is below 1e-16 from here on
   if (n < kSeries) {
-    return std::lgamma(n + 1.0) - (n + 0.5) * std::log(n) + n -
+    return log_gamma(n + 1.0) - (n + 0.5) * std::log(n) + n -
            0.5 * std::log(2.0 * std::numbers::pi);
   }
   const double u = 1.0 / (n * n);
@@ -74,7 +76,7 @@ double chi_square_threshold(double significance, int dof) {
   // <= exp(-u) (B. Laurent, P. Massart, 2000). -Q' is the density.
   const double k = dof;
   const double log_significance = std::log(significance);
-  const double log_norm = std::lgamma(0.5 * k) + std::log(2.0);
+  const double log_norm = log_gamma(0.5 * k) + std::log(2.0);
   double low = 0.0;
   double high = k + 2.0 * std::sqrt(-k * log_significance) - 2.0 * log_significance;
   double x = high;

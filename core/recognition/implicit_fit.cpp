@@ -5,7 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "core/curves/small_cholesky.h"
 #include "core/recognition/least_squares.h"
 #include "core/recognition/symmetric_eigen.h"
 
@@ -168,60 +167,7 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
           residuals.feet(step)};
 }
 
-template <int K>
-using Information = Eigen::Matrix<double, K - 1, K - 1>;
-
-/// Fisher information of a step in the tangent space at q.
-template <int K>
-Information<K> information(const SphereResiduals<K>& residuals) {
-  const Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
-  const Eigen::Index n = residuals.NumResiduals();
-  Eigen::VectorXd values(n);
-  Eigen::Matrix<double, Eigen::Dynamic, K - 1> jacobian(n, K - 1);
-  residuals(step.data(), values.data(), jacobian.data());
-  Information<K> information;
-  for (Eigen::Index i = 0; i < K - 1; ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      information(i, j) = information(j, i) = jacobian.col(i).dot(jacobian.col(j));
-    }
-  }
-  return information;
-}
-
-template <int K>
-InformationSpectrum spectrum(std::span<const FitPoint> points, const ModelBasis<K>& basis,
-                             const ConicCoefficients& q) {
-  const Eigen::Matrix<double, K, 1> start = basis.transpose() * q;
-  return symmetric_eigenvalues(information(SphereResiduals<K>(points, basis, start, 0)));
-}
-
 }  // namespace
-
-InformationSpectrum conic_information(std::span<const FitPoint> points,
-                                      const ConicCoefficients& q) {
-  return spectrum<6>(points, conic_basis(), q);
-}
-
-InformationSpectrum circle_information(std::span<const FitPoint> points,
-                                       const ConicCoefficients& q) {
-  return spectrum<4>(points, circle_basis(), q);
-}
-
-InformationSpectrum line_information(std::span<const FitPoint> points, const ConicCoefficients& q) {
-  return spectrum<3>(points, line_basis(), q);
-}
-
-double conic_deviation(std::span<const FitPoint> points, const ConicCoefficients& q,
-                       const ConicCoefficients& gradient) {
-  const SphereResiduals<6> residuals(points, conic_basis(), q, 0);
-  const Eigen::Matrix<double, 5, 1> by_step = residuals.tangent().transpose() * gradient;
-  Information<6> factor;
-  if (!cholesky(information(residuals), &factor)) {
-    return std::numeric_limits<double>::infinity();
-  }
-  const double deviation = solve_lower<5>(factor, by_step).norm();
-  return std::isfinite(deviation) ? deviation : std::numeric_limits<double>::infinity();
-}
 
 double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot) {
   // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}, whose first step from the point

@@ -36,19 +36,6 @@ ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficie
 ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
                         const RefineEffort& effort = {});
 
-/// Eigenvalues, ascending, of the Fisher information of the model's coefficients (on the unit
-/// sphere, normalised frame, points' stated noise): how sharply the data determine each direction.
-using InformationSpectrum = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1>;
-InformationSpectrum conic_information(std::span<const FitPoint> points, const ConicCoefficients& q);
-InformationSpectrum circle_information(std::span<const FitPoint> points,
-                                       const ConicCoefficients& q);
-InformationSpectrum line_information(std::span<const FitPoint> points, const ConicCoefficients& q);
-
-/// Standard deviation of a function of a conic's coefficients with the given gradient, as the
-/// points' stated noise determines them; infinite where it does not.
-double conic_deviation(std::span<const FitPoint> points, const ConicCoefficients& q,
-                       const ConicCoefficients& gradient);
-
 /// Signed distance of a point to the conic near it, positive where the polynomial is. The foot
 /// point is found by Newton's method from the point itself: the nearest one wherever the distance
 /// is small beside the radius of curvature. `foot` receives it.

@@ -6,7 +6,6 @@
 
 #include "core/recognition/levenberg_marquardt.h"
 #include "core/recognition/polynomial_problem.h"
-#include "core/recognition/symmetric_eigen.h"
 
 namespace palpate {
 namespace {
@@ -55,35 +54,7 @@ PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int 
   return fit;
 }
 
-template <PolynomialModel kModel>
-Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> spectrum(std::span<const FitPoint> points,
-                                                           const PolynomialFit& fit) {
-  using Problem = PolynomialProblem<kModel>;
-  Problem problem(points, fit.t, fit.side);
-  problem.chi2_at(Problem::parameters(fit.coefficients));
-  problem.accept();
-  typename Problem::Matrix information;
-  typename Problem::Vector gradient;
-  problem.linearise(&information, &gradient);
-  return symmetric_eigenvalues(information);
-}
-
 }  // namespace
-
-Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> polynomial_information(
-    PolynomialModel model, std::span<const FitPoint> points, const PolynomialFit& fit) {
-  switch (model) {
-    case PolynomialModel::Parabola:
-      return spectrum<PolynomialModel::Parabola>(points, fit);
-    case PolynomialModel::CubicalParabola:
-      return spectrum<PolynomialModel::CubicalParabola>(points, fit);
-    case PolynomialModel::SemiCubicalParabola:
-      return spectrum<PolynomialModel::SemiCubicalParabola>(points, fit);
-    case PolynomialModel::CubicSpline:
-      break;
-  }
-  return spectrum<PolynomialModel::CubicSpline>(points, fit);
-}
 
 PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
                                 PolynomialFit start, int side, const RefineEffort& effort) {

@@ -27,11 +27,6 @@ struct PolynomialFit {
 PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
                                 PolynomialFit start, int side, const RefineEffort& effort = {});
 
-/// Eigenvalues, ascending, of the Fisher information of the model's coefficients; those of affine
-/// changes of t are 0.
-Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1> polynomial_information(
-    PolynomialModel model, std::span<const FitPoint> points, const PolynomialFit& fit);
-
 /// Whether two fits to the same points ended in the same optimum: chi-squares alike and directions
 /// of the cubic axis alike, as far as the optimiser's tolerance goes.
 bool is_same_curve(const PolynomialFit& a, const PolynomialFit& b);

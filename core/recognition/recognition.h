@@ -22,11 +22,11 @@ enum class RecognitionStatus {
 /// Why an answer is AMBIGUOUS; the first that applies, in this order.
 enum class Doubt {
   None,
-  FormError,     ///< residuals are correlated along the arc: form error, or a class not known here
+  FormError,  ///< residuals are correlated along the arc: form error, or a class not known here
   SeveralClasses,  ///< no class is probable enough
   AtLimit,         ///< the class fits best where it turns into another
-  Misfit,        ///< the residuals are larger than the noise can be
-  TwoShapes,     ///< two shapes fit alike (a spline and its rival; tips on either side)
+  Misfit,          ///< the residuals are larger than the noise can be
+  TwoShapes,       ///< two shapes fit alike (a spline and its rival; tips on either side)
   Undetermined,  ///< the shape's standard deviations are too large, or no covariance describes them
 };
 

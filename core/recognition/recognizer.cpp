@@ -19,8 +19,8 @@ namespace {
 /// Fewer points than this fit almost anything.
 constexpr std::size_t kFewestSamples = 8;
 
-/// Whether the points lie at enough different places, over an extent that double precision resolves,
-/// to have a shape at all.
+/// Whether the points lie at enough different places, over an extent that double precision
+/// resolves, to have a shape at all.
 bool have_extent(const FitData& data) {
   std::array<Vec2, kFewestSamples> places;
   std::size_t distinct = 0;

@@ -4,11 +4,6 @@
 
 namespace palpate {
 
-SmallVector symmetric_eigenvalues(const SmallSymmetric& matrix) {
-  return Eigen::SelfAdjointEigenSolver<SmallSymmetric>(matrix, Eigen::EigenvaluesOnly)
-      .eigenvalues();
-}
-
 SymmetricEigen symmetric_eigen(const SmallSymmetric& matrix) {
   const Eigen::SelfAdjointEigenSolver<SmallSymmetric> solver(matrix);
   return {solver.eigenvalues(), solver.eigenvectors()};

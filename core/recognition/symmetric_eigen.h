@@ -7,14 +7,11 @@
 
 namespace palpate {
 
-/// Rows of the largest matrix: the information of a cubic's eight coefficients.
-inline constexpr int kLargestSymmetric = 8;
+/// Rows of the largest matrix: shape and pose, six at most.
+inline constexpr int kLargestSymmetric = 6;
 using SmallSymmetric =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kLargestSymmetric, kLargestSymmetric>;
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kLargestSymmetric, 1>;
-
-/// Eigenvalues, ascending.
-SmallVector symmetric_eigenvalues(const SmallSymmetric& matrix);
 
 struct SymmetricEigen {
   SmallVector values;      ///< ascending

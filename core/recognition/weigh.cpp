@@ -68,8 +68,8 @@ ClassFits as_told(const ClassFits& coarse, const SmoothModel& smooth) {
 }
 
 /// Fits to the reduced points for the way the material lies beside the patches: where the probes do
-/// not say it, the way of the highest evidence, the first (from outside the bends) at the odds of the
-/// prior. Sets w->sides and w->sides_margin.
+/// not say it, the way of the highest evidence, the first (from outside the bends) at the odds of
+/// the prior. Sets w->sides and w->sides_margin.
 ClassFits fit_over_sides(std::span<const StoredPatch> patches, const FitData& data,
                          const Likelihood& likelihood, const RecognizerOptions& options,
                          const WarmStart* warm, Weighing* w) {
@@ -93,8 +93,7 @@ ClassFits fit_over_sides(std::span<const StoredPatch> patches, const FitData& da
     const FitData reduced = on_surface(smooth.reduced, sides);
     ClassFits fits = fit_classes(reduced, nullptr, options.classes);
     const ClassFits told = as_told(fits, smooth);
-    const Evidences evidences =
-        evidences_of(told, fits, smooth, reduced, likelihood);
+    const Evidences evidences = evidences_of(told, fits, smooth, reduced, likelihood);
     const CurveClass candidate = best_class(told, likelihood, evidences);
     const auto& fit = fits[static_cast<std::size_t>(candidate)];
     const auto refined =
@@ -118,8 +117,8 @@ ClassFits fit_over_sides(std::span<const StoredPatch> patches, const FitData& da
 }
 
 /// Whether a class, as the reduced points tell its chi-square, might keep the best from being
-/// RECOGNIZED. `margin`: log odds that keep it from that; `error`: by how much chi-square may be lower
-/// on all points.
+/// RECOGNIZED. `margin`: log odds that keep it from that; `error`: by how much chi-square may be
+/// lower on all points.
 bool is_plausible(const ClassFit& told, double highest, double margin, double error,
                   const Likelihood& likelihood, const Evidences& evidences) {
   const double chi2 = std::max(told.chi2 - error, 0.0);
@@ -194,8 +193,7 @@ void weigh_plausible(const FitData& data, const FitData& reduced, const Likeliho
   // Where the smooth model itself misfits, neither it nor the reduced points can be trusted that
   // far.
   const double misfit_ratio = std::max(1.0, w->smooth.noise_ratio() * w->smooth.noise_ratio());
-  const double margin =
-      misfit_ratio * std::max(log_odds(options.recognized_probability), 0.0);
+  const double margin = misfit_ratio * std::max(log_odds(options.recognized_probability), 0.0);
   // Sections that bend too much to be followed to the noise err by much the same for all classes:
   // twice as much as for the best, and some units of chi-square anyhow.
   constexpr double kLeastError = 4.0;
@@ -265,9 +263,8 @@ CurveClass most_probable(const ClassProbabilities& probabilities) {
 void choose_best(const FitData& data, const FitData& reduced, const Likelihood& likelihood,
                  Weighing* w) {
   while (true) {
-    w->evidences =
-        integrated(evidences_of(w->fits, w->coarse, w->smooth, reduced, likelihood), w->fits,
-                   w->coarse, reduced, likelihood);
+    w->evidences = integrated(evidences_of(w->fits, w->coarse, w->smooth, reduced, likelihood),
+                              w->fits, w->coarse, reduced, likelihood);
     w->probabilities = probabilities_of(w->fits, w->smooth.chi2, likelihood, w->evidences);
     w->best = most_probable(w->probabilities);
     const auto i = static_cast<std::size_t>(w->best);
@@ -352,8 +349,8 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
     const double variance = w.fits[c]->chi2 / dof;  // of the residuals, in units of sigma^2
     const double noise = w.smooth.dof() > 0 ? w.smooth.chi2 / w.smooth.dof() : 1.0;
     const double excess = w.sigma * std::sqrt(std::max(0.0, variance - noise));
-    // What the smooth model explains and the class does not, beyond what noise gives the smooth model's
-    // further coefficients; a false alarm costs an answer its certainty.
+    // What the smooth model explains and the class does not, beyond what noise gives the smooth
+    // model's further coefficients; a false alarm costs an answer its certainty.
     constexpr double kFalseAlarm = 1e-6;
     const int more = w.smooth.parameters - degrees_of_freedom(candidate);
     const bool misfits =
@@ -369,7 +366,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
     // (outliers, samples out of order); correlated ones are form error up to its limit, neighbours
     // erring together, so that only one in `time` counts.
     constexpr double kMuchLarger = 1.5;
-    constexpr double kLargestNoise = 0.01;  // of the half extent: beyond it nothing is measured
+    constexpr double kLargestNoise = 0.01;      // of the half extent: beyond it nothing is measured
     constexpr double kLargestFormError = 1e-3;  // likewise: beyond it, it is another shape
     const bool noisy =
         correlation.time == 1.0 && variance > kMuchLarger * noise && excess <= kLargestNoise;
@@ -396,9 +393,9 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   place_canonically(data, reduced, &w);
   if (const auto& placed = w.canonical[static_cast<std::size_t>(w.best)]) {
     const auto on_reduced = to_canonical(*w.coarse[static_cast<std::size_t>(w.best)], reduced);
-    const auto valley =
-        on_reduced ? evidence_of(*on_reduced, reduced, w.inflation, Integration::Valley)
-                   : std::nullopt;
+    const auto valley = on_reduced
+                            ? evidence_of(*on_reduced, reduced, w.inflation, Integration::Valley)
+                            : std::nullopt;
     if (valley && valley->widest >= 0) {
       w.moment = with_bend(w.inflation * placed->covariance, w.inflation * on_reduced->covariance,
                            second_moment(*on_reduced, *valley, reduced));

@@ -32,7 +32,8 @@ struct Weighing {
   std::optional<ShapePoseCovariance> moment;
   /// Per patch the side of travel on which the tip centres were taken to lie (tip_sides.h).
   std::vector<int> sides;
-  /// log odds over the next best way for them to lie, priors included; infinite where the probes told.
+  /// log odds over the next best way for them to lie, priors included; infinite where the probes
+  /// told.
   double sides_margin = 0.0;
   CurveClass best = CurveClass::Unclassified;  ///< most probable, "unclassified" included
   double sigma = 0.0;                          ///< noise of the typical point, normalised

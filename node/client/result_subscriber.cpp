@@ -24,7 +24,8 @@ bool parse(Message& message, const zmq::message_t& payload) {
 }  // namespace
 
 ResultSubscriber::ResultSubscriber(const ResultSubscriberOptions& options)
-    : context_(1), socket_(make_socket(context_, zmq::socket_type::sub, settings_of(options))) {
+    : context_(1), socket_(make_socket(context_, zmq::socket_type::sub, settings_of(options))),
+      most_topics_(options.most_topics) {
   const Result<Endpoint> endpoint = parse_endpoint(options.endpoint, /*bind_by_default=*/false);
   if (!endpoint) throw std::invalid_argument(endpoint.error);
   for (const std::string& group : options.groups) {
@@ -36,9 +37,14 @@ ResultSubscriber::ResultSubscriber(const ResultSubscriberOptions& options)
   }
   if (options.estimates) socket_.set(zmq::sockopt::subscribe, topic_prefix(TopicKind::Estimate));
   if (options.status) socket_.set(zmq::sockopt::subscribe, topic_prefix(TopicKind::Status));
+  if (options.contacts) socket_.set(zmq::sockopt::subscribe, topic_prefix(TopicKind::Contact));
   if (const std::string error = attach(socket_, *endpoint.value); !error.empty()) {
     throw std::runtime_error(error);
   }
+}
+
+bool ResultSubscriber::has_room_for(std::string_view topic) const {
+  return feeds_.size() < most_topics_ || feeds_.contains(topic);
 }
 
 template <typename Message>
@@ -61,7 +67,7 @@ bool ResultSubscriber::is_fresh(const Message& message, std::string_view topic) 
 bool ResultSubscriber::take(TwoFrames& message, ReceivedResult& result) {
   const std::string_view text = view_of(message.topic);
   const std::optional<Topic> topic =
-      message.frame_count == 2 ? parse_topic(text) : std::optional<Topic>();
+      message.frame_count == 2 && has_room_for(text) ? parse_topic(text) : std::optional<Topic>();
   if (topic && topic->kind == TopicKind::Recognition && parse(recognition_, message.payload)) {
     if (!is_fresh(recognition_, text)) return false;
     Feed& feed = feeds_.find(text)->second;
@@ -77,6 +83,11 @@ bool ResultSubscriber::take(TwoFrames& message, ReceivedResult& result) {
   if (topic && topic->kind == TopicKind::Status && parse(status_, message.payload)) {
     if (!is_fresh(status_, text)) return false;
     result.status = &status_;
+    return true;
+  }
+  if (topic && topic->kind == TopicKind::Contact && parse(contact_, message.payload)) {
+    if (!is_fresh(contact_, text)) return false;
+    result.contact = &contact_;
     return true;
   }
   ++counters_.malformed;

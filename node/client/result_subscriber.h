@@ -1,4 +1,5 @@
-// A planner's side: receives recognitions, local estimates and the recognizer's status.
+// A planner's side: receives recognitions, local estimates, the recognizer's status and the contacts
+// that it accepts.
 #pragma once
 
 #include <chrono>
@@ -13,6 +14,7 @@
 #include "node/endpoint.h"
 #include "node/sequence_tracker.h"
 #include "node/socket.h"
+#include "palpate/v1/contact.pb.h"
 #include "palpate/v1/local_estimate.pb.h"
 #include "palpate/v1/node_status.pb.h"
 #include "palpate/v1/recognition.pb.h"
@@ -26,9 +28,13 @@ struct ResultSubscriberOptions {
   std::vector<std::string> groups;
   bool estimates = false;  ///< receive LocalEstimate of every probe
   bool status = false;     ///< receive NodeStatus
+  bool contacts = false;   ///< receive the ContactBatch that the recognizer accepts, of every probe
   std::optional<CurveClient> curve;
   /// Messages that wait for a planner that does not read before further ones are lost.
   int high_water_mark = 1000;
+  /// Topics remembered; messages of further ones are malformed. A recognizer has at most its groups
+  /// and twice its probes.
+  std::size_t most_topics = 4096;
 };
 
 /// What one receive brought: at most one of them, valid until the next call; none = timeout.
@@ -36,9 +42,11 @@ struct ReceivedResult {
   const v1::Recognition* recognition = nullptr;
   const v1::LocalEstimate* estimate = nullptr;
   const v1::NodeStatus* status = nullptr;
+  const v1::ContactBatch* contact = nullptr;
 
   explicit operator bool() const {
-    return recognition != nullptr || estimate != nullptr || status != nullptr;
+    return recognition != nullptr || estimate != nullptr || status != nullptr ||
+           contact != nullptr;
   }
 };
 
@@ -86,16 +94,19 @@ class ResultSubscriber {
     v1::Recognition recognition;
   };
 
+  bool has_room_for(std::string_view topic) const;
   bool take(TwoFrames& message, ReceivedResult& result);
   template <typename Message>
   bool is_fresh(const Message& message, std::string_view topic);
 
   zmq::context_t context_;
   zmq::socket_t socket_;
+  std::size_t most_topics_;
   std::map<std::string, Feed, std::less<>> feeds_;
   v1::Recognition recognition_;
   v1::LocalEstimate estimate_;
   v1::NodeStatus status_;
+  v1::ContactBatch contact_;
   SubscriberCounters counters_;
 };
 

@@ -21,6 +21,7 @@ void add_keygen_command(CLI::App& app, int& exit_code);
 void add_list_command(CLI::App& app, int& exit_code);
 void add_record_command(CLI::App& app, int& exit_code);
 void add_replay_command(CLI::App& app, int& exit_code);
+void add_view_command(CLI::App& app, int& exit_code);
 void add_watch_command(CLI::App& app, int& exit_code);
 
 /// For options: numbers above 0, or not below it; infinity and NaN are none. CLI11's own checks let a

@@ -1,5 +1,4 @@
 // palpate fit: the recognizer's answer for files, without a network.
-#include <google/protobuf/util/json_util.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 #include "node/recognizer_options.h"
 #include "node/tool/command.h"
 #include "node/tool/contact_groups.h"
+#include "node/tool/message_json.h"
 #include "node/tool/part_match.h"
 #include "node/tool/recognition_text.h"
 #include "node/tool/svg_plot.h"
@@ -67,41 +67,25 @@ std::int64_t newest_stamp_ns(const ContactGroup& group) {
   return newest;
 }
 
-struct Answer {
-  Recognition recognition;
-  v1::Recognition message;
-};
-
-Answer recognise(const ContactGroup& group, const RecognizerOptions& options) {
+v1::Recognition recognise(const ContactGroup& group, const RecognizerOptions& options) {
   Recognizer recognizer(options);
   add_group(group, recognizer);
-  Answer answer;
   const auto start = std::chrono::steady_clock::now();
-  answer.recognition = recognizer.recognize();
+  const Recognition recognition = recognizer.recognize();
   const auto taken = std::chrono::steady_clock::now() - start;
+  v1::Recognition answer;
   to_wire(
-      answer.recognition,
+      recognition,
       [&](std::uint32_t probe, std::uint32_t patch) {
         return ContactSource{group.probes[probe], patch};
       },
-      answer.message);
-  answer.message.mutable_header()->set_source(group.file);
-  answer.message.set_group(group.name);
-  answer.message.set_object(group.object);
-  answer.message.set_newest_sample_stamp_ns(newest_stamp_ns(group));
-  answer.message.set_compute_ns(
-      std::chrono::duration_cast<std::chrono::nanoseconds>(taken).count());
+      answer);
+  answer.mutable_header()->set_source(group.file);
+  answer.set_group(group.name);
+  answer.set_object(group.object);
+  answer.set_newest_sample_stamp_ns(newest_stamp_ns(group));
+  answer.set_compute_ns(std::chrono::duration_cast<std::chrono::nanoseconds>(taken).count());
   return answer;
-}
-
-std::string json_line(const google::protobuf::Message& message) {
-  google::protobuf::util::JsonPrintOptions options;
-  options.preserve_proto_field_names = true;
-  options.always_print_primitive_fields = true;
-  std::string text;
-  // Cannot fail: the message has no Any.
-  (void)google::protobuf::util::MessageToJsonString(message, &text, options);
-  return text + "\n";
 }
 
 /// PLOT.svg for the first group, PLOT-2.svg for the second, ...
@@ -167,19 +151,17 @@ int run(FitCommand& fit) {
   }
   std::size_t number = 0;
   for (const ContactGroup& group : groups) {
-    const Answer answer = recognise(group, fit.recognizer);
+    const v1::Recognition answer = recognise(group, fit.recognizer);
     if (json) {
-      std::cout << json_line(answer.message);
+      std::cout << json_line(answer);
     } else {
-      std::cout << (number > 0 ? "\n" : "") << group.file << ": " << report_text(answer.message);
+      std::cout << (number > 0 ? "\n" : "") << group.file << ": " << report_text(answer);
     }
     ++number;
     if (!fit.plot.empty()) {
       const std::string path = plot_path(fit.plot, number);
       std::ofstream plot(path, std::ios::trunc);
-      if (!(plot << svg_plot(group, answer.recognition,
-                             group.file + ": " + summary_text(answer.message))
-            << std::flush)) {
+      if (!(plot << svg_plot(group, answer) << std::flush)) {
         return complain(path + ": cannot be written", kFailed);
       }
     }
@@ -209,8 +191,8 @@ void add_fit_command(CLI::App& app, int& exit_code) {
   CLI::Option* plot =
       command
           ->add_option("--plot", fit->plot,
-                       "Draw points, recognised curve, contacts and the curve's frame as SVG; further "
-                       "groups go to FILE-2.svg, ...")
+                       "Draw samples, curve, 95 % band, rivals, enlarged residuals and frame as SVG; "
+                       "further groups go to FILE-2.svg, ...")
           ->type_name("FILE");
   command
       ->add_option("--part", fit->part,

@@ -73,6 +73,7 @@ int run(int argc, char** argv) {
   palpate::add_fit_command(app, exit_code);
   palpate::add_estimate_command(app, exit_code);
   palpate::add_watch_command(app, exit_code);
+  palpate::add_view_command(app, exit_code);
   palpate::add_list_command(app, exit_code);
   palpate::add_hz_command(app, exit_code);
   palpate::add_record_command(app, exit_code);

@@ -59,48 +59,6 @@ std::string parameter_text(const v1::Recognition& answer, const Named& named, st
          std::string(length.name);
 }
 
-/// x, y and theta with what they are known up to; the touched points' size chooses the unit.
-std::vector<std::string> pose_texts(const v1::Recognition& answer) {
-  const std::size_t letters = parameters_of(answer.parameters()).size();
-  const double magnitude = std::max({std::abs(answer.pose().x_m()), std::abs(answer.pose().y_m()),
-                                     sigma_of(answer, letters), sigma_of(answer, letters + 1)});
-  const LengthUnit unit = length_unit_for(magnitude);
-  const auto length = [&](double value, std::size_t i) {
-    return with_sigma(value * unit.per_m, sigma_of(answer, i) * unit.per_m) + " " +
-           std::string(unit.name);
-  };
-  std::string theta = "theta " + with_sigma(answer.pose().theta_rad() * kDegrees,
-                                            sigma_of(answer, letters + 2) * kDegrees) + " deg";
-  if (answer.pose_symmetry() == 2) {
-    theta += " (or that + 180)";
-  } else if (answer.curve_class() == v1::CURVE_CLASS_CIRCLE) {
-    theta = "theta free";
-  }
-  return {"x " + length(answer.pose().x_m(), letters),
-          "y " + length(answer.pose().y_m(), letters + 1), theta};
-}
-
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) {
-    text += (text.empty() ? "" : ", ") + part;
-  }
-  return text;
-}
-
-std::string status_text(const v1::Recognition& answer) {
-  switch (answer.status()) {
-    case v1::RECOGNITION_STATUS_COLLECTING:
-      return "collecting: too few samples yet";
-    case v1::RECOGNITION_STATUS_RECOGNIZED:
-      return "recognized";
-    case v1::RECOGNITION_STATUS_AMBIGUOUS:
-      return "ambiguous: " + std::string(sentence_of(answer.doubt()));
-    default:
-      return "unknown status";
-  }
-}
-
 void add_line(std::string& text, const char* label, const std::string& value) {
   char start[32];
   std::snprintf(start, sizeof start, "  %-12s ", label);
@@ -156,6 +114,52 @@ void add_decisions(const v1::Recognition& answer, std::string& text) {
 
 }  // namespace
 
+std::vector<Quantity> quantities_of(const v1::Recognition& answer) {
+  std::vector<Quantity> quantities;
+  for (const Named& named : parameters_of(answer.parameters())) {
+    const std::size_t i = quantities.size();
+    quantities.push_back({std::string(1, named.letter), named.value, sigma_of(answer, i),
+                          parameter_text(answer, named, i)});
+  }
+  if (!answer.has_pose()) return quantities;
+  const std::size_t x = quantities.size();
+  const v1::Pose2& pose = answer.pose();
+  // One unit for both: the pose's distance from the world's origin chooses it.
+  const LengthUnit unit =
+      length_unit_for(std::max({std::abs(pose.x_m()), std::abs(pose.y_m()), sigma_of(answer, x),
+                                sigma_of(answer, x + 1)}));
+  const auto add_length = [&](const char* name, double value) {
+    const double sigma = sigma_of(answer, quantities.size());
+    quantities.push_back({name, value, sigma,
+                          with_sigma(value * unit.per_m, sigma * unit.per_m) + " " +
+                              std::string(unit.name)});
+  };
+  add_length("x", pose.x_m());
+  add_length("y", pose.y_m());
+  const double sigma = sigma_of(answer, x + 2);
+  std::string theta = with_sigma(pose.theta_rad() * kDegrees, sigma * kDegrees) + " deg";
+  if (answer.pose_symmetry() == 2) {
+    theta += " (or that + 180)";
+  } else if (answer.curve_class() == v1::CURVE_CLASS_CIRCLE) {
+    theta = "free";
+  }
+  quantities.push_back({"theta", pose.theta_rad(), sigma, theta});
+  return quantities;
+}
+
+std::string status_text(const v1::Recognition& answer) {
+  switch (answer.status()) {
+    case v1::RECOGNITION_STATUS_COLLECTING:
+      return "collecting: too few samples yet";
+    case v1::RECOGNITION_STATUS_RECOGNIZED:
+      return "recognized";
+    case v1::RECOGNITION_STATUS_AMBIGUOUS:
+      return "ambiguous: " + std::string(sentence_of(answer.doubt()));
+    default:
+      return "unknown status";
+  }
+}
+
 std::string_view sentence_of(v1::RecognitionDoubt doubt) {
   switch (doubt) {
     case v1::RECOGNITION_DOUBT_SEVERAL_CLASSES:
@@ -204,12 +208,8 @@ std::string spoken_name(v1::CurveClass curve_class) {
 
 std::string summary_text(const v1::Recognition& answer) {
   std::string text = spoken_name(answer.curve_class()) + " (" + status_text(answer) + ")";
-  std::size_t i = 0;
-  for (const Named& named : parameters_of(answer.parameters())) {
-    text += ", " + std::string(1, named.letter) + " " + parameter_text(answer, named, i++);
-  }
-  if (answer.has_pose()) {
-    text += ", " + joined(pose_texts(answer));
+  for (const Quantity& quantity : quantities_of(answer)) {
+    text += ", " + quantity.name + " " + quantity.text;
   }
   return text;
 }
@@ -218,13 +218,15 @@ std::string report_text(const v1::Recognition& answer) {
   std::string text = "group " + printable(answer.group()) + ", object " + std::to_string(answer.object()) + ": " +
                      spoken_name(answer.curve_class()) + "\n";
   add_line(text, "status", status_text(answer));
-  std::size_t i = 0;
-  for (const Named& named : parameters_of(answer.parameters())) {
-    add_line(text, std::string(1, named.letter).c_str(), parameter_text(answer, named, i++));
+  std::string pose;
+  for (const Quantity& quantity : quantities_of(answer)) {
+    if (quantity.name.size() == 1 && quantity.name[0] <= 'c') {
+      add_line(text, quantity.name.c_str(), quantity.text);
+    } else {
+      pose += (pose.empty() ? "" : ", ") + quantity.name + " " + quantity.text;
+    }
   }
-  if (answer.has_pose()) {
-    add_line(text, "pose", joined(pose_texts(answer)));
-  }
+  if (!pose.empty()) add_line(text, "pose", pose);
   const LengthUnit unit = length_unit_for(answer.sigma_m());
   std::string noise = "sigma " + number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name);
   if (answer.noise_correlation_m() > 0.0) {

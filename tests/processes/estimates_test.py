@@ -59,11 +59,11 @@ class Estimates(unittest.TestCase):
             everything = bus.subscriber("")
             Probe(socket).stroke()
             topics = set()
-            while (message := receive_any(everything, 1.5)) is not None and len(topics) < 3:
+            while (message := receive_any(everything, 1.5)) is not None and len(topics) < 4:
                 topics.add(message[0].split(b"/")[0])
-                if b"status" in topics and b"recognition" in topics:
+                if {b"status", b"recognition", b"contact"} <= topics:
                     break
-            self.assertEqual(topics, {b"status", b"recognition"})
+            self.assertEqual(topics, {b"status", b"recognition", b"contact"})
 
 
 if __name__ == "__main__":

@@ -13,8 +13,8 @@ namespace {
 /// -log of likelihood times prior.
 double potential(const TouchedCurve& curve) { return 0.5 * curve.chi2 - curve.log_prior; }
 
-/// J^T J and the prior's curvature, that of normal laws as high, in units of the widths; `fixed` (or
-/// -1) does not move.
+/// J^T J and the prior's curvature, that of normal laws as high, in units of the widths; `fixed`
+/// (or -1) does not move.
 TouchedMatrix hessian_of(const TouchedCurve& curve, int fixed) {
   TouchedMatrix hessian = curve.information;
   hessian.diagonal().array() += 1.0;
@@ -105,12 +105,12 @@ struct Slice {
 /// How far a coordinate may be walked: half a turn for directions that come round again.
 double longest_walk(CurveClass curve_class, int k) {
   return curve_class == CurveClass::Ellipse && k == 2 ? 0.5 * std::numbers::pi
-                                                       : std::numeric_limits<double>::infinity();
+                                                      : std::numeric_limits<double>::infinity();
 }
 
 /// Slices from `start` (not included) in one direction, `step` at first, until the density has
-/// fallen to nothing or the class ends. The step is doubled where the log density changes by less than
-/// `smallest_change`.
+/// fallen to nothing or the class ends. The step is doubled where the log density changes by less
+/// than `smallest_change`.
 std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& start, int k,
                         double step, double smallest_change) {
   constexpr std::size_t kMostSlices = 14;
@@ -154,18 +154,17 @@ std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& st
 
 /// The coordinate of the shape that the data leave the widest, where that is too wide for a normal
 /// law; -1 where none is.
-int widest_coordinate(const Touch& touch, const TouchedCurve& best,
-                      const TouchedMatrix& covariance, const FitData& data,
-                      Integration integration) {
-  // Coordinates are logarithms, slopes and angles: over a tenth of their unit, the second-order term
-  // of a residual is a twentieth of the first.
+int widest_coordinate(const Touch& touch, const TouchedCurve& best, const TouchedMatrix& covariance,
+                      const FitData& data, Integration integration) {
+  // Coordinates are logarithms, slopes and angles: over a tenth of their unit, the second-order
+  // term of a residual is a twentieth of the first.
   constexpr double kLinear = 0.1;
   // Where a class ends (m = 0, 1) or the data resolve the square alone (c of the spline), this many
   // deviations around.
   constexpr double kFarFromEnd = 4.0;
-  // A deviation of d bends the curve by some d^2 / 2 of the extent; over the noise of the mean of all
-  // points that is how many deviations the narrow coordinates move. A tenth adds a hundredth to their
-  // variance.
+  // A deviation of d bends the curve by some d^2 / 2 of the extent; over the noise of the mean of
+  // all points that is how many deviations the narrow coordinates move. A tenth adds a hundredth to
+  // their variance.
   constexpr double kLeastBend = 0.1;
   double information = 0.0;
   for (const FitPoint& point : data.points) {

@@ -17,7 +17,8 @@ struct PosteriorNode {
 /// One mode of a class: an optimum and what lies around it.
 struct ClassEvidence {
   Touch touch;
-  /// log of the marginal likelihood over the likelihood at the optimum: what the prior leaves of it.
+  /// log of the marginal likelihood over the likelihood at the optimum: what the prior leaves of
+  /// it.
   double log_occam = 0.0;
   /// How many coordinates the data determine rather than the prior.
   double determined = 0.0;
@@ -36,8 +37,8 @@ enum class Integration {
   Valley,      ///< by slices also where only the valley's bend shows, beside how narrow it is
 };
 
-/// `fit` is at its optimum on `data`, the reduced points as surface points, and has a point for each.
-/// Noise variances count `inflation` times. nullopt where the fit is no curve of its class in
+/// `fit` is at its optimum on `data`, the reduced points as surface points, and has a point for
+/// each. Noise variances count `inflation` times. nullopt where the fit is no curve of its class in
 /// canonical coordinates in double precision: a vertex so far away has no share in the prior.
 /// O(points) a slice; at most some forty slices.
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,

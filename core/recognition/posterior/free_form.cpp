@@ -18,8 +18,8 @@ using Nodes = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostNodes, 1>;
 using Terms = Eigen::Matrix<double, Eigen::Dynamic, kTerms, 0, kMostNodes, kTerms>;
 
 /// Sizes of features that a free-form part may have, in touched half extents, alike probable: a
-/// factor of two apart, from an eighth (finer ones would not be one arc) to where paths are straight
-/// lines to most probes.
+/// factor of two apart, from an eighth (finer ones would not be one arc) to where paths are
+/// straight lines to most probes.
 constexpr std::array kSizes = {0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
 
 constexpr std::size_t kMiddleSize = 3;  ///< a half extent
@@ -86,7 +86,7 @@ SectionEvidence evidence_of(const SectionNodes& nodes, double origin, double end
                             const std::optional<Junction>& before) {
   const Eigen::Index n = nodes.x.size();
   const double width = std::sqrt(0.5 * std::numbers::pi);  // as offset and turn of a class
-  Terms terms(n, kTerms);  // whitened powers
+  Terms terms(n, kTerms);                                  // whitened powers
   Nodes column = nodes.weight;
   for (int k = 0; k < kTerms; ++k) {
     terms.col(k) = column;
@@ -134,7 +134,8 @@ SectionEvidence evidence_of(const SectionNodes& nodes, double origin, double end
       llt.matrixL().solve(gain_t.transpose());
   evidence.end.mean = half_gain.transpose() * whitened;
   if (before) {
-    evidence.end.mean += at.leftCols<3>() * Eigen::Vector3d(before->mean[0], before->mean[1], 0.5 * before->mean[2]);
+    evidence.end.mean +=
+        at.leftCols<3>() * Eigen::Vector3d(before->mean[0], before->mean[1], 0.5 * before->mean[2]);
   }
   evidence.end.covariance = at * prior * at.transpose() - half_gain.transpose() * half_gain;
   // (rounding must not make the junction more certain than the prior allows)
@@ -157,8 +158,8 @@ FreeForm paths_of(const SmoothModel& smooth, double size, double weight) {
         before = in_frame(*junction, junction_x, *last, section, &origin);
       }
       // The section's chord ends with its last point; a section taken in parts, with the part's.
-      const double end = begin + kMostNodes >= section.end ? section.half_length
-                                                           : nodes.x[nodes.x.size() - 1];
+      const double end =
+          begin + kMostNodes >= section.end ? section.half_length : nodes.x[nodes.x.size() - 1];
       const SectionEvidence evidence = evidence_of(nodes, before ? origin : 0.0, end, size, before);
       paths.chi2 += evidence.chi2;
       paths.log_occam -= 0.5 * evidence.log_determinant;

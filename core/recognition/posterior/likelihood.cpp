@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/recognition/log_gamma.h"
+
 namespace palpate {
 
 double Likelihood::counted(double chi2) const {
@@ -19,10 +21,9 @@ double Likelihood::log_evidence(double chi2, double log_occam, double determined
   }
   // Integral of sigma^-(n - d) exp(-chi2 / (2 sigma^2)) d(log sigma): each determined coordinate
   // narrows as sigma does.
-  const double left =
-      std::max(counted(chi2) + chi2_floor, std::numeric_limits<double>::min());
+  const double left = std::max(counted(chi2) + chi2_floor, std::numeric_limits<double>::min());
   const double half = 0.5 * std::max(samples - determined, 1.0);
-  return log_occam - half * std::log(0.5 * left) + std::lgamma(half);
+  return log_occam - half * std::log(0.5 * left) + log_gamma(half);
 }
 
 double log_odds(double probability) { return std::log(probability / (1.0 - probability)); }

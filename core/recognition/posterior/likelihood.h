@@ -10,13 +10,13 @@ struct Likelihood {
   double chi2_floor = 0.0;  ///< chi-square that rounding alone leaves, where the noise is not known
   /// What stated form error may add to the variance of any combination of residuals, beside the
   /// noise's 1: what chi-square differs by from `noise_chi2`, the smooth model's, counts
-  /// 1 / (1 + coherent_variance). The integral over all correlations of the form error, bounded by the
-  /// worst of them (core/README.md, "Stated form error").
+  /// 1 / (1 + coherent_variance). The integral over all correlations of the form error, bounded by
+  /// the worst of them (core/README.md, "Stated form error").
   double coherent_variance = 0.0;
   double noise_chi2 = 0.0;
 
-  /// The tempering is for residuals that are correlated along the arc: coherent deviation from a class,
-  /// or another shape, which the data cannot tell apart.
+  /// The tempering is for residuals that are correlated along the arc: coherent deviation from a
+  /// class, or another shape, which the data cannot tell apart.
   bool coherent_or_other = false;
 
   /// What the variances of residuals count times.

@@ -35,9 +35,9 @@ ShapePose difference(CurveClass curve_class, const ShapePose& b, const ShapePose
   return d;
 }
 
-/// The share of each slice by the likelihood alone: the signed root of chi-square over its least is a
-/// standard normal variable, exactly where the model is linear in some function of the coordinate, and
-/// to third order elsewhere. Neither the prior nor the coordinate's scale enters.
+/// The share of each slice by the likelihood alone: the signed root of chi-square over its least is
+/// a standard normal variable, exactly where the model is linear in some function of the
+/// coordinate, and to third order elsewhere. Neither the prior nor the coordinate's scale enters.
 std::vector<double> likelihood_shares(const std::vector<PosteriorNode>& nodes) {
   const std::size_t n = nodes.size();
   std::size_t least = 0;
@@ -76,7 +76,8 @@ ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvide
   const Eigen::Index n = letters + 3;
   // The estimate in the normalised frame.
   const Pose2 pose = data.frame.inverse() * estimate.world_T_curve;
-  const TouchedShape shape = normalised_shape(curve_class, {estimate.shape.values, 0.0}, data.scale);
+  const TouchedShape shape =
+      normalised_shape(curve_class, {estimate.shape.values, 0.0}, data.scale);
   ShapePose centre = ShapePose::Zero();
   centre.head(letters) = shape.values.head(letters);
   centre.segment<3>(letters) << pose.x / data.scale, pose.y / data.scale, pose.theta;

@@ -13,8 +13,8 @@ namespace palpate {
 ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvidence& evidence,
                                   const FitData& data);
 
-/// The bound of all points with what the valley's moment adds to the bound of the reduced points, which
-/// carry a little less; the moment itself where that would be no covariance.
+/// The bound of all points with what the valley's moment adds to the bound of the reduced points,
+/// which carry a little less; the moment itself where that would be no covariance.
 ShapePoseCovariance with_bend(const ShapePoseCovariance& bound,
                               const ShapePoseCovariance& bound_on_reduced,
                               const ShapePoseCovariance& moment);

@@ -62,8 +62,9 @@ double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
              : kNone;
 }
 
-Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced, const SmoothModel& smooth,
-                       const FitData& reduced, const Likelihood& likelihood) {
+Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
+                       const SmoothModel& smooth, const FitData& reduced,
+                       const Likelihood& likelihood) {
   Evidences evidences;
   const double inflation = likelihood.inflation();
   evidences.free_form = free_form(smooth, inflation);
@@ -85,9 +86,8 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced, const
     }
     const auto canonical = to_canonical(*on_reduced[i], reduced);
     auto& evidence = evidences.classes[i];
-    evidence = canonical
-                   ? evidence_of(*canonical, reduced, inflation, Integration::Laplace)
-                   : std::nullopt;
+    evidence = canonical ? evidence_of(*canonical, reduced, inflation, Integration::Laplace)
+                         : std::nullopt;
     if (evidence && curve_class == CurveClass::CubicSpline) {
       evidences.rival =
           rival_of(*on_reduced[i], *evidence, reduced, inflation, Integration::Laplace);
@@ -144,9 +144,8 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
   // Both modes of the spline.
   const double share = rival_share(fits, likelihood, evidences);
   log_of[static_cast<std::size_t>(CurveClass::CubicSpline)] -= std::log1p(-share);
-  for (const auto& [beyond, inside] :
-       {std::pair(CurveClass::Ellipse, CurveClass::Hyperbola),
-        std::pair(CurveClass::Hyperbola, CurveClass::Ellipse)}) {
+  for (const auto& [beyond, inside] : {std::pair(CurveClass::Ellipse, CurveClass::Hyperbola),
+                                       std::pair(CurveClass::Hyperbola, CurveClass::Ellipse)}) {
     const auto b = static_cast<std::size_t>(beyond);
     const auto i = static_cast<std::size_t>(inside);
     if (fits[b] && fits[i] && fits[b]->at_limit && std::isfinite(log_of[i])) {

@@ -14,7 +14,8 @@ namespace palpate {
 /// Indexed by CurveClass; entry 0 is "unclassified".
 using ClassProbabilities = std::array<double, 9>;
 
-/// What every model's prior leaves of its likelihood. A class without has no share in the posterior.
+/// What every model's prior leaves of its likelihood. A class without has no share in the
+/// posterior.
 struct Evidences {
   std::array<std::optional<ClassEvidence>, 9> classes;
   /// Of the spline's optimum on the other side of c = 0, where that is a mode of its own.
@@ -26,17 +27,18 @@ struct Evidences {
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
                     CurveClass curve_class, double chi2);
 
-/// Evidence of the classes fitted to the reduced points, by Laplace's formula. Those that cannot come
-/// within odds of a millionth of the best have none. `fits`: with chi-squares of all points.
-Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced, const SmoothModel& smooth,
-                       const FitData& reduced, const Likelihood& likelihood);
+/// Evidence of the classes fitted to the reduced points, by Laplace's formula. Those that cannot
+/// come within odds of a millionth of the best have none. `fits`: with chi-squares of all points.
+Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
+                       const SmoothModel& smooth, const FitData& reduced,
+                       const Likelihood& likelihood);
 
 /// The same with quadrature for the classes whose share is not negligible.
 Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits& on_reduced,
                      const FitData& reduced, const Likelihood& likelihood);
 
-/// Posterior probabilities, all classes alike probable before. A conic that has no optimum on its own
-/// side of the parabola has the mass that the other side's optimum leaves there.
+/// Posterior probabilities, all classes alike probable before. A conic that has no optimum on its
+/// own side of the parabola has the mass that the other side's optimum leaves there.
 ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
                                     const Likelihood& likelihood, const Evidences& evidences);
 

@@ -12,10 +12,10 @@ constexpr double kPi = std::numbers::pi;
 const double kCauchyWidth = std::sqrt(0.5 * kPi);
 const double kUniformWidth = 1.0 / std::sqrt(2.0 * kPi);
 
-/// What is touched of a part is between a tenth of its size (half the diagonal of its box) and all of
-/// it: the size is 1 to 20 half extents, half way on the logarithm. Sizes far from that fall off as
-/// their own power: the law of log(size) is a hyperbolic secant, that of the curvature 1 / size a half
-/// Cauchy.
+/// What is touched of a part is between a tenth of its size (half the diagonal of its box) and all
+/// of it: the size is 1 to 20 half extents, half way on the logarithm. Sizes far from that fall off
+/// as their own power: the law of log(size) is a hyperbolic secant, that of the curvature 1 / size
+/// a half Cauchy.
 const double kLogSize = 0.5 * std::log(20.0);
 
 /// In roots of the size, t and c of semi-cubical parabola and spline: slopes that Cauchy's law of
@@ -38,9 +38,10 @@ double log_size(CurveClass curve_class, double log_length) {
 
 }  // namespace
 
-/// The length in a class's coordinates over the size of a part that ends where its slope to the axis is
-/// 3, some 70 degrees: the radius of a circle; p of an ellipse with b = 0.6 a, and of a parabola, whose
-/// box is then 4.5 p x 6 p; L of a cubical parabola, (2 x 2) L, and of the others, (4 x 16) L.
+/// The length in a class's coordinates over the size of a part that ends where its slope to the
+/// axis is 3, some 70 degrees: the radius of a circle; p of an ellipse with b = 0.6 a, and of a
+/// parabola, whose box is then 4.5 p x 6 p; L of a cubical parabola, (2 x 2) L, and of the others,
+/// (4 x 16) L.
 double log_length_over_size(CurveClass curve_class) {
   switch (curve_class) {
     case CurveClass::Circle:
@@ -195,14 +196,14 @@ TouchedVector prior_widths(CurveClass curve_class, const TouchedVector& z) {
       widths[0] = kCauchyWidth;
       break;
     case CurveClass::Ellipse:
-      // m uniform in (-1, 0). A pose turned by half a turn is the same, so directions have half; their
-      // density goes from uniform on the circle to the parabola's.
+      // m uniform in (-1, 0). A pose turned by half a turn is the same, so directions have half;
+      // their density goes from uniform on the circle to the parabola's.
       widths.head<3>() << kCauchyWidth, kUniformWidth,
           2.0 * std::comp_ellint_2(std::sqrt(1.0 - z[1])) * kUniformWidth;
       break;
     case CurveClass::Hyperbola:
-      // m by Cauchy's law about 1, scale 1: three quarters of it are positive. The place is y / p, the
-      // slope against the vertex' tangent on the parabola.
+      // m by Cauchy's law about 1, scale 1: three quarters of it are positive. The place is y / p,
+      // the slope against the vertex' tangent on the parabola.
       widths.head<3>() << kCauchyWidth, 0.75 * kCauchyWidth, kSlopeWidth;
       break;
     case CurveClass::Parabola:
@@ -214,8 +215,8 @@ TouchedVector prior_widths(CurveClass curve_class, const TouchedVector& z) {
       break;
     case CurveClass::SemiCubicalParabola:
     case CurveClass::CubicSpline:
-      widths.head<4>() << kCauchyWidth, kSlopeWidth,
-          kPlaceScale * kCauchyWidth, kBendScale * kCauchyWidth;
+      widths.head<4>() << kCauchyWidth, kSlopeWidth, kPlaceScale * kCauchyWidth,
+          kBendScale * kCauchyWidth;
       if (curve_class == CurveClass::SemiCubicalParabola) {
         widths[3] = 0.0;
       }
@@ -246,8 +247,8 @@ double log_prior(CurveClass curve_class, const TouchedVector& z) {
     case CurveClass::SemiCubicalParabola:
       return log_size(curve_class, z[0]) + log_slope(z[1]) + log_cauchy(z[2], kPlaceScale);
     case CurveClass::CubicSpline:
-      return log_size(curve_class, z[0]) + log_slope(z[1]) +
-             log_cauchy(z[2], kPlaceScale) + log_cauchy(z[3], kBendScale);
+      return log_size(curve_class, z[0]) + log_slope(z[1]) + log_cauchy(z[2], kPlaceScale) +
+             log_cauchy(z[3], kBendScale);
     default:
       return 0.0;
   }

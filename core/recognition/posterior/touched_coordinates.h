@@ -37,8 +37,8 @@ int shape_coordinates(CurveClass curve_class);
 ///   semi-cubical parabola, spline: log L (a = 1 / sqrt(L)), b, place t / sqrt(L) (and c / sqrt(L))
 TouchedVector coordinates_of(CurveClass curve_class, const TouchedShape& shape);
 
-/// The inverse; `like` tells what the coordinates do not: the sign of a cubical parabola's a, and the
-/// place on a line or circle. nullopt outside of the class.
+/// The inverse; `like` tells what the coordinates do not: the sign of a cubical parabola's a, and
+/// the place on a line or circle. nullopt outside of the class.
 std::optional<TouchedShape> shape_at(CurveClass curve_class, const TouchedVector& z,
                                      const TouchedShape& like);
 

@@ -103,8 +103,7 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
   curve->widths = prior_widths(touch.curve_class, curve->z);
   curve->log_prior = log_prior(touch.curve_class, curve->z);
   curve->chi2 = 0.0;
-  const Eigen::Matrix<double, 2, 3> by_shape0 =
-      position_by_parameters(*canonical, curve->shape.t);
+  const Eigen::Matrix<double, 2, 3> by_shape0 = position_by_parameters(*canonical, curve->shape.t);
   const Vec2 offset_direction = pose.rotate_back(left_of(touch.tangent));
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     CurveDerivatives foot;
@@ -145,8 +144,7 @@ Pose2 pose_of(const Touch& touch, const TouchedVector& z, const Curve& curve, do
   const CurveDerivatives at = derivatives(curve, t);
   Pose2 pose;
   pose.theta = std::atan2(cross(at.first, touch.tangent), at.first.dot(touch.tangent)) + z[own + 1];
-  const Vec2 shift =
-      touch.place + z[own] * left_of(touch.tangent) - pose.rotate(at.position);
+  const Vec2 shift = touch.place + z[own] * left_of(touch.tangent) - pose.rotate(at.position);
   pose.x = shift.x();
   pose.y = shift.y();
   return pose;

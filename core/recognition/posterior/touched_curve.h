@@ -16,10 +16,10 @@ namespace palpate {
 /// counted from it, and are 0 at that fit.
 struct Touch {
   CurveClass curve_class = CurveClass::Unclassified;
-  TouchedShape shape;              ///< of that fit
-  Vec2 place = Vec2::Zero();       ///< normalised frame
-  Vec2 tangent = Vec2::UnitX();    ///< of increasing t
-  double weight = 1.0;             ///< that residuals are multiplied with, beside their noise's
+  TouchedShape shape;            ///< of that fit
+  Vec2 place = Vec2::Zero();     ///< normalised frame
+  Vec2 tangent = Vec2::UnitX();  ///< of increasing t
+  double weight = 1.0;           ///< that residuals are multiplied with, beside their noise's
 };
 
 /// A curve of the class near the touch, the points' feet on it, and the model linear about it.
@@ -36,7 +36,8 @@ struct TouchedCurve {
   TouchedVector gradient = TouchedVector::Zero();
 };
 
-/// The pose, in the normalised frame, that puts `place` t of the curve where offset and turn of z say.
+/// The pose, in the normalised frame, that puts `place` t of the curve where offset and turn of z
+/// say.
 Pose2 pose_of(const Touch& touch, const TouchedVector& z, const Curve& curve, double t);
 
 /// The touch of a fit, and the curve itself there; `fit` has a point for each of `data`, which are
@@ -45,7 +46,8 @@ std::optional<Touch> touch_of(const CanonicalFit& fit, const FitData& data);
 std::optional<TouchedCurve> curve_at(const Touch& touch, const CanonicalFit& fit,
                                      const FitData& data);
 
-/// The curve at coordinates `z`, the feet followed from those of `from`. nullopt outside of the class.
+/// The curve at coordinates `z`, the feet followed from those of `from`. nullopt outside of the
+/// class.
 std::optional<TouchedCurve> curve_at(const Touch& touch, const TouchedVector& z,
                                      const TouchedCurve& from, const FitData& data);
 

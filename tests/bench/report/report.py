@@ -257,9 +257,8 @@ RMSE / bound is over all answers of the right class, whether recognised or not: 
 
 ![Calibration](calibration.svg)
 
-Left: the published probability of the best class, over answers of any status. In the middle it is lower than it says: on
-short arcs the simpler class is preferred (its price is `parsimony`), and random scenes are of the richer one as often.
-RECOGNIZED asks for 0.95 and that the richer class be excluded. Right: squared errors of recognised answers in units of
+Left: the published probability of the best class, over answers of any status: it is lower than it says where the data leave
+much to the prior, which is not that of the scenes. Right: squared errors of recognised answers in units of
 the published covariance, which are chi-square where each tenth holds a tenth.
 
 ## Processes

@@ -110,7 +110,6 @@ TEST(JointCovariance, OfRecognizedAnswersHoldsTheTruth) {
   std::mt19937_64 rng = test::test_rng();
   int beyond = 0;
   int beyond_by_bound = 0;
-  int most = 0;
   std::cout << "truth beyond the 95 % ellipsoid, most by the law; beyond the quantile of " << kOuter
             << ", most by the law; by the bound alone; RECOGNIZED\n";
   for (const CurveClass curve_class : kCurveClasses) {
@@ -127,22 +126,24 @@ TEST(JointCovariance, OfRecognizedAnswersHoldsTheTruth) {
       }
     }
     const int dof = degrees_of_freedom(curve_class);
-    const int most_inner =
-        binomial_bound(count.recognized, most_beyond(dof, kInner), kFalseAlarm);
-    const int most_outer =
-        binomial_bound(count.recognized, most_beyond(dof, kOuter), kFalseAlarm);
+    const int most_inner = binomial_bound(count.recognized, most_beyond(dof, kInner), kFalseAlarm);
+    const int most_outer = binomial_bound(count.recognized, most_beyond(dof, kOuter), kFalseAlarm);
     std::cout << "  " << name_of(curve_class) << "\t" << count.beyond_inner << "\t" << most_inner
               << "\t" << count.beyond_outer << "\t" << most_outer << "\t" << count.outer_by_bound
               << "\t" << count.recognized << "\n";
-    EXPECT_GT(count.recognized, 0) << name_of(curve_class);
+    if (test::counts_tell()) {
+      EXPECT_GT(count.recognized, 0) << name_of(curve_class);
+    }
     EXPECT_LE(count.beyond_inner, most_inner) << name_of(curve_class);
     EXPECT_LE(count.beyond_outer, most_outer) << name_of(curve_class);
     beyond += count.beyond_outer;
     beyond_by_bound += count.outer_by_bound;
-    most += most_outer;
   }
-  std::cout << "  all beyond the quantile of " << kOuter << ": " << beyond << ", by the bound alone "
-            << beyond_by_bound << "\n";
+  std::cout << "  all beyond the quantile of " << kOuter << ": " << beyond
+            << ", by the bound alone " << beyond_by_bound << "\n";
+  if (!test::counts_tell()) {
+    return;
+  }
   // The same count finds the bends where they are left out.
   EXPECT_GT(beyond_by_bound, beyond);
 }

@@ -68,8 +68,8 @@ void expect_true(const test::Calibration& calibration, const std::string& title,
 }
 
 void expect_true(const Calibrations& calibrations) {
-  // The prior of sizes and places is not that of the scenes, which shows where the data leave much to
-  // it: below these bounds.
+  // The prior of sizes and places is not that of the scenes, which shows where the data leave much
+  // to it: below these bounds.
   constexpr double kPooledFrom = 0.8;
   constexpr double kClassesFrom = 0.95;
   expect_true(calibrations.pooled, "all", kPooledFrom);
@@ -82,9 +82,13 @@ void expect_true(const Calibrations& calibrations) {
   EXPECT_GT(calibrations.pooled.bins().back().count(), test::stress_count(kScenes) / 4);
 }
 
-TEST(PosteriorCalibration, WithTheNoiseStated) { expect_true(run(test::classes_only(test::even_prior()), true)); }
+TEST(PosteriorCalibration, WithTheNoiseStated) {
+  expect_true(run(test::classes_only(test::even_prior()), true));
+}
 
-TEST(PosteriorCalibration, WithTheNoiseUnknown) { expect_true(run(test::classes_only(test::even_prior()), false)); }
+TEST(PosteriorCalibration, WithTheNoiseUnknown) {
+  expect_true(run(test::classes_only(test::even_prior()), false));
+}
 
 }  // namespace
 }  // namespace palpate

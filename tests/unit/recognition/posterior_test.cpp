@@ -100,8 +100,7 @@ TEST(ClassEvidence, OfACircleIsTheIntegralOverItsPrior) {
     for (const FittedPoint& point : canonical->points) {
       fitted_chi2 += point.residual * point.residual;
     }
-    const double by_grid =
-        log_occam_by_grid(*evidence, centre, data, low, high, 100, fitted_chi2);
+    const double by_grid = log_occam_by_grid(*evidence, centre, data, low, high, 100, fitted_chi2);
     // Slices end where the density is a thousandth; trapezoids between changes of up to e^2.
     EXPECT_NEAR(evidence->log_occam, by_grid, 0.15) << "arc " << arc;
   }
@@ -164,8 +163,8 @@ TEST(Likelihood, UnknownNoiseIsIntegratedOut) {
     }
     return std::log(sum);
   };
-  const double ratio = likelihood.log_evidence(35.0, 0.0, 3.0) -
-                       likelihood.log_evidence(44.0, 0.0, 3.0);
+  const double ratio =
+      likelihood.log_evidence(35.0, 0.0, 3.0) - likelihood.log_evidence(44.0, 0.0, 3.0);
   EXPECT_NEAR(ratio, by_rule(35.0, 37.0) - by_rule(44.0, 37.0), 1e-6);
 }
 
@@ -190,8 +189,7 @@ TEST(Posterior, SumsToOneAndFollowsTheEvidence) {
   Likelihood likelihood;
   const Evidences evidences =
       evidences_of(fits, fitted.fits, fitted.smooth, fitted.smooth.reduced, likelihood);
-  const ClassProbabilities p =
-      probabilities_of(fits, fitted.smooth.chi2, likelihood, evidences);
+  const ClassProbabilities p = probabilities_of(fits, fitted.smooth.chi2, likelihood, evidences);
   EXPECT_NEAR(std::accumulate(p.begin(), p.end(), 0.0), 1.0, 1e-12);
   EXPECT_GT(p[static_cast<std::size_t>(CurveClass::Ellipse)], 0.95);
   // Ten units of chi-square are odds of exp(5), whatever else is probable.
@@ -208,8 +206,7 @@ TEST(FreeForm, PathsOfNoClassAreTakenAndRoughOnesCost) {
   options.patches = 2;
   options.sigma_over_size = 1e-4;
   options.least_fraction = options.most_fraction = 0.3;
-  const test::Scene scene =
-      test::random_outside_scene(test::OutsideShape::LogSpiral, options, rng);
+  const test::Scene scene = test::random_outside_scene(test::OutsideShape::LogSpiral, options, rng);
   const Fitted fitted(scene);
   const FreeForm paths = free_form(fitted.smooth, 1.0);
   EXPECT_LT(paths.log_occam, 0.0);

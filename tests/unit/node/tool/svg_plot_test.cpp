@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "node/convert.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 
@@ -18,6 +19,25 @@ std::size_t count(const std::string& text, const std::string& what) {
     ++n;
   }
   return n;
+}
+
+/// Samples drawn, and those that the picture says it leaves out.
+std::size_t dots_and_left_out(const std::string& svg) {
+  const std::size_t drawn = count(svg, "h0");
+  const std::string said = std::to_string(drawn) + " samples drawn; ";
+  const std::size_t at = svg.find(said);
+  return at == std::string::npos ? drawn : drawn + std::stoul(svg.substr(at + said.size()));
+}
+
+v1::Recognition message_of(const Recognition& answer) {
+  v1::Recognition message;
+  to_wire(
+      answer,
+      [](std::uint32_t, std::uint32_t patch) {
+        return ContactSource{"probe", patch};
+      },
+      message);
+  return message;
 }
 
 ContactGroup group_of(const test::Scene& scene) {
@@ -41,12 +61,13 @@ TEST(SvgPlot, ShowsEverySampleTheCurveTheFrameAndTheContactsOfEveryClass) {
     const test::Scene scene = test::random_scene(curve_class, options, rng);
     const Recognition answer = test::recognise(scene, scene.sigma_m);
     const ContactGroup group = group_of(scene);
-    const std::string svg = svg_plot(group, answer, group.file + ": title");
-    EXPECT_THAT(svg, HasSubstr("a&lt;b&gt;.csv: title"));
-    EXPECT_EQ(count(svg, "r=\"1.8\""), 222U) << name_of(curve_class);
+    const std::string svg = svg_plot(group, message_of(answer));
+    EXPECT_THAT(svg, HasSubstr("a&lt;b&gt;.csv"));
+    EXPECT_EQ(dots_and_left_out(svg), 222U) << name_of(curve_class);
     EXPECT_EQ(count(svg, "r=\"4\""), answer.contacts.size());
-    EXPECT_EQ(count(svg, "<polyline"), 1U) << name_of(curve_class);
-    EXPECT_EQ(count(svg, "<g"), count(svg, "</g"));
+    EXPECT_EQ(count(svg, "class=\"curve\""), 1U) << name_of(curve_class);
+    EXPECT_EQ(count(svg, "class=\"band\""), 1U) << name_of(curve_class);
+    EXPECT_THAT(svg, HasSubstr("times enlarged"));
     EXPECT_THAT(svg, Not(HasSubstr("nan")));
     EXPECT_THAT(svg, Not(HasSubstr("inf")));
   }
@@ -55,9 +76,73 @@ TEST(SvgPlot, ShowsEverySampleTheCurveTheFrameAndTheContactsOfEveryClass) {
 TEST(SvgPlot, WithoutAnAnswerShowsTheSamplesAlone) {
   std::mt19937_64 rng = test::test_rng();
   const test::Scene scene = test::random_scene(CurveClass::Circle, {}, rng);
-  const std::string svg = svg_plot(group_of(scene), {}, "nothing yet");
-  EXPECT_EQ(count(svg, "r=\"1.8\""), 222U);
+  const std::string svg = svg_plot(group_of(scene), {});
+  EXPECT_EQ(dots_and_left_out(svg), 222U);
   EXPECT_EQ(count(svg, "<polyline"), 0U);
+}
+
+TEST(SvgPlot, ShowsTheCurveOfTouchesThatAreTooShortForAContact) {
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  test::Scene scene;
+  scene.sigma_m = 1e-5;
+  for (int i = 0; i < 100; ++i) {
+    const double t = 2.0 * kPi * i / 100;
+    scene.patches.push_back({{0.03 * std::cos(t) + noise(rng), 0.02 * std::sin(t) + noise(rng)}});
+  }
+  const Recognition answer = test::recognise(scene, scene.sigma_m);
+  ASSERT_EQ(answer.shape.curve_class, CurveClass::Ellipse);
+  ASSERT_TRUE(answer.contacts.empty());
+  const std::string svg = svg_plot(group_of(scene), message_of(answer));
+  EXPECT_EQ(count(svg, "class=\"curve\""), 1U);
+  EXPECT_THAT(svg, HasSubstr("and 92 more patches"));
+}
+
+TEST(SvgPlot, NamesOfAnyLengthAndBytesLeaveItWellFormed) {
+  ContactGroup group{"file", std::string(2000, '<') + "\x01", 1, {std::string(3000, '&')}, {{}}};
+  group.runs[0].samples.push_back({{0.3, 0.1}, 0.0, 0});
+  const std::string svg = svg_plot(group, {});
+  EXPECT_EQ(count(svg, "<text"), count(svg, "</text>"));
+  EXPECT_EQ(count(svg, "&lt;"), 2000U);
+  EXPECT_EQ(count(svg, "&amp;"), 3000U);
+  EXPECT_EQ(svg.find('\x01'), std::string::npos);
+}
+
+TEST(SvgPlot, DrawsSpikesUnlikeSamples) {
+  std::mt19937_64 rng = test::test_rng();
+  test::SceneOptions options;
+  options.sigma_over_size = 1e-4;
+  test::Scene scene = test::random_scene(CurveClass::Ellipse, options, rng);
+  for (const std::size_t i : {20U, 50U, 90U}) {
+    scene.patches[0][i] += Vec2(0.0, 60.0 * scene.sigma_m);
+    scene.patches[0][i].x() += 60.0 * scene.sigma_m;
+  }
+  const Recognition answer = test::recognise(scene, scene.sigma_m);
+  ASSERT_EQ(answer.outlier_count, 3U);
+  const std::string svg = svg_plot(group_of(scene), message_of(answer));
+  EXPECT_THAT(svg, HasSubstr("x: 3 beyond 5 sigma"));
+  EXPECT_EQ(count(svg, "l8,8m0,-8l-8,8"), 3U);
+}
+
+TEST(SvgPlot, OfTwoMillionSamplesDrawsThoseThatCanBeSeenAndSaysSo) {
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  constexpr int kSamples = 2000000;
+  ContactGroup group{"big.csv", "part", 1, {"probe"}, {{}}};
+  for (int i = 0; i < kSamples; ++i) {
+    const double t = 2.0 * kPi * i / kSamples;
+    group.runs[0].samples.push_back(
+        {{0.03 * std::cos(t) + noise(rng), 0.02 * std::sin(t) + noise(rng)}, 1e-5, 0});
+  }
+  v1::Recognition answer;
+  answer.set_status(v1::RECOGNITION_STATUS_RECOGNIZED);
+  answer.set_curve_class(v1::CURVE_CLASS_ELLIPSE);
+  answer.mutable_parameters()->set_a(0.03);
+  answer.mutable_parameters()->set_b(0.02);
+  answer.mutable_pose();
+  const std::string svg = svg_plot(group, answer);
+  EXPECT_LT(svg.size(), 2U << 20);
+  EXPECT_EQ(dots_and_left_out(svg), static_cast<std::size_t>(kSamples));
 }
 
 }  // namespace

@@ -1,0 +1,14 @@
+// log Gamma for threads.
+#pragma once
+
+#include <cmath>
+
+namespace palpate {
+
+/// log |Gamma(x)|. std::lgamma also writes the sign to a variable that all threads share.
+inline double log_gamma(double x) {
+  int sign = 0;
+  return ::lgamma_r(x, &sign);
+}
+
+}  // namespace palpate

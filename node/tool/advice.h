@@ -1,0 +1,13 @@
+// What a person who strokes the part is to do next.
+#pragma once
+
+#include <string>
+
+#include "palpate/v1/recognition.pb.h"
+
+namespace palpate {
+
+/// One or two sentences: what the answer is or why there is none yet, and what would help.
+std::string advice_text(const v1::Recognition& answer);
+
+}  // namespace palpate

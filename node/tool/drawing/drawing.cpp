@@ -1,0 +1,169 @@
+#include "node/tool/drawing/drawing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace palpate {
+namespace {
+
+// Chords of this many pieces of an ellipse that fills 1000 pixels stay within 0.03 pixels of it.
+constexpr int kCurvePieces = 240;
+constexpr int kRivalPieces = 120;
+// Less probable hypotheses are listed, but not drawn.
+constexpr double kWorthDrawing = 1e-3;
+// Touched points that tell how far an open curve is drawn.
+constexpr std::size_t kMostForSpan = 128;
+
+/// Contacts and some of the samples: a patch too short for a contact has samples still.
+std::vector<Vec2> touched_points(const ContactGroup& group, const v1::Recognition& answer) {
+  std::vector<Vec2> points;
+  for (const v1::LocalizedContact& contact : answer.contacts()) {
+    points.emplace_back(contact.x_m(), contact.y_m());
+  }
+  std::size_t count = 0;
+  for (const ContactRun& run : group.runs) count += run.samples.size();
+  const std::size_t step = count / kMostForSpan + 1;
+  std::size_t index = 0;
+  for (const ContactRun& run : group.runs) {
+    // Both ends of every run, as long as runs are few.
+    const bool ends = group.runs.size() < kMostForSpan;
+    for (std::size_t i = 0; i < run.samples.size(); ++i, ++index) {
+      const bool is_end = i == 0 || i + 1 == run.samples.size();
+      if (index % step == 0 || (ends && is_end)) points.push_back(run.samples[i].position_m);
+    }
+  }
+  return points;
+}
+
+/// The curvature's deviation changes slowly along the curve: computed at every fourth place, which
+/// is most of a picture's work, and interpolated between.
+void add_curvature_deviations(const CurveModel& model, std::vector<CurvePlace>& places) {
+  constexpr std::size_t kStep = 4;
+  static_assert(kCurvePieces % kStep == 0);
+  const CurvatureDeviation deviation(model);
+  for (std::size_t i = 0; i < places.size(); i += kStep) {
+    places[i].kappa_sigma = deviation.at(places[i].t);
+    if (!places[i].kappa_sigma) return;
+    for (std::size_t k = 1; i > 0 && k < kStep; ++k) {
+      const double part = static_cast<double>(k) / kStep;
+      places[i - kStep + k].kappa_sigma =
+          (1.0 - part) * *places[i - kStep].kappa_sigma + part * *places[i].kappa_sigma;
+    }
+  }
+}
+
+std::vector<CurvePlace> sampled(const CurveModel& model, const CurveSpan& span, int pieces) {
+  std::vector<CurvePlace> places;
+  places.reserve(static_cast<std::size_t>(pieces) + 1);
+  double arc = 0.0;
+  for (int i = 0; i <= pieces; ++i) {
+    const double t = span.from + (span.to - span.from) * i / pieces;
+    const Vec2 position = model.world_position(t);
+    if (!places.empty()) arc += (position - places.back().position).norm();
+    const LocalGeometry local = geometry(model.curve, t);
+    places.push_back({t, position, model.world_left(t), arc, band_at(model, t), local.kappa,
+                      local.kappa_s, std::nullopt});
+  }
+  add_curvature_deviations(model, places);
+  return places;
+}
+
+std::optional<DrawnCurve> draw(const std::optional<CurveModel>& model, v1::CurveClass curve_class,
+                               double probability, std::span<const Vec2> touched, int pieces) {
+  if (!model) return std::nullopt;
+  const auto span = drawn_span(*model, touched);
+  if (!span) return std::nullopt;
+  return DrawnCurve{curve_class, probability, span->closed, sampled(*model, *span, pieces)};
+}
+
+double probability_of(const v1::Recognition& answer) {
+  for (const v1::Hypothesis& hypothesis : answer.hypotheses()) {
+    if (hypothesis.curve_class() == answer.curve_class()) return hypothesis.probability();
+  }
+  return 0.0;
+}
+
+/// Arc length from the first place, interpolated.
+double arc_at(const DrawnCurve& curve, double t) {
+  const CurvePlace& first = curve.places.front();
+  const CurvePlace& last = curve.places.back();
+  if (curve.closed) t = first.t + std::remainder(t - first.t - kPi, 2.0 * kPi) + kPi;
+  const double pieces = static_cast<double>(curve.places.size() - 1);
+  const double place = std::clamp((t - first.t) / (last.t - first.t), 0.0, 1.0) * pieces;
+  const auto before = static_cast<std::size_t>(std::min(std::floor(place), pieces - 1.0));
+  const double part = place - static_cast<double>(before);
+  return (1.0 - part) * curve.places[before].arc_m + part * curve.places[before + 1].arc_m;
+}
+
+std::vector<DrawnContact> draw_contacts(const v1::Recognition& answer,
+                                        const std::optional<CurveModel>& model,
+                                        const std::optional<DrawnCurve>& curve) {
+  std::vector<DrawnContact> drawn;
+  double along = 0.0;
+  const v1::LocalizedContact* before = nullptr;
+  for (const v1::LocalizedContact& contact : answer.contacts()) {
+    DrawnContact place{&contact, 0.0, contact.kappa_per_m()};
+    if (curve) {
+      place.arc_m = arc_at(*curve, contact.t());
+      const double tangent =
+          geometry(model->curve, contact.t()).tangent_angle + model->world_T_curve.theta;
+      if (std::cos(contact.tangent_rad() - tangent) < 0.0) place.kappa = -place.kappa;
+    } else {
+      if (before != nullptr) {
+        along += std::hypot(contact.x_m() - before->x_m(), contact.y_m() - before->y_m());
+      }
+      place.arc_m = along;
+    }
+    before = &contact;
+    drawn.push_back(place);
+  }
+  return drawn;
+}
+
+}  // namespace
+
+Drawing make_drawing(const ContactGroup& group, const v1::Recognition& answer) {
+  const std::vector<Vec2> touched = touched_points(group, answer);
+  const std::optional<CurveModel> model = model_of(answer);
+  Drawing drawing;
+  drawing.curve = draw(model, answer.curve_class(), probability_of(answer), touched, kCurvePieces);
+  drawing.contacts = draw_contacts(answer, model, drawing.curve);
+  for (const v1::Hypothesis& hypothesis : answer.hypotheses()) {
+    if (hypothesis.curve_class() == answer.curve_class() ||
+        !(hypothesis.probability() >= kWorthDrawing)) {
+      continue;
+    }
+    auto rival = draw(model_of(hypothesis), hypothesis.curve_class(), hypothesis.probability(),
+                      touched, kRivalPieces);
+    if (rival) drawing.rivals.push_back(std::move(*rival));
+  }
+  return drawing;
+}
+
+std::vector<SampleResidual> residuals_of(const CurveModel& model, const ContactRun& run,
+                                         double sigma_m) {
+  std::vector<SampleResidual> residuals;
+  residuals.reserve(run.samples.size());
+  double sum = 0.0;
+  double t = 0.0;
+  for (const ContactSample& sample : run.samples) {
+    const Vec2 local = model.world_T_curve.to_local(sample.position_m);
+    const FootPoint foot =
+        residuals.empty() ? foot_point(model.curve, local) : foot_point_near(model.curve, local, t);
+    t = foot.t;
+    sum += foot.distance;
+    residuals.push_back(
+        {model.world_T_curve * foot.position, model.world_left(t), foot.distance, false});
+  }
+  // The centres of a tip lie on one side of the curve, a radius away.
+  const double tip = std::copysign(run.context.tip_radius_m, sum);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    residuals[i].residual_m -= tip;
+    const double sigma = run.samples[i].sigma_m > 0.0 ? run.samples[i].sigma_m : sigma_m;
+    residuals[i].is_far = std::abs(residuals[i].residual_m) > kFarSigmas * sigma;
+  }
+  return residuals;
+}
+
+}  // namespace palpate

@@ -1,0 +1,63 @@
+#include "node/tool/drawing/enlarged_residuals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+namespace {
+
+/// Every step-th sample.
+ContactRun thinned(const ContactRun& run, std::size_t step) {
+  ContactRun kept{run.context, {}};
+  for (std::size_t i = 0; i < run.samples.size(); i += step) kept.samples.push_back(run.samples[i]);
+  return kept;
+}
+
+}  // namespace
+
+double round_gain(double value) {
+  if (!(value > 0.0) || !std::isfinite(value)) return 1.0;
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= value) return factor * power;
+  }
+  return power;
+}
+
+EnlargedResiduals enlarged_residuals(const CurveModel& model, const ContactGroup& group,
+                                     double sigma_m, double size_m, std::size_t most_lines) {
+  constexpr std::size_t kFarPerLine = 10;
+  std::size_t count = 0;
+  for (const ContactRun& run : group.runs) count += run.samples.size();
+  const std::size_t step = count / (kFarPerLine * most_lines) + 1;
+  const std::size_t line_step = count / step / most_lines + 1;
+  std::vector<SampleResidual> kept;
+  EnlargedResiduals result;
+  std::size_t index = 0;
+  double squares = 0.0;
+  for (const ContactRun& run : group.runs) {
+    const ContactRun fewer = step > 1 ? thinned(run, step) : ContactRun();
+    const ContactRun& used = step > 1 ? fewer : run;
+    const std::vector<SampleResidual> residuals = residuals_of(model, used, sigma_m);
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+      if (residuals[i].is_far) {
+        result.far.push_back(used.samples[i].position_m);
+      } else if (index++ % line_step == 0) {
+        kept.push_back(residuals[i]);
+        squares += residuals[i].residual_m * residuals[i].residual_m;
+      }
+    }
+  }
+  if (kept.empty()) return result;
+  // The root mean square becomes a hundredth of the picture: lines of 10 to 30 pixels in 1000.
+  constexpr double kShownFraction = 0.01;
+  const double typical = std::sqrt(squares / static_cast<double>(kept.size()));
+  result.gain = std::max(round_gain(kShownFraction * size_m / typical), 1.0);
+  for (const SampleResidual& residual : kept) {
+    result.lines.push_back(
+        {residual.foot, residual.foot + result.gain * residual.residual_m * residual.left});
+  }
+  return result;
+}
+
+}  // namespace palpate

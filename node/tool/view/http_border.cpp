@@ -1,0 +1,100 @@
+#include "node/tool/view/http_border.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include <boost/asio/ip/address.hpp>
+
+#include "node/topics.h"
+
+namespace palpate {
+namespace {
+
+bool is_ip_address(std::string_view host) {
+  // No zone of a link-local address ("%eth0"), which may be any text, and no zero byte, at which
+  // the library stops reading.
+  if (host.find_first_not_of("0123456789abcdefABCDEF.:") != std::string_view::npos) return false;
+  boost::system::error_code error;
+  boost::asio::ip::make_address(host, error);
+  return !error;
+}
+
+/// "HOST:PORT", "[IPV6]:PORT".
+std::optional<HostPort> parse_host_port(std::string_view text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string_view::npos) return std::nullopt;
+  std::string_view host = text.substr(0, colon);
+  const std::string_view digits = text.substr(colon + 1);
+  const bool in_brackets = host.size() > 2 && host.front() == '[' && host.back() == ']';
+  if (in_brackets) host = host.substr(1, host.size() - 2);
+  // An IPv6 address needs its brackets, and nothing else may have them.
+  if ((host.find(':') != std::string_view::npos) != in_brackets || host.empty()) {
+    return std::nullopt;
+  }
+  std::uint16_t port = 0;
+  const char* const end = digits.data() + digits.size();
+  const auto [stop, error] = std::from_chars(digits.data(), end, port);
+  if (error != std::errc() || stop != end || digits.empty()) return std::nullopt;
+  return HostPort{std::string(host), port};
+}
+
+std::optional<Route> group_route(std::string_view target, std::string_view before,
+                                 std::string_view after, Route::Kind kind) {
+  if (!target.starts_with(before) || !target.ends_with(after) ||
+      target.size() < before.size() + after.size()) {
+    return std::nullopt;
+  }
+  const std::string_view name =
+      target.substr(before.size(), target.size() - before.size() - after.size());
+  return is_valid_name(name) ? std::optional(Route{kind, name}) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<HostPort> parse_listen_address(std::string_view text) {
+  constexpr std::string_view kScheme = "http://";
+  if (text.starts_with(kScheme)) text.remove_prefix(kScheme.size());
+  if (text.ends_with('/')) text.remove_suffix(1);
+  std::optional<HostPort> address = parse_host_port(text);
+  if (!address || (address->host != "localhost" && !is_ip_address(address->host))) {
+    return std::nullopt;
+  }
+  return address;
+}
+
+bool is_loopback_host(std::string_view host) {
+  if (host == "localhost") return true;
+  boost::system::error_code error;
+  const auto address = boost::asio::ip::make_address(host, error);
+  return !error && address.is_loopback();
+}
+
+bool is_own_host(std::string_view host_header, std::uint16_t port) {
+  // Browsers leave HTTP's own port out.
+  const bool has_port =
+      host_header.rfind(':') != std::string_view::npos && !host_header.ends_with(']');
+  const std::optional<HostPort> named =
+      parse_host_port(has_port ? std::string(host_header) : std::string(host_header) + ":80");
+  return named && named->port == port && (named->host == "localhost" || is_ip_address(named->host));
+}
+
+bool is_own_origin(std::string_view origin_header, std::string_view host_header) {
+  constexpr std::string_view kScheme = "http://";
+  return !host_header.empty() && origin_header.starts_with(kScheme) &&
+         origin_header.substr(kScheme.size()) == host_header;
+}
+
+std::optional<Route> parse_route(std::string_view target) {
+  target = target.substr(0, target.find('?'));
+  if (target == "/") return Route{Route::Kind::Page, "index.html"};
+  if (target == "/live") return Route{Route::Kind::Live, {}};
+  if (auto route = group_route(target, "/samples/", ".csv", Route::Kind::SamplesCsv)) return route;
+  if (auto route = group_route(target, "/answer/", ".json", Route::Kind::AnswerJson)) return route;
+  // The page's files have plain names in one folder.
+  if (target.size() < 2 || target.front() != '/' || !is_valid_name(target.substr(1))) {
+    return std::nullopt;
+  }
+  return Route{Route::Kind::Page, target.substr(1)};
+}
+
+}  // namespace palpate

@@ -1,0 +1,44 @@
+// What each browser is to be sent next.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "node/tool/view/live_state.h"
+#include "node/tool/view/picture_json.h"
+
+namespace palpate {
+
+/// One browser's place in the feed. The newest state wins: it is told how things are, not what
+/// happened in between.
+struct Viewer {
+  std::string wanted;  ///< group chosen; empty = follow the one that is touched
+  std::string shown;   ///< group that it was sent last
+  std::uint64_t sent_version = 0;
+  SentSamples sent_samples;
+  std::uint64_t sent_status_version = 0;
+  SteadyTime sent_overview;
+};
+
+/// Pictures are drawn when a viewer is due for them, once however many viewers there are.
+class LiveFeed {
+ public:
+  explicit LiveFeed(LiveState& state) : state_(state) {}
+
+  /// The viewer's next message; empty where it knows everything.
+  std::string next_message(Viewer& viewer, SteadyTime now);
+
+ private:
+  struct Drawn {
+    std::uint64_t version = 0;
+    std::string picture;
+  };
+
+  std::string group_for(const Viewer& viewer, SteadyTime now);
+  const std::string& picture_of(LiveGroup& group, SteadyTime now);
+
+  LiveState& state_;
+  std::map<std::string, Drawn, std::less<>> drawn_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,89 @@
+// What palpate view knows at present: groups with their contacts and answers, probes, recognizers.
+// Speaks to nobody; bounded, whatever comes.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "node/rate_meter.h"
+#include "node/tool/contact_groups.h"
+#include "palpate/v1/contact.pb.h"
+#include "palpate/v1/node_status.pb.h"
+#include "palpate/v1/recognition.pb.h"
+
+namespace palpate {
+
+using SteadyTime = std::chrono::steady_clock::time_point;
+
+/// Samples kept of one group's object, 32 bytes each. Of more, every second one is dropped, and it
+/// is said how many are shown.
+inline constexpr std::size_t kMostSamplesKept = 20000;
+/// Groups kept, as many as a recognizer has by default; the one unheard for longest makes room.
+inline constexpr std::size_t kMostGroupsKept = 64;
+/// Probes shown of one recognizer, and recognizers.
+inline constexpr int kMostProbesShown = 256;
+inline constexpr std::size_t kMostNodesKept = 8;
+
+struct LiveGroup {
+  /// Contacts of the present object. One run a probe and patch.
+  ContactGroup touched;
+  std::uint64_t samples_received = 0;
+  std::size_t samples_kept = 0;
+  /// Drawn coordinates are relative to this, so that short numbers suffice.
+  Vec2 origin_m = Vec2::Zero();
+  /// Changes where the kept samples are other ones, and not only more.
+  std::uint64_t generation = 0;
+
+  v1::Recognition answer;
+  bool has_answer = false;
+  std::int64_t answer_received_ns = 0;  ///< Unix time
+  RateMeter answer_rate;
+  /// Changes with every answer and object: with all that the group's picture shows.
+  std::uint64_t version = 0;
+  SteadyTime last_heard;
+
+  // Of the object before: an answer that was on its way when the object changed.
+  std::uint64_t previous_object = 0;
+  bool has_previous_object = false;
+  bool has_object = false;
+  std::map<std::pair<std::string, std::uint32_t>, std::size_t> run_of;  // by probe and patch
+};
+
+struct LiveNode {
+  v1::NodeStatus status;
+  SteadyTime last_heard;
+};
+
+class LiveState {
+ public:
+  void take(const v1::ContactBatch& batch, SteadyTime now);
+  /// `received_ns`: the wall clock, for the latency shown.
+  void take(const v1::Recognition& answer, SteadyTime now, std::int64_t received_ns);
+  void take(const v1::NodeStatus& status, SteadyTime now);
+
+  const std::map<std::string, LiveGroup, std::less<>>& groups() const { return groups_; }
+  const std::map<std::string, LiveNode, std::less<>>& nodes() const { return nodes_; }
+
+  /// nullptr where there is none of that name.
+  LiveGroup* find(std::string_view name);
+  /// The name of the group heard last; empty where there is none.
+  std::string latest_group() const;
+  /// Changes where what overviews show of probes and recognizers has changed at once.
+  std::uint64_t status_version() const { return status_version_; }
+
+ private:
+  LiveGroup& group(std::string_view name, SteadyTime now);
+  void begin_object(LiveGroup& group, std::uint64_t object);
+  void place_origin(LiveGroup& group, const Vec2& first);
+
+  std::map<std::string, LiveGroup, std::less<>> groups_;
+  std::map<std::string, LiveNode, std::less<>> nodes_;
+  std::uint64_t next_version_ = 0;  // of all groups: a group that comes back is no old one
+  std::uint64_t status_version_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,303 @@
+// palpate view: wires the live feed to picture, panels and controls.
+// @ts-check
+import {Connection} from "./connection.js";
+import {History} from "./history.js";
+import {Panels, SILENT_S} from "./panels.js";
+import {byId, html, number} from "./picture.js";
+import {Plane} from "./plane.js";
+import {download, fromHash, standalone, toHash} from "./saving.js";
+
+/** @typedef {import("./types.js").Message} Message */
+/** @typedef {import("./types.js").Picture} Picture */
+/** @typedef {import("./types.js").SampleStore} SampleStore */
+/** @typedef {import("./types.js").Samples} Samples */
+/** @typedef {import("./types.js").Overview} Overview */
+
+const FOLLOW = "";
+const LATENCIES_KEPT = 500;
+
+/** @type {{picture: Picture|null, store: SampleStore|null, overview: Overview|null, group: string}} */
+const live = {picture: null, store: null, overview: null, group: ""};
+let isPaused = false;
+let isOpen = false;
+let isScheduled = false;
+let isHealthNew = true;
+/** The picture follows every answer; words and numbers are read, and change a few times a second. */
+const PANELS_INTERVAL_MS = 120;
+let panelsVersion = -1;
+let panelsDrawnMs = 0;
+let panelsTimer = 0;
+let measuredVersion = -1;
+/** Touch to pixel, of the last answers; kept where tests find it. [ms] @type {number[]} */
+const latencies = [];
+Object.assign(window, {palpateLatenciesMs: latencies});
+
+const history = new History();
+const panels = new Panels();
+const plane = new Plane(byId("plane"), writeLink);
+const layers = /** @type {HTMLInputElement[]} */ ([...document.querySelectorAll("#layers input")]);
+
+/** @param {Samples} samples */
+function takeSamples(samples) {
+  if (samples.anew || !live.store) {
+    live.store = {group: samples.group, origin: samples.origin, received: 0, kept: 0, runs: []};
+  }
+  live.store.received = samples.received;
+  live.store.kept = samples.kept;
+  for (const news of samples.runs) {
+    const run = live.store.runs[news.run] ??=
+        {probe: news.probe, patch: news.patch, tipRadius: news.tipRadius, points: []};
+    for (const value of news.points) run.points.push(value);
+  }
+}
+
+/** @param {Message} message */
+function take(message) {
+  if (message.group !== live.group) {
+    isHealthNew = true;
+    live.group = message.group;
+    live.picture = null;
+    live.store = null;
+  }
+  if (message.samples) takeSamples(message.samples);
+  if (message.picture) {
+    live.picture = message.picture;
+  }
+  if (message.overview) {
+    live.overview = message.overview;
+    isHealthNew = true;
+  }
+  if (message.picture || message.samples) history.add(live.picture, live.store);
+  schedule();
+}
+
+function schedule() {
+  if (isScheduled) return;
+  isScheduled = true;
+  requestAnimationFrame(() => {
+    isScheduled = false;
+    draw();
+    connection.ready();
+  });
+}
+
+function draw() {
+  if (isHealthNew) showHealth();
+  isHealthNew = false;
+  if (isPaused) return showMoment();
+  plane.show(live.picture, live.store, null);
+  panels.showSampleCounts(live.store);
+  measureLatency(live.picture);
+  drawPanels();
+}
+
+function drawPanels() {
+  const version = live.picture?.version ?? 0;
+  if (isPaused || version === panelsVersion) return;
+  const left = panelsDrawnMs + PANELS_INTERVAL_MS - performance.now();
+  clearTimeout(panelsTimer);
+  if (left > 0) {
+    panelsTimer = setTimeout(drawPanels, left);
+    return;
+  }
+  panelsVersion = version;
+  panelsDrawnMs = performance.now();
+  panels.show(live.picture);
+  // For tests: what the words and numbers are about.
+  Object.assign(window, {palpateObject: live.picture?.object, palpateOrigin: live.picture?.origin});
+}
+
+/** @param {Picture|null} picture */
+function measureLatency(picture) {
+  // The first answers after a page has come are old ones.
+  if (!picture || picture.version === measuredVersion) return;
+  measuredVersion = picture.version;
+  if (!(picture.touchMs > 0) || Date.now() - picture.answerMs > 1000) return;
+  const touchMs = picture.touchMs;
+  // The next frame begins when this one has been handed to the screen.
+  requestAnimationFrame(() => {
+    latencies.push(Date.now() - touchMs);
+    if (latencies.length > LATENCIES_KEPT) latencies.shift();
+  });
+}
+
+function latencyText() {
+  if (latencies.length === 0) return "";
+  const sorted = [...latencies].sort((a, b) => a - b);
+  const at = (/** @type {number} */ part) => sorted[Math.min(sorted.length - 1, Math.floor(part * sorted.length))];
+  return `; touch to pixel ${number(at(0.5), 3)} ms (p99 ${number(at(0.99), 3)} ms)`;
+}
+
+function showHealth() {
+  const overview = live.overview;
+  if (overview) panels.showHealth(overview, latencyText());
+  const nodes = overview?.nodes ?? [];
+  const silence = Math.min(...nodes.map((node) => node.silentS));
+  const [text, good] = !isOpen ? ["palpate view does not answer: trying again", false] :
+      nodes.length === 0 ? ["no recognizer heard yet", false] :
+      silence > SILENT_S ? [`recognizer silent for ${Math.round(silence)} s`, false] : ["live", true];
+  byId("link-state").textContent = text;
+  byId("link-state").className = good ? "good" : "bad";
+  showGroups(overview);
+}
+
+/** @param {Overview|null} overview */
+function showGroups(overview) {
+  const select = /** @type {HTMLSelectElement} */ (byId("group"));
+  const names = (overview?.groups ?? []).map((group) => group.name);
+  const wanted = connection.wanted;
+  if (wanted && !names.includes(wanted)) names.push(wanted);
+  const follow = `touched last${live.group && !wanted ? `: ${live.group}` : ""}`;
+  const texts = [follow, ...names];
+  const values = [FOLLOW, ...names];
+  if (select.options.length !== values.length || values.some((value, i) => select.options[i].value !== value)) {
+    select.replaceChildren(...values.map((value) => {
+      const option = /** @type {HTMLOptionElement} */ (html("option"));
+      option.value = value;
+      return option;
+    }));
+  }
+  texts.forEach((text, i) => {
+    if (select.options[i].textContent !== text) select.options[i].textContent = text;
+  });
+  if (select.value !== wanted) select.value = wanted;
+  for (const [id, target] of [["save-csv", `samples/${live.group}.csv`], ["save-json", `answer/${live.group}.json`]]) {
+    if (live.group) byId(id).setAttribute("href", target);
+    else byId(id).removeAttribute("href");
+  }
+}
+
+function showMoment() {
+  const scrub = /** @type {HTMLInputElement} */ (byId("scrub"));
+  const moment = pausedMoments[Number(scrub.value)];
+  if (!moment) return;
+  plane.show(moment.picture, moment.store, moment.counts);
+  panels.show(moment.picture);
+  byId("scrub-time").textContent = `${((moment.timeMs - pausedAt) / 1000).toFixed(1)} s, ` +
+      new Date(moment.timeMs).toLocaleTimeString();
+}
+
+let pausedAt = 0;
+/** @type {import("./types.js").Moment[]} */
+let pausedMoments = [];
+
+/** @param {boolean} pause */
+function setPaused(pause) {
+  isPaused = pause;
+  const scrub = /** @type {HTMLInputElement} */ (byId("scrub"));
+  if (pause) {
+    // What is looked at stays while new moments come in and the oldest go.
+    pausedMoments = [...history.moments];
+    pausedAt = pausedMoments[pausedMoments.length - 1]?.timeMs ?? Date.now();
+    scrub.max = String(Math.max(pausedMoments.length - 1, 0));
+    scrub.value = scrub.max;
+  }
+  byId("past").hidden = !pause;
+  byId("pause").textContent = pause ? "Live" : "Pause";
+  byId("pause").setAttribute("aria-pressed", String(pause));
+  panelsVersion = -1;
+  panelsDrawnMs = 0;
+  draw();
+  if (pause) scrub.focus();
+}
+
+function settings() {
+  const base = new Map(layers.map((box) => [box.name, box.defaultChecked]));
+  return {
+    group: connection.wanted,
+    view: plane.isFitted ? null : plane.view,
+    hidden: layers.filter((box) => !box.checked && base.get(box.name)).map((box) => box.name),
+    shown: layers.filter((box) => box.checked && !base.get(box.name)).map((box) => box.name),
+  };
+}
+
+function writeLink() {
+  window.history.replaceState(null, "", "#" + toHash(settings()));
+}
+
+function readLink() {
+  const wanted = fromHash(location.hash);
+  for (const box of layers) {
+    box.checked = box.defaultChecked ? !wanted.hidden.includes(box.name) : wanted.shown.includes(box.name);
+  }
+  applyLayers();
+  if (wanted.view) plane.setView(wanted.view);
+  else plane.isFitted = true;
+  connection.want(wanted.group);
+  isHealthNew = true;
+  schedule();
+}
+
+function applyLayers() {
+  for (const box of layers) byId("plane").classList.toggle(`hide-${box.name}`, !box.checked);
+}
+
+function wireControls() {
+  byId("pause").onclick = () => setPaused(!isPaused);
+  byId("resume").onclick = () => setPaused(false);
+  byId("scrub").oninput = showMoment;
+  byId("fit").onclick = () => plane.fitAlways();
+  byId("zoom-in").onclick = () => plane.zoom(1.4);
+  byId("zoom-out").onclick = () => plane.zoom(1 / 1.4);
+  byId("group").onchange = () => {
+    connection.want(byId("group").value);
+    isHealthNew = true;
+    schedule();
+    plane.isFitted = true;
+    writeLink();
+  };
+  for (const box of layers) {
+    box.onchange = () => {
+      applyLayers();
+      writeLink();
+    };
+  }
+  byId("save-svg").onclick = () =>
+      download(standalone(byId("plane"), `palpate: ${live.group}`), "image/svg+xml", `${live.group || "view"}.svg`);
+  byId("copy-link").onclick = async () => {
+    writeLink();
+    let said = "Copied";
+    try {
+      await navigator.clipboard.writeText(location.href);
+    } catch {
+      said = "In the address bar";  // without leave to write the clipboard
+    }
+    byId("copy-link").textContent = said;
+    setTimeout(() => byId("copy-link").textContent = "Link", 1500);
+  };
+  document.addEventListener("keydown", (event) => {
+    const target = /** @type {HTMLElement} */ (event.target);
+    if (event.ctrlKey || event.metaKey || event.altKey || target.tagName === "SELECT") return;
+    const isControl = ["BUTTON", "INPUT", "A"].includes(target.tagName);
+    const actions = {
+      " ": isControl ? null : () => setPaused(!isPaused),
+      "f": () => plane.fitAlways(),
+      "+": () => plane.zoom(1.4),
+      "=": () => plane.zoom(1.4),
+      "-": () => plane.zoom(1 / 1.4),
+      "g": () => byId("group").focus(),
+    };
+    const action = actions[/** @type {keyof typeof actions} */ (event.key)];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  });
+  new ResizeObserver(() => {
+    plane.resize();
+    panelsVersion = -1;
+    schedule();
+  }).observe(byId("plane"));
+  window.addEventListener("hashchange", readLink);
+}
+
+const connection = new Connection(take, (open) => {
+  isOpen = open;
+  isHealthNew = true;
+  if (!open && live.overview) {
+    // Everything comes anew.
+    live.store = null;
+  }
+  schedule();
+});
+wireControls();
+readLink();

@@ -1,0 +1,88 @@
+// Small helpers to build SVG and HTML. Text is only ever set as text.
+// @ts-check
+
+const SVG = "http://www.w3.org/2000/svg";
+
+/**
+ * @param {string} name
+ * @param {Record<string, string|number>} attributes
+ * @param {Element=} parent
+ * @returns {SVGElement}
+ */
+export function svg(name, attributes = {}, parent = undefined) {
+  const element = /** @type {SVGElement} */ (document.createElementNS(SVG, name));
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
+  if (parent) parent.append(element);
+  return element;
+}
+
+/**
+ * @param {string} name
+ * @param {string} text
+ * @param {string=} className
+ * @returns {HTMLElement}
+ */
+export function html(name, text = "", className = "") {
+  const element = document.createElement(name);
+  element.textContent = text;
+  if (className) element.className = className;
+  return element;
+}
+
+/** @param {string} id @returns {any} */
+export function byId(id) {
+  return document.getElementById(id);
+}
+
+/** A number with the page's reading of it, the exact value kept for machines.
+ * @param {number|null} value
+ * @param {string} text
+ */
+export function data(value, text) {
+  const element = /** @type {HTMLDataElement} */ (html("data", text));
+  element.value = value === null ? "" : String(value);
+  return element;
+}
+
+/** Significant digits, without exponents where they are not needed.
+ * @param {number|null} value
+ * @param {number} digits
+ */
+export function number(value, digits = 4) {
+  if (value === null) return "∞";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e-3 && size < 1e6) return String(Number(value.toPrecision(digits)));
+  return value.toExponential(digits - 1);
+}
+
+/** 1, 2 or 5 times a power of ten, for at most `count` steps over `length`.
+ * @param {number} length
+ * @param {number} count
+ */
+export function tickStep(length, count) {
+  const rough = length / count;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  for (const factor of [1, 2, 5]) if (factor * power >= rough) return factor * power;
+  return 10 * power;
+}
+
+/** Multiples of step in [low, high], at most 100.
+ * @param {number} low
+ * @param {number} high
+ * @param {number} step
+ */
+export function ticks(low, high, step) {
+  const result = [];
+  for (let k = Math.ceil(low / step); k * step <= high && result.length < 100; ++k) result.push(k * step);
+  return result;
+}
+
+/** As many decimals as the step has.
+ * @param {number} value
+ * @param {number} step
+ */
+export function tickText(value, step) {
+  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  return decimals > 9 || Math.abs(value) >= 1e6 ? value.toExponential(2) : value.toFixed(decimals);
+}

@@ -1,0 +1,381 @@
+// The touched plane: what was felt, the curve and what is not known of it. Drawn in millimetres from the
+// object's origin, y upwards; the view is one transform, so that zooming and panning draw nothing anew.
+// @ts-check
+import {svg, tickStep, ticks, tickText} from "./picture.js";
+
+/** @typedef {import("./types.js").Picture} Picture */
+/** @typedef {import("./types.js").SampleStore} SampleStore */
+/** @typedef {{x: number, y: number, scale: number}} View centre [mm] and pixels per mm */
+
+const MM = 1000;
+// Samples of one path: appended samples make the browser draw one of these anew, not all.
+const CHUNK = 500;
+const COLOURS = 8;
+const AXIS_PIXELS = 46;
+const TANGENT_PIXELS = 20;
+const WHOLE = 3;  // sizes of what was touched
+const NEAR = 1;
+const MARGIN = 46;  // for the ticks' numbers [px]
+
+/** @param {number[]} points @param {boolean} closed */
+function pathOf(points, closed = false) {
+  let d = "";
+  for (let i = 0; i < points.length; i += 2) {
+    d += `${i === 0 ? "M" : "L"}${points[i] * MM} ${-points[i + 1] * MM}`;
+  }
+  return closed ? d + "Z" : d;
+}
+
+/** The area between two borders; a closed curve's is a ring.
+ * @param {number[]} left @param {number[]} right @param {boolean} closed */
+function areaOf(left, right, closed) {
+  if (closed) return pathOf(left, true) + pathOf(right, true);
+  const back = [];
+  for (let i = right.length - 2; i >= 0; i -= 2) back.push(right[i], right[i + 1]);
+  return pathOf(left.concat(back), true);
+}
+
+export class Plane {
+  /** @param {SVGSVGElement} root @param {() => void} onViewChange the user has moved it */
+  constructor(root, onViewChange) {
+    this.root = root;
+    this.onViewChange = onViewChange;
+    this.size = {width: 600, height: 400};
+    /** @type {View} */
+    this.view = {x: 0, y: 0, scale: 10};
+    this.isFitted = true;
+    /** @type {Picture|null} */
+    this.picture = null;
+    /** @type {SampleStore|null} */
+    this.store = null;
+    /** @type {number[]|null} */
+    this.counts = null;
+
+    this.grid = svg("g", {class: "grid"}, root);
+    const clip = svg("clipPath", {id: "plane-clip"}, svg("defs", {}, root));
+    this.clipRect = svg("rect", {}, clip);
+    const clipped = svg("g", {"clip-path": "url(#plane-clip)"}, root);
+    this.world = svg("g", {class: "world"}, clipped);
+    this.sweeps = svg("g", {class: "layer-tips sweeps"}, this.world);
+    this.band = svg("path", {class: "layer-band band", "fill-rule": "evenodd"}, this.world);
+    this.rivals = svg("g", {class: "layer-rivals"}, this.world);
+    this.residuals = svg("path", {class: "layer-residuals residuals"}, this.world);
+    this.points = svg("g", {class: "layer-samples"}, this.world);
+    this.curve = svg("path", {class: "layer-curve curve", id: "curve-path"}, this.world);
+    this.tips = svg("g", {class: "layer-tips"}, this.world);
+    // In pixels, of constant size.
+    this.far = svg("path", {class: "layer-samples far"}, clipped);
+    this.tangents = svg("path", {class: "layer-samples tangents"}, clipped);
+    this.marks = svg("g", {class: "layer-frame frame"}, clipped);
+    this.labels = svg("g", {class: "labels"}, clipped);
+    this.gridKey = "";
+    /** @type {{path: SVGElement, d: string, count: number}[][]} */
+    this.chunks = [];
+    /** @type {{path: SVGElement, d: string}[]} */
+    this.sweepPaths = [];
+    this.wireInput();
+  }
+
+  resize() {
+    const box = this.root.getBoundingClientRect();
+    this.size = {width: Math.max(box.width, 50), height: Math.max(box.height, 50)};
+    this.root.setAttribute("viewBox", `0 0 ${this.size.width} ${this.size.height}`);
+    const inner = {x: MARGIN, y: 0, width: this.size.width - MARGIN, height: this.size.height - 24};
+    for (const [key, value] of Object.entries(inner)) this.clipRect.setAttribute(key, String(value));
+    this.place();
+  }
+
+  /** @param {Picture|null} picture @param {SampleStore|null} store @param {number[]|null} counts */
+  show(picture, store, counts) {
+    if (picture !== this.picture) {
+      this.picture = picture;
+      this.drawCurve();
+    }
+    this.drawSamples(store, counts);
+    if (this.isFitted) this.fit();
+    this.place();
+  }
+
+  drawCurve() {
+    const picture = this.picture;
+    const curve = picture?.curve;
+    this.curve.setAttribute("d", curve ? pathOf(curve.points, curve.closed) : "");
+    this.band.setAttribute("d", curve?.left && curve.right ?
+        areaOf(curve.left, curve.right, curve.closed) : "");
+    this.rivals.replaceChildren();
+    for (const rival of picture?.rivals ?? []) {
+      const path = svg("path", {class: "rival", d: pathOf(rival.points, rival.closed)}, this.rivals);
+      path.style.opacity = String(0.25 + 0.65 * rival.probability);
+      svg("title", {}, path).textContent = `${rival.class} ${(100 * rival.probability).toPrecision(3)} %`;
+    }
+    let d = "";
+    const lines = picture?.residuals?.lines ?? [];
+    for (let i = 0; i + 3 < lines.length; i += 4) {
+      d += `M${lines[i] * MM} ${-lines[i + 1] * MM}L${lines[i + 2] * MM} ${-lines[i + 3] * MM}`;
+    }
+    this.residuals.setAttribute("d", d);
+  }
+
+  /** @param {SampleStore|null} store @param {number[]|null} counts null = all */
+  drawSamples(store, counts) {
+    const isMore = store === this.store && counts === null && this.counts === null;
+    if (!isMore) {
+      this.points.replaceChildren();
+      this.sweeps.replaceChildren();
+      this.chunks = [];
+      this.sweepPaths = [];
+    }
+    this.store = store;
+    this.counts = counts;
+    this.tips.replaceChildren();
+    const colours = this.coloursOfProbes();
+    const newest = new Map();
+    (store?.runs ?? []).forEach((run, number) => {
+      const total = counts ? counts[number] ?? 0 : run.points.length / 2;
+      if (total === 0) return;
+      const colour = colours.get(run.probe);
+      this.appendSamples(number, run, total, colour);
+      newest.set(run.probe, {run, total, colour});
+    });
+    for (const {run, total, colour} of newest.values()) {
+      const x = run.points[2 * total - 2] * MM, y = -run.points[2 * total - 1] * MM;
+      svg("circle", {class: `tip run${colour}`, cx: x, cy: y, r: run.tipRadius * MM}, this.tips);
+    }
+    this.newest = newest;
+  }
+
+  coloursOfProbes() {
+    const colours = new Map();
+    for (const run of this.store?.runs ?? []) {
+      if (!colours.has(run.probe)) colours.set(run.probe, colours.size % COLOURS);
+    }
+    return colours;
+  }
+
+  /** @param {number} number @param {import("./types.js").Run} run @param {number} total @param {number} colour */
+  appendSamples(number, run, total, colour) {
+    const chunks = this.chunks[number] ??= [];
+    let drawn = chunks.reduce((sum, chunk) => sum + chunk.count, 0);
+    if (run.tipRadius > 0 && drawn < total) {
+      const sweep = this.sweepPaths[number] ??=
+          {path: svg("path", {class: `sweep run${colour}`, "stroke-width": 2 * run.tipRadius * MM},
+                     this.sweeps), d: ""};
+      for (let i = drawn; i < total; ++i) {
+        sweep.d += `${i === 0 ? "M" : "L"}${run.points[2 * i] * MM} ${-run.points[2 * i + 1] * MM}`;
+      }
+      sweep.path.setAttribute("d", sweep.d);
+    }
+    while (drawn < total) {
+      if (chunks.length === 0 || chunks[chunks.length - 1].count >= CHUNK) {
+        chunks.push({path: svg("path", {class: `samples run${colour}`}, this.points), d: "", count: 0});
+      }
+      const chunk = chunks[chunks.length - 1];
+      for (; drawn < total && chunk.count < CHUNK; ++drawn, ++chunk.count) {
+        chunk.d += `M${run.points[2 * drawn] * MM} ${-run.points[2 * drawn + 1] * MM}h0`;
+      }
+      chunk.path.setAttribute("d", chunk.d);
+    }
+  }
+
+  /** Where everything lies. [mm] */
+  bounds() {
+    let low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+    const include = (/** @type {number} */ x, /** @type {number} */ y, pad = 0) => {
+      low = [Math.min(low[0], x - pad), Math.min(low[1], y - pad)];
+      high = [Math.max(high[0], x + pad), Math.max(high[1], y + pad)];
+    };
+    (this.store?.runs ?? []).forEach((run, number) => {
+      const total = this.counts ? this.counts[number] ?? 0 : run.points.length / 2;
+      for (let i = 0; i < total; ++i) {
+        include(run.points[2 * i] * MM, -run.points[2 * i + 1] * MM, run.tipRadius * MM);
+      }
+    });
+    for (const contact of this.picture?.contacts ?? []) include(contact.at[0] * MM, -contact.at[1] * MM);
+    const touched = Math.max(high[0] - low[0], high[1] - low[1]);
+    const centre = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
+    // A curve that is not far larger than what was touched is shown whole; of another one, as of an arc that
+    // is not yet determined, what is near.
+    const points = this.picture?.curve?.points ?? [];
+    const distance = (/** @type {number[]} */ at, /** @type {number} */ i) => touched > 0 ?
+        Math.max(Math.abs(at[i] * MM - centre[0]), Math.abs(at[i + 1] * MM + centre[1])) / touched : 0;
+    let furthest = 0;
+    for (let i = 0; i < points.length; i += 2) furthest = Math.max(furthest, distance(points, i));
+    const shown = furthest < WHOLE ? WHOLE : NEAR;
+    for (let i = 0; i < points.length; i += 2) {
+      if (distance(points, i) < shown) include(points[i] * MM, -points[i + 1] * MM);
+    }
+    const origin = this.picture?.pose?.at;
+    if (origin && this.picture?.class !== "line" && distance(origin, 0) < shown) {
+      include(origin[0] * MM, -origin[1] * MM);
+    }
+    return low[0] <= high[0] ? {low, high} : null;
+  }
+
+  fit() {
+    const bounds = this.bounds();
+    if (!bounds) return;
+    const width = this.size.width - MARGIN, height = this.size.height - 24;
+    const extent = [0, 1].map((i) => Math.max(bounds.high[i] - bounds.low[i], 1e-6));
+    const scale = 0.86 * Math.min(width / extent[0], height / extent[1]);
+    const x = (bounds.low[0] + bounds.high[0]) / 2, y = (bounds.low[1] + bounds.high[1]) / 2;
+    // While points come in, the picture stands still until they leave it or leave much of it empty.
+    const off = Math.hypot(x - this.view.x, y - this.view.y) * scale;
+    const isNear = scale / this.view.scale < 1.35 && scale / this.view.scale > 0.97 && off < 0.05 * width;
+    if (!isNear) this.view = {x, y, scale};
+  }
+
+  /** Shows everything, from now on too. */
+  fitAlways() {
+    this.isFitted = true;
+    this.view = {x: 0, y: 0, scale: 1e-9};
+    this.fit();
+    this.place();
+    this.onViewChange();
+  }
+
+  /** @param {View} view */
+  setView(view) {
+    this.isFitted = false;
+    this.view = view;
+    this.place();
+  }
+
+  /** @param {number} x [mm] @param {number} y downwards [mm] @returns {number[]} pixels */
+  toPixels(x, y) {
+    return [(MARGIN + this.size.width) / 2 + (x - this.view.x) * this.view.scale,
+            (this.size.height - 24) / 2 + (y - this.view.y) * this.view.scale];
+  }
+
+  place() {
+    const [tx, ty] = this.toPixels(0, 0);
+    const scale = this.view.scale;
+    this.world.setAttribute("transform", `matrix(${scale} 0 0 ${scale} ${tx} ${ty})`);
+    const origin = (this.store ?? this.picture)?.origin ?? [];
+    const gridKey = [this.size.width, this.size.height, tx, ty, scale, ...origin].join();
+    if (gridKey !== this.gridKey) {
+      this.gridKey = gridKey;
+      this.drawGrid();
+    }
+    this.drawMarks();
+  }
+
+  /** World coordinates, in mm, along both sides. */
+  drawGrid() {
+    this.grid.replaceChildren();
+    const origin = (this.store ?? this.picture)?.origin;
+    if (!origin) return;
+    const {width, height} = this.size;
+    const scale = this.view.scale;
+    const step = tickStep(Math.max(width, height) / scale, Math.max(width, height) / 90);
+    const halfX = (width - MARGIN) / 2 / scale, halfY = (height - 24) / 2 / scale;
+    const ox = origin[0] * MM, oy = origin[1] * MM;
+    for (const x of ticks(ox + this.view.x - halfX, ox + this.view.x + halfX, step)) {
+      const [px] = this.toPixels(x - ox, 0);
+      svg("line", {x1: px, x2: px, y1: 0, y2: height - 24}, this.grid);
+      if (px > MARGIN + 14 && px < width - 40) {
+        svg("text", {x: px, y: height - 8, "text-anchor": "middle"}, this.grid).textContent = tickText(x, step);
+      }
+    }
+    for (const y of ticks(oy - this.view.y - halfY, oy - this.view.y + halfY, step)) {
+      const [, py] = this.toPixels(0, oy - y);
+      svg("line", {x1: MARGIN, x2: width, y1: py, y2: py}, this.grid);
+      if (py > 10 && py < height - 28) {
+        svg("text", {x: MARGIN - 6, y: py + 4, "text-anchor": "end"}, this.grid).textContent = tickText(y, step);
+      }
+    }
+    svg("text", {x: width - 4, y: height - 8, "text-anchor": "end"}, this.grid).textContent = "mm";
+  }
+
+  drawMarks() {
+    let far = "";
+    const points = this.picture?.far ?? [];
+    for (let i = 0; i < points.length; i += 2) {
+      const [x, y] = this.toPixels(points[i] * MM, -points[i + 1] * MM);
+      far += `M${x - 4} ${y - 4}l8 8m0 -8l-8 8`;
+    }
+    this.far.setAttribute("d", far);
+    let tangents = "";
+    for (const contact of this.picture?.contacts ?? []) {
+      const [x, y] = this.toPixels(contact.at[0] * MM, -contact.at[1] * MM);
+      tangents += `M${x - 4} ${y}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0M${x} ${y}` +
+          `l${TANGENT_PIXELS * Math.cos(contact.tangent)} ${-TANGENT_PIXELS * Math.sin(contact.tangent)}`;
+    }
+    this.tangents.setAttribute("d", tangents);
+    this.marks.replaceChildren();
+    const pose = this.picture?.pose;
+    if (pose) {
+      const [x, y] = this.toPixels(pose.at[0] * MM, -pose.at[1] * MM);
+      for (const [name, turn] of /** @type {[string, number][]} */ ([["x", 0], ["y", Math.PI / 2]])) {
+        const dx = Math.cos(pose.theta + turn), dy = -Math.sin(pose.theta + turn);
+        svg("line", {class: `axis-${name}`, x1: x, y1: y, x2: x + AXIS_PIXELS * dx, y2: y + AXIS_PIXELS * dy},
+            this.marks);
+        svg("text", {class: `axis-${name}`, x: x + (AXIS_PIXELS + 9) * dx, y: y + (AXIS_PIXELS + 9) * dy + 4,
+                     "text-anchor": "middle"}, this.marks).textContent = name;
+      }
+    }
+    this.labels.replaceChildren();
+    for (const [probe, {run, total, colour}] of this.newest ?? []) {
+      const [x, y] = this.toPixels(run.points[2 * total - 2] * MM, -run.points[2 * total - 1] * MM);
+      svg("text", {class: `run${colour}`, x: x + run.tipRadius * MM * this.view.scale + 6, y: y + 4},
+          this.labels).textContent = probe;
+    }
+  }
+
+  /** @param {number} factor @param {number=} px @param {number=} py the pixel that stays */
+  zoom(factor, px = (MARGIN + this.size.width) / 2, py = (this.size.height - 24) / 2) {
+    const scale = Math.min(Math.max(this.view.scale * factor, 1e-4), 1e8);
+    const [cx, cy] = [(MARGIN + this.size.width) / 2, (this.size.height - 24) / 2];
+    const x = this.view.x + (px - cx) * (1 / this.view.scale - 1 / scale);
+    const y = this.view.y + (py - cy) * (1 / this.view.scale - 1 / scale);
+    this.setView({x, y, scale});
+    this.onViewChange();
+  }
+
+  /** @param {number} dx @param {number} dy [px] */
+  pan(dx, dy) {
+    this.setView({x: this.view.x - dx / this.view.scale, y: this.view.y - dy / this.view.scale,
+                  scale: this.view.scale});
+    this.onViewChange();
+  }
+
+  wireInput() {
+    const at = (/** @type {MouseEvent} */ event) => {
+      const box = this.root.getBoundingClientRect();
+      return [event.clientX - box.left, event.clientY - box.top];
+    };
+    this.root.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      const [x, y] = at(event);
+      this.zoom(Math.exp(-0.0015 * event.deltaY), x, y);
+    }, {passive: false});
+    /** @type {Map<number, number[]>} */
+    const fingers = new Map();
+    this.root.addEventListener("pointerdown", (event) => {
+      this.root.setPointerCapture(event.pointerId);
+      fingers.set(event.pointerId, at(event));
+    });
+    this.root.addEventListener("pointermove", (event) => {
+      const before = fingers.get(event.pointerId);
+      if (!before) return;
+      const now = at(event);
+      fingers.set(event.pointerId, now);
+      if (fingers.size === 1) return this.pan(now[0] - before[0], now[1] - before[1]);
+      const other = [...fingers].find(([id]) => id !== event.pointerId)?.[1] ?? now;
+      const grown = Math.hypot(now[0] - other[0], now[1] - other[1]) /
+          Math.max(Math.hypot(before[0] - other[0], before[1] - other[1]), 1);
+      this.zoom(grown, other[0], other[1]);
+    });
+    for (const end of ["pointerup", "pointercancel"]) {
+      this.root.addEventListener(end, (event) =>
+          fingers.delete(/** @type {PointerEvent} */ (event).pointerId));
+    }
+    this.root.addEventListener("dblclick", () => this.fitAlways());
+    this.root.addEventListener("keydown", (event) => {
+      const steps = {ArrowLeft: [40, 0], ArrowRight: [-40, 0], ArrowUp: [0, 40], ArrowDown: [0, -40]};
+      const step = steps[/** @type {keyof typeof steps} */ (event.key)];
+      if (!step) return;
+      event.preventDefault();
+      this.pan(step[0], step[1]);
+    });
+  }
+}

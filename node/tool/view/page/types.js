@@ -1,0 +1,48 @@
+// Shapes of what the server sends (node/tool/view/picture_json.cpp). Lengths in metres, relative to `origin`.
+// Numbers that are not finite come as null.
+
+/** @typedef {{class: string, probability: number, closed: boolean, points: number[], arc: number[],
+ *   kappa: (number|null)[], kappaS: (number|null)[], left?: number[], right?: number[], bandWidth?: string,
+ *   kappaSigma?: number[]}} Curve */
+
+/** @typedef {{probe: string, patch: number, at: number[], tangent: number, arc: number, kappa: number,
+ *   kappaSigma: number|null, kappaS: number, kappaSSigma: number|null}} Contact */
+
+/** @typedef {{name: string, value: number, sigma: number|null, text: string}} Quantity */
+
+/** @typedef {{group: string, object: string, version: number, origin: number[], hasAnswer: boolean,
+ *   status: string, statusText: string, advice: string, class: string, frame: string,
+ *   quantities: Quantity[],
+ *   hypotheses: {class: string, probability: number, chi2: number, dof: number, atLimit: boolean}[],
+ *   decisions: {test: string, value: number|null, threshold: number|null, passed: boolean}[],
+ *   contacts: Contact[], curve?: Curve, rivals: Curve[], pose?: {at: number[], theta: number},
+ *   residuals?: {gain: number, lines: number[]}, far?: number[], sampleCount: number,
+ *   outlierCount: number, noise: string, noiseCorrelationMm: number, computeMs: number,
+ *   answersPerS: number, touchMs: number, answerMs: number}} Picture */
+
+/** @typedef {{group: string, object: string, generation: number, anew: boolean, received: number,
+ *   kept: number, origin: number[],
+ *   runs: {run: number, probe: string, patch: number, tipRadius: number, points: number[]}[]}} Samples */
+
+/** @typedef {{name: string, group: string, alive: boolean, samplesPerS: number, batchesPerS: number,
+ *   ageS: number, gaps: number, missing: number, restarts: number, rejected: number,
+ *   latencyMs: number}} Probe */
+
+/** @typedef {{name: string, version: string, silentS: number, uptimeS: number, received: number,
+ *   accepted: number, gaps: number, missing: number, computeP50Ms: number, computeP99Ms: number,
+ *   probes: Probe[]}} Node */
+
+/** @typedef {{groups: {name: string, object: string, status: string, class: string, probability: number,
+ *   ageS: number}[], nodes: Node[]}} Overview */
+
+/** @typedef {{group: string, picture?: Picture, samples?: Samples, overview?: Overview}} Message */
+
+/** One unbroken touch. @typedef {{probe: string, patch: number, tipRadius: number, points: number[]}} Run */
+
+/** Samples of one object as far as they have come.
+ * @typedef {{group: string, origin: number[], received: number, kept: number, runs: Run[]}} SampleStore */
+
+/** A moment that can be looked at again: how many samples of each run there were.
+ * @typedef {{timeMs: number, picture: Picture|null, store: SampleStore|null, counts: number[]}} Moment */
+
+export {};

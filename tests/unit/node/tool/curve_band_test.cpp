@@ -1,0 +1,180 @@
+#include "node/tool/drawing/curve_band.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "node/convert.h"
+#include "node/tool/drawing/drawing.h"
+#include "tests/support/scene_data.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+v1::Recognition message_of(const Recognition& answer) {
+  v1::Recognition message;
+  to_wire(
+      answer,
+      [](std::uint32_t, std::uint32_t patch) {
+        return ContactSource{"probe", patch};
+      },
+      message);
+  return message;
+}
+
+/// A scene whose covariance is small enough to be the whole truth about the curve.
+CurveModel known_model(CurveClass curve_class, std::mt19937_64& rng, v1::Recognition& message) {
+  test::SceneOptions options;
+  options.sigma_over_size = 1e-7;
+  // A long arc: no valley of chi-square that bends within its own deviations.
+  options.patches = 1;
+  options.least_fraction = 0.6;
+  options.most_fraction = 0.75;
+  const test::Scene scene = test::random_scene(curve_class, options, rng);
+  message = message_of(test::recognise(scene, scene.sigma_m));
+  const auto model = model_of(message);
+  EXPECT_TRUE(model) << name_of(curve_class);
+  return *model;
+}
+
+TEST(CurveBand, HoldsTheCurvesThatTheCovarianceAllowsIn95Of100AtEveryPlace) {
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> normal;
+  constexpr int kDraws = 2000;
+  // Five standard deviations of the share of so many draws.
+  const double tolerance = 5.0 * std::sqrt(0.95 * 0.05 / kDraws);
+  for (const CurveClass curve_class : kCurveClasses) {
+    v1::Recognition message;
+    const CurveModel model = known_model(curve_class, rng, message);
+    ASSERT_GT(model.covariance.size(), 0) << name_of(curve_class);
+    const Eigen::MatrixXd covariance = model.covariance;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
+    const Eigen::MatrixXd root =
+        axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+    for (const v1::LocalizedContact& contact : message.contacts()) {
+      const double t = contact.t();
+      const auto band = band_at(model, t);
+      ASSERT_TRUE(band);
+      int inside = 0;
+      double kappa_squares = 0.0;
+      for (int draw = 0; draw < kDraws; ++draw) {
+        Eigen::VectorXd units(covariance.rows());
+        for (double& unit : units) unit = normal(rng);
+        const auto drawn = moved(model, root * units);
+        ASSERT_TRUE(drawn);
+        const FootPoint foot =
+            foot_point(drawn->curve, drawn->world_T_curve.to_local(model.world_position(t)));
+        const double offset =
+            model.world_left(t).dot(drawn->world_T_curve * foot.position - model.world_position(t));
+        inside += offset <= band->left_m && offset >= band->right_m ? 1 : 0;
+        const double kappa = geometry(drawn->curve, foot.t).kappa - geometry(model.curve, t).kappa;
+        kappa_squares += kappa * kappa;
+      }
+      EXPECT_NEAR(inside / double{kDraws}, 0.95, tolerance) << name_of(curve_class) << " at " << t;
+      if (curve_class == CurveClass::Line) continue;
+      // Five standard deviations of a standard deviation from so many draws.
+      EXPECT_NEAR(std::sqrt(kappa_squares / kDraws) / *CurvatureDeviation(model).at(t), 1.0,
+                  5.0 / std::sqrt(2.0 * kDraws))
+          << name_of(curve_class) << " at " << t;
+    }
+  }
+}
+
+TEST(CurveBand, IsAbsentWhereTheCovarianceSaysNothing) {
+  std::mt19937_64 rng = test::test_rng();
+  v1::Recognition message;
+  (void)known_model(CurveClass::Ellipse, rng, message);
+  message.set_covariance(0, std::numeric_limits<double>::infinity());
+  const auto model = model_of(message);
+  ASSERT_TRUE(model);
+  EXPECT_FALSE(band_at(*model, 0.0));
+  EXPECT_FALSE(CurvatureDeviation(*model).at(0.0));
+  message.clear_covariance();
+  EXPECT_FALSE(band_at(*model_of(message), 0.0));
+}
+
+TEST(CurveModel, IsAbsentForMessagesThatNameNoCurve) {
+  v1::Recognition message;
+  EXPECT_FALSE(model_of(message));
+  message.set_curve_class(v1::CURVE_CLASS_ELLIPSE);
+  message.mutable_pose();
+  message.mutable_parameters()->set_a(1.0);
+  message.mutable_parameters()->set_b(2.0);  // b > a is no canonical ellipse
+  EXPECT_FALSE(model_of(message));
+  message.mutable_parameters()->set_b(0.5);
+  EXPECT_TRUE(model_of(message));
+  message.mutable_pose()->set_x_m(std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(model_of(message));
+}
+
+ContactGroup group_of(const test::Scene& scene) {
+  ContactGroup group{"scene", "part", 1, {"probe"}, {}};
+  for (const auto& patch : scene.patches) {
+    ContactRun run;
+    run.context.patch = static_cast<std::uint32_t>(group.runs.size());
+    for (const Vec2& position : patch) run.samples.push_back({position, scene.sigma_m, 0});
+    group.runs.push_back(run);
+  }
+  return group;
+}
+
+TEST(Drawing, ShowsTheCurveBesideEveryTouchedPlace) {
+  std::mt19937_64 rng = test::test_rng();
+  for (const CurveClass curve_class : kCurveClasses) {
+    test::SceneOptions options;
+    options.sigma_over_size = 1e-5;
+    const test::Scene scene = test::random_scene(curve_class, options, rng);
+    const v1::Recognition message = message_of(test::recognise(scene, scene.sigma_m));
+    const ContactGroup group = group_of(scene);
+    const Drawing drawing = make_drawing(group, message);
+    ASSERT_TRUE(drawing.curve) << name_of(curve_class);
+    EXPECT_EQ(drawing.contacts.size(), static_cast<std::size_t>(message.contacts_size()));
+    // Every sample has the drawn polyline beside it: within its noise and a chord's height.
+    const auto& places = drawing.curve->places;
+    const double tolerance = 6.0 * scene.sigma_m + 1e-3 * options.size_m;
+    for (const ContactRun& run : group.runs) {
+      for (const ContactSample& sample : run.samples) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 1; i < places.size(); ++i) {
+          const Vec2 along = places[i].position - places[i - 1].position;
+          const Vec2 to = sample.position_m - places[i - 1].position;
+          const double part = std::clamp(to.dot(along) / along.squaredNorm(), 0.0, 1.0);
+          nearest = std::min(nearest, (to - part * along).norm());
+        }
+        EXPECT_LT(nearest, tolerance) << name_of(curve_class);
+      }
+    }
+  }
+}
+
+TEST(Residuals, AreTheDistancesBeyondTheTipAndTellSpikes) {
+  const CurveModel model{Circle{0.02}, {0.3, 0.1, 0.0}, {}};
+  ContactRun run;
+  run.context.tip_radius_m = 0.004;
+  constexpr double kSigma = 1e-5;
+  for (int i = 0; i < 100; ++i) {
+    const double angle = 0.01 * i;
+    const double beyond = i == 50 ? 1e-3 : 2e-5 * (i % 2 == 0 ? 1.0 : -1.0);
+    const double radius = 0.024 + beyond;
+    run.samples.push_back(
+        {{0.3 + radius * std::cos(angle), 0.1 + radius * std::sin(angle)}, 0.0, 0});
+  }
+  const auto residuals = residuals_of(model, run, kSigma);
+  ASSERT_EQ(residuals.size(), 100U);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    // Outside of a circle travelled leftwards is its right.
+    const double expected = i == 50 ? -1e-3 : i % 2 == 0 ? -2e-5 : 2e-5;
+    EXPECT_NEAR(residuals[i].residual_m, expected, 1e-12);
+    EXPECT_EQ(residuals[i].is_far, i == 50);
+    EXPECT_NEAR((residuals[i].foot - Vec2(0.3, 0.1)).norm(), 0.02, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,177 @@
+#include "node/tool/view/live_state.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "node/tool/view/live_feed.h"
+#include "node/tool/view/picture_json.h"
+
+namespace palpate {
+namespace {
+
+using namespace std::chrono_literals;
+
+const SteadyTime kStart = SteadyTime(std::chrono::hours(1));
+
+v1::ContactBatch batch_of(int samples, std::uint64_t object = 1, std::uint32_t patch = 0,
+                          const std::string& probe = "finger") {
+  v1::ContactBatch batch;
+  batch.mutable_header()->set_source(probe);
+  batch.set_group("part");
+  batch.set_object(object);
+  batch.set_patch(patch);
+  for (int i = 0; i < samples; ++i) {
+    v1::ContactSample& sample = *batch.add_samples();
+    sample.set_x_m(0.3 + 1e-4 * i);
+    sample.set_y_m(0.1);
+  }
+  return batch;
+}
+
+v1::Recognition answer_of(std::uint64_t object, const std::string& group = "part") {
+  v1::Recognition answer;
+  answer.set_group(group);
+  answer.set_object(object);
+  answer.set_status(v1::RECOGNITION_STATUS_COLLECTING);
+  answer.set_sample_count(7);
+  return answer;
+}
+
+TEST(LiveState, KeepsOneRunAProbeAndPatchHoweverTheirBatchesAlternate) {
+  LiveState state;
+  for (int i = 0; i < 5; ++i) {
+    state.take(batch_of(10, 1, 0, "left"), kStart);
+    state.take(batch_of(10, 1, 0, "right"), kStart);
+  }
+  state.take(batch_of(3, 1, 1, "left"), kStart);
+  const LiveGroup& group = *state.find("part");
+  ASSERT_EQ(group.touched.runs.size(), 3U);
+  EXPECT_EQ(group.touched.runs[0].samples.size(), 50U);
+  EXPECT_EQ(group.touched.runs[2].samples.size(), 3U);
+  EXPECT_EQ(group.samples_kept, 103U);
+}
+
+TEST(LiveState, ANewObjectClearsAndItsForerunnersLateAnswerIsNotShown) {
+  LiveState state;
+  state.take(batch_of(10, 1), kStart);
+  state.take(answer_of(1), kStart, 0);
+  EXPECT_TRUE(state.find("part")->has_answer);
+  state.take(batch_of(2, 2), kStart);
+  EXPECT_FALSE(state.find("part")->has_answer);
+  EXPECT_EQ(state.find("part")->samples_kept, 2U);
+  state.take(answer_of(1), kStart, 0);
+  EXPECT_FALSE(state.find("part")->has_answer);
+  EXPECT_EQ(state.find("part")->samples_kept, 2U);
+  // Contacts may be lost on the way: an answer alone tells of the next object too.
+  state.take(answer_of(3), kStart, 0);
+  EXPECT_TRUE(state.find("part")->has_answer);
+  EXPECT_EQ(state.find("part")->samples_kept, 0U);
+}
+
+TEST(LiveState, IsBoundedAndSaysWhatItDrops) {
+  LiveState state;
+  for (int i = 0; i < 100; ++i) state.take(batch_of(1000), kStart);
+  const LiveGroup& group = *state.find("part");
+  EXPECT_LE(group.samples_kept, kMostSamplesKept);
+  EXPECT_GT(group.samples_kept, kMostSamplesKept / 4);
+  EXPECT_EQ(group.samples_received, 100000U);
+  // One-sample patches too.
+  for (std::uint32_t i = 0; i < 50000; ++i) state.take(batch_of(1, 2, i), kStart);
+  EXPECT_LE(group.samples_kept, kMostSamplesKept);
+  EXPECT_EQ(group.touched.runs.size(), group.samples_kept);
+  EXPECT_EQ(group.touched.runs.back().context.patch, 49999U);
+  for (int i = 0; i < 1000; ++i) {
+    state.take(answer_of(1, "group-" + std::to_string(i)), kStart + std::chrono::seconds(1 + i), 0);
+    v1::NodeStatus status;
+    status.mutable_header()->set_source("node-" + std::to_string(i));
+    for (int k = 0; k < 1000; ++k) status.add_probes();
+    state.take(status, kStart + std::chrono::seconds(1 + i));
+  }
+  EXPECT_EQ(state.groups().size(), kMostGroupsKept);
+  EXPECT_EQ(state.nodes().size(), kMostNodesKept);
+  EXPECT_EQ(state.nodes().begin()->second.status.probes_size(), kMostProbesShown);
+  EXPECT_EQ(state.latest_group(), "group-999");
+}
+
+TEST(LiveState, TakesNothingThatIsNoContact) {
+  LiveState state;
+  v1::ContactBatch batch = batch_of(3);
+  batch.mutable_samples(1)->set_x_m(std::numeric_limits<double>::quiet_NaN());
+  state.take(batch, kStart);
+  batch = batch_of(3);
+  batch.set_group("<b>");
+  state.take(batch, kStart);
+  batch = batch_of(3, 1, 0, "a b");
+  state.take(batch, kStart);
+  state.take(batch_of(0), kStart);
+  state.take(answer_of(1, "a/b"), kStart, 0);
+  EXPECT_TRUE(state.groups().empty());
+}
+
+TEST(LiveFeed, TellsEachViewerWhatItDoesNotKnowAndNothingTwice) {
+  LiveState state;
+  LiveFeed feed(state);
+  Viewer viewer;
+  SteadyTime now = kStart;
+  state.take(batch_of(10), now);
+  state.take(answer_of(1), now, 0);
+  auto message = nlohmann::json::parse(feed.next_message(viewer, now));
+  EXPECT_EQ(message["group"], "part");
+  EXPECT_EQ(message["picture"]["sampleCount"], 7);
+  EXPECT_EQ(message["samples"]["runs"][0]["points"].size(), 20U);
+  EXPECT_TRUE(message["samples"]["anew"]);
+  EXPECT_EQ(feed.next_message(viewer, now + 1ms), "");
+  // Only the new samples; the picture has not changed.
+  state.take(batch_of(4), now);
+  message = nlohmann::json::parse(feed.next_message(viewer, now + 2ms));
+  EXPECT_FALSE(message.contains("picture"));
+  EXPECT_EQ(message["samples"]["runs"][0]["points"].size(), 8U);
+  // A viewer that comes late gets everything.
+  Viewer late;
+  message = nlohmann::json::parse(feed.next_message(late, now + 3ms));
+  EXPECT_EQ(message["samples"]["runs"][0]["points"].size(), 28U);
+}
+
+TEST(LiveFeed, FollowsTheGroupThatIsTouchedUnlessOneIsChosen) {
+  LiveState state;
+  LiveFeed feed(state);
+  Viewer viewer;
+  const auto shown = [&](SteadyTime now) {
+    (void)feed.next_message(viewer, now);
+    return viewer.shown;
+  };
+  state.take(answer_of(1, "one"), kStart, 0);
+  EXPECT_EQ(shown(kStart), "one");
+  // Two groups touched at once do not make the picture flicker.
+  state.take(answer_of(1, "two"), kStart + 500ms, 0);
+  EXPECT_EQ(shown(kStart + 500ms), "one");
+  EXPECT_EQ(shown(kStart + 1100ms), "two");
+  viewer.wanted = "one";
+  EXPECT_EQ(shown(kStart + 2s), "one");
+  viewer.wanted = "not-there";
+  EXPECT_EQ(shown(kStart + 3s), "not-there");
+}
+
+TEST(PictureJson, NumbersThatAreNoneAndTextOfAnyBytesGiveValidJson) {
+  LiveState state;
+  v1::Recognition answer = answer_of(1);
+  answer.set_curve_class(v1::CURVE_CLASS_CIRCLE);
+  answer.mutable_parameters()->set_a(0.02);
+  answer.mutable_pose()->set_x_m(0.3);
+  for (int i = 0; i < 16; ++i) answer.add_covariance(std::numeric_limits<double>::infinity());
+  v1::Decision& decision = *answer.add_decisions();
+  decision.set_test("<b>\"\\\n</script>");
+  decision.set_value(std::numeric_limits<double>::quiet_NaN());
+  state.take(answer, kStart, 0);
+  const auto picture = nlohmann::json::parse(to_text(picture_json(*state.find("part"), kStart)));
+  EXPECT_EQ(picture["decisions"][0]["test"], "<b>\"\\\n</script>");
+  EXPECT_TRUE(picture["decisions"][0]["value"].is_null());
+  EXPECT_EQ(picture["curve"]["points"].size(), 482U);
+  EXPECT_FALSE(picture["curve"].contains("left"));
+  EXPECT_NE(to_text("\xff\xfe").find("\xef\xbf\xbd"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,356 @@
+"""Simulator, node, palpate view and a real browser: what the page shows is what the subscriber gets."""
+import json
+import math
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+import time
+import unittest
+import urllib.request
+
+import zmq
+
+import browser as chromium
+from browser import Browser
+from bus import Bus, Probe, wait_for
+from canonical import point_on
+from palpate.v1 import curve_pb2, recognition_pb2
+from programs import SIM, SOURCE, TOOL, run
+from view_process import start_view
+
+SCENES = sorted((SOURCE / "sim/scenes").glob("*.textproto"))
+SPACE = " "
+
+# Places of the drawn curve, in pixels of the picture.
+DRAWN_CURVE = """
+const path = document.getElementById('curve-path'), plane = document.getElementById('plane');
+const matrix = path.getCTM(), length = path.getTotalLength(), places = [];
+for (let i = 0; i <= 4000; ++i) {
+  const p = path.getPointAtLength(length * i / 4000).matrixTransform(matrix);
+  places.push([p.x, p.y]);
+}
+return places;
+"""
+# World coordinates in metres to pixels of the picture.
+TO_PIXELS = """
+const matrix = document.getElementById('curve-path').getCTM();
+const [points, origin] = arguments;
+return points.map(([x, y]) => {
+  const p = new DOMPoint(1000 * (x - origin[0]), -1000 * (y - origin[1])).matrixTransform(matrix);
+  return [p.x, p.y];
+});
+"""
+QUANTITIES = """
+return Object.fromEntries([...document.querySelectorAll('#quantities data')].map(
+    (cell) => [cell.id, [cell.value, cell.dataset.sigma ?? '']]));
+"""
+
+
+def distance_to_path(point, path):
+    """Least distance of a point from a polyline."""
+    best = math.inf
+    for (x0, y0), (x1, y1) in zip(path, path[1:]):
+        dx, dy = x1 - x0, y1 - y0
+        length = dx * dx + dy * dy
+        part = 0 if length == 0 else max(0, min(1, ((point[0] - x0) * dx + (point[1] - y0) * dy) / length))
+        best = min(best, math.hypot(point[0] - x0 - part * dx, point[1] - y0 - part * dy))
+    return best
+
+
+def patch_range(patch, contacts):
+    """Canonical curve parameters between which a patch lies. A patch of a closed spline has the spline's own
+    instead: its contacts tell where they are, as (t^2, a t^3 + b t^2 + c t) gives t."""
+    if patch["curve_class"] != "CURVE_CLASS_CUBIC_SPLINE":
+        return patch["start_t"], patch["end_t"]
+    a, b, c = (patch["parameters"][letter] for letter in "abc")
+    pose = patch["pose"]
+    cosine, sine = math.cos(pose.get("theta_rad", 0.0)), math.sin(pose.get("theta_rad", 0.0))
+    found = []
+    for contact in contacts:
+        x, y = contact.x_m - pose.get("x_m", 0.0), contact.y_m - pose.get("y_m", 0.0)
+        u, v = cosine * x + sine * y, -sine * x + cosine * y
+        found.append((v - b * u) / (a * u + c))
+    return min(found), max(found)
+
+
+class View(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = cls.enterClassContext(Browser())
+
+    def look(self, bus, *fragment):
+        """A node, the view, and the page open on it."""
+        node = bus.start_node()
+        view, url = start_view(bus)
+        self.browser.open("about:blank")
+        self.browser.open(url + "/" + "".join(fragment))
+        self.browser.wait("return document.querySelector('#link-state').textContent === 'live'")
+        return node, view, url
+
+    def choose(self, group):
+        self.browser.wait("const select = document.querySelector('#group'); select.value = arguments[0]; "
+                          "if (select.value === arguments[0]) select.onchange(); "
+                          "return select.value === arguments[0]", group)
+
+    def tearDown(self):
+        self.assertEqual(self.expected_problems(self.browser.problems()), [])
+
+    @staticmethod
+    def expected_problems(problems):
+        # The page says on its own that the server is gone; the browser notes each try.
+        return [p for p in problems if "WebSocket connection to" not in p]
+
+    def test_every_scene_is_shown_as_the_subscriber_gets_it_and_to_a_pixel(self):
+        with Bus() as bus:
+            self.look(bus)
+            planner = bus.subscriber()
+            for scene in SCENES:
+                with self.subTest(scene=scene.stem):
+                    truth_path = bus.folder / f"{scene.stem}.json"
+                    bus.simulate(scene, "--fast", "--truth", truth_path)
+                    for line in truth_path.read_text().splitlines():
+                        self.check_scene(planner, json.loads(line))
+
+    def check_scene(self, planner, truth):
+        answer = wait_for(planner, lambda a: a.group == truth["group"] and a.object == int(truth["object"]) and
+                          a.sample_count == int(truth["sample_count"]))
+        self.choose(answer.group)
+        self.browser.wait("return document.querySelector('#save-csv').href.endsWith(arguments[0]) && "
+                          "document.querySelector('#sample-count')?.value === arguments[1] && "
+                          "document.querySelector('#class').dataset.status === 'recognized' && "
+                          "window.palpateObject === arguments[2]",
+                          f"/{answer.group}.csv", str(answer.sample_count), str(answer.object))
+        name = curve_pb2.CurveClass.Name(answer.curve_class).removeprefix("CURVE_CLASS_").lower()
+        self.assertEqual(self.browser.text("#class").replace("-", "_").replace(" ", "_"), name)
+        shown = self.browser.run(QUANTITIES)
+        expected = {letter: getattr(answer.parameters, letter) for letter in "abc"
+                    if answer.parameters.HasField(letter)}
+        if answer.HasField("pose"):
+            expected |= {"x": answer.pose.x_m, "y": answer.pose.y_m, "theta": answer.pose.theta_rad}
+        size = len(expected)
+        for i, (key, value) in enumerate(expected.items()):
+            # Exactly: the page keeps every digit.
+            self.assertEqual(float(shown[f"quantity-{key}"][0]), value)
+            sigma = math.sqrt(max(answer.covariance[i * size + i], 0.0))
+            self.assertAlmostEqual(float(shown[f"quantity-{key}"][1] or "inf"), sigma, delta=1e-12 * sigma)
+        self.assertEqual(len(shown), size + 1)  # and the number of samples
+        best = self.browser.run("return document.querySelector('#hypotheses data').value")
+        self.assertEqual(float(best), answer.hypotheses[0].probability)
+        if answer.HasField("pose"):
+            self.check_curve(truth, answer)
+
+    def check_curve(self, truth, answer):
+        """The true curve along everything that was touched, within a pixel of the drawn one."""
+        origin = self.browser.run("return window.palpateOrigin")
+        drawn = self.browser.run(DRAWN_CURVE)
+        points = []
+        for patch in truth["patches"]:
+            contacts = [c for c in answer.contacts if (c.probe, c.patch) == (patch["probe"], patch["patch"])]
+            start, end = patch_range(patch, contacts)
+            for i in range(21):
+                t = start + (end - start) * i / 20
+                points.append(point_on(patch["curve_class"], patch.get("parameters", {}), patch["pose"], t))
+        self.assertGreater(len(points), 20)
+        for pixel in self.browser.run(TO_PIXELS, points, origin):
+            self.assertLess(distance_to_path(pixel, drawn), 1.0)
+
+    def test_a_silent_probe_is_shown(self):
+        with Bus() as bus:
+            self.look(bus)
+            status = bus.subscriber("status/")
+            sim = bus.start(SIM, "--contacts", bus.contacts, "--quiet", "--repeat", "0", "--pause", "0",
+                            SOURCE / "sim/scenes/circle.textproto")
+            alive = "return document.querySelector('tr[data-probe=finger]')?.innerText.includes('alive')"
+            self.browser.wait(alive)
+            sim.send_signal(signal.SIGSTOP)
+            frozen = time.monotonic()
+            wait_for(status, lambda s: s.probes and not s.probes[0].alive)
+            said = time.monotonic()
+            self.browser.wait("return document.querySelector('tr[data-probe=finger]').innerText.includes('silent')")
+            shown = time.monotonic()
+            print(f"silent probe: the node says so after {said - frozen:.2f} s, the page {shown - said:.2f} s later")
+            self.assertLess(shown - frozen, 1.0)
+            sim.send_signal(signal.SIGCONT)
+            self.browser.wait(alive)
+
+    def test_a_restarted_node_is_picked_up_without_a_reload(self):
+        with Bus() as bus:
+            node, _, _ = self.look(bus)
+            self.browser.run("window.sameLoad = true")
+            bus.simulate(SOURCE / "sim/scenes/circle.textproto", "--fast")
+            self.browser.wait("return document.querySelector('#class').textContent === 'circle'")
+            node.kill()
+            node.wait()
+            self.browser.wait("return document.querySelector('#link-state').textContent.startsWith("
+                              "'recognizer silent for')")
+            bus.start_node()
+            bus.simulate(SOURCE / "sim/scenes/ellipse.textproto", "--fast")
+            self.browser.wait("return document.querySelector('#class').textContent === 'ellipse' && "
+                              "document.querySelector('#link-state').textContent === 'live'")
+            self.assertTrue(self.browser.run("return window.sameLoad"))
+
+    def test_a_restarted_view_is_picked_up_without_a_reload(self):
+        with Bus() as bus:
+            _, view, url = self.look(bus)
+            self.browser.run("window.sameLoad = true")
+            view.kill()
+            view.wait()
+            self.browser.wait("return document.querySelector('#link-state').className === 'bad'")
+            again = bus.start(TOOL, "view", "--results", bus.results, "--listen", url.removeprefix("http://"))
+            self.browser.wait("return document.querySelector('#link-state').textContent === 'live'")
+            self.assertTrue(self.browser.run("return window.sameLoad"))
+            again.terminate()
+            self.assertEqual(again.wait(5), 0)
+
+    def test_an_object_change_clears_what_was_felt_before(self):
+        dots = "return [...document.querySelectorAll('#plane path.samples')].reduce(" \
+               "(sum, path) => sum + path.getAttribute('d').split('M').length - 1, 0) === arguments[0]"
+        with Bus() as bus:
+            self.look(bus)
+            probe = Probe(bus.publisher())
+            probe.stroke()
+            self.browser.wait("return document.querySelector('#class').textContent === 'circle'")
+            self.browser.wait(dots, 200)
+            probe.send(probe.batch(0, count=2, object_number=2))
+            self.browser.wait(dots, 2)
+            self.browser.wait("return document.querySelector('#class').textContent === 'nothing yet' && "
+                              "document.querySelector('#curve-path').getAttribute('d') === ''")
+
+    def test_pause_scrub_and_go_on(self):
+        with Bus() as bus:
+            self.look(bus)
+            bus.simulate(SOURCE / "sim/scenes/circle.textproto", "--speed", "0.5")
+            self.browser.wait("return document.querySelector('#class').textContent === 'circle'")
+            total = self.browser.run("return document.querySelector('#sample-count').value")
+            self.browser.press(SPACE)
+            self.browser.wait("return !document.querySelector('#past').hidden")
+            moments = self.browser.run("return Number(document.querySelector('#scrub').max) + 1")
+            self.assertGreater(moments, 4)
+            # Back to the first moment: less was known.
+            self.browser.run("const scrub = document.querySelector('#scrub'); scrub.value = 1; scrub.oninput()")
+            early = self.browser.run("return document.querySelector('#sample-count')?.value ?? '0'")
+            self.assertLess(int(early), int(total))
+            # What comes meanwhile is shown when the picture goes on.
+            bus.simulate(SOURCE / "sim/scenes/ellipse.textproto", "--fast")
+            time.sleep(0.3)
+            self.assertNotEqual(self.browser.text("#class"), "ellipse")
+            self.browser.run("document.querySelector('#resume').click()")
+            self.browser.wait("return document.querySelector('#class').textContent === 'ellipse'")
+
+    def test_a_link_reproduces_the_view(self):
+        with Bus() as bus:
+            _, _, url = self.look(bus)
+            bus.simulate(SOURCE / "sim/scenes/circle.textproto", "--fast")
+            bus.simulate(SOURCE / "sim/scenes/two_finger_grasp.textproto", "--fast")
+            self.browser.wait("return document.querySelector('#group').options.length === 3")
+            self.choose("part")
+            self.browser.run("document.querySelector('#zoom-in').click();"
+                             "document.querySelector('input[name=residuals]').click();"
+                             "document.querySelector('input[name=tips]').click()")
+            self.browser.wait("return document.querySelector('#class').textContent === 'circle'")
+            place = "return document.querySelector('#plane .world').getAttribute('transform').match(/[-0-9.e]+/g).map(Number)"
+            link, before = self.browser.run("return location.hash"), self.browser.run(place)
+            self.assertIn("group=part", link)
+            self.browser.open("about:blank")
+            self.browser.open(url + "/" + link)
+            self.browser.wait("return document.querySelector('#class').textContent === 'circle'")
+            self.assertEqual(self.browser.run("return location.hash"), link)
+            for now, then in zip(self.browser.run(place), before):
+                self.assertAlmostEqual(now, then, delta=1e-3)  # a thousandth of a pixel
+            self.assertEqual(self.browser.run("return document.querySelector('#plane').getAttribute('class')"),
+                             "hide-tips")
+
+    def test_what_is_saved_is_what_was_seen(self):
+        with Bus() as bus, tempfile.TemporaryDirectory() as folder:
+            _, _, url = self.look(bus)
+            bus.simulate(SOURCE / "sim/scenes/two_finger_grasp.textproto", "--fast")
+            self.browser.wait("return document.querySelector('#sample-count')?.value === '242'")
+            path = pathlib.Path(folder) / "saved.csv"
+            self.assertEqual(self.browser.run("return document.querySelector('#save-csv').href"),
+                             url + "/samples/grasp.csv")
+            path.write_bytes(urllib.request.urlopen(url + "/samples/grasp.csv").read())
+            code, out, err = run(TOOL, "fit", path)
+            self.assertEqual(code, 0, err)
+            fitted = json.loads(out)
+            with urllib.request.urlopen(url + "/answer/grasp.json") as reply:
+                answer = json.load(reply)
+            self.assertEqual((fitted["group"], fitted["sample_count"], fitted["curve_class"]),
+                             ("grasp", "242", answer["curve_class"]))
+            svg = self.browser.run("return import('/saving.js').then((saving) => "
+                                   "saving.standalone(document.querySelector('#plane'), 'a <b>'))")
+            self.assertIn("<title>a &lt;b&gt;</title>", svg)
+            self.assertNotIn("class=", svg)
+
+    def test_hostile_messages_stay_text(self):
+        evil = "<img src=x onerror='window.hacked=1'><script>window.hacked=1</script>"
+        with Bus() as bus:
+            node, view, _ = self.look(bus)
+            node.kill()
+            node.wait()
+            false_node = bus.context.socket(zmq.XPUB)
+            false_node.setsockopt(zmq.XPUB_VERBOSE, 1)
+            false_node.bind(bus.results)
+            for _ in range(3):  # recognitions, status, contacts
+                self.assertTrue(false_node.poll(10000))
+                false_node.recv()
+            answer = recognition_pb2.Recognition(group="part", object=1)
+            answer.header.source, answer.header.epoch = "node", 1
+            answer.header.frame = evil
+            answer.status = recognition_pb2.RECOGNITION_STATUS_COLLECTING
+            answer.decisions.add(test=evil, value=math.nan, threshold=math.inf)
+            answer.contacts.add(probe=evil, patch=1, x_m=1.0, y_m=math.nan, kappa_per_m=math.inf)
+            false_node.send_multipart([b"recognition/part/", answer.SerializeToString()])
+            self.browser.wait("return document.querySelector('#decisions').innerText.includes('onerror')")
+            # Names that are none, shapes that are none, numbers of any size: nothing of it is drawn.
+            answer.header.seq, answer.group = 1, evil
+            false_node.send_multipart([b"recognition/part/", answer.SerializeToString()])
+            broken = recognition_pb2.Recognition(group="broken", object=2,
+                                                 curve_class=curve_pb2.CURVE_CLASS_ELLIPSE,
+                                                 status=recognition_pb2.RECOGNITION_STATUS_RECOGNIZED)
+            for seq, (a, b, x) in enumerate([(1.0, 2.0, 0.0), (math.nan, 1.0, 0.0), (1e308, 1e-308, 1e308),
+                                             (1.0, 0.5, math.inf), (-1.0, 0.0, 0.0)]):
+                broken.header.seq, broken.header.epoch = seq, 1
+                broken.parameters.a, broken.parameters.b = a, b
+                broken.pose.x_m = x
+                del broken.covariance[:]
+                broken.covariance.extend([math.nan] * 25)
+                false_node.send_multipart([b"recognition/broken/", broken.SerializeToString()])
+            for number in range(20000):
+                broken.group = f"group-{number}"
+                false_node.send_multipart([f"recognition/group-{number}/".encode(), broken.SerializeToString()])
+                false_node.send_multipart([f"contact/probe-{number}/".encode(), os.urandom(50)])
+            answer.header.seq, answer.group = 2, "part"
+            answer.sample_count = 4711
+            deadline = time.monotonic() + 20
+            while time.monotonic() < deadline:  # the flood may have cost some of these
+                answer.header.seq += 1
+                false_node.send_multipart([b"recognition/part/", answer.SerializeToString()])
+                if self.browser.run("return document.querySelector('#sample-count')?.value") == "4711":
+                    break
+                time.sleep(0.1)
+            self.assertEqual(self.browser.run("return document.querySelector('#sample-count')?.value"), "4711")
+            self.assertIsNone(self.browser.run("return window.hacked ?? null"))
+            self.assertEqual(self.browser.run("return document.querySelectorAll('img, script').length"), 1)
+            self.assertLessEqual(self.browser.run("return document.querySelector('#group').options.length"), 65)
+            self.assertIsNone(view.poll())
+
+    def test_touch_to_pixel(self):
+        with Bus() as bus:
+            self.look(bus)
+            for _ in range(3):
+                bus.simulate(SOURCE / "sim/scenes/two_finger_grasp.textproto")
+            # Some of the answers were drawn; how soon is said here and decided nowhere: machines differ.
+            latencies = sorted(self.browser.run("return window.palpateLatenciesMs"))
+            self.assertGreater(len(latencies), 20)
+            print(f"touch to pixel: p50 {latencies[len(latencies) // 2]:.0f} ms, "
+                  f"p99 {latencies[int(0.99 * len(latencies))]:.0f} ms of {len(latencies)} pictures")
+
+
+if __name__ == "__main__":
+    if not chromium.available():
+        print("SKIPPED: no chromium and chromedriver here (apt-get install chromium chromium-driver): "
+              "the page is not tested")
+        sys.exit(77)  # ctest's SKIP_RETURN_CODE
+    unittest.main()
