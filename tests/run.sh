@@ -88,11 +88,11 @@ if [ "$sanitize" = yes ]; then
   PALPATE_TEST_STRESS=0.1 \
     ctest --test-dir build/asan --output-on-failure -j "$jobs" -L 'core|recognition'
   begin_part "building (thread)" 300
-  build tsan twin_test node_unit_test
+  build tsan twin_test
   begin_part "testing (thread)" 60
   # libzmq is not instrumented: its hand-over between threads looks like a race.
   TSAN_OPTIONS="suppressions=$PWD/tests/processes/tsan.supp" \
-    ctest --test-dir build/tsan --output-on-failure -R '^(twin_test|node_unit_test)$'
+    ctest --test-dir build/tsan --output-on-failure -R '^twin_test$'
 fi
 
 if [ "$fuzz" != 0 ]; then

@@ -1,6 +1,7 @@
 #include "core/recognition/canonical_fit.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -38,9 +39,13 @@ std::optional<Placement> place_line(const ConicCoefficients& q, const FitData& d
   // Where the line lies nearest to the points' mean, along the first patch's direction of travel.
   const Vec2 mean = mean_position(data);
   const Vec2 origin = mean - (normal.dot(mean) + q[5]) / (norm * norm) * normal;
-  const auto first = data.patch(0);
   Vec2 direction = -left_of(normal) / norm;
-  if (direction.dot(first.back().position - first.front().position) < 0.0) {
+  // Every sample of a patch may have been set aside.
+  const auto first = std::find_if(data.patches.begin(), data.patches.end(),
+                                  [](const PatchSpan& patch) { return patch.size() > 0; });
+  if (first != data.patches.end() &&
+      direction.dot(data.points[first->end - 1].position - data.points[first->begin].position) <
+          0.0) {
     direction = -direction;
   }
   return Placement{

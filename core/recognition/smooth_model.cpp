@@ -55,6 +55,9 @@ std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch) 
 
 /// A section too short to be smoothed stands for itself.
 void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
+  if (section.size() == 0) {
+    return;  // a patch whose every sample was set aside
+  }
   const Vec2 first = data->points[section.begin].position;
   const Vec2 along = data->points[section.end - 1].position - first;
   const double whole = along.norm();
