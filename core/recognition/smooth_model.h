@@ -8,10 +8,6 @@
 
 namespace palpate {
 
-/// Piecewise polynomial fit in chord frames: a yardstick for every class, and the points reduced to
-/// what they say. Its residuals are noise alone, whatever the class (as long as the curve is smooth
-/// on the scale of a section); a class that leaves much more behind does not fit, and one that
-/// leaves no more cannot be bettered.
 /// The reduced points of one section and the chord frame that they were smoothed in.
 struct ReducedSection {
   std::size_t begin = 0;  ///< of the reduced points
@@ -22,6 +18,10 @@ struct ReducedSection {
   bool joined = false;  ///< continues the section before it, in the same patch
 };
 
+/// Piecewise polynomial fit in chord frames: a yardstick for every class, and the points reduced to
+/// what they say. Its residuals are noise alone, whatever the class (as long as the curve is smooth
+/// on the scale of a section); a class that leaves much more behind does not fit, and one that
+/// leaves no more cannot be bettered.
 struct SmoothModel {
   double chi2 = 0.0;   ///< sum of squared normalised residuals
   int parameters = 0;  ///< polynomial coefficients used in all sections

@@ -13,19 +13,6 @@ namespace {
 /// -log of likelihood times prior.
 double potential(const TouchedCurve& curve) { return 0.5 * curve.chi2 - curve.log_prior; }
 
-/// J^T J and the prior's curvature, that of normal laws as high, in units of the widths; `fixed`
-/// (or -1) does not move.
-TouchedMatrix hessian_of(const TouchedCurve& curve, int fixed) {
-  TouchedMatrix hessian = curve.information;
-  hessian.diagonal().array() += 1.0;
-  if (fixed >= 0) {
-    hessian.row(fixed).setZero();
-    hessian.col(fixed).setZero();
-    hessian(fixed, fixed) = 1.0;
-  }
-  return hessian;
-}
-
 double log_determinant(const Eigen::LLT<TouchedMatrix>& llt) {
   return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
 }
@@ -234,6 +221,17 @@ void integrate(const FitData& data, TouchedCurve best, double first_step, double
 }
 
 }  // namespace
+
+TouchedMatrix hessian_of(const TouchedCurve& curve, int fixed) {
+  TouchedMatrix hessian = curve.information;
+  hessian.diagonal().array() += 1.0;
+  if (fixed >= 0) {
+    hessian.row(fixed).setZero();
+    hessian.col(fixed).setZero();
+    hessian(fixed, fixed) = 1.0;
+  }
+  return hessian;
+}
 
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
                                          double inflation, Integration integration) {

@@ -91,14 +91,7 @@ ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvide
     if (!x) {
       continue;
     }
-    TouchedMatrix hessian = curve.information;
-    hessian.diagonal().array() += 1.0;
-    if (evidence.widest >= 0) {
-      hessian.row(evidence.widest).setZero();
-      hessian.col(evidence.widest).setZero();
-      hessian(evidence.widest, evidence.widest) = 1.0;
-    }
-    const Eigen::LLT<TouchedMatrix> llt(hessian);
+    const Eigen::LLT<TouchedMatrix> llt(hessian_of(curve, evidence.widest));
     Eigen::Matrix<double, 6, 6> jacobian = Eigen::Matrix<double, 6, 6>::Zero();
     for (int k = 0; k < coordinates; ++k) {
       if (k == evidence.widest) {
