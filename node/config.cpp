@@ -12,8 +12,8 @@
 #include <sstream>
 #include <type_traits>
 
-#include "node/text_format.h"
-#include "node/topics.h"
+#include "node/files/text_format.h"
+#include "node/wire/topics.h"
 
 namespace palpate {
 namespace {

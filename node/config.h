@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "node/files/result.h"
 #include "node/options.h"
-#include "node/result.h"
 #include "palpate/v1/node_config.pb.h"
 
 namespace palpate {

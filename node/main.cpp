@@ -13,11 +13,11 @@
 #include <string>
 
 #include "node/config.h"
-#include "node/log_sink.h"
 #include "node/node.h"
-#include "node/quiet_protobuf.h"
-#include "node/reload_signal.h"
-#include "node/stop_signals.h"
+#include "node/process/log_sink.h"
+#include "node/process/quiet_protobuf.h"
+#include "node/process/reload_signal.h"
+#include "node/process/stop_signals.h"
 
 namespace {
 

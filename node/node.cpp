@@ -11,10 +11,10 @@
 #include <thread>
 #include <utility>
 
-#include "node/clock.h"
-#include "node/reload_signal.h"
-#include "node/socket.h"
-#include "node/status.h"
+#include "node/process/clock.h"
+#include "node/process/reload_signal.h"
+#include "node/publish/status.h"
+#include "node/wire/socket.h"
 
 namespace palpate {
 namespace {
@@ -26,8 +26,8 @@ constexpr milliseconds kTick{100};
 // Under a flood, answers and all else get their turn after this long.
 constexpr milliseconds kDrainTime{1};
 constexpr int kSubscriptionsPerTurn = 100;
-// libzmq takes in all that waits before it gives us the first: a few at a time, so that who asks for
-// too much is noticed, and nobody waits, while it asks.
+// libzmq takes in all that waits before it gives us the first: a few at a time, so that who asks
+// for too much is noticed, and nobody waits, while it asks.
 constexpr int kSubscriptionsWaiting = 4;
 // Subscriptions are a topic and a byte; libzmq's own commands fit too.
 constexpr std::int64_t kMaxSubscriptionBytes = 1024;
@@ -57,8 +57,8 @@ SocketSettings results_settings(const NodeOptions& options, const NodeKeys& keys
   return settings;
 }
 
-// Slow recognitions nobody expected, as those of new groups, that may run beside as many as run at a
-// time anyway without keeping quick ones waiting.
+// Slow recognitions nobody expected, as those of new groups, that may run beside as many as run at
+// a time anyway without keeping quick ones waiting.
 constexpr std::size_t kSpareWorkers = 4;
 
 std::size_t recognitions_at_a_time(const NodeOptions& options) {
@@ -116,7 +116,8 @@ std::unique_ptr<PeerGuard> Node::guard(zmq::socket_t& socket,
     const Result<Endpoint> endpoint = parse_endpoint(text, /*bind_by_default=*/true);
     if (endpoint && !endpoint.value->bind) connected.push_back(endpoint.value->address);
   }
-  // libzmq tells a socket's events to one listener: the peers of one that connects are of its choice.
+  // libzmq tells a socket's events to one listener: the peers of one that connects are of its
+  // choice.
   if (connected.empty()) {
     return std::make_unique<PeerGuard>(context_, socket, options_.peers, what);
   }
@@ -176,9 +177,8 @@ bool Node::drain_contacts(SteadyTime deadline) {
   bool more = true;
   while (now < deadline && (more = receive_now(contacts_, incoming_))) {
     if (contact_peers_) contact_peers_->hear(descriptor_of(incoming_.topic));
-    const v1::RejectReason reason =
-        intake_.take(incoming_.frame_count, view_of(incoming_.topic), view_of(incoming_.payload),
-                     now, unix_time_ns());
+    const v1::RejectReason reason = intake_.take(incoming_.frame_count, view_of(incoming_.topic),
+                                                 view_of(incoming_.payload), now, unix_time_ns());
     if (reason == v1::REJECT_REASON_UNSPECIFIED) publisher_.forward(incoming_);
     now = now_steady();
   }

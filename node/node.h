@@ -1,5 +1,5 @@
-// The recognizer as a process: contacts in, recognitions out. One thread and one poll for all sockets,
-// workers for what takes long.
+// The recognizer as a process: contacts in, recognitions out. One thread and one poll for all
+// sockets, workers for what takes long.
 #pragma once
 
 #include <chrono>
@@ -11,18 +11,18 @@
 #include <vector>
 #include <zmq.hpp>
 
-#include "node/compute_times.h"
-#include "node/intake.h"
-#include "node/node_keys.h"
+#include "node/files/result.h"
+#include "node/groups/compute_times.h"
+#include "node/groups/intake.h"
+#include "node/groups/workers.h"
 #include "node/options.h"
-#include "node/path_lock.h"
-#include "node/peer_guard.h"
-#include "node/reconnect_guard.h"
-#include "node/result.h"
-#include "node/result_publisher.h"
-#include "node/socket.h"
-#include "node/workers.h"
-#include "node/zap_handler.h"
+#include "node/publish/result_publisher.h"
+#include "node/security/node_keys.h"
+#include "node/security/peer_guard.h"
+#include "node/security/zap_handler.h"
+#include "node/wire/path_lock.h"
+#include "node/wire/reconnect_guard.h"
+#include "node/wire/socket.h"
 #include "palpate/v1/node_status.pb.h"
 
 namespace palpate {

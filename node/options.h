@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "node/endpoint.h"
-#include "node/intake.h"
-#include "node/peer_guard.h"
-#include "node/recognizer_options.h"
+#include "node/groups/intake.h"
+#include "node/security/peer_guard.h"
+#include "node/wire/endpoint.h"
+#include "node/wire/recognizer_options.h"
 
 namespace palpate {
 
@@ -17,8 +17,8 @@ struct NodeOptions {
   std::string name = "recognizer";
   std::vector<std::string> contacts{std::string(kDefaultContactsEndpoint)};
   std::vector<std::string> results{std::string(kDefaultResultsEndpoint)};
-  /// Probes to listen to, by the beginning of their names; none = all. Several nodes can so share the
-  /// probes of one endpoint.
+  /// Probes to listen to, by the beginning of their names; none = all. Several nodes can so share
+  /// the probes of one endpoint.
   std::vector<std::string> probe_prefixes;
   std::string curve_secret_key;
   std::string allow_clients;
@@ -50,7 +50,8 @@ void for_each_option(Options& options, Visit&& visit) {
         options.contacts);
   visit({"results", "Endpoint for results, [bind:|connect:]ADDRESS; may be repeated"},
         options.results);
-  visit({"probe_prefixes", "Beginning of the names of probes to listen to; may be repeated; none = all"},
+  visit({"probe_prefixes",
+         "Beginning of the names of probes to listen to; may be repeated; none = all"},
         options.probe_prefixes);
   visit({"curve_secret_key", "CURVE: this node's secret key file"}, options.curve_secret_key);
   visit({"allow_clients", "CURVE: file of the public keys that may connect"},
@@ -62,7 +63,8 @@ void for_each_option(Options& options, Visit&& visit) {
         options.results_high_water_mark);
   visit({"max_peers", "Most connections to each socket", 1, kMostThings}, options.peers.max_peers);
   visit({"max_subscription_bytes",
-         "Subscriptions of one planner, 32 bytes counted beside each; of all 16 times as much [bytes]",
+         "Subscriptions of one planner, 32 bytes counted beside each; of all 16 times as much "
+         "[bytes]",
          1024, 1e8},
         options.peers.max_subscription_bytes);
   visit({"max_message_bytes", "Longest contact message [bytes]", 1024, 1e8},
@@ -72,12 +74,14 @@ void for_each_option(Options& options, Visit&& visit) {
   visit({"max_probes", "Most probes known at a time", 1, kMostThings}, intake.max_probes);
   visit({"max_groups", "Most groups in memory", 1, kMostThings}, intake.groups.max_groups);
   visit({"max_groups_per_probe",
-         "Groups a probe may have opened; a further one takes the place of its oldest", 1, kMostThings},
+         "Groups a probe may have opened; a further one takes the place of its oldest", 1,
+         kMostThings},
         intake.groups.max_groups_per_probe);
   visit({"max_probes_per_group", "Most probes that touch one object", 1, kMostThings},
         intake.group.max_probes_per_group);
   visit({"max_waiting_bytes",
-         "Memory of messages that wait for recognition, of all groups together [bytes]", 1 << 16, 4e9},
+         "Memory of messages that wait for recognition, of all groups together [bytes]", 1 << 16,
+         4e9},
         intake.groups.max_waiting_bytes);
   visit({"workers", "Recognitions computed at a time; 0 = as many as there are cores", 0, 1024},
         options.workers);

@@ -80,17 +80,15 @@ std::vector<TimedBatch> make_batches(const Scene& scene, std::span<const Simulat
         timed.batch.set_patch(patch.number);
         timed.batch.set_tip_radius_m(probes[i].tip_radius_m);
         timed.batch.set_material_side(to_wire_side(reported_side(patch)));
-        timed.batch.mutable_header()->set_frame(scene.description.frame().empty()
-                                                    ? std::string("world")
-                                                    : scene.description.frame());
+        timed.batch.mutable_header()->set_frame(
+            scene.description.frame().empty() ? std::string("world") : scene.description.frame());
         batches.push_back(timed);
         timed.batch.clear_samples();
       }
     }
   }
-  std::stable_sort(batches.begin(), batches.end(), [](const TimedBatch& a, const TimedBatch& b) {
-    return a.time_s < b.time_s;
-  });
+  std::stable_sort(batches.begin(), batches.end(),
+                   [](const TimedBatch& a, const TimedBatch& b) { return a.time_s < b.time_s; });
   return batches;
 }
 

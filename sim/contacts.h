@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/recognition/contact_sample.h"
+#include "core/recognition/samples/contact_sample.h"
 #include "palpate/v1/scene.pb.h"
 #include "sim/scene_file.h"
 
@@ -36,8 +36,8 @@ struct SimulatedProbe {
   std::vector<SimulatedPatch> patches;
 };
 
-/// All contacts of the scene. Sample i of a patch touches the surface at arc length i * spacing from
-/// the patch's start. `repetition` gives the same touches with other noise. O(samples).
+/// All contacts of the scene. Sample i of a patch touches the surface at arc length i * spacing
+/// from the patch's start. `repetition` gives the same touches with other noise. O(samples).
 std::vector<SimulatedProbe> simulate_contacts(const Scene& scene, std::uint64_t repetition = 0);
 
 /// Distance between two samples of a patch. [m]

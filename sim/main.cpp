@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "node/client/connection.h"
-#include "node/clock.h"
 #include "node/csv/contact_csv.h"
-#include "node/quiet_protobuf.h"
-#include "node/stop_signals.h"
+#include "node/process/clock.h"
+#include "node/process/quiet_protobuf.h"
+#include "node/process/stop_signals.h"
 #include "sim/contact_export.h"
 #include "sim/contacts.h"
 #include "sim/playback.h"
@@ -55,8 +55,9 @@ void add_options(CLI::App& app, CommandLine& options) {
       ->capture_default_str()
       ->type_name("FACTOR");
   app.add_flag("--fast", options.fast, "As fast as possible");
-  app.add_option("--repeat", options.repeat,
-                 "Play all scenes so many times, each time a new object with new noise; 0 = for ever")
+  app.add_option(
+         "--repeat", options.repeat,
+         "Play all scenes so many times, each time a new object with new noise; 0 = for ever")
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--pause", options.pause_s, "Seconds between two scenes")
@@ -71,12 +72,14 @@ void add_options(CLI::App& app, CommandLine& options) {
                  "Number of the first object; the others follow. Default: the scene's own, or else "
                  "one that was never used before (1 with --csv)")
       ->type_name("N");
-  app.add_option("--csv", options.csv,
-                 "Write the samples to FILE (- = standard output) for `palpate fit`, publish nothing")
+  app.add_option(
+         "--csv", options.csv,
+         "Write the samples to FILE (- = standard output) for `palpate fit`, publish nothing")
       ->type_name("FILE");
-  app.add_option("--truth", options.truth,
-                 "Write class, parameters and pose to FILE (- = standard output), one JSON line for "
-                 "each group and object")
+  app.add_option(
+         "--truth", options.truth,
+         "Write class, parameters and pose to FILE (- = standard output), one JSON line for "
+         "each group and object")
       ->type_name("FILE");
   CLI::Option* own = app.add_option("--curve-secret-key", options.own_key,
                                     "CURVE: this probe's secret key file (palpate keygen)")
@@ -138,9 +141,8 @@ class ObjectNumbers {
 
 std::string summary(const sim::Scene& scene, const sim::PlaybackCounts& counts,
                     std::uint64_t object) {
-  return scene.name + ": object " + std::to_string(object) + ", " +
-         std::to_string(counts.samples) + " samples in " + std::to_string(counts.messages) +
-         " messages" +
+  return scene.name + ": object " + std::to_string(object) + ", " + std::to_string(counts.samples) +
+         " samples in " + std::to_string(counts.messages) + " messages" +
          (counts.refused > 0 ? ", " + std::to_string(counts.refused) + " not taken" : "") + "\n";
 }
 
@@ -166,7 +168,8 @@ struct Player {
         const std::vector<sim::SimulatedProbe> probes = sim::simulate_contacts(scene, round);
         const std::uint64_t object = numbers.next(scene);
         sim::append_rows(scene, probes, object, table);
-        if (!tell_truth(scene, probes, object)) return failed(options.truth + ": cannot be written");
+        if (!tell_truth(scene, probes, object))
+          return failed(options.truth + ": cannot be written");
       }
     }
     Output csv;
@@ -195,7 +198,8 @@ struct Player {
         if (!is_first && sim::wait_or_stop(options.pause_s, stop_fd)) return kPlayed;
         const std::vector<sim::SimulatedProbe> probes = sim::simulate_contacts(scene, round);
         const std::uint64_t object = numbers.next(scene);
-        if (!tell_truth(scene, probes, object)) return failed(options.truth + ": cannot be written");
+        if (!tell_truth(scene, probes, object))
+          return failed(options.truth + ": cannot be written");
         std::vector<sim::TimedBatch> batches = sim::make_batches(scene, probes, object);
         const sim::PlaybackCounts counts =
             sim::play(batches, probes, options.fast ? 0.0 : options.speed, stop_fd, publisher);

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "node/clock.h"
+#include "node/process/clock.h"
 
 namespace palpate::sim {
 
@@ -17,8 +17,7 @@ bool wait_or_stop(double seconds, int stop_fd) {
   pollfd stop{stop_fd, POLLIN, 0};
   for (;;) {
     const auto left = std::max(deadline - Clock::now(), Clock::duration::zero());
-    const auto nanoseconds =
-        std::chrono::duration_cast<std::chrono::nanoseconds>(left).count();
+    const auto nanoseconds = std::chrono::duration_cast<std::chrono::nanoseconds>(left).count();
     const timespec timeout{nanoseconds / 1'000'000'000, nanoseconds % 1'000'000'000};
     if (ppoll(&stop, 1, &timeout, nullptr) > 0) return true;
     if (Clock::now() >= deadline) return false;
@@ -31,9 +30,7 @@ PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProb
   const bool paced = speed > 0.0;
   const double scale = paced ? 1.0 / speed : 0.0;
   const std::int64_t start_ns = unix_time_ns();
-  const auto due_ns = [&](double time_s) {
-    return start_ns + std::llround(time_s * scale * 1e9);
-  };
+  const auto due_ns = [&](double time_s) { return start_ns + std::llround(time_s * scale * 1e9); };
   for (TimedBatch& timed : batches) {
     const double wait_s =
         paced ? 1e-9 * static_cast<double>(due_ns(timed.time_s) - unix_time_ns()) : 0.0;

@@ -4,9 +4,9 @@
 #include <set>
 #include <utility>
 
-#include "node/convert.h"
-#include "node/ingest.h"
-#include "node/topics.h"
+#include "node/intake/ingest.h"
+#include "node/wire/convert.h"
+#include "node/wire/topics.h"
 #include "sim/contacts.h"
 
 namespace palpate::sim {
@@ -69,8 +69,7 @@ bool SceneCheck::fail(const Place& place, const char* field, const std::string& 
 
 bool SceneCheck::not_negative(const Place& place, const char* field) {
   const double value = number(place.message, field);
-  return (value >= 0.0 && std::isfinite(value)) ||
-         fail(place, field, "must be a number >= 0");
+  return (value >= 0.0 && std::isfinite(value)) || fail(place, field, "must be a number >= 0");
 }
 
 bool SceneCheck::positive(const Place& place, const char* field) {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "node/text_format.h"
+#include "node/files/text_format.h"
 #include "sim/scene_check.h"
 
 namespace palpate::sim {

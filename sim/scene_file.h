@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/curves/pose2.h"
-#include "node/result.h"
+#include "node/files/result.h"
 #include "palpate/v1/scene.pb.h"
 #include "sim/shape.h"
 

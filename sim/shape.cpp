@@ -21,10 +21,11 @@ ShapePoint point_at(const Shape& shape, double t) {
   const auto point = [](const CurveDerivatives& d) {
     return ShapePoint{d.position, d.first, d.second};
   };
-  return std::visit(Overloaded{[&](const Curve& curve) { return point(derivatives(curve, t)); },
-                               [&](const ClosedSpline& spline) { return point(spline.derivatives(t)); },
-                               [t](const auto& other) { return other.point_at(t); }},
-                    shape);
+  return std::visit(
+      Overloaded{[&](const Curve& curve) { return point(derivatives(curve, t)); },
+                 [&](const ClosedSpline& spline) { return point(spline.derivatives(t)); },
+                 [t](const auto& other) { return other.point_at(t); }},
+      shape);
 }
 
 double curvature(const ShapePoint& point) {
@@ -34,15 +35,14 @@ double curvature(const ShapePoint& point) {
 
 double parameter_at_arc_length(const Shape& shape, double t0, double s) {
   return std::visit(
-      Overloaded{
-          [&](const Curve& curve) { return palpate::parameter_at_arc_length(curve, t0, s); },
-          [&](const ClosedSpline& spline) { return spline.parameter_at_arc_length(t0, s); },
-          [&](const auto& other) {
-            const auto speed = [&](double t) { return other.point_at(t).first.norm(); };
-            return invert_arc_length(
-                [&](double from, double to) { return integrate_speed(speed, from, to); }, speed, t0,
-                s, std::abs(s) / speed(t0));
-          }},
+      Overloaded{[&](const Curve& curve) { return palpate::parameter_at_arc_length(curve, t0, s); },
+                 [&](const ClosedSpline& spline) { return spline.parameter_at_arc_length(t0, s); },
+                 [&](const auto& other) {
+                   const auto speed = [&](double t) { return other.point_at(t).first.norm(); };
+                   return invert_arc_length(
+                       [&](double from, double to) { return integrate_speed(speed, from, to); },
+                       speed, t0, s, std::abs(s) / speed(t0));
+                 }},
       shape);
 }
 

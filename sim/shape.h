@@ -4,8 +4,8 @@
 #include <optional>
 #include <variant>
 
-#include "core/curves/closed_spline.h"
 #include "core/curves/curve.h"
+#include "core/part/closed_spline.h"
 #include "sim/shape_point.h"
 #include "sim/unclassified_shapes.h"
 

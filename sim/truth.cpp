@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "node/convert.h"
+#include "node/wire/convert.h"
 
 namespace palpate::sim {
 namespace {
@@ -45,8 +45,7 @@ v1::SceneTruth truth_of(const Scene& scene, std::span<const SimulatedProbe> prob
   const std::optional<ClassifiedPiece> piece = common_piece(scene, probes);
   describe(scene, piece, truth);
   if (piece) {
-    truth.set_pose_symmetry(
-        static_cast<std::uint32_t>(pose_symmetry(class_of(piece->curve))));
+    truth.set_pose_symmetry(static_cast<std::uint32_t>(pose_symmetry(class_of(piece->curve))));
   }
   std::size_t sample_count = 0;
   for (const SimulatedProbe& probe : probes) {
@@ -67,8 +66,7 @@ v1::SceneTruth truth_of(const Scene& scene, std::span<const SimulatedProbe> prob
 
 }  // namespace
 
-std::vector<v1::SceneTruth> scene_truths(const Scene& scene,
-                                         std::span<const SimulatedProbe> probes,
+std::vector<v1::SceneTruth> scene_truths(const Scene& scene, std::span<const SimulatedProbe> probes,
                                          std::uint64_t object) {
   const std::string& group = scene.description.group();
   std::vector<v1::SceneTruth> truths;

@@ -12,8 +12,7 @@
 namespace palpate::sim {
 
 /// One for each group: the scene's, or each probe's own. `object`: the number published.
-std::vector<v1::SceneTruth> scene_truths(const Scene& scene,
-                                         std::span<const SimulatedProbe> probes,
+std::vector<v1::SceneTruth> scene_truths(const Scene& scene, std::span<const SimulatedProbe> probes,
                                          std::uint64_t object);
 
 /// In protobuf's JSON, one line, no line end.

@@ -23,8 +23,8 @@ ShapePoint Superellipse::point_at(double t) const {
   const auto power = [](double base, double e) { return std::pow(std::abs(base), e); };
   // r = f^(-1/n) with f = |u|^n + |v|^n; u'' = -u and v'' = -v.
   const double f = power(u, n) + power(v, n);
-  const double f1 = n * (std::copysign(power(u, n - 1.0), u) * u1 +
-                         std::copysign(power(v, n - 1.0), v) * v1);
+  const double f1 =
+      n * (std::copysign(power(u, n - 1.0), u) * u1 + std::copysign(power(v, n - 1.0), v) * v1);
   const double f2 =
       n * (n - 1.0) * (power(u, n - 2.0) * u1 * u1 + power(v, n - 2.0) * v1 * v1) - n * f;
   const double r = std::pow(f, -1.0 / n);

@@ -1,4 +1,5 @@
-// Signature curves (kappa, kappa_s) and semi-signature curves (slope, kappa, kappa_s), sampled and closed.
+// Signature curves (kappa, kappa_s) and semi-signature curves (slope, kappa, kappa_s), sampled and
+// closed.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +10,8 @@
 
 namespace palpate {
 
-/// One point of both: the signature is its (kappa, kappa_s), the semi-signature has the canonical tangent
-/// too.
+/// One point of both: the signature is its (kappa, kappa_s), the semi-signature has the canonical
+/// tangent too.
 struct SignaturePoint {
   double t = 0.0;
   double tangent_angle = 0.0;  ///< in the canonical frame [rad]
@@ -30,8 +31,8 @@ struct ConicSignature {
   double ic1 = 0.0;  ///< (a b)^(-2/3) of an ellipse, minus that of a hyperbola, 0 of a parabola
   double ic2 = 0.0;
 
-  /// Left side minus right side over the sum of the terms' sizes: 0 on the signature curve, within 1
-  /// anywhere. NaN never: 1 for kappa = 0, which no conic has.
+  /// Left side minus right side over the sum of the terms' sizes: 0 on the signature curve, within
+  /// 1 anywhere. NaN never: 1 for kappa = 0, which no conic has.
   double residual(double kappa, double kappa_s) const;
 };
 

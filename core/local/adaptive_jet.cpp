@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "core/curves/small_cholesky.h"
 #include "core/local/aligned_frame.h"
 #include "core/local/graph_geometry.h"
 #include "core/local/jet_estimator.h"
 #include "core/local/legendre_curve.h"
 #include "core/local/noise.h"
+#include "core/numerics/small_cholesky.h"
 
 namespace palpate {
 namespace {

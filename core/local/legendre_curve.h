@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/local/legendre_fit.h"
+#include "core/numerics/legendre_fit.h"
 
 namespace palpate {
 

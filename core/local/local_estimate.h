@@ -16,9 +16,9 @@ struct LocalEstimate {
   /// Joint covariance of (offset along the left normal [m], tangent angle [rad], kappa, kappa_s).
   /// Zero where the noise is zero; its diagonal is infinite where the estimator cannot tell.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
-  double window_arc_m = 0.0;   ///< arc length from the first to the last sample of the window [m]
-  int window_samples = 0;      ///< samples that the estimate used
-  double sigma_m = 0.0;        ///< noise used: given, or estimated from the window's residuals [m]
+  double window_arc_m = 0.0;  ///< arc length from the first to the last sample of the window [m]
+  int window_samples = 0;     ///< samples that the estimate used
+  double sigma_m = 0.0;       ///< noise used: given, or estimated from the window's residuals [m]
 };
 
 }  // namespace palpate

@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/local/normal_law.h"
 #include "core/local/residual_block.h"
+#include "core/numerics/normal_law.h"
 
 namespace palpate {
 namespace {

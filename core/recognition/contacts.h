@@ -4,14 +4,16 @@
 #include <span>
 #include <vector>
 
-#include "core/recognition/recognition.h"
-#include "core/recognition/sample_memory.h"
+#include "core/curves/pose2.h"
+#include "core/curves/shape_parameters.h"
+#include "core/recognition/localized_contact.h"
+#include "core/recognition/samples/sample_memory.h"
 
 namespace palpate {
 
 struct ContactOptions {
-  /// Consecutive windows that a patch is divided into, each giving one estimate at its centre: no two
-  /// share a sample, so that their errors are independent.
+  /// Consecutive windows that a patch is divided into, each giving one estimate at its centre: no
+  /// two share a sample, so that their errors are independent.
   std::size_t windows_per_patch = 2;
   /// Where patches are few, as many windows more as make this number: the tree's tests need them.
   std::size_t least_windows = 4;
@@ -19,17 +21,17 @@ struct ContactOptions {
   std::size_t window_samples = 20;
   /// Noise of samples that bring none; 0 = from each window's residuals. [m]
   double sigma_m = 0.0;
-  /// Covariances that hold the window's bias too (core/local/adaptive_jet.h), at some five times the
-  /// cost: the tree, which has nothing but these estimates, always does.
+  /// Covariances that hold the window's bias too (core/local/adaptive_jet.h), at some five times
+  /// the cost: the tree, which has nothing but these estimates, always does.
   bool with_bias = false;
 };
 
 /// Windows that each of so many patches is to have where its samples suffice.
 std::size_t windows_of_a_patch(std::size_t patches, const ContactOptions& options);
 
-/// Adds an estimate at the centre of each window of a patch and one at each of its ends, in the order
-/// of travel, taken back from tip centres to the surface (`side` +1: the tip lies left of travel, -1:
-/// right, 0: the samples are on the surface). t is 0.
+/// Adds an estimate at the centre of each window of a patch and one at each of its ends, in the
+/// order of travel, taken back from tip centres to the surface (`side` +1: the tip lies left of
+/// travel, -1: right, 0: the samples are on the surface). t is 0.
 void add_contacts(const StoredPatch& patch, std::size_t most_windows, int side,
                   const ContactOptions& options, std::vector<LocalizedContact>* contacts);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/local/normal_law.h"
+#include "core/numerics/normal_law.h"
 
 namespace palpate {
 std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,

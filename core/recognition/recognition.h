@@ -1,15 +1,14 @@
 // The answer: class, shape, pose and contacts, each with its uncertainty.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
-#include <cstdint>
 #include <string_view>
 #include <vector>
 
-#include "core/curves/curve_class.h"
 #include "core/curves/pose2.h"
-#include "core/local/local_estimate.h"
+#include "core/curves/shape_parameters.h"
+#include "core/recognition/localized_contact.h"
+#include "core/recognition/tree/decision.h"
 
 namespace palpate {
 
@@ -33,15 +32,6 @@ enum class Doubt {
 /// Lower-case name with underscores ("several_classes").
 std::string_view name_of(Doubt doubt);
 
-/// Shape parameters in the order of parameter_letters(class); unused entries are 0.
-struct ShapeParameters {
-  CurveClass curve_class = CurveClass::Unclassified;
-  Eigen::Vector3d values = Eigen::Vector3d::Zero();
-};
-
-/// Covariance of [shape parameters; x; y; theta]; at most 6 x 6, no heap.
-using ShapePoseCovariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
-
 /// One class, whether it won or not. The most probable one is refined on all samples; the others on
 /// what stands for them (core/README.md, "Refinement and the bound"), those that evidence has ruled
 /// out only roughly.
@@ -56,22 +46,6 @@ struct Hypothesis {
   int dof = 0;
   /// The class has no interior optimum (an ellipse that wants to be a parabola): no shape is given.
   bool at_limit = false;
-};
-
-/// A local estimate and its place on the recognised curve.
-struct LocalizedContact {
-  std::uint32_t probe = 0;
-  std::uint32_t patch = 0;
-  double t = 0.0;  ///< curve parameter; 0 when nothing is recognised
-  LocalEstimate estimate;
-};
-
-/// One query of the recognition tree (section 5.2).
-struct Decision {
-  std::string_view test;  ///< e.g. "conic line"; static storage
-  double value = 0.0;
-  double threshold = 0.0;
-  bool passed = false;
 };
 
 struct Recognition {

@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "core/local/normal_law.h"
-#include "core/recognition/determined.h"
-#include "core/recognition/explained_spikes.h"
+#include "core/numerics/normal_law.h"
 #include "core/recognition/outliers.h"
-#include "core/recognition/stored_spikes.h"
+#include "core/recognition/samples/explained_spikes.h"
+#include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/verdict/determined.h"
 #include "core/recognition/weigh.h"
 
 namespace palpate {

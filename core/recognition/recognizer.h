@@ -4,11 +4,11 @@
 #include <memory>
 #include <span>
 
-#include "core/recognition/contact_sample.h"
 #include "core/recognition/contacts.h"
 #include "core/recognition/recognition.h"
-#include "core/recognition/recognition_tree.h"
-#include "core/recognition/sample_memory.h"
+#include "core/recognition/samples/contact_sample.h"
+#include "core/recognition/samples/sample_memory.h"
+#include "core/recognition/tree/recognition_tree.h"
 
 namespace palpate {
 

@@ -5,11 +5,11 @@
 #include <limits>
 #include <vector>
 
-#include "core/recognition/chi_square.h"
-#include "core/recognition/on_all_points.h"
-#include "core/recognition/residual_correlation.h"
-#include "core/recognition/stated_form_error.h"
-#include "core/recognition/tip_sides.h"
+#include "core/numerics/chi_square.h"
+#include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/smooth/residual_correlation.h"
+#include "core/recognition/smooth/stated_form_error.h"
 
 namespace palpate {
 namespace {

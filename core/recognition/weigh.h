@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "core/recognition/canonical_fit.h"
-#include "core/recognition/class_fits.h"
+#include "core/recognition/fit/canonical_fit.h"
+#include "core/recognition/fit/class_fits.h"
+#include "core/recognition/fit/warm_start.h"
 #include "core/recognition/posterior/moments.h"
 #include "core/recognition/posterior/posterior.h"
 #include "core/recognition/recognizer.h"
-#include "core/recognition/smooth_model.h"
-#include "core/recognition/warm_start.h"
+#include "core/recognition/smooth/smooth_model.h"
 
 namespace palpate {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <zmq.hpp>
 
-#include "node/result.h"
-#include "node/socket.h"
+#include "node/files/result.h"
+#include "node/wire/socket.h"
 
 namespace palpate::client {
 

@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "node/clock.h"
-#include "node/topics.h"
+#include "node/process/clock.h"
+#include "node/wire/topics.h"
 
 namespace palpate::client {
 namespace {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <zmq.hpp>
 
-#include "node/endpoint.h"
-#include "node/socket.h"
+#include "node/wire/endpoint.h"
+#include "node/wire/socket.h"
 #include "palpate/v1/contact.pb.h"
 
 namespace palpate::client {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "node/topics.h"
+#include "node/wire/topics.h"
 
 namespace palpate::client {
 namespace {
@@ -24,7 +24,8 @@ bool parse(Message& message, const zmq::message_t& payload) {
 }  // namespace
 
 ResultSubscriber::ResultSubscriber(const ResultSubscriberOptions& options)
-    : context_(1), socket_(make_socket(context_, zmq::socket_type::sub, settings_of(options))),
+    : context_(1),
+      socket_(make_socket(context_, zmq::socket_type::sub, settings_of(options))),
       most_topics_(options.most_topics) {
   const Result<Endpoint> endpoint = parse_endpoint(options.endpoint, /*bind_by_default=*/false);
   if (!endpoint) throw std::invalid_argument(endpoint.error);

@@ -1,5 +1,5 @@
-// A planner's side: receives recognitions, local estimates, the recognizer's status and the contacts
-// that it accepts.
+// A planner's side: receives recognitions, local estimates, the recognizer's status and the
+// contacts that it accepts.
 #pragma once
 
 #include <chrono>
@@ -11,9 +11,9 @@
 #include <vector>
 #include <zmq.hpp>
 
-#include "node/endpoint.h"
-#include "node/sequence_tracker.h"
-#include "node/socket.h"
+#include "node/intake/sequence_tracker.h"
+#include "node/wire/endpoint.h"
+#include "node/wire/socket.h"
 #include "palpate/v1/contact.pb.h"
 #include "palpate/v1/local_estimate.pb.h"
 #include "palpate/v1/node_status.pb.h"
@@ -45,8 +45,7 @@ struct ReceivedResult {
   const v1::ContactBatch* contact = nullptr;
 
   explicit operator bool() const {
-    return recognition != nullptr || estimate != nullptr || status != nullptr ||
-           contact != nullptr;
+    return recognition != nullptr || estimate != nullptr || status != nullptr || contact != nullptr;
   }
 };
 

@@ -11,13 +11,13 @@
 #include <string_view>
 
 #include "node/csv/contact_table.h"
-#include "node/result.h"
+#include "node/files/result.h"
 
 namespace palpate {
 
 /// Reads a file, or standard input for "-". Strict: a file is used as a whole or not at all, and an
 /// error reads "FILE:LINE:COLUMN: what is wrong", COLUMN counting bytes from 1. Numbers must be
-/// finite, and within the bounds that the recognizer node sets to messages (node/ingest.h).
+/// finite, and within the bounds that the recognizer node sets to messages (node/intake/ingest.h).
 Result<ContactTable> read_contact_csv(const std::string& path);
 
 /// The same from memory; `name` stands for the file in errors.

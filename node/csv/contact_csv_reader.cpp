@@ -6,11 +6,11 @@
 #include <optional>
 #include <tuple>
 
-#include "node/bounded_file.h"
 #include "node/csv/contact_csv.h"
 #include "node/csv/csv_columns.h"
-#include "node/printable.h"
-#include "node/topics.h"
+#include "node/files/bounded_file.h"
+#include "node/files/printable.h"
+#include "node/wire/topics.h"
 
 namespace palpate {
 namespace {
@@ -20,7 +20,7 @@ using csv::kColumnCount;
 using csv::kColumnNames;
 using csv::kRequiredColumns;
 
-// The bounds of node/ingest.h: what the node would refuse is not used offline either.
+// The bounds of node/intake/ingest.h: what the node would refuse is not used offline either.
 constexpr double kMaxCoordinateM = 1e7;
 constexpr double kMinSigmaM = 1e-15;
 constexpr double kMaxSigmaM = 1e3;

@@ -39,9 +39,10 @@ ContactCsvWriter::ContactCsvWriter(const ContactTable& table, std::string& text)
     with_tip_radius_ |= row.context.tip_radius_m != 0.0;
     with_side_ |= row.context.material_side != MaterialSide::Unspecified;
   }
-  const std::array<bool, csv::kColumnCount> used = {
-      true,         true,         true,        true,             with_sigma_,
-      with_stamp_, with_object_, with_group_, with_tip_radius_, with_side_};
+  const std::array<bool, csv::kColumnCount> used = {true,         true,        true,
+                                                    true,         with_sigma_, with_stamp_,
+                                                    with_object_, with_group_, with_tip_radius_,
+                                                    with_side_};
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
     if (i > 0) text_ += ',';

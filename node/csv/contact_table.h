@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/recognition/contact_sample.h"
+#include "core/recognition/samples/contact_sample.h"
 
 namespace palpate {
 

@@ -22,7 +22,7 @@ enum class Column {
 
 /// In the order of Column. The first kRequiredColumns must be there.
 inline constexpr std::array<std::string_view, 10> kColumnNames = {
-    "probe", "patch",  "x_m",   "y_m",          "sigma_m",
+    "probe",    "patch",  "x_m",   "y_m",          "sigma_m",
     "stamp_ns", "object", "group", "tip_radius_m", "material_side"};
 inline constexpr std::size_t kColumnCount = kColumnNames.size();
 inline constexpr std::size_t kRequiredColumns = 4;

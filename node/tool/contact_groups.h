@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/recognition/contact_sample.h"
 #include "core/recognition/recognizer.h"
+#include "core/recognition/samples/contact_sample.h"
 #include "node/csv/contact_table.h"
 
 namespace palpate {

@@ -6,8 +6,8 @@
 #include <iostream>
 
 #include "node/client/connection.h"
-#include "node/quiet_protobuf.h"
-#include "node/tool/command.h"
+#include "node/process/quiet_protobuf.h"
+#include "node/tool/commands/command.h"
 
 namespace palpate {
 

@@ -3,9 +3,9 @@
 #include <map>
 #include <utility>
 
-#include "core/recognition/segment_belonging.h"
-#include "node/convert.h"
-#include "node/text_format.h"
+#include "core/part/segment_belonging.h"
+#include "node/files/text_format.h"
+#include "node/wire/convert.h"
 #include "palpate/v1/scene.pb.h"
 
 namespace palpate {

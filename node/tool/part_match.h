@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "core/curves/closed_spline.h"
-#include "core/recognition/segment_match.h"
-#include "node/result.h"
+#include "core/part/closed_spline.h"
+#include "core/part/segment_match.h"
+#include "node/files/result.h"
 #include "node/tool/contact_groups.h"
 #include "palpate/v1/part_match.pb.h"
 

@@ -38,14 +38,17 @@ void put(std::string& out, std::uint64_t value, int bytes) {
 std::uint64_t get(std::string_view in, std::size_t at, int bytes) {
   std::uint64_t value = 0;
   for (int i = 0; i < bytes; ++i) {
-    value |= std::uint64_t{static_cast<unsigned char>(in[at + static_cast<std::size_t>(i)])} << (8 * i);
+    value |= std::uint64_t{static_cast<unsigned char>(in[at + static_cast<std::size_t>(i)])}
+             << (8 * i);
   }
   return value;
 }
 
 /// Of a record's header, but for mark and checksum, and of what follows it.
 std::uint32_t checksum(std::string_view header, std::string_view body) {
-  const auto bytes = [](std::string_view text) { return reinterpret_cast<const Bytef*>(text.data()); };
+  const auto bytes = [](std::string_view text) {
+    return reinterpret_cast<const Bytef*>(text.data());
+  };
   const std::string_view fields = header.substr(kTimeAt, kChecksumAt - kTimeAt);
   uLong crc = ::crc32(0, bytes(fields), static_cast<uInt>(fields.size()));
   if (!body.empty()) crc = ::crc32(crc, bytes(body), static_cast<uInt>(body.size()));

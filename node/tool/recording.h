@@ -1,9 +1,9 @@
 // Recorded messages in a file, written and read one by one: of any length.
 //
-// The file begins with the eight bytes "palpate2". Each record follows: the four bytes "\xA7rec", then
-// little-endian received_ns (8 bytes), number of frames, bytes of topic and of payload, CRC-32 of all
-// that and of what follows (4 bytes each), then topic and payload as they came. Files of the former
-// format ("palpate1": protobuf's RecordedMessage after its length) are read too.
+// The file begins with the eight bytes "palpate2". Each record follows: the four bytes "\xA7rec",
+// then little-endian received_ns (8 bytes), number of frames, bytes of topic and of payload, CRC-32
+// of all that and of what follows (4 bytes each), then topic and payload as they came. Files of the
+// former format ("palpate1": protobuf's RecordedMessage after its length) are read too.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 #include <fstream>
 #include <string>
 
-#include "node/result.h"
+#include "node/files/result.h"
 
 namespace palpate {
 
@@ -50,10 +50,10 @@ class RecordingReader {
   /// checksums, a message that is none is skipped, and a length that is none ends the file.
   bool next(RecordedMessage& message);
 
-  std::uint64_t messages() const { return messages_; }            ///< given out
-  std::uint64_t damaged() const { return damaged_; }              ///< places where bytes were skipped
+  std::uint64_t messages() const { return messages_; }  ///< given out
+  std::uint64_t damaged() const { return damaged_; }    ///< places where bytes were skipped
   std::uint64_t skipped_bytes() const { return skipped_bytes_; }  ///< in all of them
-  bool breaks_off() const { return breaks_off_; }  ///< the last message is not whole
+  bool breaks_off() const { return breaks_off_; }                 ///< the last message is not whole
 
  private:
   bool next_checked(RecordedMessage& message);
@@ -64,7 +64,7 @@ class RecordingReader {
   std::string_view rest() const { return std::string_view(buffer_).substr(at_); }
 
   std::ifstream file_;
-  std::string buffer_;   // read but not yet consumed, from at_ on
+  std::string buffer_;  // read but not yet consumed, from at_ on
   std::size_t at_ = 0;
   bool former_ = false;
   bool in_damage_ = false;

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "node/config.h"
-#include "node/quiet_protobuf.h"
-#include "node/text_format.h"
+#include "node/files/text_format.h"
+#include "node/process/quiet_protobuf.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   palpate::silence_protobuf();

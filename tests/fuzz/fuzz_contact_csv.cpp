@@ -1,4 +1,5 @@
-// Any bytes as a CSV file: read whole or refused with a place, and what is read is written and read alike.
+// Any bytes as a CSV file: read whole or refused with a place, and what is read is written and read
+// alike.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "node/tool/view/http_border.h"
-#include "node/topics.h"
+#include "node/wire/topics.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

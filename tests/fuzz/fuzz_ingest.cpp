@@ -1,11 +1,11 @@
-// Any bytes as the two frames of a contact message: taken or refused with a reason, and what is taken is
-// within its bounds.
+// Any bytes as the two frames of a contact message: taken or refused with a reason, and what is
+// taken is within its bounds.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
 
-#include "node/ingest.h"
+#include "node/intake/ingest.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   // The first byte divides the rest into topic and payload.
@@ -18,7 +18,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto reason = decoder.decode(2, topic, bytes.substr(cut));
     if (reason != palpate::v1::REJECT_REASON_UNSPECIFIED) continue;
     const palpate::ContactMessage& message = decoder.message();
-    if (message.samples.empty() || message.samples.size() > limits.max_samples_per_batch) std::abort();
+    if (message.samples.empty() || message.samples.size() > limits.max_samples_per_batch)
+      std::abort();
     for (const palpate::ContactSample& sample : message.samples) {
       const bool good = sample.position_m.allFinite() &&
                         sample.position_m.cwiseAbs().maxCoeff() <= limits.max_coordinate_m &&

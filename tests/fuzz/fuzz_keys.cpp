@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "node/curve_keys.h"
+#include "node/wire/curve_keys.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::string path = "/tmp/fuzz_keys." + std::to_string(::getpid());

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "node/quiet_protobuf.h"
+#include "node/process/quiet_protobuf.h"
 #include "sim/scene_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -13,10 +13,12 @@ std::vector<DefaultRecovery> default_table3() {
     CurveClass curve_class;
     int curves;  // as many as the paper's
   };
-  constexpr Class kClasses[] = {
-      {CurveClass::Ellipse, 100},         {CurveClass::Hyperbola, 100},
-      {CurveClass::Parabola, 100},        {CurveClass::CubicalParabola, 100},
-      {CurveClass::SemiCubicalParabola, 100}, {CurveClass::CubicSpline, 25}};
+  constexpr Class kClasses[] = {{CurveClass::Ellipse, 100},
+                                {CurveClass::Hyperbola, 100},
+                                {CurveClass::Parabola, 100},
+                                {CurveClass::CubicalParabola, 100},
+                                {CurveClass::SemiCubicalParabola, 100},
+                                {CurveClass::CubicSpline, 25}};
   std::mt19937_64 rng(3);
   std::vector<DefaultRecovery> table;
   for (const Class& row : kClasses) {

@@ -1,5 +1,5 @@
-// The paper's recovery experiments with this project's defaults: raw contact points in, no noise (table 3) or
-// the joystick's (section 6, table 4).
+// The paper's recovery experiments with this project's defaults: raw contact points in, no noise
+// (table 3) or the joystick's (section 6, table 4).
 #pragma once
 
 #include <string_view>
@@ -7,8 +7,8 @@
 
 namespace palpate::paper {
 
-/// Mean and worst relative error of the shape parameters over random noise-free curves, two patches of 111
-/// samples each, noise not told.
+/// Mean and worst relative error of the shape parameters over random noise-free curves, two patches
+/// of 111 samples each, noise not told.
 struct DefaultRecovery {
   std::string_view name;
   int curves = 0;

@@ -9,7 +9,7 @@
 #include "core/invariants/cubical_parabola_invariants.h"
 #include "core/invariants/parabola_invariant.h"
 #include "core/invariants/semi_cubical_parabola_invariants.h"
-#include "core/invariants/spline_least_squares.h"
+#include "core/invariants/signature_fit/spline_least_squares.h"
 #include "tests/paper/finite_differences.h"
 
 namespace palpate::paper {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/recognition/recognition_tree.h"
+#include "core/recognition/tree/recognition_tree.h"
 #include "tests/support/canonical_points.h"
 
 namespace palpate::paper {

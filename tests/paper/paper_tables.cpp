@@ -76,34 +76,45 @@ void print_figure7() {
 }
 
 void print_defaults() {
-  std::printf("\n## Table 3 with the defaults: two patches of 111 exact samples, noise not told\n\n");
-  std::printf("| class | curves | recognised | mean error [%%] | worst [%%] |\n|---|---|---|---|---|\n");
+  std::printf(
+      "\n## Table 3 with the defaults: two patches of 111 exact samples, noise not told\n\n");
+  std::printf(
+      "| class | curves | recognised | mean error [%%] | worst [%%] |\n|---|---|---|---|---|\n");
   for (const DefaultRecovery& c : default_table3()) {
     std::printf("| %s | %d | %d | %.1e | %.1e |\n", c.name.data(), c.curves, c.recognised,
                 c.mean_percent, c.worst_percent);
   }
 }
 
-/// The rows of a parameter: truth, the paper's own figures as text, its method in our hands, the defaults.
-void print_sensor(const char* title, const SensorExperiment& e, const std::vector<std::string>& printed) {
+/// The rows of a parameter: truth, the paper's own figures as text, its method in our hands, the
+/// defaults.
+void print_sensor(const char* title, const SensorExperiment& e,
+                  const std::vector<std::string>& printed) {
   std::printf("\n## %s\n\n", title);
-  std::printf("%d trials: the paper's method gives a shape in %d, the defaults in %d and recognise the class with "
-              "certainty in %d.\n\n",
-              e.trials, e.by_paper.answers, e.by_defaults.answers, e.recognised);
-  std::printf("| | truth | printed (real part and sensor) | method, ours: min | max | median | spread | defaults: min | "
-              "max | median | spread | bound |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "%d trials: the paper's method gives a shape in %d, the defaults in %d and recognise the "
+      "class with "
+      "certainty in %d.\n\n",
+      e.trials, e.by_paper.answers, e.by_defaults.answers, e.recognised);
+  std::printf(
+      "| | truth | printed (real part and sensor) | method, ours: min | max | median | spread | "
+      "defaults: min | "
+      "max | median | spread | bound |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t k = 0; k < printed.size(); ++k) {
-    std::printf("| %c | %.6g | %s |", parameter_letters(e.curve_class)[k], e.truth[k], printed[k].c_str());
+    std::printf("| %c | %.6g | %s |", parameter_letters(e.curve_class)[k], e.truth[k],
+                printed[k].c_str());
     for (const Recovered* way : {&e.by_paper, &e.by_defaults}) {
-      std::printf(" %.5g | %.5g | %.5g | %.2g |", way->min[k], way->max[k], way->median[k], way->spread[k]);
+      std::printf(" %.5g | %.5g | %.5g | %.2g |", way->min[k], way->max[k], way->median[k],
+                  way->spread[k]);
     }
     std::printf(" %.2g |\n", e.bound[k]);
   }
 }
 
 void print_sensor_tables() {
-  print_sensor("Table 4: ellipse from two strokes of 111 samples 0.2 mm apart, sigma 0.05 mm; in mm", table4(),
-               {"23.8636 to 26.7234, mean 25.1127", "16.2636 to 18.3549, mean 17.1959"});
+  print_sensor(
+      "Table 4: ellipse from two strokes of 111 samples 0.2 mm apart, sigma 0.05 mm; in mm",
+      table4(), {"23.8636 to 26.7234, mean 25.1127", "16.2636 to 18.3549, mean 17.1959"});
   print_sensor("Table 5: cubic spline segment from three such strokes; in cm", table5(),
                {"1.07246, 1.06594", "1.57648, 1.55496", "-0.39233, -0.44884"});
 }

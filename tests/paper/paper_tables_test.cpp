@@ -97,8 +97,8 @@ TEST(PaperTable3, WithTheDefaultsMeanErrorsAreBelowAHundredthOfAPercent) {
 void expect_the_bound(const SensorExperiment& e, int parameters) {
   EXPECT_EQ(e.by_defaults.answers, e.trials);
   for (int k = 0; k < parameters; ++k) {
-    // Asymptotic standard deviations, in units of that of the law and over sqrt(n): 0.97 of half the middle
-    // 68 %, 1.25 of the median; a tenth for what is not linear.
+    // Asymptotic standard deviations, in units of that of the law and over sqrt(n): 0.97 of half
+    // the middle 68 %, 1.25 of the median; a tenth for what is not linear.
     const double root = std::sqrt(static_cast<double>(e.trials));
     EXPECT_NEAR(e.by_defaults.spread[k] / e.bound[k], 1.0, 0.1 + 4.0 * 0.97 / root) << k;
     EXPECT_NEAR(e.by_defaults.median[k], e.truth[k], (0.1 + 4.0 * 1.25 / root) * e.bound[k]) << k;

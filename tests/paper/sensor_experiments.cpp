@@ -8,7 +8,7 @@
 #include "core/curves/curve.h"
 #include "core/invariants/conic_invariants.h"
 #include "core/invariants/conic_parameters.h"
-#include "core/invariants/spline_least_squares.h"
+#include "core/invariants/signature_fit/spline_least_squares.h"
 #include "core/local/estimator.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/touched_curve.h"
@@ -72,8 +72,8 @@ Recovered statistics(const std::vector<Eigen::Vector3d>& values) {
 }
 
 /// Strokes at `centres` (curve parameters); lengths in `unit_mm` millimetres.
-SensorExperiment run(CurveClass curve_class, const Eigen::Vector3d& truth, const std::vector<double>& centres,
-                     double unit_mm, std::uint64_t seed) {
+SensorExperiment run(CurveClass curve_class, const Eigen::Vector3d& truth,
+                     const std::vector<double>& centres, double unit_mm, std::uint64_t seed) {
   const Curve curve = *make_curve(curve_class, truth);
   std::vector<test::Stroke> strokes;
   for (const double centre : centres) {
@@ -92,7 +92,8 @@ SensorExperiment run(CurveClass curve_class, const Eigen::Vector3d& truth, const
     if (trial == 0) {
       const Eigen::MatrixXd bound = test::bound_of(scene);
       for (std::size_t k = 0; k < parameter_letters(curve_class).size(); ++k) {
-        experiment.bound[k] = std::sqrt(bound(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)));
+        experiment.bound[k] =
+            std::sqrt(bound(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)));
       }
     }
     if (const auto shape = by_paper(scene)) {
@@ -100,7 +101,9 @@ SensorExperiment run(CurveClass curve_class, const Eigen::Vector3d& truth, const
     }
     const Recognition answer = test::recognise(scene, sigma);
     experiment.recognised +=
-        answer.status == RecognitionStatus::Recognized && answer.shape.curve_class == curve_class ? 1 : 0;
+        answer.status == RecognitionStatus::Recognized && answer.shape.curve_class == curve_class
+            ? 1
+            : 0;
     const Hypothesis* hypothesis = test::hypothesis_of(answer, curve_class);
     if (hypothesis != nullptr && hypothesis->covariance.size() > 0) {
       defaults.push_back(hypothesis->shape.values);
@@ -120,7 +123,8 @@ SensorExperiment table4() {
 
 SensorExperiment table5() {
   constexpr double kUnit_mm = 10.0;
-  return run(CurveClass::CubicSpline, {1.10734, 1.67996, -0.401898}, {-1.4, 0.75, 1.1}, kUnit_mm, 5);
+  return run(CurveClass::CubicSpline, {1.10734, 1.67996, -0.401898}, {-1.4, 0.75, 1.1}, kUnit_mm,
+             5);
 }
 
 }  // namespace palpate::paper

@@ -1,4 +1,5 @@
-// Section 6 with a simulated sensor: shapes from noisy strokes, by the paper's own method and by the defaults.
+// Section 6 with a simulated sensor: shapes from noisy strokes, by the paper's own method and by
+// the defaults.
 #pragma once
 
 #include <vector>
@@ -13,23 +14,27 @@ struct Recovered {
   double min[3] = {};  ///< of the shape parameters
   double max[3] = {};
   double median[3] = {};
-  double spread[3] = {};  ///< half of what the middle 68 % span: of a normal law one standard deviation
+  double spread[3] =
+      {};  ///< half of what the middle 68 % span: of a normal law one standard deviation
 };
 
 struct SensorExperiment {
   int trials = 0;
   CurveClass curve_class = CurveClass::Unclassified;
   double truth[3] = {};
-  Recovered by_paper;     ///< two-round estimates (n = 75, l = 4, m = 10), one a stroke, its invariants solved
+  Recovered by_paper;     ///< two-round estimates (n = 75, l = 4, m = 10), one a stroke, its
+                          ///< invariants solved
   Recovered by_defaults;  ///< the recognizer on all samples; its hypothesis of the class
   int recognised = 0;     ///< as the class, with certainty, by the defaults
   double bound[3] = {};   ///< Kanatani-Cramer-Rao, one standard deviation, at the truth
 };
 
-/// Table 4: the ellipse of 25 x 17.5 mm. Sigma 0.05 mm, two strokes of 111 samples 0.2 mm apart. In mm.
+/// Table 4: the ellipse of 25 x 17.5 mm. Sigma 0.05 mm, two strokes of 111 samples 0.2 mm apart. In
+/// mm.
 SensorExperiment table4();
 
-/// Table 5: the cubic spline segment of figure 10 (d), three such strokes along it. In cm, as printed.
+/// Table 5: the cubic spline segment of figure 10 (d), three such strokes along it. In cm, as
+/// printed.
 SensorExperiment table5();
 
 }  // namespace palpate::paper

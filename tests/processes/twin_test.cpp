@@ -1,4 +1,5 @@
-// The process tests' twin within one process, for the thread sanitizer: node, probes and planners as threads.
+// The process tests' twin within one process, for the thread sanitizer: node, probes and planners
+// as threads.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -61,8 +62,8 @@ TEST(Twin, NodeProbesAndPlannersShareNothing) {
         for (bool done = false; !done;) {
           const client::ReceivedResult result = planner.receive(std::chrono::seconds(20));
           ASSERT_NE(result.recognition, nullptr) << name << ", object " << object;
-          done = result.recognition->object() == object &&
-                 result.recognition->sample_count() == 200;
+          done =
+              result.recognition->object() == object && result.recognition->sample_count() == 200;
         }
         ++answered;
       }

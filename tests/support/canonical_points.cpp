@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/invariants/canonical_models.h"
+#include "core/invariants/signature_fit/canonical_models.h"
 
 namespace palpate::test {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/curves/curve_class.h"
 #include "core/curves/pose2.h"
 #include "core/invariants/measured_geometry.h"
-#include "core/recognition/recognition_tree.h"
+#include "core/recognition/tree/recognition_tree.h"
 
 namespace palpate::test {
 

@@ -4,8 +4,8 @@
 #include <random>
 #include <vector>
 
-#include "core/curves/closed_spline.h"
-#include "core/recognition/sample_memory.h"
+#include "core/part/closed_spline.h"
+#include "core/recognition/samples/sample_memory.h"
 
 namespace palpate::test {
 

@@ -1,8 +1,8 @@
 // Random scenes as the recogniser's inputs.
 #pragma once
 
-#include "core/recognition/fit_data.h"
 #include "core/recognition/recognizer.h"
+#include "core/recognition/samples/fit_data.h"
 #include "tests/support/random_scene.h"
 
 namespace palpate::test {

@@ -18,9 +18,10 @@ Scene touched_curve(const Curve& curve, const Pose2& world_T_curve, std::span<co
     std::vector<Vec2> samples;
     std::vector<double> places;
     for (int i = 0; i < stroke.count; ++i) {
-      const double along =
-          stroke.count > 1 ? stroke.direction * stroke.length_m * (static_cast<double>(i) / (stroke.count - 1) - 0.5)
-                           : 0.0;
+      const double along = stroke.count > 1
+                               ? stroke.direction * stroke.length_m *
+                                     (static_cast<double>(i) / (stroke.count - 1) - 0.5)
+                               : 0.0;
       const double t = parameter_at_arc_length(curve, stroke.centre_t, along);
       const double dx = noise(rng);
       const double dy = noise(rng);
@@ -45,7 +46,8 @@ Eigen::MatrixXd bound_of(const Scene& scene) {
       const CurveDerivatives d = derivatives(*curve, t);
       const Vec2 normal = left_of(d.first).normalized();
       Eigen::VectorXd row(letters + 3);
-      row.head(letters) = (normal.transpose() * position_by_parameters(*curve, t)).transpose().head(letters);
+      row.head(letters) =
+          (normal.transpose() * position_by_parameters(*curve, t)).transpose().head(letters);
       const Vec2 in_world = scene.world_T_curve.rotate(normal);
       row[letters] = in_world.x();
       row[letters + 1] = in_world.y();

@@ -26,8 +26,8 @@ Scene touched_curve(const Curve& curve, const Pose2& world_T_curve, std::span<co
 /// sigma^2 (J^T J)^-1 with rows n_i . d(world point)/dq. A circle's theta, which is free, has 0.
 Eigen::MatrixXd bound_of(const Scene& scene);
 
-/// Natural sizes of [shape; x; y; theta]: the scene's half extent for lengths, 1 for angles, the values
-/// themselves for the shape. What an error is to be measured in.
+/// Natural sizes of [shape; x; y; theta]: the scene's half extent for lengths, 1 for angles, the
+/// values themselves for the shape. What an error is to be measured in.
 Eigen::VectorXd natural_sizes(const Scene& scene);
 
 }  // namespace palpate::test

@@ -37,8 +37,8 @@ enum class Integration {
   Valley,      ///< by slices also where only the valley's bend shows, beside how narrow it is
 };
 
-/// J^T J and the prior's curvature, that of normal laws as high, in units of the widths; `fixed` (or
-/// -1) does not move.
+/// J^T J and the prior's curvature, that of normal laws as high, in units of the widths; `fixed`
+/// (or -1) does not move.
 TouchedMatrix hessian_of(const TouchedCurve& curve, int fixed);
 
 /// `fit` is at its optimum on `data`, the reduced points as surface points, and has a point for

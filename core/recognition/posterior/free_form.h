@@ -1,7 +1,7 @@
 // "Unclassified": a smooth free-form path, as a model with evidence of its own.
 #pragma once
 
-#include "core/recognition/smooth_model.h"
+#include "core/recognition/smooth/smooth_model.h"
 
 namespace palpate {
 

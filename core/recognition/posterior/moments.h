@@ -1,7 +1,7 @@
 // Second moments of shape and pose over the valley that a class's likelihood has.
 #pragma once
 
-#include "core/recognition/canonical_fit.h"
+#include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/posterior/class_evidence.h"
 
 namespace palpate {

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "core/recognition/class_fits.h"
+#include "core/recognition/fit/class_fits.h"
 #include "core/recognition/posterior/class_evidence.h"
 #include "core/recognition/posterior/free_form.h"
 #include "core/recognition/posterior/likelihood.h"

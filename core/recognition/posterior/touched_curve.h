@@ -6,9 +6,9 @@
 
 #include "core/curves/curve.h"
 #include "core/curves/pose2.h"
-#include "core/recognition/canonical_fit.h"
-#include "core/recognition/fit_data.h"
+#include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/posterior/touched_coordinates.h"
+#include "core/recognition/samples/fit_data.h"
 
 namespace palpate {
 

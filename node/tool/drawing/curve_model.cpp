@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "node/convert.h"
+#include "node/wire/convert.h"
 
 namespace palpate {
 namespace {

@@ -1,7 +1,7 @@
 #include "node/tool/view/downloads.h"
 
 #include "node/csv/contact_csv.h"
-#include "node/tool/message_json.h"
+#include "node/tool/text/message_json.h"
 
 namespace palpate {
 

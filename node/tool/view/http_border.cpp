@@ -5,7 +5,7 @@
 
 #include <boost/asio/ip/address.hpp>
 
-#include "node/topics.h"
+#include "node/wire/topics.h"
 
 namespace palpate {
 namespace {

@@ -3,7 +3,7 @@
 #include <boost/asio/buffer.hpp>
 #include <string_view>
 
-#include "node/topics.h"
+#include "node/wire/topics.h"
 
 namespace palpate {
 namespace {

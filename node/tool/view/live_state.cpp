@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "node/topics.h"
+#include "node/wire/topics.h"
 
 namespace palpate {
 namespace {

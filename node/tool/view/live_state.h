@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "node/rate_meter.h"
+#include "node/intake/rate_meter.h"
 #include "node/tool/contact_groups.h"
 #include "palpate/v1/contact.pb.h"
 #include "palpate/v1/node_status.pb.h"

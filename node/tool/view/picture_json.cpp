@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "node/tool/advice.h"
 #include "node/tool/drawing/drawing.h"
 #include "node/tool/drawing/enlarged_residuals.h"
-#include "node/tool/quantity.h"
-#include "node/tool/recognition_text.h"
+#include "node/tool/text/advice.h"
+#include "node/tool/text/quantity.h"
+#include "node/tool/text/recognition_text.h"
 
 namespace palpate {
 namespace {

@@ -1,5 +1,6 @@
-// Whether the published uncertainties are true: probability of the best class against how often it is the class, and
-// squared errors in units of the published covariance against their chi-square law. Prints CSV.
+// Whether the published uncertainties are true: probability of the best class against how often it
+// is the class, and squared errors in units of the published covariance against their chi-square
+// law. Prints CSV.
 //   bench_calibration [--scenes N]
 #include <CLI/CLI.hpp>
 #include <Eigen/Cholesky>
@@ -21,7 +22,8 @@ constexpr double kNoise[] = {1e-5, 1e-4, 5e-4, 1e-3, 2e-3};
 constexpr std::array kBins = {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99, 1.0};
 constexpr int kDeciles = 10;
 
-/// Distribution function of chi-square with n degrees of freedom, by the regularised incomplete gamma series.
+/// Distribution function of chi-square with n degrees of freedom, by the regularised incomplete
+/// gamma series.
 double chi2_cdf(double x, double n) {
   if (x <= 0.0) return 0.0;
   const double a = 0.5 * n;
@@ -75,7 +77,8 @@ void add(const test::Scene& scene, const Recognition& answer, Calibration* calib
       sizes.inverse().matrix().asDiagonal() * covariance * sizes.inverse().matrix().asDiagonal();
   const Eigen::VectorXd normalised = (error.array() / sizes).matrix();
   const double squared = normalised.dot(correlation.ldlt().solve(normalised));
-  const int decile = std::min(kDeciles - 1, static_cast<int>(kDeciles * chi2_cdf(squared, static_cast<double>(n))));
+  const int decile = std::min(
+      kDeciles - 1, static_cast<int>(kDeciles * chi2_cdf(squared, static_cast<double>(n))));
   ++calibration->deciles[static_cast<std::size_t>(decile)];
   ++calibration->compared;
 }
@@ -85,7 +88,8 @@ void add(const test::Scene& scene, const Recognition& answer, Calibration* calib
 int main(int argc, char** argv) {
   CLI::App app("Published uncertainties against observed errors");
   int count = 20;
-  app.add_option("--scenes", count, "Scenes a class, noise and number of patches")->capture_default_str();
+  app.add_option("--scenes", count, "Scenes a class, noise and number of patches")
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   std::printf("kind,noise_stated,upper,expected,observed,count\n");
   for (const bool stated : {true, false}) {
@@ -107,12 +111,15 @@ int main(int argc, char** argv) {
     for (std::size_t b = 0; b < kBins.size(); ++b) {
       const Bin& bin = calibration.bins[b];
       if (bin.count == 0) continue;
-      std::printf("probability,%d,%g,%.4f,%.4f,%d\n", stated ? 1 : 0, kBins[b], bin.probability / bin.count,
-                  static_cast<double>(bin.right) / bin.count, bin.count);
+      std::printf("probability,%d,%g,%.4f,%.4f,%d\n", stated ? 1 : 0, kBins[b],
+                  bin.probability / bin.count, static_cast<double>(bin.right) / bin.count,
+                  bin.count);
     }
     for (int d = 0; d < kDeciles; ++d) {
-      std::printf("squared_error,%d,%.1f,%.4f,%.4f,%d\n", stated ? 1 : 0, (d + 1.0) / kDeciles, 1.0 / kDeciles,
-                  static_cast<double>(calibration.deciles[static_cast<std::size_t>(d)]) / calibration.compared,
+      std::printf("squared_error,%d,%.1f,%.4f,%.4f,%d\n", stated ? 1 : 0, (d + 1.0) / kDeciles,
+                  1.0 / kDeciles,
+                  static_cast<double>(calibration.deciles[static_cast<std::size_t>(d)]) /
+                      calibration.compared,
                   calibration.compared);
     }
     std::fflush(stdout);

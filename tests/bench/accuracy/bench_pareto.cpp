@@ -1,5 +1,6 @@
-// Speed against error: every local estimator by window and shift, alone (the recognition tree on its estimates,
-// as in the paper), the tree on the default contacts (palpate fit --method tree), and the refinement on all points. Prints CSV, a row a class, noise and pipeline.
+// Speed against error: every local estimator by window and shift, alone (the recognition tree on
+// its estimates, as in the paper), the tree on the default contacts (palpate fit --method tree),
+// and the refinement on all points. Prints CSV, a row a class, noise and pipeline.
 //   bench_pareto [--scenes N]
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,7 +12,7 @@
 #include <vector>
 
 #include "core/local/estimator.h"
-#include "core/recognition/recognition_tree.h"
+#include "core/recognition/tree/recognition_tree.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/touched_curve.h"
 
@@ -20,9 +21,12 @@ namespace {
 using namespace palpate;
 using Clock = std::chrono::steady_clock;
 
-constexpr CurveClass kClasses[] = {CurveClass::Ellipse,         CurveClass::Parabola,
-                                   CurveClass::Hyperbola,       CurveClass::CubicalParabola,
-                                   CurveClass::SemiCubicalParabola, CurveClass::CubicSpline};
+constexpr CurveClass kClasses[] = {CurveClass::Ellipse,
+                                   CurveClass::Parabola,
+                                   CurveClass::Hyperbola,
+                                   CurveClass::CubicalParabola,
+                                   CurveClass::SemiCubicalParabola,
+                                   CurveClass::CubicSpline};
 constexpr double kNoise[] = {0.0, 1e-5, 1e-4, 5e-4, 1e-3, 2e-3};
 constexpr int kWindows[] = {15, 31, 51, 75, 111, 151};
 constexpr int kShifts[] = {4, 16};
@@ -65,10 +69,10 @@ void add_errors(const Hypothesis& found, const test::Scene& scene, Cell* cell) {
   cell->pose.push_back(std::hypot(error[letters], error[letters + 1]));
 }
 
-/// Errors of curvature and its derivative against the truth in the middle of the window, in parts of kappa and
-/// of kappa^2 + |kappa_s|.
-void add_local_errors(const test::Scene& scene, std::size_t patch, std::size_t middle, const LocalEstimate& found,
-                      Cell* cell) {
+/// Errors of curvature and its derivative against the truth in the middle of the window, in parts
+/// of kappa and of kappa^2 + |kappa_s|.
+void add_local_errors(const test::Scene& scene, std::size_t patch, std::size_t middle,
+                      const LocalEstimate& found, Cell* cell) {
   const std::vector<double>& t = scene.t[patch];
   const LocalGeometry truth = geometry(*make_curve(scene.curve_class, scene.values), t[middle]);
   const double direction = t.back() > t.front() ? 1.0 : -1.0;
@@ -79,10 +83,12 @@ void add_local_errors(const test::Scene& scene, std::size_t patch, std::size_t m
 
 void tree_on(const test::Scene& scene, const EstimatorOptions& estimator, Cell* cell) {
   ++cell->scenes;
-  // Chained finite differences and circles bring no covariance that a test could use: the paper's tolerance.
+  // Chained finite differences and circles bring no covariance that a test could use: the paper's
+  // tolerance.
   RecognitionTreeOptions options;
   constexpr double kPaperTolerance = 0.05;
-  if (estimator.kind == EstimatorKind::FiniteDifference || estimator.kind == EstimatorKind::Circle) {
+  if (estimator.kind == EstimatorKind::FiniteDifference ||
+      estimator.kind == EstimatorKind::Circle) {
     options.relative_tolerance = kPaperTolerance;
   }
   std::vector<std::vector<WindowResult>> windows;
@@ -101,7 +107,8 @@ void tree_on(const test::Scene& scene, const EstimatorOptions& estimator, Cell* 
       if (n > 1 || i == 0) points.push_back({windows[p][i].result.estimate, static_cast<int>(p)});
     }
     if (n > 0 && windows[p][n / 2].result) {
-      add_local_errors(scene, p, windows[p][n / 2].first_sample + samples_per_estimate(estimator) / 2,
+      add_local_errors(scene, p,
+                       windows[p][n / 2].first_sample + samples_per_estimate(estimator) / 2,
                        windows[p][n / 2].result.estimate, cell);
     }
   }
@@ -109,7 +116,8 @@ void tree_on(const test::Scene& scene, const EstimatorOptions& estimator, Cell* 
   const double tree_us = median_us([&] { tree = recognise_by_tree(points, options); });
   cell->update_us.push_back(local_us / samples);
   cell->recognition_us.push_back(local_us + tree_us);
-  const bool named = tree.status == InvariantStatus::Ok && tree.shape.curve_class != CurveClass::Unclassified;
+  const bool named =
+      tree.status == InvariantStatus::Ok && tree.shape.curve_class != CurveClass::Unclassified;
   cell->recognized += named ? 1 : 0;
   if (tree.shape.curve_class != scene.curve_class) {
     cell->wrong += named ? 1 : 0;
@@ -139,14 +147,14 @@ void recognizer_on(const test::Scene& scene, const RecognizerOptions& options, C
   add_errors(answer.hypotheses.front(), scene, cell);
 }
 
-void print(CurveClass curve_class, double noise, const std::string& pipeline, int window, int shift, const Cell& cell,
-           double shape_bound, double pose_bound) {
+void print(CurveClass curve_class, double noise, const std::string& pipeline, int window, int shift,
+           const Cell& cell, double shape_bound, double pose_bound) {
   const double n = cell.scenes;
   std::printf("%s,%g,%s,%d,%d,%d,%.4f,%.3f,%.4g,%.4g,%.4g,%.4g,%.4f,%.4f,%.4f,%.4g,%.4g\n",
-              std::string(name_of(curve_class)).c_str(), noise, pipeline.c_str(), window, shift, cell.scenes,
-              median(cell.update_us), median(cell.recognition_us), median(cell.kappa), median(cell.kappa_s),
-              median(cell.shape), median(cell.pose), cell.right / n, cell.recognized / n, cell.wrong / n, shape_bound,
-              pose_bound);
+              std::string(name_of(curve_class)).c_str(), noise, pipeline.c_str(), window, shift,
+              cell.scenes, median(cell.update_us), median(cell.recognition_us), median(cell.kappa),
+              median(cell.kappa_s), median(cell.shape), median(cell.pose), cell.right / n,
+              cell.recognized / n, cell.wrong / n, shape_bound, pose_bound);
 }
 
 }  // namespace
@@ -156,8 +164,10 @@ int main(int argc, char** argv) {
   int count = 30;
   app.add_option("--scenes", count, "Scenes a class and noise")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  std::printf("class,noise_over_size,pipeline,window,shift,scenes,us_per_sample,us_per_recognition,kappa_error,"
-              "kappa_s_error,shape_error,pose_error,right_class,recognized,wrong,shape_bound,pose_bound\n");
+  std::printf(
+      "class,noise_over_size,pipeline,window,shift,scenes,us_per_sample,us_per_recognition,kappa_"
+      "error,"
+      "kappa_s_error,shape_error,pose_error,right_class,recognized,wrong,shape_bound,pose_bound\n");
   for (const CurveClass curve_class : kClasses) {
     for (const double noise : kNoise) {
       std::mt19937_64 rng(kSeed);
@@ -179,8 +189,8 @@ int main(int argc, char** argv) {
       }
       const double shape_bound = median(shape_bounds);
       const double pose_bound = median(pose_bounds);
-      for (const EstimatorKind kind : {EstimatorKind::FiniteDifference, EstimatorKind::Circle, EstimatorKind::TwoRound,
-                                       EstimatorKind::Jet}) {
+      for (const EstimatorKind kind : {EstimatorKind::FiniteDifference, EstimatorKind::Circle,
+                                       EstimatorKind::TwoRound, EstimatorKind::Jet}) {
         for (const int window : kWindows) {
           for (const int shift : kShifts) {
             EstimatorOptions estimator;
@@ -188,14 +198,18 @@ int main(int argc, char** argv) {
             estimator.window = window;
             estimator.shift = shift;
             estimator.sigma_m = options.sigma_over_size * options.size_m;
-            if (samples_per_estimate(estimator) > static_cast<std::size_t>(options.points_per_patch)) continue;
+            if (samples_per_estimate(estimator) >
+                static_cast<std::size_t>(options.points_per_patch))
+              continue;
             Cell cell;
             for (const test::Scene& scene : scenes) tree_on(scene, estimator, &cell);
-            print(curve_class, noise, std::string(name_of(kind)), window, shift, cell, shape_bound, pose_bound);
+            print(curve_class, noise, std::string(name_of(kind)), window, shift, cell, shape_bound,
+                  pose_bound);
           }
         }
       }
-      const auto recognizer = [&](const char* pipeline, const RecognizerOptions& recognizer_options) {
+      const auto recognizer = [&](const char* pipeline,
+                                  const RecognizerOptions& recognizer_options) {
         Cell cell;
         for (const test::Scene& scene : scenes) recognizer_on(scene, recognizer_options, &cell);
         print(curve_class, noise, pipeline, 0, 0, cell, shape_bound, pose_bound);

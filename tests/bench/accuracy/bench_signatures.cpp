@@ -1,6 +1,7 @@
-// Signature curves (curvature, its derivative by arc length) of a shape of each class, with local estimates from
-// noisy strokes beside them: by circles through three samples (figure 9 of the paper), by its two-round fit (figure
-// 10) and by adaptive jets. Shapes are the paper's where it gives them. Prints CSV, in units of the part's size.
+// Signature curves (curvature, its derivative by arc length) of a shape of each class, with local
+// estimates from noisy strokes beside them: by circles through three samples (figure 9 of the
+// paper), by its two-round fit (figure 10) and by adaptive jets. Shapes are the paper's where it
+// gives them. Prints CSV, in units of the part's size.
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -50,7 +51,8 @@ void estimates(const Shape& shape, const Curve& curve, const std::string& name) 
   const test::Stroke stroke{middle, length, kSamples, 1};
   const test::Scene scene = test::touched_curve(curve, {}, {&stroke, 1}, kNoise, rng);
   const auto print_estimate = [&](std::string_view kind, const LocalResult& result) {
-    if (result) print(name, std::string(kind).c_str(), result.estimate.kappa, result.estimate.kappa_s);
+    if (result)
+      print(name, std::string(kind).c_str(), result.estimate.kappa, result.estimate.kappa_s);
   };
   for (const EstimatorKind kind : {EstimatorKind::Circle, EstimatorKind::TwoRound}) {
     EstimatorOptions options;
@@ -65,8 +67,9 @@ void estimates(const Shape& shape, const Curve& curve, const std::string& name) 
   }
   const std::span<const Vec2> samples(scene.patches[0]);
   for (std::size_t first = 0; first + kSamplesPerEstimate <= samples.size(); first += kShift) {
-    print_estimate("adaptive jet",
-                   adaptive_jet(samples.subspan(first, kSamplesPerEstimate), PatchPlace::Centre, kNoise).result);
+    print_estimate("adaptive jet", adaptive_jet(samples.subspan(first, kSamplesPerEstimate),
+                                                PatchPlace::Centre, kNoise)
+                                       .result);
   }
 }
 

@@ -1,5 +1,6 @@
-// Hard cases in numbers: one-parameter sweeps towards each degeneracy. Prints CSV: how often the class is right,
-// recognised and recognised wrongly, errors beside the Kanatani-Cramer-Rao bound, the condition number, the time.
+// Hard cases in numbers: one-parameter sweeps towards each degeneracy. Prints CSV: how often the
+// class is right, recognised and recognised wrongly, errors beside the Kanatani-Cramer-Rao bound,
+// the condition number, the time.
 //   bench_sweeps [--scenes N]
 #include <CLI/CLI.hpp>
 #include <Eigen/Eigenvalues>
@@ -23,10 +24,10 @@ using test::Stroke;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kSeed = 2026;
-constexpr double kSize_m = 0.025;        // half extent of the parts below, about
-constexpr double kNoise = 1e-3;          // of it, unless swept
+constexpr double kSize_m = 0.025;  // half extent of the parts below, about
+constexpr double kNoise = 1e-3;    // of it, unless swept
 constexpr double kSigma_m = kNoise * kSize_m;
-constexpr double kStroke_m = 0.022;      // the paper's patches: 111 samples 0.2 mm apart
+constexpr double kStroke_m = 0.022;  // the paper's patches: 111 samples 0.2 mm apart
 const Pose2 kPose{0.11, -0.07, 0.6};
 
 using Make = std::function<Scene(double value, std::mt19937_64& rng)>;
@@ -44,7 +45,8 @@ Curve curve_of(CurveClass curve_class, double a, double b = 0.0, double c = 0.0)
 }
 
 /// Two strokes of the paper's length about these parameters.
-Scene two_strokes(const Curve& curve, double t1, double t2, std::mt19937_64& rng, double length_m = kStroke_m) {
+Scene two_strokes(const Curve& curve, double t1, double t2, std::mt19937_64& rng,
+                  double length_m = kStroke_m) {
   const Stroke strokes[] = {{t1, length_m, 111, 1}, {t2, length_m, 111, -1}};
   return test::touched_curve(curve, kPose, strokes, kSigma_m, rng);
 }
@@ -53,12 +55,14 @@ Scene paper_ellipse(std::mt19937_64& rng) {
   return two_strokes(curve_of(CurveClass::Ellipse, 0.025, 0.0175), 0.9, 3.0, rng);
 }
 
-/// The conic of that eccentricity with a focal parameter of 20 mm: a fixed neighbourhood of its vertex.
+/// The conic of that eccentricity with a focal parameter of 20 mm: a fixed neighbourhood of its
+/// vertex.
 Scene conic(double eccentricity, std::mt19937_64& rng) {
   constexpr double kFocalParameter_m = 0.02;
   const double e2 = 1.0 - eccentricity * eccentricity;
   if (eccentricity == 1.0) {
-    const double a = 0.5 * kFocalParameter_m;  // (a t^2, 2 a t): radius of curvature 2 a at the vertex
+    const double a =
+        0.5 * kFocalParameter_m;  // (a t^2, 2 a t): radius of curvature 2 a at the vertex
     return two_strokes(curve_of(CurveClass::Parabola, a), -1.5, 1.2, rng);
   }
   const double a = kFocalParameter_m / std::abs(e2);
@@ -68,7 +72,8 @@ Scene conic(double eccentricity, std::mt19937_64& rng) {
   const double s1 = arc_length(parabola, 0.0, -1.5);
   const double s2 = arc_length(parabola, 0.0, 1.2);
   const Curve curve = curve_of(e2 > 0.0 ? CurveClass::Ellipse : CurveClass::Hyperbola, a, b);
-  return two_strokes(curve, parameter_at_arc_length(curve, 0.0, s1), parameter_at_arc_length(curve, 0.0, s2), rng);
+  return two_strokes(curve, parameter_at_arc_length(curve, 0.0, s1),
+                     parameter_at_arc_length(curve, 0.0, s2), rng);
 }
 
 Scene scaled(Scene scene, double factor) {
@@ -113,7 +118,8 @@ Scene strokes_around(int patches, int samples, std::mt19937_64& rng) {
   return test::touched_curve(ellipse, kPose, strokes, kSigma_m, rng);
 }
 
-/// Tangents of the two strokes at right angles but for `off`: their relative slope is infinite at 0.
+/// Tangents of the two strokes at right angles but for `off`: their relative slope is infinite at
+/// 0.
 Scene right_angle(double off, std::mt19937_64& rng) {
   const Curve cubical = curve_of(CurveClass::CubicalParabola, 900.0, -0.5);
   const double t1 = 0.002;
@@ -129,7 +135,8 @@ Scene right_angle(double off, std::mt19937_64& rng) {
 
 std::vector<double> decades(double from, double to) {
   std::vector<double> values;
-  for (double v = from; from < to ? v <= 1.0001 * to : v >= 0.9999 * to; v *= from < to ? 10.0 : 0.1) {
+  for (double v = from; from < to ? v <= 1.0001 * to : v >= 0.9999 * to;
+       v *= from < to ? 10.0 : 0.1) {
     values.push_back(v);
   }
   return values;
@@ -138,21 +145,26 @@ std::vector<double> decades(double from, double to) {
 std::vector<Sweep> sweeps() {
   const double scale = 1.0 / std::sqrt(kSize_m);  // the cubics' a is a length to the power -1/2
   return {
-      {"1 - b/a of an ellipse", {0.5, 0.3, 0.1, 0.05, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7},
+      {"1 - b/a of an ellipse",
+       {0.5, 0.3, 0.1, 0.05, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7},
        [](double v, auto& rng) {
          return two_strokes(curve_of(CurveClass::Ellipse, 0.025, 0.025 * (1.0 - v)), 0.9, 3.0, rng);
        },
        CurveClass::Circle},
-      {"b/a of an ellipse", {1.0 / 2, 1.0 / 5, 1.0 / 10, 1.0 / 20, 1.0 / 50, 1.0 / 100},
+      {"b/a of an ellipse",
+       {1.0 / 2, 1.0 / 5, 1.0 / 10, 1.0 / 20, 1.0 / 50, 1.0 / 100},
        [](double v, auto& rng) {
          return two_strokes(curve_of(CurveClass::Ellipse, 0.05, 0.05 * v), 0.2, 2.9, rng);
        }},
-      {"eccentricity less 1", {-0.5, -0.3, -0.2, -0.1, -0.05, -0.02, -0.01, 0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5},
+      {"eccentricity less 1",
+       {-0.5, -0.3, -0.2, -0.1, -0.05, -0.02, -0.01, 0.0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5},
        [](double v, auto& rng) { return conic(1.0 + v, rng); },
        CurveClass::Parabola},
-      {"tangents from a right angle [rad]", {0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6, 0.0},
+      {"tangents from a right angle [rad]",
+       {0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-6, 0.0},
        [](double v, auto& rng) { return right_angle(v, rng); }},
-      {"arc from the cusp [m]", {0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0002},
+      {"arc from the cusp [m]",
+       {0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0002},
        [=](double v, auto& rng) {
          const Curve curve = curve_of(CurveClass::SemiCubicalParabola, 1.2 * scale, 0.4);
          // From the cusp on, on both arms.
@@ -160,19 +172,22 @@ std::vector<Sweep> sweeps() {
          const double t2 = parameter_at_arc_length(curve, 0.0, -v - 0.5 * kStroke_m);
          return two_strokes(curve, t1, t2, rng);
        }},
-      {"arc from the inflection [m]", {0.03, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0},
+      {"arc from the inflection [m]",
+       {0.03, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0},
        [](double v, auto& rng) {
          const Curve curve = curve_of(CurveClass::CubicalParabola, 900.0, -0.5);
          return two_strokes(curve, parameter_at_arc_length(curve, 0.0, v),
                             parameter_at_arc_length(curve, 0.0, v + 1.2 * kStroke_m), rng);
        }},
-      {"c of a spline [sqrt(size)]", {1.5, 1.0, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 0.01},
+      {"c of a spline [sqrt(size)]",
+       {1.5, 1.0, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 0.01},
        [=](double v, auto& rng) {
          const Curve curve = curve_of(CurveClass::CubicSpline, 1.2 * scale, 0.4, v / scale);
          return two_strokes(curve, -0.6 / scale, 0.8 / scale, rng, 0.03);
        },
        CurveClass::SemiCubicalParabola},
-      {"a of a spline [1/sqrt(size)]", {3.0, 1.5, 1.0, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05},
+      {"a of a spline [1/sqrt(size)]",
+       {3.0, 1.5, 1.0, 0.7, 0.5, 0.3, 0.2, 0.1, 0.05},
        [=](double v, auto& rng) {
          const Curve curve = curve_of(CurveClass::CubicSpline, v * scale, 0.4, 0.5 / scale);
          return two_strokes(curve, -0.6 / scale, 0.8 / scale, rng, 0.03);
@@ -180,16 +195,20 @@ std::vector<Sweep> sweeps() {
        CurveClass::Parabola},
       {"scale", decades(1e-6, 1e6),
        [](double v, auto& rng) { return scaled(paper_ellipse(rng), v); }},
-      {"offset [m]", {0.0, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6},
+      {"offset [m]",
+       {0.0, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6},
        [](double v, auto& rng) { return moved(paper_ellipse(rng), v); }},
-      {"fraction of spikes", {0.0, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3},
+      {"fraction of spikes",
+       {0.0, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3},
        [](double v, auto& rng) {
          const Scene clean = paper_ellipse(rng);
          return with_spikes(clean, v, rng);
        }},
-      {"patches", {1, 2, 3, 4},
+      {"patches",
+       {1, 2, 3, 4},
        [](double v, auto& rng) { return strokes_around(static_cast<int>(v), 111, rng); }},
-      {"samples a patch", {5, 8, 12, 20, 40, 80, 111, 200},
+      {"samples a patch",
+       {5, 8, 12, 20, 40, 80, 111, 200},
        [](double v, auto& rng) { return strokes_around(3, static_cast<int>(v), rng); }},
   };
 }
@@ -226,7 +245,8 @@ void run(const Sweep& sweep, int count) {
       bounds.push_back(relative_bound.head(letters).maxCoeff());
       const Eigen::MatrixXd scaled_bound =
           sizes.inverse().matrix().asDiagonal() * bound * sizes.inverse().matrix().asDiagonal();
-      const Eigen::VectorXd spectrum = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled_bound).eigenvalues();
+      const Eigen::VectorXd spectrum =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled_bound).eigenvalues();
       conditions.push_back(std::sqrt(spectrum[spectrum.size() - 1] / spectrum[0]));
       if (answer.shape.curve_class != scene.curve_class) {
         if (sweep.limit != CurveClass::Unclassified && answer.shape.curve_class == sweep.limit) {
@@ -241,9 +261,10 @@ void run(const Sweep& sweep, int count) {
       errors.push_back((error / sizes).head(letters).maxCoeff());
       squares += (error.square() / bound.diagonal().array()).mean();
     }
-    std::printf("\"%s\",%.10g,%s,%d,%d,%d,%d,%d,%.4g,%.4g,%.3f,%.4g,%.0f\n", sweep.name.c_str(), value, name.c_str(), count,
-                right, at_limit, recognized, wrong, median(errors), median(bounds),
-                right > 0 ? std::sqrt(squares / right) : std::nan(""), median(conditions), median(times));
+    std::printf("\"%s\",%.10g,%s,%d,%d,%d,%d,%d,%.4g,%.4g,%.3f,%.4g,%.0f\n", sweep.name.c_str(),
+                value, name.c_str(), count, right, at_limit, recognized, wrong, median(errors),
+                median(bounds), right > 0 ? std::sqrt(squares / right) : std::nan(""),
+                median(conditions), median(times));
     std::fflush(stdout);
   }
 }
@@ -255,8 +276,10 @@ int main(int argc, char** argv) {
   int count = 40;
   app.add_option("--scenes", count, "Scenes a value")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  std::printf("sweep,value,class,scenes,right_class,limit_class,recognized,recognized_wrongly,shape_error_median,shape_bound,"
-              "rmse_over_bound,condition,us\n");
+  std::printf(
+      "sweep,value,class,scenes,right_class,limit_class,recognized,recognized_wrongly,shape_error_"
+      "median,shape_bound,"
+      "rmse_over_bound,condition,us\n");
   for (const Sweep& sweep : sweeps()) run(sweep, count);
   return 0;
 }

@@ -7,11 +7,11 @@
 #include "core/invariants/conic_line.h"
 #include "core/invariants/conic_parameters.h"
 #include "core/invariants/cubical_parabola_invariants.h"
-#include "core/invariants/parabola_fits.h"
 #include "core/invariants/parabola_invariant.h"
 #include "core/invariants/semi_cubical_parabola_invariants.h"
-#include "core/invariants/spline_least_squares.h"
-#include "core/recognition/recognition_tree.h"
+#include "core/invariants/signature_fit/parabola_fits.h"
+#include "core/invariants/signature_fit/spline_least_squares.h"
+#include "core/recognition/tree/recognition_tree.h"
 #include "tests/support/canonical_points.h"
 
 namespace palpate {

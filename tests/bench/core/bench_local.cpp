@@ -8,7 +8,7 @@
 #include "core/local/adaptive_jet.h"
 #include "core/local/estimator.h"
 #include "core/local/noise.h"
-#include "core/local/spikes.h"
+#include "core/local/spikes/spikes.h"
 
 namespace palpate {
 namespace {

@@ -7,8 +7,8 @@
 #include <chrono>
 #include <random>
 
-#include "core/recognition/class_fits.h"
-#include "core/recognition/smooth_model.h"
+#include "core/recognition/fit/class_fits.h"
+#include "core/recognition/smooth/smooth_model.h"
 #include "tests/support/scene_data.h"
 
 namespace palpate {

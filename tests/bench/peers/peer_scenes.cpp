@@ -2,10 +2,10 @@
 //   points.csv   the samples, every scene
 //   truth.csv    what was touched
 //   palpate.csv  the answer to each scene, all classes considered (cold), and with the class given
-// Letters of the shape: parameter_letters(class). Ellipse arcs are one stretch of that many degrees of
-// the eccentric angle; the other scenes are two patches that lie anywhere, as a probe touches a part.
-// With the class given (RecognizerOptions::classes) the other classes are still fitted to the reduced
-// points, and left out of the rest.
+// Letters of the shape: parameter_letters(class). Ellipse arcs are one stretch of that many degrees
+// of the eccentric angle; the other scenes are two patches that lie anywhere, as a probe touches a
+// part. With the class given (RecognizerOptions::classes) the other classes are still fitted to the
+// reduced points, and left out of the rest.
 #include <algorithm>
 #include <charconv>
 #include <chrono>

@@ -1,7 +1,8 @@
-// Latency from publishing a batch to receiving the recognition that contains it, less the computation, beside
-// a bare two-hop ZeroMQ relay of equal message sizes in the same run, and beside one that keeps its core and
-// its cache busy for as long as the node computed. Turns are taken message by message, so that all see the same
-// machine. Prints CSV: transport, what, quantiles in microseconds.
+// Latency from publishing a batch to receiving the recognition that contains it, less the
+// computation, beside a bare two-hop ZeroMQ relay of equal message sizes in the same run, and
+// beside one that keeps its core and its cache busy for as long as the node computed. Turns are
+// taken message by message, so that all see the same machine. Prints CSV: transport, what,
+// quantiles in microseconds.
 #include <benchmark/benchmark.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -19,7 +20,7 @@
 
 #include "node/client/contact_publisher.h"
 #include "node/client/result_subscriber.h"
-#include "node/socket.h"
+#include "node/wire/socket.h"
 #include "tests/bench/processes/node_process.h"
 
 namespace {
@@ -38,8 +39,8 @@ struct RelayOrder {
   std::int64_t busy_ns;
 };
 
-/// What the busy relay walks through, so that what it sends with is as cold as after a recognition: a core's
-/// second-level cache.
+/// What the busy relay walks through, so that what it sends with is as cold as after a recognition:
+/// a core's second-level cache.
 constexpr std::size_t kWorkingSetBytes = std::size_t{1} << 20;
 
 /// Forwards each message as one of the ordered size, after as much work as ordered.
@@ -87,7 +88,8 @@ void print(const std::string& transport, const char* what, std::vector<double> v
               quantile(values, 0.9), quantile(values, 0.99), quantile(values, 1.0));
 }
 
-bool measure(const std::string& transport, const Endpoints& node, const Endpoints& bare, int rounds) {
+bool measure(const std::string& transport, const Endpoints& node, const Endpoints& bare,
+             int rounds) {
   client::ContactPublisherOptions publication;
   publication.endpoint = node.in;
   client::ContactPublisher publisher(publication);

@@ -1,6 +1,7 @@
-// What the node does under load: batches of 50 samples from 1 to 64 probes, at rates up to and beyond what it takes;
-// by one node, or two that share the probes by the beginning of their names. Prints CSV: what was offered, taken and
-// missing, how many recognitions, and the nodes' CPU time and memory.
+// What the node does under load: batches of 50 samples from 1 to 64 probes, at rates up to and
+// beyond what it takes; by one node, or two that share the probes by the beginning of their names.
+// Prints CSV: what was offered, taken and missing, how many recognitions, and the nodes' CPU time
+// and memory.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -27,7 +28,9 @@ struct Load {
 };
 
 /// "east" and "west" in turn, so that two nodes have half of the probes each.
-std::string name_of(int probe) { return (probe % 2 == 0 ? "east" : "west") + std::to_string(probe); }
+std::string name_of(int probe) {
+  return (probe % 2 == 0 ? "east" : "west") + std::to_string(probe);
+}
 
 struct Side {
   std::unique_ptr<NodeProcess> node;
@@ -47,7 +50,8 @@ bool run(const Load& load, double seconds, const std::string& folder) {
     if (load.nodes > 1) {
       further.insert(further.end(), {"--probe-prefixes", i == 0 ? "east" : "west"});
     }
-    sides[i].node = std::make_unique<NodeProcess>("connect:ipc://" + folder + "/contacts", results, further);
+    sides[i].node =
+        std::make_unique<NodeProcess>("connect:ipc://" + folder + "/contacts", results, further);
     client::ResultSubscriberOptions subscription;
     subscription.endpoint = results;
     subscription.status = true;
@@ -70,7 +74,8 @@ bool run(const Load& load, double seconds, const std::string& folder) {
     v1::ContactBatch batch =
         batch_of(kSamplesPerBatch * static_cast<int>(turn % kBatchesPerObject), kSamplesPerBatch,
                  static_cast<std::uint64_t>(1 + turn / kBatchesPerObject));
-    const auto due = std::chrono::duration<double>(static_cast<double>(i) * kSamplesPerBatch / load.samples_per_s);
+    const auto due = std::chrono::duration<double>(static_cast<double>(i) * kSamplesPerBatch /
+                                                   load.samples_per_s);
     std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(due));
     publisher.publish(name_of(probe), batch);
   }
@@ -93,8 +98,9 @@ bool run(const Load& load, double seconds, const std::string& folder) {
     recognitions += side.last.recognitions_published();
   }
   const double rate = static_cast<double>(batches) * kSamplesPerBatch / taken_s;
-  std::printf("%.0f,%.0f,%d,%d,%lld,%llu,%lld,%llu,%.3f,%.2f,%.1f\n", load.samples_per_s, rate, load.probes,
-              load.nodes, static_cast<long long>(batches), static_cast<unsigned long long>(taken),
+  std::printf("%.0f,%.0f,%d,%d,%lld,%llu,%lld,%llu,%.3f,%.2f,%.1f\n", load.samples_per_s, rate,
+              load.probes, load.nodes, static_cast<long long>(batches),
+              static_cast<unsigned long long>(taken),
               static_cast<long long>(batches) - static_cast<long long>(taken),
               static_cast<unsigned long long>(recognitions), cpu_s / taken_s,
               1e3 * cpu_s / taken_s / (rate / 1e3), resident / 1e6);
@@ -109,11 +115,14 @@ int main(int argc, char** argv) {
   double seconds = 4.0;
   app.add_option("--seconds", seconds, "Of each load")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  std::printf("offered_samples_per_s,sent_samples_per_s,probes,nodes,messages_sent,messages_taken,messages_missing,"
-              "recognitions,cores_used,cpu_ms_per_1000_samples,resident_mb\n");
+  std::printf(
+      "offered_samples_per_s,sent_samples_per_s,probes,nodes,messages_sent,messages_taken,messages_"
+      "missing,"
+      "recognitions,cores_used,cpu_ms_per_1000_samples,resident_mb\n");
   std::fflush(stdout);
   std::vector<Load> loads;
-  for (const double rate : {1e3, 1e4, 5e4, 1e5, 2e5, 4e5, 8e5, 1.6e6, 3.2e6}) loads.push_back({rate, 1, 1});
+  for (const double rate : {1e3, 1e4, 5e4, 1e5, 2e5, 4e5, 8e5, 1.6e6, 3.2e6})
+    loads.push_back({rate, 1, 1});
   for (const int probes : {2, 4, 8, 16, 32, 64}) loads.push_back({2e4, probes, 1});
   for (const int probes : {2, 16, 64}) loads.push_back({2e4, probes, 2});
   for (const Load& load : loads) {

@@ -35,8 +35,8 @@ TemporaryFolder::~TemporaryFolder() {
 
 NodeProcess::NodeProcess(const std::string& contacts, const std::string& results,
                          const std::vector<std::string>& further_arguments) {
-  std::vector<std::string> words{"palpate-node", "--contacts", contacts, "--results", results,
-                                 "--log-level", "off"};
+  std::vector<std::string> words{"palpate-node", "--contacts",  contacts, "--results",
+                                 results,        "--log-level", "off"};
   words.insert(words.end(), further_arguments.begin(), further_arguments.end());
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());

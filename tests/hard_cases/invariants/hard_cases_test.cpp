@@ -12,9 +12,9 @@
 #include "core/invariants/conic_parameters.h"
 #include "core/invariants/constant_curvature.h"
 #include "core/invariants/cubical_parabola_invariants.h"
-#include "core/invariants/parabola_fits.h"
 #include "core/invariants/semi_cubical_parabola_invariants.h"
-#include "core/invariants/spline_least_squares.h"
+#include "core/invariants/signature_fit/parabola_fits.h"
+#include "core/invariants/signature_fit/spline_least_squares.h"
 #include "tests/support/canonical_points.h"
 #include "tests/support/test_rng.h"
 

@@ -8,9 +8,9 @@
 
 #include "core/local/estimator.h"
 #include "core/local/jet_estimator.h"
-#include "core/local/least_median_parabola.h"
 #include "core/local/noise.h"
-#include "core/local/spikes.h"
+#include "core/local/spikes/least_median_parabola.h"
+#include "core/local/spikes/spikes.h"
 #include "core/local/tip_radius.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/touched_arc.h"

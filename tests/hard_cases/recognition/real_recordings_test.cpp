@@ -52,8 +52,9 @@ TEST(RealRecordings, FormErrorIsSeenAndNoMirrorIsCertainlyAnotherClass) {
 }
 
 TEST(RealRecordings, PoleCurvatureOfTheDesignIsMeasured) {
-  // Curvature at the pole is sin(theta) (1/p + 1/q) / 2; the profiles are nearly circular about it, and
-  // their middle window's kappa agrees with it to a few per cent (the pole's place is not given).
+  // Curvature at the pole is sin(theta) (1/p + 1/q) / 2; the profiles are nearly circular about it,
+  // and their middle window's kappa agrees with it to a few per cent (the pole's place is not
+  // given).
   struct Design {
     const char* name;
     double p, q, theta;
@@ -61,8 +62,7 @@ TEST(RealRecordings, PoleCurvatureOfTheDesignIsMeasured) {
   for (const Design& design : {Design{"dabam-006", 4.5, 0.49914, 0.03499},
                                Design{"dabam-020", 9.0, 0.35, 0.04363323129985824}}) {
     const Recognition answer = recognise(design.name);
-    const double expected =
-        0.5 * std::sin(design.theta) * (1.0 / design.p + 1.0 / design.q);
+    const double expected = 0.5 * std::sin(design.theta) * (1.0 / design.p + 1.0 / design.q);
     ASSERT_FALSE(answer.contacts.empty());
     double least = 1e9;
     double most = 0.0;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/recognition/segment_match.h"
+#include "core/part/segment_match.h"
 #include "tests/support/closed_spline_part.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/touched_curve.h"

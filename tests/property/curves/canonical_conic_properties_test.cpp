@@ -1,5 +1,5 @@
 // Thousands of random conics at random poses and sizes: there and back.
-#include "core/curves/canonical_conic.h"
+#include "core/curves/algebraic/canonical_conic.h"
 
 #include <gtest/gtest.h>
 
@@ -26,19 +26,21 @@ TEST(CanonicalConicProperties, EveryCurveComesBackFromItsEquation) {
       const Pose2 pose{unit * uniform(rng, -3.0, 3.0), unit * uniform(rng, -3.0, 3.0),
                        uniform(rng, -kPi, kPi)};
       const double factor = random_sign(rng) * std::pow(10.0, uniform(rng, -9.0, 9.0));
-      const ConicCanonicalisation back =
-          canonicalise(factor * conic_of(curve_class, values, pose));
-      ASSERT_TRUE(back.curve.has_value()) << name_of(curve_class) << " " << describe(back.degeneracy);
+      const ConicCanonicalisation back = canonicalise(factor * conic_of(curve_class, values, pose));
+      ASSERT_TRUE(back.curve.has_value())
+          << name_of(curve_class) << " " << describe(back.degeneracy);
       ASSERT_EQ(back.curve->curve_class, curve_class) << values.transpose() << " unit " << unit;
       // Coefficients are rounded at the size of their terms, those of a pose three sizes away; the
       // squares of the semi-axes (0.05 to 3 units) are differences of such terms.
       const double bound = 1e3 * 400.0 * std::numeric_limits<double>::epsilon();
       for (Eigen::Index k = 0; k < 2; ++k) {
-        EXPECT_LE(std::abs(back.curve->values[k] - values[k]), bound * unit) << name_of(curve_class);
+        EXPECT_LE(std::abs(back.curve->values[k] - values[k]), bound * unit)
+            << name_of(curve_class);
       }
       if (curve_class == CurveClass::Line) {
         // The same line: its nearest point to the origin lies on both.
-        EXPECT_LE(std::abs(pose.to_local(back.curve->world_T_curve.translation()).y()), bound * unit);
+        EXPECT_LE(std::abs(pose.to_local(back.curve->world_T_curve.translation()).y()),
+                  bound * unit);
         EXPECT_LE(std::abs(std::sin(back.curve->world_T_curve.theta - pose.theta)), bound);
         continue;
       }
@@ -48,9 +50,8 @@ TEST(CanonicalConicProperties, EveryCurveComesBackFromItsEquation) {
         const double turn = back.curve->world_T_curve.theta - pose.theta;
         const double period = curve_class == CurveClass::Parabola ? 2.0 * kPi : kPi;
         // Axes are as uncertain as the two eigenvalues are alike.
-        const double alike = curve_class == CurveClass::Ellipse
-                                 ? 1.0 - std::pow(values[1] / values[0], 2)
-                                 : 1.0;
+        const double alike =
+            curve_class == CurveClass::Ellipse ? 1.0 - std::pow(values[1] / values[0], 2) : 1.0;
         EXPECT_LE(std::abs(std::remainder(turn, period)), bound / alike) << name_of(curve_class);
       }
     }
@@ -68,8 +69,8 @@ TEST(CanonicalConicProperties, PointsOfTheCurveSatisfyItsEquation) {
       Eigen::Matrix<double, 6, 1> terms;
       terms << p.x() * p.x(), p.x() * p.y(), p.y() * p.y(), p.x(), p.y(), 1.0;
       terms = terms.cwiseProduct(q);
-      // Rounding of the coefficients and of the point, whose sizes are those of the terms and of the
-      // pose: some 100 units in the last place.
+      // Rounding of the coefficients and of the point, whose sizes are those of the terms and of
+      // the pose: some 100 units in the last place.
       const double size = terms.cwiseAbs().sum() + q.cwiseAbs().maxCoeff() * 100.0;
       EXPECT_LE(std::abs(terms.sum()), 100.0 * std::numeric_limits<double>::epsilon() * size)
           << name_of(curve_class);
@@ -90,8 +91,8 @@ TEST(CanonicalConicProperties, ThroughTheParabolaTheClassChangesWhereRoundingLos
     const bool lost = small <= 16.0 * std::numeric_limits<double>::epsilon();
     const CurveClass round = exponent == 0 ? CurveClass::Circle : CurveClass::Ellipse;
     EXPECT_EQ(ellipse.curve->curve_class, lost ? CurveClass::Parabola : round) << exponent;
-    EXPECT_EQ(hyperbola.curve->curve_class,
-              lost ? CurveClass::Parabola : CurveClass::Hyperbola) << exponent;
+    EXPECT_EQ(hyperbola.curve->curve_class, lost ? CurveClass::Parabola : CurveClass::Hyperbola)
+        << exponent;
   }
 }
 

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "core/invariants/conic_line.h"
-#include "core/invariants/conic_start.h"
-#include "core/invariants/parabola_fits.h"
-#include "core/invariants/spline_least_squares.h"
+#include "core/invariants/signature_fit/conic_start.h"
+#include "core/invariants/signature_fit/parabola_fits.h"
+#include "core/invariants/signature_fit/spline_least_squares.h"
 #include "tests/support/canonical_points.h"
 #include "tests/support/test_rng.h"
 

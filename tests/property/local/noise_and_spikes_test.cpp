@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/local/noise.h"
-#include "core/local/normal_law.h"
-#include "core/local/spikes.h"
+#include "core/local/spikes/spikes.h"
+#include "core/numerics/normal_law.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/touched_arc.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "core/recognition/chi_square.h"
+#include "core/numerics/chi_square.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 
@@ -246,8 +246,9 @@ TEST_P(FormDeviationOf, SaysWhatWhiteNoiseOfTheBoundWouldSay) {
       // The smooth model follows no sharp bend to the noise: that is no misfit of the class.
       EXPECT_EQ(stated.doubt == Doubt::Misfit, white.doubt == Doubt::Misfit);
       if (white.status == RecognitionStatus::Recognized && stated.status == white.status) {
-        // Slices of a valley are taken on the reduced points, whose degrees the noise decides: where
-        // two coordinates are nearly as wide, they may run along either. Deviations to a twentieth.
+        // Slices of a valley are taken on the reduced points, whose degrees the noise decides:
+        // where two coordinates are nearly as wide, they may run along either. Deviations to a
+        // twentieth.
         expect_same_covariance(stated, white, 1.0, 0.1);
       }
     }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/recognition/recognition_tree.h"
+#include "core/recognition/tree/recognition_tree.h"
 #include "tests/support/canonical_points.h"
 #include "tests/support/test_rng.h"
 

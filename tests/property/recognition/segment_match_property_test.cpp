@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/recognition/chi_square.h"
-#include "core/recognition/segment_belonging.h"
-#include "core/recognition/segment_match.h"
+#include "core/numerics/chi_square.h"
+#include "core/part/segment_belonging.h"
+#include "core/part/segment_match.h"
 #include "tests/support/closed_spline_part.h"
 #include "tests/support/test_rng.h"
 

@@ -1,5 +1,5 @@
 // The general conic (10) on hand-made equations: every class, every degenerate case.
-#include "core/curves/canonical_conic.h"
+#include "core/curves/algebraic/canonical_conic.h"
 
 #include <gtest/gtest.h>
 

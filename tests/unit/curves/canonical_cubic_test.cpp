@@ -1,5 +1,5 @@
 // Appendix B on hand-made cubics: every class, every degenerate case, the tolerance.
-#include "core/curves/canonical_cubic.h"
+#include "core/curves/algebraic/canonical_cubic.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Joints, foot points and canonical segments of the closed spline.
-#include "core/curves/closed_spline.h"
+#include "core/part/closed_spline.h"
 
 #include <gtest/gtest.h>
 

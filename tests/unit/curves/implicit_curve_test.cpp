@@ -1,11 +1,11 @@
 // Appendix C: curvature and its derivative from an equation alone.
-#include "core/curves/implicit_curve.h"
+#include "core/curves/algebraic/implicit_curve.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/curves/canonical_conic.h"
+#include "core/curves/algebraic/canonical_conic.h"
 #include "tests/property/curves/random_curves.h"
 #include "tests/support/test_rng.h"
 
@@ -37,8 +37,8 @@ TEST(ImplicitCurve, AgreesWithTheParametricGeometryOfEveryConicAtAnyPose) {
       ASSERT_TRUE(found.has_value());
       const double turn = found->tangent_angle - expected.tangent_angle - pose.theta;
       const double sign = std::cos(turn) > 0.0 ? 1.0 : -1.0;
-      // Semi-axes of 0.05 to 3 and poses of 2: quadratic terms of up to 400 times what is left of them,
-      // once in the gradient and three times in kappa_s.
+      // Semi-axes of 0.05 to 3 and poses of 2: quadratic terms of up to 400 times what is left of
+      // them, once in the gradient and three times in kappa_s.
       EXPECT_LE(std::abs(std::sin(turn)), 1e-11) << name_of(curve_class);
       const double size = 1.0 + std::abs(expected.kappa);
       EXPECT_NEAR(sign * found->kappa / size, expected.kappa / size, 1e-10) << name_of(curve_class);

@@ -1,5 +1,5 @@
 // Roots of polynomials made from known roots.
-#include "core/curves/real_roots.h"
+#include "core/numerics/real_roots.h"
 
 #include <gtest/gtest.h>
 

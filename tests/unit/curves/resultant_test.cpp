@@ -1,5 +1,5 @@
 // Appendix A: Sylvester's matrix, the resultant, and the equation of a polynomial curve.
-#include "core/curves/resultant.h"
+#include "core/curves/algebraic/resultant.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/curves/canonical_cubic.h"
-#include "core/curves/implicit_curve.h"
+#include "core/curves/algebraic/canonical_cubic.h"
+#include "core/curves/algebraic/implicit_curve.h"
 #include "tests/support/reference_curves.h"
 #include "tests/support/test_rng.h"
 
@@ -53,8 +53,8 @@ TEST(Resultant, IsTheProductOfRootDifferencesAndTheDeterminant) {
     for (double& x : s) x = root(rng);
     const double a = std::pow(10.0, exponent(rng));
     const double b = -std::pow(10.0, exponent(rng));
-    double log_modulus = static_cast<double>(s.size()) * std::log(a) +
-                         static_cast<double>(r.size()) * std::log(-b);
+    double log_modulus =
+        static_cast<double>(s.size()) * std::log(a) + static_cast<double>(r.size()) * std::log(-b);
     double sign = r.size() % 2 == 1 ? -1.0 : 1.0;
     double nearest = 1.0;
     for (const double x : r) {
@@ -72,7 +72,8 @@ TEST(Resultant, IsTheProductOfRootDifferencesAndTheDeterminant) {
     EXPECT_EQ(found.sign, sign) << trial;
     EXPECT_NEAR(found.log_modulus, log_modulus, 1e-6) << trial;
     if (std::abs(log_modulus) < 200.0) {
-      const double determinant = sylvester_matrix(with_roots(1.0, r), with_roots(-1.0, s)).determinant();
+      const double determinant =
+          sylvester_matrix(with_roots(1.0, r), with_roots(-1.0, s)).determinant();
       EXPECT_EQ(found.sign, std::copysign(1.0, determinant));
     }
   }
@@ -93,7 +94,8 @@ TEST(ImplicitEquation, OfTheCanonicalForms) {
   parabola.coefficients << 0, 0, 2, 0, 0, 4, 0, 0;
   const BivariatePolynomial f = implicit_equation(parabola);
   EXPECT_EQ(f.degree(), 2);
-  const double ratio = f.coefficient(1, 0) / f.scale() / (f.coefficient(0, 2) / f.scale() / f.scale());
+  const double ratio =
+      f.coefficient(1, 0) / f.scale() / (f.coefficient(0, 2) / f.scale() / f.scale());
   EXPECT_DOUBLE_EQ(ratio, -8.0);
   EXPECT_EQ(f.coefficient(2, 0), 0.0);
   EXPECT_EQ(f.coefficient(1, 1), 0.0);

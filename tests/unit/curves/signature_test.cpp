@@ -37,8 +37,8 @@ TEST(Signature, ClosedEquationsOfTheConicsHoldAtEveryReferencePoint) {
       continue;
     }
     for (const test::ReferencePoint& point : reference.points) {
-      // Three terms, each a few cube roots and quotients of doubles; kappa_s / kappa^2 is rounded where
-      // it is small beside 1.
+      // Three terms, each a few cube roots and quotients of doubles; kappa_s / kappa^2 is rounded
+      // where it is small beside 1.
       EXPECT_LE(std::abs(signature->residual(point.kappa, point.kappa_s)), 1e-14)
           << name_of(reference.curve_class) << " t " << point.t;
       // On one curve only: a hundredth more curvature is off it.
@@ -58,7 +58,8 @@ TEST(Signature, TravelledTheOtherWayTheCurveIsTheSame) {
          {CurveClass::Circle, CurveClass::Ellipse, CurveClass::Parabola, CurveClass::Hyperbola}) {
       const RandomCurve random = random_curve(curve_class, rng);
       const LocalGeometry local = reversed(geometry(random.curve, random.random_t(rng)));
-      EXPECT_LE(std::abs(conic_signature(random.curve)->residual(local.kappa, local.kappa_s)), 1e-13);
+      EXPECT_LE(std::abs(conic_signature(random.curve)->residual(local.kappa, local.kappa_s)),
+                1e-13);
     }
   }
 }

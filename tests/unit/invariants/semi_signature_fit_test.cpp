@@ -1,12 +1,12 @@
-#include "core/invariants/semi_signature_fit.h"
+#include "core/invariants/signature_fit/semi_signature_fit.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/curves/pose2.h"
-#include "core/invariants/parabola_fits.h"
-#include "core/invariants/spline_least_squares.h"
+#include "core/invariants/signature_fit/parabola_fits.h"
+#include "core/invariants/signature_fit/spline_least_squares.h"
 #include "tests/unit/invariants/reference_geometry.h"
 
 namespace palpate {

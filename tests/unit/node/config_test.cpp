@@ -95,7 +95,7 @@ TEST(Config, FlagBeforeEnvironmentBeforeFile) {
   ASSERT_EQ(set_option(flags, "contacts", "ipc:///c"), "");
   const Result<NodeOptions> options = make_options(merge(merge(file, *environment.value), flags));
   ASSERT_TRUE(options) << options.error;
-  EXPECT_EQ(options.value->intake.groups.max_groups, 3U);           // flag
+  EXPECT_EQ(options.value->intake.groups.max_groups, 3U);    // flag
   EXPECT_EQ(options.value->intake.max_probes, 2U);           // environment
   EXPECT_EQ(options.value->intake.recognizer.sigma_m, 1.0);  // file
   EXPECT_EQ(options.value->contacts, std::vector<std::string>{"ipc:///c"});

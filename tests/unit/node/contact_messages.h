@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "node/topics.h"
+#include "node/wire/topics.h"
 #include "palpate/v1/contact.pb.h"
 
 namespace palpate::testing {

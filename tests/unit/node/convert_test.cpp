@@ -1,4 +1,4 @@
-#include "node/convert.h"
+#include "node/wire/convert.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "node/curve_keys.h"
+#include "node/wire/curve_keys.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "node/path_lock.h"
-#include "node/zap_handler.h"
+#include "node/security/zap_handler.h"
+#include "node/wire/path_lock.h"
 
 namespace palpate {
 namespace {

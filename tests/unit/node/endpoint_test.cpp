@@ -1,4 +1,4 @@
-#include "node/endpoint.h"
+#include "node/wire/endpoint.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,9 @@ namespace palpate {
 namespace {
 
 TEST(Endpoint, WhatIsAPortAndWhatIsNone) {
-  for (const char* good : {"tcp://127.0.0.1:5581", "bind:tcp://127.0.0.1:*", "tcp://[::1]:0",
-                           "connect:tcp://node.example:65535", "ipc:///run/99999", "inproc://a:b"}) {
+  for (const char* good :
+       {"tcp://127.0.0.1:5581", "bind:tcp://127.0.0.1:*", "tcp://[::1]:0",
+        "connect:tcp://node.example:65535", "ipc:///run/99999", "inproc://a:b"}) {
     EXPECT_TRUE(parse_endpoint(good, true)) << good;
   }
   for (const char* bad : {"tcp://127.0.0.1:99999", "tcp://127.0.0.1:65536", "tcp://127.0.0.1:-1",

@@ -1,4 +1,4 @@
-#include "node/ingest.h"
+#include "node/intake/ingest.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What counts and what does not: sequence, objects, bounds, turns.
-#include "node/intake.h"
+#include "node/groups/intake.h"
 
 #include <gtest/gtest.h>
 
@@ -220,8 +220,9 @@ TEST_F(IntakeTest, AProbeThatOpensGroupAfterGroupLosesItsOwnOnly) {
   give(intake, "good", in_group("good", 1, line_batch("good", 1, 0)));
   for (std::uint64_t seq = 0; seq < 500; ++seq) {
     now_ += milliseconds(1);
-    EXPECT_EQ(give(intake, "greedy", in_group(std::to_string(seq), 1, line_batch("greedy", 1, seq))),
-              kTaken);
+    EXPECT_EQ(
+        give(intake, "greedy", in_group(std::to_string(seq), 1, line_batch("greedy", 1, seq))),
+        kTaken);
   }
   EXPECT_EQ(intake.groups().size(), 4U);
   EXPECT_NE(intake.groups().find("good"), nullptr);
@@ -249,7 +250,9 @@ TEST_F(IntakeTest, AGroupHasSoManyProbes) {
 TEST_F(IntakeTest, AModestGroupIsServedBeforeBusyOnes) {
   constexpr std::int64_t kCost = 1'000'000;
   std::uint64_t seq = 0;
-  const auto serve_next = [&](std::int64_t cost_ns) { serve(*intake_.groups().next_waiting(), cost_ns); };
+  const auto serve_next = [&](std::int64_t cost_ns) {
+    serve(*intake_.groups().next_waiting(), cost_ns);
+  };
   const auto all_busy_ones_wait = [&] {
     for (const char* name : {"busy1", "busy2", "busy3"}) give(name, line_batch(name, 1, seq));
     ++seq;
@@ -338,7 +341,8 @@ TEST_F(IntakeTest, WhatWaitsIsBoundedAndNobodyTakesAllOfIt) {
   EXPECT_GT(third, 0U);
   EXPECT_EQ(give(intake, "good", line_batch("good", 1, 0)), kTaken);
   std::size_t queued = 0;
-  for (const char* name : {"a", "b", "c", "good"}) queued += intake.groups().find(name)->queued_bytes();
+  for (const char* name : {"a", "b", "c", "good"})
+    queued += intake.groups().find(name)->queued_bytes();
   EXPECT_LE(queued, options.groups.max_waiting_bytes);
   const IntakeCounters& counters = intake.counters();
   EXPECT_EQ(counters.rejected[v1::REJECT_REASON_OVERLOAD], 3000 - first - second - third);
@@ -353,7 +357,8 @@ TEST_F(IntakeTest, WhatWaitsIsBoundedAndNobodyTakesAllOfIt) {
 
 TEST_F(IntakeTest, SlowGroupsAreKnownByTheirLastAnswer) {
   give("slow", line_batch("slow", 1, 0));
-  serve(*intake_.groups().next_waiting(), 2 * std::chrono::nanoseconds(Group::kQuickCompute).count());
+  serve(*intake_.groups().next_waiting(),
+        2 * std::chrono::nanoseconds(Group::kQuickCompute).count());
   give("slow", line_batch("slow", 1, 1));
   EXPECT_EQ(intake_.groups().next_waiting(/*only_quick=*/true), nullptr);
   give("quick", line_batch("quick", 1, 0));

@@ -1,5 +1,5 @@
 // A log that nobody reads.
-#include "node/log_sink.h"
+#include "node/process/log_sink.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

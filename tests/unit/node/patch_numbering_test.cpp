@@ -1,4 +1,4 @@
-#include "node/patch_numbering.h"
+#include "node/intake/patch_numbering.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "node/client/result_subscriber.h"
-#include "node/socket.h"
-#include "node/topics.h"
+#include "node/wire/socket.h"
+#include "node/wire/topics.h"
 
 namespace palpate {
 namespace {
@@ -16,8 +16,8 @@ using std::chrono::milliseconds;
 
 class PausedReader : public testing::TestWithParam<const char*> {};
 
-// libzmq (4.3.4) aborts the process ("_input_stopped") where a heartbeat of the reading side expires while its
-// queue is full, and the queue is emptied after the reconnection.
+// libzmq (4.3.4) aborts the process ("_input_stopped") where a heartbeat of the reading side
+// expires while its queue is full, and the queue is emptied after the reconnection.
 TEST_P(PausedReader, ReadsOnWhenItComesBack) {
   zmq::context_t context(1);
   zmq::socket_t publisher = make_socket(context, zmq::socket_type::xpub, {});
@@ -44,7 +44,8 @@ TEST_P(PausedReader, ReadsOnWhenItComesBack) {
     while (planner.receive(milliseconds(0)).recognition != nullptr) ++waiting;
     // The queue was full: its writer learns of room half a queue at a time.
     EXPECT_GE(waiting, options.high_water_mark / 2);
-    // What comes next is read to its end, what the transport still held included, until it is up to date.
+    // What comes next is read to its end, what the transport still held included, until it is up to
+    // date.
     bool newest = false;
     for (int attempt = 0; attempt < 100 && !newest; ++attempt) {
       publish();
@@ -56,8 +57,7 @@ TEST_P(PausedReader, ReadsOnWhenItComesBack) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Transports, PausedReader,
-                         testing::Values("tcp://127.0.0.1:*", "ipc://*"));
+INSTANTIATE_TEST_SUITE_P(Transports, PausedReader, testing::Values("tcp://127.0.0.1:*", "ipc://*"));
 
 }  // namespace
 }  // namespace palpate

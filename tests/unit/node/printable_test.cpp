@@ -1,4 +1,4 @@
-#include "node/printable.h"
+#include "node/files/printable.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "node/sequence_tracker.h"
+#include "node/intake/sequence_tracker.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "node/status.h"
+#include "node/publish/status.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "node/topics.h"
+#include "node/wire/topics.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "node/endpoint.h"
+#include "node/wire/endpoint.h"
 
 namespace palpate {
 namespace {

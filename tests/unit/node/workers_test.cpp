@@ -1,5 +1,5 @@
 // Work on other threads: given out, taken back, and left behind where it does not end.
-#include "node/workers.h"
+#include "node/groups/workers.h"
 
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -34,8 +34,7 @@ TEST(Workers, WhatTheyDoIsSeenByWhoGaveIt) {
   Workers workers(2);
   int sum = 0;  // touched by the worker, then by us: the sanitizer watches
   for (int i = 1; i <= 1000; ++i) {
-    const std::size_t worker =
-        workers.start(std::make_shared<Task>([&sum, i] { sum += i; }));
+    const std::size_t worker = workers.start(std::make_shared<Task>([&sum, i] { sum += i; }));
     EXPECT_EQ(next_finished(workers), worker);
   }
   EXPECT_EQ(sum, 500500);
@@ -64,7 +63,8 @@ TEST(Workers, NoFinishIsMissedHoweverTheyCome) {
 TEST(Workers, ALongWorkHoldsUpNoOther) {
   Workers workers(2);
   std::promise<void> release;
-  const std::size_t held = workers.start(std::make_shared<Task>([&] { release.get_future().wait(); }));
+  const std::size_t held =
+      workers.start(std::make_shared<Task>([&] { release.get_future().wait(); }));
   for (int i = 0; i < 100; ++i) {
     const std::size_t other = workers.start(std::make_shared<Task>([] {}));
     EXPECT_NE(other, held);
@@ -81,12 +81,11 @@ TEST(Workers, TheEndDoesNotWaitForAWorkThatDoesNotEnd) {
   auto begun = std::make_shared<std::promise<void>>();
   {
     Workers workers(2);
-    workers.start(std::make_shared<Task>(
-        [begun, released = release.get_future().share(), &ended] {
-          begun->set_value();
-          released.wait();
-          ended.set_value();
-        }));
+    workers.start(std::make_shared<Task>([begun, released = release.get_future().share(), &ended] {
+      begun->set_value();
+      released.wait();
+      ended.set_value();
+    }));
     begun->get_future().wait();
     EXPECT_EQ(workers.busy_count(), 1U);
   }  // would never be passed

@@ -1,11 +1,11 @@
-#include "core/recognition/canonical_fit.h"
+#include "core/recognition/fit/canonical_fit.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/curves/curve.h"
-#include "core/recognition/on_all_points.h"
+#include "core/recognition/fit/on_all_points.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 

@@ -1,5 +1,5 @@
 // The chi-square law against 50-digit values (tests/data/reference/make_chi_square.py).
-#include "core/recognition/chi_square.h"
+#include "core/numerics/chi_square.h"
 
 #include <gtest/gtest.h>
 

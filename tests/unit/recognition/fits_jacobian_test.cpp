@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "core/recognition/implicit_fit.h"
-#include "core/recognition/on_all_points.h"
-#include "core/recognition/polynomial_fit.h"
+#include "core/recognition/fit/implicit_fit.h"
+#include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/fit/polynomial_fit.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 

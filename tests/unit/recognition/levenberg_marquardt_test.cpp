@@ -1,11 +1,11 @@
 // Least squares along bent valleys, and what polynomial curves tell it.
-#include "core/recognition/levenberg_marquardt.h"
+#include "core/numerics/levenberg_marquardt.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "core/recognition/polynomial_problem.h"
+#include "core/recognition/fit/polynomial_problem.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {

@@ -1,4 +1,4 @@
-#include "core/recognition/orthogonal_polynomials.h"
+#include "core/numerics/orthogonal_polynomials.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "core/recognition/recognition_tree.h"
+#include "core/recognition/tree/recognition_tree.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/recognition/chi_square.h"
+#include "core/numerics/chi_square.h"
 #include "tests/support/canonical_points.h"
 #include "tests/support/reference_curves.h"
 #include "tests/support/test_rng.h"

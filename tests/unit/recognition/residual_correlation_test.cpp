@@ -1,4 +1,4 @@
-#include "core/recognition/residual_correlation.h"
+#include "core/recognition/smooth/residual_correlation.h"
 
 #include <gtest/gtest.h>
 

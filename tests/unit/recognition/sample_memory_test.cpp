@@ -1,4 +1,4 @@
-#include "core/recognition/sample_memory.h"
+#include "core/recognition/samples/sample_memory.h"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,8 @@ TEST(SampleMemory, RefusesWhatIsNoSampleAndCountsIt) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   SampleMemory memory;
-  const std::vector<ContactSample> samples = {at(0.0),           at(nan),           at(1.0, inf),
-                                              at(1.0, 0.0, nan), at(1.0, 0.0, -1.0), at(0.0),
-                                              at(2.0)};
+  const std::vector<ContactSample> samples = {
+      at(0.0), at(nan), at(1.0, inf), at(1.0, 0.0, nan), at(1.0, 0.0, -1.0), at(0.0), at(2.0)};
   const AddResult result = memory.add({}, samples);
   EXPECT_EQ(result.accepted, 2U);
   EXPECT_EQ(result.rejected_not_finite, 3U);

@@ -1,12 +1,12 @@
 // Where a patch leaves one cubic for another, without any model of the part.
-#include "core/recognition/segment_belonging.h"
+#include "core/part/segment_belonging.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/recognition/chi_square.h"
+#include "core/numerics/chi_square.h"
 #include "tests/support/closed_spline_part.h"
 #include "tests/support/test_rng.h"
 

@@ -1,5 +1,5 @@
 // Exact contacts on every segment of a known part come back as what they are.
-#include "core/recognition/segment_match.h"
+#include "core/part/segment_match.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "core/recognition/smooth_model.h"
+#include "core/recognition/smooth/smooth_model.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/recognition/on_all_points.h"
+#include "core/recognition/fit/on_all_points.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 
@@ -37,8 +37,8 @@ TEST(SmoothModel, LeavesNoiseAloneWhateverTheClass) {
 }
 
 TEST(SmoothModel, ReducedPointsTellWhatAllPointsTell) {
-  // chi2 of a class on all points = chi2 of the smooth model + chi2 on the reduced points. Fits of the
-  // true class differ by what two more degrees of each section's polynomial hold of noise.
+  // chi2 of a class on all points = chi2 of the smooth model + chi2 on the reduced points. Fits of
+  // the true class differ by what two more degrees of each section's polynomial hold of noise.
   std::mt19937_64 rng = test::test_rng();
   for (const CurveClass curve_class : kCurveClasses) {
     for (int i = 0; i < 10; ++i) {

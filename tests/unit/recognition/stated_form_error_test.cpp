@@ -1,4 +1,4 @@
-#include "core/recognition/stated_form_error.h"
+#include "core/recognition/smooth/stated_form_error.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/recognition/on_all_points.h"
+#include "core/recognition/fit/on_all_points.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 

@@ -1,13 +1,14 @@
-// Every scene that ships: what the recogniser makes of the simulator's contacts against their truth.
+// Every scene that ships: what the recogniser makes of the simulator's contacts against their
+// truth.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <filesystem>
 
-#include "node/convert.h"
 #include "node/tool/contact_groups.h"
 #include "node/tool/part_match.h"
+#include "node/wire/convert.h"
 #include "sim/contact_export.h"
 #include "sim/contacts.h"
 #include "sim/scene_file.h"
@@ -50,7 +51,9 @@ TEST_P(ShippedScene, IsRecognisedWithinFourStandardDeviations) {
     const v1::Parameters& parameters = truth.parameters();
     Eigen::Index letter = 0;
     for (const char name : parameter_letters(answer.shape.curve_class)) {
-      const double value = name == 'a' ? parameters.a() : name == 'b' ? parameters.b() : parameters.c();
+      const double value = name == 'a'   ? parameters.a()
+                           : name == 'b' ? parameters.b()
+                                         : parameters.c();
       error.push_back(answer.shape.values[letter++] - value);
     }
     if (answer.shape.curve_class == CurveClass::Unclassified) {
@@ -59,8 +62,8 @@ TEST_P(ShippedScene, IsRecognisedWithinFourStandardDeviations) {
     const Pose2 true_pose{truth.pose().x_m(), truth.pose().y_m(), truth.pose().theta_rad()};
     if (answer.shape.curve_class == CurveClass::Line) {
       // Free to slide: what counts is the true line's distance and direction.
-      const Vec2 across = true_pose.rotate_back(answer.world_T_curve.translation() -
-                                                true_pose.translation());
+      const Vec2 across =
+          true_pose.rotate_back(answer.world_T_curve.translation() - true_pose.translation());
       const double turn = std::remainder(answer.world_T_curve.theta - true_pose.theta, kPi);
       const double sigma = answer.sigma_m / std::sqrt(static_cast<double>(answer.sample_count));
       EXPECT_LE(std::abs(across.y()), 4.0 * sigma);
@@ -81,9 +84,10 @@ TEST_P(ShippedScene, IsRecognisedWithinFourStandardDeviations) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ShippedScene, testing::ValuesIn(scene_files()), [](const auto& scene) {
-  return std::filesystem::path(scene.param).stem().string();
-});
+INSTANTIATE_TEST_SUITE_P(All, ShippedScene, testing::ValuesIn(scene_files()),
+                         [](const auto& scene) {
+                           return std::filesystem::path(scene.param).stem().string();
+                         });
 
 TEST(ShippedScenes, ClosedPartsAreFoundWhereTheyLie) {
   int parts = 0;
@@ -110,7 +114,8 @@ TEST(ShippedScenes, ClosedPartsAreFoundWhereTheyLie) {
       const std::array errors = {best.pose().x_m() - truth.x, best.pose().y_m() - truth.y,
                                  wrap_angle(best.pose().theta_rad() - truth.theta)};
       for (int i = 0; i < 3; ++i) {
-        EXPECT_LE(std::abs(errors[static_cast<std::size_t>(i)]), 4.0 * std::sqrt(best.covariance(4 * i)));
+        EXPECT_LE(std::abs(errors[static_cast<std::size_t>(i)]),
+                  4.0 * std::sqrt(best.covariance(4 * i)));
       }
       ASSERT_EQ(best.patches_size(), truths[g].patches_size());
       for (int p = 0; p < best.patches_size(); ++p) {
@@ -130,8 +135,8 @@ TEST(ShippedScenes, ShowEveryClass) {
     const Result<sim::Scene> scene = sim::read_scene(file);
     ASSERT_TRUE(scene.value.has_value()) << scene.error;
     if (scene.value->description.has_curve()) {
-      shown[static_cast<std::size_t>(
-          from_wire(scene.value->description.curve().curve_class()))] = true;
+      shown[static_cast<std::size_t>(from_wire(scene.value->description.curve().curve_class()))] =
+          true;
     }
   }
   for (const CurveClass curve_class : kCurveClasses) {

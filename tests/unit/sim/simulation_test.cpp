@@ -1,4 +1,5 @@
-// The simulator's contacts: repeatable, spaced as asked, noisy as asked, and errors that name the field.
+// The simulator's contacts: repeatable, spaced as asked, noisy as asked, and errors that name the
+// field.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +32,8 @@ std::string probe(const std::string& noise, const std::string& patch) {
 }
 
 TEST(Simulation, TheSameSeedGivesTheSameSamplesAndAnotherRoundOthers) {
-  const sim::Scene scene = scene_of(probe("sigma_m: 1e-5", "start_t: 0 arc_m: 0.02 spacing_m: 2e-4"));
+  const sim::Scene scene =
+      scene_of(probe("sigma_m: 1e-5", "start_t: 0 arc_m: 0.02 spacing_m: 2e-4"));
   const auto one = sim::simulate_contacts(scene, 0);
   const auto two = sim::simulate_contacts(scene, 0);
   const auto other = sim::simulate_contacts(scene, 1);
@@ -43,7 +45,8 @@ TEST(Simulation, TheSameSeedGivesTheSameSamplesAndAnotherRoundOthers) {
 }
 
 TEST(Simulation, SamplesLieOnTheCurveAtTheSpacingAsked) {
-  const sim::Scene scene = scene_of(probe("", "start_t: 1 arc_m: 0.02 spacing_m: 2e-4 backwards: true"));
+  const sim::Scene scene =
+      scene_of(probe("", "start_t: 1 arc_m: 0.02 spacing_m: 2e-4 backwards: true"));
   const auto probes = sim::simulate_contacts(scene, 0);
   const auto& samples = probes[0].patches[0].samples;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -56,7 +59,8 @@ TEST(Simulation, SamplesLieOnTheCurveAtTheSpacingAsked) {
 
 TEST(Simulation, NoiseHasTheStandardDeviationAsked) {
   constexpr double kSigma = 1e-5;
-  const sim::Scene scene = scene_of(probe("sigma_m: 1e-5", "start_t: 0 arc_m: 0.1 spacing_m: 1e-5"));
+  const sim::Scene scene =
+      scene_of(probe("sigma_m: 1e-5", "start_t: 0 arc_m: 0.1 spacing_m: 1e-5"));
   const auto probes = sim::simulate_contacts(scene, 0);
   const auto& samples = probes[0].patches[0].samples;
   double squares = 0.0;
@@ -71,9 +75,10 @@ TEST(Simulation, NoiseHasTheStandardDeviationAsked) {
 }
 
 TEST(Simulation, SpikesAndDropoutsComeAtTheirRates) {
-  const sim::Scene scene = scene_of(probe(
-      "sigma_m: 1e-7 spike_probability: 0.1 spike_m: 0.001 dropout_probability: 0.2 hide_sigma: true",
-      "start_t: 0 arc_m: 0.1 spacing_m: 1e-5"));
+  const sim::Scene scene =
+      scene_of(probe("sigma_m: 1e-7 spike_probability: 0.1 spike_m: 0.001 dropout_probability: 0.2 "
+                     "hide_sigma: true",
+                     "start_t: 0 arc_m: 0.1 spacing_m: 1e-5"));
   const auto probes = sim::simulate_contacts(scene, 0);
   const auto& samples = probes[0].patches[0].samples;
   const double asked = 10001.0;
@@ -81,7 +86,8 @@ TEST(Simulation, SpikesAndDropoutsComeAtTheirRates) {
   EXPECT_NEAR(n / asked, 0.8, 4.0 * std::sqrt(0.8 * 0.2 / asked));
   double spikes = 0.0;
   for (const auto& sample : samples) {
-    // A spike along the tangent stays near the circle: those farther than a tenth of its size count.
+    // A spike along the tangent stays near the circle: those farther than a tenth of its size
+    // count.
     spikes += std::abs((sample.position_m - Vec2(0.1, 0.2)).norm() - 0.02) > 1e-4 ? 1.0 : 0.0;
     EXPECT_EQ(sample.sigma_m, 0.0);
   }
@@ -91,9 +97,9 @@ TEST(Simulation, SpikesAndDropoutsComeAtTheirRates) {
 }
 
 TEST(Simulation, ARoundTipRunsOnTheOffsetOutsideTheMaterial) {
-  const sim::Scene scene = scene_of(
-      std::string(kCircle) +
-      "probes { name: \"p\" tip_radius_m: 0.003 patches { start_t: 0 arc_m: 0.02 spacing_m: 2e-4 } }\n");
+  const sim::Scene scene = scene_of(std::string(kCircle) +
+                                    "probes { name: \"p\" tip_radius_m: 0.003 patches { start_t: 0 "
+                                    "arc_m: 0.02 spacing_m: 2e-4 } }\n");
   const auto probes = sim::simulate_contacts(scene, 0);
   for (const auto& sample : probes[0].patches[0].samples) {
     EXPECT_NEAR((sample.position_m - Vec2(0.1, 0.2)).norm(), 0.023, 1e-15);
@@ -111,12 +117,15 @@ TEST(SceneFile, EveryBadFieldIsNamedWithItsLine) {
   EXPECT_THAT(error_of(probe("sigma_m: -1", "start_t: 0 arc_m: 0.02 spacing_m: 2e-4")),
               StartsWith("scene.textproto:4: noise.sigma_m"));
   EXPECT_THAT(error_of(probe("", "start_t: 0 arc_m: 0 spacing_m: 2e-4")), HasSubstr("arc_m"));
-  EXPECT_THAT(error_of(probe("", "start_t: 0 arc_m: 0.02 spacing_m: -2e-4")), HasSubstr("spacing_m"));
+  EXPECT_THAT(error_of(probe("", "start_t: 0 arc_m: 0.02 spacing_m: -2e-4")),
+              HasSubstr("spacing_m"));
   EXPECT_THAT(error_of(probe("spike_probability: 2", "start_t: 0 arc_m: 0.02 spacing_m: 2e-4")),
               HasSubstr("spike_probability"));
-  EXPECT_THAT(error_of("curve { curve_class: CURVE_CLASS_ELLIPSE parameters { a: 1 } }\n" + good.substr(8)),
-              StartsWith("scene.textproto"));
-  EXPECT_THAT(error_of(std::string(kCircle) + "probes { name: \"a b\" patches { start_t: 0 arc_m: 1 spacing_m: 1 } }"),
+  EXPECT_THAT(
+      error_of("curve { curve_class: CURVE_CLASS_ELLIPSE parameters { a: 1 } }\n" + good.substr(8)),
+      StartsWith("scene.textproto"));
+  EXPECT_THAT(error_of(std::string(kCircle) +
+                       "probes { name: \"a b\" patches { start_t: 0 arc_m: 1 spacing_m: 1 } }"),
               HasSubstr("name"));
 }
 

@@ -9,8 +9,8 @@
 #include <limits>
 #include <random>
 
-#include "node/convert.h"
 #include "node/tool/drawing/drawing.h"
+#include "node/wire/convert.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 

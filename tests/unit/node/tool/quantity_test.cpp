@@ -1,4 +1,4 @@
-#include "node/tool/quantity.h"
+#include "node/tool/text/quantity.h"
 
 #include <gtest/gtest.h>
 

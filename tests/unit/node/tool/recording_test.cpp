@@ -90,7 +90,8 @@ TEST_F(RecordingFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(back.damaged, 0U);
   EXPECT_FALSE(back.breaks_off);
   ASSERT_EQ(back.messages.size(), 20U);
-  for (int i = 0; i < 20; ++i) expect_equal(back.messages[static_cast<std::size_t>(i)], message_of(i));
+  for (int i = 0; i < 20; ++i)
+    expect_equal(back.messages[static_cast<std::size_t>(i)], message_of(i));
 }
 
 TEST_F(RecordingFile, KeepsAnyBytesAsTheyCame) {
@@ -157,7 +158,8 @@ TEST_F(RecordingFile, TheFormerFormatIsRead) {
 
 TEST_F(RecordingFile, AFileBeyondTwoGibibytesIsRead) {
   write(1);
-  constexpr std::uintmax_t kFar = std::uintmax_t{5} << 29U;  // of zeros that take no room on the disk
+  constexpr std::uintmax_t kFar = std::uintmax_t{5}
+                                  << 29U;  // of zeros that take no room on the disk
   const std::string record = bytes().substr(8);
   std::filesystem::resize_file(path_, kFar);
   std::ofstream(path_, std::ios::binary | std::ios::app) << record;

@@ -1,9 +1,9 @@
-#include "node/tool/svg_plot.h"
+#include "node/tool/drawing/svg_plot.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "node/convert.h"
+#include "node/wire/convert.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 

@@ -1,4 +1,4 @@
-#include "node/tool/watch_table.h"
+#include "node/tool/text/watch_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,291 @@
+// The iteration behind fit_semi_signature: Levenberg-Marquardt over shape and orientation, with
+// each point's t eliminated. Included by its source file only.
+//
+// Ceres' TinySolver has no elimination: with one unknown a point its cost would be cubic in the
+// points.
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/curves/pose2.h"
+#include "core/invariants/invariant_status.h"
+#include "core/invariants/measured_geometry.h"
+#include "core/invariants/signature_fit/canonical_models.h"
+#include "core/invariants/signature_fit/local_parameter.h"
+#include "core/numerics/small_ldlt.h"
+
+namespace palpate::detail {
+
+inline constexpr double kInitialDamping = 1e-3;
+inline constexpr double kLargestDamping =
+    1e12;  ///< a step this short that still does not help: stop
+/// Converged where the predicted relative decrease of chi-square is below this, or the decrease is
+/// below what rounding makes of chi-square.
+inline constexpr double kRelativeDecrease = 1e-13;
+/// Roundings in a difference between a measurement and the model.
+inline constexpr double kResidualRounding = 16.0 * std::numeric_limits<double>::epsilon();
+
+/// A point in normalised lengths with its whitening matrix.
+struct WhitePoint {
+  MeasuredGeometry measured;
+  Eigen::Matrix3d whitening;  ///< inverse Cholesky factor of the covariance
+};
+
+/// Rows: the derivatives of angle, kappa and kappa_s, (1) and (2), by what the jets count.
+template <int N>
+Eigen::Matrix<double, 3, N> geometry_jacobian(const ModelDerivatives<ceres::Jet<double, N>>& d) {
+  using Row = Eigen::Matrix<double, N, 1>;
+  const double x1 = d.first.x.a, y1 = d.first.y.a;
+  const double x2 = d.second.x.a, y2 = d.second.y.a;
+  const double x3 = d.third.x.a, y3 = d.third.y.a;
+  const double inverse = 1.0 / (x1 * x1 + y1 * y1);  // of the squared speed
+  const double inverse2 = inverse * inverse;
+  const double inverse_cubed_speed = inverse * std::sqrt(inverse);
+  const double turn = x1 * y2 - x2 * y1;
+  const double turn_by_t = x1 * y3 - x3 * y1;
+  const double stretch = x1 * x2 + y1 * y2;
+  const double kappa = turn * inverse_cubed_speed;
+  const double kappa_s = (turn_by_t - 3.0 * turn * stretch * inverse) * inverse2;
+  const Row half_speed2_by = x1 * d.first.x.v + y1 * d.first.y.v;
+  const Row turn_by = y2 * d.first.x.v - x2 * d.first.y.v + x1 * d.second.y.v - y1 * d.second.x.v;
+  const Row turn_by_t_by =
+      y3 * d.first.x.v - x3 * d.first.y.v + x1 * d.third.y.v - y1 * d.third.x.v;
+  const Row stretch_by =
+      x2 * d.first.x.v + y2 * d.first.y.v + x1 * d.second.x.v + y1 * d.second.y.v;
+  Eigen::Matrix<double, 3, N> jacobian;
+  jacobian.row(0) = (inverse * (x1 * d.first.y.v - y1 * d.first.x.v)).transpose();
+  jacobian.row(1) =
+      (inverse_cubed_speed * turn_by - 3.0 * kappa * inverse * half_speed2_by).transpose();
+  const double by_speed2 = 2.0 * inverse * (turn_by_t * inverse2 - 3.0 * kappa_s);
+  jacobian.row(2) = (inverse2 * turn_by_t_by + by_speed2 * half_speed2_by -
+                     3.0 * inverse * inverse2 * (stretch * turn_by + turn * stretch_by))
+                        .transpose();
+  return jacobian;
+}
+
+template <typename Model>
+class SemiSignatureFitter {
+ public:
+  static constexpr int kShape = Model::kParameters;
+  static constexpr int kGlobal = kShape + 1;  ///< the shape and the orientation
+  using Global = Eigen::Matrix<double, kGlobal, 1>;
+  using Hessian = Eigen::Matrix<double, kGlobal, kGlobal>;
+
+  SemiSignatureFitter(const std::vector<WhitePoint>& points, const Global& start,
+                      std::vector<LocalParameter>& places)
+      : points_(points),
+        global_(start),
+        places_(places),
+        differences_(points.size()),
+        trial_differences_(points.size()),
+        steps_(points.size()) {
+    for (const WhitePoint& point : points) {
+      const Eigen::Vector3d size(kPi, std::abs(point.measured.kappa),
+                                 std::abs(point.measured.kappa_s));
+      rounding_ += (kResidualRounding * (point.whitening.cwiseAbs() * size)).squaredNorm();
+    }
+  }
+
+  InvariantStatus solve(int max_iterations) {
+    double damping = kInitialDamping;
+    double growth = 2.0;
+    chi2_ = evaluate(global_, places_, &differences_);
+    if (!std::isfinite(chi2_)) {
+      return InvariantStatus::NotFinite;
+    }
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
+      linearise();
+      for (;;) {
+        const Global step = reduced_step(damping);
+        const double predicted = step.allFinite() ? predicted_decrease(step) : 0.0;
+        if (step.allFinite() && predicted <= negligible_decrease()) {
+          return InvariantStatus::Ok;
+        }
+        const Global next = global_ + step;
+        const std::vector<LocalParameter>& trial = trial_places();
+        const double chi2 = evaluate(next, trial, &trial_differences_);
+        if (step.allFinite() && chi2 < chi2_) {
+          const double rho = (chi2_ - chi2) / predicted;
+          const double excess = 2.0 * rho - 1.0;
+          damping *= std::max(1.0 / 3.0, 1.0 - excess * excess * excess);
+          growth = 2.0;
+          global_ = next;
+          places_.swap(trial_);
+          differences_.swap(trial_differences_);
+          chi2_ = chi2;
+          break;
+        }
+        damping *= growth;
+        growth *= 2.0;
+        if (damping > kLargestDamping) {
+          // No descent along the gradient itself: the rounding of chi-square has been reached.
+          return gradient_is_small() ? InvariantStatus::Ok : InvariantStatus::NotConverged;
+        }
+      }
+    }
+    return InvariantStatus::NotConverged;
+  }
+
+  /// Inverse of the undamped reduced Hessian; infinite on the diagonal where it is singular.
+  Hessian covariance() {
+    linearise();
+    const Hessian reduced = reduced_hessian(0.0).first;
+    const Global scale = reduced.diagonal().cwiseMax(0.0).cwiseSqrt();
+    const Hessian unit_diagonal = reduced.cwiseQuotient(scale * scale.transpose());
+    const SmallLdlt<kGlobal> factor(unit_diagonal);
+    const Hessian inverse = factor.inverse().cwiseQuotient(scale * scale.transpose());
+    const bool regular = unit_diagonal.allFinite() &&
+                         factor.pivots().minCoeff() > kGlobal * kEpsilon && inverse.allFinite();
+    if (regular) {
+      return inverse;
+    }
+    Hessian unknown = Hessian::Zero();
+    unknown.diagonal().setConstant(std::numeric_limits<double>::infinity());
+    return unknown;
+  }
+
+  const Global& global() const { return global_; }
+  double chi2() const { return chi2_; }
+
+ private:
+  static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+  /// Linearisation of one point: the residual and its derivatives by the globals and by its own t,
+  /// and the products that eliminating t needs.
+  struct Block {
+    Eigen::Vector3d residual;
+    Eigen::Matrix<double, 3, kGlobal> by_global;
+    Eigen::Vector3d by_t;
+    Global coupling;    ///< by_global^T by_t
+    double t_squared;   ///< by_t^T by_t
+    double t_residual;  ///< by_t^T residual
+  };
+
+  /// Errors r of the residuals change chi-square by r^2 and by twice their product with it.
+  double negligible_decrease() const {
+    return kRelativeDecrease * chi2_ + rounding_ + std::sqrt(rounding_ * chi2_);
+  }
+
+  /// Chi-square, and the differences between measurements and model that it is made of.
+  double evaluate(const Global& global, const std::vector<LocalParameter>& places,
+                  std::vector<Eigen::Vector3d>* differences) const {
+    double chi2 = 0.0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const MeasuredGeometry& measured = points_[i].measured;
+      const ModelGeometry<double> model =
+          geometry_of(Model::derivatives(global.data(), places[i].t));
+      const double half_turn = places[i].direction < 0 ? kPi : 0.0;
+      Eigen::Vector3d& difference = (*differences)[i];
+      difference << wrap_angle(measured.tangent_angle - half_turn - global[kShape] -
+                               model.tangent_angle),
+          measured.kappa - places[i].direction * model.kappa, measured.kappa_s - model.kappa_s;
+      chi2 += (points_[i].whitening * difference).squaredNorm();
+    }
+    return std::isfinite(chi2) ? chi2 : std::numeric_limits<double>::infinity();
+  }
+
+  void linearise() {
+    using Jet = ceres::Jet<double, kShape + 1>;  // by the shape and by t
+    blocks_.resize(points_.size());
+    std::array<Jet, kShape> shape;
+    for (int k = 0; k < kShape; ++k) {
+      shape[static_cast<std::size_t>(k)] = Jet(global_[k], k);
+    }
+    hessian_.setZero();
+    gradient_.setZero();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      Eigen::Matrix<double, 3, kShape + 1> model =
+          geometry_jacobian(Model::derivatives(shape.data(), Jet(places_[i].t, kShape)));
+      model.row(1) *= places_[i].direction;
+      const Eigen::Matrix3d& whitening = points_[i].whitening;
+      const Eigen::Matrix<double, 3, kShape + 1> by_own = -(whitening * model);
+      Block& block = blocks_[i];
+      block.residual = whitening * differences_[i];
+      block.by_global.template leftCols<kShape>() = by_own.template leftCols<kShape>();
+      block.by_global.col(kShape) = -whitening.col(0);
+      block.by_t = by_own.col(kShape);
+      block.coupling = block.by_global.transpose() * block.by_t;
+      block.t_squared = block.by_t.squaredNorm();
+      block.t_residual = block.by_t.dot(block.residual);
+      hessian_.noalias() += block.by_global.transpose() * block.by_global;
+      gradient_.noalias() += block.by_global.transpose() * block.residual;
+    }
+  }
+
+  /// Hessian and gradient of the globals after each t is eliminated, with Marquardt's damping.
+  std::pair<Hessian, Global> reduced_hessian(double damping) const {
+    Hessian hessian = hessian_;
+    Global gradient = gradient_;
+    hessian.diagonal() *= 1.0 + damping;
+    for (const Block& block : blocks_) {
+      const double own = block.t_squared * (1.0 + damping);
+      if (own > 0.0) {
+        const Global share = block.coupling / own;
+        hessian.noalias() -= share * block.coupling.transpose();
+        gradient -= block.t_residual * share;
+      }
+    }
+    return {hessian, gradient};
+  }
+
+  Global reduced_step(double damping) {
+    const auto [hessian, gradient] = reduced_hessian(damping);
+    const Global step = -SmallLdlt<kGlobal>(hessian).solve(gradient);
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      const Block& block = blocks_[i];
+      const double own = block.t_squared * (1.0 + damping);
+      steps_[i] = own > 0.0 ? -(block.t_residual + block.coupling.dot(step)) / own : 0.0;
+    }
+    return step;
+  }
+
+  double predicted_decrease(const Global& step) const {
+    double decrease = 0.0;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      const Block& block = blocks_[i];
+      Eigen::Vector3d change = block.by_t * steps_[i];
+      change.noalias() += block.by_global * step;
+      decrease -= change.dot(2.0 * block.residual + change);
+    }
+    return decrease;
+  }
+
+  bool gradient_is_small() const {
+    const auto [hessian, gradient] = reduced_hessian(0.0);
+    return gradient.cwiseAbs().dot(hessian.diagonal()
+                                       .cwiseMax(std::numeric_limits<double>::min())
+                                       .cwiseSqrt()
+                                       .cwiseInverse()) <= 1e-6 * std::sqrt(chi2_);
+  }
+
+  const std::vector<LocalParameter>& trial_places() {
+    trial_ = places_;
+    for (std::size_t i = 0; i < trial_.size(); ++i) {
+      trial_[i].t += steps_[i];
+    }
+    return trial_;
+  }
+
+  const std::vector<WhitePoint>& points_;
+  Global global_;
+  std::vector<LocalParameter>& places_;
+  std::vector<Eigen::Vector3d> differences_;  ///< of measurements and model, at places_
+  std::vector<Eigen::Vector3d> trial_differences_;
+  std::vector<double> steps_;
+  std::vector<Block> blocks_;
+  Hessian hessian_ = Hessian::Zero();  ///< of the globals, before any t is eliminated
+  Global gradient_ = Global::Zero();   ///< likewise
+  std::vector<LocalParameter> trial_;
+  double chi2_ = 0.0;
+  double rounding_ = 0.0;  ///< chi-square of the residuals' rounding
+};
+
+}  // namespace palpate::detail

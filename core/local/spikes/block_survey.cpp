@@ -1,0 +1,194 @@
+#include "core/local/spikes/block_survey.h"
+
+#include <cmath>
+
+#include "core/local/noise.h"
+#include "core/local/spikes/least_median_parabola.h"
+#include "core/numerics/normal_law.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kBlock = 16;
+
+/// Noise is taken as at least kFormFactor * slope^4 * extent, which is what a quartic leaves of a
+/// curve that turns by `slope` either way and whose curvature doubles along it: the fifth-degree
+/// term 15 kappa^2 kappa_s / 5! has 8/63 of P_5 in it, that is 0.8 % of slope^4 extents.
+constexpr double kFormFactor = 0.01;
+/// ... and as this part of the extent: no touched part is truer to a quartic.
+constexpr double kFormResolution = 1e-5;
+
+/// backtrack <= kBacktrackSigmas * sqrt(2) * sigma: the difference of two abscissae has the noise
+/// sqrt(2) sigma; at 6 of its standard deviations one in 10^9 neighbours is refused by chance.
+constexpr double kBacktrackSigmas = 6.0;
+
+/// What form leaves of a quartic, taken for noise. [m]
+double noise_floor(const ResidualBlock& block) {
+  const double slope = std::min(block.steepest(), 1.0);
+  return (kFormResolution + kFormFactor * slope * slope * slope * slope) * block.extent_m();
+}
+
+double quantile(std::vector<double>& values, double fraction) {
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+/// Noise by the third differences across travel, of which a sample spoils four: with a third of
+/// spikes a fifth of them, (2/3)^4, are clean, and their quantile of a fifth is at most the largest
+/// of the clean ones. [m]
+double low_noise_of(std::span<const Vec2> samples, std::vector<double>& sizes) {
+  constexpr double kQuantile = 0.2;
+  constexpr double kQuantileOfNormal = 0.2533471031357997;  // of |normal variable|
+  constexpr double kNorm = 4.47213595499958;                // sqrt(1 + 9 + 9 + 1)
+  sizes.clear();
+  for (std::size_t i = 0; i + 3 < samples.size(); ++i) {
+    const Vec2 chord = samples[i + 3] - samples[i];
+    const Vec2 difference = chord - 3.0 * (samples[i + 2] - samples[i + 1]);
+    const double length = chord.norm();
+    sizes.push_back(length > 0.0 ? std::abs(cross(chord, difference)) / length : 0.0);
+  }
+  return quantile(sizes, kQuantile) / (kQuantileOfNormal * kNorm);
+}
+
+/// The length of blocks for that noise, by their chords' lower quartile: spikes at their ends
+/// lengthen them.
+std::size_t block_length(std::span<const Vec2> samples, double sigma_m) {
+  std::vector<double> chords;
+  std::size_t length = kBlock;
+  for (; length < samples.size(); length *= 2) {
+    chords.clear();
+    for (std::size_t i = 0; i + length <= samples.size(); i += length / 2) {
+      chords.push_back((samples[i + length - 1] - samples[i]).norm());
+    }
+    if (quantile(chords, 0.25) > ResidualBlock::kMinExtentSigmas * sigma_m) {
+      break;
+    }
+  }
+  return std::min(length, samples.size());
+}
+
+/// Least squares in all blocks of one length.
+struct Blocks {
+  LocalStatus status = LocalStatus::TooFewSamples;
+  double sigma_m = 0.0;
+  double mean_extent_m = 0.0;
+  double largest = 0.0;  ///< residual, in its own block's noise
+  double backtrack_m = 0.0;
+  double end_gap = 0.0;
+};
+
+Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigma_m) {
+  Blocks result;
+  ResidualBlock block;
+  std::vector<double> sizes, largest, floors;
+  sizes.reserve(2 * samples.size());
+  for_each_block(samples.size(), length, length / 2, [&](std::size_t start) {
+    const LocalStatus status = block.fit(samples.subspan(start, length));
+    if (status != LocalStatus::Ok) {
+      result.status = result.status == LocalStatus::Ok ? LocalStatus::Ok : status;
+      return;
+    }
+    result.status = LocalStatus::Ok;
+    for (std::size_t i = 0; i < length; ++i) {
+      sizes.push_back(std::abs(block.studentised(i)));
+    }
+    result.mean_extent_m += block.extent_m();
+    result.backtrack_m = std::max(result.backtrack_m, block.backtrack_m());
+    if (start == 0) {
+      result.end_gap = block.first_gap();
+    }
+    if (start + length == samples.size()) {
+      result.end_gap = std::max(result.end_gap, block.last_gap());
+    }
+    largest.push_back(block.largest());
+    floors.push_back(noise_floor(block));
+  });
+  if (result.status == LocalStatus::Ok) {
+    result.mean_extent_m /= static_cast<double>(floors.size());
+    result.sigma_m = sigma_m > 0.0 ? sigma_m : robust_sigma(sizes);
+    for (std::size_t b = 0; b < floors.size(); ++b) {
+      result.largest = std::max(result.largest, largest[b] / std::max(result.sigma_m, floors[b]));
+    }
+  }
+  return result;
+}
+
+/// Whether spikes pass for noise: then half of each block lies much nearer to a parabola. That is
+/// looked for only where a residual is larger than noise leaves any in 19 of 20 patches, or
+/// where the noise is above that of the third differences.
+void look_for_spiked_noise(std::span<const Vec2> samples, double largest, BlockSurvey* survey) {
+  constexpr double kAlarms = 0.05;           // of patches
+  constexpr double kAboveDifferences = 1.7;  // two to three standard deviations of their quantile
+  constexpr double kAboveScale = 1.5;        // over four of the median of seven blocks' scales
+  constexpr std::size_t kMostBlocks = 8;
+  std::vector<double> sizes;
+  const double quiet = two_sided_normal_quantile(kAlarms / static_cast<double>(samples.size()));
+  if (largest <= quiet && survey->sigma_m <= kAboveDifferences * low_noise_of(samples, sizes)) {
+    return;
+  }
+  LeastMedianParabola parabola;
+  sizes.clear();
+  for_each_block(samples.size(), survey->length,
+                 std::max(survey->length, samples.size() / kMostBlocks), [&](std::size_t start) {
+                   if (parabola.fit(samples.subspan(start, survey->length))) {
+                     sizes.push_back(parabola.scale_m());
+                   }
+                 });
+  if (sizes.empty()) {
+    return;
+  }
+  const double scale_m = quantile(sizes, 0.5);
+  survey->is_noise_spiked = survey->sigma_m > kAboveScale * scale_m;
+  if (survey->is_noise_spiked) {
+    // A start so tight that the spikes next to the noise stay outside; the search widens it.
+    constexpr double kTight = 0.45;
+    survey->sigma_m = kTight * scale_m;
+    survey->length = std::min(survey->length, block_length(samples, scale_m));
+  }
+}
+
+}  // namespace
+
+double residual_limit(const ResidualBlock& block, double sigma_m, double threshold) {
+  return threshold * std::max(sigma_m, noise_floor(block));
+}
+
+bool turns_back(const ResidualBlock& block, double sigma_m) {
+  return block.backtrack_m() > kBacktrackSigmas * std::sqrt(2.0) * sigma_m;
+}
+
+BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold) {
+  BlockSurvey survey;
+  survey.length = std::min(kBlock, samples.size());
+  Blocks blocks = fit_blocks(samples, survey.length, sigma_m);
+  const auto is_resolved = [&] {
+    return blocks.status == LocalStatus::Ok &&
+           blocks.mean_extent_m > ResidualBlock::kMinExtentSigmas * blocks.sigma_m;
+  };
+  while (!is_resolved() && survey.length < samples.size()) {
+    survey.length = std::min(2 * survey.length, samples.size());
+    blocks = fit_blocks(samples, survey.length, sigma_m);
+  }
+  survey.status = blocks.status;
+  survey.sigma_m = blocks.sigma_m;
+  if (survey.status != LocalStatus::Ok) {
+    return survey;
+  }
+  if (!is_resolved() && !(sigma_m > 0.0)) {
+    survey.status = LocalStatus::Unresolved;
+    return survey;
+  }
+  // Where noise scatters samples along the axis as well, their order there tells nothing.
+  const bool is_out_of_order =
+      blocks.end_gap > kLonelyGap ||
+      blocks.backtrack_m > kBacktrackSigmas * std::sqrt(2.0) * survey.sigma_m;
+  survey.is_any_off = blocks.largest > threshold || (is_resolved() && is_out_of_order);
+  if (!(sigma_m > 0.0)) {
+    look_for_spiked_noise(samples, blocks.largest, &survey);
+  }
+  return survey;
+}
+
+}  // namespace palpate

@@ -1,0 +1,228 @@
+#include "core/local/spikes/spike_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/local/spikes/least_median_parabola.h"
+#include "core/numerics/normal_law.h"
+
+namespace palpate {
+namespace {
+
+/// Standard deviation of normal variables by the sizes of those within `limit`; at most the limit.
+double sigma_within(const std::vector<double>& sizes, double limit) {
+  double sum = 0.0;
+  for (const double size : sizes) {
+    sum += size * size;
+  }
+  const double kept = std::sqrt(sum / static_cast<double>(sizes.size()));
+  constexpr int kIterations = 20;
+  double sigma = kept;
+  for (int i = 0; i < kIterations && sigma > 0.0 && sigma < limit; ++i) {
+    sigma = kept / std::sqrt(mean_square_within(limit / sigma));
+  }
+  return std::min(sigma, limit);
+}
+
+struct Block {
+  std::size_t start = 0;
+  std::vector<std::uint8_t> use;   ///< one flag per sample: whether it belongs to the fit
+  std::vector<std::uint8_t> half;  ///< nearest to a parabola; empty where not needed so far
+  std::size_t used = 0;
+  bool is_settled = false;
+};
+
+class Search {
+ public:
+  Search(std::span<const Vec2> samples, const BlockSurvey& survey, double threshold)
+      : samples_(samples), threshold_(threshold), length_(survey.length), sigma_m_(survey.sigma_m) {
+    for_each_block(samples.size(), length_, std::max<std::size_t>(length_ / 4, 1),
+                   [&](std::size_t start) {
+                     blocks_.emplace_back();
+                     blocks_.back().start = start;
+                   });
+    settle_blocks();
+  }
+
+  double sigma_m() const { return sigma_m_; }
+
+  /// Noise by what joined, and all again with it.
+  void refine_noise() {
+    std::vector<double> sizes;
+    for (const Block& block : blocks_) {
+      if (block.is_settled && fit(block) == LocalStatus::Ok) {
+        for (std::size_t i = 0; i < length_; ++i) {
+          if (block.use[i] != 0) {
+            sizes.push_back(std::abs(residuals_.studentised(i)));
+          }
+        }
+      }
+    }
+    if (sizes.empty()) {
+      return;
+    }
+    sigma_m_ = sigma_within(sizes, threshold_ * sigma_m_);
+    settle_blocks();
+  }
+
+  std::vector<std::uint8_t> judge() const {
+    std::vector<Verdict> verdicts(samples_.size());
+    for (const Block& block : blocks_) {
+      if (block.is_settled) {
+        judge_by(block, &verdicts);
+      }
+    }
+    std::vector<std::uint8_t> is_spike(samples_.size());
+    for (std::size_t i = 0; i < is_spike.size(); ++i) {
+      is_spike[i] = verdicts[i].is_spike ? 1 : 0;
+    }
+    return is_spike;
+  }
+
+ private:
+  struct Verdict {
+    std::size_t lost = std::numeric_limits<std::size_t>::max();
+    std::size_t off_centre = 0;
+    bool is_spike = false;
+  };
+
+  std::span<const Vec2> part(const Block& block) const {
+    return samples_.subspan(block.start, length_);
+  }
+
+  /// A quartic; a cubic where more than a quarter is lost: fewer samples do not hold the quartic's
+  /// ends, which then bend to a spike.
+  LocalStatus fit(const Block& block) {
+    constexpr int kDegreeOfFew = 3;
+    const auto used = static_cast<std::size_t>(std::ranges::count(block.use, 1));
+    const int degree = 4 * used >= 3 * length_ ? ResidualBlock::kDegree : kDegreeOfFew;
+    return residuals_.fit(part(block), block.use, degree);
+  }
+
+  /// From all samples where few leave, else from the half that lies nearest to a parabola.
+  void settle_blocks() {
+    for (Block& block : blocks_) {
+      block.use.assign(length_, 1);
+      block.is_settled = settle(&block, length_ / 8) && !turns_back(residuals_, sigma_m_);
+      if (block.is_settled) {
+        continue;
+      }
+      if (block.half.empty() && parabola_.fit(part(block))) {
+        const auto half = parabola_.nearer_half();
+        block.half.assign(half.begin(), half.end());
+      }
+      if (!block.half.empty()) {
+        block.use = block.half;
+        block.is_settled = settle(&block, length_);
+      }
+    }
+  }
+
+  /// The worst sample leaves until none is off; then those that are not off join. False where more
+  /// than `most_leave` would leave, or where no quartic within 45 degrees is left that explains
+  /// more than half of the block.
+  bool settle(Block* block, std::size_t most_leave) {
+    constexpr int kMostReturns = 6;  // a sample may leave and join in turn
+    std::size_t left = 0;
+    int returns = 0;
+    bool may_be_lonely[] = {block->start == 0, block->start + length_ == samples_.size()};
+    while (true) {
+      if (left > most_leave || fit(*block) != LocalStatus::Ok) {
+        return false;
+      }
+      const double limit = residual_limit(residuals_, sigma_m_, threshold_);
+      std::size_t worst = length_;
+      double largest = limit;
+      for (std::size_t i = 0; i < length_; ++i) {
+        if (block->use[i] != 0 && std::abs(residuals_.studentised(i)) > largest) {
+          largest = std::abs(residuals_.studentised(i));
+          worst = i;
+        }
+      }
+      if (worst < length_) {
+        block->use[worst] = 0;
+        ++left;
+        continue;
+      }
+      bool any = false;
+      for (std::size_t i = 0; i < length_ && returns < kMostReturns; ++i) {
+        if (block->use[i] == 0 && std::abs(residuals_.studentised(i)) <= limit) {
+          block->use[i] = 1;
+          any = true;
+        }
+      }
+      if (any) {
+        ++returns;
+      } else if (may_be_lonely[0] && residuals_.first_gap() > kLonelyGap) {
+        may_be_lonely[0] = false;
+        block->use[first_of(*block)] = 0;
+        returns = kMostReturns;  // or it would join again
+        ++left;
+      } else if (may_be_lonely[1] && residuals_.last_gap() > kLonelyGap) {
+        may_be_lonely[1] = false;
+        block->use[last_of(*block)] = 0;
+        returns = kMostReturns;
+        ++left;
+      } else {
+        break;
+      }
+    }
+    block->used = static_cast<std::size_t>(std::ranges::count(block->use, 1));
+    return 2 * block->used > length_ && residuals_.steepest() <= ResidualBlock::kMaxSlope;
+  }
+
+  static std::size_t first_of(const Block& block) {
+    return static_cast<std::size_t>(std::ranges::find(block.use, 1) - block.use.begin());
+  }
+
+  static std::size_t last_of(const Block& block) {
+    std::size_t last = block.use.size() - 1;
+    while (block.use[last] == 0) {
+      --last;
+    }
+    return last;
+  }
+
+  /// Of the blocks that lose more than an eighth, the one that loses least judges a sample; of
+  /// others the one in whose middle it is.
+  void judge_by(const Block& block, std::vector<Verdict>* verdicts) const {
+    const std::size_t lost = length_ - block.used;
+    const std::size_t counted = lost > length_ / 8 ? lost : 0;
+    const std::size_t first = first_of(block);
+    const std::size_t last = last_of(block);
+    for (std::size_t i = 0; i < length_; ++i) {
+      const bool goes_on =
+          (i < first && block.start > 0) || (i > last && block.start + length_ < samples_.size());
+      if (goes_on) {
+        continue;
+      }
+      const std::size_t off_centre = 2 * i > length_ ? 2 * i - length_ : length_ - 2 * i;
+      Verdict& verdict = (*verdicts)[block.start + i];
+      if (counted < verdict.lost || (counted == verdict.lost && off_centre < verdict.off_centre)) {
+        verdict = {counted, off_centre, block.use[i] == 0};
+      }
+    }
+  }
+
+  std::span<const Vec2> samples_;
+  double threshold_;
+  std::size_t length_;
+  double sigma_m_;
+  std::vector<Block> blocks_;
+  ResidualBlock residuals_;
+  LeastMedianParabola parabola_;
+};
+
+}  // namespace
+
+SpikeSearch search_spikes(std::span<const Vec2> samples, const BlockSurvey& survey, double sigma_m,
+                          double threshold) {
+  Search search(samples, survey, threshold);
+  if (!(sigma_m > 0.0)) {
+    search.refine_noise();
+  }
+  return {search.judge(), search.sigma_m()};
+}
+
+}  // namespace palpate

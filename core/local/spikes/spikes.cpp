@@ -1,0 +1,83 @@
+#include "core/local/spikes/spikes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/local/spikes/block_survey.h"
+#include "core/local/spikes/spike_search.h"
+#include "core/numerics/normal_law.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kFewestSamples = 8;
+
+/// Samples that are no spikes so far, and their numbers as given.
+struct Kept {
+  std::vector<Vec2> samples;
+  std::vector<std::size_t> numbers;
+
+  void drop(std::span<const std::uint8_t> is_spike, std::vector<std::size_t>* dropped) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (is_spike[i] != 0) {
+        dropped->push_back(numbers[i]);
+      } else {
+        samples[kept] = samples[i];
+        numbers[kept++] = numbers[i];
+      }
+    }
+    samples.resize(kept);
+    numbers.resize(kept);
+  }
+};
+
+}  // namespace
+
+Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
+  Spikes result;
+  Kept kept;
+  kept.samples.reserve(samples.size());
+  kept.numbers.reserve(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].allFinite()) {
+      kept.samples.push_back(samples[i]);
+      kept.numbers.push_back(i);
+    } else {
+      result.indices.push_back(i);
+    }
+  }
+  result.sigma_m = options.sigma_m;
+  if (kept.samples.size() < kFewestSamples) {
+    return result;
+  }
+  result.threshold = two_sided_normal_quantile(options.false_alarms_per_patch /
+                                               static_cast<double>(kept.samples.size()));
+  // Each pass without the spikes found before, which take places in the blocks.
+  constexpr int kMostPasses = 6;
+  for (int pass = 0; pass < kMostPasses && kept.samples.size() >= kFewestSamples; ++pass) {
+    const BlockSurvey survey = survey_blocks(kept.samples, options.sigma_m, result.threshold);
+    if (pass == 0) {
+      result.status = survey.status;
+    }
+    if (survey.status != LocalStatus::Ok) {
+      break;
+    }
+    result.sigma_m = survey.sigma_m;
+    if (!survey.is_any_off && !survey.is_noise_spiked) {
+      break;
+    }
+    const SpikeSearch found =
+        search_spikes(kept.samples, survey, options.sigma_m, result.threshold);
+    result.sigma_m = found.sigma_m;
+    const std::size_t before = kept.samples.size();
+    kept.drop(found.is_spike, &result.indices);
+    if (kept.samples.size() == before) {
+      break;
+    }
+  }
+  std::sort(result.indices.begin(), result.indices.end());
+  return result;
+}
+
+}  // namespace palpate

@@ -1,0 +1,63 @@
+// Levenberg-Marquardt over residuals that come with their Jacobian.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+
+#include "core/numerics/levenberg_marquardt.h"
+
+namespace palpate {
+
+/// Residuals in units of their standard deviation, for `minimise`. A class of Residuals has
+///   enum { NUM_PARAMETERS };
+///   int NumResiduals() const;
+///   bool operator()(const double* x, double* residuals, double* jacobian) const;
+/// `jacobian`, column by column, is null at a trial and asked for at what was accepted. False says
+/// that there is nothing at x: a trial is refused, from such a start nothing is done.
+template <typename Residuals>
+class ResidualsProblem {
+ public:
+  static constexpr int kParameters = Residuals::NUM_PARAMETERS;
+  using Vector = Eigen::Matrix<double, kParameters, 1>;
+  using Matrix = Eigen::Matrix<double, kParameters, kParameters>;
+
+  explicit ResidualsProblem(const Residuals& residuals)
+      : residuals_(residuals),
+        values_(residuals.NumResiduals()),
+        jacobian_(residuals.NumResiduals(), kParameters) {}
+
+  double chi2_at(const Vector& x) {
+    tried_ = x;
+    return residuals_(x.data(), values_.data(), nullptr) ? values_.squaredNorm()
+                                                         : std::numeric_limits<double>::infinity();
+  }
+
+  void accept() { residuals_(tried_.data(), values_.data(), jacobian_.data()); }
+
+  // Summed column by column: a general product of matrices, whose packing pays for hundreds of
+  // columns, costs several times as much.
+  void linearise(Matrix* information, Vector* gradient) {
+    for (int i = 0; i < kParameters; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        (*information)(i, j) = (*information)(j, i) = jacobian_.col(i).dot(jacobian_.col(j));
+      }
+      (*gradient)[i] = jacobian_.col(i).dot(values_);
+    }
+  }
+
+ private:
+  const Residuals& residuals_;
+  Eigen::VectorXd values_;
+  Eigen::Matrix<double, Eigen::Dynamic, kParameters> jacobian_;
+  Vector tried_ = Vector::Zero();
+};
+
+/// Minimises the sum of squares of `residuals` from `*x`.
+template <typename Residuals>
+MinimiseSummary minimise_residuals(const Residuals& residuals, const MinimiseOptions& options,
+                                   Eigen::Matrix<double, Residuals::NUM_PARAMETERS, 1>* x) {
+  ResidualsProblem<Residuals> problem(residuals);
+  return minimise(&problem, x, options);
+}
+
+}  // namespace palpate

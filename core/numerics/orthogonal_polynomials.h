@@ -1,0 +1,54 @@
+// Least-squares polynomials over a set of weighted abscissae, and the Gauss quadrature of that set.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace palpate {
+
+/// Weighted least squares by discrete orthogonal polynomials (G. E. Forsythe, "Generation and use
+/// of orthogonal polynomials for data-fitting with a digital computer", 1957): the fits of every
+/// degree in one sweep each, no normal equations. O(points * degree).
+class OrthogonalPolynomials {
+ public:
+  static constexpr int kMaxDegree = 9;
+
+  struct Value {
+    double value = 0.0;
+    double derivative = 0.0;  ///< by x
+  };
+
+  struct Node {
+    double x = 0.0;
+    double weight = 0.0;
+  };
+
+  /// Fits y(x) with weights w up to `degree`, which must be below the number of distinct x.
+  OrthogonalPolynomials(std::span<const double> x, std::span<const double> w,
+                        std::span<const double> y, int degree);
+
+  int degree() const { return degree_; }
+
+  /// Weighted sum of squared residuals of the fit of degree d.
+  double residual_sum(int d) const { return residual_sum_[static_cast<std::size_t>(d)]; }
+
+  /// The fit of degree d at x.
+  Value evaluate(double x, int d) const;
+
+  /// The d + 1 nodes and weights that integrate polynomials up to degree 2 d + 1 exactly over the
+  /// weighted abscissae: sum_i w_i p(x_i) = sum_k W_k p(X_k). (G. Golub and J. Welsch, 1969: the
+  /// eigenvalues of the Jacobi matrix of the recurrence.) Ascending x.
+  std::vector<Node> gauss_rule(int d) const;
+
+ private:
+  static constexpr std::size_t kSize = kMaxDegree + 1;
+  int degree_ = 0;
+  double weight_sum_ = 0.0;
+  std::array<double, kSize> alpha_{};  ///< p_{k+1} = (x - alpha_k) p_k - beta_k p_{k-1}
+  std::array<double, kSize> beta_{};
+  std::array<double, kSize> coefficient_{};
+  std::array<double, kSize> residual_sum_{};
+};
+
+}  // namespace palpate

@@ -1,0 +1,245 @@
+#include "core/part/part_slides.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+/// exp(-60 / 2) beside the best: no integral over a part makes up for that.
+constexpr double kNegligible = 60.0;
+
+/// The best fit with the reference held at t.
+struct Slide {
+  double t = 0.0;
+  double chi2 = 0.0;
+  double log_volume = 0.0;  ///< of height and turn, times ds/dt
+  Pose2 data_T_part;
+  int candidate = -1;  ///< that has its optimum here
+};
+
+class Scan {
+ public:
+  Scan(const ScaledPart& part, std::span<const FitPoint> points, const FitPoint& reference,
+       int direction)
+      : part_(part), points_(points), reference_(reference), direction_(direction) {
+    left_ = direction_ * left_of(reference_.tangent);
+    surface_ = reference_.position - part_.outside() * reference_.offset * left_;
+    motions_.pivot = surface_;
+    motions_.columns.resize(3, 2);
+    motions_.columns << left_.x(), 0.0, left_.y(), 0.0, 0.0, 1.0;
+  }
+
+  const Vec2& surface() const { return surface_; }
+  int direction() const { return direction_; }
+
+  Slide at(double t) const {
+    const CurveDerivatives d = part_.spline().derivatives(t);
+    const Vec2 tangent = direction_ * reference_.tangent;
+    Pose2 start{0.0, 0.0, std::atan2(cross(d.first, tangent), d.first.dot(tangent))};
+    const Vec2 place = surface_ - start.rotate(d.position);
+    start.x = place.x();
+    start.y = place.y();
+    // Where the part fits it converges in a few steps; where it does not, nobody waits for it.
+    constexpr int kMostIterations = 10;
+    const PartFit fit = fit_part(part_, points_, start, motions_, kMostIterations);
+    Slide slide;
+    slide.t = t;
+    slide.data_T_part = fit.data_T_part;
+    const double across = cross(fit.data_T_part.rotate(d.first), left_);
+    // Nor has a part that turned round to the other direction of travel anything to say on this
+    // one.
+    slide.chi2 = across > 0.0 ? fit.chi2 : std::numeric_limits<double>::infinity();
+    slide.log_volume = std::log(std::abs(across)) - 0.5 * std::log(fit.information.determinant());
+    return slide;
+  }
+
+ private:
+  const ScaledPart& part_;
+  std::span<const FitPoint> points_;
+  const FitPoint& reference_;
+  int direction_;
+  Vec2 left_ = Vec2::Zero();     ///< of increasing t, in the frame of the points
+  Vec2 surface_ = Vec2::Zero();  ///< the reference taken back from a tip's centre
+  PartMotions motions_;
+};
+
+/// Adds the mass between two slides to a candidate and to the segment that they bound.
+class Integral {
+ public:
+  Integral(const Scan& scan, const ScaledPart& part, double best_chi2)
+      : scan_(scan), part_(part), best_chi2_(best_chi2) {}
+
+  double between(const Slide& a, const Slide& b, std::vector<double>* by_segment) const {
+    const double mass = halve(a, b, 0);
+    (*by_segment)[part_.spline().segment_at(0.5 * (a.t + b.t))] += mass;
+    return mass;
+  }
+
+ private:
+  double density(const Slide& slide) const {
+    return std::exp(-0.5 * (slide.chi2 - best_chi2_) + slide.log_volume);
+  }
+
+  double halve(const Slide& a, const Slide& b, int depth) const {
+    // Where the density changes by a factor of exp(1/2) only, the trapezoid is right to 2 %.
+    constexpr double kStep = 1.0;  // of chi-square
+    constexpr int kDeepest = 40;   // halvings: to rounding
+    if (!(std::min(a.chi2, b.chi2) < best_chi2_ + kNegligible)) {
+      return 0.0;
+    }
+    if (std::abs(a.chi2 - b.chi2) < kStep || depth == kDeepest) {
+      return 0.5 * (density(a) + density(b)) * (b.t - a.t);
+    }
+    const Slide middle = scan_.at(0.5 * (a.t + b.t));
+    return halve(a, middle, depth + 1) + halve(middle, b, depth + 1);
+  }
+
+  const Scan& scan_;
+  const ScaledPart& part_;
+  double best_chi2_;
+};
+
+/// Whether two fits are one optimum: apart by less than a hundredth of a standard deviation, or by
+/// what rounding leaves of the turn and the place.
+bool is_same(const PartFit& a, const PartFit& b) {
+  constexpr double kSame = 1e-4;
+  constexpr double kRounding = 1e-9;
+  const Eigen::Vector3d apart(a.data_T_part.x - b.data_T_part.x, a.data_T_part.y - b.data_T_part.y,
+                              wrap_angle(a.data_T_part.theta - b.data_T_part.theta));
+  return apart.norm() < kRounding || apart.dot(a.information * apart) < kSame;
+}
+
+/// All slides of a direction in a circle, and the optima between them.
+struct Circle {
+  Scan scan;
+  std::vector<Slide> slides;
+};
+
+Circle scan_circle(const ScaledPart& part, std::span<const FitPoint> points,
+                   const FitPoint& reference, int direction) {
+  Circle circle{Scan(part, points, reference, direction), {}};
+  for (int i = 0; i < part.node_count(); ++i) {
+    circle.slides.push_back(circle.scan.at(ScaledPart::node_t(i)));
+  }
+  return circle;
+}
+
+/// Refines the minima of the grid; a new optimum becomes a candidate.
+void add_candidates(const ScaledPart& part, std::span<const FitPoint> points,
+                    const FitPoint& reference, const Circle& circle,
+                    std::vector<PartCandidate>* candidates) {
+  const std::size_t n = circle.slides.size();
+  PartMotions motions;
+  motions.pivot = circle.scan.surface();
+  for (std::size_t i = 0; i < n; ++i) {
+    const double chi2 = circle.slides[i].chi2;
+    if (!std::isfinite(chi2) || chi2 > circle.slides[(i + 1) % n].chi2 ||
+        chi2 > circle.slides[(i + n - 1) % n].chi2) {
+      continue;
+    }
+    PartCandidate candidate;
+    candidate.fit = fit_part(part, points, circle.slides[i].data_T_part, motions);
+    candidate.direction = circle.scan.direction();
+    candidate.t = part.foot_of(candidate.fit.data_T_part.to_local(motions.pivot));
+    // A hopeless start may turn round: then it is the other circle that leads there.
+    const Vec2 tangent =
+        candidate.fit.data_T_part.rotate(part.spline().derivatives(candidate.t).first);
+    const bool turned = candidate.direction * tangent.dot(reference.tangent) <= 0.0;
+    const bool known =
+        std::any_of(candidates->begin(), candidates->end(),
+                    [&](const PartCandidate& other) { return is_same(other.fit, candidate.fit); });
+    if (!turned && !known && std::isfinite(candidate.fit.chi2)) {
+      candidates->push_back(candidate);
+    }
+  }
+}
+
+/// The masses of one direction's candidates.
+void integrate(const ScaledPart& part, Circle circle, double best_chi2,
+               std::vector<PartCandidate>* candidates, std::vector<double>* by_segment) {
+  std::vector<Slide>& slides = circle.slides;
+  bool any = false;
+  for (std::size_t c = 0; c < candidates->size(); ++c) {
+    const PartCandidate& candidate = (*candidates)[c];
+    if (candidate.direction == circle.scan.direction()) {
+      slides.push_back(circle.scan.at(candidate.t));
+      slides.back().candidate = static_cast<int>(c);
+      any = true;
+    }
+  }
+  if (!any) {
+    return;
+  }
+  std::sort(slides.begin(), slides.end(), [](const Slide& a, const Slide& b) { return a.t < b.t; });
+  // Begin at an optimum and close the circle there.
+  const auto first = std::find_if(slides.begin(), slides.end(),
+                                  [](const Slide& slide) { return slide.candidate >= 0; });
+  const auto period = static_cast<double>(part.spline().size());
+  for (auto slide = slides.begin(); slide != first; ++slide) {
+    slide->t += period;
+  }
+  std::rotate(slides.begin(), first, slides.end());
+  slides.push_back(slides.front());
+  slides.back().t += period;
+
+  const Integral integral(circle.scan, part, best_chi2);
+  for (std::size_t begin = 0; begin + 1 < slides.size();) {
+    std::size_t end = begin + 1;
+    std::size_t barrier = begin;
+    while (slides[end].candidate < 0) {
+      barrier = slides[end].chi2 > slides[barrier].chi2 ? end : barrier;
+      ++end;
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t owner = i < barrier ? begin : end;
+      (*candidates)[static_cast<std::size_t>(slides[owner].candidate)].probability +=
+          integral.between(slides[i], slides[i + 1], by_segment);
+    }
+    begin = end;
+  }
+}
+
+}  // namespace
+
+SlidePosterior slide_posterior(const ScaledPart& part, std::span<const FitPoint> points,
+                               const FitPoint& reference, const TravelDirections& directions) {
+  SlidePosterior posterior;
+  std::vector<PartCandidate>& candidates = posterior.candidates;
+  std::vector<Circle> circles;
+  for (const int direction : {1, -1}) {
+    if (direction > 0 ? directions.along : directions.against) {
+      circles.push_back(scan_circle(part, points, reference, direction));
+      add_candidates(part, points, reference, circles.back(), &candidates);
+    }
+  }
+  double best = std::numeric_limits<double>::infinity();
+  for (const PartCandidate& candidate : candidates) {
+    best = std::min(best, candidate.fit.chi2);
+  }
+  std::erase_if(candidates, [&](const PartCandidate& candidate) {
+    return !(candidate.fit.chi2 < best + kNegligible);
+  });
+  posterior.segment_probability.assign(part.spline().size(), 0.0);
+  for (Circle& circle : circles) {
+    integrate(part, std::move(circle), best, &candidates, &posterior.segment_probability);
+  }
+  double sum = 0.0;
+  for (const PartCandidate& candidate : candidates) {
+    sum += candidate.probability;
+  }
+  for (PartCandidate& candidate : candidates) {
+    candidate.probability /= sum;
+  }
+  for (double& probability : posterior.segment_probability) {
+    probability /= sum;
+  }
+  std::stable_sort(
+      candidates.begin(), candidates.end(),
+      [](const PartCandidate& a, const PartCandidate& b) { return a.probability > b.probability; });
+  return posterior;
+}
+
+}  // namespace palpate

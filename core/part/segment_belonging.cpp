@@ -1,0 +1,285 @@
+#include "core/part/segment_belonging.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "core/numerics/chi_square.h"
+#include "core/part/knotted_cubic.h"
+#include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/smooth/smooth_model.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kCubicDegrees = 6;  // shape and pose of a cubic spline segment
+constexpr int kBendDegrees = 2;
+/// Fewest samples on either side of a joint: a cubic and as many more to speak against it.
+constexpr std::size_t kFewestSamples = 2 * kCubicDegrees;
+/// Knots tried in a run. A bend one sixteenth of the run away still shows nearly all of another's
+/// effect; more would cost significance.
+constexpr std::size_t kKnots = 15;
+
+/// A run of samples and its most likely cubic.
+struct Run {
+  FitData data;
+  KnottedCubicFit single;
+};
+
+std::optional<Run> fit_run(std::span<const StoredSample> samples, const PatchContext& context,
+                           double sigma_m) {
+  StoredPatch patch;
+  patch.context = context;
+  patch.samples.assign(samples.begin(), samples.end());
+  bool sigma_known = false;
+  Run run;
+  run.data = make_fit_data(std::span(&patch, 1), sigma_m, &sigma_known);
+  run.single = fit_single_cubic(run.data);
+  if (!std::isfinite(run.single.chi2)) {
+    return std::nullopt;
+  }
+  return run;
+}
+
+KnottedCubicFit with_knot(const Run& run, const KnottedCubicFit& start, double knot) {
+  KnottedCubicFit trial = start;
+  trial.curve.knot = knot;
+  return refine_knotted(run.data.points, std::move(trial), true);
+}
+
+/// The knot of the least chi-square between two others, by golden section.
+KnottedCubicFit best_between(const Run& run, KnottedCubicFit best, double low, double high) {
+  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
+  constexpr double kNarrow = 1e-7;  // of the run
+  double a = high - ratio * (high - low);
+  double b = low + ratio * (high - low);
+  KnottedCubicFit at_a = with_knot(run, best, a);
+  KnottedCubicFit at_b = with_knot(run, best, b);
+  while (high - low > kNarrow) {
+    if (at_a.chi2 < at_b.chi2) {
+      high = b;
+      b = a;
+      at_b = std::move(at_a);
+      a = high - ratio * (high - low);
+      at_a = with_knot(run, at_b, a);
+    } else {
+      low = a;
+      a = b;
+      at_a = std::move(at_b);
+      b = low + ratio * (high - low);
+      at_b = with_knot(run, at_a, b);
+    }
+  }
+  KnottedCubicFit& better = at_a.chi2 < at_b.chi2 ? at_a : at_b;
+  return better.chi2 < best.chi2 ? better : best;
+}
+
+/// Finds the joint of a run of samples [begin, end); indices count from the patch's first sample.
+class JointTest {
+ public:
+  JointTest(std::span<const StoredSample> samples, const PatchContext& context, double sigma_m,
+            double significance)
+      : samples_(samples), context_(context), sigma_m_(sigma_m), significance_(significance) {}
+
+  std::optional<SegmentJoint> joint_of(std::size_t begin, std::size_t end) const {
+    if (end < begin + 2 * kFewestSamples) {
+      return std::nullopt;
+    }
+    auto run = fit_run(samples_.subspan(begin, end - begin), context_, sigma_m_);
+    if (!run) {
+      return std::nullopt;
+    }
+    const std::vector<std::size_t> knots = knots_of(end - begin);
+    KnottedCubicFit best = run->single;
+    std::size_t best_knot = 0;
+    for (std::size_t k = 0; k < knots.size(); ++k) {
+      KnottedCubicFit trial = with_knot(*run, run->single, run->single.t[knots[k]]);
+      if (trial.chi2 < best.chi2) {
+        best = std::move(trial);
+        best_knot = k;
+      }
+    }
+    const double limit =
+        chi_square_threshold(significance_ / static_cast<double>(knots.size()), kBendDegrees);
+    if (!(run->single.chi2 - best.chi2 > limit)) {
+      return std::nullopt;
+    }
+    // What the bend gained may be a better optimum of the single cubic instead.
+    KnottedCubicFit unbent = best;
+    unbent.curve.bend = Vec2::Zero();
+    unbent = refine_knotted(run->data.points, std::move(unbent), false);
+    const double single = std::min(run->single.chi2, unbent.chi2);
+    if (!(single - best.chi2 > limit)) {
+      return std::nullopt;
+    }
+    const auto knot_t = [&](std::size_t k) { return best.t[knots[k]]; };
+    const std::size_t last = knots.size() - 1;
+    best = best_between(*run, best, knot_t(best_knot > 0 ? best_knot - 1 : 0),
+                        knot_t(best_knot < last ? best_knot + 1 : last));
+    SegmentJoint joint = located(*run, best);
+    joint.chi2_drop = single - best.chi2;
+    joint.index += begin;
+    joint.earliest += begin;
+    joint.latest += begin;
+    return joint;
+  }
+
+ private:
+  static std::vector<std::size_t> knots_of(std::size_t count) {
+    const std::size_t room = count - 2 * kFewestSamples;
+    const std::size_t knots = std::min(kKnots, room + 1);
+    std::vector<std::size_t> indices;
+    for (std::size_t k = 0; k < knots; ++k) {
+      indices.push_back(kFewestSamples + (knots > 1 ? k * room / (knots - 1) : room / 2));
+    }
+    return indices;
+  }
+
+  /// The joint among the run's samples, and how far it may lie to either side.
+  SegmentJoint located(const Run& run, const KnottedCubicFit& best) const {
+    const std::size_t n = best.t.size();
+    SegmentJoint joint;
+    const auto beyond =
+        std::find_if(best.t.begin(), best.t.end(), [&](double t) { return t > best.curve.knot; });
+    joint.index = static_cast<std::size_t>(beyond - best.t.begin());
+    joint.position_m = run.data.frame * (run.data.scale * best.curve.position(best.curve.knot));
+    constexpr double kOutside = 0.05;
+    const double limit = chi_square_threshold(kOutside, 1);
+    // All along the run: where the bend is weak, what is possible may have gaps.
+    constexpr std::size_t kMostPlaces = 80;
+    const std::size_t stride = n / kMostPlaces + 1;
+    joint.earliest = joint.latest = joint.index;
+    for (std::size_t i = 0; i < n; i += stride) {
+      if (with_knot(run, best, best.t[i]).chi2 - best.chi2 <= limit) {
+        joint.earliest = std::min(joint.earliest, i >= stride ? i - stride + 1 : 0);
+        joint.latest = std::max(joint.latest, std::min(i + stride, n));
+      }
+    }
+    return joint;
+  }
+
+  std::span<const StoredSample> samples_;
+  PatchContext context_;
+  double sigma_m_;
+  double significance_;
+};
+
+/// Parts a run at its joint, and again what certainly lies on either side: a few samples of the
+/// neighbour would be found to be one.
+void part_run(const JointTest& test, std::size_t begin, std::size_t end,
+              std::vector<SegmentJoint>* joints) {
+  const auto joint = test.joint_of(begin, end);
+  if (!joint) {
+    return;
+  }
+  part_run(test, begin, joint->earliest, joints);
+  joints->push_back(*joint);
+  part_run(test, joint->latest, end, joints);
+}
+
+/// Each joint again, between its neighbours: the first ones were found with others still in the
+/// run, and where they lie askew, others were found beside them. What is no joint between its
+/// neighbours goes.
+void settle(const JointTest& test, std::size_t count, std::vector<SegmentJoint>* joints) {
+  constexpr int kPasses = 2;
+  for (int pass = 0; pass < kPasses && joints->size() > 1; ++pass) {
+    for (std::size_t j = 0; j < joints->size();) {
+      const std::size_t begin = j > 0 ? (*joints)[j - 1].latest : 0;
+      const std::size_t end = j + 1 < joints->size() ? (*joints)[j + 1].earliest : count;
+      if (const auto joint = test.joint_of(begin, end)) {
+        (*joints)[j++] = *joint;
+      } else if (end >= begin + 2 * kFewestSamples) {
+        joints->erase(joints->begin() + static_cast<std::ptrdiff_t>(j));
+      } else {
+        ++j;  // too near its neighbours to be tested
+      }
+    }
+  }
+}
+
+/// The noise of samples that bring none: the residuals of a smooth model of no class. [m]
+double noise_of(const StoredPatch& patch, double sigma_m) {
+  bool sigma_known = false;
+  FitData data = make_fit_data(std::span(&patch, 1), sigma_m, &sigma_known);
+  if (sigma_known) {
+    return sigma_m;
+  }
+  const SmoothModel smooth = fit_smooth_model(&data, false);
+  return std::max(smooth.noise_ratio(), rounding_level(data)) * data.scale;
+}
+
+}  // namespace
+
+SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, double significance) {
+  SegmentBelonging result;
+  constexpr double kFalseSpikes = 0.01;  // probability that a patch without spikes loses a sample
+  const std::vector<bool> is_spike = spikes_of(patch.samples, kFalseSpikes);
+  StoredPatch kept = patch;
+  kept.samples = without_spikes(patch.samples, is_spike);
+  std::vector<std::size_t> numbers;  // of the samples kept
+  for (std::size_t i = 0; i < is_spike.size(); ++i) {
+    if (!is_spike[i]) {
+      numbers.push_back(i);
+    }
+  }
+  result.end = patch.samples.size();
+  if (kept.samples.size() < kFewestSamples) {
+    return result;
+  }
+  const double noise_m = noise_of(kept, sigma_m);
+  const bool all_known = std::all_of(kept.samples.begin(), kept.samples.end(),
+                                     [](const StoredSample& s) { return s.sigma_m > 0.0; });
+  if (!all_known) {
+    for (StoredSample& sample : kept.samples) {
+      sample.sigma_m = noise_m;
+    }
+  }
+  const JointTest test(kept.samples, kept.context, noise_m, significance);
+  part_run(test, 0, kept.samples.size(), &result.joints);
+  settle(test, kept.samples.size(), &result.joints);
+
+  // Between one joint and the next; `core` without the samples that may lie on either side.
+  std::size_t longest = 0;
+  const auto begin_of = [&](std::size_t j) { return j > 0 ? result.joints[j - 1].index : 0; };
+  const auto end_of = [&](std::size_t j) {
+    return j < result.joints.size() ? result.joints[j].index : kept.samples.size();
+  };
+  for (std::size_t j = 1; j <= result.joints.size(); ++j) {
+    longest = end_of(j) - begin_of(j) > end_of(longest) - begin_of(longest) ? j : longest;
+  }
+  const std::size_t longest_begin = begin_of(longest);
+  const std::size_t longest_end = end_of(longest);
+  const std::size_t core_begin = longest > 0 ? result.joints[longest - 1].latest : 0;
+  const std::size_t core_end =
+      longest < result.joints.size() ? result.joints[longest].earliest : kept.samples.size();
+  const auto run = core_end >= core_begin + kFewestSamples
+                       ? fit_run(std::span(kept.samples).subspan(core_begin, core_end - core_begin),
+                                 kept.context, noise_m)
+                       : std::nullopt;
+  result.was_tested = kept.samples.size() >= 2 * kFewestSamples;
+  if (run) {
+    result.chi2 = run->single.chi2;
+    result.dof = static_cast<int>(core_end - core_begin) - kCubicDegrees;
+    result.sigma_m = run->data.scale * rms_sigma(run->data);
+  }
+  // Back to the numbers of the samples as given.
+  const auto given = [&](std::size_t i) {
+    return i < numbers.size() ? numbers[i] : patch.samples.size();
+  };
+  for (SegmentJoint& joint : result.joints) {
+    joint.index = given(joint.index);
+    joint.earliest = given(joint.earliest);
+    joint.latest = given(joint.latest);
+  }
+  result.begin = longest_begin > 0 ? given(longest_begin) : 0;
+  result.end = given(longest_end);
+  for (std::size_t i = 0; i < patch.samples.size(); ++i) {
+    if (i < result.begin || i >= result.end || is_spike[i]) {
+      result.outside.push_back(i);
+    }
+  }
+  return result;
+}
+
+}  // namespace palpate

@@ -1,0 +1,336 @@
+#include "core/part/segment_match.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/numerics/chi_square.h"
+#include "core/part/part_slides.h"
+#include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/smooth/smooth_model.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kPoseDegrees = 3;
+/// Fewest degrees of freedom that noise is estimated from: its relative standard deviation is then
+/// 1/3.
+constexpr int kFewestNoiseDegrees = 4;
+
+/// The patches without spikes, and which samples of the given ones these were.
+struct CleanPatches {
+  std::vector<StoredPatch> patches;
+  std::vector<std::vector<bool>> is_spike;
+};
+
+CleanPatches clean_patches(std::span<const StoredPatch> patches, double false_alarm) {
+  CleanPatches clean;
+  for (const StoredPatch& patch : patches) {
+    clean.is_spike.push_back(spikes_of(patch.samples, false_alarm));
+    StoredPatch kept = patch;
+    kept.samples = without_spikes(patch.samples, clean.is_spike.back());
+    clean.patches.push_back(std::move(kept));
+  }
+  return clean;
+}
+
+/// The patch of the longest chord, among those that have samples.
+std::size_t longest_patch(const FitData& data) {
+  std::size_t longest = 0;
+  double length = -1.0;
+  for (std::size_t p = 0; p < data.patches.size(); ++p) {
+    const auto patch = data.patch(p);
+    const double chord = (patch.back().position - patch.front().position).norm();
+    if (chord > length) {
+      longest = p;
+      length = chord;
+    }
+  }
+  return longest;
+}
+
+/// The middle of a patch with its tangent; nullopt where the patch has no direction.
+std::optional<FitPoint> reference_of(std::span<const FitPoint> patch) {
+  const FitPoint& middle = patch[patch.size() / 2];
+  return middle.tangent.squaredNorm() > 0.0 ? std::optional(middle) : std::nullopt;
+}
+
+/// Material lies left of increasing t where outside lies right.
+TravelDirections directions_of(MaterialSide side, const ScaledPart& part) {
+  if (side == MaterialSide::Unspecified) {
+    return {};
+  }
+  const bool along = (side == MaterialSide::Left) == (part.outside() < 0.0);
+  return {along, !along};
+}
+
+/// Whether t runs up over the samples of a patch, joints and seam included.
+bool runs_up(std::span<const SamplePlace> places, std::size_t segments) {
+  const auto period = static_cast<double>(segments);
+  double run = 0.0;
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const auto t = [&](std::size_t k) {
+      return static_cast<double>(places[k].segment) + places[k].u;
+    };
+    run += std::remainder(t(i) - t(i - 1), period);
+  }
+  return run >= 0.0;
+}
+
+class Match {
+ public:
+  Match(const ClosedSpline& part, std::span<const StoredPatch> patches,
+        const SegmentMatchOptions& options)
+      : part_(part),
+        given_(patches),
+        options_(options),
+        clean_(clean_patches(patches, spike_probability(patches, options))) {
+    bool sigma_known = false;
+    data_ = make_fit_data(clean_.patches, options.sigma_m, &sigma_known);
+    if (data_.points.empty()) {
+      return;
+    }
+    smooth_ = fit_smooth_model(&data_, sigma_known);
+    if (!sigma_known) {
+      noise_known_ = smooth_.dof() >= kFewestNoiseDegrees;
+      const double sigma = std::max(smooth_.noise_ratio(), rounding_level(data_));
+      scale_noise(sigma, &data_, &smooth_);
+    }
+  }
+
+  SegmentMatch answer() const {
+    SegmentMatch match;
+    const int n = static_cast<int>(data_.points.size());
+    if (n <= kPoseDegrees || !noise_known_) {
+      return match;
+    }
+    match.sigma_m = rms_sigma(data_) * data_.scale;
+    const ScaledPart part(part_, data_.scale);
+    const std::size_t longest = longest_patch(data_);
+    match.longest_patch = given_number(longest);
+    const auto reference = reference_of(data_.patch(longest));
+    if (!reference) {
+      return match;
+    }
+    const MaterialSide side = given_[match.longest_patch].context.material_side;
+    const SlidePosterior posterior =
+        slide_posterior(part, smooth_.reduced.points, *reference, directions_of(side, part));
+    match.segment_probability = posterior.segment_probability;
+    for (const PartCandidate& candidate : posterior.candidates) {
+      if (candidate.probability < options_.least_probability) {
+        break;
+      }
+      PartPlacement placement = place(part, candidate, *reference);
+      if (agrees_with_material(placement, part)) {
+        match.placements.push_back(std::move(placement));
+      }
+    }
+    normalise(&match.placements);
+    judge(&match);
+    return match;
+  }
+
+ private:
+  static double spike_probability(std::span<const StoredPatch> patches,
+                                  const SegmentMatchOptions& options) {
+    return options.false_outlier_probability /
+           static_cast<double>(std::max<std::size_t>(patches.size(), 1));
+  }
+
+  /// The number of a patch of data_ among those given: empty ones are left out there.
+  std::size_t given_number(std::size_t patch) const {
+    std::size_t number = 0;
+    for (std::size_t left = patch;; ++number) {
+      if (!clean_.patches[number].samples.empty() && left-- == 0) {
+        return number;
+      }
+    }
+  }
+
+  /// On all points, with the places of all samples.
+  PartPlacement place(const ScaledPart& part, const PartCandidate& candidate,
+                      const FitPoint& reference) const {
+    const PartFit fit = fit_part(part, data_.points, candidate.fit.data_T_part);
+    PartPlacement placement;
+    placement.probability = candidate.probability;
+    placement.chi2 = fit.chi2;
+    placement.dof = static_cast<int>(data_.points.size()) - kPoseDegrees;
+    placement.misfit_chi2 = std::max(0.0, fit.chi2 - smooth_.chi2);
+    placement.misfit_dof = smooth_.parameters - kPoseDegrees;
+    const Pose2& pose = fit.data_T_part;
+    placement.world_T_part =
+        data_.frame * Pose2{data_.scale * pose.x, data_.scale * pose.y, pose.theta};
+    // The motions turn about the data's origin, the pose about the part's.
+    Eigen::Matrix3d by_motion = Eigen::Matrix3d::Identity();
+    by_motion.col(2).head<2>() = left_of(pose.translation());
+    const Eigen::Matrix3d covariance =
+        by_motion * fit.information.inverse() * by_motion.transpose();
+    Eigen::Matrix3d to_world = Eigen::Matrix3d::Identity();
+    to_world.col(0).head<2>() = data_.scale * data_.frame.rotate(Vec2(1.0, 0.0));
+    to_world.col(1).head<2>() = data_.scale * data_.frame.rotate(Vec2(0.0, 1.0));
+    placement.covariance = to_world * covariance * to_world.transpose();
+    judge_slide(part, fit, covariance, reference, &placement);
+    place_samples(part, pose, &placement);
+    return placement;
+  }
+
+  /// How far the reference may slide along the part, and whether chi-square rises there as the
+  /// covariance of the pose, in the data's frame, says.
+  void judge_slide(const ScaledPart& part, const PartFit& fit, const Eigen::Matrix3d& covariance,
+                   const FitPoint& reference, PartPlacement* placement) const {
+    const Pose2& pose = fit.data_T_part;
+    const Vec2& tangent = reference.tangent;
+    const Eigen::Vector3d slide(tangent.x(), tangent.y(),
+                                tangent.dot(left_of(reference.position - pose.translation())));
+    const double variance = slide.dot(covariance * slide);
+    if (!(variance > 0.0)) {
+      placement->slide_sd_m = placement->nonlinearity = std::numeric_limits<double>::infinity();
+      return;
+    }
+    placement->slide_sd_m = data_.scale * std::sqrt(variance);
+    constexpr double kDeviations = 2.0;
+    const Eigen::Vector3d step = kDeviations / std::sqrt(variance) * (covariance * slide);
+    for (const double sign : {1.0, -1.0}) {
+      const Eigen::Vector3d moved = Eigen::Vector3d(pose.x, pose.y, pose.theta) + sign * step;
+      double chi2 = 0.0;
+      for (const FitPoint& point : data_.points) {
+        const double residual =
+            place_on_part(part, {moved.x(), moved.y(), moved.z()}, point).residual;
+        chi2 += residual * residual;
+      }
+      const double rise = (chi2 - fit.chi2) / (kDeviations * kDeviations);
+      placement->nonlinearity = std::max(placement->nonlinearity, std::abs(rise - 1.0));
+    }
+  }
+
+  void place_samples(const ScaledPart& part, const Pose2& pose, PartPlacement* placement) const {
+    std::size_t next = 0;  // point of data_
+    for (std::size_t p = 0; p < given_.size(); ++p) {
+      const StoredPatch& patch = given_[p];
+      PatchOnPart place;
+      std::vector<std::size_t> votes(part_.size(), 0);
+      for (std::size_t i = 0; i < patch.samples.size(); ++i) {
+        SamplePlace sample;
+        sample.is_outlier = clean_.is_spike[p][i];
+        FitPoint point;
+        if (sample.is_outlier) {
+          point.position = data_.frame.to_local(patch.samples[i].position_m) / data_.scale;
+          point.offset = patch.context.tip_radius_m / data_.scale;
+          point.inverse_sigma = 1.0 / rms_sigma(data_);
+        } else {
+          point = data_.points[next++];
+        }
+        const PartFoot foot = place_on_part(part, pose, point);
+        const ClosedSpline::Place at = part.spline().place_at(foot.t);
+        sample.segment = at.segment;
+        sample.u = at.u;
+        sample.residual = foot.residual;
+        ++votes[at.segment];
+        place.samples.push_back(sample);
+      }
+      place.segment =
+          static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+      place.along_increasing_t = runs_up(place.samples, part_.size());
+      for (std::size_t i = 0; i < place.samples.size(); ++i) {
+        if (place.samples[i].segment != place.segment) {
+          place.beyond.push_back(i);
+        }
+      }
+      placement->patches.push_back(std::move(place));
+    }
+  }
+
+  bool agrees_with_material(const PartPlacement& placement, const ScaledPart& part) const {
+    for (std::size_t p = 0; p < given_.size(); ++p) {
+      const TravelDirections allowed = directions_of(given_[p].context.material_side, part);
+      const PatchOnPart& place = placement.patches[p];
+      if (place.samples.size() > 1 &&
+          !(place.along_increasing_t ? allowed.along : allowed.against)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  static void normalise(std::vector<PartPlacement>* placements) {
+    double sum = 0.0;
+    for (const PartPlacement& placement : *placements) {
+      sum += placement.probability;
+    }
+    for (PartPlacement& placement : *placements) {
+      placement.probability /= sum;
+    }
+  }
+
+  /// Two tests of one hypothesis, each at half the significance.
+  bool fits(const PartPlacement& placement) const {
+    const double half = 0.5 * options_.significance;
+    return chi_square_survival(placement.chi2, placement.dof) >= half &&
+           chi_square_survival(placement.misfit_chi2, placement.misfit_dof) >= half;
+  }
+
+  void judge(SegmentMatch* match) const {
+    const std::vector<PartPlacement>& placements = match->placements;
+    if (std::none_of(placements.begin(), placements.end(),
+                     [&](const PartPlacement& placement) { return fits(placement); })) {
+      match->status = SegmentMatchStatus::NoMatch;
+      return;
+    }
+    const PartPlacement& best = placements.front();
+    const auto begin = static_cast<double>(best.patches[match->longest_patch].segment);
+    const double length = part_.arc_length(begin, begin + 1.0);
+    if (best.probability < options_.determined_probability || !fits(best)) {
+      match->doubt = SegmentMatchDoubt::SeveralPlacements;
+    } else if (!(best.slide_sd_m <= options_.determined_slide * length &&
+                 best.nonlinearity <= options_.determined_nonlinearity)) {
+      match->doubt = SegmentMatchDoubt::SlidesAlong;
+    }
+    match->status = match->doubt == SegmentMatchDoubt::None ? SegmentMatchStatus::Determined
+                                                            : SegmentMatchStatus::Ambiguous;
+  }
+
+  const ClosedSpline& part_;
+  std::span<const StoredPatch> given_;
+  SegmentMatchOptions options_;
+  CleanPatches clean_;
+  FitData data_;
+  SmoothModel smooth_;
+  bool noise_known_ = true;
+};
+
+}  // namespace
+
+std::string_view name_of(SegmentMatchStatus status) {
+  switch (status) {
+    case SegmentMatchStatus::TooFewSamples:
+      return "too_few_samples";
+    case SegmentMatchStatus::NoMatch:
+      return "no_match";
+    case SegmentMatchStatus::Ambiguous:
+      return "ambiguous";
+    case SegmentMatchStatus::Determined:
+      return "determined";
+  }
+  return "";
+}
+
+std::string_view name_of(SegmentMatchDoubt doubt) {
+  switch (doubt) {
+    case SegmentMatchDoubt::None:
+      return "none";
+    case SegmentMatchDoubt::SeveralPlacements:
+      return "several_placements";
+    case SegmentMatchDoubt::SlidesAlong:
+      return "slides_along";
+  }
+  return "";
+}
+
+SegmentMatch match_segment(const ClosedSpline& part, std::span<const StoredPatch> patches,
+                           const SegmentMatchOptions& options) {
+  return Match(part, patches, options).answer();
+}
+
+}  // namespace palpate

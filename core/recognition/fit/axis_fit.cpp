@@ -1,0 +1,378 @@
+#include "core/recognition/fit/axis_fit.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/curves/algebraic/polynomial_curve.h"
+#include "core/numerics/least_squares.h"
+
+namespace palpate {
+namespace {
+
+template <PolynomialModel kModel>
+constexpr bool has_arms() {
+  return kModel == PolynomialModel::SemiCubicalParabola || kModel == PolynomialModel::CubicSpline;
+}
+
+/// Powers of x (graph models) or t (arm models) that y is made of. A cubical parabola's inflection
+/// may lie anywhere along the axis: its graph has all.
+template <PolynomialModel kModel>
+constexpr auto powers() {
+  return exponents_of_model < kModel == PolynomialModel::CubicalParabola
+             ? PolynomialModel::CubicSpline
+             : kModel > ();
+}
+
+/// Residuals across the axis at the best coefficients of y, for minimise_residuals. The few
+/// linear unknowns are eliminated by modified Gram-Schmidt, the right side as one more column,
+/// which is as stable as Householder's QR (A. Bjorck, 1967), and a row a point keeps its columns
+/// side by side.
+template <PolynomialModel kModel>
+class AxisResiduals {
+ public:
+  static constexpr auto kPowers = powers<kModel>();
+  static constexpr bool kArms = has_arms<kModel>();
+  static constexpr int kLinear = static_cast<int>(kPowers.size());
+  enum { NUM_PARAMETERS = kArms ? 2 : 1 };
+  using Coefficients = Eigen::Matrix<double, kLinear, 1>;
+
+  AxisResiduals(std::span<const FitPoint> points, std::span<const double> arms)
+      : points_(points), arms_(arms), rows_(points.size()) {}
+
+  int NumResiduals() const { return static_cast<int>(points_.size()); }
+
+  /// Coefficients of y at the last evaluation.
+  const Coefficients& coefficients() const { return coefficients_; }
+
+  bool operator()(const double* x, double* residuals, double* jacobian) const {
+    const std::size_t n = points_.size();
+    // The Jacobian is asked for at an accepted trial: everything else is there already.
+    const bool same = jacobian != nullptr && std::equal(x, x + NUM_PARAMETERS, at_.begin());
+    if (!same) {
+      std::copy(x, x + NUM_PARAMETERS, at_.begin());
+      solved_ = solve();
+    }
+    if (!solved_) {
+      return false;  // all points alike, as when the vertex passes beyond them: no curve
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      residuals[i] = rows_[i].columns[kLinear];
+    }
+    if (jacobian != nullptr) {
+      differentiate(jacobian);
+    }
+    return true;
+  }
+
+ private:
+  /// The columns and the right side, an even number: two doubles are one operation.
+  static constexpr int kWidth = kLinear + 1 + (kLinear + 1) % 2;
+  using Columns = Eigen::Matrix<double, kWidth, 1>;
+
+  struct Row {
+    Columns columns;      ///< w u^k, orthogonal to one another after `solve`; then y's residual
+    Vec2 by_parameters;   ///< of the residual; after `differentiate` off the columns
+    double along = 0.0;   ///< the axis
+    double across = 0.0;  ///< the axis
+    double weight = 0.0;
+    double u = 0.0;
+  };
+
+  /// Fills and orthogonalises the columns. False where they are dependent.
+  bool solve() const {
+    const Vec2 axis(std::cos(at_[0]), std::sin(at_[0]));
+    const double x0 = at_[1];
+    Columns products = Columns::Zero();  // of the first column with all
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const FitPoint& point = points_[i];
+      Row& row = rows_[i];
+      row.weight = point.inverse_sigma * verticality(point, axis);
+      row.along = point.position.dot(axis);
+      row.across = cross(axis, point.position);
+      row.u = row.along;
+      if constexpr (kArms) {
+        row.u = arms_[i] * std::sqrt(std::max(row.along - x0, 0.0));
+      }
+      const double power[4] = {1.0, row.u, row.u * row.u, row.u * row.u * row.u};
+      for (int k = 0; k < kLinear; ++k) {
+        row.columns[k] = row.weight * power[kPowers[static_cast<std::size_t>(k)]];
+      }
+      row.columns[kLinear] = row.weight * row.across;
+      if constexpr (kWidth > kLinear + 1) {
+        row.columns[kWidth - 1] = 0.0;
+      }
+      products += row.columns[0] * row.columns;
+    }
+    Eigen::Matrix<double, kWidth, kLinear> factors;  // column k: of column k in the later ones
+    for (int k = 0; k < kLinear; ++k) {
+      squares_[k] = products[k];
+      if (!(products[k] > 0.0)) {
+        return false;
+      }
+      Columns off = products / products[k];
+      off.head(k + 1).setZero();
+      factors.col(k) = off;
+      products.setZero();
+      for (Row& row : rows_) {
+        row.columns -= row.columns[k] * off;
+        products += row.columns[k + 1] * row.columns;
+      }
+    }
+    for (int k = kLinear - 1; k >= 0; --k) {
+      coefficients_[k] = factors(kLinear, k);
+      for (int j = k + 1; j < kLinear; ++j) {
+        coefficients_[k] -= factors(j, k) * coefficients_[j];
+      }
+    }
+    return true;
+  }
+
+  /// Kaufman's form: the derivative at fixed coefficients, projected off the columns.
+  void differentiate(double* jacobian) const {
+    Vec2 products = Vec2::Zero();  // of the first column with the derivatives
+    for (Row& row : rows_) {
+      double slope = 0.0;  // dy/dx of the curve
+      const double u_by_x = !kArms ? 1.0 : row.u != 0.0 ? 0.5 / row.u : 0.0;
+      double power = 1.0;
+      int degree = 0;
+      for (int k = 0; k < kLinear; ++k) {
+        const int wanted = kPowers[static_cast<std::size_t>(k)];
+        for (; degree + 1 < wanted; ++degree) {
+          power *= row.u;
+        }
+        slope += wanted > 0 ? wanted * coefficients_[k] * power * u_by_x : 0.0;
+      }
+      // Turning the axis by d: across falls by along d, along grows by across d.
+      row.by_parameters = row.weight * Vec2(-row.along - slope * row.across, slope);
+      products += row.columns[0] * row.by_parameters;
+    }
+    for (int k = 0; k < kLinear; ++k) {
+      const Vec2 off = products / squares_[k];
+      products.setZero();
+      for (Row& row : rows_) {
+        row.by_parameters -= row.columns[k] * off;
+        products += row.columns[k + 1] * row.by_parameters;
+      }
+    }
+    const std::size_t n = points_.size();
+    for (std::size_t j = 0; j < NUM_PARAMETERS; ++j) {
+      for (std::size_t i = 0; i < n; ++i) {
+        jacobian[j * n + i] = rows_[i].by_parameters[static_cast<Eigen::Index>(j)];
+      }
+    }
+  }
+
+  std::span<const FitPoint> points_;
+  std::span<const double> arms_;
+  // At the last evaluation:
+  mutable std::array<double, 2> at_ = {std::numeric_limits<double>::quiet_NaN(), 0.0};
+  mutable bool solved_ = false;
+  mutable std::vector<Row> rows_;
+  mutable Coefficients squares_ = Coefficients::Zero();  ///< of the orthogonal columns
+  mutable Coefficients coefficients_ = Coefficients::Zero();
+};
+
+template <PolynomialModel kModel>
+AxisFit refine(std::span<const FitPoint> points, AxisFit fit, int max_iterations) {
+  using Residuals = AxisResiduals<kModel>;
+  const Residuals residuals(points, fit.arms);
+  // A start for the refinement proper: chi-square to a tenth is plenty.
+  constexpr double kChi2Tolerance = 0.1;
+  constexpr double kFirstDamping = 1e-6;
+  Eigen::Matrix<double, Residuals::NUM_PARAMETERS, 1> x;
+  x[0] = fit.theta;
+  if constexpr (Residuals::kArms) {
+    x[1] = fit.x0;
+  }
+  fit.chi2 =
+      minimise_residuals(residuals, {max_iterations, kChi2Tolerance, kFirstDamping}, &x).chi2;
+  fit.theta = x[0];
+  if constexpr (Residuals::kArms) {
+    fit.x0 = x[1];
+  }
+  return fit;
+}
+
+/// Coefficients of y in powers of u at given nonlinear parameters.
+template <PolynomialModel kModel>
+std::array<double, 4> across_coefficients(const AxisFit& fit, std::span<const FitPoint> points) {
+  using Residuals = AxisResiduals<kModel>;
+  const Residuals residuals(points, fit.arms);
+  std::vector<double> scratch(points.size());
+  const double x[2] = {fit.theta, fit.x0};
+  residuals(x, scratch.data(), nullptr);
+  std::array<double, 4> y{};
+  for (int k = 0; k < Residuals::kLinear; ++k) {
+    y[static_cast<std::size_t>(Residuals::kPowers[static_cast<std::size_t>(k)])] =
+        residuals.coefficients()[k];
+  }
+  return y;
+}
+
+std::array<double, 4> across_coefficients(const AxisFit& fit, std::span<const FitPoint> points) {
+  switch (fit.model) {
+    case PolynomialModel::Parabola:
+      return across_coefficients<PolynomialModel::Parabola>(fit, points);
+    case PolynomialModel::CubicalParabola:
+      return across_coefficients<PolynomialModel::CubicalParabola>(fit, points);
+    case PolynomialModel::SemiCubicalParabola:
+      return across_coefficients<PolynomialModel::SemiCubicalParabola>(fit, points);
+    case PolynomialModel::CubicSpline:
+      break;
+  }
+  return across_coefficients<PolynomialModel::CubicSpline>(fit, points);
+}
+
+/// The spline with its vertex moved by -factor * c / a, at most to just before the leftmost point.
+AxisFit with_vertex_moved(const AxisFit& spline, std::span<const FitPoint> points, double factor) {
+  const std::array<double, 4> y = across_coefficients(spline, points);
+  const Vec2 axis(std::cos(spline.theta), std::sin(spline.theta));
+  double least = std::numeric_limits<double>::infinity();
+  for (const FitPoint& point : points) {
+    least = std::min(least, point.position.dot(axis));
+  }
+  constexpr double kJustBefore = 1e-3;  // half extents of the data
+  AxisFit moved = spline;
+  const double step = factor * y[1] / y[3];
+  moved.x0 = std::min(std::isfinite(step) ? spline.x0 - step : spline.x0, least - kJustBefore);
+  return moved;
+}
+
+}  // namespace
+
+double verticality(const FitPoint& point, const Vec2& axis) {
+  constexpr double kLeast = 0.03;
+  constexpr double kUnknownDirection = 0.7;  // root mean square of the cosine
+  if (point.tangent.isZero()) {
+    return kUnknownDirection;
+  }
+  return std::max(std::abs(point.tangent.dot(axis)), kLeast);
+}
+
+AxisFit refine_axis(std::span<const FitPoint> points, AxisFit start, int max_iterations) {
+  switch (start.model) {
+    case PolynomialModel::Parabola:
+      return refine<PolynomialModel::Parabola>(points, std::move(start), max_iterations);
+    case PolynomialModel::CubicalParabola:
+      return refine<PolynomialModel::CubicalParabola>(points, std::move(start), max_iterations);
+    case PolynomialModel::SemiCubicalParabola:
+      return refine<PolynomialModel::SemiCubicalParabola>(points, std::move(start), max_iterations);
+    case PolynomialModel::CubicSpline:
+      break;
+  }
+  return refine<PolynomialModel::CubicSpline>(points, std::move(start), max_iterations);
+}
+
+bool reassign_arms(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
+                   AxisFit* fit) {
+  const Vec2 axis(std::cos(fit->theta), std::sin(fit->theta));
+  const std::array<double, 4> y = across_coefficients(*fit, points);
+  bool changed = false;
+  std::vector<double> advantage;  // of the positive arm over the negative one, point by point
+  for (const PatchSpan& patch : patches) {
+    advantage.clear();
+    double all = 0.0;
+    for (std::size_t i = patch.begin; i < patch.end; ++i) {
+      const double w = points[i].inverse_sigma * verticality(points[i], axis);
+      const double t = std::sqrt(std::max(points[i].position.dot(axis) - fit->x0, 0.0));
+      const double even = cross(axis, points[i].position) - y[0] - y[2] * t * t;
+      const double odd = y[1] * t + y[3] * t * t * t;
+      // (even + odd)^2 - (even - odd)^2
+      advantage.push_back(4.0 * w * w * even * odd);
+      all += advantage.back();
+    }
+    // Positive before the change and negative after it, or the other way round.
+    double before = 0.0;
+    double best = std::max(all, -all);
+    double first = all >= 0.0 ? 1.0 : -1.0;
+    std::size_t change = patch.size();
+    for (std::size_t k = 1; k < patch.size(); ++k) {
+      before += advantage[k - 1];
+      const double gain = 2.0 * before - all;
+      if (std::abs(gain) > best) {
+        best = std::abs(gain);
+        first = gain >= 0.0 ? 1.0 : -1.0;
+        change = k;
+      }
+    }
+    for (std::size_t k = 0; k < patch.size(); ++k) {
+      const double arm = k < change ? first : -first;
+      changed = changed || arm != fit->arms[patch.begin + k];
+      fit->arms[patch.begin + k] = arm;
+    }
+  }
+  return changed;
+}
+
+AxisFit twin_of(const AxisFit& spline, std::span<const FitPoint> points) {
+  return with_vertex_moved(spline, points, 4.0 / 3.0);
+}
+
+AxisFit semi_cubical_near(const AxisFit& spline, std::span<const FitPoint> points) {
+  AxisFit near = with_vertex_moved(spline, points, 2.0 / 3.0);
+  near.model = PolynomialModel::SemiCubicalParabola;
+  return near;
+}
+
+PolynomialFit to_polynomial(const AxisFit& fit, std::span<const FitPoint> points) {
+  const Vec2 axis(std::cos(fit.theta), std::sin(fit.theta));
+  std::array<double, 4> y = across_coefficients(fit, points);
+  std::array<double, 4> x{0.0, 1.0, 0.0, 0.0};
+  double shift = 0.0;
+  if (!fit.arms.empty()) {
+    x = {fit.x0, 0.0, 1.0, 0.0};
+  } else if (fit.model == PolynomialModel::CubicalParabola) {
+    // Move the origin of t to the inflection, where t^2 drops out. An inflection farther away than
+    // this, in half extents of the data, is as good as none: start from there.
+    constexpr double kFarthestInflection = 50.0;
+    if (std::abs(y[2]) > 3.0 * kFarthestInflection * std::abs(y[3])) {
+      y[3] = std::copysign(std::abs(y[2]) / (3.0 * kFarthestInflection), y[3]);
+    }
+    shift = y[3] != 0.0 ? -y[2] / (3.0 * y[3]) : 0.0;
+    x[0] = shift;
+    y = {y[0] + shift * (y[1] + shift * (y[2] + shift * y[3])),
+         y[1] + shift * (2.0 * y[2] + 3.0 * shift * y[3]), 0.0, y[3]};
+  }
+  PolynomialFit result;
+  for (std::size_t k = 0; k < 4; ++k) {
+    result.coefficients.col(static_cast<Eigen::Index>(k)) = x[k] * axis + y[k] * left_of(axis);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double along = points[i].position.dot(axis);
+    result.t.push_back(fit.arms.empty() ? along - shift
+                                        : fit.arms[i] * std::sqrt(std::max(along - fit.x0, 0.0)));
+  }
+  result.chi2 = fit.chi2;
+  normalise_parameter(fit.model, &result);
+  return result;
+}
+
+void normalise_parameter(PolynomialModel model, PolynomialFit* fit) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  for (const double t : fit->t) {
+    least = std::min(least, t);
+    most = std::max(most, t);
+  }
+  PolynomialCoefficients& c = fit->coefficients;
+  double shift = 0.0;
+  if (model == PolynomialModel::Parabola || model == PolynomialModel::CubicSpline) {
+    shift = 0.5 * (least + most);
+    c = PolynomialCurve2{c}.shifted(shift).coefficients;
+  }
+  const double scale = std::max(std::abs(least - shift), std::abs(most - shift));
+  if (!(scale > 0.0)) {
+    return;
+  }
+  c.col(1) *= scale;
+  c.col(2) *= scale * scale;
+  c.col(3) *= scale * scale * scale;
+  for (double& t : fit->t) {
+    t = (t - shift) / scale;
+  }
+}
+
+}  // namespace palpate

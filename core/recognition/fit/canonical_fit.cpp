@@ -1,0 +1,227 @@
+#include "core/recognition/fit/canonical_fit.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/curves/algebraic/canonical_conic.h"
+#include "core/curves/algebraic/canonical_cubic.h"
+#include "core/curves/curve.h"
+#include "core/numerics/symmetric_eigen.h"
+
+namespace palpate {
+namespace {
+
+/// Shape and pose in the fit's frame, in metres, and the canonical parameter
+/// t = scale * (fit parameter) + shift (polynomials only).
+struct Placement {
+  ShapeParameters shape;
+  Pose2 frame_T_curve;
+  double t_scale = 1.0;
+  double t_shift = 0.0;
+};
+
+Vec2 mean_position(const FitData& data) {
+  Vec2 sum = Vec2::Zero();
+  for (const FitPoint& point : data.points) {
+    sum += point.position;
+  }
+  return sum / static_cast<double>(data.points.size());
+}
+
+std::optional<Placement> place_line(const ConicCoefficients& q, const FitData& data) {
+  const Vec2 normal(q[3], q[4]);
+  const double norm = normal.norm();
+  if (!(norm > 0.0)) {
+    return std::nullopt;
+  }
+  // Where the line lies nearest to the points' mean, along the first patch's direction of travel.
+  const Vec2 mean = mean_position(data);
+  const Vec2 origin = mean - (normal.dot(mean) + q[5]) / (norm * norm) * normal;
+  Vec2 direction = -left_of(normal) / norm;
+  // Every sample of a patch may have been set aside.
+  const auto first = std::find_if(data.patches.begin(), data.patches.end(),
+                                  [](const PatchSpan& patch) { return patch.size() > 0; });
+  if (first != data.patches.end() && direction.dot(data.points[first->end - 1].position -
+                                                   data.points[first->begin].position) < 0.0) {
+    direction = -direction;
+  }
+  return Placement{
+      {CurveClass::Line, Eigen::Vector3d::Zero()},
+      {data.scale * origin.x(), data.scale * origin.y(), std::atan2(direction.y(), direction.x())}};
+}
+
+std::optional<Placement> place_conic(CurveClass curve_class, const ConicCoefficients& q,
+                                     const FitData& data) {
+  if (curve_class == CurveClass::Circle) {
+    // A radius beyond this many half extents cannot be told from a line in double precision.
+    constexpr double kLargestRadius = 1e8;
+    if (!(std::abs(q[0]) * kLargestRadius > std::hypot(q[3], q[4]))) {
+      return std::nullopt;
+    }
+  }
+  const auto canonical = canonicalise_as(curve_class, q);
+  if (!canonical) {
+    return std::nullopt;
+  }
+  Placement placement;
+  placement.shape = {curve_class, data.scale * canonical->values};
+  placement.frame_T_curve = canonical->world_T_curve;
+  Pose2& pose = placement.frame_T_curve;
+  const Vec2 axis(std::cos(pose.theta), std::sin(pose.theta));
+  if (curve_class == CurveClass::Hyperbola &&
+      (mean_position(data) - pose.translation()).dot(axis) < 0.0) {
+    pose.theta += kPi;  // the branch x > 0 is the one touched
+  }
+  if (curve_class == CurveClass::Circle) {
+    pose.theta = -data.frame.theta;  // 0 in the world
+  }
+  pose.x *= data.scale;
+  pose.y *= data.scale;
+  return placement;
+}
+
+/// Appendix B for each model. `c` in metres.
+std::optional<Placement> place_polynomial(CurveClass curve_class, const PolynomialCoefficients& c) {
+  const CubicCanonicalisation canonical = canonicalise_as(curve_class, PolynomialCurve2{c});
+  if (!canonical.curve) {
+    return std::nullopt;
+  }
+  return Placement{{curve_class, canonical.curve->values},
+                   canonical.curve->world_T_curve,
+                   canonical.curve->canonical_t.scale,
+                   canonical.curve->canonical_t.shift};
+}
+
+std::optional<Placement> place_of(const ClassFit& fit, const FitData& data) {
+  if (fit.at_limit) {
+    return std::nullopt;
+  }
+  if (fit.polynomial) {
+    return place_polynomial(fit.curve_class, data.scale * fit.polynomial->coefficients);
+  }
+  const ConicCoefficients& q = fit.implicit->coefficients;
+  switch (fit.curve_class) {
+    case CurveClass::Line:
+      return place_line(q, data);
+    default:
+      return place_conic(fit.curve_class, q, data);
+  }
+}
+
+/// Canonical parameter of a point on an implicit curve.
+double parameter_of(const ShapeParameters& shape, const Vec2& local) {
+  const double a = shape.values[0];
+  const double b = shape.values[1];
+  switch (shape.curve_class) {
+    case CurveClass::Line:
+      return local.x();
+    case CurveClass::Circle:
+      return std::atan2(local.y(), local.x());
+    case CurveClass::Ellipse:
+      return std::atan2(local.y() / b, local.x() / a);
+    default:
+      return std::asinh(local.y() / b);
+  }
+}
+
+/// Inverse of an information matrix of known rank; null directions get variance 0.
+ShapePoseCovariance invert(const ShapePoseCovariance& information, int rank) {
+  const Eigen::Index n = information.rows();
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> scale(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    scale[i] = information(i, i) > 0.0 ? 1.0 / std::sqrt(information(i, i)) : 0.0;
+  }
+  const ShapePoseCovariance scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const SymmetricEigen eigen = symmetric_eigen(scaled);
+  ShapePoseCovariance inverse = ShapePoseCovariance::Zero(n, n);
+  for (Eigen::Index k = n - rank; k < n; ++k) {
+    // Rounding leaves the weakest direction no smaller than this; beyond it the variance is as good
+    // as infinite, and says so by its size.
+    const double least = std::numeric_limits<double>::epsilon();
+    const double value = std::max(eigen.values[k], least);
+    inverse += eigen.vectors.col(k) * eigen.vectors.col(k).transpose() / value;
+  }
+  return scale.asDiagonal() * inverse * scale.asDiagonal();
+}
+
+}  // namespace
+
+std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& data) {
+  assert((fit.implicit ? fit.implicit->feet.size() : fit.polynomial->t.size()) ==
+         data.points.size());
+  auto placement = place_of(fit, data);
+  if (!placement || !placement->shape.values.allFinite()) {
+    return std::nullopt;
+  }
+  CanonicalFit canonical;
+  canonical.shape = placement->shape;
+  Pose2& frame_T_curve = placement->frame_T_curve;
+  canonical.world_T_curve = data.frame * frame_T_curve;
+  // Of two poses that are the same, the one nearer to the world's axes.
+  if (pose_symmetry(canonical.shape.curve_class) == 2 &&
+      std::abs(canonical.world_T_curve.theta) > 0.5 * kPi) {
+    frame_T_curve.theta += kPi;
+    canonical.world_T_curve = data.frame * frame_T_curve;
+    placement->t_scale = -placement->t_scale;
+    placement->t_shift = -placement->t_shift;
+  }
+  const auto curve = make_curve(canonical.shape.curve_class, canonical.shape.values);
+  if (!curve) {
+    return std::nullopt;
+  }
+  const auto letters =
+      static_cast<Eigen::Index>(parameter_letters(canonical.shape.curve_class).size());
+  const Eigen::Index n = letters + 3;
+  // Of [pose; shape], so that a class with fewer letters has its part at the top left: fixed sizes
+  // are several times as fast.
+  Eigen::Matrix<double, 6, 6> pose_first = Eigen::Matrix<double, 6, 6>::Zero();
+  const Eigen::Matrix2d curve_R_frame = Eigen::Rotation2Dd(-frame_T_curve.theta).toRotationMatrix();
+  const Eigen::Matrix2d world_R_frame = Eigen::Rotation2Dd(data.frame.theta).toRotationMatrix();
+  canonical.points.reserve(data.points.size());
+  const int side = fit.implicit ? fit.implicit->side : fit.polynomial->side;
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const FitPoint& point = data.points[i];
+    FittedPoint fitted;
+    double distance = 0.0;
+    Vec2 local;  // the foot point in the curve's frame
+    if (fit.implicit) {
+      const ConicCoefficients& q = fit.implicit->coefficients;
+      const Vec2& foot = fit.implicit->feet[i];
+      distance = signed_distance_from(foot, q, point.position);
+      fitted.normal = conic_gradient(q, foot).normalized();
+      local = curve_R_frame * (data.scale * foot - frame_T_curve.translation());
+      fitted.t = parameter_of(canonical.shape, local);
+    } else {
+      const double t = fit.polynomial->t[i];
+      fitted.t = placement->t_scale * t + placement->t_shift;
+      const PlacedPoint placed = place_on(*fit.polynomial, t, point.position);
+      distance = placed.signed_distance;
+      fitted.normal = placed.normal;
+      local = position(*curve, fitted.t);
+    }
+    fitted.residual = (distance - side * point.offset) * point.inverse_sigma;
+
+    const Vec2 local_normal = curve_R_frame * fitted.normal;
+    fitted.normal = world_R_frame * fitted.normal;
+    Eigen::Matrix<double, 6, 1> row;
+    row[0] = fitted.normal.x();
+    row[1] = fitted.normal.y();
+    row[2] = canonical.shape.curve_class == CurveClass::Circle ? 0.0  // a circle turns into itself
+                                                               : local_normal.dot(left_of(local));
+    row.tail<3>() = position_by_parameters(*curve, fitted.t).transpose() * local_normal;
+    row *= point.inverse_sigma / data.scale;  // 1 / sigma in metres
+    pose_first.noalias() += row * row.transpose();
+    canonical.points.push_back(fitted);
+  }
+  ShapePoseCovariance information(n, n);
+  information.topLeftCorner(letters, letters) = pose_first.block(3, 3, letters, letters);
+  information.topRightCorner(letters, 3) = pose_first.block(3, 0, letters, 3);
+  information.bottomLeftCorner(3, letters) = pose_first.block(0, 3, 3, letters);
+  information.bottomRightCorner<3, 3>() = pose_first.topLeftCorner<3, 3>();
+  canonical.covariance = invert(information, degrees_of_freedom(canonical.shape.curve_class));
+  return canonical;
+}
+
+}  // namespace palpate

@@ -1,0 +1,34 @@
+// From the coordinates of the fit to canonical shape, pose, contacts and their covariance.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/curves/shape_parameters.h"
+#include "core/recognition/fit/class_fits.h"
+
+namespace palpate {
+
+/// A contact point's place on the fitted curve.
+struct FittedPoint {
+  double t = 0.0;              ///< canonical curve parameter
+  double residual = 0.0;       ///< signed distance less tip radius, in units of sigma
+  Vec2 normal = Vec2::Zero();  ///< unit normal at the foot point, world frame
+};
+
+struct CanonicalFit {
+  ShapeParameters shape;
+  Pose2 world_T_curve;
+  /// Inverse of the Fisher information of [shape; x; y; theta] at the fit, for the points' stated
+  /// sigmas: the Kanatani-Cramer-Rao bound. What the pose symmetry leaves free (a circle's theta, a
+  /// line's position along itself) is fixed by convention and has variance 0.
+  ShapePoseCovariance covariance;
+  std::vector<FittedPoint> points;
+};
+
+/// `data`: all points where `fit` is refined on all, otherwise the reduced ones, which carry the
+/// same information. nullopt where there is no such curve: a class at its limit, a circle as flat
+/// as a line, a parabola or cubic without extent across its axis.
+std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& data);
+
+}  // namespace palpate

@@ -1,0 +1,57 @@
+// Every class fitted to the reduced points: the material that evidence is weighed on.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "core/curves/curve_class.h"
+#include "core/recognition/fit/implicit_fit.h"
+#include "core/recognition/fit/polynomial_fit.h"
+#include "core/recognition/fit/polynomial_search.h"
+#include "core/recognition/samples/fit_data.h"
+#include "core/recognition/smooth/smooth_model.h"
+
+namespace palpate {
+
+/// A class at its best, in normalised coordinates.
+struct ClassFit {
+  CurveClass curve_class = CurveClass::Unclassified;
+  double chi2 = 0.0;
+  bool weighed = false;  ///< chi2 is that of all points, not what the reduced ones tell
+  bool on_all =
+      false;  ///< refined on all points; until then it has foot points of the reduced ones
+  bool polished = false;  ///< at its very optimum there, and so is its rival
+  /// The class has no interior optimum: chi2 is that of the neighbour it runs away to (an ellipse
+  /// or hyperbola that wants to be a parabola), and there is no shape to report.
+  bool at_limit = false;
+  std::optional<ImplicitFit> implicit;      ///< line, circle, ellipse, hyperbola
+  std::optional<PolynomialFit> polynomial;  ///< parabola and the cubics
+  /// A spline's optimum on the other side of c = 0: where it fits as well, the shape is not known.
+  std::optional<PolynomialFit> rival;
+};
+
+/// Indexed by CurveClass; entry 0 (Unclassified) is empty.
+using ClassFits = std::array<std::optional<ClassFit>, 9>;
+
+/// The implicit form of a parabola's polynomials, of unit norm.
+ConicCoefficients conic_of_parabola(const PolynomialFit& fit);
+
+/// Whether a fit to that many reduced points is as good as noise allows: five standard deviations.
+inline bool fits_well(double chi2, std::size_t reduced_points) {
+  const double n = static_cast<double>(reduced_points);
+  return chi2 < n + 5.0 * std::sqrt(2.0 * n);
+}
+
+/// Classes by bit 1 << CurveClass.
+inline constexpr unsigned kAllClasses = ~0U;
+
+/// Fits every class to the smooth model's reduced points, taken as surface points: seeds by
+/// exhaustive coarse search, or `starts` (for these points) where given and anything then fits;
+/// least orthogonal distances, as far as telling plausible classes from others takes. What
+/// `classes` leaves out may be missing.
+ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts = nullptr,
+                      unsigned classes = kAllClasses);
+
+}  // namespace palpate

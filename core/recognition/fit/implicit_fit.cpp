@@ -1,0 +1,315 @@
+#include "core/recognition/fit/implicit_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/numerics/least_squares.h"
+#include "core/numerics/symmetric_eigen.h"
+
+namespace palpate {
+namespace {
+
+using Monomials = Eigen::Matrix<double, 6, 1>;
+
+Monomials monomials(const Vec2& p) {
+  return {p.x() * p.x(), p.x() * p.y(), p.y() * p.y(), p.x(), p.y(), 1.0};
+}
+
+double value(const ConicCoefficients& q, const Vec2& p) {
+  return (q[0] * p.x() + q[1] * p.y() + q[3]) * p.x() + (q[2] * p.y() + q[4]) * p.y() + q[5];
+}
+
+/// Columns: the model's directions in the space of the six coefficients.
+template <int K>
+using ModelBasis = Eigen::Matrix<double, 6, K>;
+
+ModelBasis<6> conic_basis() { return ModelBasis<6>::Identity(); }
+
+ModelBasis<4> circle_basis() {
+  ModelBasis<4> basis = ModelBasis<4>::Zero();
+  basis(0, 0) = basis(2, 0) = std::sqrt(0.5);
+  basis(3, 1) = basis(4, 2) = basis(5, 3) = 1.0;
+  return basis;
+}
+
+ModelBasis<3> line_basis() {
+  ModelBasis<3> basis = ModelBasis<3>::Zero();
+  basis(3, 0) = basis(4, 1) = basis(5, 2) = 1.0;
+  return basis;
+}
+
+/// Orthonormal columns across `unit`: all but the first column of the Householder reflection that
+/// turns it into the first axis.
+template <int K>
+Eigen::Matrix<double, K, K - 1> tangent_space(const Eigen::Matrix<double, K, 1>& unit) {
+  Eigen::Matrix<double, K, K - 1> tangent;
+  const double sign = unit[0] >= 0.0 ? 1.0 : -1.0;
+  for (int j = 1; j < K; ++j) {
+    const double share = unit[j] / (1.0 + std::abs(unit[0]));
+    tangent(0, j - 1) = -sign * unit[j];
+    for (int i = 1; i < K; ++i) {
+      tangent(i, j - 1) = (i == j ? 1.0 : 0.0) - unit[i] * share;
+    }
+  }
+  return tangent;
+}
+
+/// Residuals over the tangent space of the unit sphere at `start`, for minimise_residuals.
+template <int K>
+class SphereResiduals {
+ public:
+  enum { NUM_PARAMETERS = K - 1 };
+  using Start = Eigen::Matrix<double, K, 1>;
+  using Step = Eigen::Matrix<double, K - 1, 1>;
+
+  SphereResiduals(std::span<const FitPoint> points, const ModelBasis<K>& basis, const Start& start,
+                  int side)
+      : points_(points),
+        basis_(basis),
+        start_(start.normalized()),
+        side_(side),
+        feet_(points.size()) {
+    trial_.setConstant(std::numeric_limits<double>::quiet_NaN());
+    tangent_ = tangent_space<K>(start_);
+  }
+
+  int NumResiduals() const { return static_cast<int>(points_.size()); }
+
+  /// Columns: the directions of a step's elements.
+  const Eigen::Matrix<double, K, K - 1>& tangent() const { return tangent_; }
+
+  ConicCoefficients coefficients(const Step& step) const {
+    return basis_ * (start_ + tangent_ * step).normalized();
+  }
+
+  // The solver asks for residuals alone at a trial step, and for the Jacobian at the same one when
+  // it is accepted: the foot points are there already.
+  bool operator()(const double* step_data, double* residuals, double* jacobian) const {
+    const Step step = Eigen::Map<const Step>(step_data);
+    const Start moved = start_ + tangent_ * step;
+    const double norm = moved.norm();
+    const Start u = moved / norm;
+    const ConicCoefficients q = basis_ * u;
+    const std::size_t n = points_.size();
+    if (jacobian == nullptr || step != trial_) {
+      place(q, step);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const FitPoint& point = points_[i];
+      residuals[i] = (feet_[i].distance - side_ * point.offset) * point.inverse_sigma;
+    }
+    if (jacobian == nullptr) {
+      return true;
+    }
+    const Eigen::Matrix<double, 6, K - 1> q_by_step =
+        basis_ * ((tangent_ - u * (u.transpose() * tangent_)) / norm);
+    for (std::size_t i = 0; i < n; ++i) {
+      // Envelope theorem: only the curve's motion along its normal at the foot point counts.
+      const Vec2& foot = feet_[i].position;
+      const double gradient_norm = conic_gradient(q, foot).norm();
+      const double factor = gradient_norm > 0.0 ? points_[i].inverse_sigma / gradient_norm : 0.0;
+      const Eigen::Matrix<double, 1, K - 1> row =
+          factor * (monomials(foot).transpose() * q_by_step);
+      for (std::size_t k = 0; k < K - 1; ++k) {
+        jacobian[k * n + i] = row[static_cast<Eigen::Index>(k)];
+      }
+    }
+    return true;
+  }
+
+  /// Foot points on the curve `step`, where the solver has ended: found at its last trial, unless
+  /// that was rejected.
+  std::vector<Vec2> feet(const Step& step) const {
+    if (step != trial_) {
+      place(coefficients(step), step);
+    }
+    std::vector<Vec2> positions;
+    positions.reserve(feet_.size());
+    for (const Foot& foot : feet_) {
+      positions.push_back(foot.position);
+    }
+    return positions;
+  }
+
+ private:
+  void place(const ConicCoefficients& q, const Step& step) const {
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      feet_[i].distance = signed_distance(q, points_[i].position, &feet_[i].position);
+    }
+    trial_ = step;
+  }
+
+  std::span<const FitPoint> points_;
+  ModelBasis<K> basis_;
+  Start start_;
+  Eigen::Matrix<double, K, K - 1> tangent_;
+  int side_;
+
+  struct Foot {
+    Vec2 position = Vec2::Zero();
+    double distance = 0.0;
+  };
+  mutable std::vector<Foot> feet_;  ///< at trial_
+  mutable Step trial_;
+};
+
+template <int K>
+ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
+                   const ConicCoefficients& start, int side, const RefineEffort& effort) {
+  const Eigen::Matrix<double, K, 1> start_in_model = basis.transpose() * start;
+  const SphereResiduals<K> residuals(points, basis, start_in_model, side);
+  Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
+  const auto summary =
+      minimise_residuals(residuals, {effort.iterations, effort.chi2_tolerance}, &step);
+  return {residuals.coefficients(step), summary.chi2, summary.iterations, side,
+          residuals.feet(step)};
+}
+
+}  // namespace
+
+double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot) {
+  // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}, whose first step from the point
+  // itself is the first-order (Sampson) foot point.
+  constexpr int kMoreIterations = 5;
+  // After a last step s the foot point is off by about s^2 in normalised extents: by so much at
+  // most, absolute and of the distance.
+  constexpr double kAbsoluteError = 1e-12;
+  constexpr double kRelativeError = 1e-8;
+  Vec2 f = point;
+  Vec2 g = conic_gradient(q, f);
+  double g2 = g.squaredNorm();
+  if (g2 > 0.0) {  // otherwise the centre of a conic: no direction to go
+    f -= value(q, f) / g2 * g;
+  }
+  for (int iteration = 0; iteration < kMoreIterations; ++iteration) {
+    const double v = value(q, f);
+    g = conic_gradient(q, f);
+    g2 = g.squaredNorm();
+    if (g2 <= 0.0) {
+      break;
+    }
+    const Vec2 away = point - f;
+    const double c = away.x() * g.y() - away.y() * g.x();
+    // d(away x g)/df = H rotated: rows for f.x and f.y.
+    const double cx = -g.y() + away.x() * q[1] - away.y() * 2.0 * q[0];
+    const double cy = g.x() + away.x() * 2.0 * q[2] - away.y() * q[1];
+    const double determinant = g.x() * cy - g.y() * cx;
+    Vec2 step;
+    if (determinant > 0.1 * g2) {
+      step = {(-v * cy + c * g.y()) / determinant, (-g.x() * c + v * cx) / determinant};
+    } else {
+      step = -v / g2 * g;  // beyond the centre of curvature: stay with the first-order foot point
+    }
+    f += step;
+    if (step.squaredNorm() < std::min(kAbsoluteError, kRelativeError * away.norm())) {
+      break;
+    }
+  }
+  *foot = f;
+  return signed_distance_from(f, q, point);
+}
+
+double signed_distance_from(const Vec2& foot, const ConicCoefficients& q, const Vec2& point) {
+  const double distance = (point - foot).norm();
+  return (point - foot).dot(conic_gradient(q, foot)) >= 0.0 ? distance : -distance;
+}
+
+ConicCoefficients algebraic_conic(std::span<const FitPoint> points) {
+  Monomials mean = Monomials::Zero();
+  double weight_sum = 0.0;
+  for (const FitPoint& point : points) {
+    const double w = point.inverse_sigma * point.inverse_sigma;
+    mean += w * monomials(point.position);
+    weight_sum += w;
+  }
+  mean /= weight_sum;
+  using Matrix5 = Eigen::Matrix<double, 5, 5>;
+  Matrix5 scatter = Matrix5::Zero();
+  Matrix5 gradients = Matrix5::Zero();
+  for (const FitPoint& point : points) {
+    const double w = point.inverse_sigma * point.inverse_sigma / weight_sum;
+    const Vec2& p = point.position;
+    const Eigen::Matrix<double, 5, 1> m = (monomials(p) - mean).head<5>();
+    scatter.noalias() += w * m * m.transpose();
+    Eigen::Matrix<double, 5, 2> d;
+    d << 2.0 * p.x(), 0.0, p.y(), p.x(), 0.0, 2.0 * p.y(), 1.0, 0.0, 0.0, 1.0;
+    gradients.noalias() += w * d * d.transpose();
+  }
+  // Points on a line leave one gradient direction empty; a rounding-level ridge keeps the
+  // eigenproblem defined.
+  constexpr double kRidge = 1e-14;
+  gradients.diagonal().array() += kRidge * gradients.trace();
+  ConicCoefficients q;
+  q.head<5>() = least_generalised_eigenvector(scatter, gradients);
+  q[5] = -q.head<5>().dot(mean.head<5>());
+  return q.normalized();
+}
+
+ConicCoefficients algebraic_circle(std::span<const FitPoint> points) {
+  // Taubin's circle: z = x^2 + y^2 regressed with gradient weights (3 x 3 eigenproblem).
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  double weight_sum = 0.0;
+  const auto features = [](const Vec2& p) {
+    return Eigen::Vector3d(p.squaredNorm(), p.x(), p.y());
+  };
+  for (const FitPoint& point : points) {
+    const double w = point.inverse_sigma * point.inverse_sigma;
+    mean += w * features(point.position);
+    weight_sum += w;
+  }
+  mean /= weight_sum;
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d gradients = Eigen::Matrix3d::Zero();
+  for (const FitPoint& point : points) {
+    const double w = point.inverse_sigma * point.inverse_sigma / weight_sum;
+    const Vec2& p = point.position;
+    const Eigen::Vector3d m = features(p) - mean;
+    scatter.noalias() += w * m * m.transpose();
+    Eigen::Matrix<double, 3, 2> d;
+    d << 2.0 * p.x(), 2.0 * p.y(), 1.0, 0.0, 0.0, 1.0;
+    gradients.noalias() += w * d * d.transpose();
+  }
+  const Eigen::Vector3d v = least_generalised_eigenvector(scatter, gradients);
+  ConicCoefficients q;
+  q << v[0], 0.0, v[0], v[1], v[2], -v.dot(mean);
+  return q.normalized();
+}
+
+ConicCoefficients algebraic_line(std::span<const FitPoint> points) {
+  Vec2 mean = Vec2::Zero();
+  double weight_sum = 0.0;
+  for (const FitPoint& point : points) {
+    const double w = point.inverse_sigma * point.inverse_sigma;
+    mean += w * point.position;
+    weight_sum += w;
+  }
+  mean /= weight_sum;
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const FitPoint& point : points) {
+    const double w = point.inverse_sigma * point.inverse_sigma / weight_sum;
+    scatter.noalias() += w * (point.position - mean) * (point.position - mean).transpose();
+  }
+  const Vec2 normal = symmetric_eigen(scatter).vectors.col(0);
+  ConicCoefficients q;
+  q << 0.0, 0.0, 0.0, normal.x(), normal.y(), -normal.dot(mean);
+  return q.normalized();
+}
+
+ImplicitFit refine_conic(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
+                         const RefineEffort& effort) {
+  return refine<6>(points, conic_basis(), start, side, effort);
+}
+
+ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficients& start,
+                          int side, const RefineEffort& effort) {
+  return refine<4>(points, circle_basis(), start, side, effort);
+}
+
+ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
+                        const RefineEffort& effort) {
+  return refine<3>(points, line_basis(), start, side, effort);
+}
+
+}  // namespace palpate

@@ -1,0 +1,53 @@
+// Least orthogonal distances of an implicit curve of second degree at most: conic, circle, line.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "core/curves/algebraic/canonical_conic.h"
+#include "core/recognition/fit/refine_effort.h"
+#include "core/recognition/samples/fit_data.h"
+
+namespace palpate {
+
+struct ImplicitFit {
+  ConicCoefficients coefficients = ConicCoefficients::Zero();  ///< unit norm, normalised frame
+  double chi2 = 0.0;
+  int iterations = 0;
+  int side = 0;  ///< where tip centres lie: +1 where the polynomial is positive, -1 negative
+  std::vector<Vec2> feet;  ///< foot point of every point
+};
+
+/// Starts without a previous fit, from the algebraic fit of G. Taubin ("Estimation of planar
+/// curves, surfaces and nonplanar space curves defined by implicit equations", 1991): gradient
+/// weights, hence no bias towards small ellipses, one 5 x 5 eigenproblem.
+ConicCoefficients algebraic_conic(std::span<const FitPoint> points);
+ConicCoefficients algebraic_circle(std::span<const FitPoint> points);
+ConicCoefficients algebraic_line(std::span<const FitPoint> points);
+
+/// Refines over all conics (5 degrees of freedom), all circles and lines (3), or all lines (2):
+/// the coefficients move on the unit sphere of the model's subspace, so that passing from ellipse
+/// through parabola to hyperbola, or from circle to line, is smooth.
+ImplicitFit refine_conic(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
+                         const RefineEffort& effort = {});
+ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficients& start,
+                          int side, const RefineEffort& effort = {});
+ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
+                        const RefineEffort& effort = {});
+
+/// Signed distance of a point to the conic near it, positive where the polynomial is. The foot
+/// point is found by Newton's method from the point itself: the nearest one wherever the distance
+/// is small beside the radius of curvature. `foot` receives it.
+double signed_distance(const ConicCoefficients& coefficients, const Vec2& point, Vec2* foot);
+
+/// The same where the foot point is known.
+double signed_distance_from(const Vec2& foot, const ConicCoefficients& coefficients,
+                            const Vec2& point);
+
+/// The gradient of the conic's polynomial.
+inline Vec2 conic_gradient(const ConicCoefficients& q, const Vec2& p) {
+  return {2.0 * q[0] * p.x() + q[1] * p.y() + q[3], q[1] * p.x() + 2.0 * q[2] * p.y() + q[4]};
+}
+
+}  // namespace palpate

@@ -1,0 +1,181 @@
+#include "core/recognition/fit/on_all_points.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/recognition/fit/touchable.h"
+
+namespace palpate {
+namespace {
+
+/// How far above a spline's chi-square its rival's may be: odds of exp(10).
+constexpr double kHopeless = 20.0;
+
+/// An ellipse or hyperbola at its limit is a parabola.
+PolynomialModel polynomial_model(const ClassFit& fit) {
+  switch (fit.curve_class) {
+    case CurveClass::CubicalParabola:
+      return PolynomialModel::CubicalParabola;
+    case CurveClass::SemiCubicalParabola:
+      return PolynomialModel::SemiCubicalParabola;
+    case CurveClass::CubicSpline:
+      return PolynomialModel::CubicSpline;
+    default:
+      return PolynomialModel::Parabola;
+  }
+}
+
+/// Distances of points from a curve, its parameters near their feet.
+std::vector<double> distances_from(const PolynomialFit& curve, std::span<const FitPoint> points) {
+  std::vector<double> distances;
+  distances.reserve(points.size());
+  const double last_step = last_foot_step(least_sigma(points));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    distances.push_back(place_on(curve, curve.t[i], points[i].position, last_step).signed_distance);
+  }
+  return distances;
+}
+
+std::vector<double> distances_from(const ImplicitFit& curve, std::span<const FitPoint> points) {
+  std::vector<double> distances;
+  distances.reserve(points.size());
+  for (const FitPoint& point : points) {
+    Vec2 foot;
+    distances.push_back(signed_distance(curve.coefficients, point.position, &foot));
+  }
+  return distances;
+}
+
+/// On which side of the curve the tip centres lie; 0 without tips.
+int side_of_tips(std::span<const double> distances, std::span<const FitPoint> points) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    sum += distances[i] * points[i].offset;
+  }
+  return sum > 0.0 ? 1 : sum < 0.0 ? -1 : 0;
+}
+
+/// The parameters at the reduced points, for all points: near their feet.
+void carry_to_all(const SmoothModel& smooth, PolynomialFit* curve) {
+  std::vector<double> t;
+  t.reserve(smooth.nearest_reduced.size());
+  for (const std::uint32_t nearest : smooth.nearest_reduced) {
+    t.push_back(curve->t[nearest]);
+  }
+  curve->t = std::move(t);
+}
+
+/// A fit on the reduced points, not refined on all points yet.
+ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
+                      std::span<const FitPoint> points) {
+  const bool tips = std::any_of(points.begin(), points.end(),
+                                [](const FitPoint& point) { return point.offset > 0.0; });
+  ClassFit start = fit;
+  start.weighed = start.on_all = true;
+  if (start.rival && start.rival->chi2 > start.polynomial->chi2 + kHopeless) {
+    start.rival.reset();
+  }
+  if (start.implicit && tips) {
+    start.implicit->side = side_of_tips(distances_from(*start.implicit, points), points);
+  }
+  for (auto* curve : {&start.polynomial, &start.rival}) {
+    if (*curve) {
+      carry_to_all(smooth, &**curve);
+      (*curve)->side = tips ? side_of_tips(distances_from(**curve, points), points) : 0;
+    }
+  }
+  return start;
+}
+
+/// The fit's own parts refined, their sides as they are. A hopeless rival of what is not the best
+/// keeps its place.
+ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const RefineEffort& effort,
+                      RivalOf rival = RivalOf::Best) {
+  if (fit.polynomial) {
+    const auto refine = [&](PolynomialFit& part) {
+      part = refine_polynomial(polynomial_model(fit), points, std::move(part), part.side, effort);
+    };
+    refine(*fit.polynomial);
+    if (fit.rival &&
+        (rival == RivalOf::Best || fit.rival->chi2 < fit.polynomial->chi2 + kHopeless)) {
+      refine(*fit.rival);
+      if (fit.rival->chi2 < fit.polynomial->chi2) {
+        std::swap(*fit.polynomial, *fit.rival);
+      }
+    }
+    fit.chi2 = fit.polynomial->chi2;
+    return fit;
+  }
+  const ConicCoefficients start = fit.implicit->coefficients;
+  const int side = fit.implicit->side;
+  RefineEffort to_the_end = effort;
+  to_the_end.chi2_tolerance = RefineEffort{}.chi2_tolerance;
+  fit.implicit = fit.curve_class == CurveClass::Line ? refine_line(points, start, side, to_the_end)
+                 : fit.curve_class == CurveClass::Circle
+                     ? refine_circle(points, start, side, to_the_end)
+                     : refine_conic(points, start, side, to_the_end);
+  fit.chi2 = fit.implicit->chi2;
+  return fit;
+}
+
+}  // namespace
+
+bool is_what_it_says(const ClassFit& fit, const FitData& data) {
+  if (fit.polynomial) {
+    return is_touchable(*fit.polynomial, data);
+  }
+  const bool ellipse = fit.curve_class == CurveClass::Ellipse;
+  if (!ellipse && fit.curve_class != CurveClass::Hyperbola) {
+    return true;
+  }
+  return (discriminant(fit.implicit->coefficients) > 0.0) == ellipse &&
+         is_touchable(*fit.implicit, data);
+}
+
+ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival) {
+  const RefineEffort& effort = rival == RivalOf::Best ? kBestOnReducedEffort : kOnReducedEffort;
+  return refine_parts(fit, reduced.points, effort, rival);
+}
+
+double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data) {
+  const std::span<const FitPoint> points(data.points);
+  std::vector<double> distances;
+  if (fit.polynomial) {
+    PolynomialFit curve = *fit.polynomial;
+    carry_to_all(smooth, &curve);
+    distances = distances_from(curve, points);
+  } else {
+    distances = distances_from(*fit.implicit, points);
+  }
+  const int side = side_of_tips(distances, points);
+  double chi2 = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double residual = (distances[i] - side * points[i].offset) * points[i].inverse_sigma;
+    chi2 += residual * residual;
+  }
+  return chi2;
+}
+
+std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& smooth,
+                                      const FitData& data, const RefineEffort& effort) {
+  const std::span<const FitPoint> points(data.points);
+  const ClassFit refined = refine_parts(start_on_all(fit, smooth, points), points, effort);
+  return is_what_it_says(refined, data) ? std::optional(refined) : std::nullopt;
+}
+
+std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data) {
+  assert(fit.on_all);
+  ClassFit start = fit;
+  if (start.rival && is_same_curve(*start.polynomial, *start.rival)) {
+    start.rival.reset();  // one optimum: it need not be walked to twice
+  }
+  const ClassFit polished = refine_parts(std::move(start), data.points, kPolishEffort);
+  return is_what_it_says(polished, data) ? std::optional(polished) : std::nullopt;
+}
+
+}  // namespace palpate

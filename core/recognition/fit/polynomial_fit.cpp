@@ -1,0 +1,86 @@
+#include "core/recognition/fit/polynomial_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/numerics/levenberg_marquardt.h"
+#include "core/recognition/fit/polynomial_problem.h"
+
+namespace palpate {
+namespace {
+
+template <PolynomialModel kModel>
+PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int side,
+                     const RefineEffort& effort) {
+  using Problem = PolynomialProblem<kModel>;
+  Problem problem(points, start.t, side);
+  typename Problem::Vector x = Problem::parameters(start.coefficients);
+  PolynomialFit fit;
+  fit.chi2 = std::numeric_limits<double>::infinity();
+  // The solver also stops where a step is refused for next to nothing, as happens along the
+  // directions that affine changes of t leave free. Starting afresh, with the damping of the new
+  // place, tells a stop from an optimum.
+  constexpr double kSettled = 1e-5;  // of chi-square
+  // Where the points scatter far less than their stated noise (exact data, noise estimated from a
+  // smooth model that bends too little), what is left to gain is to be seen beside what is left at
+  // all.
+  constexpr double kExact = 1e-3;  // of the chi-square that noise would leave
+  constexpr int kMoreStarts = 2;
+  const double n = static_cast<double>(points.size());
+  const auto is_exact = [&] { return fit.chi2 < kExact * n; };
+  for (int start_number = 0;
+       start_number < effort.starts || (is_exact() && start_number < effort.starts + kMoreStarts);
+       ++start_number) {
+    const double left = start_number > 0 && is_exact() ? fit.chi2 / n : 1.0;
+    const MinimiseSummary summary =
+        minimise(&problem, &x, {effort.iterations, left * effort.chi2_tolerance});
+    if (start_number == 0) {
+      fit.chi2 = summary.initial_chi2;
+    }
+    fit.iterations += summary.iterations;
+    const bool nothing_left = summary.converged || !(summary.chi2 < fit.chi2 - left * kSettled);
+    const bool settled = nothing_left && (start_number > 0 || !(summary.chi2 < kExact * n));
+    fit.chi2 = std::min(fit.chi2, summary.chi2);
+    // What has not arrived by then runs along a valley that is as good as flat.
+    const bool too_far = summary.iterations >= effort.iterations;
+    if (settled || too_far || !std::isfinite(summary.chi2)) {
+      break;
+    }
+  }
+  fit.coefficients = Problem::coefficients(x);
+  fit.side = side;
+  fit.t = problem.t();
+  return fit;
+}
+
+}  // namespace
+
+PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
+                                PolynomialFit start, int side, const RefineEffort& effort) {
+  switch (model) {
+    case PolynomialModel::Parabola:
+      return refine<PolynomialModel::Parabola>(points, std::move(start), side, effort);
+    case PolynomialModel::CubicalParabola:
+      return refine<PolynomialModel::CubicalParabola>(points, std::move(start), side, effort);
+    case PolynomialModel::SemiCubicalParabola:
+      return refine<PolynomialModel::SemiCubicalParabola>(points, std::move(start), side, effort);
+    case PolynomialModel::CubicSpline:
+      return refine<PolynomialModel::CubicSpline>(points, std::move(start), side, effort);
+  }
+  return start;
+}
+
+bool is_same_curve(const PolynomialFit& a, const PolynomialFit& b) {
+  constexpr double kSameChi2 = 1e-3;   // far below what tells curves apart
+  constexpr double kSameAngle = 1e-6;  // [rad]
+  const Vec2 u = a.coefficients.col(3).normalized();
+  const Vec2 v = b.coefficients.col(3).normalized();
+  return std::abs(a.chi2 - b.chi2) <= kSameChi2 && std::abs(cross(u, v)) <= kSameAngle;
+}
+
+PlacedPoint place_on(const PolynomialFit& fit, double t, const Vec2& point, double last_step) {
+  return follow_foot_point(fit.coefficients, point, t, last_step);
+}
+
+}  // namespace palpate

@@ -1,0 +1,86 @@
+// A point against a polynomial curve: the foot point near a given parameter.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/curves/algebraic/polynomial_curve.h"
+
+namespace palpate {
+
+/// A point against the curve at its foot point parameter.
+struct PlacedPoint {
+  double t = 0.0;                ///< followed from the given one to the foot point
+  double signed_distance = 0.0;  ///< positive to the left of increasing t
+  Vec2 normal = Vec2::Zero();    ///< unit, along the distance: left of increasing t but at a cusp
+};
+
+/// What the derivative of (C(t) - p) . C'(t) must have at least of the square of the speed: at the
+/// centre of curvature, where the foot point is no minimum any more, it is 0.
+inline constexpr double kLeastSlope = 0.1;
+
+/// The step after which a foot point is good enough where noise is of standard deviation `sigma`,
+/// normalised: the parameter's error is then the step's cube times a factor that sharp bends make
+/// large, and the distance's error, which is of second order, a small part of the noise.
+inline double last_foot_step(double sigma) {
+  constexpr double kSharpest = 1e5;
+  constexpr double kPart = 1e-3;
+  return std::cbrt(std::sqrt(kPart * sigma) / kSharpest);
+}
+
+/// For exact points: as far as rounding goes.
+inline constexpr double kExactFootStep = 1e-5;
+
+/// Follows the foot point of `p` by Halley's method on (C(t) - p) . C'(t) = 0 from `t`, until a
+/// step is shorter than `last_step`.
+inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, double t,
+                                     double last_step = kExactFootStep) {
+  constexpr int kMaxIterations = 5;
+  constexpr double kLongestStep = 0.5;  // of the data's parameter range, about [-1, 1]
+  Vec2 away;
+  Vec2 first;
+  double speed2 = 0.0;
+  bool last = false;
+  for (int iteration = 0;; ++iteration) {
+    away = p - position_at(c, t);
+    first = first_derivative(c, t);
+    speed2 = first.squaredNorm();
+    if (last || iteration == kMaxIterations || speed2 <= 0.0) {
+      break;
+    }
+    const Vec2 second = second_derivative(c, t);
+    const double along = away.dot(first);
+    const double slope = speed2 - away.dot(second);
+    double step = 0.0;
+    if (slope < kLeastSlope * speed2) {
+      step = along / speed2;  // a Gauss-Newton step is safe
+    } else {
+      // With the bend of (C - p) . C' where it is no more than a correction.
+      const double bend = along * (3.0 * first.dot(second) - 6.0 * away.dot(c.col(3)));
+      const double halley = 2.0 * slope * slope + bend;
+      step = halley > slope * slope ? 2.0 * along * slope / halley : along / slope;
+    }
+    step = std::clamp(step, -kLongestStep, kLongestStep);
+    last = std::abs(step) < last_step;
+    t += step;
+  }
+  PlacedPoint placed;
+  placed.t = t;
+  if (speed2 > 0.0) {
+    placed.normal = left_of(first) / std::sqrt(speed2);
+    placed.signed_distance = away.dot(placed.normal);
+  }
+  // At a cusp, or where the foot point is not stationary, the normal does not point along the
+  // distance: take the distance itself. (Next to the curve a small error along it looks the same.)
+  constexpr double kPerpendicular = 0.9;
+  const double square = away.squaredNorm();
+  const bool stationary = std::abs(away.dot(first)) < last_step * speed2;
+  if (!stationary &&
+      placed.signed_distance * placed.signed_distance < kPerpendicular * kPerpendicular * square) {
+    placed.signed_distance = std::sqrt(square);
+    placed.normal = away / placed.signed_distance;
+  }
+  return placed;
+}
+
+}  // namespace palpate

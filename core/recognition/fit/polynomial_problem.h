@@ -1,0 +1,186 @@
+// Orthogonal distances from a polynomial curve, as levenberg_marquardt.h asks for them.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/recognition/fit/polynomial_foot.h"
+#include "core/recognition/samples/fit_data.h"
+
+namespace palpate {
+
+/// Which powers of t a model has. Up to SE(2) and an affine change of t these are exactly the
+/// canonical classes (core/README.md, "Refinement and the bound"): no class has a singular limit
+/// in these coefficients.
+enum class PolynomialModel {
+  Parabola,             ///< 1, t, t^2
+  CubicalParabola,      ///< 1, t, t^3
+  SemiCubicalParabola,  ///< 1, t^2, t^3
+  CubicSpline,          ///< 1, t, t^2, t^3
+};
+
+template <PolynomialModel kModel>
+constexpr auto exponents_of_model() {
+  if constexpr (kModel == PolynomialModel::Parabola) {
+    return std::array{0, 1, 2};
+  } else if constexpr (kModel == PolynomialModel::CubicalParabola) {
+    return std::array{0, 1, 3};
+  } else if constexpr (kModel == PolynomialModel::SemiCubicalParabola) {
+    return std::array{0, 2, 3};
+  } else {
+    return std::array{0, 1, 2, 3};
+  }
+}
+
+/// Orthogonal distances over the model's coefficients, as `minimise` asks.
+template <PolynomialModel kModel>
+class PolynomialProblem {
+ public:
+  static constexpr auto kExponents = exponents_of_model<kModel>();
+  static constexpr int kPowers = static_cast<int>(kExponents.size());
+  static constexpr int kParameters = 2 * kPowers;
+  using Vector = Eigen::Matrix<double, kParameters, 1>;
+  using Matrix = Eigen::Matrix<double, kParameters, kParameters>;
+
+  /// `t`: a parameter near each point's foot point.
+  PolynomialProblem(std::span<const FitPoint> points, std::span<const double> t, int side)
+      : points_(points),
+        side_(side),
+        feet_(points.size()),
+        tried_feet_(points.size()),
+        last_step_(last_foot_step(least_sigma(points))) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      feet_[i].t = t[i];
+    }
+  }
+
+  static PolynomialCoefficients coefficients(const Vector& x) {
+    PolynomialCoefficients c = PolynomialCoefficients::Zero();
+    for (int k = 0; k < kPowers; ++k) {
+      c.col(exponent(k)) = x.template segment<2>(2 * k);
+    }
+    return c;
+  }
+
+  static Vector parameters(const PolynomialCoefficients& c) {
+    Vector x;
+    for (int k = 0; k < kPowers; ++k) {
+      x.template segment<2>(2 * k) = c.col(exponent(k));
+    }
+    return x;
+  }
+
+  double chi2_at(const Vector& x) {
+    tried_ = coefficients(x);
+    double chi2 = 0.0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      tried_feet_[i] = follow_foot_point(tried_, points_[i].position, feet_[i].t, last_step_);
+      const double residual = residual_at(tried_feet_[i], i);
+      chi2 += residual * residual;
+    }
+    return chi2;
+  }
+
+  /// A place that is not accepted must not move the foot points that the next one starts from.
+  void accept() {
+    coefficients_ = tried_;
+    feet_.swap(tried_feet_);
+  }
+
+  /// By the envelope theorem a residual changes by -n . (1, t, t^2, t^3): sums over the points of
+  /// n n^T t^k hold all of J^T J.
+  void linearise(Matrix* information, Vector* gradient) const {
+    constexpr int kSums = 2 * kExponents.back() + 1;
+    Eigen::Matrix<double, 3, kSums> squares = Eigen::Matrix<double, 3, kSums>::Zero();
+    Eigen::Matrix<double, 2, kExponents.back() + 1> sums;
+    sums.setZero();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const PlacedPoint& foot = feet_[i];
+      const double weight = points_[i].inverse_sigma;
+      const Vec2 n = weight * foot.normal;
+      Eigen::Vector3d square(n.x() * n.x(), n.x() * n.y(), n.y() * n.y());
+      Vec2 pull = -residual_at(foot, i) * n;
+      for (int k = 0; k < kSums; ++k) {
+        squares.col(k) += square;
+        square *= foot.t;
+      }
+      for (int k = 0; k <= kExponents.back(); ++k) {
+        sums.col(k) += pull;
+        pull *= foot.t;
+      }
+    }
+    for (int j = 0; j < kPowers; ++j) {
+      gradient->template segment<2>(2 * j) = sums.col(exponent(j));
+      for (int k = 0; k < kPowers; ++k) {
+        const auto s = squares.col(exponent(j) + exponent(k));
+        information->template block<2, 2>(2 * j, 2 * k) << s[0], s[1], s[1], s[2];
+      }
+    }
+  }
+
+  /// The foot point moves with the curve, which turns the normal: r'' of core/README.md,
+  /// "Refinement and the bound", step 4.
+  Vector bend(const Vector& step) const {
+    const PolynomialCoefficients v = coefficients(step);
+    Eigen::Matrix<double, 2, kExponents.back() + 1> sums;
+    sums.setZero();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const PlacedPoint& foot = feet_[i];
+      const Vec2 first = first_derivative(coefficients_, foot.t);
+      const Vec2 second = second_derivative(coefficients_, foot.t);
+      const double speed2 = first.squaredNorm();
+      const Vec2 away = foot.signed_distance * foot.normal;
+      const double slope = speed2 - away.dot(second);
+      if (!(slope >= kLeastSlope * speed2) || speed2 <= 0.0) {
+        continue;  // no foot point to follow
+      }
+      const Vec2 shift = position_at(v, foot.t);
+      const Vec2 shift_by_t = first_derivative(v, foot.t);
+      const double t_rate = (away.dot(shift_by_t) - shift.dot(first)) / slope;
+      const double turn = foot.normal.dot(second * t_rate + shift_by_t);  // times the speed
+      const double weight = points_[i].inverse_sigma;
+      const double second_residual =
+          weight * (turn * shift.dot(first) / speed2 - t_rate * foot.normal.dot(shift_by_t));
+      Vec2 pull = -second_residual * weight * foot.normal;
+      for (int k = 0; k <= kExponents.back(); ++k) {
+        sums.col(k) += pull;
+        pull *= foot.t;
+      }
+    }
+    Vector gradient;
+    for (int j = 0; j < kPowers; ++j) {
+      gradient.template segment<2>(2 * j) = sums.col(exponent(j));
+    }
+    return gradient;
+  }
+
+  /// Parameters of the foot points.
+  std::vector<double> t() const {
+    std::vector<double> t;
+    t.reserve(feet_.size());
+    for (const PlacedPoint& foot : feet_) {
+      t.push_back(foot.t);
+    }
+    return t;
+  }
+
+ private:
+  static constexpr int exponent(int k) { return kExponents[static_cast<std::size_t>(k)]; }
+
+  double residual_at(const PlacedPoint& foot, std::size_t i) const {
+    return (foot.signed_distance - side_ * points_[i].offset) * points_[i].inverse_sigma;
+  }
+
+  std::span<const FitPoint> points_;
+  int side_;
+  PolynomialCoefficients coefficients_;  ///< where we are
+  std::vector<PlacedPoint> feet_;
+  PolynomialCoefficients tried_;  ///< the place tried last
+  std::vector<PlacedPoint> tried_feet_;
+  double last_step_;  ///< of foot points
+};
+
+}  // namespace palpate

@@ -1,0 +1,41 @@
+// The polynomial classes on the reduced points: searched for, or followed from earlier ones.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "core/recognition/fit/polynomial_fit.h"
+#include "core/recognition/fit/polynomial_seeds.h"
+#include "core/recognition/samples/fit_data.h"
+
+namespace palpate {
+
+struct PolynomialFits {
+  std::optional<PolynomialFit> parabola;
+  std::optional<PolynomialFit> cubical_parabola;
+  std::optional<PolynomialFit> semi_cubical_parabola;
+  std::optional<PolynomialFit> cubic_spline;
+  /// The spline's optimum on the other side of c = 0, if there is one.
+  std::optional<PolynomialFit> rival;
+  PolynomialSeeds seeds;    ///< that the search started from
+  bool every_seed = false;  ///< refined, as nothing fitted
+  /// Of all classes, conics included, on the points of these fits: what is far above it is not
+  /// followed.
+  double lowest_chi2 = std::numeric_limits<double>::infinity();
+};
+
+/// Exhaustive coarse search, valleys walked, the best of each refined with coarse effort.
+PolynomialFits search_polynomials(const FitData& reduced);
+
+/// The parabola alone, which the conics need at their limit.
+PolynomialFits search_parabola(const FitData& reduced);
+
+/// The same from earlier fits, whose t must be those of `reduced` (warm_start.h): no search. Fits
+/// that were out by far stay as they are, their chi2 that of the new points.
+PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts);
+
+/// The last resort where nothing fits: refines thoroughly every seed of the models with arms, whose
+/// sharp bends make narrow valleys, and the best of the others.
+void refine_every_seed(const FitData& reduced, PolynomialFits* fits);
+
+}  // namespace palpate

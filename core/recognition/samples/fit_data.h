@@ -1,0 +1,59 @@
+// The contact points of one object, made ready for fitting: spikes aside, centred and scaled.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/curves/pose2.h"
+#include "core/recognition/samples/sample_memory.h"
+
+namespace palpate {
+
+/// One contact point in normalised coordinates (world = frame * (scale * normalised)).
+struct FitPoint {
+  Vec2 position = Vec2::Zero();  ///< normalised
+  Vec2 tangent = Vec2::Zero();   ///< direction of travel, unit; zero where it is not known
+  double inverse_sigma = 1.0;    ///< 1 / (noise in normalised units)
+  double offset = 0.0;           ///< tip radius in normalised units; 0 = surface point
+};
+
+/// The run of points of one patch, in their order along the arc: [begin, end).
+struct PatchSpan {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::size_t size() const { return end - begin; }
+};
+
+/// Points of all patches of an object. Normalised to their principal axes and extent, so that
+/// starts, solver tolerances and roundings are the same at every scale and wherever the object
+/// lies.
+struct FitData {
+  std::vector<FitPoint> points;
+  std::vector<PatchSpan> patches;
+  Pose2 frame;         ///< centre of the points' extents, x along the longer principal axis
+  double scale = 1.0;  ///< half extent of the points [m]
+
+  std::span<const FitPoint> patch(std::size_t i) const {
+    return std::span(points).subspan(patches[i].begin, patches[i].size());
+  }
+};
+
+/// The samples in memory as fit points. `default_sigma_m` is the noise of samples that bring none;
+/// `sigma_known` receives whether every point then has one (points without get 1, normalised: only
+/// their ratios count until the noise is estimated). A noise below the rounding of the coordinates
+/// is raised to it. Tip radii become offsets. Empty patches are left out.
+FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma_m,
+                      bool* sigma_known);
+
+/// Root mean square of the points' noise, in normalised units. At least one point.
+double rms_sigma(const FitData& data);
+
+/// The least noise of any of the points, normalised; infinite without points.
+double least_sigma(std::span<const FitPoint> points);
+
+/// Rounding of the data's coordinates, in normalised units: no noise is smaller than that.
+double rounding_level(const FitData& data);
+
+}  // namespace palpate

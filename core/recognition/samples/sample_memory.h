@@ -1,0 +1,69 @@
+// The samples of one object, patch by patch, in bounded memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/recognition/samples/contact_sample.h"
+
+namespace palpate {
+
+/// A sample in memory: one contact, or the mean of several consecutive ones.
+struct StoredSample {
+  Vec2 position_m = Vec2::Zero();
+  double sigma_m = 0.0;  ///< noise of ONE of the contacts that it stands for; 0 = not known
+  double weight = 1.0;   ///< how many contacts it stands for
+};
+
+struct StoredPatch {
+  PatchContext context;
+  std::vector<StoredSample> samples;  ///< in their order along the arc
+  double contacts_per_sample = 1.0;   ///< that each stored sample is the mean of
+  Vec2 newest_m = Vec2::Zero();       ///< last contact taken
+  /// How far a mean of contacts over an arc w lies off the curve: kappa w^2 / 24, the largest [m]
+  double merge_bias_m = 0.0;
+};
+
+struct MemoryOptions {
+  /// A patch that grows beyond this many samples has its neighbours merged pairwise, and from then
+  /// on keeps means of twice as many contacts: no information on the noise's scale is lost, and the
+  /// bias is stated (StoredPatch::merge_bias_m).
+  std::size_t most_samples_per_patch = 1024;
+  /// Beyond this many patches the oldest is forgotten.
+  std::size_t most_patches = 64;
+};
+
+/// Samples taken and samples refused, by reason.
+struct AddResult {
+  std::size_t accepted = 0;
+  std::size_t rejected_not_finite = 0;
+  std::size_t rejected_negative_sigma = 0;
+  std::size_t repeated = 0;  ///< at exactly the place of the sample before: they say nothing new
+};
+
+class SampleMemory {
+ public:
+  explicit SampleMemory(const MemoryOptions& options = {}) : options_(options) {}
+
+  /// Appends to the patch of that probe and number, which becomes the newest. Amortised O(samples).
+  AddResult add(const PatchContext& context, std::span<const ContactSample> samples);
+
+  void clear() { patches_.clear(); }
+
+  /// Oldest first.
+  const std::vector<StoredPatch>& patches() const { return patches_; }
+
+  /// Contacts taken since the memory was clear, less those of forgotten patches.
+  std::size_t sample_count() const;
+
+  /// Samples held, merged ones counted once.
+  std::size_t stored_count() const;
+
+ private:
+  MemoryOptions options_;
+  std::vector<StoredPatch> patches_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,33 @@
+#include "core/recognition/samples/stored_spikes.h"
+
+#include "core/local/spikes/spikes.h"
+
+namespace palpate {
+
+std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_alarm) {
+  std::vector<Vec2> positions;
+  positions.reserve(samples.size());
+  for (const StoredSample& sample : samples) {
+    positions.push_back(sample.position_m);
+  }
+  std::vector<bool> is_spike(samples.size(), false);
+  for (const std::size_t i :
+       find_spikes(positions, {.false_alarms_per_patch = false_alarm}).indices) {
+    is_spike[i] = true;
+  }
+  return is_spike;
+}
+
+std::vector<StoredSample> without_spikes(std::span<const StoredSample> samples,
+                                         const std::vector<bool>& is_spike) {
+  std::vector<StoredSample> kept;
+  kept.reserve(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!is_spike[i]) {
+      kept.push_back(samples[i]);
+    }
+  }
+  return kept;
+}
+
+}  // namespace palpate

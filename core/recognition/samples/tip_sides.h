@@ -1,0 +1,23 @@
+// Round probe tips: from tip centres to surface points.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/recognition/samples/fit_data.h"
+#include "core/recognition/samples/sample_memory.h"
+
+namespace palpate {
+
+/// The ways in which the material may lie beside the patches: +1 where a tip centre lies to the
+/// left of travel, -1 to the right, per patch. One way where the probes say it; otherwise the part
+/// is taken to be convex everywhere or concave everywhere, or on the same side of every patch's
+/// travel. Surface contacts (no tip radius) have the single way of zeros.
+std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
+                                             const FitData& reduced);
+
+/// Reduced points moved from tip centres to the surface along the normals of the centres' path,
+/// which are those of the surface.
+FitData on_surface(const FitData& reduced, std::span<const int> sides);
+
+}  // namespace palpate

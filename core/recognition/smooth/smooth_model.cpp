@@ -1,0 +1,231 @@
+#include "core/recognition/smooth/smooth_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "core/numerics/orthogonal_polynomials.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kFewestPoints = 6;  // a section shorter than this tells nothing about noise
+constexpr double kLongestTurn = 1.0;      // so that a section is a graph over its chord [rad]
+
+/// Sections of one patch by the turning of chords between means of a few points.
+std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch) {
+  constexpr std::size_t kMostBlocks = 48;
+  const std::size_t n = patch.size();
+  const std::size_t blocks = std::clamp<std::size_t>(n / 4, 1, kMostBlocks);
+  std::vector<Vec2> means(blocks, Vec2::Zero());
+  std::vector<std::size_t> starts(blocks + 1);
+  for (std::size_t b = 0; b <= blocks; ++b) {
+    starts[b] = patch.begin + b * n / blocks;
+  }
+  for (std::size_t b = 0; b < blocks; ++b) {
+    for (std::size_t i = starts[b]; i < starts[b + 1]; ++i) {
+      means[b] += data.points[i].position;
+    }
+    means[b] /= static_cast<double>(starts[b + 1] - starts[b]);
+  }
+  std::vector<PatchSpan> sections;
+  std::size_t begin = patch.begin;
+  double angle = 0.0;
+  double least = 0.0;
+  double most = 0.0;
+  for (std::size_t b = 2; b < blocks; ++b) {
+    const Vec2 before = means[b - 1] - means[b - 2];
+    const Vec2 after = means[b] - means[b - 1];
+    angle += std::atan2(cross(before, after), before.dot(after));
+    least = std::min(least, angle);
+    most = std::max(most, angle);
+    if (most - least > kLongestTurn && starts[b] - begin >= kFewestPoints &&
+        patch.end - starts[b] >= kFewestPoints) {
+      sections.push_back({begin, starts[b]});
+      begin = starts[b];
+      angle = least = most = 0.0;
+    }
+  }
+  sections.push_back({begin, patch.end});
+  return sections;
+}
+
+/// A section too short to be smoothed stands for itself.
+void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
+  if (section.size() == 0) {
+    return;  // a patch whose every sample was set aside
+  }
+  const Vec2 first = data->points[section.begin].position;
+  const Vec2 along = data->points[section.end - 1].position - first;
+  const double whole = along.norm();
+  model->sections.push_back({model->reduced.points.size(),
+                             model->reduced.points.size() + section.size(), first + 0.5 * along,
+                             whole > 0.0 ? Vec2(along / whole) : Vec2(1.0, 0.0),
+                             whole > 0.0 ? 0.5 * whole : 1.0, false});
+  for (std::size_t i = section.begin; i < section.end; ++i) {
+    const std::size_t before = i > section.begin ? i - 1 : i;
+    const std::size_t after = i + 1 < section.end ? i + 1 : i;
+    const Vec2 chord = data->points[after].position - data->points[before].position;
+    const double length = chord.norm();
+    data->points[i].tangent = length > 0.0 ? Vec2(chord / length) : Vec2(0.0, 0.0);
+    model->nearest_reduced[i] = static_cast<std::uint32_t>(model->reduced.points.size());
+    model->reduced.points.push_back(data->points[i]);
+  }
+  model->parameters += static_cast<int>(section.size());
+}
+
+/// The chord frame of a section: abscissa in [-1, 1] from end to end.
+struct ChordFrame {
+  Vec2 middle;
+  Vec2 axis;
+  double half_length;
+
+  double along(const Vec2& p) const { return (p - middle).dot(axis) / half_length; }
+  double across(const Vec2& p) const { return cross(axis, p - middle); }
+  Vec2 at(double x, double y) const { return middle + half_length * x * axis + y * left_of(axis); }
+  Vec2 tangent(double y_by_x) const {
+    return (half_length * axis + y_by_x * left_of(axis)).normalized();
+  }
+};
+
+/// The polynomial of one section.
+struct SectionFit {
+  PatchSpan section;
+  ChordFrame frame;
+  OrthogonalPolynomials polynomials;
+  int degree = 0;  ///< chosen by the criterion
+};
+
+std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& section,
+                                      bool sigma_known) {
+  const std::span<const FitPoint> points(data.points.data() + section.begin, section.size());
+  const std::size_t n = points.size();
+  if (n < kFewestPoints) {
+    return std::nullopt;
+  }
+  const Vec2 chord = points.back().position - points.front().position;
+  const double length = chord.norm();
+  if (!(length > 0.0)) {
+    return std::nullopt;
+  }
+  const ChordFrame frame{0.5 * (points.front().position + points.back().position), chord / length,
+                         0.5 * length};
+  std::vector<double> x(n);
+  std::vector<double> y(n);
+  std::vector<double> w(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    x[i] = frame.along(points[i].position);
+    y[i] = frame.across(points[i].position);
+    w[i] = points[i].inverse_sigma * points[i].inverse_sigma;
+  }
+  const int highest = std::min<int>(OrthogonalPolynomials::kMaxDegree, static_cast<int>(n) / 2 - 1);
+
+  // A first pass for the slopes: they turn residuals across the chord into distances.
+  constexpr int kSlopeDegree = 3;
+  const OrthogonalPolynomials first(x, w, y, std::min(kSlopeDegree, highest));
+  for (std::size_t i = 0; i < n; ++i) {
+    const double slope = first.evaluate(x[i], first.degree()).derivative / frame.half_length;
+    w[i] /= 1.0 + slope * slope;
+  }
+  SectionFit fit{section, frame, OrthogonalPolynomials(x, w, y, highest), 1};
+  double best = std::numeric_limits<double>::infinity();
+  const double count = static_cast<double>(n);
+  for (int d = 1; d <= highest; ++d) {
+    const double chi2 =
+        std::max(fit.polynomials.residual_sum(d), std::numeric_limits<double>::min());
+    const double criterion =
+        (sigma_known ? chi2 : count * std::log(chi2)) + (d + 1) * std::log(count);
+    if (criterion < best) {
+      best = criterion;
+      fit.degree = d;
+    }
+  }
+  return fit;
+}
+
+void add_section(FitData* data, const SectionFit& fit, SmoothModel* model) {
+  const OrthogonalPolynomials& polynomials = fit.polynomials;
+  // Two degrees more than describe the arc: what is not yet significant in one patch may tell
+  // classes apart in several.
+  const int degree = std::min(fit.degree + 2, polynomials.degree());
+  model->chi2 += polynomials.residual_sum(degree);
+  model->parameters += degree + 1;
+  const auto rule = polynomials.gauss_rule(degree);
+  const std::size_t begin = model->reduced.points.size();
+  const double offset = data->points[fit.section.begin].offset;
+  model->sections.push_back(
+      {begin, begin + rule.size(), fit.frame.middle, fit.frame.axis, fit.frame.half_length, false});
+  for (const auto& node : rule) {
+    const auto value = polynomials.evaluate(node.x, degree);
+    const double slope = value.derivative / fit.frame.half_length;
+    model->reduced.points.push_back({fit.frame.at(node.x, value.value),
+                                     fit.frame.tangent(value.derivative),
+                                     std::sqrt(node.weight * (1.0 + slope * slope)), offset});
+  }
+  for (std::size_t i = fit.section.begin; i < fit.section.end; ++i) {
+    const double x = fit.frame.along(data->points[i].position);
+    data->points[i].tangent = fit.frame.tangent(polynomials.evaluate(x, fit.degree).derivative);
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k < rule.size(); ++k) {
+      nearest = std::abs(rule[k].x - x) < std::abs(rule[nearest].x - x) ? k : nearest;
+    }
+    model->nearest_reduced[i] = static_cast<std::uint32_t>(begin + nearest);
+  }
+}
+
+/// Smooths a section, or its halves where even a high degree does not follow it (a sharp bend).
+void smooth_section(FitData* data, const PatchSpan& section, bool sigma_known, SmoothModel* model) {
+  const auto whole = fit_section(*data, section, sigma_known);
+  if (!whole) {
+    keep_points(data, section, model);
+    return;
+  }
+  constexpr int kHighDegree = OrthogonalPolynomials::kMaxDegree - 2;
+  if (whole->degree >= kHighDegree && section.size() >= 4 * kFewestPoints) {
+    const std::size_t middle = section.begin + section.size() / 2;
+    smooth_section(data, {section.begin, middle}, sigma_known, model);
+    smooth_section(data, {middle, section.end}, sigma_known, model);
+    return;
+  }
+  add_section(data, *whole, model);
+}
+
+}  // namespace
+
+double SmoothModel::noise_ratio() const {
+  return dof() > 0 ? std::sqrt(chi2 / static_cast<double>(dof())) : 0.0;
+}
+
+SmoothModel fit_smooth_model(FitData* data, bool sigma_known) {
+  SmoothModel model;
+  model.points = static_cast<int>(data->points.size());
+  model.nearest_reduced.resize(data->points.size());
+  model.reduced.frame = data->frame;
+  model.reduced.scale = data->scale;
+  for (const PatchSpan& patch : data->patches) {
+    const std::size_t begin = model.reduced.points.size();
+    const std::size_t first_section = model.sections.size();
+    for (const PatchSpan& section : sections_of(*data, patch)) {
+      smooth_section(data, section, sigma_known, &model);
+    }
+    for (std::size_t s = first_section + 1; s < model.sections.size(); ++s) {
+      model.sections[s].joined = true;
+    }
+    model.reduced.patches.push_back({begin, model.reduced.points.size()});
+  }
+  return model;
+}
+
+void scale_noise(double factor, FitData* data, SmoothModel* smooth) {
+  for (std::vector<FitPoint>* points : {&data->points, &smooth->reduced.points}) {
+    for (FitPoint& point : *points) {
+      point.inverse_sigma /= factor;
+    }
+  }
+  smooth->chi2 /= factor * factor;
+}
+
+}  // namespace palpate

@@ -1,0 +1,59 @@
+// The recognition tree of section 5.2: class, shape and place from local estimates alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/curves/pose2.h"
+#include "core/curves/shape_parameters.h"
+#include "core/invariants/invariant_status.h"
+#include "core/invariants/signature_fit/local_parameter.h"
+#include "core/invariants/signature_fit/spline_least_squares.h"
+#include "core/local/local_estimate.h"
+#include "core/recognition/tree/decision.h"
+
+namespace palpate {
+
+struct RecognitionTreeOptions {
+  /// Probability that a test rejects the true class, with covariances that are true. Each test's
+  /// threshold is the chi-square (or normal) quantile of this.
+  double significance = 1e-3;
+  /// Standard deviation added to every estimate: radians for the angle, relative to the point's own
+  /// size for kappa and kappa_s. Stands for what the estimates' covariance does not know (bias,
+  /// form error), and makes exact data testable.
+  double relative_floor = 1e-6;
+  /// Above zero: the paper's way instead. A test passes where its invariants, over the points or
+  /// pairs of points, differ by at most this fraction; covariances are not used.
+  double relative_tolerance = 0.0;
+};
+
+/// One local estimate and the patch it belongs to: points of a patch share a direction of travel.
+struct TreePoint {
+  LocalEstimate estimate;
+  int patch = 0;
+};
+
+struct TreeResult {
+  ShapeParameters shape;  ///< Unclassified where every test has failed
+  /// Of the shape parameters in use, from the estimates' covariance; infinite where undetermined.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  InvariantStatus status = InvariantStatus::TooFewPoints;  ///< Ok where a class was reached
+  double chi2 = 0.0;                                       ///< of the leaf's last test
+  int dof = 0;
+  std::vector<Decision> decisions;     ///< the path, in order
+  std::optional<Pose2> world_T_curve;  ///< where shape and tangent angles fix it
+  std::vector<LocalParameter> places;  ///< one per point, where world_T_curve is given
+};
+
+/// Tests, in order: line, circle (both beyond the paper); conic line, sign of Ic1 (parabola: Ip),
+/// tangent rotation of the conic; cubical parabola; semi-cubical parabola; cubic spline. A conic
+/// needs three points, the spline four (three and one that verifies), the other two. Points are
+/// taken as independent: neighbouring windows that share samples are not, and make the tests
+/// stricter than their significance says. `spline`: the effort on its leaf.
+TreeResult recognise_by_tree(std::span<const TreePoint> points,
+                             const RecognitionTreeOptions& options = {},
+                             const SplineOptions& spline = {});
+
+}  // namespace palpate

@@ -1,0 +1,117 @@
+#include "core/recognition/tree/tree_pose.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/invariants/signature_fit/canonical_models.h"
+
+namespace palpate {
+namespace {
+
+Vec2 canonical_position(CurveClass curve_class, const Eigen::Vector3d& p, double t) {
+  PlanePoint<double> position{0.0, 0.0};
+  switch (curve_class) {
+    case CurveClass::Ellipse:
+      position = EllipseModel::position(p.data(), t);
+      break;
+    case CurveClass::Parabola:
+      position = ParabolaModel::position(p.data(), t);
+      break;
+    case CurveClass::Hyperbola:
+      position = HyperbolaModel::position(p.data(), t);
+      break;
+    case CurveClass::CubicalParabola:
+      position = CubicalParabolaModel::position(p.data(), t);
+      break;
+    case CurveClass::SemiCubicalParabola:
+      position = SemiCubicalParabolaModel::position(p.data(), t);
+      break;
+    case CurveClass::CubicSpline:
+      position = CubicSplineModel::position(p.data(), t);
+      break;
+    case CurveClass::Line:
+    case CurveClass::Circle:
+    case CurveClass::Unclassified:
+      assert(false);
+      break;
+  }
+  return {position.x, position.y};
+}
+
+}  // namespace
+
+Pose2 pose_of(std::span<const TreePoint> points, const SemiSignatureFit& fit) {
+  Pose2 pose{0.0, 0.0, fit.orientation};
+  Vec2 sum = Vec2::Zero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    sum += points[i].estimate.position -
+           pose.rotate(canonical_position(fit.curve_class, fit.parameters, fit.places[i].t));
+  }
+  sum /= static_cast<double>(points.size());
+  pose.x = sum.x();
+  pose.y = sum.y();
+  return pose;
+}
+
+TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
+                             double relative_floor) {
+  // Unknown are the centre, from the points' mean, and the radius, both in units of `radius`. A
+  // point's offset errs along its normal; its angle displaces the centre along its tangent.
+  Vec2 mean = Vec2::Zero();
+  for (const TreePoint& point : points) {
+    mean += point.estimate.position;
+  }
+  mean /= static_cast<double>(points.size());
+  Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  double sum = 0.0;
+  const auto add = [&](const Eigen::Vector3d& row, double value, double variance) {
+    const double weight = 1.0 / (variance + relative_floor * relative_floor);
+    normal_matrix += weight * row * row.transpose();
+    right += weight * value * row;
+    sum += weight * value * value;
+  };
+  for (const TreePoint& point : points) {
+    const LocalEstimate& estimate = point.estimate;
+    double turn = 0.0;  // a patch turns to one side: single curvatures may be noise
+    for (const TreePoint& other : points) {
+      turn += other.patch == point.patch ? other.estimate.kappa : 0.0;
+    }
+    const Vec2 tangent(std::cos(estimate.tangent_angle), std::sin(estimate.tangent_angle));
+    const Vec2 inward = std::copysign(1.0, turn) * left_of(tangent);
+    const Vec2 p = (estimate.position - mean) / radius;
+    add({inward.x(), inward.y(), -1.0}, inward.dot(p),
+        estimate.covariance(0, 0) / (radius * radius));
+    add({tangent.x(), tangent.y(), 0.0}, tangent.dot(p), estimate.covariance(1, 1));
+  }
+  const Eigen::Vector3d solution = normal_matrix.ldlt().solve(right);
+  TangentCircle circle;
+  const Vec2 centre = mean + radius * solution.head<2>();
+  circle.pose = {centre.x(), centre.y(), 0.0};
+  circle.chi2 = std::max(0.0, sum - right.dot(solution));
+  circle.dof = 2 * static_cast<int>(points.size()) - 3;
+  return circle;
+}
+
+Pose2 line_pose(std::span<const TreePoint> points) {
+  Vec2 position = Vec2::Zero();
+  Vec2 doubled = Vec2::Zero();
+  for (const TreePoint& point : points) {
+    position += point.estimate.position;
+    doubled += Vec2(std::cos(2.0 * point.estimate.tangent_angle),
+                    std::sin(2.0 * point.estimate.tangent_angle));
+  }
+  position /= static_cast<double>(points.size());
+  return {position.x(), position.y(), 0.5 * std::atan2(doubled.y(), doubled.x())};
+}
+
+Eigen::Matrix3d shape_covariance(const SemiSignatureFit& fit) {
+  const auto count = static_cast<Eigen::Index>(parameter_letters(fit.curve_class).size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  covariance.topLeftCorner(count, count) = fit.covariance.topLeftCorner(count, count);
+  return covariance;
+}
+
+}  // namespace palpate

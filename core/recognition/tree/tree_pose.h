@@ -1,0 +1,34 @@
+// Pose seeds from the tree's leaves: orientation and places are known, the position is a mean.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "core/curves/pose2.h"
+#include "core/invariants/signature_fit/semi_signature_fit.h"
+#include "core/recognition/tree/recognition_tree.h"
+
+namespace palpate {
+
+/// Orientation from the fit, position as the mean of (touched point - the curve's point turned).
+Pose2 pose_of(std::span<const TreePoint> points, const SemiSignatureFit& fit);
+
+/// The circle that touched points and tangents say, without their curvatures.
+struct TangentCircle {
+  Pose2 pose;         ///< its centre
+  double chi2 = 0.0;  ///< of "one circle has all these points and tangents"
+  int dof = 0;        ///< 2 points - 3
+};
+
+/// Weighted least squares over centre and radius; `radius` as the curvatures say weighs the
+/// tangents' errors. `relative_floor` as in RecognitionTreeOptions.
+TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
+                             double relative_floor);
+
+/// Along the mean tangent direction (modulo pi) through the mean point.
+Pose2 line_pose(std::span<const TreePoint> points);
+
+/// Covariance of the shape parameters within a fit's.
+Eigen::Matrix3d shape_covariance(const SemiSignatureFit& fit);
+
+}  // namespace palpate

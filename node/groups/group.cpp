@@ -1,0 +1,76 @@
+#include "node/groups/group.h"
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
+
+namespace palpate {
+
+const Group::Member* Group::find_member(std::string_view probe) const {
+  const auto found = std::find_if(members_.begin(), members_.end(),
+                                  [&](const Member& member) { return member.probe == probe; });
+  return found == members_.end() ? nullptr : &*found;
+}
+
+// With several probes, the others' last messages of the old object arrive after the first probe has
+// announced the new one. They must neither be mixed into the new object nor bring the old one back:
+// only a probe that changes its own number begins an object. A probe that has never said otherwise
+// waits until the others are silent.
+bool Group::is_stale_object(const ContactMessage& message, const Probe* probe,
+                            SteadyTime now) const {
+  if (members_.empty() || message.object == object_) return false;
+  const bool announces_change = probe != nullptr && probe->object && probe->group == name_ &&
+                                *probe->object != message.object;
+  if (announces_change) return false;
+  return std::any_of(members_.begin(), members_.end(), [&](const Member& member) {
+    return member.probe != message.probe && now - member.last_taken <= options_.object_takeover;
+  });
+}
+
+v1::RejectReason Group::judge(const ContactMessage& message, const Probe* probe,
+                              SteadyTime now) const {
+  if (is_stale_object(message, probe, now)) return v1::REJECT_REASON_STALE_OBJECT;
+  if (members_.empty() || message.object != object_) return v1::REJECT_REASON_UNSPECIFIED;
+  if (message.frame != frame_) return v1::REJECT_REASON_FRAME_NAME;
+  if (find_member(message.probe) == nullptr && members_.size() >= options_.max_probes_per_group) {
+    return v1::REJECT_REASON_TOO_MANY_PROBES_IN_GROUP;
+  }
+  return v1::REJECT_REASON_UNSPECIFIED;
+}
+
+void Group::take(const ContactMessage& message, Continuity continuity, SteadyTime now) {
+  const bool begins_object = members_.empty() || message.object != object_;
+  if (begins_object) {
+    waiting_.clear();
+    members_.clear();
+    frame_ = message.frame;
+    object_ = message.object;
+  }
+  auto member = std::find_if(members_.begin(), members_.end(),
+                             [&](const Member& known) { return known.probe == message.probe; });
+  if (member == members_.end()) {
+    members_.push_back({std::string(message.probe), now});
+  } else {
+    member->last_taken = now;
+  }
+  last_taken_ = now;
+  waiting_.push(message, continuity, begins_object);
+}
+
+std::shared_ptr<GroupRecognizer> Group::begin_work() {
+  assert(!in_work_);
+  in_work_ = true;
+  in_work_bytes_ = waiting_.bytes();
+  std::swap(recognizer_->contacts, waiting_);  // theirs is empty: they have taken it in
+  return recognizer_;
+}
+
+GroupRecognizer::Answer& Group::end_work() {
+  assert(in_work_);
+  in_work_ = false;
+  in_work_bytes_ = 0;
+  last_compute_ns_ = recognizer_->answer.compute_ns;
+  return recognizer_->answer;
+}
+
+}  // namespace palpate

@@ -1,0 +1,89 @@
+#include "node/groups/group_recognizer.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace palpate {
+
+std::size_t GroupRecognizer::take(const QueuedContacts& message,
+                                  std::span<const ContactSample> samples) {
+  if (message.begins_object) {
+    recognizer_.reset();
+    members_.clear();
+    frame_ = message.frame;
+    object_ = message.object;
+  }
+  auto member = std::find_if(members_.begin(), members_.end(),
+                             [&](const Member& known) { return known.probe == message.probe; });
+  if (member == members_.end()) {
+    members_.push_back({message.probe, PatchNumbering()});
+    member = members_.end() - 1;
+  }
+  if (message.continuity == Continuity::Anew) member->patches.end_run();
+
+  PatchContext context;
+  context.probe = static_cast<std::uint32_t>(member - members_.begin());
+  context.patch =
+      member->patches.run_of(message.patch, message.continuity == Continuity::SamplesMissing,
+                             gap_break_spacings_, samples);
+  context.tip_radius_m = message.tip_radius_m;
+  context.material_side = message.material_side;
+  const AddResult added = recognizer_.add(context, samples);
+
+  newest_.source = message.probe;
+  newest_.epoch = message.epoch;
+  newest_.seq = message.seq;
+  newest_.sample_stamp_ns =
+      message.newest_sample_stamp_ns;  // of this alone: a wild one does not stay
+  return samples.size() - added.accepted;
+}
+
+void GroupRecognizer::run() {
+  answer.samples_refused = 0;
+  contacts.for_each([&](const QueuedContacts& message, std::span<const ContactSample> samples) {
+    answer.samples_refused += take(message, samples);
+  });
+  contacts.clear();
+
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  const Recognition recognition = recognizer_.recognize();
+  answer.compute_ns = std::chrono::nanoseconds(Clock::now() - start).count();
+
+  v1::Recognition& message = answer.recognition;
+  to_wire(
+      recognition, [&](std::uint32_t probe, std::uint32_t run) { return source_of(probe, run); },
+      message);
+  message.mutable_header()->set_frame(frame_);
+  message.set_group(name_);
+  message.set_object(object_);
+  message.set_newest_sample_stamp_ns(newest_.sample_stamp_ns);
+  message.set_newest_batch_seq(newest_.seq);
+  message.set_newest_batch_epoch(newest_.epoch);
+  message.set_newest_batch_source(newest_.source);
+  message.set_compute_ns(answer.compute_ns);
+  answer.estimates.clear();
+  if (wants_estimates) fill_estimates(recognition);
+}
+
+void GroupRecognizer::fill_estimates(const Recognition& recognition) {
+  std::vector<const LocalizedContact*> latest(members_.size(), nullptr);
+  for (const LocalizedContact& contact : recognition.contacts) {
+    if (contact.probe >= latest.size()) continue;
+    const LocalizedContact*& known = latest[contact.probe];
+    if (known == nullptr || contact.patch >= known->patch) known = &contact;
+  }
+  for (const LocalizedContact* contact : latest) {
+    if (contact == nullptr) continue;
+    v1::LocalEstimate& estimate = answer.estimates.emplace_back();
+    to_wire(contact->estimate, source_of(contact->probe, contact->patch), estimate);
+    estimate.mutable_header()->set_frame(frame_);
+  }
+}
+
+ContactSource GroupRecognizer::source_of(std::uint32_t probe, std::uint32_t run) const {
+  if (probe >= members_.size()) return {};
+  return {members_[probe].probe, members_[probe].patches.wire_patch(run).value_or(0)};
+}
+
+}  // namespace palpate

@@ -1,0 +1,74 @@
+// The half of a group that computes: samples in, answer out, on a worker's thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/recognition/recognizer.h"
+#include "node/groups/work.h"
+#include "node/intake/contact_queue.h"
+#include "node/intake/patch_numbering.h"
+#include "node/wire/convert.h"
+#include "palpate/v1/local_estimate.pb.h"
+#include "palpate/v1/recognition.pb.h"
+
+namespace palpate {
+
+/// Passes between the node's thread, which fills in `contacts` and reads `answer`, and a worker's,
+/// which does run(); never in both hands.
+class GroupRecognizer : public Work {
+ public:
+  struct Answer {
+    v1::Recognition recognition;               ///< of the header, the frame only
+    std::vector<v1::LocalEstimate> estimates;  ///< the latest place of each probe; the same
+    std::size_t samples_refused = 0;           ///< by the recognizer
+    std::int64_t compute_ns = 0;
+  };
+
+  /// `gap_break_spacings`: see GroupOptions.
+  GroupRecognizer(std::string_view name, const RecognizerOptions& recognizer,
+                  double gap_break_spacings)
+      : name_(name), gap_break_spacings_(gap_break_spacings), recognizer_(recognizer) {}
+
+  ContactQueue contacts;
+  bool wants_estimates = false;
+  Answer answer;
+
+  /// Takes `contacts` in, and answers for all samples of the object.
+  void run() override;
+
+  /// Name of a probe and its own patch number, for the recognizer's numbers of both. Views a name
+  /// that lives until the next run().
+  ContactSource source_of(std::uint32_t probe, std::uint32_t run) const;
+
+ private:
+  // A probe that has touched the present object. Its index is its number in the recognizer.
+  struct Member {
+    std::string probe;
+    PatchNumbering patches;
+  };
+
+  // Where the samples taken last came from.
+  struct Newest {
+    std::string source;
+    std::uint64_t epoch = 0;
+    std::uint64_t seq = 0;
+    std::int64_t sample_stamp_ns = 0;
+  };
+
+  std::size_t take(const QueuedContacts& message, std::span<const ContactSample> samples);
+  void fill_estimates(const Recognition& recognition);
+
+  std::string name_;
+  double gap_break_spacings_;
+  Recognizer recognizer_;
+  std::string frame_;
+  std::uint64_t object_ = 0;
+  std::vector<Member> members_;
+  Newest newest_;
+};
+
+}  // namespace palpate

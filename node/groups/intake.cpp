@@ -1,0 +1,94 @@
+#include "node/groups/intake.h"
+
+#include <utility>
+
+namespace palpate {
+namespace {
+
+using v1::RejectReason;
+
+Continuity continuity_of(SequenceEvent event, bool same_group) {
+  if (same_group && event == SequenceEvent::Next) return Continuity::Unbroken;
+  if (same_group && event == SequenceEvent::Gap) return Continuity::SamplesMissing;
+  return Continuity::Anew;
+}
+
+// A sender may claim any stamp; what cannot be subtracted is shown as 0.
+std::int64_t latency_between(std::int64_t sent_ns, std::int64_t received_ns) {
+  std::int64_t latency = 0;
+  return __builtin_sub_overflow(received_ns, sent_ns, &latency) ? 0 : latency;
+}
+
+}  // namespace
+
+Intake::Intake(const IntakeOptions& options)
+    : decoder_(options.limits),
+      probes_(options.max_probes, options.groups.evict_idle),
+      groups_(options.groups, options.recognizer, options.group) {}
+
+RejectReason Intake::judge(const Probe* probe, const Group* group, SteadyTime now) const {
+  const ContactMessage& message = decoder_.message();
+  if (probe == nullptr && !probes_.has_room(now)) return v1::REJECT_REASON_TOO_MANY_PROBES;
+  if (probe != nullptr) {
+    const SequenceEvent event = probe->sequence.judge(message.epoch, message.seq);
+    if (event == SequenceEvent::StaleEpoch) return v1::REJECT_REASON_STALE_EPOCH;
+    if (!is_news(event)) return v1::REJECT_REASON_SEQUENCE;
+  }
+  if (group == nullptr && !groups_.has_room(message.probe, now)) {
+    return v1::REJECT_REASON_TOO_MANY_GROUPS;
+  }
+  if (group != nullptr) {
+    const RejectReason reason = group->judge(message, probe, now);
+    if (reason != v1::REJECT_REASON_UNSPECIFIED) return reason;
+  }
+  return groups_.has_room_to_wait(group, ContactQueue::bytes_of(message))
+             ? v1::REJECT_REASON_UNSPECIFIED
+             : v1::REJECT_REASON_OVERLOAD;
+}
+
+RejectReason Intake::take(std::size_t frame_count, std::string_view topic, std::string_view payload,
+                          SteadyTime now, std::int64_t now_unix_ns) {
+  ++counters_.messages_received;
+  RejectReason reason = decoder_.decode(frame_count, topic, payload);
+  Probe* probe = decoder_.probe().empty() ? nullptr : probes_.find(decoder_.probe());
+  const ContactMessage& message = decoder_.message();
+  Group* group = nullptr;
+  if (reason == v1::REJECT_REASON_UNSPECIFIED) {
+    group = groups_.find(message.group);
+    reason = judge(probe, group, now);
+  }
+  if (reason != v1::REJECT_REASON_UNSPECIFIED) {
+    ++counters_.rejected[static_cast<std::size_t>(reason)];
+    if (probe != nullptr) ++probe->rejected;
+    return reason;
+  }
+
+  std::string evicted;
+  if (probe == nullptr) {
+    probe = &probes_.add(message.probe, now, evicted);
+    if (!evicted.empty()) forgotten_.probes.push_back(std::move(evicted));
+  }
+  if (group == nullptr) {
+    group = &groups_.add(message.group, message.probe, now, evicted);
+    if (!evicted.empty()) forgotten_.groups.push_back(std::move(evicted));
+  }
+  const SequenceEvent event = probe->sequence.take(message.epoch, message.seq);
+  groups_.take(*group, message, continuity_of(event, probe->group == message.group), now);
+
+  const std::size_t count = message.samples.size();
+  probe->group = message.group;
+  probe->object = message.object;
+  probe->last_heard = now;
+  ++probe->messages;
+  probe->samples += count;
+  probe->message_rate.add(now, 1);
+  probe->sample_rate.add(now, count);
+  probe->latency_ns = latency_between(message.published_ns, now_unix_ns);
+  ++counters_.messages_accepted;
+  counters_.samples_received += count;
+  return v1::REJECT_REASON_UNSPECIFIED;
+}
+
+Intake::Forgotten Intake::take_forgotten() { return std::exchange(forgotten_, {}); }
+
+}  // namespace palpate

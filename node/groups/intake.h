@@ -1,0 +1,68 @@
+// From a message to its group's recognizer: the one place that decides whether it counts.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "node/groups/group_registry.h"
+#include "node/intake/ingest.h"
+#include "node/intake/probe_registry.h"
+
+namespace palpate {
+
+struct IntakeOptions {
+  IngestLimits limits;
+  std::size_t max_probes = 256;
+  GroupBounds groups;  ///< its evict_idle holds for probes too
+  GroupOptions group;
+  RecognizerOptions recognizer;
+};
+
+struct IntakeCounters {
+  std::uint64_t messages_received = 0;
+  std::uint64_t messages_accepted = 0;
+  std::uint64_t samples_received = 0;                                ///< of the messages accepted
+  std::uint64_t samples_refused = 0;                                 ///< of them, by the recognizer
+  std::array<std::uint64_t, v1::RejectReason_ARRAYSIZE> rejected{};  ///< by RejectReason
+};
+
+class Intake {
+ public:
+  explicit Intake(const IntakeOptions& options);
+
+  /// Takes one message, or counts why not; a message that is not taken changes nothing else.
+  /// `now_unix_ns` is the wall clock, for the latency shown.
+  v1::RejectReason take(std::size_t frame_count, std::string_view topic, std::string_view payload,
+                        SteadyTime now, std::int64_t now_unix_ns);
+
+  GroupRegistry& groups() { return groups_; }
+  ProbeRegistry& probes() { return probes_; }
+  const GroupRegistry& groups() const { return groups_; }
+  const ProbeRegistry& probes() const { return probes_; }
+  const IntakeCounters& counters() const { return counters_; }
+
+  /// The recognizer has refused so many of the samples taken.
+  void count_refused(std::size_t samples) { counters_.samples_refused += samples; }
+
+  /// Names of groups and probes forgotten since the last call.
+  struct Forgotten {
+    std::vector<std::string> groups;
+    std::vector<std::string> probes;
+  };
+  Forgotten take_forgotten();
+
+ private:
+  v1::RejectReason judge(const Probe* probe, const Group* group, SteadyTime now) const;
+
+  ContactDecoder decoder_;
+  ProbeRegistry probes_;
+  GroupRegistry groups_;
+  IntakeCounters counters_;
+  Forgotten forgotten_;
+};
+
+}  // namespace palpate

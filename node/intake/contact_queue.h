@@ -1,0 +1,84 @@
+// Messages of one group that wait for its recognizer.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "node/intake/ingest.h"
+
+namespace palpate {
+
+/// How a message follows the one that its probe sent to the same group before.
+enum class Continuity { Unbroken, SamplesMissing, Anew };
+
+/// A message that has been taken; its samples stand in the queue's.
+struct QueuedContacts {
+  std::string probe;
+  std::string frame;  ///< of the object that the message begins; empty where it begins none
+  bool begins_object = false;
+  Continuity continuity = Continuity::Anew;
+  std::uint64_t epoch = 0;
+  std::uint64_t seq = 0;
+  std::uint64_t object = 0;
+  std::uint32_t patch = 0;
+  double tip_radius_m = 0.0;
+  MaterialSide material_side = MaterialSide::Unspecified;
+  std::int64_t newest_sample_stamp_ns = 0;
+  std::size_t sample_count = 0;
+};
+
+class ContactQueue {
+ public:
+  /// Memory that a message takes while it waits. [bytes]
+  static std::size_t bytes_of(const ContactMessage& message) {
+    return sizeof(QueuedContacts) + message.probe.size() + message.frame.size() +
+           message.samples.size() * sizeof(ContactSample);
+  }
+
+  void push(const ContactMessage& message, Continuity continuity, bool begins_object) {
+    messages_.push_back({std::string(message.probe),
+                         std::string(begins_object ? message.frame : std::string_view()),
+                         begins_object, continuity, message.epoch, message.seq, message.object,
+                         message.patch, message.tip_radius_m, message.material_side,
+                         message.newest_sample_stamp_ns, message.samples.size()});
+    samples_.insert(samples_.end(), message.samples.begin(), message.samples.end());
+    bytes_ += bytes_of(message);
+  }
+
+  /// Calls visit(const QueuedContacts&, std::span<const ContactSample>) in the order of arrival.
+  template <typename Visit>
+  void for_each(Visit&& visit) const {
+    std::size_t first = 0;
+    for (const QueuedContacts& message : messages_) {
+      visit(message, std::span(samples_).subspan(first, message.sample_count));
+      first += message.sample_count;
+    }
+  }
+
+  /// Keeps the memory of an ordinary queue for the next, and gives a burst's back.
+  void clear() {
+    if (bytes_ > kOrdinaryBytes) {
+      messages_ = {};
+      samples_ = {};
+    }
+    messages_.clear();
+    samples_.clear();
+    bytes_ = 0;
+  }
+
+  bool empty() const { return messages_.empty(); }
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  // What a probe of 1 kHz brings in the longest of ordinary recognitions, of some milliseconds.
+  static constexpr std::size_t kOrdinaryBytes = 16 * 1024;
+
+  std::vector<QueuedContacts> messages_;
+  std::vector<ContactSample> samples_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace palpate

@@ -1,0 +1,109 @@
+#include "node/intake/ingest.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "node/wire/topics.h"
+
+namespace palpate {
+namespace {
+
+using v1::RejectReason;
+
+constexpr RejectReason kPassed = v1::REJECT_REASON_UNSPECIFIED;
+
+bool all_finite(double x, double y, double sigma) {
+  return std::isfinite(x) && std::isfinite(y) && std::isfinite(sigma);
+}
+
+}  // namespace
+
+RejectReason ContactDecoder::decode(std::size_t frame_count, std::string_view topic,
+                                    std::string_view payload) {
+  probe_ = {};
+  if (frame_count != 2) return v1::REJECT_REASON_FRAMES;
+  const std::optional<Topic> parsed = parse_topic(topic);
+  if (!parsed || parsed->kind != TopicKind::Contact) return v1::REJECT_REASON_TOPIC;
+  probe_ = parsed->name;
+  if (payload.size() > limits_.max_message_bytes) return v1::REJECT_REASON_TOO_LARGE;
+  if (!batch_.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
+    return v1::REJECT_REASON_PARSE;
+  }
+  RejectReason reason = check_header();
+  if (reason == kPassed) reason = check_context();
+  if (reason == kPassed) reason = take_samples();
+  return reason;
+}
+
+RejectReason ContactDecoder::check_header() {
+  if (!batch_.has_header()) return v1::REJECT_REASON_HEADER;
+  const v1::Header& header = batch_.header();
+  if (!header.source().empty() && header.source() != probe_) return v1::REJECT_REASON_SOURCE;
+  if (!header.frame().empty() && !is_valid_name(header.frame())) {
+    return v1::REJECT_REASON_FRAME_NAME;
+  }
+  if (!batch_.group().empty() && !is_valid_name(batch_.group())) {
+    return v1::REJECT_REASON_GROUP_NAME;
+  }
+  message_.probe = probe_;
+  message_.group = batch_.group().empty() ? probe_ : std::string_view(batch_.group());
+  message_.frame = header.frame().empty() ? kDefaultFrame : std::string_view(header.frame());
+  message_.epoch = header.epoch();
+  message_.seq = header.seq();
+  message_.published_ns = header.stamp_ns();
+  return kPassed;
+}
+
+RejectReason ContactDecoder::check_context() {
+  const double radius = batch_.tip_radius_m();
+  if (!std::isfinite(radius)) return v1::REJECT_REASON_NOT_FINITE;
+  if (radius < 0.0 || radius > limits_.max_tip_radius_m) return v1::REJECT_REASON_TIP_RADIUS;
+  switch (batch_.material_side()) {
+    case v1::MATERIAL_SIDE_UNSPECIFIED:
+      message_.material_side = MaterialSide::Unspecified;
+      break;
+    case v1::MATERIAL_SIDE_LEFT:
+      message_.material_side = MaterialSide::Left;
+      break;
+    case v1::MATERIAL_SIDE_RIGHT:
+      message_.material_side = MaterialSide::Right;
+      break;
+    default:
+      return v1::REJECT_REASON_MATERIAL_SIDE;
+  }
+  message_.object = batch_.object();
+  message_.patch = batch_.patch();
+  message_.tip_radius_m = radius;
+  return kPassed;
+}
+
+RejectReason ContactDecoder::take_samples() {
+  const auto count = static_cast<std::size_t>(batch_.samples_size());
+  if (count == 0) return v1::REJECT_REASON_EMPTY;
+  if (count > limits_.max_samples_per_batch) return v1::REJECT_REASON_TOO_MANY_SAMPLES;
+  message_.samples.clear();
+  message_.newest_sample_stamp_ns = batch_.samples(0).stamp_ns();
+  for (const v1::ContactSample& sample : batch_.samples()) {
+    const double x = sample.x_m();
+    const double y = sample.y_m();
+    const double sigma = sample.sigma_m();
+    if (!all_finite(x, y, sigma)) return v1::REJECT_REASON_NOT_FINITE;
+    if (std::abs(x) > limits_.max_coordinate_m || std::abs(y) > limits_.max_coordinate_m) {
+      return v1::REJECT_REASON_COORDINATE;
+    }
+    if (sigma != 0.0 && (sigma < kMinSigma || sigma > limits_.max_sigma_m)) {
+      return v1::REJECT_REASON_SIGMA;
+    }
+    message_.samples.push_back({Vec2(x, y), sigma, sample.stamp_ns()});
+    message_.newest_sample_stamp_ns = std::max(message_.newest_sample_stamp_ns, sample.stamp_ns());
+  }
+  return kPassed;
+}
+
+bool is_malformed(RejectReason reason) {
+  return reason == v1::REJECT_REASON_FRAMES || reason == v1::REJECT_REASON_TOPIC ||
+         reason == v1::REJECT_REASON_TOO_LARGE || reason == v1::REJECT_REASON_PARSE ||
+         reason == v1::REJECT_REASON_HEADER;
+}
+
+}  // namespace palpate

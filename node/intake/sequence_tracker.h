@@ -1,0 +1,95 @@
+// Order and completeness of one topic's messages, told from (epoch, seq).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace palpate {
+
+enum class SequenceEvent {
+  First,        ///< nothing was known of this sender
+  Next,         ///< follows the last one
+  Gap,          ///< messages before it are missing
+  Restart,      ///< a new epoch, or the same one counted anew
+  NotNewer,     ///< a duplicate, or out of order: not to be used
+  TooFarAhead,  ///< more missing than anybody can have sent: not to be used
+  StaleEpoch,   ///< from before a restart: not to be used
+};
+
+/// True where the message is to be used.
+constexpr bool is_news(SequenceEvent event) {
+  return event != SequenceEvent::NotNewer && event != SequenceEvent::TooFarAhead &&
+         event != SequenceEvent::StaleEpoch;
+}
+
+class SequenceTracker {
+ public:
+  /// What a message of (epoch, seq) would be, without taking it.
+  SequenceEvent judge(std::uint64_t epoch, std::uint64_t seq) const {
+    if (!started_) return SequenceEvent::First;
+    if (epoch != epoch_) {
+      for (std::size_t i = 0; i < retired_count_; ++i) {
+        if (retired_[i] == epoch) return SequenceEvent::StaleEpoch;
+      }
+      return SequenceEvent::Restart;
+    }
+    if (seq > seq_ && seq - seq_ > kLargestGap) return SequenceEvent::TooFarAhead;
+    // One wild number must not shut a sender out that counts on from where it was. And a sender
+    // that never sets its epoch has no other way to say that it has restarted.
+    if (seq < seq_ && (seq_ - seq > kLargestGap || epoch == 0)) return SequenceEvent::Restart;
+    if (seq <= seq_) return SequenceEvent::NotNewer;
+    return seq == seq_ + 1 ? SequenceEvent::Next : SequenceEvent::Gap;
+  }
+
+  /// Judges, and takes the message if it is news.
+  SequenceEvent take(std::uint64_t epoch, std::uint64_t seq) {
+    const SequenceEvent event = judge(epoch, seq);
+    if (!is_news(event)) return event;
+    // A restarted sender counts from 0: what is below was sent before we heard it again. Of a
+    // sender never heard before nobody can say since when we should have heard it.
+    const std::uint64_t lost = event == SequenceEvent::Gap       ? seq - seq_ - 1
+                               : event == SequenceEvent::Restart ? seq
+                                                                 : 0;
+    if (lost > 0) ++gaps_;
+    missing_ += lost;
+    if (event == SequenceEvent::Restart) {
+      ++restarts_;
+      if (epoch != epoch_) retire(epoch_);
+    }
+    started_ = true;
+    epoch_ = epoch;
+    seq_ = seq;
+    return event;
+  }
+
+  std::uint64_t epoch() const { return epoch_; }
+  std::uint64_t seq() const { return seq_; }
+  std::uint64_t gaps() const { return gaps_; }          ///< holes
+  std::uint64_t missing() const { return missing_; }    ///< messages in the holes
+  std::uint64_t restarts() const { return restarts_; }  ///< changes of epoch
+
+ private:
+  void retire(std::uint64_t epoch) {
+    retired_[next_retired_] = epoch;
+    next_retired_ = (next_retired_ + 1) % retired_.size();
+    if (retired_count_ < retired_.size()) ++retired_count_;
+  }
+
+  // What a sender of 1 kHz sends in 50 days unheard.
+  static constexpr std::uint64_t kLargestGap = std::uint64_t{1} << 32U;
+  // Epochs left behind. Old connections drain within seconds: a handful of restarts is enough.
+  static constexpr std::size_t kRetiredEpochs = 8;
+
+  bool started_ = false;
+  std::uint64_t epoch_ = 0;
+  std::uint64_t seq_ = 0;
+  std::uint64_t gaps_ = 0;
+  std::uint64_t missing_ = 0;
+  std::uint64_t restarts_ = 0;
+  std::array<std::uint64_t, kRetiredEpochs> retired_{};
+  std::size_t retired_count_ = 0;
+  std::size_t next_retired_ = 0;
+};
+
+}  // namespace palpate

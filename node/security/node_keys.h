@@ -1,0 +1,27 @@
+// Keys of the side that binds: its own, and those that may connect.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+#include <zmq.hpp>
+
+#include "node/files/result.h"
+#include "node/security/zap_handler.h"
+#include "node/wire/curve_keys.h"
+
+namespace palpate {
+
+struct NodeKeys {
+  std::optional<CurveKeyPair> own;   ///< nullopt = no CURVE
+  std::vector<std::string> clients;  ///< public keys, Z85
+};
+
+/// Reads the key files; with an empty path there is nothing to read: CURVE is not asked for.
+Result<NodeKeys> read_node_keys(const std::string& secret_key_path,
+                                const std::string& allowed_path);
+
+/// nullopt where there is no CURVE. Make it before the sockets that ask it.
+std::optional<ZapHandler> make_zap_handler(zmq::context_t& context, const NodeKeys& keys);
+
+}  // namespace palpate

@@ -1,0 +1,164 @@
+#include "node/security/peer_guard.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+std::string unique_monitor_address() {
+  static std::atomic<std::uint64_t> count{0};
+  return "inproc://palpate-peer-guard-" + std::to_string(count.fetch_add(1));
+}
+
+/// Address and port, or the process at the other end of an ipc connection.
+std::string name_of_peer(int descriptor) {
+  sockaddr_storage address{};
+  socklen_t length = sizeof address;
+  if (::getpeername(descriptor, reinterpret_cast<sockaddr*>(&address), &length) != 0) {
+    return "a peer that has left";
+  }
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  if (address.ss_family == AF_INET) {
+    const auto& v4 = reinterpret_cast<const sockaddr_in&>(address);
+    ::inet_ntop(AF_INET, &v4.sin_addr, text.data(), text.size());
+    return std::string(text.data()).append(":").append(std::to_string(ntohs(v4.sin_port)));
+  }
+  if (address.ss_family == AF_INET6) {
+    const auto& v6 = reinterpret_cast<const sockaddr_in6&>(address);
+    ::inet_ntop(AF_INET6, &v6.sin6_addr, text.data(), text.size());
+    return std::string("[")
+        .append(text.data())
+        .append("]:")
+        .append(std::to_string(ntohs(v6.sin6_port)));
+  }
+  ucred credentials{};
+  length = sizeof credentials;
+  if (::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &credentials, &length) == 0) {
+    return std::string("process ").append(std::to_string(credentials.pid));
+  }
+  return "an unknown peer";
+}
+
+}  // namespace
+
+PeerGuard::PeerGuard(zmq::context_t& context, zmq::socket_t& socket, const PeerBounds& bounds,
+                     std::string what)
+    : socket_(socket),
+      bounds_(bounds),
+      what_(std::move(what)),
+      events_(context, zmq::socket_type::pair) {
+  const std::string monitor = unique_monitor_address();
+  if (zmq_socket_monitor(socket_.handle(), monitor.c_str(),
+                         ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_DISCONNECTED) != 0) {
+    throw zmq::error_t();
+  }
+  // libzmq's thread waits where the queue of events is full: it must not be by a flood of peers.
+  events_.set(zmq::sockopt::rcvhwm, 0);
+  events_.set(zmq::sockopt::linger, 0);
+  events_.connect(monitor);
+}
+
+PeerGuard::~PeerGuard() { zmq_socket_monitor(socket_.handle(), nullptr, 0); }
+
+void PeerGuard::tend(Time now) {
+  // Each event is two frames: number and value, then the address.
+  zmq::message_t frame;
+  while (zmq_msg_recv(frame.handle(), events_.handle(), ZMQ_DONTWAIT) >= 0) {
+    std::uint16_t event = 0;
+    std::uint32_t value = 0;
+    if (frame.size() >= sizeof event + sizeof value) {
+      std::memcpy(&event, frame.data(), sizeof event);
+      std::memcpy(&value, frame.data<char>() + sizeof event, sizeof value);
+    }
+    while (frame.more() && zmq_msg_recv(frame.handle(), events_.handle(), ZMQ_DONTWAIT) >= 0) {
+    }
+    const int descriptor = static_cast<int>(value);
+    if (const auto known = peers_.find(descriptor); known != peers_.end()) forget(known);
+    if (event == ZMQ_EVENT_ACCEPTED) peers_.emplace(descriptor, Peer{now});
+  }
+  while (peers_.size() > bounds_.max_peers) {
+    // The one silent for longest, if that is long enough; else the last to come.
+    const auto order = [](const auto& a, const auto& b) {
+      return std::pair(a.second.spoke, a.second.since) < std::pair(b.second.spoke, b.second.since);
+    };
+    auto chosen = std::min_element(peers_.begin(), peers_.end(), order);
+    if (chosen->second.spoke || now - chosen->second.since < kSilence) {
+      chosen = std::max_element(peers_.begin(), peers_.end(), [](const auto& a, const auto& b) {
+        return a.second.since < b.second.since;
+      });
+    }
+    cut(chosen, "more peers than max_peers");
+  }
+}
+
+void PeerGuard::hear(int descriptor) {
+  const auto peer = peers_.find(descriptor);
+  if (peer != peers_.end()) peer->second.spoke = true;
+}
+
+void PeerGuard::count_subscription(int descriptor, bool begins, std::size_t bytes) {
+  const auto peer = peers_.find(descriptor);
+  if (peer == peers_.end()) return;  // has left, or been cut
+  peer->second.spoke = true;
+  std::size_t& held = peer->second.subscription_bytes;
+  if (!begins) {
+    const std::size_t freed = std::min(held, bytes + kSubscriptionOverheadBytes);
+    held -= freed;
+    subscription_bytes_ -= freed;
+    return;
+  }
+  held += bytes + kSubscriptionOverheadBytes;
+  subscription_bytes_ += bytes + kSubscriptionOverheadBytes;
+  if (held > bounds_.max_subscription_bytes) {
+    cut(peer, "more subscriptions than max_subscription_bytes");
+  } else if (subscription_bytes_ > kPeersOfSubscriptions * bounds_.max_subscription_bytes) {
+    cut(std::max_element(peers_.begin(), peers_.end(),
+                         [](const auto& a, const auto& b) {
+                           return a.second.subscription_bytes < b.second.subscription_bytes;
+                         }),
+        "the most of too many subscriptions");
+  }
+}
+
+void PeerGuard::cut_all(const std::string& why) {
+  while (!peers_.empty()) cut(peers_.begin(), why);
+}
+
+// By its descriptor, as libzmq has no call for it: its connection ends as if the peer had left.
+void PeerGuard::cut(Peers::iterator peer, const std::string& why) {
+  last_cut_ = name_of_peer(peer->first);
+  last_cut_.append(": ").append(why);
+  (void)::shutdown(peer->first, SHUT_RDWR);
+  ++cut_count_;
+  ++cut_unreported_;
+  forget(peer);
+}
+
+void PeerGuard::forget(Peers::iterator peer) {
+  subscription_bytes_ -= peer->second.subscription_bytes;
+  peers_.erase(peer);
+}
+
+std::string PeerGuard::take_report() {
+  if (cut_unreported_ == 0) return {};
+  const std::uint64_t count = std::exchange(cut_unreported_, 0);
+  return std::to_string(count)
+      .append(" connections to ")
+      .append(what_)
+      .append(" cut, the last of ")
+      .append(last_cut_);
+}
+
+int descriptor_of(zmq::message_t& message) {
+  return message.size() == 0 ? -1 : zmq_msg_get(message.handle(), ZMQ_SRCFD);
+}
+
+}  // namespace palpate

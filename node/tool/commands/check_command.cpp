@@ -1,0 +1,101 @@
+// palpate check: listens to probes in the recognizer's place and says what is wrong with their
+// streams.
+#include <chrono>
+#include <iostream>
+#include <memory>
+
+#include "node/process/clock.h"
+#include "node/process/stop_signals.h"
+#include "node/tool/commands/command.h"
+#include "node/tool/commands/listening_place.h"
+#include "node/tool/commands/stream_check.h"
+
+namespace palpate {
+namespace {
+
+struct CheckCommand {
+  ListeningFlags place{std::string(kDefaultContactsEndpoint), "", "", false};
+  double seconds = 5.0;
+};
+
+const char* name_of(Severity severity) {
+  switch (severity) {
+    case Severity::Error:
+      return "ERROR  ";
+    case Severity::Warning:
+      return "WARNING";
+    case Severity::Note:
+      break;
+  }
+  return "note   ";
+}
+
+int run(const CheckCommand& command) {
+  const int stop_fd = take_stop_signals();
+  ListeningPlace place;
+  if (const int code = place.open_as_recognizer(command.place); code != kDone) {
+    return code;
+  }
+  std::cerr << "listening on " << command.place.endpoint << " for " << command.seconds
+            << " s: touch something\n";
+  StreamCheck check;
+  place.listen(stop_fd,
+               std::chrono::steady_clock::now() +
+                   std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                       std::chrono::duration<double>(command.seconds)),
+               [&](const TwoFrames& frames) {
+                 check.take(frames.frame_count, frames.topic.to_string_view(),
+                            frames.payload.to_string_view(), unix_time_ns());
+                 return true;
+               });
+  if (place.denied_count() > 0) {
+    std::cout << name_of(Severity::Error) << "  " << place.denied_count()
+              << " connections turned away: their keys are not in " << command.place.allow_clients
+              << "\n";
+  }
+  if (check.messages() == 0) {
+    return complain("no message came: does the probe connect to " + command.place.endpoint +
+                        " with a PUB socket?",
+                    kFailed);
+  }
+  bool good = true;
+  for (const Finding& finding : check.findings()) {
+    std::cout << name_of(finding.severity) << "  "
+              << (finding.probe.empty() ? "" : finding.probe + ": ") << finding.what
+              << (finding.cure.empty() ? "" : "\n         " + finding.cure) << "\n";
+    good = good && finding.severity != Severity::Error;
+  }
+  std::cout << (good ? "fit for the recognizer\n" : "not fit for the recognizer yet\n");
+  return good ? kDone : kFailed;
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, int& exit_code) {
+  auto check = std::make_shared<CheckCommand>();
+  CLI::App* command = app.add_subcommand("check",
+                                         "Listen to a probe's stream in the recognizer's place and "
+                                         "tell its author what is wrong with it:\n"
+                                         "format, units, spacing, noise, lift-offs, gaps, stamps. "
+                                         "Exit code 1 where there is an error.");
+  command->add_option("--contacts", check->place.endpoint, "Bind here, as the recognizer would")
+      ->capture_default_str()
+      ->type_name("ENDPOINT");
+  CLI::Option* secret = command->add_option("--curve-secret-key", check->place.curve_secret_key,
+                                            "CURVE: the recognizer's secret key file");
+  secret->type_name("FILE");
+  CLI::Option* allowed = command->add_option("--allow-clients", check->place.allow_clients,
+                                             "CURVE: file of the public keys that may connect");
+  allowed->type_name("FILE");
+  secret->needs(allowed);
+  allowed->needs(secret);
+  command->add_flag("--insecure", check->place.insecure,
+                    "Permit a bind beyond this machine without CURVE");
+  command->add_option("--seconds", check->seconds, "How long to listen [s]")
+      ->check(positive_number())
+      ->capture_default_str()
+      ->type_name("S");
+  command->callback([check, &exit_code] { exit_code = run(*check); });
+}
+
+}  // namespace palpate

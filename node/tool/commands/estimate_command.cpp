@@ -1,0 +1,138 @@
+// palpate estimate: local estimates along the patches of a CSV file, as CSV.
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/local/estimator.h"
+#include "node/csv/contact_csv.h"
+#include "node/tool/commands/command.h"
+#include "node/tool/contact_groups.h"
+
+namespace palpate {
+namespace {
+
+struct EstimateCommand {
+  std::string file;
+  std::string estimator = "jet";
+  EstimatorOptions options;
+};
+
+/// Root mean square of the samples' noise; 0 where one brings none.
+double sigma_of(const ContactRun& run, double given_m) {
+  double squares = 0.0;
+  for (const ContactSample& sample : run.samples) {
+    const double sigma = sample.sigma_m > 0.0 ? sample.sigma_m : given_m;
+    if (!(sigma > 0.0)) {
+      return 0.0;
+    }
+    squares += sigma * sigma;
+  }
+  return std::sqrt(squares / static_cast<double>(run.samples.size()));
+}
+
+void print_row(const std::string& probe, std::uint32_t patch, std::size_t first,
+               const LocalEstimate& estimate) {
+  const auto sigma = [&](Eigen::Index k) { return std::sqrt(estimate.covariance(k, k)); };
+  std::printf("%s,%u,%zu,%.17g,%.17g,%.17g,%.17g,%.17g,%.9g,%.9g,%.9g,%.9g,%d,%.17g\n",
+              probe.c_str(), patch, first, estimate.position.x(), estimate.position.y(),
+              estimate.tangent_angle, estimate.kappa, estimate.kappa_s, sigma(0), sigma(1),
+              sigma(2), sigma(3), estimate.window_samples, estimate.window_arc_m);
+}
+
+int run(EstimateCommand& command) {
+  const std::optional<EstimatorKind> kind = estimator_kind_from_name(command.estimator);
+  if (!kind) {
+    return complain("--estimator: \"" + command.estimator +
+                        "\" is none of finite-difference, circle, two-round, jet",
+                    kUsage);
+  }
+  command.options.kind = *kind;
+  const Result<ContactTable> table = read_contact_csv(command.file);
+  if (!table) {
+    return complain(table.error, kUsage);
+  }
+  std::printf(
+      "probe,patch,first_sample,x_m,y_m,tangent_rad,kappa_per_m,kappa_s_per_m2,normal_sigma_m,"
+      "tangent_sigma_rad,kappa_sigma_per_m,kappa_s_sigma_per_m2,window_samples,window_arc_m\n");
+  std::size_t refused = 0;
+  for (const ContactGroup& group : contact_groups(command.file, *table.value)) {
+    for (const ContactRun& run : group.runs) {
+      const std::string& probe = group.probes[run.context.probe];
+      std::vector<Vec2> points;
+      for (const ContactSample& sample : run.samples) {
+        points.push_back(sample.position_m);
+      }
+      EstimatorOptions options = command.options;
+      options.sigma_m = sigma_of(run, command.options.sigma_m);
+      if (points.size() < samples_per_estimate(options)) {
+        std::cerr << "palpate: " << probe << ", patch " << run.context.patch << ": "
+                  << points.size() << " samples, an estimate takes "
+                  << samples_per_estimate(options) << " (--window)\n";
+        continue;
+      }
+      for (const WindowResult& window : estimate_all(points, options)) {
+        if (window.result) {
+          print_row(probe, run.context.patch, window.first_sample, window.result.estimate);
+        } else {
+          std::cerr << "palpate: " << probe << ", patch " << run.context.patch << ", sample "
+                    << window.first_sample << ": no estimate: " << name_of(window.result.status)
+                    << "\n";
+          ++refused;
+        }
+      }
+    }
+  }
+  if (std::fflush(stdout) != 0) {
+    return complain("standard output: cannot be written", kFailed);
+  }
+  return refused == 0 ? kDone : kFailed;
+}
+
+}  // namespace
+
+void add_estimate_command(CLI::App& app, int& exit_code) {
+  auto estimate = std::make_shared<EstimateCommand>();
+  CLI::App* command = app.add_subcommand(
+      "estimate",
+      "Tangent angle, curvature and its derivative by arc length along the patches of a CSV file,\n"
+      "with their standard deviations, as CSV. Round tips are not taken off: estimates are of the\n"
+      "path of the samples.");
+  command->add_option("FILE", estimate->file, "CSV file; - is standard input")
+      ->required()
+      ->type_name("");
+  command
+      ->add_option("--estimator", estimate->estimator,
+                   "finite-difference, circle, two-round or jet")
+      ->capture_default_str()
+      ->type_name("NAME");
+  command->add_option("--window", estimate->options.window, "Samples of a window")
+      ->check(CLI::Range(5, 1000000))
+      ->capture_default_str()
+      ->type_name("N");
+  command->add_option("--shift", estimate->options.shift, "Samples from one estimate to the next")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str()
+      ->type_name("L");
+  command
+      ->add_option("--sigma", estimate->options.sigma_m,
+                   "Noise of samples that bring none; 0 = from each window's residuals [m]")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str()
+      ->type_name("METRES");
+  command->add_option("--degree", estimate->options.jet_degree, "Degree of the jet's polynomial")
+      ->check(CLI::Range(3, 5))
+      ->capture_default_str()
+      ->type_name("D");
+  command
+      ->add_option("--fits", estimate->options.two_round_fits,
+                   "Curvatures that the two-round fit takes its derivative from")
+      ->check(CLI::Range(3, 1000))
+      ->capture_default_str()
+      ->type_name("M");
+  command->callback([estimate, &exit_code] { exit_code = run(*estimate); });
+}
+
+}  // namespace palpate

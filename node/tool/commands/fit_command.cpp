@@ -1,0 +1,211 @@
+// palpate fit: the recognizer's answer for files, without a network.
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "node/csv/contact_csv.h"
+#include "node/tool/commands/command.h"
+#include "node/tool/contact_groups.h"
+#include "node/tool/drawing/svg_plot.h"
+#include "node/tool/part_match.h"
+#include "node/tool/text/message_json.h"
+#include "node/tool/text/recognition_text.h"
+#include "node/wire/convert.h"
+#include "node/wire/recognizer_options.h"
+
+namespace palpate {
+namespace {
+
+struct FitCommand {
+  std::vector<std::string> files;
+  std::string format;
+  std::string plot;
+  std::string part;
+  RecognizerWords words;
+  RecognizerOptions recognizer;
+};
+
+std::string flag_of(std::string name) {
+  std::replace(name.begin(), name.end(), '_', '-');
+  return "--" + name;
+}
+
+/// Flags for the recogniser's options, out of their one table.
+void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
+  for_each_recognizer_option(fit.words, fit.recognizer, [&](const OptionInfo& info, auto& field) {
+    using Field = std::decay_t<decltype(field)>;
+    std::string flag = flag_of(info.name);
+    flag = flag == "--sigma-m" ? "--sigma,--sigma-m" : flag;
+    if constexpr (std::is_same_v<Field, bool>) {
+      command.add_flag(flag, field, info.help)->group("Recognition");
+      return;
+    }
+    CLI::Option* option = command.add_option(flag, field, info.help)->group("Recognition");
+    if constexpr (std::is_same_v<Field, std::vector<std::string>>) {
+      option->delimiter(',')->type_name("CLASS,...");
+    } else if constexpr (std::is_same_v<Field, std::string>) {
+      option->capture_default_str()->type_name("NAME");
+    } else if constexpr (!std::is_same_v<Field, bool>) {
+      option->capture_default_str()->type_name("NUMBER")->check(
+          CLI::Range(info.lowest, info.highest));
+    }
+  });
+}
+
+std::int64_t newest_stamp_ns(const ContactGroup& group) {
+  std::int64_t newest = 0;
+  for (const ContactRun& run : group.runs) {
+    for (const ContactSample& sample : run.samples) {
+      newest = std::max(newest, sample.stamp_ns);
+    }
+  }
+  return newest;
+}
+
+v1::Recognition recognise(const ContactGroup& group, const RecognizerOptions& options) {
+  Recognizer recognizer(options);
+  add_group(group, recognizer);
+  const auto start = std::chrono::steady_clock::now();
+  const Recognition recognition = recognizer.recognize();
+  const auto taken = std::chrono::steady_clock::now() - start;
+  v1::Recognition answer;
+  to_wire(
+      recognition,
+      [&](std::uint32_t probe, std::uint32_t patch) {
+        return ContactSource{group.probes[probe], patch};
+      },
+      answer);
+  answer.mutable_header()->set_source(group.file);
+  answer.set_group(group.name);
+  answer.set_object(group.object);
+  answer.set_newest_sample_stamp_ns(newest_stamp_ns(group));
+  answer.set_compute_ns(std::chrono::duration_cast<std::chrono::nanoseconds>(taken).count());
+  return answer;
+}
+
+/// PLOT.svg for the first group, PLOT-2.svg for the second, ...
+std::string plot_path(const std::string& path, std::size_t number) {
+  if (number == 1) {
+    return path;
+  }
+  const std::size_t dot = path.rfind('.');
+  const std::string stem = path.substr(0, dot);
+  const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
+  return stem + "-" + std::to_string(number) + ending;
+}
+
+/// Places a known part instead of recognising one.
+int place(const FitCommand& fit, const std::vector<ContactGroup>& groups, bool json) {
+  const Result<ClosedSpline> part = read_part(fit.part);
+  if (!part) {
+    return complain(part.error, kUsage);
+  }
+  SegmentMatchOptions options;
+  options.sigma_m = fit.recognizer.sigma_m;
+  options.determined_probability = fit.recognizer.recognized_probability;
+  options.false_outlier_probability = fit.recognizer.false_outlier_probability;
+  const char* separator = "";
+  for (const ContactGroup& group : groups) {
+    const v1::PartMatch match = match_part(group, *part.value, options);
+    if (json) {
+      std::cout << json_line(match);
+    } else {
+      std::cout << separator << group.file << ", " << group.name << ": " << part_match_text(match);
+      separator = "\n";
+    }
+  }
+  std::cout.flush();
+  return std::cout ? kDone : complain("standard output: cannot be written", kFailed);
+}
+
+int run(FitCommand& fit) {
+  if (std::string why = resolve(fit.words, fit.recognizer); !why.empty()) {
+    return complain(why, kUsage);
+  }
+  // Nothing is answered before every file has been read: a bad one costs no half-done work.
+  std::vector<ContactGroup> groups;
+  bool bad = false;
+  for (const std::string& file : fit.files) {
+    const Result<ContactTable> table = read_contact_csv(file);
+    if (!table) {
+      complain(table.error, kUsage);
+      bad = true;
+      continue;
+    }
+    for (ContactGroup& group : contact_groups(file, *table.value)) {
+      groups.push_back(std::move(group));
+    }
+  }
+  if (bad) {
+    return kUsage;
+  }
+  const bool json = fit.format.empty() ? isatty(STDOUT_FILENO) == 0 : fit.format == "json";
+  if (!fit.part.empty()) {
+    return place(fit, groups, json);
+  }
+  std::size_t number = 0;
+  for (const ContactGroup& group : groups) {
+    const v1::Recognition answer = recognise(group, fit.recognizer);
+    if (json) {
+      std::cout << json_line(answer);
+    } else {
+      std::cout << (number > 0 ? "\n" : "") << group.file << ": " << report_text(answer);
+    }
+    ++number;
+    if (!fit.plot.empty()) {
+      const std::string path = plot_path(fit.plot, number);
+      std::ofstream plot(path, std::ios::trunc);
+      if (!(plot << svg_plot(group, answer) << std::flush)) {
+        return complain(path + ": cannot be written", kFailed);
+      }
+    }
+  }
+  std::cout.flush();
+  return std::cout ? kDone : complain("standard output: cannot be written", kFailed);
+}
+
+}  // namespace
+
+void add_fit_command(CLI::App& app, int& exit_code) {
+  auto fit = std::make_shared<FitCommand>();
+  CLI::App* command = app.add_subcommand(
+      "fit",
+      "Recognise the objects of CSV files, one answer a group and object.\n"
+      "Columns: probe, patch, x_m, y_m, and optionally sigma_m, stamp_ns, object, group,\n"
+      "tip_radius_m, material_side; '#' starts a comment.");
+  command->add_option("FILE", fit->files, "CSV files; - is standard input")
+      ->required()
+      ->type_name("");
+  command
+      ->add_option(
+          "--format", fit->format,
+          "text (default on a terminal) or json (default elsewhere): one Recognition of the "
+          "wire contract a line")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->type_name("FORMAT");
+  CLI::Option* plot =
+      command
+          ->add_option(
+              "--plot", fit->plot,
+              "Draw samples, curve, 95 % band, rivals, enlarged residuals and frame as SVG; "
+              "further groups go to FILE-2.svg, ...")
+          ->type_name("FILE");
+  command
+      ->add_option(
+          "--part", fit->part,
+          "Place the closed spline of this scene file (*.textproto) instead of recognising a "
+          "curve: its pose, the segment of every patch, the samples beyond a joint. Uses "
+          "--sigma, --recognized-probability and --false-outlier-probability; json is one "
+          "PartMatch (palpate/v1/part_match.proto) a line")
+      ->excludes(plot)
+      ->type_name("FILE");
+  add_recognizer_flags(*command, *fit);
+  command->callback([fit, &exit_code] { exit_code = run(*fit); });
+}
+
+}  // namespace palpate

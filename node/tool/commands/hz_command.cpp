@@ -1,0 +1,67 @@
+// palpate hz: how often the recognizer publishes, topic by topic.
+#include <cstdio>
+#include <memory>
+
+#include "node/files/printable.h"
+#include "node/process/stop_signals.h"
+#include "node/tool/commands/topic_counts.h"
+
+namespace palpate {
+namespace {
+
+struct HzCommand {
+  Connection connection{std::string(kDefaultResultsEndpoint), "", ""};
+  double seconds = 0.0;
+};
+
+void print(const std::map<std::string, TopicCount>& counts) {
+  for (const auto& [topic, count] : counts) {
+    std::printf("%-40s %8.1f Hz  intervals %.1f to %.1f ms  %llu messages\n",
+                printable(topic).c_str(), count.rate_hz(), 1e3 * count.shortest_s,
+                1e3 * count.longest_s, static_cast<unsigned long long>(count.messages));
+  }
+  std::fflush(stdout);
+}
+
+int run(const HzCommand& command) {
+  using Clock = std::chrono::steady_clock;
+  const int stop_fd = take_stop_signals();
+  const auto start = Clock::now();
+  auto next = start + std::chrono::seconds(1);
+  const auto counts = count_topics(command.connection, [&](const auto& so_far) {
+    const auto now = Clock::now();
+    const bool end =
+        stop_requested(stop_fd) || std::ferror(stdout) != 0 ||
+        (command.seconds > 0.0 && now - start >= std::chrono::duration<double>(command.seconds));
+    if (!end && command.seconds == 0.0 && now >= next) {
+      print(so_far);
+      std::printf("\n");
+      next = now + std::chrono::seconds(1);
+    }
+    return end;
+  });
+  if (!counts) {
+    return complain(counts.error, kUsage);
+  }
+  print(*counts.value);
+  return counts.value->empty()
+             ? complain("nothing heard on " + command.connection.endpoint, kFailed)
+             : kDone;
+}
+
+}  // namespace
+
+void add_hz_command(CLI::App& app, int& exit_code) {
+  auto hz = std::make_shared<HzCommand>();
+  CLI::App* command = app.add_subcommand(
+      "hz", "Show how often the recognizer publishes on each topic, once a second.");
+  add_connection_flags(*command, "--results", "The recognizer's results endpoint", hz->connection);
+  command
+      ->add_option("--seconds", hz->seconds, "Listen so long, then show it once; 0 = for ever [s]")
+      ->check(non_negative_number())
+      ->capture_default_str()
+      ->type_name("S");
+  command->callback([hz, &exit_code] { exit_code = run(*hz); });
+}
+
+}  // namespace palpate

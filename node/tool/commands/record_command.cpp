@@ -1,0 +1,125 @@
+// palpate record: messages of the bus into a file.
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "node/process/clock.h"
+#include "node/process/stop_signals.h"
+#include "node/tool/commands/command.h"
+#include "node/tool/commands/listening_place.h"
+#include "node/tool/recording.h"
+
+namespace palpate {
+namespace {
+
+struct RecordCommand {
+  std::string file;
+  Connection connection{std::string(kDefaultResultsEndpoint), "", ""};
+  std::string contacts;
+  std::string allow_clients;
+  bool insecure = false;
+  double seconds = 0.0;
+  std::uint64_t count = 0;
+};
+
+/// Unix time, by a clock that never steps back.
+class SteadyUnixClock {
+ public:
+  std::int64_t now_ns() const {
+    return unix_start_ns_ +
+           std::chrono::nanoseconds(std::chrono::steady_clock::now() - steady_start_).count();
+  }
+
+ private:
+  std::int64_t unix_start_ns_ = unix_time_ns();
+  std::chrono::steady_clock::time_point steady_start_ = std::chrono::steady_clock::now();
+};
+
+int open(const RecordCommand& command, ListeningPlace& place) {
+  if (!command.contacts.empty()) {
+    if (!command.connection.recognizer_key.empty()) {
+      return complain(
+          "--curve-server-key: with --contacts the recorder is the server: give "
+          "--curve-secret-key and --allow-clients",
+          kUsage);
+    }
+    return place.open_as_recognizer(
+        {command.contacts, command.connection.own_key, command.allow_clients, command.insecure});
+  }
+  const auto curve = curve_of(command.connection);
+  if (!curve) {
+    return complain(curve.error, kUsage);
+  }
+  return place.open_as_client(command.connection.endpoint, *curve.value);
+}
+
+int run(const RecordCommand& command) {
+  const int stop_fd = take_stop_signals();
+  ListeningPlace place;
+  if (const int code = open(command, place); code != kDone) {
+    return code;
+  }
+  RecordingWriter writer;
+  if (const std::string error = writer.open(command.file); !error.empty()) {
+    return complain(error, kFailed);
+  }
+  using Clock = std::chrono::steady_clock;
+  std::optional<Clock::time_point> end;
+  if (command.seconds > 0.0) {
+    end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                             std::chrono::duration<double>(command.seconds));
+  }
+  const SteadyUnixClock clock;
+  RecordedMessage message;
+  std::uint64_t recorded = 0;
+  bool good = true;
+  place.listen(stop_fd, end, [&](const TwoFrames& frames) {
+    message.received_ns = clock.now_ns();
+    message.frame_count = static_cast<std::uint32_t>(frames.frame_count);
+    message.topic = frames.topic.to_string();
+    message.payload = frames.payload.to_string();
+    good = writer.write(message);
+    recorded += good ? 1 : 0;
+    return good && (command.count == 0 || recorded < command.count);
+  });
+  if (!good) {
+    return complain(command.file + ": cannot be written", kFailed);
+  }
+  std::cerr << command.file << ": " << recorded << " messages\n";
+  return kDone;
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& app, int& exit_code) {
+  auto record = std::make_shared<RecordCommand>();
+  CLI::App* command = app.add_subcommand(
+      "record",
+      "Record messages into a new file, to be replayed: the recognizer's results, or with "
+      "--contacts,\n"
+      "in the recognizer's place, what the probes publish. Ends by SIGINT, --seconds or --count.");
+  command->add_option("FILE", record->file, "File to make")->required()->type_name("");
+  add_connection_flags(*command, "--results", "The recognizer's results endpoint",
+                       record->connection);
+  command
+      ->add_option("--contacts", record->contacts,
+                   "Bind here, as the recognizer would, and record the probes instead")
+      ->type_name("ENDPOINT");
+  command
+      ->add_option("--allow-clients", record->allow_clients,
+                   "CURVE with --contacts: file of the public keys that may connect")
+      ->type_name("FILE");
+  command->add_flag("--insecure", record->insecure,
+                    "With --contacts: permit a bind beyond this machine without CURVE");
+  command->add_option("--seconds", record->seconds, "Record so long; 0 = for ever [s]")
+      ->check(non_negative_number())
+      ->capture_default_str()
+      ->type_name("S");
+  command->add_option("--count", record->count, "Record so many messages; 0 = any number")
+      ->capture_default_str()
+      ->type_name("N");
+  command->callback([record, &exit_code] { exit_code = run(*record); });
+}
+
+}  // namespace palpate

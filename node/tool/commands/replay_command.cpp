@@ -1,0 +1,333 @@
+// palpate replay: the contacts of a recording or of a CSV file, published as by their probes.
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "node/client/contact_publisher.h"
+#include "node/csv/contact_csv.h"
+#include "node/process/clock.h"
+#include "node/process/stop_signals.h"
+#include "node/tool/commands/command.h"
+#include "node/tool/contact_groups.h"
+#include "node/tool/recording.h"
+#include "node/wire/topics.h"
+
+namespace palpate {
+namespace {
+
+struct ReplayCommand {
+  std::string file;
+  Connection connection{std::string(kDefaultContactsEndpoint), "", ""};
+  double speed = 1.0;
+  bool fast = false;
+  bool keep_objects = false;
+  double wait_s = 10.0;
+  double rate_hz = 250.0;
+  std::size_t batch_samples = 10;
+  double sigma_m = 0.0;
+};
+
+struct TimedMessage {
+  std::int64_t due_ns = 0;  ///< on the recording's clock
+  std::string probe;
+  v1::ContactBatch batch;
+};
+
+/// Messages one after the other; false at the end.
+using Messages = std::function<bool(TimedMessage&)>;
+
+/// The contact messages of a recording, read as they are needed.
+class RecordedContacts {
+ public:
+  explicit RecordedContacts(const std::string& path) : path_(path) {}
+
+  std::string open() {
+    if (std::string error = reader_.open(path_); !error.empty()) {
+      return error;
+    }
+    has_first_ = read(first_);
+    return has_first_ ? "" : path_ + ": no contact messages in it (record them with --contacts)";
+  }
+
+  bool next(TimedMessage& message) {
+    if (!has_first_) {
+      return read(message);
+    }
+    has_first_ = false;
+    message = std::move(first_);
+    return true;
+  }
+
+  /// Says what has been left out; false where something was damaged.
+  bool report() const {
+    const bool whole = reader_.damaged() == 0 && !reader_.breaks_off();
+    if (reader_.damaged() > 0) {
+      complain(path_ + ": damaged in " + std::to_string(reader_.damaged()) + " places, " +
+                   std::to_string(reader_.skipped_bytes()) + " bytes skipped",
+               kDone);
+    }
+    if (reader_.breaks_off()) {
+      complain(path_ + ": breaks off within a message; what is before it is replayed", kDone);
+    }
+    if (malformed_ > 0) {
+      complain(path_ + ": " + std::to_string(malformed_) +
+                   " messages left out: recorded as they came, they are no ContactBatch",
+               kDone);
+    }
+    return whole;
+  }
+
+ private:
+  bool read(TimedMessage& message) {
+    while (reader_.next(recorded_)) {
+      const std::optional<Topic> topic = parse_topic(recorded_.topic);
+      if (recorded_.frame_count == 2 && topic && topic->kind != TopicKind::Contact) {
+        continue;
+      }
+      if (recorded_.frame_count != 2 || !topic ||
+          !message.batch.ParseFromString(recorded_.payload)) {
+        ++malformed_;
+        continue;
+      }
+      message.due_ns = recorded_.received_ns;
+      message.probe = topic->name;
+      return true;
+    }
+    return false;
+  }
+
+  std::string path_;
+  RecordingReader reader_;
+  RecordedMessage recorded_;
+  TimedMessage first_;
+  bool has_first_ = false;
+  std::uint64_t malformed_ = 0;
+};
+
+v1::MaterialSide to_wire_side(MaterialSide side) {
+  return side == MaterialSide::Left    ? v1::MATERIAL_SIDE_LEFT
+         : side == MaterialSide::Right ? v1::MATERIAL_SIDE_RIGHT
+                                       : v1::MATERIAL_SIDE_UNSPECIFIED;
+}
+
+/// Batches of consecutive samples of one patch, due with their last one: by its stamp, or after so
+/// many sample periods where the file has no stamps.
+Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
+  using Batches = Result<std::vector<TimedMessage>>;
+  const Result<ContactTable> table = read_contact_csv(command.file);
+  if (!table) {
+    return Batches::fail(table.error);
+  }
+  // Times may count from 0.
+  const bool stamped = std::any_of(table.value->rows.begin(), table.value->rows.end(),
+                                   [](const ContactRow& row) { return row.sample.stamp_ns > 0; });
+  const double period_ns = 1e9 / command.rate_hz;
+  std::vector<TimedMessage> messages;
+  std::map<std::string, std::int64_t> taken;  // samples, by probe
+  for (const ContactGroup& group : contact_groups(command.file, *table.value)) {
+    for (const ContactRun& run : group.runs) {
+      const std::string& probe = group.probes[run.context.probe];
+      for (std::size_t i = 0; i < run.samples.size(); ++i) {
+        if (i % command.batch_samples == 0) {
+          messages.push_back({0, probe, {}});
+          v1::ContactBatch& batch = messages.back().batch;
+          batch.set_group(group.name);
+          batch.set_object(group.object);
+          batch.set_patch(run.context.patch);
+          batch.set_tip_radius_m(run.context.tip_radius_m);
+          batch.set_material_side(to_wire_side(run.context.material_side));
+        }
+        const ContactSample& from = run.samples[i];
+        v1::ContactSample& to = *messages.back().batch.add_samples();
+        to.set_x_m(from.position_m.x());
+        to.set_y_m(from.position_m.y());
+        to.set_sigma_m(from.sigma_m > 0.0 ? from.sigma_m : command.sigma_m);
+        to.set_stamp_ns(stamped ? from.stamp_ns
+                                : std::llround(period_ns * static_cast<double>(++taken[probe])));
+        messages.back().due_ns = to.stamp_ns();
+      }
+    }
+  }
+  std::stable_sort(
+      messages.begin(), messages.end(),
+      [](const TimedMessage& a, const TimedMessage& b) { return a.due_ns < b.due_ns; });
+  return messages.empty() ? Batches::fail(command.file + ": no samples")
+                          : Batches::ok(std::move(messages));
+}
+
+using Clock = std::chrono::steady_clock;
+
+/// Sleeps until then; true where a stop is asked for.
+bool sleep_until(Clock::time_point due, int stop_fd) {
+  for (;;) {
+    constexpr std::chrono::nanoseconds kLongest = std::chrono::milliseconds(100);
+    const std::chrono::nanoseconds left = due - Clock::now();
+    const std::int64_t wait = std::clamp(left, std::chrono::nanoseconds(0), kLongest).count();
+    const timespec timeout{0, wait};
+    pollfd stop{stop_fd, POLLIN, 0};
+    if (::ppoll(&stop, 1, &timeout, nullptr) > 0) {
+      return true;
+    }
+    if (left.count() <= 0) {
+      return false;
+    }
+  }
+}
+
+/// When a recorded time comes again. Stamps are a stranger's: none overflows, and none makes us
+/// wait for ever.
+class Pace {
+ public:
+  Pace(std::int64_t first_ns, double scale) : first_ns_(first_ns), scale_(scale) {}
+
+  Clock::time_point due(std::int64_t recorded_ns) {
+    // A recorded clock that steps back, or ahead by more than a day, makes no pause.
+    constexpr double kLongestPauseNs = 24.0 * 3600.0 * 1e9;
+    const double step = static_cast<double>(recorded_ns) -
+                        static_cast<double>(std::exchange(last_ns_, recorded_ns));
+    if (started_ && step > 0.0 && step <= kLongestPauseNs) elapsed_ns_ += step;
+    started_ = true;
+    return start_ + std::chrono::nanoseconds(to_ns(scale_ * elapsed_ns_));
+  }
+
+  /// The Unix time that stands for a recorded one.
+  std::int64_t stamp_ns(std::int64_t recorded_ns) const {
+    const double since = static_cast<double>(recorded_ns) - static_cast<double>(first_ns_);
+    return to_ns(static_cast<double>(unix_start_ns_) + scale_ * since);
+  }
+
+ private:
+  static std::int64_t to_ns(double value) {
+    constexpr double kMost = 9.2e18;  // what an int64 can hold, and a little less
+    return std::llround(std::clamp(value, -kMost, kMost));
+  }
+
+  Clock::time_point start_ = Clock::now();
+  std::int64_t unix_start_ns_ = unix_time_ns();
+  std::int64_t first_ns_;
+  std::int64_t last_ns_ = 0;
+  double scale_;
+  double elapsed_ns_ = 0.0;
+  bool started_ = false;
+};
+
+int run(const ReplayCommand& command) {
+  const auto curve = curve_of(command.connection);
+  if (!curve) {
+    return complain(curve.error, kUsage);
+  }
+  std::optional<RecordedContacts> recording;
+  std::vector<TimedMessage> batches;
+  Messages next;
+  if (is_recording(command.file)) {
+    recording.emplace(command.file);
+    if (const std::string error = recording->open(); !error.empty()) {
+      return complain(error, kUsage);
+    }
+    next = [&](TimedMessage& message) { return recording->next(message); };
+  } else {
+    Result<std::vector<TimedMessage>> table = from_csv(command);
+    if (!table) {
+      return complain(table.error, kUsage);
+    }
+    batches = std::move(*table.value);
+    next = [&, index = std::size_t{0}](TimedMessage& message) mutable {
+      if (index == batches.size()) return false;
+      message = std::move(batches[index++]);
+      return true;
+    };
+  }
+  const int stop_fd = take_stop_signals();
+  client::ContactPublisherOptions options;
+  options.endpoint = command.connection.endpoint;
+  options.curve = *curve.value;
+  options.high_water_mark = command.fast ? 100000 : 1000;
+  client::ContactPublisher publisher(options);
+  const auto give_up =
+      std::chrono::steady_clock::now() + std::chrono::duration<double>(command.wait_s);
+  while (!publisher.wait_for_recognizer(std::chrono::milliseconds(50))) {
+    if (stop_requested(stop_fd)) {
+      return kDone;
+    }
+    if (std::chrono::steady_clock::now() >= give_up) {
+      return complain("no recognizer listens at " + command.connection.endpoint, kFailed);
+    }
+  }
+  // Objects of the recording become new ones: a second replay is another touch of the part.
+  const auto first_object = static_cast<std::uint64_t>(unix_time_ns() / 1'000'000);
+  std::map<std::uint64_t, std::uint64_t> objects;
+  std::optional<Pace> pace;
+  std::uint64_t messages = 0;
+  std::uint64_t refused = 0;
+  std::uint64_t samples = 0;
+  for (TimedMessage message; next(message);) {
+    if (!pace) pace.emplace(message.due_ns, command.fast ? 0.0 : 1.0 / command.speed);
+    if (sleep_until(pace->due(message.due_ns), stop_fd)) {
+      break;
+    }
+    for (v1::ContactSample& sample : *message.batch.mutable_samples()) {
+      sample.set_stamp_ns(command.fast ? unix_time_ns() : pace->stamp_ns(sample.stamp_ns()));
+    }
+    if (!command.keep_objects) {
+      const auto number =
+          objects.try_emplace(message.batch.object(), first_object + objects.size());
+      message.batch.set_object(number.first->second);
+    }
+    ++messages;
+    samples += static_cast<std::uint64_t>(message.batch.samples_size());
+    refused += publisher.publish(message.probe, message.batch) ? 0 : 1;
+  }
+  std::cerr << command.file << ": " << messages << " messages, " << samples << " samples";
+  std::cerr << (refused > 0 ? ", " + std::to_string(refused) + " not taken\n" : "\n");
+  const bool is_whole = !recording || recording->report();
+  return refused == 0 && is_whole ? kDone : kFailed;
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, int& exit_code) {
+  auto replay = std::make_shared<ReplayCommand>();
+  CLI::App* command = app.add_subcommand("replay",
+                                         "Publish the contacts of a recording (palpate record "
+                                         "--contacts) or of a CSV file as their probes\n"
+                                         "would: at their own pace, stamped anew, as new objects.");
+  command->add_option("FILE", replay->file, "Recording or CSV file")->required()->type_name("");
+  add_connection_flags(*command, "--contacts", "The recognizer's contacts endpoint",
+                       replay->connection);
+  command->add_option("--speed", replay->speed, "Times as fast as recorded")
+      ->check(positive_number())
+      ->capture_default_str()
+      ->type_name("FACTOR");
+  command->add_flag("--fast", replay->fast, "As fast as possible");
+  command->add_flag("--keep-objects", replay->keep_objects, "Keep the recorded object numbers");
+  command->add_option("--wait", replay->wait_s, "Seconds to wait for a recognizer before giving up")
+      ->check(non_negative_number())
+      ->capture_default_str()
+      ->type_name("S");
+  command
+      ->add_option("--rate", replay->rate_hz, "CSV without stamps: samples a second of each probe")
+      ->check(positive_number())
+      ->capture_default_str()
+      ->type_name("HZ");
+  command->add_option("--batch", replay->batch_samples, "CSV: samples of a message")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str()
+      ->type_name("N");
+  command
+      ->add_option("--sigma", replay->sigma_m,
+                   "CSV: noise of samples that bring none; 0 = not known [m]")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str()
+      ->type_name("METRES");
+  command->callback([replay, &exit_code] { exit_code = run(*replay); });
+}
+
+}  // namespace palpate

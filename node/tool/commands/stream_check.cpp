@@ -1,0 +1,311 @@
+#include "node/tool/commands/stream_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/local/noise.h"
+#include "node/tool/text/quantity.h"
+
+namespace palpate {
+namespace {
+
+/// Samples of a patch that are kept for judgement: enough for every estimate below.
+constexpr std::size_t kMostKept = 4096;
+constexpr std::size_t kMostPatches = 256;
+/// More than stand around one part.
+constexpr std::size_t kMostProbes = 64;
+
+std::string length_text(double metres) {
+  const LengthUnit unit = length_unit_for(metres);
+  return number(metres * unit.per_m) + " " + std::string(unit.name);
+}
+
+std::string count_text(std::uint64_t count, const char* what) {
+  return std::to_string(count) + " " + what;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<double> spacings(const std::vector<Vec2>& positions) {
+  std::vector<double> result;
+  for (std::size_t i = 1; i < positions.size(); ++i) {
+    result.push_back((positions[i] - positions[i - 1]).norm());
+  }
+  return result;
+}
+
+std::string cure_of(v1::RejectReason reason) {
+  switch (reason) {
+    case v1::REJECT_REASON_FRAMES:
+      return "send two frames: the topic, then one ContactBatch";
+    case v1::REJECT_REASON_TOPIC:
+      return "publish on contact/<probe>/ with a name of 1 to 64 of A-Z a-z 0-9 _ . -, slash at "
+             "the end";
+    case v1::REJECT_REASON_TOO_LARGE:
+    case v1::REJECT_REASON_TOO_MANY_SAMPLES:
+      return "send fewer samples a message";
+    case v1::REJECT_REASON_PARSE:
+      return "serialise palpate.v1.ContactBatch of proto/palpate/v1/contact.proto";
+    case v1::REJECT_REASON_HEADER:
+      return "fill in header";
+    case v1::REJECT_REASON_SOURCE:
+      return "set header.source to the probe's name in the topic";
+    case v1::REJECT_REASON_GROUP_NAME:
+    case v1::REJECT_REASON_FRAME_NAME:
+      return "names are 1 to 64 of A-Z a-z 0-9 _ . -";
+    case v1::REJECT_REASON_EMPTY:
+      return "send no batch without samples";
+    case v1::REJECT_REASON_NOT_FINITE:
+      return "leave out samples that are NaN or infinite";
+    case v1::REJECT_REASON_COORDINATE:
+      return "coordinates are metres";
+    case v1::REJECT_REASON_SIGMA:
+      return "sigma_m is a standard deviation in metres, 0 where it is not known";
+    case v1::REJECT_REASON_TIP_RADIUS:
+      return "tip_radius_m is in metres, 0 for surface points";
+    case v1::REJECT_REASON_MATERIAL_SIDE:
+      return "use a value of MaterialSide";
+    default:
+      return "see RejectReason in node_status.proto";
+  }
+}
+
+}  // namespace
+
+void StreamCheck::take(std::size_t frame_count, std::string_view topic, std::string_view payload,
+                       std::int64_t now_unix_ns) {
+  ++messages_;
+  const v1::RejectReason reason = decoder_.decode(frame_count, topic, payload);
+  if (reason != v1::REJECT_REASON_UNSPECIFIED) {
+    const bool is_known = probes_.contains(decoder_.probe()) || rejected_.size() < kMostProbes;
+    ++rejected_[{std::string(is_known ? decoder_.probe() : std::string_view()), reason}];
+    return;
+  }
+  const ContactMessage& message = decoder_.message();
+  if (probes_.size() >= kMostProbes && !probes_.contains(message.probe)) {
+    ++rejected_[{std::string(), v1::REJECT_REASON_TOO_MANY_PROBES}];
+    return;
+  }
+  Probe& probe = probes_[std::string(message.probe)];
+  probe.without_epoch += message.epoch == 0 ? 1 : 0;
+  if (!is_news(probe.sequence.take(message.epoch, message.seq))) {
+    ++rejected_[{std::string(message.probe), v1::REJECT_REASON_SEQUENCE}];
+    return;
+  }
+  ++probe.messages;
+  probe.samples += message.samples.size();
+  const bool is_new_patch = probe.patches.empty() || probe.patches.back().number != message.patch ||
+                            probe.patches.back().object != message.object;
+  if (is_new_patch) {
+    if (probe.patches.size() == kMostPatches) {
+      probe.patches.erase(probe.patches.begin());
+    }
+    probe.patches.push_back({message.patch, message.object, message.tip_radius_m, {}, 0.0, 0});
+  }
+  Patch& patch = probe.patches.back();
+  for (const ContactSample& sample : message.samples) {
+    if (patch.positions.size() < kMostKept) {
+      patch.positions.push_back(sample.position_m);
+      patch.sigma_squares += sample.sigma_m * sample.sigma_m;
+      patch.with_sigma += sample.sigma_m > 0.0 ? 1 : 0;
+    }
+    if (sample.stamp_ns <= 0) {
+      ++probe.stamps_missing;
+      continue;
+    }
+    constexpr std::int64_t kClockTolerance = 50'000'000;  // between two clocks [ns]
+    probe.stamps_backwards += sample.stamp_ns < probe.last_stamp_ns ? 1 : 0;
+    probe.stamps_in_future += sample.stamp_ns > now_unix_ns + kClockTolerance ? 1 : 0;
+    probe.last_stamp_ns = sample.stamp_ns;
+    probe.largest_delay_ns = std::max(probe.largest_delay_ns, now_unix_ns - sample.stamp_ns);
+  }
+}
+
+void StreamCheck::judge_patches(const std::string& name, const Probe& probe,
+                                std::vector<Finding>* findings) const {
+  const auto add = [&](Severity severity, std::string what, std::string cure) {
+    findings->push_back({severity, name, std::move(what), std::move(cure)});
+  };
+  double extent = 0.0;
+  std::size_t longest = 0;
+  std::size_t jumps = 0;
+  std::size_t repeated = 0;
+  std::size_t holes = 0;
+  double widest = 0.0;  // hole, in typical spacings
+  std::size_t samples = 0;
+  double noise_ratio = 0.0;  // largest of estimated over stated, or of stated over estimated
+  double estimated_noise = 0.0;
+  double stated_noise = 0.0;
+  double coarsest = 0.0;
+  for (const Patch& patch : probe.patches) {
+    longest = std::max(longest, patch.positions.size());
+    samples += patch.positions.size();
+    if (patch.positions.size() < 2) {
+      continue;
+    }
+    Vec2 low = patch.positions.front();
+    Vec2 high = low;
+    for (const Vec2& p : patch.positions) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    extent = std::max(extent, (high - low).norm());
+    std::vector<double> steps = spacings(patch.positions);
+    const auto zero = static_cast<std::size_t>(std::count(steps.begin(), steps.end(), 0.0));
+    repeated += zero;
+    std::erase(steps, 0.0);
+    if (steps.empty()) {
+      continue;
+    }
+    const double typical = median(steps);
+    // A lift-off is many spacings and of the size of the part; a spike comes back at once.
+    constexpr double kJumpSpacings = 20.0;
+    for (std::size_t i = 0; i + 1 < patch.positions.size(); ++i) {
+      const double step = (patch.positions[i + 1] - patch.positions[i]).norm();
+      const bool stays = i + 2 >= patch.positions.size() ||
+                         (patch.positions[i + 2] - patch.positions[i]).norm() > 0.5 * step;
+      jumps += step > kJumpSpacings * typical && stays ? 1 : 0;
+    }
+    // Noise alone widens a spacing too: by three standard deviations of a difference at most.
+    constexpr double kHoleSpacings = 3.0;
+    constexpr double kNoiseWidths = 3.0;
+    const NoiseEstimate noise = estimate_noise(patch.positions);
+    const double by_noise =
+        noise.status == LocalStatus::Ok ? kNoiseWidths * std::sqrt(2.0) * noise.sigma_m : 0.0;
+    for (const double step : steps) {
+      if (step > kHoleSpacings * typical + by_noise && step <= kJumpSpacings * typical) {
+        ++holes;
+        widest = std::max(widest, step / typical);
+      }
+    }
+    coarsest = std::max(coarsest, typical / std::max((high - low).norm(), typical));
+    if (noise.status == LocalStatus::Ok && noise.dof > 20 && patch.with_sigma > 0) {
+      const double stated = std::sqrt(patch.sigma_squares / static_cast<double>(patch.with_sigma));
+      const double ratio = std::max(noise.sigma_m / stated, stated / noise.sigma_m);
+      if (ratio > noise_ratio) {
+        noise_ratio = ratio;
+        estimated_noise = noise.sigma_m;
+        stated_noise = stated;
+      }
+    }
+  }
+  constexpr double kLargestPart = 2.0;  // that a touch probe strokes [m]
+  constexpr double kSmallestPart = 1e-5;
+  if (extent > kLargestPart) {
+    add(Severity::Warning, "a patch extends over " + length_text(extent),
+        "coordinates are metres: were these millimetres?");
+  }
+  constexpr double kLargestNoise = 1e-3;  // of a touch probe [m]
+  if (estimated_noise > kLargestNoise || stated_noise > kLargestNoise) {
+    add(Severity::Error,
+        "noise of " + length_text(std::max(estimated_noise, stated_noise)) + " is no touch probe's",
+        "coordinates and sigma_m are metres: were these millimetres?");
+  }
+  if (extent > 0.0 && extent < kSmallestPart) {
+    add(Severity::Warning, "the longest patch extends over " + length_text(extent),
+        "coordinates are metres: were these kilometres, or does the probe dwell?");
+  }
+  if (jumps > 0) {
+    add(Severity::Error, count_text(jumps, "jumps of more than 20 spacings within a patch"),
+        "count patch up by one at each lift-off");
+  }
+  constexpr std::size_t kShort = 20;
+  if (longest < kShort) {
+    add(Severity::Warning, "the longest patch has " + count_text(longest, "samples"),
+        "20 samples or more along an arc are needed for its curvature; 100 are good");
+  }
+  constexpr double kCoarse = 1.0 / 15.0;
+  if (longest >= kShort && coarsest > kCoarse) {
+    add(Severity::Note,
+        "samples lie as coarse as a " + number(1.0 / coarsest) + "th of their patch",
+        "sample more densely: noise averages out over the samples");
+  }
+  constexpr double kFewHoles = 0.01;  // of the samples: dropouts that do no harm
+  if (holes > 0) {
+    add(static_cast<double>(holes) > kFewHoles * static_cast<double>(samples) ? Severity::Warning
+                                                                              : Severity::Note,
+        count_text(holes, "holes of 3 to ") + number(widest) + " typical spacings within a patch",
+        "publish every contact at an even pace along the arc; a real lift-off needs a new patch");
+  }
+  if (repeated > 0) {
+    add(Severity::Note, count_text(repeated, "samples at exactly the place of the one before"),
+        "they say nothing new and are dropped; publish contacts while the probe moves");
+  }
+  constexpr double kNoiseOff = 2.0;
+  if (noise_ratio > kNoiseOff) {
+    add(Severity::Warning,
+        "sigma_m says " + length_text(stated_noise) + ", the samples scatter by " +
+            length_text(estimated_noise),
+        "state the noise as it is, or 0 to have it estimated: covariances and classes depend on "
+        "it");
+  } else if (noise_ratio > 0.0) {
+    add(Severity::Note,
+        "sigma_m says " + length_text(stated_noise) + ", the samples scatter by " +
+            length_text(estimated_noise),
+        "as it should be");
+  }
+  if (samples > 0 && noise_ratio == 0.0) {
+    add(Severity::Note, "sigma_m is 0: the noise is estimated",
+        "state it where it is known: fewer samples then suffice");
+  }
+}
+
+std::vector<Finding> StreamCheck::findings() const {
+  std::vector<Finding> findings;
+  for (const auto& [key, count] : rejected_) {
+    findings.push_back(
+        {Severity::Error, key.first,
+         count_text(count, "messages rejected: ") + v1::RejectReason_Name(key.second),
+         cure_of(key.second)});
+  }
+  for (const auto& entry : probes_) {
+    const std::string& name = entry.first;
+    const Probe& probe = entry.second;
+    const auto add = [&](Severity severity, std::string what, std::string cure) {
+      findings.push_back({severity, name, std::move(what), std::move(cure)});
+    };
+    add(Severity::Note,
+        count_text(probe.messages, "messages, ") + count_text(probe.samples, "samples, ") +
+            count_text(probe.patches.size(), "patches"),
+        "");
+    if (probe.without_epoch > 0) {
+      add(Severity::Error, count_text(probe.without_epoch, "messages without header.epoch"),
+          "set it to a random number at each start: else a restart looks like old messages");
+    }
+    if (probe.sequence.gaps() > 0) {
+      add(Severity::Warning,
+          count_text(probe.sequence.gaps(), "gaps in seq, ") +
+              count_text(probe.sequence.missing(), "messages lost"),
+          "count seq up by one a message from 0; raise the high-water mark where messages are "
+          "dropped");
+    }
+    if (probe.stamps_missing > 0) {
+      add(Severity::Warning, count_text(probe.stamps_missing, "samples without stamp_ns"),
+          "stamp each sample with Unix time in nanoseconds, when it was taken");
+    }
+    if (probe.stamps_backwards > 0) {
+      add(Severity::Error, count_text(probe.stamps_backwards, "stamps earlier than the one before"),
+          "send samples in the order in which they were taken");
+    }
+    if (probe.stamps_in_future > 0) {
+      add(Severity::Error, count_text(probe.stamps_in_future, "stamps in the future"),
+          "stamp_ns is Unix time in nanoseconds; synchronise the clocks");
+    }
+    constexpr std::int64_t kLongAgo = 3'600'000'000'000;
+    if (probe.largest_delay_ns > kLongAgo) {
+      add(Severity::Error, "stamps more than an hour old",
+          "stamp_ns is Unix time in nanoseconds, not time since the start");
+    }
+    judge_patches(name, probe, &findings);
+  }
+  std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
+    return static_cast<int>(a.severity) > static_cast<int>(b.severity);
+  });
+  return findings;
+}
+
+}  // namespace palpate

@@ -1,0 +1,67 @@
+// What is wrong with a probe's stream, told to its author.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "node/intake/ingest.h"
+#include "node/intake/sequence_tracker.h"
+
+namespace palpate {
+
+enum class Severity { Note, Warning, Error };
+
+struct Finding {
+  Severity severity = Severity::Note;
+  std::string probe;  ///< empty = no probe's in particular
+  std::string what;   ///< what was seen, with its numbers
+  std::string cure;   ///< what to do about it
+};
+
+/// Takes messages as they come off the wire, judges them at the end.
+class StreamCheck {
+ public:
+  /// One message that arrived at `now_unix_ns`.
+  void take(std::size_t frame_count, std::string_view topic, std::string_view payload,
+            std::int64_t now_unix_ns);
+
+  /// Worst first.
+  std::vector<Finding> findings() const;
+
+  std::uint64_t messages() const { return messages_; }
+
+ private:
+  struct Patch {
+    std::uint32_t number = 0;
+    std::uint64_t object = 0;
+    double tip_radius_m = 0.0;
+    std::vector<Vec2> positions;
+    double sigma_squares = 0.0;
+    std::size_t with_sigma = 0;
+  };
+  struct Probe {
+    SequenceTracker sequence;
+    std::uint64_t samples = 0;
+    std::uint64_t messages = 0;
+    std::uint64_t without_epoch = 0;
+    std::uint64_t stamps_backwards = 0;
+    std::uint64_t stamps_missing = 0;
+    std::uint64_t stamps_in_future = 0;
+    std::int64_t last_stamp_ns = 0;
+    std::int64_t largest_delay_ns = 0;
+    std::vector<Patch> patches;
+  };
+
+  void judge_patches(const std::string& name, const Probe& probe,
+                     std::vector<Finding>* findings) const;
+
+  ContactDecoder decoder_;
+  std::uint64_t messages_ = 0;
+  std::map<std::pair<std::string, v1::RejectReason>, std::uint64_t> rejected_;
+  std::map<std::string, Probe, std::less<>> probes_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,71 @@
+#include "node/tool/commands/topic_counts.h"
+
+#include <algorithm>
+
+#include "node/wire/endpoint.h"
+#include "node/wire/socket.h"
+
+namespace palpate {
+namespace {
+
+// Ten times what a recognizer with all its groups and probes publishes on.
+constexpr std::size_t kMostTopics = 10'000;
+
+}  // namespace
+
+double TopicCount::rate_hz() const {
+  const double span = std::chrono::duration<double>(last - first).count();
+  return messages > 1 && span > 0.0 ? static_cast<double>(messages - 1) / span : 0.0;
+}
+
+void TopicCount::take(std::size_t size, std::chrono::steady_clock::time_point now) {
+  if (messages == 0) {
+    first = now;
+  } else {
+    const double interval = std::chrono::duration<double>(now - last).count();
+    shortest_s = messages == 1 ? interval : std::min(shortest_s, interval);
+    longest_s = std::max(longest_s, interval);
+  }
+  last = now;
+  ++messages;
+  bytes += size;
+}
+
+Result<std::map<std::string, TopicCount>> count_topics(
+    const Connection& connection,
+    const std::function<bool(const std::map<std::string, TopicCount>&)>& until) {
+  using Counts = Result<std::map<std::string, TopicCount>>;
+  const auto curve = curve_of(connection);
+  if (!curve) {
+    return Counts::fail(curve.error);
+  }
+  const Result<Endpoint> endpoint = parse_endpoint(connection.endpoint, /*bind_by_default=*/false);
+  if (!endpoint) {
+    return Counts::fail(endpoint.error);
+  }
+  zmq::context_t context(1);
+  SocketSettings settings;
+  settings.curve_client = *curve.value;
+  zmq::socket_t socket = make_socket(context, zmq::socket_type::sub, settings);
+  socket.set(zmq::sockopt::subscribe, "");
+  if (const std::string error = attach(socket, *endpoint.value); !error.empty()) {
+    return Counts::fail(error);
+  }
+  std::map<std::string, TopicCount> counts;
+  std::vector<zmq::pollitem_t> items{{socket.handle(), 0, ZMQ_POLLIN, 0}};
+  TwoFrames message;
+  while (!until(counts)) {
+    constexpr int kStepMs = 50;
+    poll(items, kStepMs);
+    constexpr int kMostAtOnce = 1000;
+    const auto turn = std::chrono::steady_clock::now() + std::chrono::milliseconds(kStepMs);
+    drain(socket, message, kMostAtOnce, turn, [&](const TwoFrames&) {
+      std::string topic = message.topic.to_string();
+      if (counts.size() >= kMostTopics && !counts.contains(topic)) topic = "(further topics)";
+      counts[topic].take(message.payload.size(), std::chrono::steady_clock::now());
+    });
+  }
+  return Counts::ok(std::move(counts));
+}
+
+}  // namespace palpate

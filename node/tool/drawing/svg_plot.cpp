@@ -1,0 +1,384 @@
+#include "node/tool/drawing/svg_plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+
+#include "node/tool/drawing/drawing.h"
+#include "node/tool/drawing/enlarged_residuals.h"
+#include "node/tool/drawing/svg_table.h"
+#include "node/tool/drawing/visible_samples.h"
+#include "node/tool/text/advice.h"
+#include "node/tool/text/quantity.h"
+#include "node/tool/text/recognition_text.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kWidth = 1024.0;  // of the document, all in pixels
+constexpr double kHeight = 680.0;
+constexpr double kLeft = 80.0;
+constexpr double kTop = 24.0;
+constexpr double kRight = 324.0;  // the table's place
+constexpr double kBottom = 60.0;
+
+constexpr const char* kPatchColours[] = {"#0072b2", "#d55e00", "#008f6b", "#a64d8b",
+                                         "#9a7200", "#3a7f9c", "#7a4b2b", "#5b5b5b"};
+constexpr const char* kCurveColour = "#1b1f24";
+constexpr const char* kBandColour = "#2f7fd6";
+constexpr const char* kRivalColour = "#8a5cc2";
+constexpr const char* kResidualColour = "#c2185b";
+constexpr const char* kContactColour = "#b36b00";
+constexpr const char* kXAxisColour = "#c00000";
+constexpr const char* kYAxisColour = "#008000";
+
+/// From metres to pixels, equal scales on both axes, y upwards.
+class View {
+ public:
+  View(const Vec2& low, const Vec2& high) {
+    const Vec2 centre = 0.5 * (low + high);
+    const Vec2 extent = (high - low).cwiseMax(1e-12 * (1.0 + centre.cwiseAbs().maxCoeff()));
+    const Vec2 room(kWidth - kLeft - kRight, kHeight - kTop - kBottom);
+    constexpr double kFilled = 0.9;
+    pixels_per_m_ = kFilled * (room.array() / extent.array()).minCoeff();
+    half_ = 0.5 * room / pixels_per_m_;
+    centre_ = centre;
+  }
+
+  Vec2 operator()(const Vec2& p) const {
+    return {kLeft + (p.x() - low().x()) * pixels_per_m_,
+            kHeight - kBottom - (p.y() - low().y()) * pixels_per_m_};
+  }
+
+  Vec2 low() const { return centre_ - half_; }
+  Vec2 high() const { return centre_ + half_; }
+  double metres(double pixels) const { return pixels / pixels_per_m_; }
+
+ private:
+  Vec2 centre_;
+  Vec2 half_;
+  double pixels_per_m_ = 1.0;
+};
+
+/// 1, 2 or 5 times a power of ten, for about `count` ticks over the length.
+double tick_step(double length, double count) {
+  const double rough = length / count;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= rough) {
+      return factor * power;
+    }
+  }
+  return 10.0 * power;
+}
+
+View view_of(const ContactGroup& group, const v1::Recognition& answer, const Drawing& drawing) {
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
+  Vec2 high = -low;
+  const auto include = [&](const Vec2& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  };
+  for (const ContactRun& run : group.runs) {
+    for (const ContactSample& sample : run.samples) include(sample.position_m);
+  }
+  if (!drawing.curve) return View(low, high);
+  // A curve that is not far larger than what was touched is shown whole; of another one, as of an
+  // arc that is not yet determined, what is near.
+  const double size = (high - low).maxCoeff();
+  const Vec2 centre = 0.5 * (low + high);
+  const auto distance = [&](const Vec2& p) { return (p - centre).cwiseAbs().maxCoeff() / size; };
+  constexpr double kWhole = 3.0;  // sizes of what was touched
+  constexpr double kNear = 1.0;
+  double furthest = 0.0;
+  for (const CurvePlace& place : drawing.curve->places) {
+    furthest = std::max(furthest, distance(place.position));
+  }
+  const double shown = furthest < kWhole ? kWhole : kNear;
+  for (const CurvePlace& place : drawing.curve->places) {
+    if (distance(place.position) < shown) include(place.position);
+  }
+  const Vec2 origin(answer.pose().x_m(), answer.pose().y_m());
+  if (answer.curve_class() != v1::CURVE_CLASS_LINE && distance(origin) < shown) include(origin);
+  return View(low, high);
+}
+
+std::string axes_svg(const View& view) {
+  const LengthUnit unit = length_unit_for((view.high() - view.low()).maxCoeff());
+  std::string svg;
+  const double step = tick_step((view.high().x() - view.low().x()) * unit.per_m, 7.0);
+  for (int axis = 0; axis < 2; ++axis) {
+    const double from = view.low()[axis] * unit.per_m;
+    const double to = view.high()[axis] * unit.per_m;
+    for (double k = std::ceil(from / step); k * step <= to; k += 1.0) {
+      Vec2 place = view.low();
+      place[axis] = k * step / unit.per_m;
+      const Vec2 at = view(place);
+      const std::string label = number(k * step == 0.0 ? 0.0 : k * step);
+      if (axis == 0) {
+        svg += formatted("<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n",
+                         at.x(), kTop, at.x(), kHeight - kBottom);
+        svg += formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%s</text>\n", at.x(),
+                         kHeight - kBottom + 18.0, label.c_str());
+      } else {
+        svg += formatted("<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n",
+                         kLeft, at.y(), kWidth - kRight, at.y());
+        svg += formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%s</text>\n", kLeft - 6.0,
+                         at.y() + 4.0, label.c_str());
+      }
+    }
+  }
+  const std::string name(unit.name);
+  svg += formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">x [%s]</text>\n",
+                   0.5 * (kLeft + kWidth - kRight), kHeight - 18.0, name.c_str());
+  svg += formatted(
+      "<text x=\"20\" y=\"%.1f\" text-anchor=\"middle\" transform=\"rotate(-90 20 %.1f)\">y "
+      "[%s]</text>\n",
+      0.5 * (kTop + kHeight - kBottom), 0.5 * (kTop + kHeight - kBottom), name.c_str());
+  svg += formatted(
+      "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"none\" "
+      "stroke=\"#888\"/>\n",
+      kLeft, kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom);
+  return svg;
+}
+
+/// SVG's numbers are single precision: what is far outside is cut.
+std::string point_text(const View& view, const Vec2& place) {
+  constexpr double kFar = 1e5;
+  const Vec2 at = view(place).cwiseMin(kFar).cwiseMax(-kFar);
+  return formatted("%.2f,%.2f ", at.x(), at.y());
+}
+
+std::string polyline(const View& view, const DrawnCurve& curve, const char* style) {
+  std::string svg =
+      "<polyline clip-path=\"url(#picture)\" fill=\"none\" " + std::string(style) + " points=\"";
+  for (const CurvePlace& place : curve.places) svg += point_text(view, place.position);
+  return svg + "\"/>\n";
+}
+
+/// The area between the band's borders, as a closed line to and fro.
+std::string band_svg(const View& view, const DrawnCurve& curve) {
+  std::string left;
+  std::string right;
+  for (const CurvePlace& place : curve.places) {
+    if (!place.band) return {};
+    left += point_text(view, place.position + place.band->left_m * place.left);
+    right = point_text(view, place.position + place.band->right_m * place.left) + right;
+  }
+  return formatted(
+             "<polygon class=\"band\" clip-path=\"url(#picture)\" fill=\"%s\" fill-opacity=\"0.3\" "
+             "points=\"",
+             kBandColour) +
+         left + right + "\"/>\n";
+}
+
+std::string curves_svg(const View& view, const Drawing& drawing) {
+  std::string svg = drawing.curve ? band_svg(view, *drawing.curve) : "";
+  for (const DrawnCurve& rival : drawing.rivals) {
+    svg += polyline(
+        view, rival,
+        formatted("class=\"rival\" stroke=\"%s\" stroke-width=\"1.2\" stroke-dasharray=\"6 4\" "
+                  "stroke-opacity=\"%.2f\"",
+                  kRivalColour, 0.25 + 0.65 * rival.probability)
+            .c_str());
+  }
+  if (drawing.curve) {
+    svg += polyline(
+        view, *drawing.curve,
+        formatted("class=\"curve\" stroke=\"%s\" stroke-width=\"1.5\"", kCurveColour).c_str());
+  }
+  return svg;
+}
+
+std::string frame_svg(const View& view, const v1::Recognition& answer, const Drawing& drawing) {
+  if (!drawing.curve) return {};
+  constexpr double kArrow = 50.0;
+  const Pose2 pose{answer.pose().x_m(), answer.pose().y_m(), answer.pose().theta_rad()};
+  const Vec2 origin = view(pose.translation());
+  std::string svg;
+  for (int axis = 0; axis < 2; ++axis) {
+    const Vec2 unit = axis == 0 ? Vec2(1.0, 0.0) : Vec2(0.0, 1.0);
+    const Vec2 tip = view(pose.translation() + pose.rotate(view.metres(kArrow) * unit));
+    svg += formatted(
+        "<line clip-path=\"url(#picture)\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" "
+        "stroke=\"%s\" "
+        "stroke-width=\"2\"/>\n",
+        origin.x(), origin.y(), tip.x(), tip.y(), axis == 0 ? kXAxisColour : kYAxisColour);
+  }
+  return svg;
+}
+
+/// Dots as the round ends of lines without length: a few bytes each.
+std::string samples_svg(const View& view, const ContactGroup& group,
+                        const VisibleSamples& visible) {
+  std::string svg;
+  for (std::size_t number = 0; number < group.runs.size(); ++number) {
+    if (visible.of_run[number].empty()) continue;
+    svg += formatted(
+        "<path class=\"samples\" fill=\"none\" stroke=\"%s\" stroke-width=\"3.6\" "
+        "stroke-linecap=\"round\" d=\"",
+        kPatchColours[number % std::size(kPatchColours)]);
+    for (const std::size_t i : visible.of_run[number]) {
+      const Vec2 at = view(group.runs[number].samples[i].position_m);
+      svg += formatted("M%.1f,%.1fh0", at.x(), at.y());
+    }
+    svg += "\"/>\n";
+  }
+  return svg;
+}
+
+std::string residuals_svg(const View& view, const EnlargedResiduals& residuals) {
+  std::string svg = formatted(
+      "<path class=\"residuals\" clip-path=\"url(#picture)\" fill=\"none\" "
+      "stroke=\"%s\" stroke-opacity=\"0.6\" d=\"",
+      kResidualColour);
+  for (const EnlargedResiduals::Line& line : residuals.lines) {
+    const Vec2 foot = view(line.foot);
+    const Vec2 end = view(line.end);
+    svg += formatted("M%.1f,%.1fL%.1f,%.1f", foot.x(), foot.y(), end.x(), end.y());
+  }
+  svg +=
+      formatted("\"/>\n<path class=\"far\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.8\" d=\"",
+                kResidualColour);
+  for (const Vec2& place : residuals.far) {
+    const Vec2 at = view(place);
+    svg += formatted("M%.1f,%.1fl8,8m0,-8l-8,8", at.x() - 4.0, at.y() - 4.0);
+  }
+  return svg + "\"/>\n";
+}
+
+std::string contacts_svg(const View& view, const v1::Recognition& answer) {
+  constexpr double kTangent = 22.0;
+  std::string svg;
+  for (const v1::LocalizedContact& contact : answer.contacts()) {
+    const Vec2 at = view({contact.x_m(), contact.y_m()});
+    const double angle = contact.tangent_rad();
+    svg += formatted(
+        "<line x1=\"%.2f\" y1=\"%.2f\" x2=\"%.2f\" y2=\"%.2f\" stroke=\"%s\" "
+        "stroke-width=\"1.5\"/>\n",
+        at.x(), at.y(), at.x() + kTangent * std::cos(angle), at.y() - kTangent * std::sin(angle),
+        kContactColour);
+    svg += formatted(
+        "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"4\" fill=\"none\" stroke=\"%s\" "
+        "stroke-width=\"1.5\"/>\n",
+        at.x(), at.y(), kContactColour);
+  }
+  return svg;
+}
+
+void add_answer(const ContactGroup& group, const v1::Recognition& answer, SvgTable& table) {
+  table.heading(spoken_name(answer.curve_class()));
+  table.words(status_text(answer));
+  table.gap();
+  for (const Quantity& quantity : quantities_of(answer)) table.row(quantity.name, quantity.text);
+  std::string samples = std::to_string(answer.sample_count());
+  if (answer.outlier_count() > 0) {
+    samples += ", " + std::to_string(answer.outlier_count()) + " set aside as spikes";
+  }
+  table.row("samples", samples);
+  const LengthUnit unit = length_unit_for(answer.sigma_m());
+  table.row("noise", number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name));
+  table.row("group", group.name + ", object " + std::to_string(group.object));
+  // Of a long path the end tells more.
+  constexpr std::size_t kMostOfPath = 36;
+  const bool is_long = group.file.size() > kMostOfPath;
+  table.row("file",
+            is_long ? "..." + group.file.substr(group.file.size() - kMostOfPath) : group.file);
+  table.gap();
+  table.words(advice_text(answer));
+  table.gap();
+}
+
+std::string band_label(const DrawnCurve& curve) {
+  double widest_m = 0.0;
+  for (const CurvePlace& place : curve.places) {
+    if (place.band) widest_m = std::max({widest_m, place.band->left_m, -place.band->right_m});
+  }
+  const LengthUnit unit = length_unit_for(widest_m);
+  return formatted("its 95 %% band, +- %.2g ", widest_m * unit.per_m) + std::string(unit.name) +
+         " where widest";
+}
+
+void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSamples& visible,
+              const EnlargedResiduals& residuals, SvgTable& table) {
+  constexpr std::size_t kMostListed = 8;
+  for (std::size_t i = 0; i < std::min(group.runs.size(), kMostListed); ++i) {
+    const PatchContext& context = group.runs[i].context;
+    table.key(kPatchColours[i % std::size(kPatchColours)],
+              group.probes[context.probe] + ", patch " + std::to_string(context.patch));
+  }
+  if (group.runs.size() > kMostListed) {
+    table.words("and " + std::to_string(group.runs.size() - kMostListed) + " more patches");
+  }
+  if (drawing.curve) {
+    table.key(kCurveColour, "most probable curve");
+    if (drawing.curve->places.front().band) table.key(kBandColour, band_label(*drawing.curve));
+    table.key(kXAxisColour, "its x axis");
+    table.key(kYAxisColour, "its y axis");
+  }
+  for (const DrawnCurve& rival : drawing.rivals) {
+    table.key(kRivalColour,
+              spoken_name(rival.curve_class) + formatted(", %.3g %%", 100.0 * rival.probability));
+  }
+  if (!drawing.contacts.empty()) table.key(kContactColour, "contacts, tangents");
+  if (!residuals.lines.empty()) {
+    table.key(kResidualColour, "residuals, " + number(residuals.gain) + " times enlarged");
+  }
+  if (!residuals.far.empty()) {
+    table.key(kResidualColour,
+              formatted("x: %zu beyond %.0f sigma", residuals.far.size(), kFarSigmas));
+  }
+  if (visible.left_out > 0) {
+    const LengthUnit unit = length_unit_for(visible.cell_m);
+    table.gap();
+    table.words(std::to_string(visible.drawn) + " samples drawn; " +
+                std::to_string(visible.left_out) + " lie within " +
+                formatted("%.2g ", visible.cell_m * unit.per_m) + std::string(unit.name) +
+                " of one of them.");
+  }
+}
+
+EnlargedResiduals residuals_of_picture(const ContactGroup& group, const v1::Recognition& answer,
+                                       const Drawing& drawing, const View& view) {
+  const std::optional<CurveModel> model =
+      drawing.curve ? model_of(answer) : std::optional<CurveModel>();
+  if (!model) return {};
+  constexpr std::size_t kMostLines = 2000;
+  return enlarged_residuals(*model, group, answer.sigma_m(), (view.high() - view.low()).maxCoeff(),
+                            kMostLines);
+}
+
+}  // namespace
+
+std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer) {
+  const Drawing drawing = make_drawing(group, answer);
+  const View view = view_of(group, answer, drawing);
+  // Dots are 3.6 pixels wide: half a pixel beside another one, one is not seen.
+  constexpr double kCellPixels = 0.5;
+  constexpr std::size_t kMostDots = 50000;
+  const VisibleSamples visible =
+      visible_samples(group, view.metres(kCellPixels), kMostDots, std::size(kPatchColours));
+  const EnlargedResiduals residuals = residuals_of_picture(group, answer, drawing, view);
+  SvgTable table(kWidth - kRight + 16.0, kTop + 12.0);
+  add_answer(group, answer, table);
+  add_keys(group, drawing, visible, residuals, table);
+  std::string svg = formatted(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f "
+      "%.0f\" "
+      "font-family=\"sans-serif\" font-size=\"12\">\n",
+      kWidth, kHeight, kWidth, kHeight);
+  svg += "<style>.grid{stroke:#e4e4e4}</style>\n";
+  svg += formatted(
+      "<clipPath id=\"picture\"><rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" "
+      "height=\"%.1f\"/></clipPath>\n",
+      kLeft, kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom);
+  svg += "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
+  svg += axes_svg(view) + curves_svg(view, drawing) + residuals_svg(view, residuals) +
+         samples_svg(view, group, visible) + contacts_svg(view, answer) +
+         frame_svg(view, answer, drawing) + table.svg();
+  return svg + "</svg>\n";
+}
+
+}  // namespace palpate

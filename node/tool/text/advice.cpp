@@ -1,0 +1,116 @@
+#include "node/tool/text/advice.h"
+
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "node/tool/text/recognition_text.h"
+#include "node/wire/convert.h"
+
+namespace palpate {
+namespace {
+
+std::string percent(double fraction) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * fraction);
+  return text;
+}
+
+std::string with_article(v1::CurveClass curve_class) {
+  const std::string name = spoken_name(curve_class);
+  return (name.front() == 'e' ? "an " : "a ") + name;
+}
+
+/// The most probable class beside the answer's.
+v1::CurveClass rival_of(const v1::Recognition& answer) {
+  for (const v1::Hypothesis& hypothesis : answer.hypotheses()) {
+    if (hypothesis.curve_class() != answer.curve_class()) return hypothesis.curve_class();
+  }
+  return v1::CURVE_CLASS_UNSPECIFIED;
+}
+
+std::string several_classes(const v1::Recognition& answer) {
+  constexpr double kWorthNaming = 0.01;
+  constexpr int kMostNamed = 3;
+  std::string names;
+  int named = 0;
+  for (const v1::Hypothesis& hypothesis : answer.hypotheses()) {
+    if (hypothesis.probability() < kWorthNaming || named++ == kMostNamed) break;
+    names += (names.empty() ? "" : ", ") + spoken_name(hypothesis.curve_class()) + " " +
+             percent(hypothesis.probability());
+  }
+  return "Several classes remain plausible: " + names +
+         ". Touch further round, where their curves part.";
+}
+
+std::string undetermined(const v1::Recognition& answer) {
+  const Quantity* loosest = nullptr;
+  double worst = 0.0;
+  const std::vector<Quantity> quantities = quantities_of(answer);
+  for (const Quantity& quantity : quantities) {
+    if (quantity.name.size() > 1 || quantity.name[0] > 'c') continue;
+    const double relative = quantity.sigma / std::abs(quantity.value);
+    if (relative > worst) {
+      worst = relative;
+      loosest = &quantity;
+    }
+  }
+  std::string text = "The touched arc does not determine the shape: touch further round";
+  if (loosest != nullptr && std::isfinite(worst)) {
+    text += " (" + loosest->name + " is known to " + percent(worst) + " only)";
+  }
+  return text + ".";
+}
+
+std::string ambiguous(const v1::Recognition& answer) {
+  const std::string name = spoken_name(answer.curve_class());
+  switch (answer.doubt()) {
+    case v1::RECOGNITION_DOUBT_SEVERAL_CLASSES:
+      return several_classes(answer);
+    case v1::RECOGNITION_DOUBT_AT_LIMIT:
+      return "The " + name + " fits best where it turns into another class: touch further round.";
+    case v1::RECOGNITION_DOUBT_FORM_ERROR:
+      return "What the samples leave beside the " + name +
+             " follows a pattern along the arc: the part deviates from its ideal curve, or is of a "
+             "class not known here. Tell the recognizer the part's tolerance (form_deviation_m).";
+    case v1::RECOGNITION_DOUBT_MISFIT:
+      return "The samples lie further from the " + name +
+             " than their noise can put them. Check sigma_m and tip_radius_m of the probes, and "
+             "that "
+             "all patches lie on one curve.";
+    case v1::RECOGNITION_DOUBT_TWO_SHAPES:
+      return "Two shapes fit alike: touch another place, or let the probe tell its material side.";
+    case v1::RECOGNITION_DOUBT_RICHER_CLASS: {
+      const v1::CurveClass richer = rival_of(answer);
+      return "Touch further round: the arc is too short to exclude " +
+             (richer == v1::CURVE_CLASS_UNSPECIFIED ? std::string("a richer class")
+                                                    : with_article(richer)) +
+             ".";
+    }
+    case v1::RECOGNITION_DOUBT_UNDETERMINED:
+      return undetermined(answer);
+    default:
+      return "Not certain yet: touch further round.";
+  }
+}
+
+}  // namespace
+
+std::string advice_text(const v1::Recognition& answer) {
+  switch (answer.status()) {
+    case v1::RECOGNITION_STATUS_COLLECTING:
+      return "Too few samples yet (" + std::to_string(answer.sample_count()) + "): keep stroking.";
+    case v1::RECOGNITION_STATUS_RECOGNIZED:
+      return answer.curve_class() == v1::CURVE_CLASS_UNCLASSIFIED
+                 ? "None of the known classes explains the samples: the part has another shape, or "
+                   "the patches lie on several pieces of it."
+                 : "The part is " + with_article(answer.curve_class()) +
+                       ": its shape and place are known. No further touch is needed.";
+    case v1::RECOGNITION_STATUS_AMBIGUOUS:
+      return ambiguous(answer);
+    default:
+      return "Nothing is known yet: touch the part.";
+  }
+}
+
+}  // namespace palpate

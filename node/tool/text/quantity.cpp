@@ -1,0 +1,49 @@
+#include "node/tool/text/quantity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace palpate {
+namespace {
+
+std::string print(const char* format, int precision, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, precision, value);
+  return text;
+}
+
+}  // namespace
+
+std::string number(double value) { return print("%.*g", 6, value); }
+
+std::string with_sigma(double value, double sigma) {
+  if (!(sigma > 0.0)) {
+    return number(value);
+  }
+  if (!std::isfinite(sigma)) {
+    return number(value) + " +- inf";
+  }
+  constexpr int kSigmaDigits = 2;
+  constexpr int kMostDecimals = 9;  // beyond, or left of the point: powers of ten
+  const int decimals = kSigmaDigits - 1 - static_cast<int>(std::floor(std::log10(sigma)));
+  if (decimals >= 0 && decimals <= kMostDecimals) {
+    return print("%.*f", decimals, value) + " +- " + print("%.*f", decimals, sigma);
+  }
+  const double larger = std::max(std::abs(value), sigma);
+  const int digits =
+      std::clamp(static_cast<int>(std::floor(std::log10(larger))) + decimals, kSigmaDigits - 1, 16);
+  return print("%.*e", digits, value) + " +- " + print("%.*e", kSigmaDigits - 1, sigma);
+}
+
+LengthUnit length_unit_for(double magnitude_m) {
+  constexpr LengthUnit kUnits[] = {{"m", 1.0}, {"mm", 1e3}, {"um", 1e6}};
+  for (const LengthUnit& unit : kUnits) {
+    if (magnitude_m * unit.per_m >= 1.0) {
+      return unit;
+    }
+  }
+  return magnitude_m > 0.0 ? kUnits[2] : kUnits[0];
+}
+
+}  // namespace palpate

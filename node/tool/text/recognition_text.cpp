@@ -1,0 +1,249 @@
+#include "node/tool/text/recognition_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+#include "node/files/printable.h"
+#include "node/tool/text/quantity.h"
+
+namespace palpate {
+namespace {
+
+/// Unit of a shape parameter; nullptr = a length.
+const char* unit_of(v1::CurveClass curve_class, char letter) {
+  switch (curve_class) {
+    case v1::CURVE_CLASS_CUBICAL_PARABOLA:
+      return letter == 'a' ? "1/m^2" : "";
+    case v1::CURVE_CLASS_SEMI_CUBICAL_PARABOLA:
+      return letter == 'a' ? "1/sqrt(m)" : "";
+    case v1::CURVE_CLASS_CUBIC_SPLINE:
+      return letter == 'a' ? "1/sqrt(m)" : letter == 'b' ? "" : "sqrt(m)";
+    default:
+      return nullptr;
+  }
+}
+
+struct Named {
+  char letter;
+  double value;
+};
+
+std::vector<Named> parameters_of(const v1::Parameters& parameters) {
+  std::vector<Named> named;
+  if (parameters.has_a()) named.push_back({'a', parameters.a()});
+  if (parameters.has_b()) named.push_back({'b', parameters.b()});
+  if (parameters.has_c()) named.push_back({'c', parameters.c()});
+  return named;
+}
+
+/// Standard deviation of the i-th of [a, b, c as present; x; y; theta].
+double sigma_of(const v1::Recognition& answer, std::size_t i) {
+  const auto count = static_cast<std::size_t>(answer.covariance_size());
+  const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(count))));
+  if (n * n != count) return std::numeric_limits<double>::infinity();  // no matrix
+  if (i >= n) return 0.0;
+  return std::sqrt(std::max(answer.covariance(static_cast<int>(i * n + i)), 0.0));
+}
+
+std::string parameter_text(const v1::Recognition& answer, const Named& named, std::size_t i) {
+  const double sigma = sigma_of(answer, i);
+  const char* unit = unit_of(answer.curve_class(), named.letter);
+  if (unit != nullptr) {
+    return with_sigma(named.value, sigma) + (*unit != '\0' ? " " : "") + unit;
+  }
+  const LengthUnit length = length_unit_for(std::abs(named.value));
+  return with_sigma(named.value * length.per_m, sigma * length.per_m) + " " +
+         std::string(length.name);
+}
+
+void add_line(std::string& text, const char* label, const std::string& value) {
+  char start[32];
+  std::snprintf(start, sizeof start, "  %-12s ", label);
+  text += start + value + "\n";
+}
+
+void add_hypotheses(const v1::Recognition& answer, std::string& text) {
+  constexpr double kWorthShowing = 1e-9;
+  add_row(text, "  %-24s %12s %14s %6s  %s\n", "hypothesis", "probability", "chi2", "dof", "shape");
+  for (const v1::Hypothesis& hypothesis : answer.hypotheses()) {
+    if (hypothesis.probability() < kWorthShowing) {
+      continue;
+    }
+    std::string shape;
+    for (const Named& named : parameters_of(hypothesis.parameters())) {
+      shape +=
+          (shape.empty() ? "" : ", ") + std::string(1, named.letter) + " = " + number(named.value);
+    }
+    if (hypothesis.at_limit()) {
+      shape = "none: best where it turns into another class";
+    }
+    add_row(text, "    %-22s %12.4g %14.6g %6u  %s\n",
+            spoken_name(hypothesis.curve_class()).c_str(), hypothesis.probability(),
+            hypothesis.chi2(), hypothesis.dof(), shape.c_str());
+  }
+}
+
+void add_contacts(const v1::Recognition& answer, std::string& text) {
+  if (answer.contacts().empty()) {
+    return;
+  }
+  add_row(text, "  %-16s %5s %11s %11s %9s %11s %22s %26s\n", "contact", "patch", "t", "x [m]",
+          "y [m]", "tangent [deg]", "kappa [1/m]", "kappa_s [1/m^2]");
+  for (const v1::LocalizedContact& contact : answer.contacts()) {
+    add_row(text, "    %-14s %5u %11.5g %11.6f %9.6f %11.2f %22s %26s\n",
+            printable(contact.probe()).c_str(), contact.patch(), contact.t(), contact.x_m(),
+            contact.y_m(), contact.tangent_rad() * kDegrees,
+            with_sigma(contact.kappa_per_m(), contact.kappa_sigma_per_m()).c_str(),
+            with_sigma(contact.kappa_s_per_m2(), contact.kappa_s_sigma_per_m2()).c_str());
+  }
+}
+
+void add_decisions(const v1::Recognition& answer, std::string& text) {
+  if (answer.decisions().empty()) {
+    return;
+  }
+  text += "  recognition tree\n";
+  for (const v1::Decision& decision : answer.decisions()) {
+    add_row(text, "    %-34s %12.5g against %-12.5g %s\n", printable(decision.test()).c_str(),
+            decision.value(), decision.threshold(), decision.passed() ? "passed" : "failed");
+  }
+}
+
+}  // namespace
+
+std::vector<Quantity> quantities_of(const v1::Recognition& answer) {
+  std::vector<Quantity> quantities;
+  for (const Named& named : parameters_of(answer.parameters())) {
+    const std::size_t i = quantities.size();
+    quantities.push_back({std::string(1, named.letter), named.value, sigma_of(answer, i),
+                          parameter_text(answer, named, i)});
+  }
+  if (!answer.has_pose()) return quantities;
+  const std::size_t x = quantities.size();
+  const v1::Pose2& pose = answer.pose();
+  // One unit for both: the pose's distance from the world's origin chooses it.
+  const LengthUnit unit = length_unit_for(std::max(
+      {std::abs(pose.x_m()), std::abs(pose.y_m()), sigma_of(answer, x), sigma_of(answer, x + 1)}));
+  const auto add_length = [&](const char* name, double value) {
+    const double sigma = sigma_of(answer, quantities.size());
+    quantities.push_back(
+        {name, value, sigma,
+         with_sigma(value * unit.per_m, sigma * unit.per_m) + " " + std::string(unit.name)});
+  };
+  add_length("x", pose.x_m());
+  add_length("y", pose.y_m());
+  const double sigma = sigma_of(answer, x + 2);
+  std::string theta = with_sigma(pose.theta_rad() * kDegrees, sigma * kDegrees) + " deg";
+  if (answer.pose_symmetry() == 2) {
+    theta += " (or that + 180)";
+  } else if (answer.curve_class() == v1::CURVE_CLASS_CIRCLE) {
+    theta = "free";
+  }
+  quantities.push_back({"theta", pose.theta_rad(), sigma, theta});
+  return quantities;
+}
+
+std::string status_text(const v1::Recognition& answer) {
+  switch (answer.status()) {
+    case v1::RECOGNITION_STATUS_COLLECTING:
+      return "collecting: too few samples yet";
+    case v1::RECOGNITION_STATUS_RECOGNIZED:
+      return "recognized";
+    case v1::RECOGNITION_STATUS_AMBIGUOUS:
+      return "ambiguous: " + std::string(sentence_of(answer.doubt()));
+    default:
+      return "unknown status";
+  }
+}
+
+std::string_view sentence_of(v1::RecognitionDoubt doubt) {
+  switch (doubt) {
+    case v1::RECOGNITION_DOUBT_SEVERAL_CLASSES:
+      return "several classes remain plausible";
+    case v1::RECOGNITION_DOUBT_AT_LIMIT:
+      return "the class fits best where it turns into another";
+    case v1::RECOGNITION_DOUBT_FORM_ERROR:
+      return "residuals are correlated along the arc (form error, or another class)";
+    case v1::RECOGNITION_DOUBT_MISFIT:
+      return "residuals are larger than the noise can be";
+    case v1::RECOGNITION_DOUBT_TWO_SHAPES:
+      return "two shapes fit alike (a spline and its twin, or tips on either side)";
+    case v1::RECOGNITION_DOUBT_RICHER_CLASS:
+      return "the arc is too short to exclude a class of which this one is a limit";
+    case v1::RECOGNITION_DOUBT_UNDETERMINED:
+      return "the shape is not determined";
+    default:
+      return "no reason given";
+  }
+}
+
+std::string spoken_name(v1::CurveClass curve_class) {
+  switch (curve_class) {
+    case v1::CURVE_CLASS_UNCLASSIFIED:
+      return "unclassified";
+    case v1::CURVE_CLASS_LINE:
+      return "line";
+    case v1::CURVE_CLASS_CIRCLE:
+      return "circle";
+    case v1::CURVE_CLASS_ELLIPSE:
+      return "ellipse";
+    case v1::CURVE_CLASS_PARABOLA:
+      return "parabola";
+    case v1::CURVE_CLASS_HYPERBOLA:
+      return "hyperbola";
+    case v1::CURVE_CLASS_CUBICAL_PARABOLA:
+      return "cubical parabola";
+    case v1::CURVE_CLASS_SEMI_CUBICAL_PARABOLA:
+      return "semi-cubical parabola";
+    case v1::CURVE_CLASS_CUBIC_SPLINE:
+      return "cubic spline";
+    default:
+      return "nothing yet";
+  }
+}
+
+std::string summary_text(const v1::Recognition& answer) {
+  std::string text = spoken_name(answer.curve_class()) + " (" + status_text(answer) + ")";
+  for (const Quantity& quantity : quantities_of(answer)) {
+    text += ", " + quantity.name + " " + quantity.text;
+  }
+  return text;
+}
+
+std::string report_text(const v1::Recognition& answer) {
+  std::string text = "group " + printable(answer.group()) + ", object " +
+                     std::to_string(answer.object()) + ": " + spoken_name(answer.curve_class()) +
+                     "\n";
+  add_line(text, "status", status_text(answer));
+  std::string pose;
+  for (const Quantity& quantity : quantities_of(answer)) {
+    if (quantity.name.size() == 1 && quantity.name[0] <= 'c') {
+      add_line(text, quantity.name.c_str(), quantity.text);
+    } else {
+      pose += (pose.empty() ? "" : ", ") + quantity.name + " " + quantity.text;
+    }
+  }
+  if (!pose.empty()) add_line(text, "pose", pose);
+  const LengthUnit unit = length_unit_for(answer.sigma_m());
+  std::string noise =
+      "sigma " + number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name);
+  if (answer.noise_correlation_m() > 0.0) {
+    noise += ", correlated over " + number(answer.noise_correlation_m() * 1e3) + " mm of arc";
+  }
+  add_line(text, "noise", noise);
+  std::string samples = std::to_string(answer.sample_count());
+  if (answer.outlier_count() > 0) {
+    samples += ", of which " + std::to_string(answer.outlier_count()) + " set aside as spikes";
+  }
+  add_line(text, "samples", samples);
+  add_line(text, "time", number(1e-6 * static_cast<double>(answer.compute_ns())) + " ms");
+  add_hypotheses(answer, text);
+  add_contacts(answer, text);
+  add_decisions(answer, text);
+  return text;
+}
+
+}  // namespace palpate

@@ -1,0 +1,139 @@
+#include "node/wire/curve_keys.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zmq.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <sstream>
+#include <string_view>
+
+#include "node/files/bounded_file.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::size_t kKeyBytes = 32;
+constexpr std::size_t kZ85Length = 40;
+constexpr std::string_view kPublicKey = "public-key ";
+constexpr std::string_view kSecretKey = "secret-key ";
+// Larger than any list of keys that a person keeps; bounds what a wrong path makes us read.
+constexpr std::size_t kMaxKeys = 10000;
+constexpr std::size_t kMostKeyFileBytes = std::size_t{4} << 20;
+
+bool is_z85_key(const std::string& text) {
+  std::array<std::uint8_t, kKeyBytes> bytes{};
+  return text.size() == kZ85Length && zmq_z85_decode(bytes.data(), text.c_str()) != nullptr;
+}
+
+struct KeyLines {
+  std::vector<std::string> public_keys;
+  std::vector<std::string> secret_keys;
+};
+
+Result<KeyLines> read_key_lines(const std::string& path) {
+  const Result<std::string> text = read_bounded(path, kMostKeyFileBytes);
+  if (!text) return Result<KeyLines>::fail(text.error);
+  std::istringstream file(*text.value);
+  KeyLines keys;
+  std::string line;
+  for (std::size_t number = 1; std::getline(file, line); ++number) {
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+    if (line.empty() || line.front() == '#') continue;
+    const bool is_public = line.starts_with(kPublicKey);
+    const bool is_secret = line.starts_with(kSecretKey);
+    std::string key = is_public || is_secret ? line.substr(kPublicKey.size()) : std::string();
+    if (!is_z85_key(key) || keys.public_keys.size() >= kMaxKeys) {
+      return Result<KeyLines>::fail(path + ":" + std::to_string(number) +
+                                    ": expected \"public-key KEY\" or \"secret-key KEY\"");
+    }
+    (is_public ? keys.public_keys : keys.secret_keys).push_back(std::move(key));
+  }
+  return Result<KeyLines>::ok(std::move(keys));
+}
+
+std::string write_new_file(const std::string& path, mode_t mode, const std::string& text) {
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+  if (fd < 0) return path + ": " + std::strerror(errno);
+  const ssize_t written = ::write(fd, text.data(), text.size());
+  const bool complete = written == static_cast<ssize_t>(text.size());
+  if (::close(fd) != 0 || !complete) {
+    ::unlink(path.c_str());
+    return path + ": cannot write";
+  }
+  return {};
+}
+
+}  // namespace
+
+bool curve_available() { return zmq_has("curve") == 1; }
+
+Result<CurveKeyPair> generate_curve_keys() {
+  std::array<char, kZ85Length + 1> public_key{};
+  std::array<char, kZ85Length + 1> secret_key{};
+  if (zmq_curve_keypair(public_key.data(), secret_key.data()) != 0) {
+    return Result<CurveKeyPair>::fail(std::string("no CURVE keys: ") + zmq_strerror(zmq_errno()));
+  }
+  return Result<CurveKeyPair>::ok({public_key.data(), secret_key.data()});
+}
+
+std::string write_curve_keys(const CurveKeyPair& keys, const std::string& secret_path,
+                             const std::string& public_path) {
+  const std::string public_line = std::string(kPublicKey) + keys.public_key + "\n";
+  const std::string secret_line = std::string(kSecretKey) + keys.secret_key + "\n";
+  constexpr mode_t kPrivate = 0600;
+  constexpr mode_t kShared = 0644;
+  if (std::string error =
+          write_new_file(secret_path, kPrivate,
+                         "# palpate: keep this file to yourself\n" + public_line + secret_line);
+      !error.empty()) {
+    return error;
+  }
+  std::string error = write_new_file(public_path, kShared, public_line);
+  if (!error.empty()) ::unlink(secret_path.c_str());
+  return error;
+}
+
+Result<CurveKeyPair> read_curve_keys(const std::string& secret_path) {
+  using Keys = Result<CurveKeyPair>;
+  struct stat info {};
+  if (::stat(secret_path.c_str(), &info) != 0) {
+    return Keys::fail(secret_path + ": " + std::strerror(errno));
+  }
+  if ((info.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+    return Keys::fail(secret_path + ": others may read it; chmod 600 it");
+  }
+  Result<KeyLines> lines = read_key_lines(secret_path);
+  if (!lines) return Keys::fail(lines.error);
+  if (lines.value->secret_keys.size() != 1 || lines.value->public_keys.size() > 1) {
+    return Keys::fail(secret_path + ": expected one secret key");
+  }
+  CurveKeyPair keys;
+  keys.secret_key = lines.value->secret_keys.front();
+  std::array<char, kZ85Length + 1> public_key{};
+  if (zmq_curve_public(public_key.data(), keys.secret_key.c_str()) != 0) {
+    return Keys::fail(secret_path + ": " + zmq_strerror(zmq_errno()));
+  }
+  keys.public_key = public_key.data();
+  if (!lines.value->public_keys.empty() && lines.value->public_keys.front() != keys.public_key) {
+    return Keys::fail(secret_path + ": public and secret key do not belong together");
+  }
+  return Keys::ok(std::move(keys));
+}
+
+Result<std::vector<std::string>> read_public_keys(const std::string& path) {
+  using Keys = Result<std::vector<std::string>>;
+  Result<KeyLines> lines = read_key_lines(path);
+  if (!lines) return Keys::fail(lines.error);
+  if (!lines.value->secret_keys.empty()) {
+    return Keys::fail(path + ": holds a secret key; give the public key files only");
+  }
+  if (lines.value->public_keys.empty()) return Keys::fail(path + ": no public key");
+  return Keys::ok(std::move(lines.value->public_keys));
+}
+
+}  // namespace palpate

@@ -1,0 +1,73 @@
+// The recogniser's options as the node and the tools offer them, in one table.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/recognition/recognizer.h"
+
+namespace palpate {
+
+/// One option: its name is the field in NodeConfig, the flag (--max-groups) and the environment
+/// variable (PALPATE_MAX_GROUPS).
+struct OptionInfo {
+  const char* name;
+  const char* help;
+  double lowest = 0.0;  ///< numbers only
+  double highest = std::numeric_limits<double>::max();
+};
+
+/// The recogniser's options that are said in words.
+struct RecognizerWords {
+  std::string method = "ml";
+  std::vector<std::string> classes;  ///< empty = all
+};
+
+/// Sets what the words say; returns what is wrong with them, or nothing.
+std::string resolve(const RecognizerWords& words, RecognizerOptions& recognizer);
+
+/// The recogniser's part of the table.
+template <typename Words, typename Recognizer, typename Visit>
+void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& visit) {
+  constexpr double kMostSamples = 1e6;
+  visit({"method",
+         "ml (maximum likelihood: all classes fitted and weighed) or tree (local estimates alone)"},
+        words.method);
+  visit({"classes", "Class to consider, e.g. ellipse; may be repeated; none = all"}, words.classes);
+  visit({"sigma_m", "Noise of samples that bring none; 0 = estimate it from the data [m]", 0, 1e3},
+        recognizer.sigma_m);
+  visit({"recognized_probability", "RECOGNIZED needs a posterior of at least this", 0, 1},
+        recognizer.recognized_probability);
+  visit({"determined_fraction",
+         "RECOGNIZED needs each parameter's standard deviation within this fraction of it", 0, 1e3},
+        recognizer.determined_fraction);
+  visit(
+      {"form_deviation_m",
+       "Stated form error of the parts, a standard deviation: half of a +- tolerance [m]", 0, 1e3},
+      recognizer.form_deviation_m);
+  visit({"false_outlier_probability", "Chance that a clean scene loses a sample as a spike", 0, 1},
+        recognizer.false_outlier_probability);
+  visit({"most_samples_per_patch", "Samples of a patch before neighbours are merged", 8,
+         kMostSamples},
+        recognizer.memory.most_samples_per_patch);
+  visit({"most_patches", "Patches of an object before the oldest is forgotten", 1, 1024},
+        recognizer.memory.most_patches);
+  visit({"windows_per_patch", "Local estimates: windows of a patch", 1, 1e3},
+        recognizer.contacts.windows_per_patch);
+  visit({"least_windows", "Local estimates: fewest windows of all patches together", 1, 1e3},
+        recognizer.contacts.least_windows);
+  visit({"window_samples", "Local estimates: fewest samples of a window", 4, kMostSamples},
+        recognizer.contacts.window_samples);
+  visit({"with_bias", "Local estimates: standard deviations that hold the window's bias too"},
+        recognizer.contacts.with_bias);
+  visit({"tree_significance", "Tree: probability that a test rejects the true class", 0, 1},
+        recognizer.tree.significance);
+  visit({"tree_relative_floor", "Tree: standard deviation added to every estimate", 0, 1},
+        recognizer.tree.relative_floor);
+  visit({"tree_relative_tolerance",
+         "Tree: above 0, the paper's plain tolerance in place of statistics", 0, 1},
+        recognizer.tree.relative_tolerance);
+}
+
+}  // namespace palpate
