@@ -263,8 +263,9 @@ CurveClass most_probable(const ClassProbabilities& probabilities) {
 void choose_best(const FitData& data, const FitData& reduced, const Likelihood& likelihood,
                  Weighing* w) {
   while (true) {
-    w->evidences = integrated(evidences_of(w->fits, w->coarse, w->smooth, reduced, likelihood),
-                              w->fits, w->coarse, reduced, likelihood);
+    w->evidences = evidences_of(w->fits, w->coarse, w->smooth, reduced, likelihood, w->evidences);
+    w->evidences = integrated(std::move(w->evidences), w->fits, w->coarse, w->smooth.chi2, reduced,
+                              likelihood);
     w->probabilities = probabilities_of(w->fits, w->smooth.chi2, likelihood, w->evidences);
     w->best = most_probable(w->probabilities);
     const auto i = static_cast<std::size_t>(w->best);
@@ -328,7 +329,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   w.fits = as_told(w.coarse, w.smooth);
   const FitData reduced = on_surface(w.smooth.reduced, w.sides);
   const auto weigh_all = [&] {
-    w.evidences = evidences_of(w.fits, w.coarse, w.smooth, reduced, likelihood);
+    w.evidences = evidences_of(w.fits, w.coarse, w.smooth, reduced, likelihood, w.evidences);
     w.probabilities = probabilities_of(w.fits, w.smooth.chi2, likelihood, w.evidences);
   };
   weigh_all();

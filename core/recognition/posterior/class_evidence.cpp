@@ -17,18 +17,9 @@ double log_determinant(const Eigen::LLT<TouchedMatrix>& llt) {
   return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
 }
 
+/// By the coordinates in units of the widths.
 TouchedVector prior_gradient(const Touch& touch, const TouchedCurve& curve) {
-  constexpr double kStep = 1e-4;
-  TouchedVector gradient = TouchedVector::Zero();
-  for (int k = 0; k < shape_coordinates(touch.curve_class); ++k) {
-    TouchedVector ahead = curve.z;
-    TouchedVector behind = curve.z;
-    ahead[k] += kStep;
-    behind[k] -= kStep;
-    gradient[k] = (log_prior(touch.curve_class, ahead) - log_prior(touch.curve_class, behind)) /
-                  (2.0 * kStep);
-  }
-  return gradient.cwiseProduct(curve.widths);
+  return log_prior_gradient(touch.curve_class, curve.z).cwiseProduct(curve.widths);
 }
 
 /// Gauss-Newton steps down the potential, coordinate `fixed` staying.

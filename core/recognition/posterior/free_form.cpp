@@ -12,7 +12,7 @@ namespace palpate {
 namespace {
 
 constexpr int kMostNodes = 12;  // of a section at a time; a smoothed one has at most ten
-constexpr int kTerms = 16;      // of a path's power series
+constexpr int kTerms = 12;      // of a path's power series
 using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostNodes, kMostNodes>;
 using Nodes = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostNodes, 1>;
 using Terms = Eigen::Matrix<double, Eigen::Dynamic, kTerms, 0, kMostNodes, kTerms>;
@@ -92,24 +92,29 @@ SectionEvidence evidence_of(const SectionNodes& nodes, double origin, double end
     terms.col(k) = column;
     column = column.cwiseProduct(nodes.x - Nodes::Constant(n, origin));
   }
-  Eigen::Matrix<double, kTerms, kTerms> prior = Eigen::Matrix<double, kTerms, kTerms>::Zero();
+  // The prior's covariance: a block of the first three terms, the rest independent.
+  Eigen::Matrix3d first = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, kTerms, 1> variances;
   double power = 1.0 / size;
   for (int k = 2; k < kTerms; ++k) {
     const double deviation = power / (k * (k - 1));
-    prior(k, k) = deviation * deviation;
+    variances[k] = deviation * deviation;
     power /= size;
   }
   Nodes residual = nodes.weight.cwiseProduct(nodes.y);
   if (before) {
     const Eigen::Vector3d half(1.0, 1.0, 0.5);  // c_2 is half the second derivative
-    prior.topLeftCorner<3, 3>() = half.asDiagonal() * before->covariance * half.asDiagonal();
+    first = half.asDiagonal() * before->covariance * half.asDiagonal();
     residual.noalias() -= terms.leftCols<3>() * half.cwiseProduct(before->mean);
   } else {
-    prior(0, 0) = prior(1, 1) = width * width;
+    first.diagonal() << width * width, width * width, variances[2];
   }
-  const Eigen::Matrix<double, Eigen::Dynamic, kTerms, 0, kMostNodes, kTerms> by_prior =
-      terms * prior;
-  Block covariance = by_prior * terms.transpose();
+  Terms by_prior(n, kTerms);
+  by_prior.leftCols<3>().noalias() = terms.leftCols<3>().lazyProduct(first);
+  for (int k = 3; k < kTerms; ++k) {
+    by_prior.col(k) = variances[k] * terms.col(k);
+  }
+  Block covariance = by_prior.lazyProduct(terms.transpose());
   covariance.diagonal().array() += 1.0;
   const Eigen::LLT<Block> llt(covariance);
   const Nodes whitened = llt.matrixL().solve(residual);
@@ -128,16 +133,18 @@ SectionEvidence evidence_of(const SectionNodes& nodes, double origin, double end
     if (k + 2 < kTerms) at(2, k + 2) = (k + 2) * (k + 1) * x_power;
     x_power *= x;
   }
-  const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMostNodes> gain_t =
-      at * by_prior.transpose();
   const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMostNodes, 3> half_gain =
-      llt.matrixL().solve(gain_t.transpose());
+      llt.matrixL().solve(by_prior.lazyProduct(at.transpose()));
   evidence.end.mean = half_gain.transpose() * whitened;
   if (before) {
     evidence.end.mean +=
         at.leftCols<3>() * Eigen::Vector3d(before->mean[0], before->mean[1], 0.5 * before->mean[2]);
   }
-  evidence.end.covariance = at * prior * at.transpose() - half_gain.transpose() * half_gain;
+  evidence.end.covariance = at.leftCols<3>() * first * at.leftCols<3>().transpose();
+  for (int k = 3; k < kTerms; ++k) {
+    evidence.end.covariance += variances[k] * at.col(k) * at.col(k).transpose();
+  }
+  evidence.end.covariance -= half_gain.transpose() * half_gain;
   // (rounding must not make the junction more certain than the prior allows)
   evidence.end.covariance.diagonal() = evidence.end.covariance.diagonal().cwiseMax(0.0);
   return evidence;

@@ -28,10 +28,9 @@ double log_evidence_of_free_form(const Likelihood& likelihood, const Evidences& 
                                  paths.determined);
 }
 
-/// The mode of the spline across c = 0, if it is not within the slices of the first.
-std::optional<ClassEvidence> rival_of(const ClassFit& spline, const ClassEvidence& first,
-                                      const FitData& reduced, double inflation,
-                                      Integration integration) {
+/// The mode of the spline across c = 0, if there is one.
+std::optional<ClassEvidence> rival_of(const ClassFit& spline, const FitData& reduced,
+                                      double inflation, Integration integration) {
   if (!spline.rival || is_same_curve(*spline.polynomial, *spline.rival)) {
     return std::nullopt;
   }
@@ -40,16 +39,17 @@ std::optional<ClassEvidence> rival_of(const ClassFit& spline, const ClassEvidenc
   fit.chi2 = spline.rival->chi2;
   fit.polynomial = spline.rival;
   const auto canonical = to_canonical(fit, reduced);
-  auto evidence =
-      canonical ? evidence_of(*canonical, reduced, inflation, integration) : std::nullopt;
+  return canonical ? evidence_of(*canonical, reduced, inflation, integration) : std::nullopt;
+}
+
+/// Whether the slices of one mode of the spline run through another.
+bool holds(const ClassEvidence& mode, const ClassEvidence& other) {
   constexpr int kBend = 3;  // the coordinate c
-  if (evidence && first.widest == kBend) {
-    const double c = evidence->touch.shape.values[2];
-    if (c >= first.nodes.front().curve.z[kBend] && c <= first.nodes.back().curve.z[kBend]) {
-      return std::nullopt;
-    }
+  if (mode.widest != kBend) {
+    return false;
   }
-  return evidence;
+  const double c = coordinates_of(other.touch.curve_class, other.touch.shape)[kBend];
+  return c >= mode.nodes.front().curve.z[kBend] && c <= mode.nodes.back().curve.z[kBend];
 }
 
 }  // namespace
@@ -64,10 +64,12 @@ double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
 
 Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
-                       const Likelihood& likelihood) {
+                       const Likelihood& likelihood, const Evidences& before) {
   Evidences evidences;
   const double inflation = likelihood.inflation();
-  evidences.free_form = free_form(smooth, inflation);
+  const bool same_noise = inflation == before.inflation;
+  evidences.inflation = inflation;
+  evidences.free_form = same_noise ? before.free_form : free_form(smooth, inflation);
   double best = log_evidence_of_free_form(likelihood, evidences, smooth.chi2);
   // The best fits first: what the prior leaves is at most all, so that the rest can be told by
   // chi-square alone.
@@ -84,13 +86,15 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
     if (likelihood.log_evidence(fits[i]->chi2, 0.0, 0.0) < best - kNegligible) {
       continue;
     }
-    const auto canonical = to_canonical(*on_reduced[i], reduced);
     auto& evidence = evidences.classes[i];
-    evidence = canonical ? evidence_of(*canonical, reduced, inflation, Integration::Laplace)
-                         : std::nullopt;
+    evidences.on_reduced_chi2[i] = on_reduced[i]->chi2;
+    if (same_noise && before.classes[i] && before.on_reduced_chi2[i] == on_reduced[i]->chi2) {
+      evidence = before.classes[i];
+    } else if (const auto canonical = to_canonical(*on_reduced[i], reduced)) {
+      evidence = evidence_of(*canonical, reduced, inflation, Integration::Laplace);
+    }
     if (evidence && curve_class == CurveClass::CubicSpline) {
-      evidences.rival =
-          rival_of(*on_reduced[i], *evidence, reduced, inflation, Integration::Laplace);
+      evidences.rival = rival_of(*on_reduced[i], reduced, inflation, Integration::Laplace);
     }
     best = std::max(best, log_evidence(likelihood, evidences, curve_class, fits[i]->chi2));
   }
@@ -98,34 +102,49 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
 }
 
 Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits& on_reduced,
-                     const FitData& reduced, const Likelihood& likelihood) {
+                     double smooth_chi2, const FitData& reduced, const Likelihood& likelihood) {
   // A hundred times what could matter to an answer at 0.95; slices seldom change a mass by ten.
   constexpr double kMatters = 8.0;
-  double best = kNone;
-  for (const CurveClass curve_class : kCurveClasses) {
-    const auto& fit = fits[static_cast<std::size_t>(curve_class)];
-    if (fit) {
-      best = std::max(best, log_evidence(likelihood, evidences, curve_class, fit->chi2));
-    }
-  }
-  const double inflation = likelihood.inflation();
+  std::array<double, 9> log_of;
+  log_of.fill(kNone);
+  log_of[0] = log_evidence_of_free_form(likelihood, evidences, smooth_chi2);
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
-    if (!fits[i] ||
-        !(log_evidence(likelihood, evidences, curve_class, fits[i]->chi2) >= best - kMatters)) {
+    if (fits[i]) {
+      log_of[i] = log_evidence(likelihood, evidences, curve_class, fits[i]->chi2);
+    }
+  }
+  constexpr auto kSpline = static_cast<std::size_t>(CurveClass::CubicSpline);
+  const auto best = std::max_element(log_of.begin(), log_of.end());
+  const auto matters = [&](double log_evidence) { return log_evidence >= *best - kMatters; };
+  const bool spline_is_best = best == log_of.begin() + kSpline && evidences.rival;
+  if (std::count_if(log_of.begin(), log_of.end(), matters) < 2 && !spline_is_best) {
+    return evidences;  // however wide, one class has all of the mass
+  }
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    if (!matters(log_of[i])) {
       continue;
     }
     const auto canonical = to_canonical(*on_reduced[i], reduced);
-    auto evidence = canonical ? evidence_of(*canonical, reduced, inflation, Integration::Quadrature)
+    auto evidence = canonical ? evidence_of(*canonical, reduced, evidences.inflation,
+                                            Integration::Quadrature)
                               : std::nullopt;
     if (!evidence) {
       continue;
     }
-    if (curve_class == CurveClass::CubicSpline) {
-      evidences.rival =
-          rival_of(*on_reduced[i], *evidence, reduced, inflation, Integration::Quadrature);
-    }
     evidences.classes[i] = std::move(evidence);
+    evidences.on_reduced_chi2[i] = kNone;  // no longer Laplace's: not to be taken over
+  }
+  // The other mode of the spline: its share of a class that matters only as one of several is told
+  // well enough by Laplace's formula.
+  if (evidences.rival && evidences.classes[kSpline]) {
+    if (holds(*evidences.classes[kSpline], *evidences.rival)) {
+      evidences.rival.reset();
+    } else if (spline_is_best) {
+      evidences.rival =
+          rival_of(*on_reduced[kSpline], reduced, evidences.inflation, Integration::Quadrature);
+    }
   }
   return evidences;
 }

@@ -21,6 +21,10 @@ struct Evidences {
   /// Of the spline's optimum on the other side of c = 0, where that is a mode of its own.
   std::optional<ClassEvidence> rival;
   FreeForm free_form;
+  /// What it was taken with: noise variances counted so many times, and each class at this
+  /// chi-square of the reduced points.
+  double inflation = 0.0;
+  std::array<double, 9> on_reduced_chi2{};
 };
 
 /// log of the evidence of a class that was fitted with `chi2`; -infinity where it has none.
@@ -29,13 +33,14 @@ double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
 
 /// Evidence of the classes fitted to the reduced points, by Laplace's formula. Those that cannot
 /// come within odds of a millionth of the best have none. `fits`: with chi-squares of all points.
+/// `before`: of the same points; what has not changed since is taken from it.
 Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
-                       const Likelihood& likelihood);
+                       const Likelihood& likelihood, const Evidences& before = {});
 
-/// The same with quadrature for the classes whose share is not negligible.
+/// The same with quadrature for the classes whose share is not negligible, where there are several.
 Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits& on_reduced,
-                     const FitData& reduced, const Likelihood& likelihood);
+                     double smooth_chi2, const FitData& reduced, const Likelihood& likelihood);
 
 /// Posterior probabilities, all classes alike probable before. A conic that has no optimum on its
 /// own side of the parabola has the mass that the other side's optimum leaves there.

@@ -27,13 +27,18 @@ constexpr double kBendScale = 2.0;
 /// what touches a part far out on its straight arms is. Student's law of 2 degrees of freedom.
 const double kSlopeWidth = 2.0 * kUniformWidth;
 double log_slope(double slope) { return -1.5 * std::log1p(slope * slope); }
+double log_slope_derivative(double slope) { return -3.0 * slope / (1.0 + slope * slope); }
 
 double log_cauchy(double x, double scale) { return -std::log1p(x * x / (scale * scale)); }
+double log_cauchy_derivative(double x, double scale) { return -2.0 * x / (scale * scale + x * x); }
 
 double log_size(CurveClass curve_class, double log_length) {
   // -log cosh without overflow.
   const double x = std::abs(log_length - log_length_over_size(curve_class) - kLogSize);
   return -(x + std::log1p(std::exp(-2.0 * x)) - std::numbers::ln2);
+}
+double log_size_derivative(CurveClass curve_class, double log_length) {
+  return -std::tanh(log_length - log_length_over_size(curve_class) - kLogSize);
 }
 
 }  // namespace
@@ -252,6 +257,45 @@ double log_prior(CurveClass curve_class, const TouchedVector& z) {
     default:
       return 0.0;
   }
+}
+
+TouchedVector log_prior_gradient(CurveClass curve_class, const TouchedVector& z) {
+  TouchedVector gradient = TouchedVector::Zero();
+  if (shape_coordinates(curve_class) > 0) {
+    gradient[0] = log_size_derivative(curve_class, z[0]);
+  }
+  switch (curve_class) {
+    case CurveClass::Ellipse: {
+      const double sine = std::sin(z[2]);
+      const double cosine = std::cos(z[2]);
+      const double squares = sine * sine + z[1] * cosine * cosine;
+      gradient[1] = 0.5 * cosine * cosine / squares;
+      gradient[2] = (1.0 - z[1]) * sine * cosine / squares;
+      break;
+    }
+    case CurveClass::Parabola:
+      gradient[1] = log_slope_derivative(z[1]);
+      break;
+    case CurveClass::Hyperbola:
+      gradient[1] = log_cauchy_derivative(z[1] - 1.0, 1.0);
+      gradient[2] = log_slope_derivative(z[2]);
+      break;
+    case CurveClass::CubicalParabola:
+      gradient[1] = log_slope_derivative(z[1]);
+      gradient[2] = log_slope_derivative(z[2]);
+      break;
+    case CurveClass::SemiCubicalParabola:
+    case CurveClass::CubicSpline:
+      gradient[1] = log_slope_derivative(z[1]);
+      gradient[2] = log_cauchy_derivative(z[2], kPlaceScale);
+      if (curve_class == CurveClass::CubicSpline) {
+        gradient[3] = log_cauchy_derivative(z[3], kBendScale);
+      }
+      break;
+    default:
+      break;
+  }
+  return gradient;
 }
 
 }  // namespace palpate

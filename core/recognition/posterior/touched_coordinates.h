@@ -52,4 +52,7 @@ double log_length_over_size(CurveClass curve_class);
 /// log of the prior's density over that at its centre.
 double log_prior(CurveClass curve_class, const TouchedVector& z);
 
+/// Its derivatives by the coordinates.
+TouchedVector log_prior_gradient(CurveClass curve_class, const TouchedVector& z);
+
 }  // namespace palpate
