@@ -8,7 +8,7 @@
 
 namespace palpate {
 std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,
-                                        const RecognizerOptions& options) {
+                                        double false_outlier_probability) {
   const CanonicalFit* fit = nullptr;
   double best = -1.0;
   for (std::size_t i = 1; i < weighing.canonical.size(); ++i) {
@@ -31,7 +31,7 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
                    sorted.end());
   const double scale = std::max(1.0, sorted[n / 2] / kMedianOfNormal);
   const double limit =
-      scale * two_sided_normal_quantile(options.false_outlier_probability / static_cast<double>(n));
+      scale * two_sided_normal_quantile(false_outlier_probability / static_cast<double>(n));
   constexpr std::size_t kLongestRun = 3;
   constexpr std::size_t kMost = 2;
   constexpr std::size_t kOneIn = 20;

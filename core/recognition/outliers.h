@@ -3,15 +3,15 @@
 
 #include <optional>
 
-#include "core/recognition/weigh.h"
+#include "core/recognition/weigh/weigh.h"
 
 namespace palpate {
 
 /// `data` without the points whose residual from the best class exceeds what Gaussian noise reaches
-/// in any point of a scene with probability `options.false_outlier_probability`. Runs of more than
+/// in any point of a scene with probability `false_outlier_probability`. Runs of more than
 /// three such points, or more than two and a twentieth of all, are no leftovers of the spike
 /// detection but a curve that does not fit: nullopt, as when there are none.
 std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,
-                                        const RecognizerOptions& options);
+                                        double false_outlier_probability);
 
 }  // namespace palpate

@@ -11,7 +11,7 @@
 #include "core/recognition/samples/explained_spikes.h"
 #include "core/recognition/samples/stored_spikes.h"
 #include "core/recognition/verdict/determined.h"
-#include "core/recognition/weigh.h"
+#include "core/recognition/weigh/weigh.h"
 
 namespace palpate {
 namespace {
@@ -158,15 +158,19 @@ class Recognizer::Impl {
   Weighing weigh_without_outliers(const FitData& data, bool sigma_known,
                                   std::span<const StoredPatch> patches,
                                   const WarmStart* warm) const {
-    Weighing w = weigh(data, sigma_known, patches, options_, warm);
-    if (const auto kept = without_outliers(w, data, options_)) {
+    Weighing w = weigh(data, sigma_known, patches, weigh_options(), warm);
+    if (const auto kept = without_outliers(w, data, options_.false_outlier_probability)) {
       // A search is not followed: the outliers may have led it astray.
       const auto nearer = warm != nullptr
                               ? std::optional(warm_start_from(w.coarse, w.smooth.reduced))
                               : std::nullopt;
-      w = weigh(*kept, sigma_known, patches, options_, nearer ? &*nearer : nullptr);
+      w = weigh(*kept, sigma_known, patches, weigh_options(), nearer ? &*nearer : nullptr);
     }
     return w;
+  }
+
+  WeighOptions weigh_options() const {
+    return {options_.classes, options_.recognized_probability, options_.form_deviation_m};
   }
 
   /// Weighs again with the spikes that the best class explains; that stands where the class does.

@@ -26,6 +26,12 @@ double Likelihood::log_evidence(double chi2, double log_occam, double determined
   return log_occam - half * std::log(0.5 * left) + log_gamma(half);
 }
 
+double misfit_of(double chi2, const Likelihood& likelihood) {
+  Likelihood untempered = likelihood;
+  untempered.tempering = 1.0;
+  return std::min(chi2, untempered.counted(chi2));
+}
+
 double log_odds(double probability) { return std::log(probability / (1.0 - probability)); }
 
 }  // namespace palpate

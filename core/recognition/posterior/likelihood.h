@@ -30,6 +30,10 @@ struct Likelihood {
   double log_evidence(double chi2, double log_occam, double determined) const;
 };
 
+/// Chi-square as a misfit is judged by it: form error counts, correlation does not. A class that
+/// leaves less than the smooth model (which cannot follow every bend) has no form error in it.
+double misfit_of(double chi2, const Likelihood& likelihood);
+
 /// The difference of log evidences at which the better of two has this probability, in (0, 1).
 double log_odds(double probability);
 

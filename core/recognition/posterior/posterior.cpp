@@ -127,9 +127,9 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
       continue;
     }
     const auto canonical = to_canonical(*on_reduced[i], reduced);
-    auto evidence = canonical ? evidence_of(*canonical, reduced, evidences.inflation,
-                                            Integration::Quadrature)
-                              : std::nullopt;
+    auto evidence =
+        canonical ? evidence_of(*canonical, reduced, evidences.inflation, Integration::Quadrature)
+                  : std::nullopt;
     if (!evidence) {
       continue;
     }

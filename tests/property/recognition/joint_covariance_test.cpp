@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "core/numerics/chi_square.h"
-#include "core/recognition/weigh.h"
+#include "core/recognition/weigh/weigh.h"
 #include "tests/support/joint_error.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
@@ -86,7 +86,7 @@ void add(const Recognition& answer, const test::Scene& scene, Count* count) {
   count->beyond_outer += published > chi_square_threshold(kOuter, dof) ? 1 : 0;
   count->beyond_inner += published > chi_square_threshold(kInner, dof) ? 1 : 0;
   // The covariance linear about the estimate, of the points before any is set aside as a spike.
-  const Weighing w = weigh(test::fit_data(scene, scene.sigma_m), true, {}, RecognizerOptions{});
+  const Weighing w = weigh(test::fit_data(scene, scene.sigma_m), true, {});
   const auto& fit = w.canonical[static_cast<std::size_t>(scene.curve_class)];
   if (w.best == scene.curve_class && fit) {
     Hypothesis linear = answer.hypotheses.front();

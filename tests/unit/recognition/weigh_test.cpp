@@ -1,4 +1,4 @@
-#include "core/recognition/weigh.h"
+#include "core/recognition/weigh/weigh.h"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ TEST_P(WeighingOf, WhatIsPublishedIsRefinedOnAllPoints) {
   for_each_scene(GetParam(), [](const test::Scene& scene) {
     for (const bool sigma_known : {true, false}) {
       FitData data = test::fit_data(scene, sigma_known ? scene.sigma_m : 1.0);
-      const Weighing w = weigh(std::move(data), sigma_known, {}, RecognizerOptions{});
+      const Weighing w = weigh(std::move(data), sigma_known, {});
       const auto best = static_cast<std::size_t>(w.best);
       if (w.fits[best]) {
         EXPECT_TRUE(w.fits[best]->on_all || w.fits[best]->at_limit);

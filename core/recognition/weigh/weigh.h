@@ -9,12 +9,18 @@
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/warm_start.h"
-#include "core/recognition/posterior/moments.h"
 #include "core/recognition/posterior/posterior.h"
-#include "core/recognition/recognizer.h"
+#include "core/recognition/samples/sample_memory.h"
 #include "core/recognition/smooth/smooth_model.h"
 
 namespace palpate {
+
+struct WeighOptions {
+  unsigned classes = kAllClasses;  ///< to consider, by bit 1 << CurveClass
+  /// What an answer needs to be RECOGNIZED: what cannot keep it from that is not refined.
+  double recognized_probability = 0.95;
+  double form_deviation_m = 0.0;  ///< as RecognizerOptions::form_deviation_m
+};
 
 struct Weighing {
   FitData data;  ///< noise set, tangents set
@@ -25,7 +31,6 @@ struct Weighing {
   /// reduced ones.
   std::array<std::optional<CanonicalFit>, 9> canonical;
   ClassProbabilities probabilities{};
-  Evidences evidences;  ///< of classes that are not out by far
   /// Of the spline's posterior, that its mode on the other side of c = 0 has.
   double rival_share = 0.0;
   /// Of the best class about its estimate, where a covariance linear about it does not hold it.
@@ -47,6 +52,6 @@ struct Weighing {
 /// `data` from make_fit_data. Follows core/README.md, "Refinement and the bound" and "Evidence".
 /// `warm`: what an earlier weighing of fewer samples of the same patches left, or nullptr.
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
-               const RecognizerOptions& options, const WarmStart* warm = nullptr);
+               const WeighOptions& options = {}, const WarmStart* warm = nullptr);
 
 }  // namespace palpate

@@ -1,0 +1,74 @@
+#include "core/recognition/posterior/likelihood_of.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/numerics/chi_square.h"
+#include "core/recognition/smooth/residual_correlation.h"
+#include "core/recognition/smooth/stated_form_error.h"
+
+namespace palpate {
+
+Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m) {
+  const double n = static_cast<double>(arcs.data.points.size());
+  Likelihood likelihood;
+  likelihood.sigma_known = arcs.sigma_known;
+  likelihood.samples = n;
+  // Residuals below the rounding of the coordinates say nothing.
+  const double rounding = rounding_level(arcs.data) / arcs.sigma;
+  likelihood.chi2_floor = arcs.sigma_known ? 0.0 : n * rounding * rounding;
+  likelihood.coherent_variance = coherent_variance(arcs.data, form_deviation_m / arcs.data.scale);
+  likelihood.noise_chi2 = arcs.smooth.chi2;
+  return likelihood;
+}
+
+SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, double chi2,
+                             const CanonicalFit& placed, bool unclassified) {
+  const SmoothModel& smooth = arcs.smooth;
+  const double n = static_cast<double>(arcs.data.points.size());
+  const int parameters = degrees_of_freedom(placed.shape.curve_class);
+  const double dof = n - parameters;
+  const double variance = chi2 / dof;  // of the residuals, in units of sigma^2
+  const double noise = smooth.dof() > 0 ? smooth.chi2 / smooth.dof() : 1.0;
+  const double excess = arcs.sigma * std::sqrt(std::max(0.0, variance - noise));
+  // What the smooth model explains and the class does not, beyond what noise gives the smooth
+  // model's further coefficients; a false alarm costs an answer its certainty.
+  constexpr double kFalseAlarm = 1e-6;
+  const int more = smooth.parameters - parameters;
+  const bool misfits =
+      unclassified ||
+      (more > 0 &&
+       chi_square_survival((chi2 - smooth.chi2) / likelihood.inflation(), more) < kFalseAlarm);
+  std::vector<double> residuals;
+  residuals.reserve(placed.points.size());
+  for (const FittedPoint& point : placed.points) {
+    residuals.push_back(point.residual);
+  }
+  const ResidualCorrelation correlation = correlation_of(arcs.data, residuals);
+  // White residuals much larger than the smooth model's are noise that it took for bends
+  // (outliers, samples out of order); correlated ones are form error up to its limit, neighbours
+  // erring together, so that only one in `time` counts.
+  constexpr double kMuchLarger = 1.5;
+  constexpr double kLargestNoise = 0.01;      // of the half extent: beyond it nothing is measured
+  constexpr double kLargestFormError = 1e-3;  // likewise: beyond it, it is another shape
+  const bool noisy =
+      correlation.time == 1.0 && variance > kMuchLarger * noise && excess <= kLargestNoise;
+  const bool form_error = correlation.time > 1.0 && excess <= kLargestFormError;
+  SeenDeviation seen;
+  if (misfits && (noisy || form_error)) {
+    seen.noise_inflation = variance * correlation.time;
+    seen.correlation_length = correlation.length;
+    seen.likelihood = likelihood;
+    seen.likelihood->sigma_known = true;
+    seen.likelihood->samples = std::max(n / correlation.time, 1.0);
+    seen.likelihood->tempering = seen.noise_inflation + likelihood.coherent_variance;
+    seen.likelihood->coherent_variance = 0.0;
+    seen.likelihood->coherent_or_other = form_error;
+  } else if (!likelihood.sigma_known) {
+    seen.noise_inflation = misfit_of(chi2, likelihood) / dof;
+  }
+  return seen;
+}
+
+}  // namespace palpate

@@ -1,0 +1,47 @@
+// The classes side by side: what may win is refined on all points until it is known what does.
+#pragma once
+
+#include "core/recognition/fit/class_fits.h"
+#include "core/recognition/posterior/posterior.h"
+#include "core/recognition/smooth/arcs.h"
+
+namespace palpate {
+
+/// What all classes are judged on.
+struct Ground {
+  const Arcs& arcs;
+  const FitData& reduced;  ///< the arcs' reduced points, as surface points
+  Likelihood likelihood;
+};
+
+struct Contenders {
+  ClassFits coarse;  ///< on the reduced points
+  ClassFits fits;    ///< plausible ones weighed on all points, the best refined there
+  Evidences evidences;
+};
+
+/// Fits to the reduced points, as these tell their chi-squares of all points.
+ClassFits as_told(const ClassFits& coarse, const SmoothModel& smooth);
+
+/// The class of the highest evidence, "unclassified" aside; where none has any, the one that fits
+/// best; Unclassified where there is none.
+CurveClass best_class(const ClassFits& fits, const Likelihood& likelihood,
+                      const Evidences& evidences);
+
+ClassProbabilities probabilities_of(const Contenders& contenders, const Ground& ground);
+
+CurveClass most_probable(const ClassProbabilities& probabilities);
+
+/// Weighs on all points what the reduced points leave plausible, and polishes the best. The others
+/// keep the chi-square that the reduced points tell. `margin`: log odds that keep the best from
+/// being RECOGNIZED. The coarse fit of whatever it has to do with is settled.
+Contenders refine_plausible(Contenders contenders, const Ground& ground, double margin);
+
+/// Spares no effort on the models with sharp bends: a narrow valley may not have been walked to its
+/// end.
+Contenders refine_sharp_bends(Contenders contenders, const Ground& ground);
+
+/// With the integrals that matter, and the most probable class at its optimum on all points.
+Contenders decided(Contenders contenders, const Ground& ground);
+
+}  // namespace palpate

@@ -1,0 +1,30 @@
+// Which side of the patches the material lies on, where round tips touched and no probe says it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/recognition/fit/warm_start.h"
+#include "core/recognition/posterior/likelihood.h"
+#include "core/recognition/samples/sample_memory.h"
+#include "core/recognition/smooth/arcs.h"
+
+namespace palpate {
+
+struct SidedFits {
+  ClassFits fits;   ///< of every class, to `reduced`
+  FitData reduced;  ///< the arcs' reduced points, taken to the surface
+  /// Per patch the side of travel on which the tip centres lie (tip_sides.h).
+  std::vector<int> sides;
+  /// log odds over the next best way for them to lie, priors included; infinite where the probes
+  /// told.
+  double margin = 0.0;
+};
+
+/// Fits to the reduced points for the way the material lies beside the patches: where the probes do
+/// not say it, the way of the highest evidence, the first (from outside the bends) at the odds of
+/// the prior. `classes`: by bit 1 << CurveClass; `warm`: as in weigh().
+SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
+                         const Likelihood& likelihood, unsigned classes, const WarmStart* warm);
+
+}  // namespace palpate

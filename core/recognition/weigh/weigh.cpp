@@ -1,0 +1,128 @@
+#include "core/recognition/weigh/weigh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/recognition/posterior/likelihood_of.h"
+#include "core/recognition/posterior/moments.h"
+#include "core/recognition/weigh/contenders.h"
+#include "core/recognition/weigh/sides.h"
+
+namespace palpate {
+namespace {
+
+/// Without the classes that nobody wants and those that leave nothing over to test them with.
+ClassFits testable(ClassFits fits, unsigned classes, std::size_t points) {
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    const bool wanted = (classes & (1U << i)) != 0;
+    if (!wanted || static_cast<int>(points) <= degrees_of_freedom(curve_class)) {
+      fits[i].reset();
+    }
+  }
+  return fits;
+}
+
+/// A class on all points where it was refined there, otherwise on the reduced ones.
+std::optional<CanonicalFit> placed(const Contenders& contenders, std::size_t i,
+                                   const Ground& ground) {
+  return contenders.fits[i]->on_all ? to_canonical(*contenders.fits[i], ground.arcs.data)
+                                    : to_canonical(*contenders.coarse[i], ground.reduced);
+}
+
+/// What the best class, refined on all points, leaves beyond the noise.
+SeenDeviation deviation_from_best(const Contenders& contenders, const Ground& ground) {
+  const CurveClass best = best_class(contenders.fits, ground.likelihood, contenders.evidences);
+  const auto& fit = contenders.fits[static_cast<std::size_t>(best)];
+  const auto canonical = fit && fit->on_all ? to_canonical(*fit, ground.arcs.data) : std::nullopt;
+  if (!canonical) {
+    return {};
+  }
+  const bool unclassified =
+      most_probable(probabilities_of(contenders, ground)) == CurveClass::Unclassified;
+  return seen_deviation(ground.arcs, ground.likelihood, fit->chi2, *canonical, unclassified);
+}
+
+/// Shape, pose and covariance of what is not negligible, and of the best class in any case: where
+/// it is out for some spikes, its residuals tell which.
+std::array<std::optional<CanonicalFit>, 9> placed_canonically(
+    const Contenders& contenders, const ClassProbabilities& probabilities, const Ground& ground) {
+  constexpr double kNegligible = 1e-6;
+  const CurveClass best = best_class(contenders.fits, ground.likelihood, contenders.evidences);
+  std::array<std::optional<CanonicalFit>, 9> canonical;
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    const auto& fit = contenders.fits[i];
+    if (fit && !fit->at_limit && std::isfinite(fit->chi2) &&
+        (curve_class == best || probabilities[i] > kNegligible)) {
+      canonical[i] = placed(contenders, i, ground);
+    }
+  }
+  return canonical;
+}
+
+/// The covariance of a class where one that is linear about its estimate does not hold its valley.
+std::optional<ShapePoseCovariance> covariance_of_valley(const ClassFit& on_reduced,
+                                                        const CanonicalFit& best,
+                                                        const FitData& reduced, double inflation) {
+  const auto estimate = to_canonical(on_reduced, reduced);
+  const auto valley =
+      estimate ? evidence_of(*estimate, reduced, inflation, Integration::Valley) : std::nullopt;
+  if (!valley || valley->widest < 0) {
+    return std::nullopt;
+  }
+  return with_bend(inflation * best.covariance, inflation * estimate->covariance,
+                   second_moment(*estimate, *valley, reduced));
+}
+
+}  // namespace
+
+Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
+               const WeighOptions& options, const WarmStart* warm) {
+  Arcs arcs = smooth_arcs(std::move(data), sigma_known);
+  const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
+  SidedFits sided = fit_over_sides(patches, arcs, stated, options.classes, warm);
+  Ground ground{arcs, sided.reduced, stated};
+  Contenders contenders;
+  contenders.coarse = testable(std::move(sided.fits), options.classes, arcs.data.points.size());
+  contenders.fits = as_told(contenders.coarse, arcs.smooth);
+
+  const double margin = std::max(log_odds(options.recognized_probability), 0.0);
+  contenders = refine_plausible(std::move(contenders), ground, margin);
+  if (most_probable(probabilities_of(contenders, ground)) == CurveClass::Unclassified) {
+    contenders = refine_sharp_bends(std::move(contenders), ground);
+  }
+  const SeenDeviation seen = deviation_from_best(contenders, ground);
+  if (seen.likelihood) {
+    ground.likelihood = *seen.likelihood;
+    contenders = refine_plausible(std::move(contenders), ground, margin);
+  }
+  contenders = decided(std::move(contenders), ground);
+
+  Weighing w;
+  w.probabilities = probabilities_of(contenders, ground);
+  w.best = most_probable(w.probabilities);
+  w.rival_share = rival_share(contenders.fits, ground.likelihood, contenders.evidences);
+  w.noise_inflation = seen.noise_inflation;
+  w.correlation_length = seen.correlation_length;
+  w.inflation = seen.noise_inflation + stated.coherent_variance;
+  const auto b = static_cast<std::size_t>(w.best);
+  const auto& best = contenders.fits[b];
+  w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, ground.likelihood);
+  w.canonical = placed_canonically(contenders, w.probabilities, ground);
+  if (w.canonical[b]) {
+    w.moment =
+        covariance_of_valley(*contenders.coarse[b], *w.canonical[b], ground.reduced, w.inflation);
+  }
+  w.fits = std::move(contenders.fits);
+  w.coarse = std::move(contenders.coarse);
+  w.sides = std::move(sided.sides);
+  w.sides_margin = sided.margin;
+  w.sigma = arcs.sigma;
+  w.data = std::move(arcs.data);
+  w.smooth = std::move(arcs.smooth);
+  return w;
+}
+
+}  // namespace palpate
