@@ -64,7 +64,7 @@ double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
 
 Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
-                       const Likelihood& likelihood, const Evidences& before) {
+                       const Likelihood& likelihood, Evidences before) {
   Evidences evidences;
   const double inflation = likelihood.inflation();
   const bool same_noise = inflation == before.inflation;
@@ -86,15 +86,13 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
     if (likelihood.log_evidence(fits[i]->chi2, 0.0, 0.0) < best - kNegligible) {
       continue;
     }
-    auto& evidence = evidences.classes[i];
     evidences.on_reduced_chi2[i] = on_reduced[i]->chi2;
     if (same_noise && before.classes[i] && before.on_reduced_chi2[i] == on_reduced[i]->chi2) {
-      evidence = before.classes[i];
-    } else if (const auto canonical = to_canonical(*on_reduced[i], reduced)) {
-      evidence = evidence_of(*canonical, reduced, inflation, Integration::Laplace);
-    }
-    if (evidence && curve_class == CurveClass::CubicSpline) {
-      evidences.rival = rival_of(*on_reduced[i], reduced, inflation, Integration::Laplace);
+      evidences.on_reduced[i] = std::move(before.on_reduced[i]);
+      evidences.classes[i] = std::move(before.classes[i]);
+    } else if ((evidences.on_reduced[i] = to_canonical(*on_reduced[i], reduced))) {
+      evidences.classes[i] =
+          evidence_of(*evidences.on_reduced[i], reduced, inflation, Integration::Laplace);
     }
     best = std::max(best, log_evidence(likelihood, evidences, curve_class, fits[i]->chi2));
   }
@@ -117,7 +115,7 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   constexpr auto kSpline = static_cast<std::size_t>(CurveClass::CubicSpline);
   const auto best = std::max_element(log_of.begin(), log_of.end());
   const auto matters = [&](double log_evidence) { return log_evidence >= *best - kMatters; };
-  const bool spline_is_best = best == log_of.begin() + kSpline && evidences.rival;
+  const bool spline_is_best = best == log_of.begin() + kSpline && on_reduced[kSpline]->rival;
   if (std::count_if(log_of.begin(), log_of.end(), matters) < 2 && !spline_is_best) {
     return evidences;  // however wide, one class has all of the mass
   }
@@ -126,22 +124,22 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
     if (!matters(log_of[i])) {
       continue;
     }
-    const auto canonical = to_canonical(*on_reduced[i], reduced);
-    auto evidence =
-        canonical ? evidence_of(*canonical, reduced, evidences.inflation, Integration::Quadrature)
-                  : std::nullopt;
+    auto evidence = evidence_of(*evidences.on_reduced[i], reduced, evidences.inflation,
+                                Integration::Quadrature);
     if (!evidence) {
       continue;
     }
     evidences.classes[i] = std::move(evidence);
     evidences.on_reduced_chi2[i] = kNone;  // no longer Laplace's: not to be taken over
   }
-  // The other mode of the spline: its share of a class that matters only as one of several is told
-  // well enough by Laplace's formula.
-  if (evidences.rival && evidences.classes[kSpline]) {
-    if (holds(*evidences.classes[kSpline], *evidences.rival)) {
+  if (matters(log_of[kSpline])) {
+    // Of a class that is only one of several, Laplace's formula tells the other mode's share well
+    // enough.
+    evidences.rival =
+        rival_of(*on_reduced[kSpline], reduced, evidences.inflation, Integration::Laplace);
+    if (evidences.rival && holds(*evidences.classes[kSpline], *evidences.rival)) {
       evidences.rival.reset();
-    } else if (spline_is_best) {
+    } else if (evidences.rival && spline_is_best) {
       evidences.rival =
           rival_of(*on_reduced[kSpline], reduced, evidences.inflation, Integration::Quadrature);
     }

@@ -21,9 +21,10 @@ struct Evidences {
   /// Of the spline's optimum on the other side of c = 0, where that is a mode of its own.
   std::optional<ClassEvidence> rival;
   FreeForm free_form;
-  /// What it was taken with: noise variances counted so many times, and each class at this
-  /// chi-square of the reduced points.
+  /// What it was taken with: noise variances counted so many times, and each class as placed on the
+  /// reduced points, at this chi-square of theirs.
   double inflation = 0.0;
+  std::array<std::optional<CanonicalFit>, 9> on_reduced;
   std::array<double, 9> on_reduced_chi2{};
 };
 
@@ -36,9 +37,10 @@ double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
 /// `before`: of the same points; what has not changed since is taken from it.
 Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
-                       const Likelihood& likelihood, const Evidences& before = {});
+                       const Likelihood& likelihood, Evidences before = {});
 
-/// The same with quadrature for the classes whose share is not negligible, where there are several.
+/// The same with quadrature for the classes whose share is not negligible, where there are several;
+/// and the spline's other mode.
 Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits& on_reduced,
                      double smooth_chi2, const FitData& reduced, const Likelihood& likelihood);
 

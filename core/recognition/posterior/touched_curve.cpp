@@ -20,8 +20,9 @@ std::size_t reference_point(const FitData& data) {
 /// The foot of `point` (curve's frame) near t: Newton's method on (C - p) . C' = 0.
 double follow_foot(const Curve& curve, const Vec2& point, double t, CurveDerivatives* at) {
   constexpr int kMostSteps = 6;
-  // In half extents: an error along the curve is its square across, which is then below rounding.
-  constexpr double kLastStep = 1e-9;
+  // In half extents: an error along the curve is its square across, a millionth of a millionth,
+  // where the finest noise is a hundred millionth.
+  constexpr double kLastStep = 1e-6;
   for (int i = 0;; ++i) {
     *at = derivatives(curve, t);
     const Vec2 away = at->position - point;

@@ -131,7 +131,7 @@ CurveClass most_probable(const ClassProbabilities& probabilities) {
 Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
   const auto& [arcs, reduced, likelihood] = ground;
   const auto& [data, smooth, sigma_known, sigma] = arcs;
-  w.evidences = evidences_of(w.fits, w.coarse, smooth, reduced, likelihood, w.evidences);
+  w.evidences = evidences_of(w.fits, w.coarse, smooth, reduced, likelihood, std::move(w.evidences));
   // Where the smooth model itself misfits, neither it nor the reduced points can be trusted that
   // far.
   const double misfit_ratio = std::max(1.0, smooth.noise_ratio() * smooth.noise_ratio());
@@ -187,14 +187,15 @@ Contenders refine_sharp_bends(Contenders w, const Ground& ground) {
     }
   }
   w.evidences = evidences_of(w.fits, w.coarse, ground.arcs.smooth, ground.reduced,
-                             ground.likelihood, w.evidences);
+                             ground.likelihood, std::move(w.evidences));
   return w;
 }
 
 Contenders decided(Contenders w, const Ground& ground) {
   const auto& [arcs, reduced, likelihood] = ground;
   while (true) {
-    w.evidences = evidences_of(w.fits, w.coarse, arcs.smooth, reduced, likelihood, w.evidences);
+    w.evidences =
+        evidences_of(w.fits, w.coarse, arcs.smooth, reduced, likelihood, std::move(w.evidences));
     w.evidences =
         integrated(std::move(w.evidences), w.fits, w.coarse, arcs.smooth.chi2, reduced, likelihood);
     const auto i = static_cast<std::size_t>(most_probable(probabilities_of(w, ground)));

@@ -24,56 +24,59 @@ ClassFits testable(ClassFits fits, unsigned classes, std::size_t points) {
   return fits;
 }
 
-/// A class on all points where it was refined there, otherwise on the reduced ones.
-std::optional<CanonicalFit> placed(const Contenders& contenders, std::size_t i,
-                                   const Ground& ground) {
-  return contenders.fits[i]->on_all ? to_canonical(*contenders.fits[i], ground.arcs.data)
-                                    : to_canonical(*contenders.coarse[i], ground.reduced);
-}
+/// A class placed on all points, and its chi-square there.
+struct Placed {
+  CanonicalFit canonical;
+  double chi2 = 0.0;
+};
 
-/// What the best class, refined on all points, leaves beyond the noise.
-SeenDeviation deviation_from_best(const Contenders& contenders, const Ground& ground) {
+/// The best class, if it was refined on all points.
+std::optional<Placed> best_on_all(const Contenders& contenders, const Ground& ground) {
   const CurveClass best = best_class(contenders.fits, ground.likelihood, contenders.evidences);
   const auto& fit = contenders.fits[static_cast<std::size_t>(best)];
-  const auto canonical = fit && fit->on_all ? to_canonical(*fit, ground.arcs.data) : std::nullopt;
-  if (!canonical) {
-    return {};
-  }
-  const bool unclassified =
-      most_probable(probabilities_of(contenders, ground)) == CurveClass::Unclassified;
-  return seen_deviation(ground.arcs, ground.likelihood, fit->chi2, *canonical, unclassified);
+  auto canonical = fit && fit->on_all ? to_canonical(*fit, ground.arcs.data) : std::nullopt;
+  return canonical ? std::optional(Placed{*std::move(canonical), fit->chi2}) : std::nullopt;
 }
 
 /// Shape, pose and covariance of what is not negligible, and of the best class in any case: where
 /// it is out for some spikes, its residuals tell which.
+/// On all points where it was refined there, otherwise on the reduced ones. `before`: a class
+/// placed already.
 std::array<std::optional<CanonicalFit>, 9> placed_canonically(
-    const Contenders& contenders, const ClassProbabilities& probabilities, const Ground& ground) {
+    const Contenders& contenders, const ClassProbabilities& probabilities, const Ground& ground,
+    std::optional<Placed> before) {
   constexpr double kNegligible = 1e-6;
   const CurveClass best = best_class(contenders.fits, ground.likelihood, contenders.evidences);
   std::array<std::optional<CanonicalFit>, 9> canonical;
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     const auto& fit = contenders.fits[i];
-    if (fit && !fit->at_limit && std::isfinite(fit->chi2) &&
-        (curve_class == best || probabilities[i] > kNegligible)) {
-      canonical[i] = placed(contenders, i, ground);
+    if (!fit || fit->at_limit || !std::isfinite(fit->chi2) ||
+        (curve_class != best && !(probabilities[i] > kNegligible))) {
+      continue;
+    }
+    if (!fit->on_all) {
+      canonical[i] = to_canonical(*contenders.coarse[i], ground.reduced);
+    } else if (before && before->canonical.shape.curve_class == curve_class &&
+               before->chi2 == fit->chi2) {
+      canonical[i] = std::move(before->canonical);
+    } else {
+      canonical[i] = to_canonical(*fit, ground.arcs.data);
     }
   }
   return canonical;
 }
 
 /// The covariance of a class where one that is linear about its estimate does not hold its valley.
-std::optional<ShapePoseCovariance> covariance_of_valley(const ClassFit& on_reduced,
+std::optional<ShapePoseCovariance> covariance_of_valley(const CanonicalFit& on_reduced,
                                                         const CanonicalFit& best,
                                                         const FitData& reduced, double inflation) {
-  const auto estimate = to_canonical(on_reduced, reduced);
-  const auto valley =
-      estimate ? evidence_of(*estimate, reduced, inflation, Integration::Valley) : std::nullopt;
+  const auto valley = evidence_of(on_reduced, reduced, inflation, Integration::Valley);
   if (!valley || valley->widest < 0) {
     return std::nullopt;
   }
-  return with_bend(inflation * best.covariance, inflation * estimate->covariance,
-                   second_moment(*estimate, *valley, reduced));
+  return with_bend(inflation * best.covariance, inflation * on_reduced.covariance,
+                   second_moment(on_reduced, *valley, reduced));
 }
 
 }  // namespace
@@ -93,7 +96,12 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   if (most_probable(probabilities_of(contenders, ground)) == CurveClass::Unclassified) {
     contenders = refine_sharp_bends(std::move(contenders), ground);
   }
-  const SeenDeviation seen = deviation_from_best(contenders, ground);
+  std::optional<Placed> best_placed = best_on_all(contenders, ground);
+  const SeenDeviation seen =
+      best_placed ? seen_deviation(arcs, stated, best_placed->chi2, best_placed->canonical,
+                                   most_probable(probabilities_of(contenders, ground)) ==
+                                       CurveClass::Unclassified)
+                  : SeenDeviation{};
   if (seen.likelihood) {
     ground.likelihood = *seen.likelihood;
     contenders = refine_plausible(std::move(contenders), ground, margin);
@@ -110,10 +118,9 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   const auto b = static_cast<std::size_t>(w.best);
   const auto& best = contenders.fits[b];
   w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, ground.likelihood);
-  w.canonical = placed_canonically(contenders, w.probabilities, ground);
-  if (w.canonical[b]) {
-    w.moment =
-        covariance_of_valley(*contenders.coarse[b], *w.canonical[b], ground.reduced, w.inflation);
+  w.canonical = placed_canonically(contenders, w.probabilities, ground, std::move(best_placed));
+  if (const auto& on_reduced = contenders.evidences.on_reduced[b]; on_reduced && w.canonical[b]) {
+    w.moment = covariance_of_valley(*on_reduced, *w.canonical[b], ground.reduced, w.inflation);
   }
   w.fits = std::move(contenders.fits);
   w.coarse = std::move(contenders.coarse);
