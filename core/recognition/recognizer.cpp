@@ -357,6 +357,9 @@ class Recognizer::Impl {
       return Doubt::Misfit;
     }
     if (curve_class == CurveClass::Unclassified) {
+      if (!(w.margin_of_unclassified >= log_odds(options_.recognized_probability))) {
+        return Doubt::SeveralClasses;
+      }
       // What not even the smooth model follows says nothing about classes.
       return many_spikes || !is_noise(best.chi2, best.dof) ? Doubt::Misfit : Doubt::None;
     }

@@ -22,12 +22,17 @@ TouchedVector prior_gradient(const Touch& touch, const TouchedCurve& curve) {
   return log_prior_gradient(touch.curve_class, curve.z).cwiseProduct(curve.widths);
 }
 
+/// From the slice beside, the mode is near; from the optimum of the likelihood it may be far, where
+/// the data determine little.
+constexpr int kFewSteps = 4;
+constexpr int kMostSteps = 40;
+
 /// Gauss-Newton steps down the potential, coordinate `fixed` staying.
-TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed) {
-  constexpr int kMostSteps = 4;
+TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed,
+                     int most_steps = kFewSteps) {
   constexpr double kSettled = 2e-2;  // of the potential: odds right to a fiftieth
   double halving = 1.0;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < most_steps; ++i) {
     const Eigen::LLT<TouchedMatrix> llt(hessian_of(curve, fixed));
     TouchedVector slope = curve.gradient - prior_gradient(touch, curve);
     if (fixed >= 0) {
@@ -224,6 +229,39 @@ TouchedMatrix hessian_of(const TouchedCurve& curve, int fixed) {
   return hessian;
 }
 
+std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
+                                           double inflation) {
+  auto touch = touch_of(start, data);
+  if (!touch) {
+    return std::nullopt;
+  }
+  touch->weight = 1.0 / std::sqrt(inflation);
+  auto curve = curve_at(*touch, start, data);
+  if (!curve) {
+    return std::nullopt;
+  }
+  // The noise is lowered from what the start leaves to what it is: at each level the valley is wide
+  // enough to be walked along.
+  constexpr int kStepsPerLevel = 12;
+  constexpr double kLevel = 0.5;  // of the deviation
+  const double n = static_cast<double>(data.points.size());
+  const double full = touch->weight;
+  double weight = full * std::min(1.0, std::sqrt(n / curve->chi2));
+  while (weight < full) {
+    touch->weight = weight;
+    curve = curve_at(*touch, curve->z, *curve, data);
+    if (!curve) {
+      return std::nullopt;
+    }
+    curve = descend(*touch, data, *std::move(curve), -1, kStepsPerLevel);
+    weight /= kLevel;
+  }
+  touch->weight = full;
+  curve = curve_at(*touch, curve->z, *curve, data);
+  return curve ? std::optional(descend(*touch, data, *std::move(curve), -1, kMostSteps))
+               : std::nullopt;
+}
+
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
                                          double inflation, Integration integration) {
   auto touch = touch_of(fit, data);
@@ -247,12 +285,17 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
   const double first_chi2 = first->chi2;
   ClassEvidence evidence;
   evidence.touch = *touch;
-  TouchedCurve best = descend(*touch, data, std::move(*first), -1);
+  TouchedCurve best = descend(*touch, data, std::move(*first), -1, kMostSteps);
   const Eigen::LLT<TouchedMatrix> llt(hessian_of(best, -1));
   const TouchedMatrix covariance = llt.solve(TouchedMatrix::Identity());
   evidence.determined = static_cast<double>(kMostCoordinates) - covariance.trace();
   evidence.log_prior = best.log_prior;
   evidence.log_occam = -potential(best) - 0.5 * log_determinant(llt);
+  const int own = shape_coordinates(touch->curve_class);
+  const Eigen::Matrix2d of_touch =
+      best.information.block<2, 2>(own, own) + Eigen::Matrix2d::Identity();
+  evidence.log_occam_of_touch =
+      0.5 * first_chi2 - 0.5 * best.chi2 - 0.5 * std::log(of_touch.determinant());
   evidence.nodes.push_back({best, 1.0});
   if (integration != Integration::Laplace) {
     evidence.widest = widest_coordinate(*touch, best, covariance, data, integration);

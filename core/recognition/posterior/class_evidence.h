@@ -20,6 +20,9 @@ struct ClassEvidence {
   /// log of the marginal likelihood over the likelihood at the optimum: what the prior leaves of
   /// it.
   double log_occam = 0.0;
+  /// The same with all of the prior at this shape: what is left is what the place and direction of
+  /// the touch cost every curve.
+  double log_occam_of_touch = 0.0;
   /// How many coordinates the data determine rather than the prior.
   double determined = 0.0;
   /// log of the prior's density there over that at its centre.
@@ -40,6 +43,12 @@ enum class Integration {
 /// J^T J and the prior's curvature, that of normal laws as high, in units of the widths; `fixed`
 /// (or -1) does not move.
 TouchedMatrix hessian_of(const TouchedCurve& curve, int fixed);
+
+/// The mode of likelihood times prior that lies downhill from a curve; nullopt where `start` is no
+/// curve of its class in double precision. Arguments as of evidence_of, but `start` need not be an
+/// optimum.
+std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
+                                           double inflation);
 
 /// `fit` is at its optimum on `data`, the reduced points as surface points, and has a point for
 /// each. Noise variances count `inflation` times. nullopt where the fit is no curve of its class in

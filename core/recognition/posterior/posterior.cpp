@@ -190,6 +190,21 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
   return result;
 }
 
+double margin_of_unclassified(const ClassFits& fits, double smooth_chi2,
+                              const Likelihood& likelihood, const Evidences& evidences) {
+  double highest = kNone;
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    const auto& evidence = evidences.classes[i];
+    if (evidence && fits[i] && std::isfinite(fits[i]->chi2)) {
+      highest =
+          std::max(highest, likelihood.log_evidence(fits[i]->chi2, evidence->log_occam_of_touch,
+                                                    evidence->determined));
+    }
+  }
+  return log_evidence_of_free_form(likelihood, evidences, smooth_chi2) - highest;
+}
+
 double rival_share(const ClassFits& fits, const Likelihood& likelihood,
                    const Evidences& evidences) {
   const auto& spline = fits[static_cast<std::size_t>(CurveClass::CubicSpline)];

@@ -49,6 +49,12 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
 ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
                                     const Likelihood& likelihood, const Evidences& evidences);
 
+/// log odds of "unclassified" over the class that speaks most against it, if all of that class's
+/// prior were at the shape that fits. Few data leave most of a probability to the priors of shapes;
+/// only beyond this do the data exclude the classes by themselves.
+double margin_of_unclassified(const ClassFits& fits, double smooth_chi2,
+                              const Likelihood& likelihood, const Evidences& evidences);
+
 /// The share of the spline's posterior that its mode on the other side of c = 0 has.
 double rival_share(const ClassFits& fits, const Likelihood& likelihood, const Evidences& evidences);
 

@@ -6,6 +6,7 @@
 
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/moments.h"
+#include "core/recognition/weigh/conic_mode.h"
 #include "core/recognition/weigh/contenders.h"
 #include "core/recognition/weigh/sides.h"
 
@@ -88,7 +89,9 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   SidedFits sided = fit_over_sides(patches, arcs, stated, options.classes, warm);
   Ground ground{arcs, sided.reduced, stated};
   Contenders contenders;
-  contenders.coarse = testable(std::move(sided.fits), options.classes, arcs.data.points.size());
+  contenders.coarse =
+      testable(with_conic_mode(std::move(sided.fits), sided.reduced, stated.inflation()),
+               options.classes, arcs.data.points.size());
   contenders.fits = as_told(contenders.coarse, arcs.smooth);
 
   const double margin = std::max(log_odds(options.recognized_probability), 0.0);
@@ -111,6 +114,8 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   Weighing w;
   w.probabilities = probabilities_of(contenders, ground);
   w.best = most_probable(w.probabilities);
+  w.margin_of_unclassified = margin_of_unclassified(contenders.fits, arcs.smooth.chi2,
+                                                    ground.likelihood, contenders.evidences);
   w.rival_share = rival_share(contenders.fits, ground.likelihood, contenders.evidences);
   w.noise_inflation = seen.noise_inflation;
   w.correlation_length = seen.correlation_length;

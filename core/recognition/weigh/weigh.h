@@ -31,6 +31,8 @@ struct Weighing {
   /// reduced ones.
   std::array<std::optional<CanonicalFit>, 9> canonical;
   ClassProbabilities probabilities{};
+  /// log odds of "unclassified" over all classes, whatever is expected of their shapes.
+  double margin_of_unclassified = 0.0;
   /// Of the spline's posterior, that its mode on the other side of c = 0 has.
   double rival_share = 0.0;
   /// Of the best class about its estimate, where a covariance linear about it does not hold it.
