@@ -9,6 +9,7 @@
 #include "core/curves/curve.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/fit/touchable.h"
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/smooth/smooth_model.h"
 
@@ -137,6 +138,13 @@ ClassFit truth_of(const Scene& scene, const Prepared& prepared) {
 
 double chi2_of(const std::optional<ClassFit>& fit) { return fit ? fit->chi2 : kInfinity; }
 
+/// Whether a conic has not left its class.
+bool is_still(CurveClass curve_class, const ClassFit& fit) {
+  const bool ellipse = curve_class == CurveClass::Ellipse;
+  return (!ellipse && curve_class != CurveClass::Hyperbola) ||
+         (discriminant(fit.implicit->coefficients) > 0.0) == ellipse;
+}
+
 SearchOutcome outcome(const SearchCase& search_case, bool on_all) {
   const Prepared prepared = prepare(search_case);
   const auto optimum = [&](const ClassFit& start) -> std::optional<ClassFit> {
@@ -148,8 +156,10 @@ SearchOutcome outcome(const SearchCase& search_case, bool on_all) {
                   : std::optional(there);
   };
   SearchOutcome result;
-  const auto truth = optimum(truth_of(search_case.scene, prepared));
+  const ClassFit start = truth_of(search_case.scene, prepared);
+  const auto truth = optimum(start);
   result.counted = truth.has_value();
+  result.refused = !truth && is_still(search_case.scene.curve_class, settled(start, prepared.reduced));
   result.truth_chi2 = chi2_of(truth);
   const auto i = static_cast<std::size_t>(search_case.scene.curve_class);
   const auto found = fit_classes(prepared.reduced)[i];
