@@ -29,6 +29,30 @@ bool on_one_branch(const ConicCoefficients& q, std::span<const FitPoint> points)
   return !(any_positive && any_negative);
 }
 
+/// Whether two points are so far apart that noise does not turn the direction from one to the other
+/// round: it would have to be out by six of its standard deviations.
+bool tells_direction(const FitPoint& from, const FitPoint& to) {
+  constexpr double kDeviations = 6.0;
+  const double v = 1.0 / (from.inverse_sigma * from.inverse_sigma);
+  const double w = 1.0 / (to.inverse_sigma * to.inverse_sigma);
+  return (to.position - from.position).squaredNorm() > kDeviations * kDeviations * (v + w);
+}
+
+/// The direction of travel at point `i` of a patch: between its nearest neighbours on both sides
+/// that are far enough apart to tell it; zero where none are. (A smooth model's tangents will not
+/// do: where a patch is no longer than its noise they turn round.)
+Vec2 travel_at(std::span<const FitPoint> patch, std::size_t i) {
+  const std::size_t last = patch.size() - 1;
+  for (std::size_t k = 1; k <= last; k = 2 * k) {
+    const FitPoint& before = patch[i - std::min(i, k)];
+    const FitPoint& after = patch[std::min(i + k, last)];
+    if (tells_direction(before, after)) {
+      return after.position - before.position;
+    }
+  }
+  return Vec2::Zero();
+}
+
 }  // namespace
 
 bool is_touchable(const ImplicitFit& fit, const FitData& data) {
@@ -36,13 +60,19 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
   if (!(discriminant(q) > 0.0 || on_one_branch(q, data.points))) {
     return false;
   }
-  constexpr std::size_t kOneIn = 50;  // points whose own direction noise may turn round
-  for (const PatchSpan& patch : data.patches) {
+  constexpr std::size_t kOneIn = 50;  // points whose direction noise may turn round all the same
+  for (std::size_t p = 0; p < data.patches.size(); ++p) {
+    const std::span<const FitPoint> patch = data.patch(p);
     std::size_t left = 0;
-    for (std::size_t i = patch.begin; i < patch.end; ++i) {
-      left += cross(data.points[i].tangent, conic_gradient(q, fit.feet[i])) >= 0.0 ? 1 : 0;
+    std::size_t told = 0;
+    for (std::size_t i = 0; i < patch.size(); ++i) {
+      const Vec2 travel = travel_at(patch, i);
+      if (!travel.isZero()) {
+        ++told;
+        left += cross(travel, conic_gradient(q, fit.feet[data.patches[p].begin + i])) >= 0.0;
+      }
     }
-    if (std::min(left, patch.size() - left) * kOneIn > patch.size()) {
+    if (std::min(left, told - left) * kOneIn > told) {
       return false;
     }
   }
@@ -50,15 +80,18 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
 }
 
 bool is_touchable(const PolynomialFit& fit, const FitData& data) {
-  constexpr std::size_t kOneIn = 10;  // that noise may turn round on a patch of four sigma
+  constexpr std::size_t kOneIn = 10;  // that a bend may turn round, or noise all the same
   for (const PatchSpan& patch : data.patches) {
     const std::size_t lag = patch.size() / 2;
     std::size_t forward = 0;
+    std::size_t told = 0;
     for (std::size_t i = patch.begin; i + lag < patch.end; ++i) {
-      forward += fit.t[i + lag] >= fit.t[i] ? 1 : 0;
+      if (tells_direction(data.points[i], data.points[i + lag])) {
+        ++told;
+        forward += fit.t[i + lag] >= fit.t[i];
+      }
     }
-    const std::size_t pairs = patch.size() - lag;
-    if (std::min(forward, pairs - forward) * kOneIn > pairs) {
+    if (std::min(forward, told - forward) * kOneIn > told) {
       return false;
     }
   }

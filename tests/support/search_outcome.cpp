@@ -1,0 +1,197 @@
+#include "tests/support/search_outcome.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/curves/curve.h"
+#include "core/recognition/fit/class_fits.h"
+#include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/fit/touchable.h"
+#include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/smooth/smooth_model.h"
+
+namespace palpate::test {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double log_uniform(std::mt19937_64& rng, double least, double most) {
+  return std::exp(std::uniform_real_distribution<double>(std::log(least), std::log(most))(rng));
+}
+
+/// Tip centres for surface points: outside the bend at the middle of each patch.
+void lift_to_tip(double radius_m, Scene* scene, std::vector<MaterialSide>* sides) {
+  const auto curve = make_curve(scene->curve_class, scene->values);
+  for (std::size_t p = 0; p < scene->patches.size(); ++p) {
+    const auto& t = scene->t[p];
+    const double travel = t.back() >= t.front() ? 1.0 : -1.0;
+    const double bend = travel * geometry(*curve, t[t.size() / 2]).kappa;
+    const double side = bend >= 0.0 ? -1.0 : 1.0;  // of travel, on which the centres lie
+    sides->push_back(side > 0.0 ? MaterialSide::Right : MaterialSide::Left);
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      const Vec2 tangent = travel * derivatives(*curve, t[i]).first.normalized();
+      scene->patches[p][i] += side * radius_m * scene->world_T_curve.rotate(left_of(tangent));
+    }
+  }
+}
+
+struct Prepared {
+  FitData data;
+  SmoothModel smooth;
+  FitData reduced;  ///< surface points
+};
+
+Prepared prepare(const SearchCase& search_case) {
+  Scene scene = search_case.scene;
+  std::vector<MaterialSide> sides(scene.patches.size(), MaterialSide::Unspecified);
+  if (search_case.tip_radius_m > 0.0) {
+    sides.clear();
+    lift_to_tip(search_case.tip_radius_m, &scene, &sides);
+  }
+  SampleMemory memory;
+  for (std::size_t p = 0; p < scene.patches.size(); ++p) {
+    std::vector<ContactSample> samples;
+    for (const Vec2& position : scene.patches[p]) {
+      samples.push_back({position, scene.sigma_m, 0});
+    }
+    memory.add({0, static_cast<std::uint32_t>(p), search_case.tip_radius_m, sides[p]}, samples);
+  }
+  Prepared prepared;
+  bool sigma_known = true;
+  prepared.data = make_fit_data(memory.patches(), 0.0, &sigma_known);
+  prepared.smooth = fit_smooth_model(&prepared.data, sigma_known);
+  const auto ways = possible_sides(memory.patches(), prepared.smooth.reduced);
+  prepared.reduced = on_surface(prepared.smooth.reduced, ways.front());
+  return prepared;
+}
+
+/// The true curve in the data's frame, as a fit to the reduced points.
+ClassFit truth_of(const Scene& scene, const Prepared& prepared) {
+  const FitData& reduced = prepared.reduced;
+  ClassFit truth;
+  truth.curve_class = scene.curve_class;
+  Pose2 pose = reduced.frame.inverse() * scene.world_T_curve;
+  const Eigen::Vector3d& v = scene.values;
+  PolynomialFit polynomial;
+  PolynomialCoefficients& c = polynomial.coefficients;
+  switch (scene.curve_class) {
+    case CurveClass::Parabola:
+      c.col(1) = Vec2(0.0, 2.0 * v[0]);
+      c.col(2) = Vec2(v[0], 0.0);
+      break;
+    case CurveClass::CubicalParabola:
+      c.col(1) = Vec2(1.0, v[1]);
+      c.col(3) = Vec2(0.0, v[0]);
+      break;
+    case CurveClass::SemiCubicalParabola:
+    case CurveClass::CubicSpline:
+      c.col(1) = Vec2(0.0, v[2]);
+      c.col(2) = Vec2(1.0, v[1]);
+      c.col(3) = Vec2(0.0, v[0]);
+      break;
+    default: {
+      pose.x /= reduced.scale;
+      pose.y /= reduced.scale;
+      Eigen::Vector3d values = v;
+      if (scene.curve_class != CurveClass::Line) {
+        values /= reduced.scale;
+      }
+      ImplicitFit fit;
+      fit.coefficients = conic_of(scene.curve_class, values, pose);
+      truth.implicit = fit;
+      return truth;
+    }
+  }
+  for (int k = 0; k < 4; ++k) {
+    c.col(k) = pose.rotate(c.col(k)) / reduced.scale;
+  }
+  c.col(0) += pose.translation() / reduced.scale;
+  // Parameters: those of the nearest samples of the same patch.
+  for (std::size_t p = 0; p < reduced.patches.size(); ++p) {
+    const auto samples = prepared.data.patch(p);
+    for (const FitPoint& point : reduced.patch(p)) {
+      const auto nearest =
+          std::min_element(samples.begin(), samples.end(), [&](const auto& a, const auto& b) {
+            return (a.position - point.position).squaredNorm() <
+                   (b.position - point.position).squaredNorm();
+          });
+      polynomial.t.push_back(scene.t[p][static_cast<std::size_t>(nearest - samples.begin())]);
+    }
+  }
+  // t in [-1, 1], as all fits have it.
+  double reach = 0.0;
+  for (const double t : polynomial.t) {
+    reach = std::max(reach, std::abs(t));
+  }
+  for (int k = 1; k < 4; ++k) {
+    c.col(k) *= std::pow(reach, k);
+  }
+  for (double& t : polynomial.t) {
+    t /= reach;
+  }
+  truth.polynomial = std::move(polynomial);
+  return truth;
+}
+
+double chi2_of(const std::optional<ClassFit>& fit) { return fit ? fit->chi2 : kInfinity; }
+
+/// Whether a conic has not left its class.
+bool is_still(CurveClass curve_class, const ClassFit& fit) {
+  const bool ellipse = curve_class == CurveClass::Ellipse;
+  return (!ellipse && curve_class != CurveClass::Hyperbola) ||
+         (discriminant(fit.implicit->coefficients) > 0.0) == ellipse;
+}
+
+SearchOutcome outcome(const SearchCase& search_case, bool on_all) {
+  const Prepared prepared = prepare(search_case);
+  const auto optimum = [&](const ClassFit& start) -> std::optional<ClassFit> {
+    const ClassFit there = settled(start, prepared.reduced);
+    if (!is_what_it_says(there, prepared.reduced)) {
+      return std::nullopt;
+    }
+    return on_all ? refine_on_all(there, prepared.smooth, prepared.data, kPolishEffort)
+                  : std::optional(there);
+  };
+  SearchOutcome result;
+  const ClassFit start = truth_of(search_case.scene, prepared);
+  const auto truth = optimum(start);
+  result.counted = truth.has_value();
+  result.refused = !truth && is_still(search_case.scene.curve_class, settled(start, prepared.reduced));
+  result.truth_chi2 = chi2_of(truth);
+  const auto i = static_cast<std::size_t>(search_case.scene.curve_class);
+  const auto found = fit_classes(prepared.reduced)[i];
+  result.found_chi2 = found ? chi2_of(optimum(*found)) : kInfinity;
+  result.curve = std::isfinite(result.found_chi2);
+  return result;
+}
+
+}  // namespace
+
+SearchCase search_case(CurveClass curve_class, std::uint64_t seed, std::uint32_t number) {
+  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+                         static_cast<std::uint32_t>(curve_class), number};
+  std::mt19937_64 rng(sequence);
+  SceneOptions options;
+  options.patches = std::uniform_int_distribution<int>(1, 6)(rng);
+  options.points_per_patch = static_cast<int>(std::lround(log_uniform(rng, 10.0, 200.0)));
+  options.sigma_over_size = log_uniform(rng, 1e-6, 1e-2);
+  options.least_arc_over_size = 0.05;
+  options.most_arc_over_size = 4.0;
+  SearchCase result;
+  const bool tip = std::uniform_int_distribution<int>(0, 3)(rng) == 0;
+  const double radius = options.size_m * log_uniform(rng, 1e-3, 1e-1);
+  result.tip_radius_m = tip ? radius : 0.0;
+  result.scene = random_scene(curve_class, options, rng);
+  return result;
+}
+
+SearchOutcome outcome_on_reduced(const SearchCase& search_case) {
+  return outcome(search_case, false);
+}
+
+SearchOutcome outcome_on_all(const SearchCase& search_case) { return outcome(search_case, true); }
+
+}  // namespace palpate::test
