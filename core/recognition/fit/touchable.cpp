@@ -60,7 +60,9 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
   if (!(discriminant(q) > 0.0 || on_one_branch(q, data.points))) {
     return false;
   }
-  constexpr std::size_t kOneIn = 50;  // points whose direction noise may turn round all the same
+  // Points that a spike along the arc may turn round with its neighbours; what lets neighbours lie
+  // on opposite sides turns half of them round.
+  constexpr std::size_t kOneIn = 10;
   for (std::size_t p = 0; p < data.patches.size(); ++p) {
     const std::span<const FitPoint> patch = data.patch(p);
     std::size_t left = 0;
