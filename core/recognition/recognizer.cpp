@@ -121,7 +121,7 @@ class Recognizer::Impl {
  private:
   /// What the last weighing left.
   struct Last {
-    WarmStart warm;
+    std::vector<SidedStart> starts;
     ClassProbabilities probabilities{};
     std::size_t samples = 0;  ///< at the last search
     std::size_t patches = 0;
@@ -139,32 +139,27 @@ class Recognizer::Impl {
     const bool warm = last_ && last_->patches == data.patches.size() &&
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
     if (warm) {
-      Weighing w = weigh_without_outliers(data, sigma_known, patches, &last_->warm);
+      Weighing w = weigh_without_outliers(data, sigma_known, patches, last_->starts);
       if (last_->probabilities[static_cast<std::size_t>(w.best)] > kOut) {
-        last_->warm = warm_start_from(w.coarse, w.smooth.reduced);
+        last_->starts = w.starts;
         last_->probabilities = w.probabilities;
         return w;
       }
     }
-    Weighing w = weigh_without_outliers(data, sigma_known, patches, nullptr);
-    last_ = Last{warm_start_from(w.coarse, w.smooth.reduced),
-                 w.probabilities,
-                 samples,
-                 data.patches.size(),
-                 {}};
+    Weighing w = weigh_without_outliers(data, sigma_known, patches, {});
+    last_ = Last{w.starts, w.probabilities, samples, data.patches.size(), {}};
     return w;
   }
 
   Weighing weigh_without_outliers(const FitData& data, bool sigma_known,
                                   std::span<const StoredPatch> patches,
-                                  const WarmStart* warm) const {
-    Weighing w = weigh(data, sigma_known, patches, weigh_options(), warm);
+                                  std::span<const SidedStart> starts) const {
+    Weighing w = weigh(data, sigma_known, patches, weigh_options(), starts);
     if (const auto kept = without_outliers(w, data, options_.false_outlier_probability)) {
       // A search is not followed: the outliers may have led it astray.
-      const auto nearer = warm != nullptr
-                              ? std::optional(warm_start_from(w.coarse, w.smooth.reduced))
-                              : std::nullopt;
-      w = weigh(*kept, sigma_known, patches, weigh_options(), nearer ? &*nearer : nullptr);
+      const std::vector<SidedStart> nearer =
+          starts.empty() ? std::vector<SidedStart>{} : std::move(w.starts);
+      w = weigh(*kept, sigma_known, patches, weigh_options(), nearer);
     }
     return w;
   }
@@ -190,7 +185,7 @@ class Recognizer::Impl {
     }
     bool sigma_known = false;
     const FitData data = make_fit_data(*more, options_.sigma_m, &sigma_known);
-    Weighing again = weigh_without_outliers(data, sigma_known, *more, &last_->warm);
+    Weighing again = weigh_without_outliers(data, sigma_known, *more, last_->starts);
     if (again.best == w->best && again.canonical[static_cast<std::size_t>(again.best)]) {
       *w = std::move(again);
     }

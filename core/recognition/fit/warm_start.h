@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/recognition/fit/class_fits.h"
 
@@ -12,6 +13,12 @@ struct WarmStart {
   PolynomialFits polynomials;
   Pose2 frame;         ///< FitData's, that they were fitted in
   double scale = 1.0;  ///< likewise
+};
+
+/// One for each way in which the tips were taken to lie beside the patches (tip_sides.h).
+struct SidedStart {
+  std::vector<int> sides;
+  WarmStart start;
 };
 
 /// `fits` on reduced points. Where none of them fits, the next recognition does not search again

@@ -19,12 +19,14 @@ struct SidedFits {
   /// log odds over the next best way for them to lie, priors included; infinite where the probes
   /// told.
   double margin = 0.0;
+  std::vector<SidedStart> others;  ///< where the other ways are to be followed from
 };
 
 /// Fits to the reduced points for the way the material lies beside the patches: where the probes do
 /// not say it, the way of the highest evidence, the first (from outside the bends) at the odds of
-/// the prior. `classes`: by bit 1 << CurveClass; `warm`: as in weigh().
+/// the prior. `classes`: by bit 1 << CurveClass; `starts`: as in weigh().
 SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
-                         const Likelihood& likelihood, unsigned classes, const WarmStart* warm);
+                         const Likelihood& likelihood, unsigned classes,
+                         std::span<const SidedStart> starts);
 
 }  // namespace palpate

@@ -83,10 +83,10 @@ std::optional<ShapePoseCovariance> covariance_of_valley(const CanonicalFit& on_r
 }  // namespace
 
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
-               const WeighOptions& options, const WarmStart* warm) {
+               const WeighOptions& options, std::span<const SidedStart> starts) {
   Arcs arcs = smooth_arcs(std::move(data), sigma_known);
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
-  SidedFits sided = fit_over_sides(patches, arcs, stated, options.classes, warm);
+  SidedFits sided = fit_over_sides(patches, arcs, stated, options.classes, starts);
   Ground ground{arcs, sided.reduced, stated};
   Contenders contenders;
   contenders.coarse =
@@ -127,6 +127,9 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   if (const auto& on_reduced = contenders.evidences.on_reduced[b]; on_reduced && w.canonical[b]) {
     w.moment = covariance_of_valley(*on_reduced, *w.canonical[b], ground.reduced, w.inflation);
   }
+  w.starts = std::move(sided.others);
+  w.starts.insert(w.starts.begin(),
+                  {sided.sides, warm_start_from(contenders.coarse, arcs.smooth.reduced)});
   w.fits = std::move(contenders.fits);
   w.coarse = std::move(contenders.coarse);
   w.sides = std::move(sided.sides);

@@ -37,6 +37,8 @@ struct Weighing {
   double rival_share = 0.0;
   /// Of the best class about its estimate, where a covariance linear about it does not hold it.
   std::optional<ShapePoseCovariance> moment;
+  /// For the next weighing; the first is that of `sides`.
+  std::vector<SidedStart> starts;
   /// Per patch the side of travel on which the tip centres were taken to lie (tip_sides.h).
   std::vector<int> sides;
   /// log odds over the next best way for them to lie, priors included; infinite where the probes
@@ -52,8 +54,8 @@ struct Weighing {
 };
 
 /// `data` from make_fit_data. Follows core/README.md, "Refinement and the bound" and "Evidence".
-/// `warm`: what an earlier weighing of fewer samples of the same patches left, or nullptr.
+/// `starts`: what an earlier weighing of fewer samples of the same patches left, or nothing.
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
-               const WeighOptions& options = {}, const WarmStart* warm = nullptr);
+               const WeighOptions& options = {}, std::span<const SidedStart> starts = {});
 
 }  // namespace palpate
