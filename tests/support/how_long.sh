@@ -7,7 +7,7 @@
 # Seconds that the program below took there, with nothing else running, on both cores at once.
 calibration_reference_s=4.1
 # Core seconds there of what the scripts do, from empty folders. Of a build: tests/support/cpu_seconds.py.
-demo_build_cost=350
+demo_build_cost=320
 strict_build_cost=800
 strict_test_cost=600
 sanitize_cost=2400
