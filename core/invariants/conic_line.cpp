@@ -14,7 +14,7 @@ namespace {
 
 /// Standard deviation that rounding gives u and v, relative to them: a few operations each. It
 /// weights exact data, whose covariance is zero.
-constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+constexpr double kPointRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 /// A curvature is of a certain sign where it is this many standard deviations from zero.
 constexpr double kSignSigmas = 4.0;
@@ -57,8 +57,8 @@ void set_covariance(LinePoint& point, double m) {
   of_inputs << point.measured(0, 0), cross_covariance, cross_covariance,
       4.0 * m * variance + 2.0 * variance * variance;
   point.covariance = line_coordinates(point.kappa, m).covariance(of_inputs);
-  point.covariance(0, 0) += std::pow(kRounding * point.u, 2);
-  point.covariance(1, 1) += std::pow(kRounding * point.v, 2);
+  point.covariance(0, 0) += std::pow(kPointRounding * point.u, 2);
+  point.covariance(1, 1) += std::pow(kPointRounding * point.v, 2);
 }
 
 InvariantStatus read_points(std::span<const MeasuredGeometry> points,

@@ -9,7 +9,7 @@ namespace palpate {
 namespace {
 
 /// Standard deviation of exact data, of kappa and kappa_s in units of the points' own scale.
-constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+constexpr double kDataRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 /// Chi-square of "kappa = 0, kappa_s = 0 and all tangents parallel": the common direction is a free
 /// parameter, known up to pi (patches may be travelled either way).
@@ -21,7 +21,7 @@ double chi2_of_line(std::span<const MeasuredGeometry> points, double scale) {
   for (const MeasuredGeometry& point : points) {
     const MeasuredGeometry p = in_units_of(point, 1.0 / scale);
     Eigen::Matrix3d covariance = p.covariance;
-    covariance.diagonal().array() += kRounding * kRounding;
+    covariance.diagonal().array() += kDataRounding * kDataRounding;
     const Eigen::Matrix3d weight = covariance.inverse();
     const double turn = p.tangent_angle - reference;
     const double half_turns = std::nearbyint(turn / kPi);
@@ -49,7 +49,7 @@ LeftTurning left_turning(std::span<const MeasuredGeometry> points, const Measure
   const double sign = std::copysign(1.0, sum);
   const MeasuredGeometry p = in_units_of(point, 1.0 / scale);
   Eigen::Matrix2d covariance = p.covariance.bottomRightCorner<2, 2>();
-  covariance.diagonal().array() += kRounding * kRounding;
+  covariance.diagonal().array() += kDataRounding * kDataRounding;
   covariance(0, 1) *= sign;
   covariance(1, 0) *= sign;
   return {{sign * p.kappa, p.kappa_s}, covariance.inverse()};

@@ -15,12 +15,12 @@ namespace palpate {
 namespace {
 
 constexpr int kDegree = 8;
-constexpr int kSize = kDegree + 1;
+constexpr int kTerms = kDegree + 1;
 constexpr int kFirstPrior = 4;  ///< c_0 ... c_3 carry position, angle, kappa, kappa_s: free
 constexpr int kFirstEvidence = 2;
 using Fit = LegendreFit<kDegree>;
-using Vector = LegendreVector<kSize>;
-using Matrix = Eigen::Matrix<double, kSize, kSize>;
+using Vector = LegendreVector<kTerms>;
+using Matrix = Eigen::Matrix<double, kTerms, kTerms>;
 
 /// (z_7^2 + z_8^2) / sigma^2 <= kAdequate: chi-square of two degrees of freedom, upper 1 %.
 constexpr double kAdequate = 9.21;
@@ -123,7 +123,7 @@ Priors weigh_priors(const Vector& c, const Vector& variance) {
   for (const double amplitude : kAmplitudes) {
     for (const double fall_off : kFallOffs) {
       Prior& prior = priors[i++];
-      for (int k = kFirstEvidence; k < kSize; ++k) {
+      for (int k = kFirstEvidence; k < kTerms; ++k) {
         prior.sd[k] = amplitude * size * std::pow(fall_off, k - kFirstEvidence);
         const double total = prior.sd[k] * prior.sd[k] + variance[k];
         prior.evidence -= 0.5 * (std::log(total) + c[k] * c[k] / total);
@@ -164,7 +164,7 @@ Posterior average(const Window& window) {
       continue;
     }
     Matrix precision = normal;
-    for (int k = kFirstPrior; k < kSize; ++k) {
+    for (int k = kFirstPrior; k < kTerms; ++k) {
       precision(k, k) += noise / (prior.sd[k] * prior.sd[k]);
     }
     Matrix factor;
@@ -185,11 +185,11 @@ LocalResult estimate_at(const Window& window, double u, double sigma_m) {
   const Posterior posterior = average(window);
   const AlignedFrame& frame = window.frame;
   const double unit = frame.half_extent_m;
-  const Eigen::Matrix<double, 5, kSize> basis = legendre_derivatives<5, kSize>(u);
+  const Eigen::Matrix<double, 5, kTerms> basis = legendre_derivatives<5, kTerms>(u);
   const Eigen::Matrix<double, 5, 1> derivatives = basis * posterior.mean;
   const GraphGeometry geometry = graph_geometry(derivatives);
   const Eigen::Vector4d units(unit, 1.0, 1.0 / unit, 1.0 / (unit * unit));
-  const Eigen::Matrix<double, 4, kSize> rows = units.asDiagonal() * (geometry.jacobian * basis);
+  const Eigen::Matrix<double, 4, kTerms> rows = units.asDiagonal() * (geometry.jacobian * basis);
   LocalResult result;
   LocalEstimate& e = result.estimate;
   e.position = frame.to_world({u, derivatives[0]});
@@ -197,7 +197,7 @@ LocalResult estimate_at(const Window& window, double u, double sigma_m) {
   e.kappa = geometry.kappa / unit;
   e.kappa_s = geometry.kappa_s / (unit * unit);
   e.covariance = rows * posterior.covariance * rows.transpose();
-  e.window_arc_m = unit * arc_length<kSize>(posterior.mean, frame.first_u, frame.last_u);
+  e.window_arc_m = unit * arc_length<kTerms>(posterior.mean, frame.first_u, frame.last_u);
   e.window_samples = static_cast<int>(window.samples.size());
   e.sigma_m = sigma_m;
   result.status = LocalStatus::Ok;

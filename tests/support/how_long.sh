@@ -4,10 +4,10 @@
 # on. What this machine is beside that one, and how busy it is now, a small program tells that is compiled on
 # all cores at once.
 
-# Seconds that the program below took there, on an idle core.
-calibration_reference_s=2.0
-# Core seconds there of what the scripts do, from empty folders.
-demo_build_cost=380
+# Seconds that the program below took there, with nothing else running, on both cores at once.
+calibration_reference_s=4.1
+# Core seconds there of what the scripts do, from empty folders. Of a build: tests/support/cpu_seconds.py.
+demo_build_cost=320
 strict_build_cost=800
 strict_test_cost=600
 sanitize_cost=2400

@@ -12,7 +12,7 @@ namespace {
 
 /// A coefficient that one rotation and one translation have gone through is wrong by up to 16 *
 /// 2^-53 of its terms' sizes, and two such coefficients meet in a term.
-constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double kConicRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// u v - x y, rounded once.
 double difference_of_products(double u, double v, double x, double y) {
@@ -43,7 +43,7 @@ struct PrincipalForm {
     linear_v = cross(axis, Vec2(q[3], q[4]));
   }
 
-  bool is_parabolic() const { return std::abs(small) <= kRounding * std::abs(large); }
+  bool is_parabolic() const { return std::abs(small) <= kConicRounding * std::abs(large); }
 
   /// The left side where u is -linear_u / (2 large), without the terms in v.
   double constant_at_u0() const { return constant - 0.25 * linear_u * (linear_u / large); }
@@ -144,12 +144,13 @@ ConicCanonicalisation parabolic(const PrincipalForm& form) {
   const double u_term = 0.25 * form.linear_u * (form.linear_u / form.large);
   const double size = std::abs(form.constant) + std::abs(u_term);
   // v counts where it is worth more than rounding of the linear part, which was rotated as a whole.
-  if (std::abs(form.linear_v) > kRounding * (std::abs(form.linear_u) + std::abs(form.linear_v)) &&
+  if (std::abs(form.linear_v) >
+          kConicRounding * (std::abs(form.linear_u) + std::abs(form.linear_v)) &&
       form.linear_v != 0.0) {
     return in_range(as_parabola(form));
   }
   const double rest = form.constant_at_u0();
-  if (std::abs(rest) <= kRounding * size) {
+  if (std::abs(rest) <= kConicRounding * size) {
     return degenerate(ConicDegeneracy::DoubleLine);
   }
   return degenerate(rest / form.large < 0.0 ? ConicDegeneracy::ParallelLines
@@ -199,7 +200,7 @@ ConicCanonicalisation canonicalise(const ConicCoefficients& coefficients) {
   double size = 0.0;
   const double at_centre = form.at_centre(&size);
   const bool elliptic = form.small / form.large > 0.0;
-  if (std::abs(at_centre) <= kRounding * size) {
+  if (std::abs(at_centre) <= kConicRounding * size) {
     return degenerate(elliptic ? ConicDegeneracy::Point : ConicDegeneracy::CrossingLines);
   }
   if (!elliptic) {
@@ -208,7 +209,7 @@ ConicCanonicalisation canonicalise(const ConicCoefficients& coefficients) {
   if (at_centre / form.large > 0.0) {
     return degenerate(ConicDegeneracy::Imaginary);
   }
-  const bool round = std::abs(form.large - form.small) <= kRounding * std::abs(form.large);
+  const bool round = std::abs(form.large - form.small) <= kConicRounding * std::abs(form.large);
   return in_range(round ? as_circle(q) : as_central(CurveClass::Ellipse, form));
 }
 

@@ -13,7 +13,7 @@ namespace {
 /// A coefficient that was rotated once (two products, a sum, sine and cosine) and reparametrised
 /// once (at most five roundings) is wrong by up to 16 * 2^-53 of its terms' sizes, and two such
 /// coefficients meet in a component.
-constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double kCubicRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 Pose2 pose_along(const Vec2& origin, const Vec2& x_axis) {
   return {origin.x(), origin.y(), std::atan2(x_axis.y(), x_axis.x())};
@@ -190,15 +190,15 @@ CubicCanonicalisation decide(const PolynomialCurve2& curve, double half, double 
   };
   if (!absent(3)) {
     const CubicFrame frame(curve);
-    if (std::abs(frame.x2) > std::max(kRounding * frame.size2, distance / (half * half))) {
+    if (std::abs(frame.x2) > std::max(kCubicRounding * frame.size2, distance / (half * half))) {
       const SplineVertex vertex(frame);
-      const double rounding = kRounding * vertex.size;
+      const double rounding = kCubicRounding * vertex.size;
       const double from_vertex = half + std::abs(vertex.t);
       const bool cusp = std::abs(vertex.slope_y) <= std::max(rounding, distance / from_vertex);
       return as_spline(cusp ? CurveClass::SemiCubicalParabola : CurveClass::CubicSpline, curve);
     }
     const double inflection = frame.y2 / (3.0 * frame.y3);
-    const double x1_rounding = kRounding * (frame.size1 + std::abs(inflection) * frame.size2);
+    const double x1_rounding = kCubicRounding * (frame.size1 + std::abs(inflection) * frame.size2);
     if (std::abs(frame.x1) > std::max(x1_rounding, distance / half)) {
       return as_cubical(curve);
     }
@@ -206,7 +206,7 @@ CubicCanonicalisation decide(const PolynomialCurve2& curve, double half, double 
   }
   if (!absent(2)) {
     const QuadraticFrame frame(curve);
-    if (std::abs(frame.across) > std::max(kRounding * c.col(1).norm(), distance / half)) {
+    if (std::abs(frame.across) > std::max(kCubicRounding * c.col(1).norm(), distance / half)) {
       return as_parabola(curve);
     }
     return straight(curve, 2);

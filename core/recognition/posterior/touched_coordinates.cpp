@@ -3,10 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/curves/pose2.h"
+
 namespace palpate {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Widths of normal laws with the height of: a Cauchy law of scale 1; a uniform law over [0, 1].
 const double kCauchyWidth = std::sqrt(0.5 * kPi);

@@ -34,7 +34,7 @@ std::vector<ContactSample> read_profile(const std::string& name) {
   return samples;
 }
 
-Recognition recognise(const std::string& name) {
+Recognition recognise_recording(const std::string& name) {
   Recognizer recognizer;
   recognizer.add({}, read_profile(name));
   return recognizer.recognize();
@@ -42,7 +42,7 @@ Recognition recognise(const std::string& name) {
 
 TEST(RealRecordings, FormErrorIsSeenAndNoMirrorIsCertainlyAnotherClass) {
   for (const char* name : {"dabam-004", "dabam-006", "dabam-020", "dabam-022", "dabam-065"}) {
-    const Recognition answer = recognise(name);
+    const Recognition answer = recognise_recording(name);
     std::cout << name << ": " << name_of(answer.shape.curve_class) << " p "
               << answer.hypotheses.front().probability << " correlation "
               << answer.noise_correlation_m << " m\n";
@@ -61,7 +61,7 @@ TEST(RealRecordings, PoleCurvatureOfTheDesignIsMeasured) {
   };
   for (const Design& design : {Design{"dabam-006", 4.5, 0.49914, 0.03499},
                                Design{"dabam-020", 9.0, 0.35, 0.04363323129985824}}) {
-    const Recognition answer = recognise(design.name);
+    const Recognition answer = recognise_recording(design.name);
     const double expected = 0.5 * std::sin(design.theta) * (1.0 / design.p + 1.0 / design.q);
     ASSERT_FALSE(answer.contacts.empty());
     double least = 1e9;

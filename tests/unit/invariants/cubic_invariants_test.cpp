@@ -17,7 +17,7 @@ using test::ReferenceCurve;
 
 /// Roundings between (angle, kappa, kappa_s) and an invariant of one point: sine, cosine, five
 /// products and two sums of the largest relative effect.
-constexpr double kOperations = 8.0;
+constexpr double kCubicOperations = 8.0;
 
 template <typename Function>
 Propagated<2, 3> invariants_of(const test::ReferencePoint& point, Function&& invariants) {
@@ -35,7 +35,8 @@ void expect_constant(CurveClass curve_class, Function&& invariants,
     for (const auto& point : curve.points) {
       const auto value = invariants_of(point, invariants);
       const Eigen::Vector2d bound = test::conditioning_bound(
-          value, Eigen::Vector3d(point.tangent_angle, point.kappa, point.kappa_s), kOperations);
+          value, Eigen::Vector3d(point.tangent_angle, point.kappa, point.kappa_s),
+          kCubicOperations);
       const Eigen::Vector2d error = value.value - expected(curve);
       EXPECT_LE(std::abs(error[0]), bound[0]) << curve.a << " t " << point.t;
       EXPECT_LE(std::abs(error[1]), bound[1]) << curve.a << " t " << point.t;
@@ -80,8 +81,8 @@ struct Family {
 
 /// Each coefficient of the quadratic is a sum of products whose sizes add up to at most ten times
 /// (|kappa_s1| + kappa1^2)(|kappa_s2| + kappa2^2); rounding and the inputs' own errors change it by
-/// kOperations epsilon of that, the angle by this over the quadratic's slope at the root, and the
-/// parameters by their derivative with respect to the angle.
+/// kCubicOperations epsilon of that, the angle by this over the quadratic's slope at the root, and
+/// the parameters by their derivative with respect to the angle.
 Eigen::Vector2d pair_bound(const Family& family, const test::ReferencePoint& p1,
                            const test::ReferencePoint& p2) {
   const auto q = family.quadratic(p1.kappa, p1.kappa_s, p2.kappa, p2.kappa_s,
@@ -91,11 +92,11 @@ Eigen::Vector2d pair_bound(const Family& family, const test::ReferencePoint& p1,
   const double sine2 = std::sin(2.0 * p1.tangent_angle);
   const double cosine2 = std::cos(2.0 * p1.tangent_angle);
   const double slope = std::abs((q.q2 - q.q0) * sine2 + q.q1 * cosine2);
-  const double angle_error = kOperations * test::kEpsilon * terms / slope;
+  const double angle_error = kCubicOperations * test::kEpsilon * terms / slope;
   const Eigen::Vector3d inputs(p1.tangent_angle, p1.kappa, p1.kappa_s);
   const auto linear = family.parameters(inputs);
   return linear.jacobian.col(0).cwiseAbs() * angle_error +
-         test::conditioning_bound(linear, inputs, kOperations);
+         test::conditioning_bound(linear, inputs, kCubicOperations);
 }
 
 /// Every pair of points of every curve of the class whose conditioning leaves nine digits.

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kSigma = 1e-6;  // claimed; the samples themselves are exact
+constexpr double kClaimedSigma = 1e-6;  // claimed; the samples themselves are exact
 
 /// Distance of two curve parameters around the part.
 double apart(const ClosedSpline& part, double t, const SamplePlace& place) {
@@ -36,7 +36,8 @@ TEST(SegmentMatch, EverySegmentInBothDirections) {
       const test::PartStroke stroke{along ? segment + 0.02 : segment + 0.98,
                                     (along ? 0.9 : -0.9) * length};
       const Pose2 world_T_part = test::random_pose(rng);
-      const test::TouchedPart touched = test::touch(part, world_T_part, {stroke}, 0.0, kSigma, rng);
+      const test::TouchedPart touched =
+          test::touch(part, world_T_part, {stroke}, 0.0, kClaimedSigma, rng);
       const SegmentMatch match = match_segment(part, touched.patches);
       ASSERT_EQ(match.status, SegmentMatchStatus::Determined) << segment << along;
       const PartPlacement& best = match.placements.front();
@@ -61,7 +62,7 @@ TEST(SegmentMatch, SamplesBeyondAJointAreNamed) {
   for (int joint = 0; joint < 5; ++joint) {
     const Pose2 world_T_part = test::random_pose(rng);
     const test::TouchedPart touched =
-        test::touch(part, world_T_part, {{joint + 0.4, 0.03}}, 0.0, kSigma, rng);
+        test::touch(part, world_T_part, {{joint + 0.4, 0.03}}, 0.0, kClaimedSigma, rng);
     const SegmentMatch match = match_segment(part, touched.patches);
     ASSERT_EQ(match.status, SegmentMatchStatus::Determined) << joint;
     const PartPlacement& best = match.placements.front();
@@ -86,7 +87,7 @@ TEST(SegmentMatch, RoundTipsLieOutside) {
   auto rng = test::test_rng();
   const Pose2 world_T_part = test::random_pose(rng);
   const test::TouchedPart touched =
-      test::touch(part, world_T_part, {{1.1, 0.025}, {3.8, -0.03}}, 0.0, kSigma, rng, 0.004);
+      test::touch(part, world_T_part, {{1.1, 0.025}, {3.8, -0.03}}, 0.0, kClaimedSigma, rng, 0.004);
   const SegmentMatch match = match_segment(part, touched.patches);
   ASSERT_EQ(match.status, SegmentMatchStatus::Determined);
   const PartPlacement& best = match.placements.front();
@@ -102,7 +103,7 @@ TEST(SegmentMatch, MaterialSideRulesOutTheContraryTravel) {
   const ClosedSpline part = test::paper_part();  // counterclockwise: material left of increasing t
   auto rng = test::test_rng();
   test::TouchedPart touched =
-      test::touch(part, test::random_pose(rng), {{1.1, 0.025}}, 0.0, kSigma, rng);
+      test::touch(part, test::random_pose(rng), {{1.1, 0.025}}, 0.0, kClaimedSigma, rng);
   touched.patches[0].context.material_side = MaterialSide::Left;
   EXPECT_EQ(match_segment(part, touched.patches).status, SegmentMatchStatus::Determined);
   touched.patches[0].context.material_side = MaterialSide::Right;

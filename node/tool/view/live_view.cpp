@@ -1,0 +1,76 @@
+#include "node/tool/view/live_view.h"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/post.hpp>
+#include <chrono>
+
+#include "node/process/clock.h"
+#include "node/tool/view/live_state.h"
+#include "node/tool/view/web_server.h"
+
+namespace palpate {
+namespace {
+
+/// Takes what comes on the bus into the state, in the io_context's thread.
+class BusReader {
+ public:
+  BusReader(boost::asio::io_context& io, const client::ResultSubscriberOptions& options,
+            LiveState& state)
+      : io_(io),
+        subscriber_(options),
+        state_(state),
+        descriptor_(io, subscriber_.socket().get(zmq::sockopt::fd)) {}
+
+  // ZeroMQ's descriptor is not asio's to close.
+  ~BusReader() { descriptor_.release(); }
+
+  /// ZeroMQ's descriptor tells of news once only: everything is taken before it is waited for.
+  void read() {
+    // Browsers get their turn after so many messages.
+    constexpr int kMessagesPerTurn = 200;
+    for (int count = 0; count < kMessagesPerTurn; ++count) {
+      const client::ReceivedResult result = subscriber_.receive(std::chrono::milliseconds(0));
+      if (!result) {
+        descriptor_.async_wait(boost::asio::posix::stream_descriptor::wait_read,
+                               [this](const boost::system::error_code& error) {
+                                 if (!error) read();
+                               });
+        return;
+      }
+      take(result);
+    }
+    boost::asio::post(io_, [this] { read(); });
+  }
+
+ private:
+  void take(const client::ReceivedResult& result) {
+    const auto now = std::chrono::steady_clock::now();
+    if (result.contact != nullptr) state_.take(*result.contact, now);
+    if (result.recognition != nullptr) state_.take(*result.recognition, now, unix_time_ns());
+    if (result.status != nullptr) state_.take(*result.status, now);
+  }
+
+  boost::asio::io_context& io_;
+  client::ResultSubscriber subscriber_;
+  LiveState& state_;
+  boost::asio::posix::stream_descriptor descriptor_;
+};
+
+}  // namespace
+
+void serve_live_view(const client::ResultSubscriberOptions& bus, const HostPort& listen,
+                     int stop_fd, const std::function<void(std::uint16_t port)>& on_bound) {
+  boost::asio::io_context io(1);
+  boost::asio::posix::stream_descriptor stop(io, stop_fd);
+  stop.async_wait(boost::asio::posix::stream_descriptor::wait_read,
+                  [&io](const boost::system::error_code&) { io.stop(); });
+  LiveState state;
+  BusReader reader(io, bus, state);
+  WebServer server(io, listen, state);
+  reader.read();
+  on_bound(server.port());
+  io.run();
+}
+
+}  // namespace palpate
