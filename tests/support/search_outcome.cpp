@@ -159,7 +159,8 @@ SearchOutcome outcome(const SearchCase& search_case, bool on_all) {
   const ClassFit start = truth_of(search_case.scene, prepared);
   const auto truth = optimum(start);
   result.counted = truth.has_value();
-  result.refused = !truth && is_still(search_case.scene.curve_class, settled(start, prepared.reduced));
+  result.refused =
+      !truth && is_still(search_case.scene.curve_class, settled(start, prepared.reduced));
   result.truth_chi2 = chi2_of(truth);
   const auto i = static_cast<std::size_t>(search_case.scene.curve_class);
   const auto found = fit_classes(prepared.reduced)[i];

@@ -84,20 +84,20 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsi
   }
   also_from(circle.chi2, circle.coefficients);
 
-  // Where nothing fits, no walk into a valley was good enough to be trusted.
+  // A parabola is the cubics' limit, and data that leave a conic possible tell no cubic from it.
+  // Where none of these fits, one cubic that does says nothing of another: the best seed by the
+  // walk need not be the best by distances.
   const auto fits = [&](const auto& fit) {
     return fit && fits_well(fit->chi2, reduced.points.size());
   };
-  if (!fits_well(conic.chi2, reduced.points.size()) &&
-      !fits_well(circle.chi2, reduced.points.size()) && !fits(polynomials.parabola) &&
-      !fits(polynomials.cubical_parabola) && !fits(polynomials.semi_cubical_parabola) &&
-      !fits(polynomials.cubic_spline)) {
-    if (starts != nullptr && !starts->every_seed) {
-      return fit_classes(reduced, nullptr, classes);
-    }
-    if (starts == nullptr) {
+  const bool conic_fits = (usable && fits(&conic)) || fits(&circle) || fits(polynomials.parabola);
+  if (starts == nullptr) {
+    if (!conic_fits) {
       refine_every_seed(reduced, &polynomials);
     }
+  } else if (!starts->every_seed && !conic_fits && !fits(polynomials.cubical_parabola) &&
+             !fits(polynomials.semi_cubical_parabola) && !fits(polynomials.cubic_spline)) {
+    return fit_classes(reduced, nullptr, classes);
   }
   const auto& parabola = polynomials.parabola;
   if (parabola) {
