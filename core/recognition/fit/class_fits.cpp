@@ -1,5 +1,6 @@
 #include "core/recognition/fit/class_fits.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/recognition/fit/touchable.h"
@@ -90,13 +91,17 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsi
   const auto fits = [&](const auto& fit) {
     return fit && fits_well(fit->chi2, reduced.points.size());
   };
-  const bool conic_fits = (usable && fits(&conic)) || fits(&circle) || fits(polynomials.parabola);
-  if (starts == nullptr) {
-    if (!conic_fits) {
-      refine_every_seed(reduced, &polynomials);
-    }
-  } else if (!starts->every_seed && !conic_fits && !fits(polynomials.cubical_parabola) &&
-             !fits(polynomials.semi_cubical_parabola) && !fits(polynomials.cubic_spline)) {
+  polynomials.lowest_chi2 = std::min(circle.chi2, usable ? conic.chi2 : circle.chi2);
+  if (polynomials.parabola) {
+    polynomials.lowest_chi2 = std::min(polynomials.lowest_chi2, polynomials.parabola->chi2);
+  }
+  const bool conic_fits = fits_well(polynomials.lowest_chi2, reduced.points.size());
+  const bool line_fits = fits(result[static_cast<std::size_t>(CurveClass::Line)]);
+  if (starts == nullptr && !line_fits) {  // a line is the limit of all
+    refine_every_seed(reduced, &polynomials);
+  } else if (starts != nullptr && !starts->every_seed && !conic_fits &&
+             !fits(polynomials.cubical_parabola) && !fits(polynomials.semi_cubical_parabola) &&
+             !fits(polynomials.cubic_spline)) {
     return fit_classes(reduced, nullptr, classes);
   }
   const auto& parabola = polynomials.parabola;

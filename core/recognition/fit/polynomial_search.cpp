@@ -191,8 +191,10 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
 
 void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
   // As many as bound the time of what no class fits.
-  constexpr std::size_t kMostSeeds = 3;
+  constexpr std::size_t kMostSeeds = 4;
   constexpr RefineEffort kThorough{50, 1, 1e-4};
+  // Data that leave a conic possible tell no cubic from it.
+  const bool conic_fits = fits_well(fits->lowest_chi2, reduced.points.size());
   fits->every_seed = true;
   const auto improve = [&](std::optional<PolynomialFit>* best, const std::vector<AxisFit>& seeds) {
     if (!*best || seeds.empty()) {
@@ -200,7 +202,7 @@ void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
     }
     bool touchable = is_touchable(**best, reduced);
     const auto arrived = [&] {
-      return touchable && fits_well((*best)->chi2, reduced.points.size());
+      return touchable && (conic_fits || fits_well((*best)->chi2, reduced.points.size()));
     };
     // What can be touched so goes before what fits better.
     const auto keep = [&](PolynomialFit fit) {
@@ -228,6 +230,7 @@ void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
   improve(&fits->parabola, fits->seeds.parabola);
   improve(&fits->cubical_parabola, fits->seeds.cubical_parabola);
   improve(&fits->semi_cubical_parabola, fits->seeds.semi_cubical_parabola);
+  start_from_limits(reduced, std::numeric_limits<double>::infinity(), fits);
   improve(&fits->cubic_spline, fits->seeds.cubic_spline);
 }
 
