@@ -216,26 +216,22 @@ void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
       }
     };
     // The search has refined the first.
-    // A parabola has one valley but for seeds of other axes, which the walk has told from it.
-    const std::size_t most = best == &fits->parabola ? 1 : std::min(seeds.size(), kMostSeeds);
-    for (std::size_t i = 1; i < most && !arrived(); ++i) {
+    for (std::size_t i = 1; i < std::min(seeds.size(), kMostSeeds) && !arrived(); ++i) {
       keep(refined(seeds[i], reduced));
       if (seeds[i].model == PolynomialModel::CubicSpline) {
         keep(refined_twin(seeds[i], reduced));
       }
     }
-    // Where some class fits, one that ended far off is not it.
-    if (!arrived() && !conic_fits &&
-        !(fits->cubic_spline && fits_well(fits->cubic_spline->chi2, reduced.points.size()))) {
+    if (!arrived()) {
       keep(refine_polynomial(seeds.front().model, reduced.points, **best, kSurfacePoints,
                              kThorough));
     }
   };
-  improve(&fits->cubic_spline, fits->seeds.cubic_spline);
   improve(&fits->parabola, fits->seeds.parabola);
   improve(&fits->cubical_parabola, fits->seeds.cubical_parabola);
   improve(&fits->semi_cubical_parabola, fits->seeds.semi_cubical_parabola);
   start_from_limits(reduced, std::numeric_limits<double>::infinity(), fits);
+  improve(&fits->cubic_spline, fits->seeds.cubic_spline);
 }
 
 }  // namespace palpate
