@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double log_uniform(std::mt19937_64& rng, double least, double most) {
+double arc_or_noise(std::mt19937_64& rng, double least, double most) {
   return std::exp(std::uniform_real_distribution<double>(std::log(least), std::log(most))(rng));
 }
 
@@ -159,7 +159,8 @@ SearchOutcome outcome(const SearchCase& search_case, bool on_all) {
   const ClassFit start = truth_of(search_case.scene, prepared);
   const auto truth = optimum(start);
   result.counted = truth.has_value();
-  result.refused = !truth && is_still(search_case.scene.curve_class, settled(start, prepared.reduced));
+  result.refused =
+      !truth && is_still(search_case.scene.curve_class, settled(start, prepared.reduced));
   result.truth_chi2 = chi2_of(truth);
   const auto i = static_cast<std::size_t>(search_case.scene.curve_class);
   const auto found = fit_classes(prepared.reduced)[i];
@@ -176,13 +177,13 @@ SearchCase search_case(CurveClass curve_class, std::uint64_t seed, std::uint32_t
   std::mt19937_64 rng(sequence);
   SceneOptions options;
   options.patches = std::uniform_int_distribution<int>(1, 6)(rng);
-  options.points_per_patch = static_cast<int>(std::lround(log_uniform(rng, 10.0, 200.0)));
-  options.sigma_over_size = log_uniform(rng, 1e-6, 1e-2);
+  options.points_per_patch = static_cast<int>(std::lround(arc_or_noise(rng, 10.0, 200.0)));
+  options.sigma_over_size = arc_or_noise(rng, 1e-6, 1e-2);
   options.least_arc_over_size = 0.05;
   options.most_arc_over_size = 4.0;
   SearchCase result;
   const bool tip = std::uniform_int_distribution<int>(0, 3)(rng) == 0;
-  const double radius = options.size_m * log_uniform(rng, 1e-3, 1e-1);
+  const double radius = options.size_m * arc_or_noise(rng, 1e-3, 1e-1);
   result.tip_radius_m = tip ? radius : 0.0;
   result.scene = random_scene(curve_class, options, rng);
   return result;

@@ -20,11 +20,11 @@ struct SearchCase {
 SearchCase search_case(CurveClass curve_class, std::uint64_t seed, std::uint32_t number);
 
 struct SearchOutcome {
-  bool counted = false;      ///< the truth leads to an optimum of the class; else there is none
+  bool counted = false;  ///< the truth leads to an optimum of the class; else there is none
   bool refused = false;  ///< the truth leads to one that is taken for none that can be touched
-  bool curve = true;         ///< the search ended at a curve that the points can have been touched on
-  double found_chi2 = 0.0;   ///< infinite where it ended at none
-  double truth_chi2 = 0.0;   ///< of the optimum that the truth leads to
+  bool curve = true;     ///< the search ended at a curve that the points can have been touched on
+  double found_chi2 = 0.0;  ///< infinite where it ended at none
+  double truth_chi2 = 0.0;  ///< of the optimum that the truth leads to
   double excess() const { return found_chi2 - truth_chi2; }
 };
 

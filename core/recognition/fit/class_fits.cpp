@@ -1,5 +1,6 @@
 #include "core/recognition/fit/class_fits.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/recognition/fit/touchable.h"
@@ -84,20 +85,24 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsi
   }
   also_from(circle.chi2, circle.coefficients);
 
-  // Where nothing fits, no walk into a valley was good enough to be trusted.
+  // A parabola is the cubics' limit, and data that leave a conic possible tell no cubic from it.
+  // Where none of these fits, one cubic that does says nothing of another: the best seed by the
+  // walk need not be the best by distances.
   const auto fits = [&](const auto& fit) {
     return fit && fits_well(fit->chi2, reduced.points.size());
   };
-  if (!fits_well(conic.chi2, reduced.points.size()) &&
-      !fits_well(circle.chi2, reduced.points.size()) && !fits(polynomials.parabola) &&
-      !fits(polynomials.cubical_parabola) && !fits(polynomials.semi_cubical_parabola) &&
-      !fits(polynomials.cubic_spline)) {
-    if (starts != nullptr && !starts->every_seed) {
-      return fit_classes(reduced, nullptr, classes);
-    }
-    if (starts == nullptr) {
-      refine_every_seed(reduced, &polynomials);
-    }
+  polynomials.lowest_chi2 = std::min(circle.chi2, usable ? conic.chi2 : circle.chi2);
+  if (polynomials.parabola) {
+    polynomials.lowest_chi2 = std::min(polynomials.lowest_chi2, polynomials.parabola->chi2);
+  }
+  const bool conic_fits = fits_well(polynomials.lowest_chi2, reduced.points.size());
+  const bool line_fits = fits(result[static_cast<std::size_t>(CurveClass::Line)]);
+  if (starts == nullptr && !line_fits) {  // a line is the limit of all
+    refine_every_seed(reduced, &polynomials);
+  } else if (starts != nullptr && !starts->every_seed && !conic_fits &&
+             !fits(polynomials.cubical_parabola) && !fits(polynomials.semi_cubical_parabola) &&
+             !fits(polynomials.cubic_spline)) {
+    return fit_classes(reduced, nullptr, classes);
   }
   const auto& parabola = polynomials.parabola;
   if (parabola) {

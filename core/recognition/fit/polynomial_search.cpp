@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "core/recognition/fit/axis_fit.h"
+#include "core/recognition/fit/class_fits.h"
+#include "core/recognition/fit/touchable.h"
 
 namespace palpate {
 namespace {
@@ -41,15 +43,23 @@ std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& redu
   return walked;
 }
 
-/// The best of the walked seeds, refined on the reduced points.
-std::optional<PolynomialFit> best_of(const std::vector<AxisFit>& seeds, const FitData& reduced) {
-  const std::vector<AxisFit> walked = walk(seeds, reduced);
-  if (walked.empty()) {
-    return std::nullopt;
-  }
-  return refine_polynomial(walked.front().model, reduced.points,
-                           to_polynomial(walked.front(), reduced.points), kSurfacePoints,
-                           kCoarseEffort);
+PolynomialFit refined(const AxisFit& walked, const FitData& reduced) {
+  return refine_polynomial(walked.model, reduced.points, to_polynomial(walked, reduced.points),
+                           kSurfacePoints, kCoarseEffort);
+}
+
+/// Walks the seeds; the best of them, refined on the reduced points.
+std::optional<PolynomialFit> best_of(std::vector<AxisFit>* seeds, const FitData& reduced) {
+  *seeds = walk(*seeds, reduced);
+  return seeds->empty() ? std::nullopt : std::optional(refined(seeds->front(), reduced));
+}
+
+/// The spline on the other side of c = 0.
+PolynomialFit refined_twin(const AxisFit& walked, const FitData& reduced) {
+  constexpr int kMostIterations = 15;
+  return refined(refine_axis_and_arms(reduced.points, reduced.patches,
+                                      twin_of(walked, reduced.points), kMostIterations),
+                 reduced);
 }
 
 /// Walks the splines' valleys, and lets the other models start beside the splines found: near c = 0
@@ -77,14 +87,8 @@ SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced
   if (walked.empty()) {
     return pair;
   }
-  constexpr int kMostIterations = 15;
-  const auto refine = [&](const AxisFit& fit) {
-    return refine_polynomial(fit.model, reduced.points, to_polynomial(fit, reduced.points),
-                             kSurfacePoints, kCoarseEffort);
-  };
-  pair.best = refine(walked.front());
-  pair.rival = refine(refine_axis_and_arms(
-      reduced.points, reduced.patches, twin_of(walked.front(), reduced.points), kMostIterations));
+  pair.best = refined(walked.front(), reduced);
+  pair.rival = refined_twin(walked.front(), reduced);
   if (pair.rival->chi2 < pair.best->chi2) {
     std::swap(pair.best, pair.rival);
   }
@@ -132,9 +136,9 @@ PolynomialFits search_polynomials(const FitData& reduced) {
   add_graph_seeds(reduced.points, &fits.seeds);
   add_arm_seeds(reduced.points, reduced.patches, &fits.seeds);
   add_relatives(reduced, &fits.seeds);
-  fits.parabola = best_of(fits.seeds.parabola, reduced);
-  fits.cubical_parabola = best_of(fits.seeds.cubical_parabola, reduced);
-  fits.semi_cubical_parabola = best_of(fits.seeds.semi_cubical_parabola, reduced);
+  fits.parabola = best_of(&fits.seeds.parabola, reduced);
+  fits.cubical_parabola = best_of(&fits.seeds.cubical_parabola, reduced);
+  fits.semi_cubical_parabola = best_of(&fits.seeds.semi_cubical_parabola, reduced);
   SplinePair pair = fit_spline(fits.seeds.cubic_spline, reduced);
   fits.cubic_spline = std::move(pair.best);
   fits.rival = std::move(pair.rival);
@@ -145,7 +149,7 @@ PolynomialFits search_polynomials(const FitData& reduced) {
 PolynomialFits search_parabola(const FitData& reduced) {
   PolynomialFits fits;
   add_graph_seeds(reduced.points, &fits.seeds);
-  fits.parabola = best_of(fits.seeds.parabola, reduced);
+  fits.parabola = best_of(&fits.seeds.parabola, reduced);
   return fits;
 }
 
@@ -186,34 +190,48 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
 }
 
 void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
-  // The search has walked every seed to its valley, best first: beyond the first ones a valley was
-  // narrower than the noise only by chance. As many as bound the time of what no class fits.
-  constexpr std::size_t kMostSeeds = 2;
+  // As many as bound the time of what no class fits.
+  constexpr std::size_t kMostSeeds = 4;
   constexpr RefineEffort kThorough{50, 1, 1e-4};
+  // Data that leave a conic possible tell no cubic from it.
+  const bool conic_fits = fits_well(fits->lowest_chi2, reduced.points.size());
   fits->every_seed = true;
-  const auto improve = [&](std::optional<PolynomialFit>* fit, const AxisFit& seed) {
-    keep_better(fit,
-                refine_polynomial(seed.model, reduced.points, to_polynomial(seed, reduced.points),
-                                  kSurfacePoints, kThorough));
+  const auto improve = [&](std::optional<PolynomialFit>* best, const std::vector<AxisFit>& seeds) {
+    if (!*best || seeds.empty()) {
+      return;
+    }
+    bool touchable = is_touchable(**best, reduced);
+    const auto arrived = [&] {
+      return touchable && (conic_fits || fits_well((*best)->chi2, reduced.points.size()));
+    };
+    // What can be touched so goes before what fits better.
+    const auto keep = [&](PolynomialFit fit) {
+      const bool better = fit.chi2 < (*best)->chi2;
+      if (std::isfinite(fit.chi2) && (better || !touchable)) {
+        const bool can_be = is_touchable(fit, reduced);
+        if (can_be == touchable ? better : can_be) {
+          *best = std::move(fit);
+          touchable = can_be;
+        }
+      }
+    };
+    // The search has refined the first.
+    for (std::size_t i = 1; i < std::min(seeds.size(), kMostSeeds) && !arrived(); ++i) {
+      keep(refined(seeds[i], reduced));
+      if (seeds[i].model == PolynomialModel::CubicSpline) {
+        keep(refined_twin(seeds[i], reduced));
+      }
+    }
+    if (!arrived()) {
+      keep(refine_polynomial(seeds.front().model, reduced.points, **best, kSurfacePoints,
+                             kThorough));
+    }
   };
-  const auto first_of = [&](const std::vector<AxisFit>& seeds) {
-    return std::span(seeds).first(std::min(seeds.size(), kMostSeeds));
-  };
-  for (const AxisFit& seed : first_of(fits->seeds.cubic_spline)) {
-    improve(&fits->cubic_spline, seed);
-    improve(&fits->cubic_spline, twin_of(seed, reduced.points));
-  }
-  for (const AxisFit& seed : first_of(fits->seeds.semi_cubical_parabola)) {
-    improve(&fits->semi_cubical_parabola, seed);
-  }
-  if (auto& cubic = fits->cubical_parabola) {
-    keep_better(&cubic, refine_polynomial(PolynomialModel::CubicalParabola, reduced.points, *cubic,
-                                          kSurfacePoints, kThorough));
-  }
-  if (auto& parabola = fits->parabola) {
-    keep_better(&parabola, refine_polynomial(PolynomialModel::Parabola, reduced.points, *parabola,
-                                             kSurfacePoints, kThorough));
-  }
+  improve(&fits->parabola, fits->seeds.parabola);
+  improve(&fits->cubical_parabola, fits->seeds.cubical_parabola);
+  improve(&fits->semi_cubical_parabola, fits->seeds.semi_cubical_parabola);
+  start_from_limits(reduced, std::numeric_limits<double>::infinity(), fits);
+  improve(&fits->cubic_spline, fits->seeds.cubic_spline);
 }
 
 }  // namespace palpate

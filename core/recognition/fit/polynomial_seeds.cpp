@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numerics/small_cholesky.h"
+
 namespace palpate {
 namespace {
 
@@ -50,6 +52,9 @@ struct Moments {
   double of_vu(std::size_t k) const { return vu[k / 2][static_cast<Eigen::Index>(k % 2)]; }
 };
 
+/// Near-empty directions (all points alike) must not blow up: a ridge at the level of rounding.
+constexpr double kRidge = 1e-12;
+
 /// Sums of squares that two models leave, one of which has a power more.
 struct ResidualSums {
   double of_three = std::numeric_limits<double>::infinity();
@@ -59,8 +64,6 @@ struct ResidualSums {
 /// Least squares of v over the first three and over all four of the powers of u, in the order
 /// given.
 ResidualSums residual_sums(const Moments& m, const std::array<std::size_t, 4>& powers) {
-  // Near-empty directions (all points alike) must not blow up: a ridge at the level of rounding.
-  constexpr double kRidge = 1e-12;
   constexpr std::size_t kRight = 4;
   // Gaussian elimination of the normal equations: each pivot takes its part off the sum of squares.
   std::array<std::array<double, 5>, 4> rows;
@@ -93,6 +96,34 @@ ResidualSums residual_sums(const Moments& m, const std::array<std::size_t, 4>& p
   }
   sums.of_four = at_least_zero(cost);
   return sums;
+}
+
+/// Least squares of v over all four powers of u, the coefficient of u^k at k.
+std::array<double, 4> coefficients(const Moments& m) {
+  Eigen::Matrix4d normal;
+  Eigen::Vector4d right;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t j = 0; j < 4; ++j) {
+      normal(row, static_cast<Eigen::Index>(j)) = m.of_u(i + j);
+    }
+    normal(row, row) *= 1.0 + kRidge;
+    right[row] = m.of_vu(i);
+  }
+  Eigen::Matrix4d factor;
+  if (!cholesky(normal, &factor)) {
+    return {};
+  }
+  const Eigen::Vector4d y = solve_cholesky(factor, right);
+  return {y[0], y[1], y[2], y[3]};
+}
+
+/// By how much of the sum of squares a patch, its moments taken on the positive arm, fits there
+/// better than on the negative one, over 4. With the even part e and the odd part o of y(u) the
+/// residuals are v - e - o and v - e + o: the sum of w o (v - e).
+double advantage_of_positive_arm(const Moments& m, const std::array<double, 4>& y) {
+  return y[1] * (m.of_vu(1) - y[0] * m.of_u(1) - y[2] * m.of_u(3)) +
+         y[3] * (m.of_vu(3) - y[0] * m.of_u(3) - y[2] * m.of_u(5));
 }
 
 /// One cell of the coarse search.
@@ -252,10 +283,14 @@ class ArmSearch {
         signs_[order_[k]] = sign;
         sum.add(arms_[order_[k]].moments, sign);
       }
-      for (std::size_t k = enumerated; k < order_.size(); ++k) {
-        const double sign = better_arm(sum, arms_[order_[k]].moments);
-        signs_[order_[k]] = sign;
-        sum.add(arms_[order_[k]].moments, sign);
+      if (enumerated < order_.size()) {
+        const std::array<double, 4> y = coefficients(sum);
+        for (std::size_t k = enumerated; k < order_.size(); ++k) {
+          const Moments& moments = arms_[order_[k]].moments;
+          const double sign = advantage_of_positive_arm(moments, y) >= 0.0 ? 1.0 : -1.0;
+          signs_[order_[k]] = sign;
+          sum.add(moments, sign);
+        }
       }
       function(sum);
     }
@@ -278,17 +313,6 @@ class ArmSearch {
       moments.add(w_[i], i < change ? t : -t, t2, y_[i]);
     }
     return {moments, change};
-  }
-
-  static double better_arm(const Moments& so_far, const Moments& patch) {
-    Moments with_positive = so_far;
-    with_positive.add(patch, 1.0);
-    Moments with_negative = so_far;
-    with_negative.add(patch, -1.0);
-    return residual_sums(with_positive, kPowersOfT).of_four <=
-                   residual_sums(with_negative, kPowersOfT).of_four
-               ? 1.0
-               : -1.0;
   }
 
   std::vector<double> point_arms() const {

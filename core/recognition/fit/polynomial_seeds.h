@@ -27,7 +27,7 @@ void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds);
 /// For a trial direction and vertex abscissa x0, semi-cubical parabola and spline are linear in
 /// t = +-sqrt(x - x0), given the arm (the sign of t) of each patch:
 /// O(directions * vertices * (points + 2^patches)), with at most 2^3 arm patterns; patches beyond
-/// the four longest take the arm that fits better.
+/// the four longest take the arm that fits the curve through these better.
 void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
                    PolynomialSeeds* seeds);
 

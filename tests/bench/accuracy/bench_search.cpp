@@ -60,8 +60,10 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
 
   std::printf(
-      "Chi-square above that of the optimum which the truth leads to: on the reduced points by more "
-      "than %.0f and by more\nthan %.1f, and on all points by more than %.0f; optima of the truth that are refused as not "
+      "Chi-square above that of the optimum which the truth leads to: on the reduced points by "
+      "more "
+      "than %.0f and by more\nthan %.1f, and on all points by more than %.0f; optima of the truth "
+      "that are refused as not "
       "touchable\n",
       kMissed, kDecisive, kMissed);
   for (const CurveClass curve_class : kCurveClasses) {
@@ -83,12 +85,19 @@ int main(int argc, char** argv) {
       by_patches[patches - 1].add(reduced, on_all);
       by_noise[noise].add(reduced, on_all);
       by_tip[drawn.tip_radius_m > 0.0 ? 1 : 0].add(reduced, on_all);
+      if (list && reduced.refused) {
+        std::printf("  refused: %d, %zu patches of %zu, sigma/size %.1e%s\n", i, patches,
+                    drawn.scene.patches.front().size(), sigma,
+                    drawn.tip_radius_m > 0.0 ? ", tip" : "");
+      }
       if (list && reduced.counted &&
           (reduced.excess() > kMissed || (on_all.counted && on_all.excess() > kMissed))) {
-        std::printf("  missed: %d, %zu patches of %zu, sigma/size %.1e%s: %.6g over %.6g; all %.6g over %.6g\n",
-                    i, patches, drawn.scene.patches.front().size(), sigma,
-                    drawn.tip_radius_m > 0.0 ? ", tip" : "", reduced.found_chi2,
-                    reduced.truth_chi2, on_all.found_chi2, on_all.truth_chi2);
+        std::printf(
+            "  missed: %d, %zu patches of %zu, sigma/size %.1e%s: %.6g over %.6g; all %.6g over "
+            "%.6g\n",
+            i, patches, drawn.scene.patches.front().size(), sigma,
+            drawn.tip_radius_m > 0.0 ? ", tip" : "", reduced.found_chi2, reduced.truth_chi2,
+            on_all.found_chi2, on_all.truth_chi2);
       }
     }
     std::printf("%s\n", std::string(name_of(curve_class)).c_str());
