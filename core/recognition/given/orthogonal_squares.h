@@ -160,6 +160,9 @@ Squares<T> squares_about(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>>
         T second(0.0);
         if (regular) {
           second = along[i] * turn[j] - inner(placed.normal, first_by[i]) * slide[j];
+        } else if (to_double(placed.distance) > 0.0) {
+          // At a cusp the distance is that from a point.
+          second = (inner(by[i], by[j]) - rate[i] * rate[j]) / placed.distance;
         }
         if (unknowns.angle >= 0 && i == static_cast<std::size_t>(unknowns.angle)) {
           if (j == i) {

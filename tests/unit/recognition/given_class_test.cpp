@@ -5,6 +5,8 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -83,7 +85,7 @@ double angle_error(CurveClass curve_class, double u, double v) {
 TEST(GivenClass, IsTheLeastSquaresOfFiftyDigits) {
   const std::vector<ReferenceFit> references = reference_fits();
   ASSERT_GT(references.size(), 50U);
-  int elsewhere = 0;
+  int compared = 0;
   for (const ReferenceFit& reference : references) {
     SCOPED_TRACE(reference.name);
     const GivenFit fit = fit_given_class(reference.curve_class, reference.points);
@@ -93,18 +95,21 @@ TEST(GivenClass, IsTheLeastSquaresOfFiftyDigits) {
     const double reference_rms = std::sqrt(reference.squares / n);
     // As low as rounding goes: of what is exact, an attometre.
     EXPECT_LE(fit.rms_m, reference_rms * (1.0 + 1e-12) + 1e-18);
-    if (fit.rms_m < reference_rms * (1.0 - 1e-9)) {
-      ++elsewhere;  // a lower minimum than the one next to the truth
+    const bool interpolates =
+        static_cast<int>(reference.points.size()) == degrees_of_freedom(reference.curve_class);
+    if (!interpolates && fit.rms_m < reference_rms * (1.0 - 1e-9)) {
+      // The reference follows each foot along its arm: beside a cusp a nearer one may be on the
+      // other arm or the cusp itself.
+      EXPECT_EQ(reference.curve_class, CurveClass::SemiCubicalParabola);
       continue;
     }
     const std::vector<double> values = values_of(fit);
-    const bool interpolates = static_cast<int>(n) == degrees_of_freedom(reference.curve_class);
     if (interpolates && values.size() > 3 &&
-        std::abs(values[0] - reference.values[0]) > 0.01 * std::abs(reference.values[0])) {
-      ++elsewhere;  // several curves of the class go through so few points
-      continue;
+        std::abs(values[0] - reference.values[0]) > 1e-6 * std::abs(reference.values[0])) {
+      continue;  // several curves of the class go through so few points
     }
     ASSERT_EQ(values.size(), reference.values.size());
+    ++compared;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const bool angle = i + 1 == values.size();
       const double error = angle
@@ -114,8 +119,7 @@ TEST(GivenClass, IsTheLeastSquaresOfFiftyDigits) {
       EXPECT_LE(error, 1e-9 * std::abs(reference.values[i])) << "value " << i;
     }
   }
-  // Few points with much form error may fit better elsewhere; most have their best at the truth.
-  EXPECT_LE(elsewhere, static_cast<int>(references.size()) / 10);
+  EXPECT_GT(compared, 50);
 }
 
 std::vector<GivenPoint> on_curve(const Curve& curve, const Pose2& pose, double t0, double t1,
@@ -208,10 +212,74 @@ TEST(GivenClass, OrderDoesNotMatterAndRoundTipsAreTakenOff) {
   }
 }
 
+/// Mean squared distance from a circle, in extended precision about the first point.
+long double mean_square(const std::vector<GivenPoint>& points, const Vec2& origin, long double x,
+                        long double y, long double radius) {
+  long double sum = 0.0L;
+  for (const GivenPoint& point : points) {
+    const Vec2 p = point.position_m - origin;
+    const long double d = std::hypot(p.x() - x, p.y() - y) - radius;
+    sum += d * d;
+  }
+  return sum / static_cast<long double>(points.size());
+}
+
+TEST(GivenClass, EveryOneOfThirtyHardCirclesIsAnswered) {
+  // Few points, short arcs, much form error, far offsets, repeated points; any order.
+  int answered = 0;
+  for (int scene = 0; scene < 30; ++scene) {
+    SCOPED_TRACE(scene);
+    std::mt19937_64 rng = test::test_rng(static_cast<std::uint64_t>(scene));
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    const int count = std::array{4, 5, 7, 12, 40, 200}[static_cast<std::size_t>(scene % 6)];
+    const double arc =
+        std::array{2.0 * kPi, 1.5, 0.35, 0.09, 4.0}[static_cast<std::size_t>(scene % 5)];
+    const double radius = std::pow(10.0, uniform(rng) * 5.0 - 3.0);
+    const double offset = std::array{0.0, 1e3, 1e6}[static_cast<std::size_t>(scene % 3)] * radius;
+    // Of the sagitta, so that the arc still bends; a full turn bears 30 %.
+    const double form =
+        (scene % 2 == 0 ? 0.01 : 0.1) * radius * (1.0 - std::cos(0.5 * std::min(arc, 3.0)));
+    const Vec2 centre(offset + radius * normal(rng), -offset + radius * normal(rng));
+    std::vector<GivenPoint> points;
+    for (int i = 0; i < count; ++i) {
+      const double angle = arc * uniform(rng) + 0.01 * scene;
+      const double r = radius + form * normal(rng);
+      points.push_back({centre + r * Vec2(std::cos(angle), std::sin(angle))});
+    }
+    for (int i = 0; i < scene % 4; ++i) {
+      points.push_back(points[static_cast<std::size_t>(i)]);
+    }
+    const GivenFit fit = fit_given_class(CurveClass::Circle, points);
+    ASSERT_EQ(fit.status, GivenStatus::Fitted) << name_of(fit.status);
+    ++answered;
+    EXPECT_LE(fit.stationarity, 1e-12);
+    // No circle beside it is better: steps of a millionth of what moves the points by the rms.
+    const Vec2 origin = points.front().position_m;
+    const Vec2 local = fit.world_T_curve.translation() - origin;
+    const auto square = [&](double dx, double dy, double da) {
+      return mean_square(points, origin, static_cast<long double>(local.x()) + dx,
+                         static_cast<long double>(local.y()) + dy,
+                         static_cast<long double>(fit.shape.values[0]) + da);
+    };
+    const long double least = square(0.0, 0.0, 0.0);
+    EXPECT_NEAR(static_cast<double>(std::sqrt(least)), fit.rms_m, 1e-9 * fit.rms_m);
+    const double step = 1e-3 * fit.rms_m + 1e-9 * offset;
+    for (const double sign : {1.0, -1.0}) {
+      EXPECT_GE(square(sign * step, 0.0, 0.0), least);
+      EXPECT_GE(square(0.0, sign * step, 0.0), least);
+      EXPECT_GE(square(0.0, 0.0, sign * step), least);
+    }
+  }
+  EXPECT_EQ(answered, 30);
+}
+
 TEST(GivenClass, CovarianceIsThatOfTheErrors) {
-  // 200 trials a class: the mean of the normalised squared errors of n unknowns is n, its
-  // standard deviation sqrt(2 n / 200); 4.5 of these.
-  constexpr int kTrials = 200;
+  // 100 trials a class: the mean of the normalised squared errors of n unknowns is n, its
+  // standard deviation sqrt(2 n / 100); 4.5 of these.
+  constexpr int kTrials = 100;
+  // So little that no valley bends within its own width: the covariance is to first order.
+  constexpr double kNoise_m = 1e-7;
   const std::vector<std::pair<Curve, Vec2>> curves = {
       {Line{}, {-0.02, 0.03}},
       {Circle{0.03}, {0.0, 2.5}},
@@ -228,10 +296,10 @@ TEST(GivenClass, CovarianceIsThatOfTheErrors) {
     const double unknowns = degrees_of_freedom(class_of(curve));
     double sum = 0.0;
     for (int trial = 0; trial < kTrials; ++trial) {
-      auto points = on_curve(curve, pose, range[0], range[1], 40, 1e-6,
+      auto points = on_curve(curve, pose, range[0], range[1], 40, kNoise_m,
                              static_cast<std::uint64_t>(100 + trial));
       for (GivenPoint& point : points) {
-        point.sigma_m = 1e-6;
+        point.sigma_m = kNoise_m;
       }
       const GivenFit fit = fit_given_class(class_of(curve), points);
       ASSERT_EQ(fit.status, GivenStatus::Fitted);
