@@ -86,6 +86,8 @@ measure "real recordings" real.md "$bench/real/bench_real"
 step "peers on the same points"
 "$bench/peers/peer_scenes" "$out" --scenes $peers
 /usr/bin/python3 tests/bench/peers/peers.py "$out" >"$out/peers.md"
+/usr/bin/python3 tests/bench/peers/given_class.py build/strict/node/tool/palpate >"$out/given_class.md" ||
+  echo "a class that is given: no peers (python3-scipy)"
 
 step "report"
 /usr/bin/python3 tests/bench/report/report.py "$out" --scale $scale

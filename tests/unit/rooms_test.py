@@ -11,7 +11,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 CORE = [
     "core/numerics", "core/curves", "core/curves/algebraic", "core/local", "core/local/spikes", "core/invariants",
     "core/invariants/signature_fit", "core/recognition/samples", "core/recognition/smooth", "core/recognition/fit",
-    "core/recognition/posterior", "core/recognition/weigh", "core/recognition/verdict", "core/recognition/tree", "core/recognition", "core/part",
+    "core/recognition/given", "core/recognition/posterior", "core/recognition/weigh", "core/recognition/verdict",
+    "core/recognition/tree", "core/recognition", "core/part",
 ]
 NODE = CORE + [
     "node/files", "node/process", "node/wire", "node/csv", "node/intake", "node/client", "node/security",

@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "node/csv/contact_csv.h"
+#include "node/files/printable.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/contact_groups.h"
 #include "node/tool/drawing/svg_plot.h"
+#include "node/tool/given_class_answer.h"
 #include "node/tool/part_match.h"
 #include "node/tool/text/message_json.h"
 #include "node/tool/text/recognition_text.h"
@@ -26,6 +28,8 @@ struct FitCommand {
   std::string format;
   std::string plot;
   std::string part;
+  std::string given_class;
+  std::vector<std::size_t> left_out;
   RecognizerWords words;
   RecognizerOptions recognizer;
 };
@@ -67,6 +71,16 @@ std::int64_t newest_stamp_ns(const ContactGroup& group) {
   return newest;
 }
 
+/// What the group alone says.
+void fill_origin(const ContactGroup& group, std::chrono::steady_clock::duration taken,
+                 v1::Recognition& answer) {
+  answer.mutable_header()->set_source(group.file);
+  answer.set_group(group.name);
+  answer.set_object(group.object);
+  answer.set_newest_sample_stamp_ns(newest_stamp_ns(group));
+  answer.set_compute_ns(std::chrono::duration_cast<std::chrono::nanoseconds>(taken).count());
+}
+
 v1::Recognition recognise(const ContactGroup& group, const RecognizerOptions& options) {
   Recognizer recognizer(options);
   add_group(group, recognizer);
@@ -80,11 +94,15 @@ v1::Recognition recognise(const ContactGroup& group, const RecognizerOptions& op
         return ContactSource{group.probes[probe], patch};
       },
       answer);
-  answer.mutable_header()->set_source(group.file);
-  answer.set_group(group.name);
-  answer.set_object(group.object);
-  answer.set_newest_sample_stamp_ns(newest_stamp_ns(group));
-  answer.set_compute_ns(std::chrono::duration_cast<std::chrono::nanoseconds>(taken).count());
+  fill_origin(group, taken, answer);
+  return answer;
+}
+
+v1::GivenClassAnswer fit_given(const ContactGroup& group, const FitCommand& fit) {
+  const auto start = std::chrono::steady_clock::now();
+  v1::GivenClassAnswer answer = given_class_answer(*curve_class_from_name(fit.given_class), group,
+                                                   fit.left_out, fit.recognizer);
+  fill_origin(group, std::chrono::steady_clock::now() - start, *answer.mutable_recognition());
   return answer;
 }
 
@@ -123,9 +141,35 @@ int place(const FitCommand& fit, const std::vector<ContactGroup>& groups, bool j
   return std::cout ? kDone : complain("standard output: cannot be written", kFailed);
 }
 
+/// What is wrong with the class given and what is to be left out, or nothing.
+std::string wrong_with_given(const FitCommand& fit, const std::vector<ContactGroup>& groups) {
+  if (fit.left_out.empty()) {
+    return "";
+  }
+  if (groups.size() != 1) {
+    return "--leave-out: for one group and object only, here are " + std::to_string(groups.size());
+  }
+  std::size_t samples = 0;
+  for (const ContactRun& run : groups.front().runs) {
+    samples += run.samples.size();
+  }
+  for (const std::size_t number : fit.left_out) {
+    if (number == 0 || number > samples) {
+      return "--leave-out: there is no sample " + std::to_string(number) + ", samples are 1 to " +
+             std::to_string(samples);
+    }
+  }
+  return "";
+}
+
 int run(FitCommand& fit) {
   if (std::string why = resolve(fit.words, fit.recognizer); !why.empty()) {
     return complain(why, kUsage);
+  }
+  if (!fit.given_class.empty() &&
+      curve_class_from_name(fit.given_class).value_or(CurveClass::Unclassified) ==
+          CurveClass::Unclassified) {
+    return complain("--class: no class is called " + printable(fit.given_class), kUsage);
   }
   // Nothing is answered before every file has been read: a bad one costs no half-done work.
   std::vector<ContactGroup> groups;
@@ -144,18 +188,26 @@ int run(FitCommand& fit) {
   if (bad) {
     return kUsage;
   }
+  if (const std::string why = wrong_with_given(fit, groups); !why.empty()) {
+    return complain(why, kUsage);
+  }
   const bool json = fit.format.empty() ? isatty(STDOUT_FILENO) == 0 : fit.format == "json";
   if (!fit.part.empty()) {
     return place(fit, groups, json);
   }
   std::size_t number = 0;
   for (const ContactGroup& group : groups) {
-    const v1::Recognition answer = recognise(group, fit.recognizer);
-    if (json) {
-      std::cout << json_line(answer);
+    v1::Recognition answer;
+    std::string text;
+    if (fit.given_class.empty()) {
+      answer = recognise(group, fit.recognizer);
+      text = json ? json_line(answer) : report_text(answer);
     } else {
-      std::cout << (number > 0 ? "\n" : "") << group.file << ": " << report_text(answer);
+      const v1::GivenClassAnswer given = fit_given(group, fit);
+      text = json ? json_line(given) : given_class_text(given);
+      answer = given.recognition();
     }
+    std::cout << (json ? "" : (number > 0 ? "\n" : "") + group.file + ": ") << text;
     ++number;
     if (!fit.plot.empty()) {
       const std::string path = plot_path(fit.plot, number);
@@ -195,6 +247,23 @@ void add_fit_command(CLI::App& app, int& exit_code) {
               "Draw samples, curve, 95 % band, rivals, enlarged residuals and frame as SVG; "
               "further groups go to FILE-2.svg, ...")
           ->type_name("FILE");
+  CLI::Option* given =
+      command
+          ->add_option(
+              "--class", fit->given_class,
+              "Fit this class to all samples, whatever they look like and in whatever order: the "
+              "least squares of the orthogonal distances, with form (rms, peak to valley) and "
+              "residuals. Of the options below --sigma and --determined-fraction count; json is "
+              "one "
+              "GivenClassAnswer (palpate/v1/given_class.proto) a line")
+          ->type_name("CLASS");
+  command
+      ->add_option(
+          "--leave-out", fit->left_out,
+          "With --class: samples that are not to count, numbered from 1 in the file's order")
+      ->delimiter(',')
+      ->needs(given)
+      ->type_name("NUMBER,...");
   command
       ->add_option(
           "--part", fit->part,
@@ -203,6 +272,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
           "--sigma, --recognized-probability and --false-outlier-probability; json is one "
           "PartMatch (palpate/v1/part_match.proto) a line")
       ->excludes(plot)
+      ->excludes(given)
       ->type_name("FILE");
   add_recognizer_flags(*command, *fit);
   command->callback([fit, &exit_code] { exit_code = run(*fit); });

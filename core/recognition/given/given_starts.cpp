@@ -1,0 +1,216 @@
+#include "core/recognition/given/given_starts.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/curves/algebraic/canonical_conic.h"
+#include "core/curves/algebraic/canonical_cubic.h"
+#include "core/recognition/fit/class_fits.h"
+#include "core/recognition/fit/implicit_fit.h"
+#include "core/recognition/fit/polynomial_search.h"
+#include "core/recognition/samples/fit_data.h"
+
+namespace palpate {
+namespace {
+
+/// So many points, evenly taken, show a start as well as all do.
+constexpr std::size_t kMostSeedPoints = 64;
+
+enum class Order {
+  None,     ///< every point a patch of its own
+  AsGiven,  ///< one patch
+};
+
+FitData seed_data(std::span<const Vec2> points, Order order) {
+  const std::size_t stride = (points.size() + kMostSeedPoints - 1) / kMostSeedPoints;
+  std::vector<StoredPatch> patches;
+  for (std::size_t i = 0; i < points.size(); i += stride) {
+    if (order == Order::None || patches.empty()) {
+      patches.emplace_back();
+    }
+    patches.back().samples.push_back({points[i], 0.0, 1.0});
+  }
+  bool sigma_known = false;
+  return make_fit_data(patches, 0.0, &sigma_known);
+}
+
+/// Of the frame of `data`, in the points' frame.
+GivenStart in_points_frame(const ShapeParameters& shape, const Pose2& pose, const FitData& data) {
+  return {shape, data.frame * pose};
+}
+
+/// The least algebraic distances among the ellipses, or among the hyperbolas: eigenvectors of the
+/// scatter with the discriminant as the norm (A. Fitzgibbon, M. Pilu and R. Fisher, 1999, in the
+/// reduced form of R. Halir and J. Flusser, 1998; for hyperbolas P. O'Leary and P. Zsombor-Murray,
+/// 2004).
+std::vector<ConicCoefficients> conics_of_class(CurveClass curve_class,
+                                               std::span<const FitPoint> points) {
+  Eigen::Matrix3d quadratic = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d mixed = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Zero();
+  for (const FitPoint& point : points) {
+    const Vec2& p = point.position;
+    const Eigen::Vector3d q(p.x() * p.x(), p.x() * p.y(), p.y() * p.y());
+    const Eigen::Vector3d l(p.x(), p.y(), 1.0);
+    quadratic += q * q.transpose();
+    mixed += q * l.transpose();
+    linear += l * l.transpose();
+  }
+  const Eigen::Matrix3d to_linear = -linear.ldlt().solve(mixed.transpose());
+  const Eigen::Matrix3d scatter = quadratic + mixed * to_linear;
+  Eigen::Matrix3d inverse_discriminant;
+  inverse_discriminant << 0.0, 0.0, 0.5, 0.0, -1.0, 0.0, 0.5, 0.0, 0.0;
+  const Eigen::EigenSolver<Eigen::Matrix3d> eigen(inverse_discriminant * scatter);
+  std::vector<ConicCoefficients> conics;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const Eigen::Vector3d v = eigen.eigenvectors().col(k).real();
+    const double sign = 4.0 * v[0] * v[2] - v[1] * v[1];
+    if (v.allFinite() && (sign > 0.0) == (curve_class == CurveClass::Ellipse)) {
+      ConicCoefficients q;
+      q << v, to_linear * v;
+      conics.push_back(q);
+    }
+  }
+  return conics;
+}
+
+void add_conic(CurveClass curve_class, const ConicCoefficients& q, const FitData& data,
+               std::vector<GivenStart>* starts) {
+  if (!q.allFinite()) {
+    return;
+  }
+  const auto canonical = canonicalise_as(curve_class, q);
+  if (!canonical) {
+    return;
+  }
+  ShapeParameters shape{curve_class, data.scale * canonical->values};
+  Pose2 pose = canonical->world_T_curve;
+  if (curve_class == CurveClass::Hyperbola) {
+    // The branch that most points are on.
+    int votes = 0;
+    for (const FitPoint& point : data.points) {
+      votes += pose.to_local(point.position).x() > 0.0 ? 1 : -1;
+    }
+    pose.theta += votes < 0 ? kPi : 0.0;
+  }
+  pose.x *= data.scale;
+  pose.y *= data.scale;
+  starts->push_back(in_points_frame(shape, pose, data));
+}
+
+void add_polynomial(CurveClass curve_class, const PolynomialCoefficients& c, const FitData& data,
+                    std::vector<GivenStart>* starts) {
+  const auto canonical = canonicalise_as(curve_class, PolynomialCurve2{data.scale * c});
+  if (canonical.curve) {
+    starts->push_back(in_points_frame({curve_class, canonical.curve->values},
+                                      canonical.curve->world_T_curve, data));
+  }
+}
+
+PolynomialModel model_of(CurveClass curve_class) {
+  switch (curve_class) {
+    case CurveClass::Parabola:
+      return PolynomialModel::Parabola;
+    case CurveClass::CubicalParabola:
+      return PolynomialModel::CubicalParabola;
+    case CurveClass::SemiCubicalParabola:
+      return PolynomialModel::SemiCubicalParabola;
+    default:
+      return PolynomialModel::CubicSpline;
+  }
+}
+
+const std::vector<AxisFit>& seeds_of(CurveClass curve_class, const PolynomialSeeds& seeds) {
+  switch (curve_class) {
+    case CurveClass::Parabola:
+      return seeds.parabola;
+    case CurveClass::CubicalParabola:
+      return seeds.cubical_parabola;
+    case CurveClass::SemiCubicalParabola:
+      return seeds.semi_cubical_parabola;
+    default:
+      return seeds.cubic_spline;
+  }
+}
+
+void add_polynomials(CurveClass curve_class, const FitData& data, std::vector<GivenStart>* starts) {
+  const PolynomialFits fits =
+      curve_class == CurveClass::Parabola ? search_parabola(data) : search_polynomials(data);
+  const auto add = [&](const std::optional<PolynomialFit>& fit) {
+    if (fit) {
+      add_polynomial(curve_class, fit->coefficients, data, starts);
+    }
+  };
+  switch (curve_class) {
+    case CurveClass::Parabola:
+      add(fits.parabola);
+      break;
+    case CurveClass::CubicalParabola:
+      add(fits.cubical_parabola);
+      break;
+    case CurveClass::SemiCubicalParabola:
+      add(fits.semi_cubical_parabola);
+      break;
+    default:
+      add(fits.cubic_spline);
+      add(fits.rival);
+      break;
+  }
+  constexpr RefineEffort kRough{20, 1, 1e-3};
+  constexpr int kSurfacePoints = 0;
+  for (const AxisFit& seed : seeds_of(curve_class, fits.seeds)) {
+    const PolynomialFit fit =
+        refine_polynomial(model_of(curve_class), data.points, to_polynomial(seed, data.points),
+                          kSurfacePoints, kRough);
+    add_polynomial(curve_class, fit.coefficients, data, starts);
+  }
+}
+
+}  // namespace
+
+std::vector<GivenStart> given_starts(CurveClass curve_class, std::span<const Vec2> points) {
+  constexpr int kSurfacePoints = 0;
+  const FitData data = seed_data(points, Order::None);
+  std::vector<GivenStart> starts;
+  switch (curve_class) {
+    case CurveClass::Unclassified:
+      break;
+    case CurveClass::Line:
+      // Through the points' middle, along their longer axis: that is the frame's.
+      starts.push_back({{CurveClass::Line, Eigen::Vector3d::Zero()}, data.frame});
+      break;
+    case CurveClass::Circle: {
+      const ConicCoefficients algebraic = algebraic_circle(data.points);
+      add_conic(curve_class, algebraic, data, &starts);
+      add_conic(curve_class, refine_circle(data.points, algebraic, kSurfacePoints).coefficients,
+                data, &starts);
+      break;
+    }
+    case CurveClass::Ellipse:
+    case CurveClass::Hyperbola: {
+      const ConicCoefficients algebraic = algebraic_conic(data.points);
+      const ImplicitFit refined = refine_conic(data.points, algebraic, kSurfacePoints);
+      add_conic(curve_class, refined.coefficients, data, &starts);
+      add_conic(curve_class, algebraic, data, &starts);
+      for (const ConicCoefficients& q : conics_of_class(curve_class, data.points)) {
+        add_conic(curve_class, q, data, &starts);
+      }
+      break;
+    }
+    case CurveClass::Parabola:
+    case CurveClass::CubicalParabola:
+      add_polynomials(curve_class, data, &starts);
+      break;
+    case CurveClass::SemiCubicalParabola:
+    case CurveClass::CubicSpline:
+      // The arms are told apart sooner where points come in their order along the curve; it is not
+      // relied on.
+      add_polynomials(curve_class, data, &starts);
+      add_polynomials(curve_class, seed_data(points, Order::AsGiven), &starts);
+      break;
+  }
+  return starts;
+}
+
+}  // namespace palpate

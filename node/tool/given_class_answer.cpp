@@ -1,0 +1,131 @@
+#include "node/tool/given_class_answer.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "core/recognition/given/given_class.h"
+#include "core/recognition/verdict/determined.h"
+#include "node/wire/convert.h"
+
+namespace palpate {
+namespace {
+
+v1::GivenClassStatus to_wire(GivenStatus status) {
+  switch (status) {
+    case GivenStatus::Fitted:
+      return v1::GIVEN_CLASS_STATUS_FITTED;
+    case GivenStatus::NotFinite:
+      return v1::GIVEN_CLASS_STATUS_NOT_FINITE;
+    case GivenStatus::TooFewPoints:
+      return v1::GIVEN_CLASS_STATUS_TOO_FEW_POINTS;
+    case GivenStatus::Collinear:
+      return v1::GIVEN_CLASS_STATUS_COLLINEAR;
+    case GivenStatus::AtLimit:
+      return v1::GIVEN_CLASS_STATUS_AT_LIMIT;
+    case GivenStatus::NotDetermined:
+      return v1::GIVEN_CLASS_STATUS_NOT_DETERMINED;
+  }
+  return v1::GIVEN_CLASS_STATUS_UNSPECIFIED;
+}
+
+/// From where travel goes at a sample to where the material lies; zero where either is not known.
+Vec2 into_material(const ContactRun& run, std::size_t i) {
+  if (run.context.material_side == MaterialSide::Unspecified) {
+    return Vec2::Zero();
+  }
+  const Vec2 travel = run.samples[std::min(i + 1, run.samples.size() - 1)].position_m -
+                      run.samples[i > 0 ? i - 1 : 0].position_m;
+  return run.context.material_side == MaterialSide::Left ? left_of(travel) : -left_of(travel);
+}
+
+std::vector<GivenPoint> points_of(const ContactGroup& group,
+                                  std::span<const std::size_t> left_out) {
+  std::vector<GivenPoint> points;
+  for (const ContactRun& run : group.runs) {
+    for (std::size_t i = 0; i < run.samples.size(); ++i) {
+      GivenPoint point;
+      point.position_m = run.samples[i].position_m;
+      point.sigma_m = run.samples[i].sigma_m;
+      point.tip_radius_m = run.context.tip_radius_m;
+      point.into_material = into_material(run, i);
+      points.push_back(point);
+    }
+  }
+  for (const std::size_t number : left_out) {
+    points.at(number - 1).set_aside = true;
+  }
+  return points;
+}
+
+double half_extent_m(std::span<const GivenPoint> points) {
+  Vec2 low = points.front().position_m;
+  Vec2 high = low;
+  for (const GivenPoint& point : points) {
+    low = low.cwiseMin(point.position_m);
+    high = high.cwiseMax(point.position_m);
+  }
+  return 0.5 * (high - low).maxCoeff();
+}
+
+}  // namespace
+
+v1::GivenClassAnswer given_class_answer(CurveClass curve_class, const ContactGroup& group,
+                                        std::span<const std::size_t> left_out,
+                                        const RecognizerOptions& options) {
+  const std::vector<GivenPoint> points = points_of(group, left_out);
+  const GivenFit fit = fit_given_class(curve_class, points, {options.sigma_m});
+  const bool fitted = fit.status == GivenStatus::Fitted;
+  const bool told = fitted || fit.status == GivenStatus::NotDetermined;
+  v1::GivenClassAnswer given;
+  v1::Recognition& answer = *given.mutable_recognition();
+  given.set_status(to_wire(fit.status));
+  given.set_sigma_stated(fit.sigma_stated);
+  for (const std::size_t number : left_out) {
+    given.add_left_out(static_cast<std::uint32_t>(number));
+  }
+  answer.set_curve_class(to_wire(curve_class));
+  answer.set_sample_count(points.size());
+  v1::Hypothesis& hypothesis = *answer.add_hypotheses();
+  hypothesis.set_curve_class(answer.curve_class());
+  hypothesis.set_probability(1.0);
+  if (fit.status == GivenStatus::AtLimit) {
+    hypothesis.set_at_limit(true);
+    answer.set_status(v1::RECOGNITION_STATUS_AMBIGUOUS);
+    answer.set_doubt(v1::RECOGNITION_DOUBT_AT_LIMIT);
+    return given;
+  }
+  if (!told) {
+    answer.set_status(v1::RECOGNITION_STATUS_AMBIGUOUS);
+    answer.set_doubt(v1::RECOGNITION_DOUBT_UNDETERMINED);
+    return given;
+  }
+  const bool determined = fitted && is_determined(fit.shape, fit.covariance, half_extent_m(points),
+                                                  options.determined_fraction);
+  answer.set_status(determined ? v1::RECOGNITION_STATUS_RECOGNIZED
+                               : v1::RECOGNITION_STATUS_AMBIGUOUS);
+  if (!determined) {
+    answer.set_doubt(v1::RECOGNITION_DOUBT_UNDETERMINED);
+  }
+  palpate::to_wire(fit.shape, *answer.mutable_parameters());
+  palpate::to_wire(fit.world_T_curve, *answer.mutable_pose());
+  answer.set_pose_symmetry(static_cast<std::uint32_t>(pose_symmetry(curve_class)));
+  for (Eigen::Index row = 0; row < fit.covariance.rows(); ++row) {
+    for (Eigen::Index column = 0; column < fit.covariance.cols(); ++column) {
+      answer.add_covariance(fit.covariance(row, column));
+    }
+  }
+  *hypothesis.mutable_parameters() = answer.parameters();
+  *hypothesis.mutable_pose() = answer.pose();
+  hypothesis.set_chi2(fit.chi2);
+  hypothesis.set_dof(static_cast<std::uint32_t>(std::max(fit.dof, 0)));
+  answer.set_sigma_m(fit.sigma_m);
+  given.set_rms_m(fit.rms_m);
+  given.set_peak_to_valley_m(fit.peak_to_valley_m);
+  for (const GivenResidual& residual : fit.residuals) {
+    given.add_residual_m(residual.distance_m);
+  }
+  return given;
+}
+
+}  // namespace palpate

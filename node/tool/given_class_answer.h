@@ -1,0 +1,24 @@
+// A class that is given: samples of a group in, the answer's message out.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "core/recognition/recognizer.h"
+#include "node/tool/contact_groups.h"
+#include "palpate/v1/given_class.pb.h"
+
+namespace palpate {
+
+/// `left_out`: numbers of samples, from 1 in the order of the file. Of the options the noise and
+/// the fraction within which a parameter counts as determined. The recognition's header, group,
+/// object, newest_* and compute_ns are left to the caller.
+v1::GivenClassAnswer given_class_answer(CurveClass curve_class, const ContactGroup& group,
+                                        std::span<const std::size_t> left_out,
+                                        const RecognizerOptions& options);
+
+/// For a person to read, several lines, each ended.
+std::string given_class_text(const v1::GivenClassAnswer& answer);
+
+}  // namespace palpate

@@ -1,0 +1,80 @@
+"""palpate fit --class, called as a user calls it."""
+import math
+import unittest
+
+from google.protobuf import json_format
+
+from palpate.v1 import curve_pb2, given_class_pb2, recognition_pb2
+from programs import TOOL, run
+
+HEADER = "probe,patch,x_m,y_m\n"
+
+
+def touches(points):
+    """One patch a touch, as a trigger probe gives them."""
+    return HEADER + "".join(f"p,{i},{x!r},{y!r}\n" for i, (x, y) in enumerate(points))
+
+
+def fit(text, *arguments):
+    code, out, err = run(TOOL, "fit", "--format", "json", *arguments, "-", text_in=text)
+    return code, [json_format.Parse(line, given_class_pb2.GivenClassAnswer()) for line in out.splitlines()], err
+
+
+SQUARE = [(0.51, 0.2), (0.5, 0.21), (0.49, 0.2), (0.5, 0.19)]
+
+
+class GivenClass(unittest.TestCase):
+    def test_four_touches_are_a_circle(self):
+        code, answers, err = fit(touches(SQUARE), "--class", "circle")
+        self.assertEqual((code, err, len(answers)), (0, "", 1))
+        answer = answers[0]
+        recognition = answer.recognition
+        self.assertEqual(answer.status, given_class_pb2.GIVEN_CLASS_STATUS_FITTED)
+        self.assertEqual(recognition.curve_class, curve_pb2.CURVE_CLASS_CIRCLE)
+        self.assertEqual(recognition.status, recognition_pb2.RECOGNITION_STATUS_RECOGNIZED)
+        self.assertAlmostEqual(recognition.parameters.a, 0.01, delta=1e-16)
+        self.assertAlmostEqual(recognition.pose.x_m, 0.5, delta=1e-15)
+        self.assertEqual(len(answer.residual_m), 4)
+        self.assertFalse(answer.sigma_stated)
+
+    def test_form_and_chi_square_are_told(self):
+        points = [(0.01 * math.cos(i) * (1 + 1e-3 * (-1) ** i), 0.01 * math.sin(i) * (1 + 1e-3 * (-1) ** i))
+                  for i in range(12)]
+        _, (answer,), _ = fit(touches(points), "--class", "circle", "--sigma", "1e-6")
+        self.assertTrue(answer.sigma_stated)
+        self.assertAlmostEqual(answer.peak_to_valley_m, 2e-5, delta=2e-6)
+        self.assertAlmostEqual(answer.rms_m, 1e-5, delta=1e-6)
+        hypothesis = answer.recognition.hypotheses[0]
+        self.assertEqual(hypothesis.dof, 9)
+        self.assertAlmostEqual(hypothesis.chi2, 12 * (answer.rms_m / 1e-6) ** 2, delta=1e-6)
+        code, text, _ = run(TOOL, "fit", "--format", "text", "--class", "circle", "-", text_in=touches(points))
+        self.assertEqual(code, 0)
+        self.assertIn("peak to valley", text)
+
+    def test_an_outlier_is_left_out_by_its_number(self):
+        points = SQUARE[:2] + [(0.7, 0.7)] + SQUARE[2:]
+        _, (answer,), _ = fit(touches(points), "--class", "circle", "--leave-out", "3")
+        self.assertAlmostEqual(answer.recognition.parameters.a, 0.01, delta=1e-16)
+        self.assertEqual(list(answer.left_out), [3])
+        self.assertGreater(abs(answer.residual_m[2]), 0.5)
+
+    def test_why_there_is_none_is_told(self):
+        straight = [(0.1 * i, 0.2 * i) for i in range(7)]
+        for points, status in ((straight, "COLLINEAR"), (SQUARE[:2], "TOO_FEW_POINTS")):
+            code, (answer,), _ = fit(touches(points), "--class", "circle")
+            self.assertEqual(code, 0)
+            self.assertEqual(given_class_pb2.GivenClassStatus.Name(answer.status), "GIVEN_CLASS_STATUS_" + status)
+            self.assertEqual(answer.recognition.curve_class, curve_pb2.CURVE_CLASS_CIRCLE)
+            self.assertFalse(answer.recognition.HasField("parameters"))
+
+    def test_wrong_words_are_refused(self):
+        for arguments, word in ((("--class", "potato"), "potato"), (("--class", "circle", "--leave-out", "9"), "9"),
+                                (("--leave-out", "1"), "--class")):
+            code, answers, err = fit(touches(SQUARE), *arguments)
+            self.assertNotEqual(code, 0)
+            self.assertEqual(answers, [])
+            self.assertIn(word, err)
+
+
+if __name__ == "__main__":
+    unittest.main()
