@@ -8,13 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "node/csv/contact_csv.h"
 #include "node/tool/commands/command.h"
+#include "node/tool/commands/file_flags.h"
+#include "node/tool/commands/fit_input.h"
 #include "node/tool/contact_groups.h"
+#include "node/tool/drawing/curve_export.h"
 #include "node/tool/drawing/svg_plot.h"
 #include "node/tool/part_match.h"
 #include "node/tool/text/message_json.h"
-#include "node/tool/text/recognition_text.h"
+#include "node/tool/text/report.h"
 #include "node/wire/convert.h"
 #include "node/wire/recognizer_options.h"
 
@@ -25,7 +27,10 @@ struct FitCommand {
   std::vector<std::string> files;
   std::string format;
   std::string plot;
+  std::string curve_file;
   std::string part;
+  FileFlags file;
+  bool patches_are_bounded = false;  ///< --most-patches was said
   RecognizerWords words;
   RecognizerOptions recognizer;
 };
@@ -67,9 +72,16 @@ std::int64_t newest_stamp_ns(const ContactGroup& group) {
   return newest;
 }
 
-v1::Recognition recognise(const ContactGroup& group, const RecognizerOptions& options) {
+bool noise_is_known(const FitInput& input, const RecognizerOptions& options) {
+  return input.noise_is_known || options.sigma_m > 0.0;
+}
+
+/// `notes` receives what is to be said beside the answer.
+v1::Recognition recognise(const FitInput& input, const RecognizerOptions& options,
+                          std::vector<std::string>& notes) {
+  const ContactGroup& group = input.group;
   Recognizer recognizer(options);
-  add_group(group, recognizer);
+  const AddResult added = add_group(group, recognizer);
   const auto start = std::chrono::steady_clock::now();
   const Recognition recognition = recognizer.recognize();
   const auto taken = std::chrono::steady_clock::now() - start;
@@ -85,6 +97,7 @@ v1::Recognition recognise(const ContactGroup& group, const RecognizerOptions& op
   answer.set_object(group.object);
   answer.set_newest_sample_stamp_ns(newest_stamp_ns(group));
   answer.set_compute_ns(std::chrono::duration_cast<std::chrono::nanoseconds>(taken).count());
+  notes = notes_for(input, options.memory, added);
   return answer;
 }
 
@@ -100,7 +113,7 @@ std::string plot_path(const std::string& path, std::size_t number) {
 }
 
 /// Places a known part instead of recognising one.
-int place(const FitCommand& fit, const std::vector<ContactGroup>& groups, bool json) {
+int place(const FitCommand& fit, const std::vector<FitInput>& inputs, bool json) {
   const Result<ClosedSpline> part = read_part(fit.part);
   if (!part) {
     return complain(part.error, kUsage);
@@ -110,7 +123,9 @@ int place(const FitCommand& fit, const std::vector<ContactGroup>& groups, bool j
   options.determined_probability = fit.recognizer.recognized_probability;
   options.false_outlier_probability = fit.recognizer.false_outlier_probability;
   const char* separator = "";
-  for (const ContactGroup& group : groups) {
+  for (const FitInput& input : inputs) {
+    const ContactGroup& group = input.group;
+    for (const std::string& note : input.notes) complain(group.file + ": " + note, kDone);
     const v1::PartMatch match = match_part(group, *part.value, options);
     if (json) {
       std::cout << json_line(match);
@@ -128,17 +143,20 @@ int run(FitCommand& fit) {
     return complain(why, kUsage);
   }
   // Nothing is answered before every file has been read: a bad one costs no half-done work.
-  std::vector<ContactGroup> groups;
+  std::vector<FitInput> inputs;
   bool bad = false;
   for (const std::string& file : fit.files) {
-    const Result<ContactTable> table = read_contact_csv(file);
-    if (!table) {
-      complain(table.error, kUsage);
+    Result<std::vector<FitInput>> read = read_fit_input(file, options_of(fit.file));
+    if (!read) {
+      complain(read.error, kUsage);
       bad = true;
       continue;
     }
-    for (ContactGroup& group : contact_groups(file, *table.value)) {
-      groups.push_back(std::move(group));
+    for (FitInput& input : *read.value) {
+      for (const std::string& warning : input.warnings) {
+        complain("WARNING: " + input.group.file + ": " + warning, kDone);
+      }
+      inputs.push_back(std::move(input));
     }
   }
   if (bad) {
@@ -146,15 +164,21 @@ int run(FitCommand& fit) {
   }
   const bool json = fit.format.empty() ? isatty(STDOUT_FILENO) == 0 : fit.format == "json";
   if (!fit.part.empty()) {
-    return place(fit, groups, json);
+    return place(fit, inputs, json);
   }
   std::size_t number = 0;
-  for (const ContactGroup& group : groups) {
-    const v1::Recognition answer = recognise(group, fit.recognizer);
+  for (const FitInput& input : inputs) {
+    const ContactGroup& group = input.group;
+    RecognizerOptions options = fit.recognizer;
+    options.memory = memory_for(group, options.memory, fit.patches_are_bounded);
+    std::vector<std::string> notes;
+    const v1::Recognition answer = recognise(input, options, notes);
     if (json) {
-      std::cout << json_line(answer);
+      std::cout << with_notes(json_line(answer), notes);
     } else {
-      std::cout << (number > 0 ? "\n" : "") << group.file << ": " << report_text(answer);
+      std::cout << (number > 0 ? "\n" : "") << group.file << ": "
+                << report_text(answer, noise_is_known(input, options));
+      for (const std::string& note : notes) std::cout << "  note         " << note << "\n";
     }
     ++number;
     if (!fit.plot.empty()) {
@@ -162,6 +186,12 @@ int run(FitCommand& fit) {
       std::ofstream plot(path, std::ios::trunc);
       if (!(plot << svg_plot(group, answer) << std::flush)) {
         return complain(path + ": cannot be written", kFailed);
+      }
+    }
+    if (!fit.curve_file.empty()) {
+      const std::string path = plot_path(fit.curve_file, number);
+      if (const std::string why = export_curve(group, answer, path); !why.empty()) {
+        return complain(why, kFailed);
       }
     }
   }
@@ -176,18 +206,31 @@ void add_fit_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "fit",
       "Recognise the objects of CSV files, one answer a group and object.\n"
-      "Columns: probe, patch, x_m, y_m, and optionally sigma_m, stamp_ns, object, group,\n"
-      "tip_radius_m, material_side; '#' starts a comment.");
-  command->add_option("FILE", fit->files, "CSV files; - is standard input")
+      "Columns by name, in any order: x and y (also x_mm, \"X [um]\", pos_x; z with --plane), and\n"
+      "optionally probe, patch, sigma_m, stamp_ns, object, group, tip_radius_m, material_side; or\n"
+      "two or three columns without names; comma, semicolon, tab or blanks between them; '#'\n"
+      "starts a comment. Probe logs of LinuxCNC and grbl are read too.");
+  command->add_option("FILE", fit->files, "Files of points; - is standard input")
       ->required()
       ->type_name("");
   command
       ->add_option(
           "--format", fit->format,
           "text (default on a terminal) or json (default elsewhere): one Recognition of the "
-          "wire contract a line")
+          "wire contract a line, with \"notes\" about the file where there are any")
       ->check(CLI::IsMember({"text", "json"}))
       ->type_name("FORMAT");
+  command
+      ->add_option(
+          "--export", fit->curve_file,
+          "Write the recognised curve, by the name's ending: .csv (points along it), .json "
+          "(class, parameters, pose and points) or .dxf (for CAD, in millimetres); further "
+          "groups go to FILE-2.csv, ...")
+      ->check([](const std::string& path) {
+        return export_kind(path) ? std::string()
+                                 : "\"" + path + "\" ends in none of .csv, .json, .dxf";
+      })
+      ->type_name("FILE");
   CLI::Option* plot =
       command
           ->add_option(
@@ -204,8 +247,12 @@ void add_fit_command(CLI::App& app, int& exit_code) {
           "PartMatch (palpate/v1/part_match.proto) a line")
       ->excludes(plot)
       ->type_name("FILE");
+  add_file_flags(*command, fit->file);
   add_recognizer_flags(*command, *fit);
-  command->callback([fit, &exit_code] { exit_code = run(*fit); });
+  command->callback([fit, command, &exit_code] {
+    fit->patches_are_bounded = command->count("--most-patches") > 0;
+    exit_code = run(*fit);
+  });
 }
 
 }  // namespace palpate
