@@ -220,6 +220,13 @@ class Formats(unittest.TestCase):
             self.assertIn(told, out)
         self.assertEqual(run(TOOL, "check", self.folder / "absent")[0], 2)
 
+    def test_estimate_and_replay_read_them_too(self):
+        path = self.folder / "points.txt"
+        path.write_text("x_mm;y_mm\n" + self.rows(1e3, ";"))
+        code, out, err = run(TOOL, "estimate", path)
+        self.assertEqual(code, 0, err)
+        self.assertLess(abs(float(out.splitlines()[5].split(",")[3])), 0.1)
+
     def test_the_curve_is_exported_for_other_programs(self):
         import ezdxf
         path = self.folder / "points.csv"
