@@ -20,7 +20,7 @@ done
 step() { printf '\n== %s\n' "$*"; }
 
 packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev protobuf-compiler libprotobuf-dev
-          libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev libboost-dev nlohmann-json3-dev zlib1g-dev
+          libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev libboost-dev nlohmann-json3-dev zlib1g-dev libdxflib-dev
           python3)
 missing=()
 for package in "${packages[@]}"; do

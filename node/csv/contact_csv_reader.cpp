@@ -25,8 +25,6 @@ constexpr double kMaxCoordinateM = 1e7;
 constexpr double kMinSigmaM = 1e-15;
 constexpr double kMaxSigmaM = 1e3;
 constexpr double kMaxTipRadiusM = 1e3;
-// Seven million samples with all their digits; what is longer is no file of contacts. [bytes]
-constexpr std::size_t kMostFileBytes = std::size_t{512} << 20;
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
@@ -320,8 +318,8 @@ Result<ContactTable> read_contact_csv(const std::string& path) {
   const bool is_standard_input = path == "-";
   const std::string name = is_standard_input ? "standard input" : path;
   const Result<std::string> text = is_standard_input
-                                       ? read_bounded(STDIN_FILENO, name, kMostFileBytes)
-                                       : read_bounded(path, kMostFileBytes);
+                                       ? read_bounded(STDIN_FILENO, name, kMostContactFileBytes)
+                                       : read_bounded(path, kMostContactFileBytes);
   return text ? parse_contact_csv(*text.value, name) : Result<ContactTable>::fail(text.error);
 }
 

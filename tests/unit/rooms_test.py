@@ -15,6 +15,7 @@ CORE = [
     "core/recognition/tree", "core/recognition", "core/part",
 ]
 NODE = CORE + [
+    "node/python",
     "node/files", "node/process", "node/wire", "node/csv", "node/intake", "node/client", "node/security",
     "node/groups", "node/publish", "node", "node/tool", "node/tool/text", "node/tool/drawing", "node/tool/view",
     "node/tool/commands", "node/tool/main",

@@ -7,6 +7,8 @@
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
 #include "node/tool/commands/command.h"
+#include "node/tool/commands/file_check.h"
+#include "node/tool/commands/file_flags.h"
 #include "node/tool/commands/listening_place.h"
 #include "node/tool/commands/stream_check.h"
 
@@ -16,21 +18,48 @@ namespace {
 struct CheckCommand {
   ListeningFlags place{std::string(kDefaultContactsEndpoint), "", "", false};
   double seconds = 5.0;
+  std::string file;
+  FileFlags flags;
 };
 
-const char* name_of(Severity severity) {
-  switch (severity) {
-    case Severity::Error:
-      return "ERROR  ";
-    case Severity::Warning:
-      return "WARNING";
-    case Severity::Note:
-      break;
+/// Worst first; gives the exit code.
+int print(const std::vector<Finding>& findings) {
+  bool good = true;
+  for (const Finding& finding : findings) {
+    std::cout << name_of(finding.severity) << "  "
+              << (finding.probe.empty() ? "" : finding.probe + ": ") << finding.what
+              << (finding.cure.empty() ? "" : "\n         " + finding.cure) << "\n";
+    good = good && finding.severity != Severity::Error;
   }
-  return "note   ";
+  std::cout << (good ? "fit for the recognizer\n" : "not fit for the recognizer yet\n");
+  return good ? kDone : kFailed;
+}
+
+int check_file(const CheckCommand& command) {
+  const Result<ContactFile> file = read_contact_file(command.file, options_of(command.flags));
+  if (!file) {
+    return complain(file.error, kUsage);
+  }
+  std::vector<Finding> findings;
+  for (const std::string& note : file.value->notes) {
+    findings.push_back({Severity::Note, "", note, ""});
+  }
+  for (const ContactGroup& group : contact_groups(command.file, file.value->table)) {
+    std::size_t samples = 0;
+    for (const ContactRun& run : group.runs) samples += run.samples.size();
+    findings.push_back({Severity::Note, "",
+                        "group " + group.name + ", object " + std::to_string(group.object) + ": " +
+                            std::to_string(samples) + " samples in " +
+                            std::to_string(group.runs.size()) + " runs",
+                        ""});
+    for (Finding& finding : check_group(group)) findings.push_back(std::move(finding));
+  }
+  sort_findings(&findings);
+  return print(findings);
 }
 
 int run(const CheckCommand& command) {
+  if (!command.file.empty()) return check_file(command);
   const int stop_fd = take_stop_signals();
   ListeningPlace place;
   if (const int code = place.open_as_recognizer(command.place); code != kDone) {
@@ -58,15 +87,7 @@ int run(const CheckCommand& command) {
                         " with a PUB socket?",
                     kFailed);
   }
-  bool good = true;
-  for (const Finding& finding : check.findings()) {
-    std::cout << name_of(finding.severity) << "  "
-              << (finding.probe.empty() ? "" : finding.probe + ": ") << finding.what
-              << (finding.cure.empty() ? "" : "\n         " + finding.cure) << "\n";
-    good = good && finding.severity != Severity::Error;
-  }
-  std::cout << (good ? "fit for the recognizer\n" : "not fit for the recognizer yet\n");
-  return good ? kDone : kFailed;
+  return print(check.findings());
 }
 
 }  // namespace
@@ -77,7 +98,11 @@ void add_check_command(CLI::App& app, int& exit_code) {
                                          "Listen to a probe's stream in the recognizer's place and "
                                          "tell its author what is wrong with it:\n"
                                          "format, units, spacing, noise, lift-offs, gaps, stamps. "
-                                         "Exit code 1 where there is an error.");
+                                         "Exit code 1 where there is an error.\n"
+                                         "With FILE: the same of a file of points.");
+  command->add_option("FILE", check->file, "File of points, as fit reads it; - is standard input")
+      ->type_name("");
+  add_file_flags(*command, check->flags);
   command->add_option("--contacts", check->place.endpoint, "Bind here, as the recognizer would")
       ->capture_default_str()
       ->type_name("ENDPOINT");

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/local/estimator.h"
-#include "node/csv/contact_csv.h"
 #include "node/tool/commands/command.h"
+#include "node/tool/commands/file_flags.h"
 #include "node/tool/contact_groups.h"
 
 namespace palpate {
@@ -18,6 +18,7 @@ struct EstimateCommand {
   std::string file;
   std::string estimator = "jet";
   EstimatorOptions options;
+  FileFlags flags;
 };
 
 /// Root mean square of the samples' noise; 0 where one brings none.
@@ -50,15 +51,16 @@ int run(EstimateCommand& command) {
                     kUsage);
   }
   command.options.kind = *kind;
-  const Result<ContactTable> table = read_contact_csv(command.file);
-  if (!table) {
-    return complain(table.error, kUsage);
+  const Result<ContactFile> file = read_contact_file(command.file, options_of(command.flags));
+  if (!file) {
+    return complain(file.error, kUsage);
   }
+  for (const std::string& note : file.value->notes) complain(command.file + ": " + note, kDone);
   std::printf(
       "probe,patch,first_sample,x_m,y_m,tangent_rad,kappa_per_m,kappa_s_per_m2,normal_sigma_m,"
       "tangent_sigma_rad,kappa_sigma_per_m,kappa_s_sigma_per_m2,window_samples,window_arc_m\n");
   std::size_t refused = 0;
-  for (const ContactGroup& group : contact_groups(command.file, *table.value)) {
+  for (const ContactGroup& group : contact_groups(command.file, file.value->table)) {
     for (const ContactRun& run : group.runs) {
       const std::string& probe = group.probes[run.context.probe];
       std::vector<Vec2> points;
@@ -132,6 +134,7 @@ void add_estimate_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(3, 1000))
       ->capture_default_str()
       ->type_name("M");
+  add_file_flags(*command, estimate->flags);
   command->callback([estimate, &exit_code] { exit_code = run(*estimate); });
 }
 

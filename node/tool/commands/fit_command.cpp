@@ -8,15 +8,17 @@
 #include <string>
 #include <vector>
 
-#include "node/csv/contact_csv.h"
 #include "node/files/printable.h"
 #include "node/tool/commands/command.h"
+#include "node/tool/commands/file_flags.h"
+#include "node/tool/commands/fit_input.h"
 #include "node/tool/contact_groups.h"
+#include "node/tool/drawing/curve_export.h"
 #include "node/tool/drawing/svg_plot.h"
 #include "node/tool/given_class_answer.h"
 #include "node/tool/part_match.h"
 #include "node/tool/text/message_json.h"
-#include "node/tool/text/recognition_text.h"
+#include "node/tool/text/report.h"
 #include "node/wire/convert.h"
 #include "node/wire/recognizer_options.h"
 
@@ -27,9 +29,12 @@ struct FitCommand {
   std::vector<std::string> files;
   std::string format;
   std::string plot;
+  std::string curve_file;
   std::string part;
   std::string given_class;
   std::vector<std::size_t> left_out;
+  FileFlags file;
+  bool patches_are_bounded = false;  ///< --most-patches was said
   RecognizerWords words;
   RecognizerOptions recognizer;
 };
@@ -81,9 +86,16 @@ void fill_origin(const ContactGroup& group, std::chrono::steady_clock::duration 
   answer.set_compute_ns(std::chrono::duration_cast<std::chrono::nanoseconds>(taken).count());
 }
 
-v1::Recognition recognise(const ContactGroup& group, const RecognizerOptions& options) {
+bool noise_is_known(const FitInput& input, const RecognizerOptions& options) {
+  return input.noise_is_known || options.sigma_m > 0.0;
+}
+
+/// `notes` receives what is to be said beside the answer.
+v1::Recognition recognise(const FitInput& input, const RecognizerOptions& options,
+                          std::vector<std::string>& notes) {
+  const ContactGroup& group = input.group;
   Recognizer recognizer(options);
-  add_group(group, recognizer);
+  const AddResult added = add_group(group, recognizer);
   const auto start = std::chrono::steady_clock::now();
   const Recognition recognition = recognizer.recognize();
   const auto taken = std::chrono::steady_clock::now() - start;
@@ -95,6 +107,7 @@ v1::Recognition recognise(const ContactGroup& group, const RecognizerOptions& op
       },
       answer);
   fill_origin(group, taken, answer);
+  notes = notes_for(input, options.memory, added);
   return answer;
 }
 
@@ -118,7 +131,7 @@ std::string plot_path(const std::string& path, std::size_t number) {
 }
 
 /// Places a known part instead of recognising one.
-int place(const FitCommand& fit, const std::vector<ContactGroup>& groups, bool json) {
+int place(const FitCommand& fit, const std::vector<FitInput>& inputs, bool json) {
   const Result<ClosedSpline> part = read_part(fit.part);
   if (!part) {
     return complain(part.error, kUsage);
@@ -128,7 +141,9 @@ int place(const FitCommand& fit, const std::vector<ContactGroup>& groups, bool j
   options.determined_probability = fit.recognizer.recognized_probability;
   options.false_outlier_probability = fit.recognizer.false_outlier_probability;
   const char* separator = "";
-  for (const ContactGroup& group : groups) {
+  for (const FitInput& input : inputs) {
+    const ContactGroup& group = input.group;
+    for (const std::string& note : input.notes) complain(group.file + ": " + note, kDone);
     const v1::PartMatch match = match_part(group, *part.value, options);
     if (json) {
       std::cout << json_line(match);
@@ -142,15 +157,15 @@ int place(const FitCommand& fit, const std::vector<ContactGroup>& groups, bool j
 }
 
 /// What is wrong with the class given and what is to be left out, or nothing.
-std::string wrong_with_given(const FitCommand& fit, const std::vector<ContactGroup>& groups) {
+std::string wrong_with_given(const FitCommand& fit, const std::vector<FitInput>& inputs) {
   if (fit.left_out.empty()) {
     return "";
   }
-  if (groups.size() != 1) {
-    return "--leave-out: for one group and object only, here are " + std::to_string(groups.size());
+  if (inputs.size() != 1) {
+    return "--leave-out: for one group and object only, here are " + std::to_string(inputs.size());
   }
   std::size_t samples = 0;
-  for (const ContactRun& run : groups.front().runs) {
+  for (const ContactRun& run : inputs.front().group.runs) {
     samples += run.samples.size();
   }
   for (const std::size_t number : fit.left_out) {
@@ -172,48 +187,67 @@ int run(FitCommand& fit) {
     return complain("--class: no class is called " + printable(fit.given_class), kUsage);
   }
   // Nothing is answered before every file has been read: a bad one costs no half-done work.
-  std::vector<ContactGroup> groups;
+  std::vector<FitInput> inputs;
   bool bad = false;
   for (const std::string& file : fit.files) {
-    const Result<ContactTable> table = read_contact_csv(file);
-    if (!table) {
-      complain(table.error, kUsage);
+    Result<std::vector<FitInput>> read = read_fit_input(file, options_of(fit.file));
+    if (!read) {
+      complain(read.error, kUsage);
       bad = true;
       continue;
     }
-    for (ContactGroup& group : contact_groups(file, *table.value)) {
-      groups.push_back(std::move(group));
+    for (FitInput& input : *read.value) {
+      for (const std::string& warning : input.warnings) {
+        complain("WARNING: " + input.group.file + ": " + warning, kDone);
+      }
+      inputs.push_back(std::move(input));
     }
   }
   if (bad) {
     return kUsage;
   }
-  if (const std::string why = wrong_with_given(fit, groups); !why.empty()) {
+  if (const std::string why = wrong_with_given(fit, inputs); !why.empty()) {
     return complain(why, kUsage);
   }
   const bool json = fit.format.empty() ? isatty(STDOUT_FILENO) == 0 : fit.format == "json";
   if (!fit.part.empty()) {
-    return place(fit, groups, json);
+    return place(fit, inputs, json);
   }
   std::size_t number = 0;
-  for (const ContactGroup& group : groups) {
+  for (const FitInput& input : inputs) {
+    const ContactGroup& group = input.group;
     v1::Recognition answer;
     std::string text;
+    std::vector<std::string> notes;
     if (fit.given_class.empty()) {
-      answer = recognise(group, fit.recognizer);
-      text = json ? json_line(answer) : report_text(answer);
+      RecognizerOptions options = fit.recognizer;
+      options.memory = memory_for(group, options.memory, fit.patches_are_bounded);
+      answer = recognise(input, options, notes);
+      text = json ? json_line(answer) : report_text(answer, noise_is_known(input, options));
     } else {
       const v1::GivenClassAnswer given = fit_given(group, fit);
+      notes = input.notes;
       text = json ? json_line(given) : given_class_text(given);
       answer = given.recognition();
     }
-    std::cout << (json ? "" : (number > 0 ? "\n" : "") + group.file + ": ") << text;
+    if (json) {
+      std::cout << with_notes(text, notes);
+    } else {
+      std::cout << (number > 0 ? "\n" : "") << group.file << ": " << text;
+      for (const std::string& note : notes) std::cout << "  note         " << note << "\n";
+    }
     ++number;
     if (!fit.plot.empty()) {
       const std::string path = plot_path(fit.plot, number);
       std::ofstream plot(path, std::ios::trunc);
       if (!(plot << svg_plot(group, answer) << std::flush)) {
         return complain(path + ": cannot be written", kFailed);
+      }
+    }
+    if (!fit.curve_file.empty()) {
+      const std::string path = plot_path(fit.curve_file, number);
+      if (const std::string why = export_curve(group, answer, path); !why.empty()) {
+        return complain(why, kFailed);
       }
     }
   }
@@ -228,18 +262,31 @@ void add_fit_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "fit",
       "Recognise the objects of CSV files, one answer a group and object.\n"
-      "Columns: probe, patch, x_m, y_m, and optionally sigma_m, stamp_ns, object, group,\n"
-      "tip_radius_m, material_side; '#' starts a comment.");
-  command->add_option("FILE", fit->files, "CSV files; - is standard input")
+      "Columns by name, in any order: x and y (also x_mm, \"X [um]\", pos_x; z with --plane), and\n"
+      "optionally probe, patch, sigma_m, stamp_ns, object, group, tip_radius_m, material_side; or\n"
+      "two or three columns without names; comma, semicolon, tab or blanks between them; '#'\n"
+      "starts a comment. Probe logs of LinuxCNC and grbl are read too.");
+  command->add_option("FILE", fit->files, "Files of points; - is standard input")
       ->required()
       ->type_name("");
   command
       ->add_option(
           "--format", fit->format,
           "text (default on a terminal) or json (default elsewhere): one Recognition of the "
-          "wire contract a line")
+          "wire contract a line, with \"notes\" about the file where there are any")
       ->check(CLI::IsMember({"text", "json"}))
       ->type_name("FORMAT");
+  command
+      ->add_option(
+          "--export", fit->curve_file,
+          "Write the recognised curve, by the name's ending: .csv (points along it), .json "
+          "(class, parameters, pose and points) or .dxf (for CAD, in millimetres); further "
+          "groups go to FILE-2.csv, ...")
+      ->check([](const std::string& path) {
+        return export_kind(path) ? std::string()
+                                 : "\"" + path + "\" ends in none of .csv, .json, .dxf";
+      })
+      ->type_name("FILE");
   CLI::Option* plot =
       command
           ->add_option(
@@ -254,8 +301,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
               "Fit this class to all samples, whatever they look like and in whatever order: the "
               "least squares of the orthogonal distances, with form (rms, peak to valley) and "
               "residuals. Of the options below --sigma and --determined-fraction count; json is "
-              "one "
-              "GivenClassAnswer (palpate/v1/given_class.proto) a line")
+              "one GivenClassAnswer (palpate/v1/given_class.proto) a line")
           ->type_name("CLASS");
   command
       ->add_option(
@@ -274,8 +320,12 @@ void add_fit_command(CLI::App& app, int& exit_code) {
       ->excludes(plot)
       ->excludes(given)
       ->type_name("FILE");
+  add_file_flags(*command, fit->file);
   add_recognizer_flags(*command, *fit);
-  command->callback([fit, &exit_code] { exit_code = run(*fit); });
+  command->callback([fit, command, &exit_code] {
+    fit->patches_are_bounded = command->count("--most-patches") > 0;
+    exit_code = run(*fit);
+  });
 }
 
 }  // namespace palpate

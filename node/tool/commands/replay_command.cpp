@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "node/client/contact_publisher.h"
-#include "node/csv/contact_csv.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
 #include "node/tool/commands/command.h"
+#include "node/tool/commands/file_flags.h"
 #include "node/tool/contact_groups.h"
 #include "node/tool/recording.h"
 #include "node/wire/topics.h"
@@ -33,6 +33,7 @@ struct ReplayCommand {
   double rate_hz = 250.0;
   std::size_t batch_samples = 10;
   double sigma_m = 0.0;
+  FileFlags flags;
 };
 
 struct TimedMessage {
@@ -122,17 +123,19 @@ v1::MaterialSide to_wire_side(MaterialSide side) {
 /// many sample periods where the file has no stamps.
 Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
   using Batches = Result<std::vector<TimedMessage>>;
-  const Result<ContactTable> table = read_contact_csv(command.file);
-  if (!table) {
-    return Batches::fail(table.error);
+  const Result<ContactFile> file = read_contact_file(command.file, options_of(command.flags));
+  if (!file) {
+    return Batches::fail(file.error);
   }
+  const ContactTable* const table = &file.value->table;
+  for (const std::string& note : file.value->notes) complain(command.file + ": " + note, kDone);
   // Times may count from 0.
-  const bool stamped = std::any_of(table.value->rows.begin(), table.value->rows.end(),
+  const bool stamped = std::any_of(table->rows.begin(), table->rows.end(),
                                    [](const ContactRow& row) { return row.sample.stamp_ns > 0; });
   const double period_ns = 1e9 / command.rate_hz;
   std::vector<TimedMessage> messages;
   std::map<std::string, std::int64_t> taken;  // samples, by probe
-  for (const ContactGroup& group : contact_groups(command.file, *table.value)) {
+  for (const ContactGroup& group : contact_groups(command.file, *table)) {
     for (const ContactRun& run : group.runs) {
       const std::string& probe = group.probes[run.context.probe];
       for (std::size_t i = 0; i < run.samples.size(); ++i) {
@@ -327,6 +330,7 @@ void add_replay_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.0, 1e3))
       ->capture_default_str()
       ->type_name("METRES");
+  add_file_flags(*command, replay->flags);
   command->callback([replay, &exit_code] { exit_code = run(*replay); });
 }
 

@@ -106,7 +106,7 @@ void StreamCheck::take(std::size_t frame_count, std::string_view topic, std::str
     }
     probe.patches.push_back({message.patch, message.object, message.tip_radius_m, {}, 0.0, 0});
   }
-  Patch& patch = probe.patches.back();
+  CheckedPatch& patch = probe.patches.back();
   for (const ContactSample& sample : message.samples) {
     if (patch.positions.size() < kMostKept) {
       patch.positions.push_back(sample.position_m);
@@ -125,11 +125,15 @@ void StreamCheck::take(std::size_t frame_count, std::string_view topic, std::str
   }
 }
 
-void StreamCheck::judge_patches(const std::string& name, const Probe& probe,
-                                std::vector<Finding>* findings) const {
+void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& patches,
+                   CheckedSource source, std::vector<Finding>* findings) {
   const auto add = [&](Severity severity, std::string what, std::string cure) {
-    findings->push_back({severity, name, std::move(what), std::move(cure)});
+    findings->push_back({severity, probe, std::move(what), std::move(cure)});
   };
+  const auto add_spoiling = [&](Severity severity, std::string what, std::string cure) {
+    findings->push_back({severity, probe, std::move(what), std::move(cure), true});
+  };
+  const bool is_file = source == CheckedSource::File;
   double extent = 0.0;
   std::size_t longest = 0;
   std::size_t jumps = 0;
@@ -141,7 +145,7 @@ void StreamCheck::judge_patches(const std::string& name, const Probe& probe,
   double estimated_noise = 0.0;
   double stated_noise = 0.0;
   double coarsest = 0.0;
-  for (const Patch& patch : probe.patches) {
+  for (const CheckedPatch& patch : patches) {
     longest = std::max(longest, patch.positions.size());
     samples += patch.positions.size();
     if (patch.positions.size() < 2) {
@@ -196,25 +200,34 @@ void StreamCheck::judge_patches(const std::string& name, const Probe& probe,
   constexpr double kLargestPart = 2.0;  // that a touch probe strokes [m]
   constexpr double kSmallestPart = 1e-5;
   if (extent > kLargestPart) {
-    add(Severity::Warning, "a patch extends over " + length_text(extent),
-        "coordinates are metres: were these millimetres?");
+    add_spoiling(Severity::Warning, "a patch extends over " + length_text(extent),
+                 is_file ? "were these millimetres? Then say --unit mm"
+                         : "coordinates are metres: were these millimetres?");
   }
   constexpr double kLargestNoise = 1e-3;  // of a touch probe [m]
   if (estimated_noise > kLargestNoise || stated_noise > kLargestNoise) {
-    add(Severity::Error,
+    add_spoiling(
+        Severity::Error,
         "noise of " + length_text(std::max(estimated_noise, stated_noise)) + " is no touch probe's",
-        "coordinates and sigma_m are metres: were these millimetres?");
+        is_file ? "were these millimetres? Then say --unit mm"
+                : "coordinates and sigma_m are metres: were these millimetres?");
   }
   if (extent > 0.0 && extent < kSmallestPart) {
     add(Severity::Warning, "the longest patch extends over " + length_text(extent),
         "coordinates are metres: were these kilometres, or does the probe dwell?");
   }
   if (jumps > 0) {
-    add(Severity::Error, count_text(jumps, "jumps of more than 20 spacings within a patch"),
-        "count patch up by one at each lift-off");
+    add_spoiling(
+        Severity::Error, count_text(jumps, "jumps of more than 20 spacings within a patch"),
+        is_file ? "give each stroke a patch number of its own (column patch, or an empty line "
+                  "between strokes); rows in no order along the part are --touches"
+                : "count patch up by one at each lift-off");
   }
   constexpr std::size_t kShort = 20;
-  if (longest < kShort) {
+  const bool are_touches = is_file && longest <= 1;
+  if (are_touches) {
+    add(Severity::Note, count_text(patches.size(), "single touches"), "");
+  } else if (longest < kShort) {
     add(Severity::Warning, "the longest patch has " + count_text(longest, "samples"),
         "20 samples or more along an arc are needed for its curvature; 100 are good");
   }
@@ -300,12 +313,28 @@ std::vector<Finding> StreamCheck::findings() const {
       add(Severity::Error, "stamps more than an hour old",
           "stamp_ns is Unix time in nanoseconds, not time since the start");
     }
-    judge_patches(name, probe, &findings);
+    judge_patches(name, probe.patches, CheckedSource::Stream, &findings);
   }
-  std::stable_sort(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
+  sort_findings(&findings);
+  return findings;
+}
+
+void sort_findings(std::vector<Finding>* findings) {
+  std::stable_sort(findings->begin(), findings->end(), [](const Finding& a, const Finding& b) {
     return static_cast<int>(a.severity) > static_cast<int>(b.severity);
   });
-  return findings;
+}
+
+const char* name_of(Severity severity) {
+  switch (severity) {
+    case Severity::Error:
+      return "ERROR  ";
+    case Severity::Warning:
+      return "WARNING";
+    case Severity::Note:
+      break;
+  }
+  return "note   ";
 }
 
 }  // namespace palpate

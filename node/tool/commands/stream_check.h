@@ -19,7 +19,33 @@ struct Finding {
   std::string probe;  ///< empty = no probe's in particular
   std::string what;   ///< what was seen, with its numbers
   std::string cure;   ///< what to do about it
+  /// An answer from these samples would be wrong or worth less, whatever the recogniser makes of
+  /// it.
+  bool spoils_answer = false;
 };
+
+/// What is kept of a patch for judgement.
+struct CheckedPatch {
+  std::uint32_t number = 0;
+  std::uint64_t object = 0;
+  double tip_radius_m = 0.0;
+  std::vector<Vec2> positions;
+  double sigma_squares = 0.0;
+  std::size_t with_sigma = 0;
+};
+
+/// Where patches came from: the cures differ.
+enum class CheckedSource { Stream, File };
+
+/// Units, spacing, noise, jumps and repeats of a probe's patches.
+void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& patches,
+                   CheckedSource source, std::vector<Finding>* findings);
+
+/// Worst first, else in their order.
+void sort_findings(std::vector<Finding>* findings);
+
+/// "ERROR  ", "WARNING" or "note   ".
+const char* name_of(Severity severity);
 
 /// Takes messages as they come off the wire, judges them at the end.
 class StreamCheck {
@@ -34,14 +60,6 @@ class StreamCheck {
   std::uint64_t messages() const { return messages_; }
 
  private:
-  struct Patch {
-    std::uint32_t number = 0;
-    std::uint64_t object = 0;
-    double tip_radius_m = 0.0;
-    std::vector<Vec2> positions;
-    double sigma_squares = 0.0;
-    std::size_t with_sigma = 0;
-  };
   struct Probe {
     SequenceTracker sequence;
     std::uint64_t samples = 0;
@@ -52,11 +70,8 @@ class StreamCheck {
     std::uint64_t stamps_in_future = 0;
     std::int64_t last_stamp_ns = 0;
     std::int64_t largest_delay_ns = 0;
-    std::vector<Patch> patches;
+    std::vector<CheckedPatch> patches;
   };
-
-  void judge_patches(const std::string& name, const Probe& probe,
-                     std::vector<Finding>* findings) const;
 
   ContactDecoder decoder_;
   std::uint64_t messages_ = 0;

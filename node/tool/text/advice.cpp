@@ -82,10 +82,10 @@ std::string ambiguous(const v1::Recognition& answer) {
       return "Two shapes fit alike: touch another place, or let the probe tell its material side.";
     case v1::RECOGNITION_DOUBT_RICHER_CLASS: {
       const v1::CurveClass richer = rival_of(answer);
-      return "Touch further round: the arc is too short to exclude " +
+      return "The samples do not exclude " +
              (richer == v1::CURVE_CLASS_UNSPECIFIED ? std::string("a richer class")
                                                     : with_article(richer)) +
-             ".";
+             ": touch further round, or more often where the part is touched all round.";
     }
     case v1::RECOGNITION_DOUBT_UNDETERMINED:
       return undetermined(answer);

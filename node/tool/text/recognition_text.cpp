@@ -8,6 +8,7 @@
 
 #include "node/files/printable.h"
 #include "node/tool/text/quantity.h"
+#include "node/tool/text/report.h"
 
 namespace palpate {
 namespace {
@@ -65,9 +66,14 @@ void add_line(std::string& text, const char* label, const std::string& value) {
   text += start + value + "\n";
 }
 
-void add_hypotheses(const v1::Recognition& answer, std::string& text) {
+void add_hypotheses(const v1::Recognition& answer, bool noise_is_known, std::string& text) {
   constexpr double kWorthShowing = 1e-9;
-  add_row(text, "  %-24s %12s %14s %6s  %s\n", "hypothesis", "probability", "chi2", "dof", "shape");
+  if (noise_is_known) {
+    add_row(text, "  %-24s %12s %14s %6s  %s\n", "hypothesis", "probability", "chi2", "dof",
+            "shape");
+  } else {
+    add_row(text, "  %-24s %12s  %s\n", "hypothesis", "probability", "shape");
+  }
   for (const v1::Hypothesis& hypothesis : answer.hypotheses()) {
     if (hypothesis.probability() < kWorthShowing) {
       continue;
@@ -80,9 +86,14 @@ void add_hypotheses(const v1::Recognition& answer, std::string& text) {
     if (hypothesis.at_limit()) {
       shape = "none: best where it turns into another class";
     }
-    add_row(text, "    %-22s %12.4g %14.6g %6u  %s\n",
-            spoken_name(hypothesis.curve_class()).c_str(), hypothesis.probability(),
-            hypothesis.chi2(), hypothesis.dof(), shape.c_str());
+    const std::string name = spoken_name(hypothesis.curve_class());
+    if (noise_is_known) {
+      add_row(text, "    %-22s %12.4g %14.6g %6u  %s\n", name.c_str(), hypothesis.probability(),
+              hypothesis.chi2(), hypothesis.dof(), shape.c_str());
+    } else {
+      add_row(text, "    %-22s %12.4g  %s\n", name.c_str(), hypothesis.probability(),
+              shape.c_str());
+    }
   }
 }
 
@@ -172,7 +183,7 @@ std::string_view sentence_of(v1::RecognitionDoubt doubt) {
     case v1::RECOGNITION_DOUBT_TWO_SHAPES:
       return "two shapes fit alike (a spline and its twin, or tips on either side)";
     case v1::RECOGNITION_DOUBT_RICHER_CLASS:
-      return "the arc is too short to exclude a class of which this one is a limit";
+      return "the samples do not exclude a class of which this one is a limit";
     case v1::RECOGNITION_DOUBT_UNDETERMINED:
       return "the shape is not determined";
     default:
@@ -213,7 +224,9 @@ std::string summary_text(const v1::Recognition& answer) {
   return text;
 }
 
-std::string report_text(const v1::Recognition& answer) {
+std::string report_text(const v1::Recognition& answer) { return report_text(answer, true); }
+
+std::string report_text(const v1::Recognition& answer, bool noise_is_known) {
   std::string text = "group " + printable(answer.group()) + ", object " +
                      std::to_string(answer.object()) + ": " + spoken_name(answer.curve_class()) +
                      "\n";
@@ -230,6 +243,7 @@ std::string report_text(const v1::Recognition& answer) {
   const LengthUnit unit = length_unit_for(answer.sigma_m());
   std::string noise =
       "sigma " + number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name);
+  if (!noise_is_known) noise += ", estimated from the samples";
   if (answer.noise_correlation_m() > 0.0) {
     noise += ", correlated over " + number(answer.noise_correlation_m() * 1e3) + " mm of arc";
   }
@@ -240,7 +254,7 @@ std::string report_text(const v1::Recognition& answer) {
   }
   add_line(text, "samples", samples);
   add_line(text, "time", number(1e-6 * static_cast<double>(answer.compute_ns())) + " ms");
-  add_hypotheses(answer, text);
+  add_hypotheses(answer, noise_is_known, text);
   add_contacts(answer, text);
   add_decisions(answer, text);
   return text;

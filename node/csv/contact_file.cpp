@@ -1,0 +1,148 @@
+#include "node/csv/contact_file.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "node/csv/contact_csv.h"
+#include "node/csv/csv_columns.h"
+#include "node/csv/point_plane.h"
+#include "node/csv/point_reader.h"
+#include "node/csv/text_lines.h"
+#include "node/files/bounded_file.h"
+
+namespace palpate {
+namespace {
+
+using Read = Result<ContactFile>;
+
+/// Whether the first line that holds anything is a header as contact_csv.h has it.
+bool is_own_format(std::string_view text) {
+  csv::TextLines lines(text, "");
+  while (lines.next()) {
+    const std::string_view line = csv::trim(lines.line().substr(0, lines.line().find('#')));
+    if (line.empty()) continue;
+    std::size_t required = 0;
+    for (std::size_t from = 0; from <= line.size();) {
+      const std::size_t end = std::min(line.find(',', from), line.size());
+      const auto* const found = std::find(csv::kColumnNames.begin(), csv::kColumnNames.end(),
+                                          csv::trim(line.substr(from, end - from)));
+      if (found == csv::kColumnNames.end()) return false;
+      required +=
+          found - csv::kColumnNames.begin() < static_cast<std::ptrdiff_t>(csv::kRequiredColumns)
+              ? 1
+              : 0;
+      from = end + 1;
+    }
+    return required >= csv::kRequiredColumns;
+  }
+  return false;
+}
+
+Result<csv::PointTable> read_own(std::string_view text, std::string_view name,
+                                 const ContactFileOptions& options) {
+  Result<ContactTable> table = parse_contact_csv(text, name);
+  if (!table) return Result<csv::PointTable>::fail(table.error);
+  csv::PointTable result;
+  result.table = std::move(*table.value);
+  result.has_patches = true;
+  for (ContactRow& row : result.table.rows) {
+    if (options.unit_m) {
+      row.sample.position_m *= *options.unit_m;
+      row.sample.sigma_m *= *options.unit_m;
+      row.context.tip_radius_m *= *options.unit_m;
+    }
+    if (row.context.tip_radius_m == 0.0) row.context.tip_radius_m = options.tip_radius_m;
+  }
+  if (options.unit_m && *options.unit_m != 1.0) {
+    result.notes.emplace_back("the unit is taken from --unit, not from the columns' names");
+  }
+  return Result<csv::PointTable>::ok(std::move(result));
+}
+
+/// One patch is one touch of one tip; what is wrong, or nothing.
+std::string disagreement_in_patches(const ContactTable& table) {
+  std::map<std::tuple<std::size_t, std::uint64_t, std::size_t, std::uint32_t>, PatchContext> seen;
+  for (const ContactRow& row : table.rows) {
+    const PatchContext& first =
+        seen.try_emplace({row.group, row.object, row.probe, row.context.patch}, row.context)
+            .first->second;
+    const char* what = row.context.tip_radius_m != first.tip_radius_m     ? "tip_radius"
+                       : row.context.material_side != first.material_side ? "material_side"
+                                                                          : nullptr;
+    if (what != nullptr) {
+      return std::string(what) + " changes within patch " + std::to_string(row.context.patch) +
+             " of probe " + table.names[row.probe];
+    }
+  }
+  return {};
+}
+
+/// Numbers the rows of each probe and object as patches of their own.
+void part_into_touches(ContactTable& table) {
+  std::map<std::tuple<std::size_t, std::uint64_t, std::size_t>, std::uint32_t> counts;
+  for (ContactRow& row : table.rows) {
+    row.context.patch = counts[{row.group, row.object, row.probe}]++;
+  }
+}
+
+}  // namespace
+
+std::optional<PointPlane> point_plane_from_name(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, PointPlane>, 5> kPlanes = {
+      {{"auto", PointPlane::Varying},
+       {"xy", PointPlane::Xy},
+       {"xz", PointPlane::Xz},
+       {"yz", PointPlane::Yz},
+       {"fit", PointPlane::Fitted}}};
+  for (const auto& [known, plane] : kPlanes) {
+    if (known == name) return plane;
+  }
+  return std::nullopt;
+}
+
+Read parse_contact_file(std::string_view text, std::string_view name,
+                        const ContactFileOptions& options) {
+  Result<csv::PointTable> read = is_own_format(text)      ? read_own(text, name, options)
+                                 : csv::is_grbl_log(text) ? csv::read_grbl_log(text, name, options)
+                                                          : csv::read_points(text, name, options);
+  if (!read) return Read::fail(read.error);
+  csv::PointTable& points = *read.value;
+  ContactFile file{std::move(points.table), std::move(points.notes)};
+  if (!points.points.empty()) {
+    const csv::PlanePoints plane = csv::in_plane(points.points, options.plane);
+    if (!plane.error.empty()) return Read::fail(std::string(name) + ": " + plane.error);
+    for (std::size_t i = 0; i < file.table.rows.size(); ++i) {
+      file.table.rows[i].sample.position_m = plane.points[i];
+    }
+    file.notes.push_back(plane.note);
+  } else if (options.plane != PointPlane::Varying) {
+    return Read::fail(std::string(name) + ": has two coordinates: --plane chooses among three");
+  }
+  if (options.touches.value_or(points.is_probe_log)) {
+    if (!options.touches) {
+      file.notes.emplace_back("every row is a touch of its own (else --strokes)");
+    } else if (points.has_patches) {
+      file.notes.emplace_back("the file's patches are not used: every row is a touch of its own");
+    }
+    part_into_touches(file.table);
+  }
+  if (const std::string why = disagreement_in_patches(file.table); !why.empty()) {
+    return Read::fail(std::string(name) + ": " + why);
+  }
+  return Read::ok(std::move(file));
+}
+
+Read read_contact_file(const std::string& path, const ContactFileOptions& options) {
+  const bool is_standard_input = path == "-";
+  const std::string name = is_standard_input ? "standard input" : path;
+  const Result<std::string> text = is_standard_input
+                                       ? read_bounded(STDIN_FILENO, name, kMostContactFileBytes)
+                                       : read_bounded(path, kMostContactFileBytes);
+  return text ? parse_contact_file(*text.value, name, options) : Read::fail(text.error);
+}
+
+}  // namespace palpate

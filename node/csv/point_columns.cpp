@@ -1,0 +1,178 @@
+#include "node/csv/point_columns.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "node/csv/contact_file.h"
+#include "node/files/printable.h"
+
+namespace palpate {
+
+std::optional<double> length_unit_m(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, double>, 12> kUnits = {{{"m", 1.0},
+                                                                           {"mm", 1e-3},
+                                                                           {"cm", 1e-2},
+                                                                           {"um", 1e-6},
+                                                                           {"\xC2\xB5m", 1e-6},
+                                                                           {"\xCE\xBCm", 1e-6},
+                                                                           {"micron", 1e-6},
+                                                                           {"microns", 1e-6},
+                                                                           {"nm", 1e-9},
+                                                                           {"in", 0.0254},
+                                                                           {"inch", 0.0254},
+                                                                           {"inches", 0.0254}}};
+  for (const auto& [unit, metres] : kUnits) {
+    if (unit == name) return metres;
+  }
+  return std::nullopt;
+}
+
+namespace csv {
+namespace {
+
+struct Alias {
+  std::string_view name;
+  PointColumn column;
+};
+
+constexpr std::array kAliases = {
+    Alias{"x", PointColumn::X},
+    Alias{"pos_x", PointColumn::X},
+    Alias{"position_x", PointColumn::X},
+    Alias{"x_pos", PointColumn::X},
+    Alias{"x_position", PointColumn::X},
+    Alias{"x_coord", PointColumn::X},
+    Alias{"x_coordinate", PointColumn::X},
+    Alias{"point_x", PointColumn::X},
+    Alias{"contact_x", PointColumn::X},
+    Alias{"tip_x", PointColumn::X},
+    Alias{"px", PointColumn::X},
+    Alias{"sigma", PointColumn::Sigma},
+    Alias{"std", PointColumn::Sigma},
+    Alias{"stddev", PointColumn::Sigma},
+    Alias{"noise", PointColumn::Sigma},
+    Alias{"tip_radius", PointColumn::TipRadius},
+    Alias{"ball_radius", PointColumn::TipRadius},
+    Alias{"stylus_radius", PointColumn::TipRadius},
+    Alias{"stamp", PointColumn::Stamp},
+    Alias{"timestamp", PointColumn::Stamp},
+    Alias{"time", PointColumn::Stamp},
+    Alias{"t", PointColumn::Stamp},
+    Alias{"probe", PointColumn::Probe},
+    Alias{"finger", PointColumn::Probe},
+    Alias{"sensor", PointColumn::Probe},
+    Alias{"patch", PointColumn::Patch},
+    Alias{"stroke", PointColumn::Patch},
+    Alias{"touch", PointColumn::Patch},
+    Alias{"scan", PointColumn::Patch},
+    Alias{"segment", PointColumn::Patch},
+    Alias{"object", PointColumn::Object},
+    Alias{"part", PointColumn::Object},
+    Alias{"group", PointColumn::Group},
+    Alias{"material_side", PointColumn::Side},
+    Alias{"side", PointColumn::Side},
+};
+
+std::optional<PointColumn> alias(std::string name) {
+  // y and z go by x's names.
+  PointColumn coordinate = PointColumn::X;
+  for (char& c : name) {
+    const bool alone = (&c == name.data() || *(&c - 1) == '_' || *(&c - 1) == 'p') &&
+                       (&c == name.data() + name.size() - 1 || *(&c + 1) == '_');
+    if (alone && (c == 'y' || c == 'z')) {
+      coordinate = c == 'y' ? PointColumn::Y : PointColumn::Z;
+      c = 'x';
+      break;
+    }
+  }
+  for (const Alias& known : kAliases) {
+    if (known.name == name) {
+      return known.column == PointColumn::X ? coordinate
+             : coordinate == PointColumn::X ? std::optional(known.column)
+                                            : std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<double> time_unit_ns(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, double>, 4> kUnits = {
+      {{"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}}};
+  for (const auto& [unit, nanoseconds] : kUnits) {
+    if (unit == name) return nanoseconds;
+  }
+  return std::nullopt;
+}
+
+/// Lower case, words joined by single underscores, brackets and quotes gone.
+std::string plain(std::string_view name) {
+  std::string result;
+  for (const char c : name) {
+    const bool parts = c == ' ' || c == '-' || c == '_' || c == '[' || c == ']' || c == '(' ||
+                       c == ')' || c == '/' || c == '"' || c == '\'' || c == '.' || c == ':';
+    if (!parts) {
+      result += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    } else if (!result.empty() && result.back() != '_') {
+      result += '_';
+    }
+  }
+  while (!result.empty() && result.back() == '_') result.pop_back();
+  return result;
+}
+
+std::optional<double> unit_for(PointColumn column, std::string_view name) {
+  if (column == PointColumn::Stamp) return time_unit_ns(name);
+  return is_length(column) ? length_unit_m(name) : std::nullopt;
+}
+
+}  // namespace
+
+bool is_length(PointColumn column) {
+  return column == PointColumn::X || column == PointColumn::Y || column == PointColumn::Z ||
+         column == PointColumn::Sigma || column == PointColumn::TipRadius;
+}
+
+std::optional<NamedColumn> column_of(std::string_view name) {
+  const std::string words = plain(name);
+  if (const auto column = alias(words)) {
+    // A time without unit may be anything.
+    if (*column == PointColumn::Stamp) return std::nullopt;
+    return NamedColumn{*column, std::nullopt};
+  }
+  const std::size_t last = words.rfind('_');
+  if (last == std::string::npos) return std::nullopt;
+  const auto column = alias(words.substr(0, last));
+  const auto unit =
+      column ? unit_for(*column, std::string_view(words).substr(last + 1)) : std::nullopt;
+  return unit ? std::optional(NamedColumn{*column, unit}) : std::nullopt;
+}
+
+std::string known_columns() {
+  return "x, y, z, sigma, tip_radius (each with or without a unit: x_mm), stamp_ns (or time_s), "
+         "probe, patch, object, group, material_side";
+}
+
+bool PointColumns::is_enough() const {
+  return (place(PointColumn::X) ? 1 : 0) + (place(PointColumn::Y) ? 1 : 0) +
+             (place(PointColumn::Z) ? 1 : 0) >=
+         2;
+}
+
+PointColumns columns_of(const std::vector<std::string_view>& names) {
+  PointColumns columns;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto named = column_of(names[i]);
+    if (!named) {
+      if (!names[i].empty()) columns.ignored.push_back(printable(names[i], 40));
+      continue;
+    }
+    auto& place = columns.places[static_cast<std::size_t>(named->column)];
+    if (place && columns.twice.empty()) columns.twice = printable(names[i], 40);
+    place = i;
+    columns.units[static_cast<std::size_t>(named->column)] = named->unit;
+  }
+  return columns;
+}
+
+}  // namespace csv
+}  // namespace palpate

@@ -1,0 +1,47 @@
+// Columns as people call them.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpate::csv {
+
+/// What a column of a file of points can hold.
+enum class PointColumn { X, Y, Z, Sigma, TipRadius, Stamp, Probe, Patch, Object, Group, Side };
+inline constexpr std::size_t kPointColumnCount = 11;
+
+bool is_length(PointColumn column);
+
+struct NamedColumn {
+  PointColumn column = PointColumn::X;
+  /// SI units in one of the file's; nullopt where the name tells none.
+  std::optional<double> unit;
+};
+
+/// The column of that name: case, quotes, blanks and hyphens do not matter, a unit may follow after
+/// an underscore or in brackets ("x", "X [mm]", "pos_y_um", "time_s"). nullopt for others.
+std::optional<NamedColumn> column_of(std::string_view name);
+
+/// For messages: the names in their plainest form.
+std::string known_columns();
+
+/// Which column stands where in a line.
+struct PointColumns {
+  std::array<std::optional<std::size_t>, kPointColumnCount> places;
+  std::array<std::optional<double>, kPointColumnCount> units;
+  std::vector<std::string> ignored;  ///< columns that are none of these
+  std::string twice;                 ///< name of a column that comes a second time; else empty
+
+  std::optional<std::size_t> place(PointColumn column) const {
+    return places[static_cast<std::size_t>(column)];
+  }
+  /// Two coordinates at least.
+  bool is_enough() const;
+};
+
+PointColumns columns_of(const std::vector<std::string_view>& names);
+
+}  // namespace palpate::csv

@@ -1,0 +1,413 @@
+#include "node/csv/point_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "node/csv/point_columns.h"
+#include "node/csv/text_lines.h"
+#include "node/wire/topics.h"
+
+namespace palpate::csv {
+namespace {
+
+// The bounds of node/intake/ingest.h: what the node would refuse is not used offline either.
+constexpr double kMaxCoordinateM = 1e7;
+constexpr double kMinSigmaM = 1e-15;
+constexpr double kMaxLengthM = 1e3;  // of sigma and of tip radii
+
+/// LinuxCNC writes the position of nine axes: X Y Z A B C U V W.
+constexpr std::size_t kLinuxCncAxes = 9;
+
+class PointReader {
+ public:
+  PointReader(std::string_view text, std::string_view name, const ContactFileOptions& options)
+      : lines_(text, name), options_(options) {}
+
+  Result<PointTable> read() {
+    while (error_.empty() && lines_.next()) {
+      std::string_view line = lines_.line();
+      const std::size_t mark = line.find_first_of("#%");
+      const std::string_view comment =
+          mark == std::string_view::npos ? std::string_view() : line.substr(mark + 1);
+      line = line.substr(0, mark);
+      if (trim(line).empty()) {
+        if (!comment.empty() && !is_known_) comment_ = comment;
+        if (mark == std::string_view::npos) gap_ = true;
+        continue;
+      }
+      if (!is_known_) {
+        is_known_ = true;
+        gap_ = false;
+        if (know_columns(line)) continue;
+        if (!error_.empty()) break;
+      }
+      read_row(line);
+    }
+    if (error_.empty() && result_.table.rows.empty()) {
+      fail(lines_.line().data(),
+           is_known_ ? "no samples after the header line" : "no samples: the file is empty");
+    }
+    if (!error_.empty()) return Result<PointTable>::fail(error_);
+    tell();
+    return Result<PointTable>::ok(std::move(result_));
+  }
+
+ private:
+  bool fail(const char* at, const std::string& why) {
+    if (error_.empty()) error_ = lines_.error(at, why);
+    return false;
+  }
+
+  void split(std::string_view line) {
+    fields_.clear();
+    if (separator_ == ' ') {
+      for (std::size_t from = 0;;) {
+        while (from < line.size() && is_blank(line[from])) ++from;
+        if (from == line.size()) return;
+        std::size_t end = from;
+        while (end < line.size() && !is_blank(line[end])) ++end;
+        fields_.push_back(line.substr(from, end - from));
+        from = end;
+      }
+    }
+    for (std::size_t from = 0;;) {
+      const std::size_t end = std::min(line.find(separator_, from), line.size());
+      std::string_view field = trim(line.substr(from, end - from));
+      if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
+        field = field.substr(1, field.size() - 2);
+      }
+      fields_.push_back(field);
+      if (end == line.size()) return;
+      from = end + 1;
+    }
+  }
+
+  /// Of the first line that holds anything; true where that line is a header.
+  bool know_columns(std::string_view line) {
+    separator_ = line.find('\t') != std::string_view::npos  ? '\t'
+                 : line.find(';') != std::string_view::npos ? ';'
+                 : line.find(',') != std::string_view::npos ? ','
+                                                            : ' ';
+    split(line);
+    const bool decimal_comma = separator_ != ',';
+    const bool is_data = std::all_of(fields_.begin(), fields_.end(), [&](std::string_view field) {
+      return field.empty() || number_of(field, decimal_comma);
+    });
+    if (!is_data) {
+      columns_ = columns_of(fields_);
+      width_ = fields_.size();
+      if (!columns_.twice.empty()) {
+        return fail(line.data(), "column " + columns_.twice + " comes twice");
+      }
+      if (!columns_.is_enough()) {
+        return fail(line.data(), "no columns of two coordinates: " + shown(trim(line)) +
+                                     "; known are " + known_columns());
+      }
+      return true;
+    }
+    width_ = fields_.size();
+    if (!know_by_comment()) know_by_width(line);
+    return false;
+  }
+
+  /// numpy.savetxt writes its header as a comment.
+  bool know_by_comment() {
+    const char data_separator = separator_;
+    for (const char tried : {data_separator, ',', ' '}) {
+      separator_ = tried;
+      split(comment_);
+      const PointColumns named = columns_of(fields_);
+      if (fields_.size() == width_ && named.is_enough() && named.twice.empty()) {
+        columns_ = named;
+        result_.notes.push_back("the last comment before the data names the columns: " +
+                                shown(trim(comment_)));
+        separator_ = data_separator;
+        return true;
+      }
+    }
+    separator_ = data_separator;
+    return false;
+  }
+
+  void know_by_width(std::string_view line) {
+    const auto stand = [&](PointColumn column, std::size_t place) {
+      columns_.places[static_cast<std::size_t>(column)] = place;
+    };
+    if (width_ != 2 && width_ != 3 && width_ != kLinuxCncAxes) {
+      fail(line.data(), std::to_string(width_) +
+                            " columns without a line of names: 2 are x and y, 3 are x, y and z, 9 "
+                            "are a LinuxCNC probe log; name the others in a first line (" +
+                            known_columns() + ")");
+      return;
+    }
+    stand(PointColumn::X, 0);
+    stand(PointColumn::Y, 1);
+    if (width_ > 2) stand(PointColumn::Z, 2);
+    result_.is_probe_log = width_ == kLinuxCncAxes;
+    result_.notes.emplace_back(
+        width_ == 2   ? "no line of names: the two columns are x and y"
+        : width_ == 3 ? "no line of names: the three columns are x, y and z"
+                      : "nine columns without names: a LinuxCNC probe log, x, y and z first; its "
+                        "other axes are ignored");
+  }
+
+  std::string_view field(PointColumn column) const {
+    const auto place = columns_.place(column);
+    return place ? fields_[*place] : std::string_view();
+  }
+
+  /// What one of the file's lengths is in metres.
+  double unit_of(PointColumn column) const {
+    const auto named = columns_.units[static_cast<std::size_t>(column)];
+    if (options_.unit_m) return *options_.unit_m;
+    if (named) return *named;
+    // One coordinate's unit stands for what names none.
+    for (const PointColumn other : {PointColumn::X, PointColumn::Y, PointColumn::Z}) {
+      if (const auto unit = columns_.units[static_cast<std::size_t>(other)]) return *unit;
+    }
+    constexpr double kMillimetre = 1e-3;
+    return result_.is_probe_log ? kMillimetre : 1.0;
+  }
+
+  bool length(PointColumn column, const char* what, double lowest, double highest, double& value) {
+    const std::string_view text = field(column);
+    const auto parsed = number_of(text, separator_ != ',');
+    if (!parsed) return fail(text.data(), std::string(what) + " " + shown(text) + ": not a number");
+    if (!std::isfinite(*parsed)) {
+      return fail(text.data(), std::string(what) + " " + shown(text) + ": not a finite number");
+    }
+    uses_decimal_comma_ |= separator_ != ',' && text.find(',') != std::string_view::npos;
+    value = *parsed * unit_of(column);
+    if (value < lowest || value > highest) {
+      char bounds[80];
+      std::snprintf(bounds, sizeof bounds, ": must lie in %g to %g m", lowest, highest);
+      return fail(text.data(), std::string(what) + " " + shown(text) + bounds);
+    }
+    return true;
+  }
+
+  template <typename Integer>
+  bool whole(PointColumn column, const char* what, Integer& value) {
+    const std::string_view text = field(column);
+    if (text.empty()) return true;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (status == std::errc() && end == text.data() + text.size()) return true;
+    return fail(text.data(), std::string(what) + " " + shown(text) + ": not a whole number >= 0");
+  }
+
+  bool name(PointColumn column, const char* what, std::size_t& index) {
+    const std::string_view text = field(column);
+    if (text.empty()) return true;
+    if (!is_valid_name(text)) {
+      return fail(text.data(), std::string(what) + " " + shown(text) +
+                                   ": a name is 1 to 64 of A-Z a-z 0-9 _ . -");
+    }
+    index = intern(text);
+    return true;
+  }
+
+  std::size_t intern(std::string_view name) {
+    const auto [found, is_new] =
+        indices_.try_emplace(std::string(name), result_.table.names.size());
+    if (is_new) result_.table.names.emplace_back(name);
+    return found->second;
+  }
+
+  bool stamp(ContactRow& row) {
+    const std::string_view text = field(PointColumn::Stamp);
+    if (text.empty()) return true;
+    const double unit = columns_.units[static_cast<std::size_t>(PointColumn::Stamp)].value_or(1.0);
+    if (unit == 1.0) return whole(PointColumn::Stamp, "stamp_ns", row.sample.stamp_ns);
+    const auto parsed = number_of(text, separator_ != ',');
+    constexpr double kMost = 9.2e18;  // that an int64 holds [ns]
+    if (!parsed || !(std::abs(*parsed * unit) < kMost)) {
+      return fail(text.data(), "time " + shown(text) + ": not a number");
+    }
+    row.sample.stamp_ns = std::llround(*parsed * unit);
+    return true;
+  }
+
+  bool side(ContactRow& row) {
+    const std::string_view text = field(PointColumn::Side);
+    if (text.empty() || text == "unspecified") return true;
+    if (text != "left" && text != "right") {
+      return fail(text.data(),
+                  "material_side " + shown(text) + ": must be left, right or unspecified");
+    }
+    row.context.material_side = text == "left" ? MaterialSide::Left : MaterialSide::Right;
+    return true;
+  }
+
+  void read_row(std::string_view line) {
+    split(line);
+    // Spreadsheets end lines in a separator.
+    if (fields_.size() == width_ + 1 && fields_.back().empty()) fields_.pop_back();
+    if (fields_.size() != width_) {
+      fail(fields_.size() > width_ ? fields_[width_].data() : line.data() + line.size(),
+           std::to_string(fields_.size()) + " fields instead of " + std::to_string(width_));
+      return;
+    }
+    ContactRow row;
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    int axes = 0;
+    constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
+    for (std::size_t axis = 0; axis < kNames.size(); ++axis) {
+      const auto column = static_cast<PointColumn>(axis);
+      if (!columns_.place(column)) continue;
+      if (!length(column, kNames[axis], -kMaxCoordinateM, kMaxCoordinateM,
+                  point[static_cast<Eigen::Index>(axis)])) {
+        return;
+      }
+      if (axes < 2) row.sample.position_m[axes] = point[static_cast<Eigen::Index>(axis)];
+      ++axes;
+    }
+    if (!field(PointColumn::Sigma).empty() &&
+        (!length(PointColumn::Sigma, "sigma", 0.0, kMaxLengthM, row.sample.sigma_m) ||
+         (row.sample.sigma_m > 0.0 && row.sample.sigma_m < kMinSigmaM &&
+          !fail(field(PointColumn::Sigma).data(), "sigma " + shown(field(PointColumn::Sigma)) +
+                                                      ": must be 0 (not known) or >= 1e-15 m")))) {
+      return;
+    }
+    row.context.tip_radius_m = options_.tip_radius_m;
+    if (!field(PointColumn::TipRadius).empty() &&
+        !length(PointColumn::TipRadius, "tip_radius", 0.0, kMaxLengthM, row.context.tip_radius_m)) {
+      return;
+    }
+    const bool has_patches = columns_.place(PointColumn::Patch).has_value();
+    // As gnuplot has it, an empty line begins another stroke.
+    if (gap_ && !has_patches && !result_.table.rows.empty()) ++block_;
+    gap_ = false;
+    row.context.patch = has_patches ? 0 : block_;
+    if (field(PointColumn::Probe).empty()) row.probe = intern("probe");
+    if (!name(PointColumn::Probe, "probe", row.probe)) return;
+    row.group = row.probe;
+    if (!name(PointColumn::Group, "group", row.group) ||
+        !whole(PointColumn::Patch, "patch", row.context.patch) ||
+        !whole(PointColumn::Object, "object", row.object) || !stamp(row) || !side(row)) {
+      return;
+    }
+    result_.table.rows.push_back(row);
+    if (axes == 3) result_.points.push_back(point);
+  }
+
+  void tell() {
+    result_.has_patches = columns_.place(PointColumn::Patch).has_value() || block_ > 0;
+    std::vector<std::string>& notes = result_.notes;
+    if (!columns_.ignored.empty()) {
+      std::string names;
+      for (const std::string& name : columns_.ignored) {
+        names += (names.empty() ? "" : ", ") + name;
+      }
+      notes.push_back("columns ignored: " + names);
+    }
+    if (uses_decimal_comma_) notes.emplace_back("commas are read as decimal points");
+    if (block_ > 0) {
+      notes.push_back("empty lines part the rows into " + std::to_string(block_ + 1) + " patches");
+    }
+    bool names_unit = false;
+    for (const PointColumn axis : {PointColumn::X, PointColumn::Y, PointColumn::Z}) {
+      const auto named = columns_.units[static_cast<std::size_t>(axis)];
+      names_unit |= named.has_value();
+      if (options_.unit_m && named && *named != *options_.unit_m) {
+        notes.emplace_back("the unit is taken from --unit, not from the columns' names");
+        return;
+      }
+    }
+    if (!options_.unit_m && !names_unit) {
+      notes.emplace_back(result_.is_probe_log
+                             ? "the log names no unit: taken as millimetres (else --unit in)"
+                             : "no unit is named: taken as metres (else --unit mm, um or in)");
+    }
+  }
+
+  TextLines lines_;
+  ContactFileOptions options_;
+  PointTable result_;
+  std::string error_;
+  std::string_view comment_;  ///< the last one before the data
+  bool is_known_ = false;     ///< the columns
+  bool gap_ = false;          ///< an empty line came before
+  std::uint32_t block_ = 0;   ///< of rows between empty lines
+  char separator_ = ',';      ///< ' ' = any blanks
+  bool uses_decimal_comma_ = false;
+  std::size_t width_ = 0;
+  PointColumns columns_;
+  std::vector<std::string_view> fields_;
+  std::map<std::string, std::size_t> indices_;
+};
+
+constexpr std::string_view kGrblProbe = "[PRB:";
+
+}  // namespace
+
+Result<PointTable> read_points(std::string_view text, std::string_view name,
+                               const ContactFileOptions& options) {
+  return PointReader(text, name, options).read();
+}
+
+bool is_grbl_log(std::string_view text) { return text.find(kGrblProbe) != std::string_view::npos; }
+
+Result<PointTable> read_grbl_log(std::string_view text, std::string_view name,
+                                 const ContactFileOptions& options) {
+  using Read = Result<PointTable>;
+  PointTable result;
+  result.is_probe_log = true;
+  result.table.names = {"probe"};
+  constexpr double kMillimetre = 1e-3;
+  const double unit = options.unit_m.value_or(kMillimetre);
+  std::size_t other_lines = 0;
+  std::size_t missed = 0;
+  TextLines lines(text, name);
+  while (lines.next()) {
+    const std::size_t found = lines.line().find(kGrblProbe);
+    if (found == std::string_view::npos) {
+      other_lines += trim(lines.line()).empty() ? 0 : 1;
+      continue;
+    }
+    std::string_view rest = lines.line().substr(found + kGrblProbe.size());
+    Eigen::Vector3d point;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const std::size_t end = rest.find_first_of(",:]");
+      const auto value = number_of(rest.substr(0, end), false);
+      if (end == std::string_view::npos || !value || !std::isfinite(*value) ||
+          std::abs(*value) * unit > kMaxCoordinateM) {
+        return Read::fail(lines.error(
+            rest.data(), "[PRB:x,y,z:1] expected, found " + shown(lines.line().substr(found))));
+      }
+      point[axis] = *value * unit;
+      if (axis < 2 && rest[end] != ',') {
+        return Read::fail(lines.error(rest.data() + end, "three coordinates expected"));
+      }
+      rest.remove_prefix(end + 1);
+    }
+    if (!lines.line().ends_with(":1]") &&
+        lines.line().find(":1]", found) == std::string_view::npos) {
+      ++missed;
+      continue;
+    }
+    ContactRow row;
+    row.context.tip_radius_m = options.tip_radius_m;
+    row.sample.position_m = point.head<2>();
+    result.table.rows.push_back(row);
+    result.points.push_back(point);
+  }
+  if (result.table.rows.empty()) {
+    return Read::fail(lines.error(nullptr, "no probing cycle of this grbl log touched anything"));
+  }
+  result.notes.push_back("a grbl log: its [PRB:x,y,z:1] lines are the touches" +
+                         (other_lines > 0
+                              ? ", " + std::to_string(other_lines) + " other lines are ignored"
+                              : std::string()));
+  if (missed > 0) {
+    result.notes.push_back(std::to_string(missed) +
+                           " probing cycles that touched nothing ([PRB:...:0]) are left out");
+  }
+  if (!options.unit_m) {
+    result.notes.emplace_back(
+        "grbl reports millimetres unless $13=1: taken as millimetres (else --unit in)");
+  }
+  return Read::ok(std::move(result));
+}
+
+}  // namespace palpate::csv

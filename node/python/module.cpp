@@ -1,0 +1,232 @@
+// palpate._core: the recogniser for numpy arrays. What a user sees is in palpate/__init__.py.
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/curves/curve.h"
+#include "core/recognition/recognizer.h"
+
+namespace py = pybind11;
+
+namespace {
+
+using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+palpate::CurveClass class_called(const std::string& name) {
+  const auto found = palpate::curve_class_from_name(name);
+  if (!found) throw std::invalid_argument("\"" + name + "\" is no curve class");
+  return *found;
+}
+
+palpate::MaterialSide side_called(const std::string& name) {
+  if (name == "unspecified") return palpate::MaterialSide::Unspecified;
+  if (name == "left") return palpate::MaterialSide::Left;
+  if (name == "right") return palpate::MaterialSide::Right;
+  throw std::invalid_argument("material_side: \"" + name +
+                              "\" is none of left, right, unspecified");
+}
+
+const char* name_of(palpate::RecognitionStatus status) {
+  switch (status) {
+    case palpate::RecognitionStatus::Collecting:
+      return "collecting";
+    case palpate::RecognitionStatus::Ambiguous:
+      return "ambiguous";
+    case palpate::RecognitionStatus::Recognized:
+      break;
+  }
+  return "recognized";
+}
+
+py::tuple pose_of(const palpate::Pose2& pose) { return py::make_tuple(pose.x, pose.y, pose.theta); }
+
+py::dict hypothesis_of(const palpate::Hypothesis& hypothesis) {
+  py::dict result;
+  result["curve_class"] = std::string(palpate::name_of(hypothesis.shape.curve_class));
+  result["probability"] = hypothesis.probability;
+  result["params"] = hypothesis.shape.values;
+  result["pose"] = pose_of(hypothesis.world_T_curve);
+  result["chi2"] = hypothesis.chi2;
+  result["dof"] = hypothesis.dof;
+  result["at_limit"] = hypothesis.at_limit;
+  return result;
+}
+
+py::dict contact_of(const palpate::LocalizedContact& contact) {
+  const palpate::LocalEstimate& estimate = contact.estimate;
+  py::dict result;
+  result["probe"] = contact.probe;
+  result["patch"] = contact.patch;
+  result["t"] = contact.t;
+  result["position_m"] = Eigen::Vector2d(estimate.position);
+  result["tangent_rad"] = estimate.tangent_angle;
+  result["kappa_per_m"] = estimate.kappa;
+  result["kappa_s_per_m2"] = estimate.kappa_s;
+  result["covariance"] = Eigen::MatrixXd(estimate.covariance);
+  return result;
+}
+
+py::dict recognition_of(const palpate::Recognition& answer) {
+  py::dict result;
+  result["status"] = name_of(answer.status);
+  result["doubt"] = std::string(palpate::name_of(answer.doubt));
+  result["curve_class"] = std::string(palpate::name_of(answer.shape.curve_class));
+  result["params"] = answer.shape.values;
+  result["pose"] = pose_of(answer.world_T_curve);
+  result["covariance"] = Eigen::MatrixXd(answer.covariance);
+  result["sample_count"] = answer.sample_count;
+  result["outlier_count"] = answer.outlier_count;
+  result["sigma_m"] = answer.sigma_m;
+  result["noise_correlation_m"] = answer.noise_correlation_m;
+  py::list hypotheses;
+  for (const auto& hypothesis : answer.hypotheses) hypotheses.append(hypothesis_of(hypothesis));
+  result["hypotheses"] = hypotheses;
+  py::list contacts;
+  for (const auto& contact : answer.contacts) contacts.append(contact_of(contact));
+  result["contacts"] = contacts;
+  return result;
+}
+
+class Recognizer {
+ public:
+  Recognizer(double sigma_m, const std::vector<std::string>& classes, double form_deviation_m,
+             std::size_t most_patches, std::size_t most_samples_per_patch)
+      : recognizer_(
+            options_of(sigma_m, classes, form_deviation_m, most_patches, most_samples_per_patch)) {}
+
+  /// `points` n x 2 in metres, `sigma_m` of length n, 1 or 0; returns how many were taken.
+  py::tuple add(const Array& points, const Array& sigma_m, std::uint32_t probe, std::uint32_t patch,
+                double tip_radius_m, const std::string& side) {
+    if (points.ndim() != 2 || points.shape(1) != 2) {
+      throw std::invalid_argument("points must be an array of shape (n, 2)");
+    }
+    const auto count = static_cast<std::size_t>(points.shape(0));
+    const auto sigmas = static_cast<std::size_t>(sigma_m.size());
+    if (sigmas > 1 && sigmas != count) {
+      throw std::invalid_argument("sigma must be one number, or one a point");
+    }
+    const palpate::PatchContext context{probe, patch, tip_radius_m, side_called(side)};
+    const double* xy = points.data();
+    const double* sigma = sigma_m.data();
+    palpate::AddResult added;
+    {
+      const py::gil_scoped_release release;
+      samples_.resize(count);
+      for (std::size_t i = 0; i < count; ++i) {
+        samples_[i].position_m = palpate::Vec2(xy[2 * i], xy[2 * i + 1]);
+        samples_[i].sigma_m = sigmas == 0 ? 0.0 : sigma[sigmas == 1 ? 0 : i];
+      }
+      added = recognizer_.add(context, samples_);
+    }
+    return py::make_tuple(added.accepted, added.repeated, added.rejected_not_finite,
+                          added.rejected_negative_sigma);
+  }
+
+  py::dict recognize() {
+    palpate::Recognition answer;
+    {
+      const py::gil_scoped_release release;
+      answer = recognizer_.recognize();
+    }
+    return recognition_of(answer);
+  }
+
+  void reset() { recognizer_.reset(); }
+
+ private:
+  static palpate::RecognizerOptions options_of(double sigma_m,
+                                               const std::vector<std::string>& classes,
+                                               double form_deviation_m, std::size_t most_patches,
+                                               std::size_t most_samples_per_patch) {
+    palpate::RecognizerOptions options;
+    options.sigma_m = sigma_m;
+    options.form_deviation_m = form_deviation_m;
+    options.memory.most_patches = most_patches;
+    options.memory.most_samples_per_patch = most_samples_per_patch;
+    if (!classes.empty()) options.classes = 0;
+    for (const std::string& name : classes) {
+      options.classes |= 1U << static_cast<unsigned>(class_called(name));
+    }
+    return options;
+  }
+
+  palpate::Recognizer recognizer_;
+  std::vector<palpate::ContactSample> samples_;
+};
+
+/// A curve where it lies in the world, in metres.
+class PlacedCurve {
+ public:
+  PlacedCurve(const std::string& name, const Eigen::Vector3d& params, double x, double y,
+              double theta)
+      : world_T_curve_{x, y, theta} {
+    const auto curve = palpate::make_curve(class_called(name), params);
+    if (!curve) throw std::invalid_argument("no " + name + " has these parameters");
+    curve_ = *curve;
+  }
+
+  double period() const { return palpate::domain(curve_).period; }
+
+  Array at(const Array& t) const {
+    Array points({t.size(), py::ssize_t{2}});
+    double* out = points.mutable_data();
+    for (py::ssize_t i = 0; i < t.size(); ++i) {
+      const palpate::Vec2 point = world_T_curve_ * palpate::position(curve_, t.data()[i]);
+      out[2 * i] = point.x();
+      out[2 * i + 1] = point.y();
+    }
+    return points;
+  }
+
+  /// Parameters of the nearest points, and the signed distances to them: positive to the left of
+  /// increasing t.
+  py::tuple feet(const Array& xy) const {
+    if (xy.ndim() != 2 || xy.shape(1) != 2) {
+      throw std::invalid_argument("points must be an array of shape (n, 2)");
+    }
+    const py::ssize_t count = xy.shape(0);
+    Array t(count);
+    Array distance(count);
+    const double* from = xy.data();
+    double* t_out = t.mutable_data();
+    double* distance_out = distance.mutable_data();
+    {
+      const py::gil_scoped_release release;
+      for (py::ssize_t i = 0; i < count; ++i) {
+        const palpate::Vec2 local =
+            world_T_curve_.to_local(palpate::Vec2(from[2 * i], from[2 * i + 1]));
+        const palpate::FootPoint foot = palpate::foot_point(curve_, local);
+        t_out[i] = foot.t;
+        distance_out[i] = foot.distance;
+      }
+    }
+    return py::make_tuple(t, distance);
+  }
+
+ private:
+  palpate::Curve curve_;
+  palpate::Pose2 world_T_curve_;
+};
+
+}  // namespace
+
+PYBIND11_MODULE(_core, module) {
+  py::class_<Recognizer>(module, "Recognizer")
+      .def(py::init<double, const std::vector<std::string>&, double, std::size_t, std::size_t>())
+      .def("add", &Recognizer::add)
+      .def("recognize", &Recognizer::recognize)
+      .def("reset", &Recognizer::reset);
+  py::class_<PlacedCurve>(module, "PlacedCurve")
+      .def(py::init<const std::string&, const Eigen::Vector3d&, double, double, double>())
+      .def_property_readonly("period", &PlacedCurve::period)
+      .def("at", &PlacedCurve::at)
+      .def("feet", &PlacedCurve::feet);
+  module.def("parameter_letters", [](const std::string& name) {
+    return std::string(palpate::parameter_letters(class_called(name)));
+  });
+}

@@ -1,0 +1,106 @@
+"""Recognises and locates curved parts by touch.
+
+    import palpate
+    result = palpate.fit([patch_a, patch_b], sigma=0.02, unit="mm")
+    print(result)                     # ellipse (recognized), a = 25.0012 +- 0.0021 mm, ...
+    result.params["a"], result.pose, result.covariance, result.residuals(points)
+
+Points are arrays of shape (n, 2), in the unit that is told; what comes back is in the same unit, angles in
+radians. A patch is one unbroken touch, its points in their order along the part.
+"""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Iterable, Sequence
+
+import numpy as np
+
+from . import _core
+from .result import Result, units
+
+if TYPE_CHECKING:
+    from .bus import Planner, Probe
+
+__all__ = ["Planner", "Probe", "Recognizer", "Result", "fit"]
+
+_MOST_DRAWN = 1 << 16  # points kept for the picture of a stream; then every second one
+
+
+class Recognizer:
+    """Follows one object: add points as they come, ask for the answer whenever it is wanted."""
+
+    def __init__(self, sigma: float | None = None, unit: str = "m", classes: Iterable[str] = (),
+                 form_deviation: float = 0.0, most_patches: int = 64, most_samples_per_patch: int = 1024) -> None:
+        self._unit = unit
+        self._scale = units(unit)
+        self._core = _core.Recognizer(self._scale * (sigma or 0.0), list(classes), self._scale * form_deviation,
+                                      most_patches, most_samples_per_patch)
+        self._points: list[np.ndarray] = []
+        self._tip_radius = 0.0
+        self.dropped = 0
+        """Points that said nothing new: at exactly the place of the one before."""
+
+    def add(self, points, patch: int = 0, probe: int = 0, sigma=None, tip_radius: float = 0.0,
+            material_side: str = "unspecified") -> int:
+        """Appends points of one patch, in their order. Gives how many were taken; raises ValueError on points
+        that are not finite."""
+        points = np.asarray(points, dtype=np.float64)
+        if not np.isfinite(points).all():
+            raise ValueError(f"points: {int((~np.isfinite(points)).any(axis=-1).sum())} are not finite")
+        sigmas = np.empty(0) if sigma is None else self._scale * np.atleast_1d(np.asarray(sigma, dtype=np.float64))
+        if not (np.isfinite(sigmas).all() and (sigmas >= 0).all()):
+            raise ValueError("sigma: must be finite and not below 0")
+        in_metres = points if self._scale == 1.0 else self._scale * points
+        accepted, repeated, _, _ = self._core.add(in_metres, sigmas, probe, patch, self._scale * tip_radius, material_side)
+        self.dropped += repeated
+        self._tip_radius = max(self._tip_radius, tip_radius)
+        self._points.append(np.array(points))
+        if sum(map(len, self._points)) > _MOST_DRAWN:
+            self._points = [np.concatenate(self._points)[::2]]
+        return accepted
+
+    def recognize(self) -> Result:
+        touched = np.concatenate(self._points) if self._points else np.empty((0, 2))
+        return Result(self._core.recognize(), self._unit, touched, self._tip_radius)
+
+    def reset(self) -> None:
+        """A new object."""
+        self._core.reset()
+        self._points.clear()
+        self.dropped = 0
+
+
+def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_side: str = "unspecified",
+        classes: Iterable[str] = (), form_deviation: float = 0.0, touches: bool = False,
+        most_samples_per_patch: int = 1024) -> Result:
+    """Recognises one object: an array (n, 2) of one patch, or a list of them.
+
+    sigma: standard deviation of a point, one number or (for one patch) one a point; None estimates it.
+    tip_radius: the points are centres of a round tip. material_side: of the direction of travel.
+    touches: every point is a touch of its own, in no order along the part.
+    form_deviation: standard deviation of the part from its ideal curve, half of a +- tolerance.
+    """
+    patches: Sequence = [points] if getattr(points, "ndim", 0) == 2 or _is_one_patch(points) else points
+    if touches:
+        patches = [row[np.newaxis, :] for patch in patches for row in np.asarray(patch, dtype=np.float64)]
+        if np.size(sigma) > 1:
+            raise ValueError("sigma: one number for touches")
+    if len(patches) == 0:
+        raise ValueError("points: there are none")
+    # A list is there at once: nothing of it is forgotten.
+    recognizer = Recognizer(None, unit, classes, form_deviation, max(64, len(patches)), most_samples_per_patch)
+    for number, patch in enumerate(patches):
+        recognizer.add(patch, number, 0, sigma, tip_radius, material_side)
+    return recognizer.recognize()
+
+
+def _is_one_patch(points) -> bool:
+    first = points[0] if len(points) else ()
+    return np.ndim(first) == 1
+
+
+def __getattr__(name: str):
+    """Probe and Planner need pyzmq and protobuf; recognising does not."""
+    if name in ("Probe", "Planner"):
+        from . import bus
+        return getattr(bus, name)
+    raise AttributeError(f"module 'palpate' has no attribute {name!r}")

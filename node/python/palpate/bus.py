@@ -1,0 +1,142 @@
+"""Probes and planners of a running palpate-node. Needs pyzmq and protobuf."""
+from __future__ import annotations
+
+import random
+import time
+from typing import Iterator
+
+import numpy as np
+import zmq
+
+from palpate.v1 import contact_pb2, recognition_pb2
+
+from .result import units
+
+CONTACTS = "tcp://127.0.0.1:5581"
+RESULTS = "tcp://127.0.0.1:5582"
+
+
+def _secure(socket: zmq.Socket, secret_key: str | None, server_key: str | None) -> None:
+    """CURVE by the key files that `palpate keygen` writes."""
+    if secret_key is None and server_key is None:
+        return
+    if secret_key is None or server_key is None:
+        raise ValueError("CURVE needs both secret_key and server_key")
+    with open(secret_key, encoding="ascii") as file:
+        secret = file.read().split()[0].encode()
+    with open(server_key, encoding="ascii") as file:
+        socket.curve_serverkey = file.read().split()[0].encode()
+    socket.curve_secretkey = secret
+    socket.curve_publickey = zmq.curve_public(secret)
+
+
+class _Peer:
+    def __init__(self, kind: int, endpoint: str, secret_key: str | None, server_key: str | None) -> None:
+        self._context = zmq.Context()
+        self._socket = self._context.socket(kind)
+        self._socket.setsockopt(zmq.LINGER, 200)  # [ms] nobody listens: the end is not held up
+        self._socket.setsockopt(zmq.RECONNECT_IVL, 10)
+        self._socket.setsockopt(zmq.TCP_KEEPALIVE, 1)
+        self._socket.setsockopt(zmq.TCP_KEEPALIVE_IDLE, 1)  # [s]
+        _secure(self._socket, secret_key, server_key)
+        self.endpoint = endpoint
+
+    def close(self) -> None:
+        self._socket.close()
+        self._context.term()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+
+class Probe(_Peer):
+    """Publishes touched points.
+
+        with palpate.Probe("finger", sigma=0.02, unit="mm") as probe:
+            probe.send(points)
+            probe.lift_off()
+    """
+
+    def __init__(self, name: str, endpoint: str = CONTACTS, group: str = "", sigma: float = 0.0, unit: str = "m",
+                 tip_radius: float = 0.0, timeout: float = 10.0, secret_key: str | None = None,
+                 server_key: str | None = None) -> None:
+        """Waits until a recognizer listens; raises TimeoutError after `timeout` seconds."""
+        self._scale = units(unit)
+        super().__init__(zmq.XPUB, endpoint, secret_key, server_key)
+        self._topic = f"contact/{name}/".encode()
+        self._sigma = sigma
+        self._batch = batch = contact_pb2.ContactBatch()
+        batch.header.source = name
+        batch.header.epoch = random.getrandbits(64)
+        batch.group = group
+        batch.object = time.time_ns() // 1_000_000
+        batch.tip_radius_m = self._scale * tip_radius
+        self._socket.connect(endpoint)
+        if not self._socket.poll(int(1000 * timeout)):
+            self.close()
+            raise TimeoutError(f"no recognizer listens at {endpoint} (palpate-node)")
+        self._socket.recv()
+
+    def send(self, points) -> None:
+        """Points (n, 2) of the patch, in their order along the part."""
+        points = np.atleast_2d(np.asarray(points, dtype=np.float64))
+        if points.shape[1] != 2 or not np.isfinite(points).all():
+            raise ValueError("points must be finite, of shape (n, 2)")
+        most = 1000  # samples of a message; the node takes 4096 at most
+        for start in range(0, len(points), most):
+            del self._batch.samples[:]
+            now = time.time_ns()
+            for x, y in self._scale * points[start:start + most]:
+                self._batch.samples.add(stamp_ns=now, x_m=x, y_m=y, sigma_m=self._scale * self._sigma)
+            self._batch.header.stamp_ns = now
+            self._socket.send_multipart([self._topic, self._batch.SerializeToString()])
+            self._batch.header.seq += 1
+
+    def lift_off(self) -> None:
+        """What follows is another patch."""
+        self._batch.patch += 1
+
+    def new_object(self) -> None:
+        """What follows is another part."""
+        self._batch.object += 1
+        self._batch.patch = 0
+
+
+class Planner(_Peer):
+    """Receives answers.
+
+        with palpate.Planner() as planner:
+            answer = planner.receive(timeout=5)    # a palpate.v1.Recognition
+    """
+
+    def __init__(self, endpoint: str = RESULTS, group: str | None = None, secret_key: str | None = None,
+                 server_key: str | None = None) -> None:
+        super().__init__(zmq.SUB, endpoint, secret_key, server_key)
+        self._newest: dict[str, tuple[int, int]] = {}
+        self._socket.setsockopt(zmq.SUBSCRIBE, b"recognition/" + (f"{group}/".encode() if group is not None else b""))
+        self._socket.connect(endpoint)
+
+    def receive(self, timeout: float = 10.0) -> recognition_pb2.Recognition:
+        """The next new answer; raises TimeoutError."""
+        deadline = time.monotonic() + timeout
+        while True:
+            left = deadline - time.monotonic()
+            if left <= 0 or not self._socket.poll(max(1, int(1000 * left))):
+                raise TimeoutError(f"no answer from {self.endpoint} within {timeout:g} s (palpate-node, a probe?)")
+            frames = self._socket.recv_multipart()
+            answer = recognition_pb2.Recognition.FromString(frames[1])
+            stamp = (answer.header.epoch, answer.header.seq)
+            if self._newest.get(answer.group) != stamp:  # else repeated for those who come late
+                self._newest[answer.group] = stamp
+                return answer
+
+    def __iter__(self) -> Iterator[recognition_pb2.Recognition]:
+        """New answers for as long as they come: ends after ten silent seconds."""
+        while True:
+            try:
+                yield self.receive()
+            except TimeoutError:
+                return

@@ -1,0 +1,110 @@
+"""What was recognised, in the unit of the points."""
+from __future__ import annotations
+
+import numpy as np
+
+from . import _core
+
+_UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "nm": 1e-9, "in": 0.0254}
+# Powers of length in a, b and c; core/README.md, "Curves".
+_POWERS = {"cubical_parabola": {"a": -2.0, "c": 0.0},
+           "semi_cubical_parabola": {"a": -0.5, "b": 0.0},
+           "cubic_spline": {"a": -0.5, "b": 0.0, "c": 0.5}}
+
+
+def units(name: str) -> float:
+    """Metres in one of the unit."""
+    if name not in _UNITS:
+        raise ValueError(f"unit: {name!r} is none of {', '.join(_UNITS)}")
+    return _UNITS[name]
+
+
+class Result:
+    """status: "collecting", "ambiguous" or "recognized"; doubt: why it is ambiguous, else "none".
+    curve_class; params: {"a": ...}; pose: (x, y, theta); covariance: of [params; x; y; theta].
+    probabilities: {class: posterior}. contacts: local geometry of the touched places, in metres.
+    sigma: the noise, given or estimated. sample_count, outlier_count."""
+
+    def __init__(self, core: dict, unit: str, touched: np.ndarray, tip_radius: float) -> None:
+        self._core, self.unit, self._touched, self._tip_radius = core, unit, touched, tip_radius
+        self._scale = scale = units(unit)
+        self.status: str = core["status"]
+        self.doubt: str = core["doubt"]
+        self.curve_class: str = core["curve_class"]
+        letters = "" if self.curve_class == "unclassified" else _core.parameter_letters(self.curve_class)
+        powers = _POWERS.get(self.curve_class, {})
+        factors = [scale ** -powers.get(letter, 1.0) for letter in letters]
+        self.params: dict[str, float] = {
+            letter: factor * value for letter, factor, value in zip(letters, factors, core["params"])}
+        x, y, theta = core["pose"]
+        self.pose = (x / scale, y / scale, theta)
+        factors = np.array(factors + [1 / scale, 1 / scale, 1.0])
+        covariance = core["covariance"]
+        self.covariance: np.ndarray = (
+            covariance * np.outer(factors, factors) if covariance.shape[0] == len(factors) else np.empty((0, 0)))
+        self.probabilities: dict[str, float] = {h["curve_class"]: h["probability"] for h in core["hypotheses"]}
+        self.contacts: list[dict] = core["contacts"]
+        self.sigma: float = core["sigma_m"] / scale
+        self.sample_count: int = core["sample_count"]
+        self.outlier_count: int = core["outlier_count"]
+        self._curve = None
+        if letters or self.curve_class == "line":
+            try:
+                self._curve = _core.PlacedCurve(self.curve_class, core["params"], x, y, theta)
+            except ValueError:
+                pass  # it has no shape of its own: best at the limit of another class
+
+    def _need_curve(self):
+        if self._curve is None:
+            raise ValueError(f"no curve was found: {self.curve_class}, {self.status} ({self.doubt})")
+        return self._curve
+
+    @property
+    def std(self) -> dict[str, float]:
+        """Standard deviations of the parameters and of x, y, theta."""
+        names = [*self.params, "x", "y", "theta"]
+        return dict(zip(names, np.sqrt(np.diag(self.covariance)))) if self.covariance.size else {}
+
+    def residuals(self, xy) -> np.ndarray:
+        """Signed distances of points from the curve, positive to the left of increasing t."""
+        _, distance = self._need_curve().feet(self._scale * np.asarray(xy, dtype=np.float64))
+        return distance / self._scale
+
+    def nearest(self, xy) -> np.ndarray:
+        """Curve parameter t of the point of the curve that is nearest to each point."""
+        return self._need_curve().feet(self._scale * np.asarray(xy, dtype=np.float64))[0]
+
+    def predict_xy(self, t) -> np.ndarray:
+        """Points of the curve at the parameters t."""
+        return self._need_curve().at(np.atleast_1d(np.asarray(t, dtype=np.float64))) / self._scale
+
+    def sample(self, n: int = 200) -> np.ndarray:
+        """n points along the curve: all of a closed one, else what was touched."""
+        curve = self._need_curve()
+        if curve.period > 0:
+            return self.predict_xy(np.linspace(-curve.period / 2, curve.period / 2, n))
+        t = self.nearest(self._touched)
+        return self.predict_xy(np.linspace(t.min(), t.max(), n))
+
+    def plot(self, ax=None):
+        """Draws points and curve with matplotlib; gives the axes."""
+        if ax is None:
+            import matplotlib.pyplot as plt
+            _, ax = plt.subplots()
+        ax.plot(*self._touched.T, ".", markersize=3, label="points")
+        if self._curve is not None:
+            ax.plot(*self.sample().T, label=f"{self.curve_class} ({self.status})")
+        ax.set_aspect("equal")
+        ax.set_xlabel(f"x [{self.unit}]")
+        ax.set_ylabel(f"y [{self.unit}]")
+        ax.legend()
+        return ax
+
+    def __repr__(self) -> str:
+        text = f"{self.curve_class} ({self.status}" + (f": {self.doubt})" if self.doubt != "none" else ")")
+        std = self.std
+        for letter, value in self.params.items():
+            text += f", {letter} = {value:.6g}" + (f" +- {std[letter]:.2g}" if letter in std else "")
+        if self._curve is not None:
+            text += ", pose ({:.6g}, {:.6g}, {:.6g} rad)".format(*self.pose)
+        return f"<palpate.Result {text}, unit {self.unit}>"

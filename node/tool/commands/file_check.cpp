@@ -1,0 +1,105 @@
+#include "node/tool/commands/file_check.h"
+
+#include <algorithm>
+#include <map>
+
+#include "node/tool/text/quantity.h"
+
+namespace palpate {
+namespace {
+
+/// A touched part is larger than its dust and smaller than this. [m]
+constexpr double kLargestObjectM = 2.0;
+constexpr double kSmallestObjectM = 1e-5;
+
+std::string extent_text(double metres) {
+  const LengthUnit unit = length_unit_for(metres);
+  return number(metres * unit.per_m) + " " + std::string(unit.name);
+}
+
+/// The patches of each probe, runs of one patch joined.
+std::map<std::string, std::vector<CheckedPatch>> checked_patches(const ContactGroup& group) {
+  std::map<std::string, std::vector<CheckedPatch>> probes;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> place_of;
+  for (const ContactRun& run : group.runs) {
+    std::vector<CheckedPatch>& patches = probes[group.probes[run.context.probe]];
+    const auto [place, is_new] =
+        place_of.try_emplace({run.context.probe, run.context.patch}, patches.size());
+    if (is_new) {
+      patches.push_back({run.context.patch, group.object, run.context.tip_radius_m, {}, 0.0, 0});
+    }
+    CheckedPatch& patch = patches[place->second];
+    for (const ContactSample& sample : run.samples) {
+      patch.positions.push_back(sample.position_m);
+      patch.sigma_squares += sample.sigma_m * sample.sigma_m;
+      patch.with_sigma += sample.sigma_m > 0.0 ? 1 : 0;
+    }
+  }
+  return probes;
+}
+
+/// Of all samples together: single touches have no extent of their own.
+void judge_extent(const ContactGroup& group, std::vector<Finding>* findings) {
+  Vec2 low = group.runs.front().samples.front().position_m;
+  Vec2 high = low;
+  for (const ContactRun& run : group.runs) {
+    for (const ContactSample& sample : run.samples) {
+      low = low.cwiseMin(sample.position_m);
+      high = high.cwiseMax(sample.position_m);
+    }
+  }
+  const double extent = (high - low).norm();
+  const std::string what = "the samples extend over " + extent_text(extent);
+  if (extent > kLargestObjectM) {
+    findings->push_back({Severity::Warning, "", what,
+                         "were these millimetres? Then say --unit mm (or um, in)", true});
+  } else if (extent > 0.0 && extent < kSmallestObjectM) {
+    findings->push_back(
+        {Severity::Warning, "", what, "is the unit right? --unit names another", true});
+  }
+}
+
+void judge_stamps(const ContactGroup& group, std::vector<Finding>* findings) {
+  std::map<std::uint32_t, std::int64_t> newest;
+  std::map<std::uint32_t, std::size_t> backwards;
+  for (const ContactRun& run : group.runs) {
+    for (const ContactSample& sample : run.samples) {
+      if (sample.stamp_ns == 0) continue;
+      const auto [last, is_first] = newest.try_emplace(run.context.probe, sample.stamp_ns);
+      if (sample.stamp_ns < last->second) ++backwards[run.context.probe];
+      last->second = sample.stamp_ns;
+    }
+  }
+  for (const auto& [probe, count] : backwards) {
+    findings->push_back({Severity::Error, group.probes[probe],
+                         std::to_string(count) + " stamps earlier than the one before",
+                         "sort the rows of a patch in the order in which they were taken", true});
+  }
+}
+
+}  // namespace
+
+std::vector<Finding> check_group(const ContactGroup& group) {
+  std::vector<Finding> findings;
+  judge_extent(group, &findings);
+  judge_stamps(group, &findings);
+  const bool extent_is_told = !findings.empty() && findings.front().probe.empty();
+  for (const auto& [probe, patches] : checked_patches(group)) {
+    std::vector<Finding> of_probe;
+    judge_patches(probe, patches, CheckedSource::File, &of_probe);
+    for (Finding& finding : of_probe) {
+      // Said once: of all samples, not of each probe again.
+      const bool is_extent = finding.what.find("extends over") != std::string::npos;
+      if (!(extent_is_told && is_extent)) findings.push_back(std::move(finding));
+    }
+  }
+  sort_findings(&findings);
+  return findings;
+}
+
+std::string sentence_of(const Finding& finding) {
+  return (finding.probe.empty() ? "" : finding.probe + ": ") + finding.what +
+         (finding.cure.empty() ? "" : ": " + finding.cure);
+}
+
+}  // namespace palpate

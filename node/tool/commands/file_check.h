@@ -1,0 +1,18 @@
+// What is wrong with a file of contacts, told to whoever made it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "node/tool/commands/stream_check.h"
+#include "node/tool/contact_groups.h"
+
+namespace palpate {
+
+/// Units, order, jumps, spacing, noise and stamps of one object's samples. Worst first.
+std::vector<Finding> check_group(const ContactGroup& group);
+
+/// A finding as a sentence: what, and the cure.
+std::string sentence_of(const Finding& finding);
+
+}  // namespace palpate

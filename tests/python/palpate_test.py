@@ -1,0 +1,204 @@
+"""`import palpate`, as a robotics researcher uses it."""
+import math
+import os
+import subprocess
+import sys
+import threading
+import unittest
+
+from programs import BUILD, SOURCE
+
+# The package beside the messages' own folder, which other tests use.
+sys.path.insert(0, str(BUILD / "node/python"))
+import numpy as np
+
+import palpate
+
+A, B, SIGMA = 25.0, 17.5, 0.02  # [mm]
+POSE = (300.0, -100.0, 0.6)
+
+
+def ellipse(start, end, n=111, seed=1):
+    rng = np.random.default_rng(seed)
+    t = np.linspace(start, end, n)
+    u, v = A * np.cos(t), B * np.sin(t)
+    c, s = math.cos(POSE[2]), math.sin(POSE[2])
+    return np.column_stack([POSE[0] + c * u - s * v, POSE[1] + s * u + c * v]) + rng.normal(0, SIGMA, (n, 2))
+
+
+PATCHES = [ellipse(0.3, 1.5), ellipse(2.3, 3.6, seed=2)]
+
+
+class Fit(unittest.TestCase):
+    def check(self, result, scale=1.0):
+        self.assertEqual((result.status, result.doubt, result.curve_class), ("recognized", "none", "ellipse"))
+        found = np.array([result.params["a"], result.params["b"], *result.pose])
+        truth = np.array([A * scale, B * scale, POSE[0] * scale, POSE[1] * scale, POSE[2]])
+        self.assertTrue((abs(found - truth) < 4 * np.sqrt(np.diag(result.covariance))).all(), (found, truth))
+
+    def test_patches_in_any_unit_give_the_answer_in_that_unit(self):
+        for unit, scale in (("mm", 1.0), ("m", 1e-3), ("um", 1e3), ("in", 1 / 25.4)):
+            result = palpate.fit([scale * p for p in PATCHES], sigma=scale * SIGMA, unit=unit)
+            self.check(result, scale)
+            self.assertEqual(result.sample_count, 222)
+            self.assertAlmostEqual(sum(result.probabilities.values()), 1.0)
+            self.assertAlmostEqual(result.sigma / scale, SIGMA)
+
+    def test_the_noise_is_estimated_where_it_is_not_told(self):
+        result = palpate.fit(PATCHES, unit="mm")
+        self.check(result)
+        self.assertLess(abs(result.sigma / SIGMA - 1), 5 / math.sqrt(2 * 217))
+
+    def test_other_powers_of_length(self):
+        t = np.linspace(-30, 30, 120)
+        points = np.column_stack([t, 2e-4 * t**3])  # y = a x^3, a in 1/mm^2
+        result = palpate.fit(points, sigma=1e-3, unit="mm", classes=["cubical_parabola"])
+        self.assertAlmostEqual(abs(result.params["a"]) / 2e-4, 1, places=3)
+
+    def test_one_patch_may_be_an_array_a_list_or_not_contiguous(self):
+        whole = ellipse(0, 5.5, 200)
+        expected = palpate.fit(whole, sigma=SIGMA, unit="mm").params
+        for points in (whole.tolist(), np.asfortranarray(whole), np.repeat(whole, 2, axis=0)[::2], [tuple(p) for p in whole]):
+            self.assertEqual(palpate.fit(points, sigma=SIGMA, unit="mm").params, expected)
+        self.assertEqual(palpate.fit(whole, sigma=np.full(200, SIGMA), unit="mm").params, expected)
+
+    def test_touches_have_no_order(self):
+        t = np.random.default_rng(3).permutation(np.linspace(0, 2 * math.pi, 13)[:-1])
+        points = 15 * np.column_stack([np.cos(t), np.sin(t)])
+        result = palpate.fit(points, sigma=0.005, unit="mm", touches=True)
+        self.assertEqual(result.curve_class, "circle")
+        self.assertAlmostEqual(result.params["a"], 15, places=2)
+
+    def test_no_patch_of_a_list_is_forgotten(self):
+        patches = [ellipse(0.065 * k, 0.065 * k + 0.05, 9, seed=k) for k in range(90)]
+        self.assertEqual(palpate.fit(patches, sigma=SIGMA, unit="mm").sample_count, 810)
+
+    def test_a_tip_radius_is_taken_off(self):
+        t = np.linspace(0, 5.5, 100)
+        result = palpate.fit(17 * np.column_stack([np.cos(t), np.sin(t)]), sigma=1e-3, unit="mm", tip_radius=2,
+                             material_side="left")
+        self.assertAlmostEqual(result.params["a"], 15, places=2)
+
+    def test_residuals_samples_and_feet_lie_on_one_curve(self):
+        result = palpate.fit(PATCHES, sigma=SIGMA, unit="mm")
+        residuals = result.residuals(np.concatenate(PATCHES))
+        self.assertLess(abs(residuals.std() / SIGMA - 1), 0.25)
+        points = result.sample(50)
+        self.assertEqual(points.shape, (50, 2))
+        np.testing.assert_allclose(result.residuals(points), 0, atol=1e-9)
+        np.testing.assert_allclose(result.predict_xy(result.nearest(points)), points, atol=1e-9)
+        # To the left of increasing t: an ellipse runs counter-clockwise, its centre lies to the left.
+        self.assertGreater(result.residuals([POSE[:2]])[0], 0)
+
+    def test_what_is_not_known_is_said(self):
+        result = palpate.fit([[0.0, 0.0], [1.0, 0.0]])
+        self.assertEqual(result.status, "collecting")
+        with self.assertRaisesRegex(ValueError, "no curve was found"):
+            result.residuals([[0, 0]])
+        for arguments in (dict(unit="furlong"), dict(sigma=-1), dict(sigma=[1, 2]), dict(classes=["sphere"]),
+                          dict(material_side="up"), dict(sigma=math.nan)):
+            with self.assertRaises(ValueError, msg=arguments):
+                palpate.fit(PATCHES, **arguments)
+        for points in ([], [[1.0, math.nan]], [[1.0, 2.0, 3.0]], [1.0, 2.0]):
+            with self.assertRaises(ValueError, msg=points):
+                palpate.fit(points)
+
+    def test_a_stream(self):
+        recognizer = palpate.Recognizer(sigma=SIGMA, unit="mm")
+        self.assertEqual(recognizer.recognize().status, "collecting")
+        for number, patch in enumerate(PATCHES):
+            for start in range(0, len(patch), 10):
+                recognizer.add(patch[start:start + 10], patch=number)
+        self.assertEqual(recognizer.add(PATCHES[1][-1:], patch=1), 0)
+        self.assertEqual(recognizer.dropped, 1)
+        self.check(recognizer.recognize())
+        recognizer.reset()
+        self.assertEqual(recognizer.recognize().status, "collecting")
+
+    def test_the_interpreter_is_free_while_it_computes(self):
+        # One thread recognises until another says stop. Were the interpreter held, the other could not say it before
+        # the last of them: nobody is made to let go.
+        many = [ellipse(0.05 * k, 0.05 * k + 0.3, 100, seed=k) for k in range(20)]
+        stop, done, most = threading.Event(), [], 200
+
+        def recognise():
+            for _ in range(most):
+                if stop.is_set():
+                    return
+                done.append(palpate.fit(many, sigma=SIGMA, unit="mm"))
+
+        before = sys.getswitchinterval()
+        sys.setswitchinterval(1000.0)
+        try:
+            thread = threading.Thread(target=recognise)
+            thread.start()
+            stop.set()
+            thread.join()
+        finally:
+            sys.setswitchinterval(before)
+        self.assertLess(len(done), most)
+
+    def test_stubs_name_what_there_is(self):
+        import ast
+        core = palpate._core
+        tree = ast.parse((SOURCE / "node/python/palpate/_core.pyi").read_text())
+        named = {}
+        for node in tree.body:
+            if isinstance(node, ast.ClassDef):
+                named[node.name] = {f.name for f in node.body if isinstance(f, ast.FunctionDef)} - {"__init__"}
+            elif isinstance(node, ast.FunctionDef):
+                named[node.name] = set()
+        real = {name for name in dir(core) if not name.startswith("_")}
+        self.assertEqual(set(named), real)
+        for name, methods in named.items():
+            if methods:
+                self.assertEqual(methods, {m for m in vars(getattr(core, name)) if not m.startswith("_")})
+
+
+class System(unittest.TestCase):
+    def test_a_probe_and_a_planner(self):
+        # Its own process: this one has the messages from another folder.
+        script = f"""
+import palpate, numpy as np
+with palpate.Planner(RESULTS) as planner, palpate.Probe("finger", CONTACTS, sigma=0.02, unit="mm") as probe:
+    for k, (start, end) in enumerate([(0.3, 1.5), (2.3, 3.6)]):
+        t = np.linspace(start, end, 111)
+        probe.send(np.column_stack([25 * np.cos(t), 17.5 * np.sin(t)]) + np.random.default_rng(k).normal(0, 0.02, (111, 2)))
+        probe.lift_off()
+    while True:
+        answer = planner.receive(timeout=20)
+        if answer.sample_count == 222:
+            break
+    print(answer.curve_class, round(1e3 * answer.parameters.a))
+    try:
+        planner.receive(timeout=0.2)
+    except TimeoutError as error:
+        print("silent:", error)
+try:
+    palpate.Probe("finger", "ipc://" + CONTACTS[6:] + ".nobody", timeout=0.2)
+except TimeoutError as error:
+    print("nobody:", error)
+"""
+        from bus import Bus
+        with Bus() as bus:
+            bus.start_node()
+            done = subprocess.run([sys.executable, "-c", f"RESULTS, CONTACTS = {bus.results!r}, {bus.contacts!r}\n" + script],
+                                  env=os.environ | {"PYTHONPATH": str(BUILD / "node/python")}, capture_output=True,
+                                  text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = done.stdout.splitlines()
+        self.assertEqual(lines[0], "3 25")
+        self.assertIn("no answer from", lines[1])
+        self.assertIn("no recognizer listens at", lines[2])
+
+    def test_the_tutorial_runs(self):
+        done = subprocess.run([sys.executable, SOURCE / "node/examples/tutorial.py", "--no-plot"],
+                              env=os.environ | {"PYTHONPATH": str(BUILD / "node/python")}, capture_output=True,
+                              text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("ellipse (recognized)", done.stdout)
+        self.assertIn("ambiguous", done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
