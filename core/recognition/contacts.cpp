@@ -1,34 +1,80 @@
 #include "core/recognition/contacts.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/curves/curve.h"
-#include "core/local/adaptive_jet.h"
-#include "core/local/jet_estimator.h"
+#include "core/local/noise.h"
+#include "core/local/stream/window_fit.h"
 #include "core/local/tip_radius.h"
 
 namespace palpate {
 namespace {
 
-constexpr std::size_t kMostPlaces = 3;  // of a window: its centre, and the patch's ends
+/// What is left of a window that is too long: as of the stream's (sliding_window.h).
+constexpr double kShrink = 0.9;
 
-/// Estimates at those places of one window.
-void estimate(std::span<const Vec2> window, std::span<const PatchPlace> places, double sigma_m,
-              bool with_bias, std::span<LocalResult> results) {
-  if (with_bias) {
-    std::transform(places.begin(), places.end(), results.begin(),
-                   [&](PatchPlace place) { return adaptive_jet(window, place, sigma_m).result; });
-    return;
+/// The samples of a patch with their weights, and the noise of one of weight 1.
+struct WeightedPath {
+  std::vector<PathNode> nodes;
+  std::optional<double> noise;  ///< nullopt = not known
+};
+
+WeightedPath weighted_path(const StoredPatch& patch, double default_sigma_m) {
+  WeightedPath path;
+  path.nodes.reserve(patch.samples.size());
+  bool stated = true;
+  for (const StoredSample& sample : patch.samples) {
+    const double sigma = sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+    stated = stated && sigma > 0.0;
+    path.nodes.push_back({sample.position_m, sample.weight / (sigma * sigma)});
   }
-  JetOptions jet;
-  jet.sigma_m = sigma_m;
-  std::array<double, kMostPlaces> at{};
-  std::transform(places.begin(), places.end(), at.begin(), [](PatchPlace place) {
-    return place == PatchPlace::Start ? -1.0 : place == PatchPlace::End ? 1.0 : 0.0;
-  });
-  jet_estimates(window, jet, std::span(at).first(places.size()), results);
+  if (stated) {
+    path.noise = 1.0;
+    return path;
+  }
+  std::vector<Vec2> positions;
+  positions.reserve(path.nodes.size());
+  double weights = 0.0;
+  for (std::size_t i = 0; i < path.nodes.size(); ++i) {
+    path.nodes[i].weight = patch.samples[i].weight;
+    weights += path.nodes[i].weight;
+    positions.push_back(path.nodes[i].position_m);
+  }
+  // Of the stored samples as they are, each the mean of several.
+  const NoiseEstimate noise = estimate_noise(positions);
+  if (noise.status == LocalStatus::Ok) {
+    path.noise = noise.sigma_m * std::sqrt(weights / static_cast<double>(positions.size()));
+  }
+  return path;
+}
+
+/// A window of any length as the nodes that the fit takes.
+std::vector<PathNode> reduced(std::span<const PathNode> window) {
+  const std::size_t block =
+      (window.size() + NodePyramid::kBlocksPerWindow - 1) / NodePyramid::kBlocksPerWindow;
+  if (block < 2) {
+    return {window.begin(), window.end()};
+  }
+  std::vector<PathNode> nodes;
+  for (std::size_t first = 0; first < window.size(); first += block) {
+    const std::span<const PathNode> samples =
+        window.subspan(first, std::min(block, window.size() - first));
+    if (samples.size() == 1) {
+      nodes.push_back(samples.front());
+      continue;
+    }
+    for (const PathNode& node : two_nodes(samples)) {
+      nodes.push_back(node);
+    }
+  }
+  return nodes;
+}
+
+/// The smaller the more is known of angle, kappa and kappa_s together.
+double uncertainty(const LocalizedContact& contact) {
+  return contact.estimate.covariance.bottomRightCorner<3, 3>().determinant();
 }
 
 }  // namespace
@@ -38,46 +84,54 @@ std::size_t windows_of_a_patch(std::size_t patches, const ContactOptions& option
   return std::max(options.windows_per_patch, (options.least_windows + count - 1) / count);
 }
 
-void add_contacts(const StoredPatch& patch, std::size_t most_windows, int side,
+void add_contacts(const StoredPatch& patch, std::size_t least_windows, int side,
                   const ContactOptions& options, std::vector<LocalizedContact>* contacts) {
-  std::vector<Vec2> points;
-  points.reserve(patch.samples.size());
-  double variance = 0.0;
-  bool known = true;
-  for (const StoredSample& sample : patch.samples) {
-    points.push_back(sample.position_m);
-    const double sigma = sample.sigma_m > 0.0 ? sample.sigma_m : options.sigma_m;
-    known = known && sigma > 0.0;
-    variance += sigma * sigma / sample.weight;
+  const WeightedPath path = weighted_path(patch, options.sigma_m);
+  const std::size_t n = path.nodes.size();
+  if (!path.noise) {
+    return;
   }
-  const std::size_t n = points.size();
-  const std::size_t windows = std::clamp<std::size_t>(n / options.window_samples, 1, most_windows);
   const double signed_radius = side * patch.context.tip_radius_m;
-  const double sigma = known && n > 0 ? std::sqrt(variance / static_cast<double>(n)) : 0.0;
-  for (std::size_t window = 0; window < windows; ++window) {
-    std::array<PatchPlace, kMostPlaces> places{};
-    std::size_t count = 0;
-    if (window == 0) {
-      places[count++] = PatchPlace::Start;
-    }
-    places[count++] = PatchPlace::Centre;
-    if (window + 1 == windows) {
-      places[count++] = PatchPlace::End;
-    }
-    const std::size_t begin = window * n / windows;
-    const std::size_t end = (window + 1) * n / windows;
-    std::array<LocalResult, kMostPlaces> results;
-    estimate(std::span(points).subspan(begin, end - begin), std::span(places).first(count), sigma,
-             options.with_bias, std::span(results).first(count));
-    for (const LocalResult& result : std::span(results).first(count)) {
-      if (!result) {
-        continue;
+  // Means of several contacts lie off the curve by as much as stated, which is smooth along the
+  // arc.
+  const double form_m = std::hypot(options.form_deviation_m, patch.merge_bias_m);
+  const std::size_t fewest = std::max(options.window_samples, kFewestWindowNodes);
+  const std::size_t windows = std::clamp<std::size_t>(n / fewest, 1, least_windows);
+  const std::size_t longest = n / windows;
+  std::vector<LocalizedContact> found;
+  for (std::size_t first = 0; first + std::min(longest, fewest) <= n && longest > 0;) {
+    std::size_t length = std::min(longest, n - first);
+    WindowFit fit;
+    while (true) {
+      fit = fit_window(reduced(std::span(path.nodes).subspan(first, length)), *path.noise, form_m);
+      const auto shorter = static_cast<std::size_t>(kShrink * static_cast<double>(length));
+      if ((fit.result && fit.explained) || shorter < fewest) {
+        break;
       }
-      if (const auto surface = surface_from_tip(result.estimate, signed_radius)) {
-        contacts->push_back({patch.context.probe, patch.context.patch, 0.0, *surface});
-      }
+      length = shorter;
+    }
+    first += length;
+    if (!fit.result) {
+      continue;
+    }
+    fit.result.estimate.window_samples = static_cast<int>(length);
+    if (const auto surface = surface_from_tip(fit.result.estimate, signed_radius)) {
+      found.push_back({patch.context.probe, patch.context.patch, 0.0, *surface});
     }
   }
+  if (found.size() > kMostContactsOfAPatch) {
+    std::vector<double> all;
+    all.reserve(found.size());
+    for (const LocalizedContact& contact : found) {
+      all.push_back(uncertainty(contact));
+    }
+    std::vector<double> sorted = all;
+    std::nth_element(sorted.begin(), sorted.begin() + kMostContactsOfAPatch, sorted.end());
+    const double limit = sorted[kMostContactsOfAPatch];
+    std::size_t i = 0;
+    std::erase_if(found, [&](const LocalizedContact&) { return !(all[i++] < limit); });
+  }
+  contacts->insert(contacts->end(), found.begin(), found.end());
 }
 
 void localise_contacts(const ShapeParameters& shape, const Pose2& world_T_curve,

@@ -12,27 +12,31 @@
 namespace palpate {
 
 struct ContactOptions {
-  /// Consecutive windows that a patch is divided into, each giving one estimate at its centre: no
-  /// two share a sample, so that their errors are independent.
+  /// A patch has at least this many windows where its samples suffice: no two share a sample, so
+  /// that their errors are independent.
   std::size_t windows_per_patch = 2;
   /// Where patches are few, as many windows more as make this number: the tree's tests need them.
   std::size_t least_windows = 4;
   /// Fewest samples of a window; shorter patches have fewer windows.
   std::size_t window_samples = 20;
-  /// Noise of samples that bring none; 0 = from each window's residuals. [m]
+  /// Noise of samples that bring none; 0 = from each patch. [m]
   double sigma_m = 0.0;
-  /// Covariances that hold the window's bias too (core/local/adaptive_jet.h), at some five times
-  /// the cost: the tree, which has nothing but these estimates, always does.
-  bool with_bias = false;
+  /// Smooth deviation of the part from its curve, one standard deviation. [m]
+  double form_deviation_m = 0.0;
 };
+
+/// Contacts of a patch, at most: where its windows are more, the most informative ones.
+inline constexpr std::size_t kMostContactsOfAPatch = 12;
 
 /// Windows that each of so many patches is to have where its samples suffice.
 std::size_t windows_of_a_patch(std::size_t patches, const ContactOptions& options);
 
-/// Adds an estimate at the centre of each window of a patch and one at each of its ends, in the
-/// order of travel, taken back from tip centres to the surface (`side` +1: the tip lies left of
-/// travel, -1: right, 0: the samples are on the surface). t is 0.
-void add_contacts(const StoredPatch& patch, std::size_t most_windows, int side,
+/// Adds the estimate at the centre of each window of a patch (core/local/stream/window_fit.h), in
+/// the order of travel, taken back from tip centres to the surface (`side` +1: the tip lies left of
+/// travel, -1: right, 0: the samples are on the surface). A window is as long as the data allow,
+/// and at most the patch's length over `least_windows`: a long patch has as many windows as its
+/// bends ask for. t is 0.
+void add_contacts(const StoredPatch& patch, std::size_t least_windows, int side,
                   const ContactOptions& options, std::vector<LocalizedContact>* contacts);
 
 /// Sets t of each contact to that of its foot point on the curve.

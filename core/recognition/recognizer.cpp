@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
+#include "core/numerics/chi_square.h"
 #include "core/numerics/normal_law.h"
+#include "core/recognition/estimate_stream.h"
 #include "core/recognition/outliers.h"
 #include "core/recognition/samples/explained_spikes.h"
 #include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/verdict/determined.h"
 #include "core/recognition/weigh/weigh.h"
 
@@ -71,6 +75,9 @@ Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
   return hypothesis;
 }
 
+/// That chance alone makes the leaf's test as bad.
+double tail_probability(const TreeResult& tree) { return chi_square_survival(tree.chi2, tree.dof); }
+
 }  // namespace
 
 class Recognizer::Impl {
@@ -78,7 +85,34 @@ class Recognizer::Impl {
   explicit Impl(const RecognizerOptions& options) : options_(options), memory_(options.memory) {}
 
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples) {
+    if (stream_) {
+      stream_->add(context, samples);
+    }
     return memory_.add(context, samples);
+  }
+
+  void stream_estimates(bool on) {
+    if (!on) {
+      stream_.reset();
+    } else if (!stream_) {
+      SlidingOptions options;
+      options.sigma_m = options_.sigma_m;
+      options.form_deviation_m = options_.form_deviation_m;
+      stream_.emplace(options);
+    }
+  }
+
+  std::vector<LocalizedContact> take_estimates() {
+    if (!stream_) {
+      return {};
+    }
+    return stream_->take([&](std::uint32_t probe, std::uint32_t patch) {
+      const auto found = std::find_if(clean_.begin(), clean_.end(), [&](const StoredPatch& known) {
+        return known.context.probe == probe && known.context.patch == patch;
+      });
+      const auto p = static_cast<std::size_t>(found - clean_.begin());
+      return p < clean_states_.size() ? clean_states_[p].side : 0;
+    });
   }
 
   void reset() {
@@ -86,6 +120,9 @@ class Recognizer::Impl {
     clean_.clear();
     clean_states_.clear();
     last_.reset();
+    if (stream_) {
+      stream_->clear();
+    }
   }
 
   Recognition recognize() {
@@ -99,8 +136,7 @@ class Recognizer::Impl {
     }
     if (options_.method == RecognitionMethod::Tree) {
       answer.outlier_count = memory_.stored_count() - data.points.size();
-      answer.contacts = contacts_of(patches, {});
-      walk_tree(data.scale, &answer);
+      walk_tree(data, sigma_known, patches, &answer);
       return answer;
     }
     Weighing w = weigh_once_more(data, sigma_known, patches);
@@ -110,10 +146,7 @@ class Recognizer::Impl {
     answer.outlier_count = memory_.stored_count() - w.data.points.size();
     fill(w, &answer);
     answer.contacts = contacts_of(patches, w.sides);
-    if (last_->decisions.empty()) {
-      last_->decisions = tree_of(answer.contacts).decisions;
-    }
-    answer.decisions = last_->decisions;
+    answer.decisions = tree_of(answer.contacts).decisions;
     localise_contacts(answer.shape, answer.world_T_curve, &answer.contacts);
     return answer;
   }
@@ -125,7 +158,6 @@ class Recognizer::Impl {
     ClassProbabilities probabilities{};
     std::size_t samples = 0;  ///< at the last search
     std::size_t patches = 0;
-    std::vector<Decision> decisions;  ///< of the tree, at the last search
   };
 
   /// From the last weighing while the object is touched on in the same patches; from a new search
@@ -147,7 +179,7 @@ class Recognizer::Impl {
       }
     }
     Weighing w = weigh_without_outliers(data, sigma_known, patches, {});
-    last_ = Last{w.starts, w.probabilities, samples, data.patches.size(), {}};
+    last_ = Last{w.starts, w.probabilities, samples, data.patches.size()};
     return w;
   }
 
@@ -246,25 +278,20 @@ class Recognizer::Impl {
   ContactOptions contact_options() const {
     ContactOptions options = options_.contacts;
     options.sigma_m = options_.sigma_m;
-    options.with_bias = options.with_bias || options_.method == RecognitionMethod::Tree;
+    options.form_deviation_m = options_.form_deviation_m;
     return options;
   }
 
-  /// The tree over the estimates at the windows' centres: those at the ends share their samples.
+  /// The tree over the contacts, whose windows share no sample.
   TreeResult tree_of(const std::vector<LocalizedContact>& contacts) const {
     std::vector<TreePoint> points;
     int patch = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-      const auto same = [&](std::size_t j) {
-        return j < contacts.size() && contacts[j].probe == contacts[i].probe &&
-               contacts[j].patch == contacts[i].patch;
-      };
-      if (i > 0 && !same(i - 1)) {
+      if (i > 0 && (contacts[i].probe != contacts[i - 1].probe ||
+                    contacts[i].patch != contacts[i - 1].patch)) {
         ++patch;
       }
-      if (i > 0 && same(i - 1) && same(i + 1)) {
-        points.push_back({contacts[i].estimate, patch});
-      }
+      points.push_back({contacts[i].estimate, patch});
     }
     SplineOptions spline;
     if (options_.method == RecognitionMethod::MaximumLikelihood) {
@@ -273,9 +300,27 @@ class Recognizer::Impl {
     return recognise_by_tree(points, options_.tree, spline);
   }
 
-  /// The paper's way: nothing but the tree's answer.
-  void walk_tree(double extent_m, Recognition* answer) const {
-    const TreeResult tree = tree_of(answer->contacts);
+  /// The paper's way: nothing but the tree's answer. Where a round tip's side is not told, every
+  /// way that it may lie is walked; a second one that ends in a class leaves a doubt.
+  void walk_tree(FitData data, bool sigma_known, const std::vector<StoredPatch>& patches,
+                 Recognition* answer) {
+    const double extent_m = data.scale;
+    const FitData reduced = fit_smooth_model(&data, sigma_known).reduced;
+    TreeResult tree;
+    std::size_t classes = 0;
+    for (const std::vector<int>& sides : possible_sides(patches, reduced)) {
+      std::vector<LocalizedContact> contacts = contacts_of(patches, sides);
+      TreeResult walked = tree_of(contacts);
+      const bool ends = walked.status == InvariantStatus::Ok &&
+                        walked.shape.curve_class != CurveClass::Unclassified;
+      const bool better =
+          ends && (classes == 0 || tail_probability(walked) > tail_probability(tree));
+      classes += ends ? 1 : 0;
+      if (better || answer->contacts.empty()) {
+        tree = std::move(walked);
+        answer->contacts = std::move(contacts);
+      }
+    }
     answer->decisions = tree.decisions;
     answer->shape = tree.shape;
     double squares = 0.0;
@@ -287,15 +332,17 @@ class Recognizer::Impl {
     }
     const auto letters =
         static_cast<Eigen::Index>(parameter_letters(tree.shape.curve_class).size());
-    // Of the shape only: the tree does not propagate the pose's.
+    // The tree does not propagate the pose's: what is not known has an infinite variance.
     answer->covariance = ShapePoseCovariance::Zero(letters + 3, letters + 3);
     answer->covariance.topLeftCorner(letters, letters) =
         tree.covariance.topLeftCorner(letters, letters);
+    answer->covariance.diagonal().tail<3>().setConstant(std::numeric_limits<double>::infinity());
     const bool told =
-        tree.status == InvariantStatus::Ok &&
+        tree.status == InvariantStatus::Ok && tree.world_T_curve &&
         is_determined(tree.shape, answer->covariance, extent_m, options_.determined_fraction);
-    answer->status = told ? RecognitionStatus::Recognized : RecognitionStatus::Ambiguous;
-    answer->doubt = told ? Doubt::None : Doubt::Undetermined;
+    answer->doubt = classes > 1 ? Doubt::TwoShapes : told ? Doubt::None : Doubt::Undetermined;
+    answer->status =
+        answer->doubt == Doubt::None ? RecognitionStatus::Recognized : RecognitionStatus::Ambiguous;
     Hypothesis only;
     only.shape = tree.shape;
     only.covariance = answer->covariance;
@@ -381,6 +428,7 @@ class Recognizer::Impl {
   std::vector<StoredPatch> clean_;  ///< the memory's patches without spikes
   std::vector<CleanPatch> clean_states_;
   std::optional<Last> last_;
+  std::optional<EstimateStream> stream_;
 };
 
 Recognizer::Recognizer(const RecognizerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -393,6 +441,10 @@ AddResult Recognizer::add(const PatchContext& context, std::span<const ContactSa
 }
 
 Recognition Recognizer::recognize() { return impl_->recognize(); }
+
+void Recognizer::stream_estimates(bool on) { impl_->stream_estimates(on); }
+
+std::vector<LocalizedContact> Recognizer::take_estimates() { return impl_->take_estimates(); }
 
 void Recognizer::reset() { impl_->reset(); }
 

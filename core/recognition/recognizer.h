@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "core/recognition/contacts.h"
 #include "core/recognition/recognition.h"
@@ -58,6 +59,15 @@ class Recognizer {
 
   /// The answer for all samples in memory. O(samples).
   Recognition recognize();
+
+  /// From now on the sliding windows run along with the samples (core/local/stream), or no longer.
+  /// They are off at first: nothing in recognize() needs them.
+  void stream_estimates(bool on);
+
+  /// The windows' estimates that no call before has given, in order for each probe, on the surface.
+  /// Those of a round tip wait for the first answer where the probe does not tell the side that the
+  /// material is on. t is 0.
+  std::vector<LocalizedContact> take_estimates();
 
   /// Forgets everything: a new object.
   void reset();

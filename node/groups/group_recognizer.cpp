@@ -40,6 +40,7 @@ std::size_t GroupRecognizer::take(const QueuedContacts& message,
 
 void GroupRecognizer::run() {
   answer.samples_refused = 0;
+  recognizer_.stream_estimates(wants_estimates);
   contacts.for_each([&](const QueuedContacts& message, std::span<const ContactSample> samples) {
     answer.samples_refused += take(message, samples);
   });
@@ -63,20 +64,13 @@ void GroupRecognizer::run() {
   message.set_newest_batch_source(newest_.source);
   message.set_compute_ns(answer.compute_ns);
   answer.estimates.clear();
-  if (wants_estimates) fill_estimates(recognition);
+  take_estimates();
 }
 
-void GroupRecognizer::fill_estimates(const Recognition& recognition) {
-  std::vector<const LocalizedContact*> latest(members_.size(), nullptr);
-  for (const LocalizedContact& contact : recognition.contacts) {
-    if (contact.probe >= latest.size()) continue;
-    const LocalizedContact*& known = latest[contact.probe];
-    if (known == nullptr || contact.patch >= known->patch) known = &contact;
-  }
-  for (const LocalizedContact* contact : latest) {
-    if (contact == nullptr) continue;
+void GroupRecognizer::take_estimates() {
+  for (const LocalizedContact& taken : recognizer_.take_estimates()) {
     v1::LocalEstimate& estimate = answer.estimates.emplace_back();
-    to_wire(contact->estimate, source_of(contact->probe, contact->patch), estimate);
+    to_wire(taken.estimate, source_of(taken.probe, taken.patch), estimate);
     estimate.mutable_header()->set_frame(frame_);
   }
 }

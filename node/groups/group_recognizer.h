@@ -23,7 +23,7 @@ class GroupRecognizer : public Work {
  public:
   struct Answer {
     v1::Recognition recognition;               ///< of the header, the frame only
-    std::vector<v1::LocalEstimate> estimates;  ///< the latest place of each probe; the same
+    std::vector<v1::LocalEstimate> estimates;  ///< new ones, in order for each probe; the same
     std::size_t samples_refused = 0;           ///< by the recognizer
     std::int64_t compute_ns = 0;
   };
@@ -60,7 +60,7 @@ class GroupRecognizer : public Work {
   };
 
   std::size_t take(const QueuedContacts& message, std::span<const ContactSample> samples);
-  void fill_estimates(const Recognition& recognition);
+  void take_estimates();
 
   std::string name_;
   double gap_break_spacings_;

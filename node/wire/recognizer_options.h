@@ -59,8 +59,6 @@ void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& vi
         recognizer.contacts.least_windows);
   visit({"window_samples", "Local estimates: fewest samples of a window", 4, kMostSamples},
         recognizer.contacts.window_samples);
-  visit({"with_bias", "Local estimates: standard deviations that hold the window's bias too"},
-        recognizer.contacts.with_bias);
   visit({"tree_significance", "Tree: probability that a test rejects the true class", 0, 1},
         recognizer.tree.significance);
   visit({"tree_relative_floor", "Tree: standard deviation added to every estimate", 0, 1},

@@ -9,7 +9,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # Each room may include itself, the rooms before it in its list, and those of the lists named in brackets.
 CORE = [
-    "core/numerics", "core/curves", "core/curves/algebraic", "core/local", "core/local/spikes", "core/invariants",
+    "core/numerics", "core/curves", "core/curves/algebraic", "core/local", "core/local/spikes", "core/local/stream",
+    "core/invariants",
     "core/invariants/signature_fit", "core/recognition/samples", "core/recognition/smooth", "core/recognition/fit",
     "core/recognition/given", "core/recognition/posterior", "core/recognition/weigh", "core/recognition/verdict",
     "core/recognition/tree", "core/recognition", "core/part",

@@ -1,14 +1,17 @@
 // Cost of the local estimators: per estimate over 111 samples, and per sample of a stream.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "core/local/adaptive_jet.h"
 #include "core/local/estimator.h"
 #include "core/local/noise.h"
 #include "core/local/spikes/spikes.h"
+#include "core/local/stream/sliding_window.h"
 
 namespace palpate {
 namespace {
@@ -63,6 +66,36 @@ void stream_per_sample(benchmark::State& state) {
   }
 }
 BENCHMARK(stream_per_sample)->ArgsProduct({{0, 1, 2, 3}, {15, 31, 51, 75, 111, 151}});
+
+/// The window that the data choose, along circles on which it holds more and more samples: the
+/// label is their mean number. Shift 4: a quarter of the samples brings an estimate.
+void sliding_window_per_sample(benchmark::State& state) {
+  const auto per_radian = static_cast<double>(state.range(0));
+  std::mt19937_64 rng(1);
+  std::normal_distribution<double> normal(0.0, kSigma);
+  std::vector<Vec2> samples;
+  for (int i = 0; i < 8000; ++i) {
+    const double angle = i / per_radian;
+    samples.emplace_back(0.025 * std::cos(angle) + normal(rng),
+                         0.025 * std::sin(angle) + normal(rng));
+  }
+  SlidingWindow window({.sigma_m = kSigma});
+  std::size_t i = 0;
+  double held = 0.0;
+  double estimates = 0.0;
+  for (auto _ : state) {
+    if (i == samples.size()) {
+      i = 0;
+      window.reset();
+    }
+    if (const auto estimate = window.add(samples[i++])) {
+      held += static_cast<double>(estimate->end_sample - estimate->first_sample);
+      estimates += 1.0;
+    }
+  }
+  state.SetLabel(std::to_string(std::lround(held / std::max(estimates, 1.0))) + " samples");
+}
+BENCHMARK(sliding_window_per_sample)->Arg(25)->Arg(50)->Arg(100)->Arg(200)->Arg(400);
 
 void jet_degree(benchmark::State& state) {
   const std::vector<Vec2> samples = arc(111);

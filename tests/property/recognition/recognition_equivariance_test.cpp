@@ -136,7 +136,8 @@ TEST_P(Equivariance, ContactsLieOnTheCurveWhereTheySay) {
   }
   const auto curve = make_curve(answer.shape.curve_class, answer.shape.values);
   ASSERT_TRUE(curve.has_value());
-  EXPECT_GE(answer.contacts.size(), 8U);
+  // Two windows at least of each of two patches.
+  EXPECT_GE(answer.contacts.size(), 4U);
   for (const LocalizedContact& contact : answer.contacts) {
     const Vec2 placed = answer.world_T_curve * position(*curve, contact.t);
     EXPECT_LT((placed - contact.estimate.position).norm(), 10.0 * scene.sigma_m);

@@ -1,0 +1,76 @@
+#include "core/recognition/estimate_stream.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/local/tip_radius.h"
+
+namespace palpate {
+namespace {
+
+/// As the probe says: +1 where the material is on the right, so that the tip lies left of travel.
+int stated_side(MaterialSide side) {
+  switch (side) {
+    case MaterialSide::Right:
+      return 1;
+    case MaterialSide::Left:
+      return -1;
+    case MaterialSide::Unspecified:
+      break;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void EstimateStream::add(const PatchContext& context, std::span<const ContactSample> samples) {
+  auto probe = std::find_if(probes_.begin(), probes_.end(), [&](const Probe& known) {
+    return known.context.probe == context.probe;
+  });
+  if (probe == probes_.end()) {
+    probes_.push_back({context, SlidingWindow(options_)});
+    probe = probes_.end() - 1;
+  } else if (probe->context.patch != context.patch) {
+    probe->window.reset();
+  }
+  probe->context = context;
+  for (const ContactSample& sample : samples) {
+    const bool repeated = probe->window.count() > 0 && sample.position_m == probe->newest_m;
+    if (!sample.position_m.allFinite() || !std::isfinite(sample.sigma_m) || sample.sigma_m < 0.0 ||
+        repeated) {
+      continue;
+    }
+    probe->newest_m = sample.position_m;
+    if (const auto estimate = probe->window.add(sample.position_m, sample.sigma_m);
+        estimate && estimate->result) {
+      probe->waiting.push_back({context, estimate->result.estimate});
+      if (probe->waiting.size() > kMostWaiting) {
+        probe->waiting.pop_front();
+      }
+    }
+  }
+}
+
+std::vector<LocalizedContact> EstimateStream::take(const SideOf& side_of) {
+  std::vector<LocalizedContact> taken;
+  for (Probe& probe : probes_) {
+    while (!probe.waiting.empty()) {
+      const Waiting& next = probe.waiting.front();
+      int side = 0;
+      if (next.context.tip_radius_m > 0.0) {
+        side = stated_side(next.context.material_side);
+        side = side != 0 ? side : side_of(next.context.probe, next.context.patch);
+        if (side == 0) {
+          break;
+        }
+      }
+      if (const auto surface = surface_from_tip(next.estimate, side * next.context.tip_radius_m)) {
+        taken.push_back({next.context.probe, next.context.patch, 0.0, *surface});
+      }
+      probe.waiting.pop_front();
+    }
+  }
+  return taken;
+}
+
+}  // namespace palpate

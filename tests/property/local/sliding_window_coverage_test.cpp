@@ -1,0 +1,127 @@
+// The sliding window along strokes of 2 to 300 mm, of every class and of none, from the first
+// window to the last: its published deviations hold its errors, noise and bias together.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include "core/local/stream/sliding_window.h"
+#include "tests/support/stroke.h"
+
+namespace palpate {
+namespace {
+
+constexpr std::array kLengths_m = {0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.3};
+/// Of the size of the parts.
+constexpr std::array kNoises = {0.0, 1e-5, 1e-4, 5e-4, 2e-3};
+constexpr double kSize_m = 0.025;
+constexpr int kStrokes = 2;  ///< of each kind
+/// Windows looked at along a stroke, first and last among them: neighbours share their samples.
+constexpr std::size_t kWindows = 12;
+/// What a noise of zero is stated as: double precision's own at 0.2 m from the origin. [m]
+constexpr double kRounding_m = 1e-16;
+
+/// Of kappa and kappa_s.
+struct Tally {
+  double count = 0.0;
+  std::array<double, 2> within{};
+  std::array<double, 2> squares{};
+
+  void add(std::size_t k, double z) {
+    within[k] += std::abs(z) <= 2.0 ? 1.0 : 0.0;
+    squares[k] += z * z;
+  }
+  double share(std::size_t k) const { return within[k] / count; }
+  double rms(std::size_t k) const { return std::sqrt(squares[k] / count); }
+  void print(const std::string& name) const {
+    std::printf("%-30s %6.0f   within 2: %5.1f %% %5.1f %%   rms z: %5.2f %5.2f\n", name.c_str(),
+                count, 100.0 * share(0), 100.0 * share(1), rms(0), rms(1));
+  }
+};
+
+struct Tallies {
+  Tally pooled;
+  std::map<std::string, Tally> classes;
+  std::map<std::string, Tally> cells;  ///< class and length
+};
+
+Tallies walk(bool stated) {
+  Tallies tallies;
+  std::mt19937_64 rng(7);
+  std::normal_distribution<double> normal;
+  for (std::size_t shape = 0; shape < test::kStrokeShapes; ++shape) {
+    for (const double length : kLengths_m) {
+      for (const double noise : kNoises) {
+        for (int i = 0; i < kStrokes; ++i) {
+          const test::Stroke stroke = test::random_stroke(shape, length, rng);
+          // 0.2 mm apart, closer where that would be fewer than 60 samples.
+          const auto stride = static_cast<std::size_t>(
+              std::clamp(length / 60.0 / stroke.step_m, 1.0, 2e-4 / stroke.step_m));
+          const double sigma = noise * kSize_m;
+          SlidingWindow window({.sigma_m = stated ? std::max(sigma, kRounding_m) : 0.0});
+          std::vector<LocalEstimate> estimates;
+          for (const Vec2& exact : stroke.samples(stride)) {
+            const double x = normal(rng);
+            const double y = normal(rng);
+            const auto estimate = window.add(exact + sigma * Vec2(x, y));
+            if (estimate && estimate->result) {
+              estimates.push_back(estimate->result.estimate);
+            }
+          }
+          const std::size_t step = std::max<std::size_t>(1, estimates.size() / kWindows);
+          char cell[64];
+          std::snprintf(cell, sizeof cell, "%s, %.0f mm", stroke.name.c_str(), 1e3 * length);
+          for (std::size_t e = 0; e < estimates.size(); e += step) {
+            const Eigen::Vector3d error = stroke.error_of(estimates[e]);
+            for (Tally* tally :
+                 {&tallies.pooled, &tallies.classes[stroke.name], &tallies.cells[cell]}) {
+              tally->count += 1.0;
+              for (std::size_t k = 0; k < 2; ++k) {
+                const auto row = static_cast<Eigen::Index>(k) + 2;
+                tally->add(k, error[row - 1] / std::sqrt(estimates[e].covariance(row, row)));
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+  return tallies;
+}
+
+class SlidingWindowCoverage : public testing::TestWithParam<bool> {};
+
+INSTANTIATE_TEST_SUITE_P(Noise, SlidingWindowCoverage, testing::Bool(),
+                         [](const auto& test) { return test.param ? "stated" : "estimated"; });
+
+TEST_P(SlidingWindowCoverage, PublishedDeviationsHoldTheErrors) {
+  const Tallies tallies = walk(GetParam());
+  for (const auto& [name, tally] : tallies.cells) {
+    tally.print(name);
+    // A short stroke's windows share one estimate of the noise, right to some 16 %: the ten strokes
+    // of a cell tell too little there.
+    for (std::size_t k = 0; k < 2 && GetParam(); ++k) {
+      EXPECT_GE(tally.share(k), 0.90) << name << (k == 0 ? " kappa" : " kappa_s");
+    }
+  }
+  for (const auto& [name, tally] : tallies.classes) {
+    tally.print(name);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_LE(tally.rms(k), 1.1) << name << (k == 0 ? " kappa" : " kappa_s");
+      // Not bought by width: the published variance is at most twice the errors'.
+      EXPECT_GE(tally.rms(k), std::sqrt(0.5)) << name << (k == 0 ? " kappa" : " kappa_s");
+    }
+  }
+  tallies.pooled.print("all");
+  for (std::size_t k = 0; k < 2; ++k) {
+    // 95 % in the limit of a normal law; two per cent are more than the scatter of so many windows.
+    EXPECT_GE(tallies.pooled.share(k), 0.93) << (k == 0 ? "kappa" : "kappa_s");
+  }
+}
+
+}  // namespace
+}  // namespace palpate

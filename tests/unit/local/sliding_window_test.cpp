@@ -1,0 +1,168 @@
+// The sliding window: its reduced samples say what the samples say, its cost and memory are
+// bounded.
+#include "core/local/stream/sliding_window.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/local/stream/window_fit.h"
+#include "tests/support/allocation_counter.h"
+#include "tests/support/test_rng.h"
+#include "tests/support/touched_arc.h"
+
+namespace palpate {
+namespace {
+
+/// Sums of weight, u, v, u^2, u v, u^3 along the principal axis x.
+std::array<double, 6> sums_of(std::span<const PathNode> nodes, const Vec2& origin) {
+  std::array<double, 6> sums{};
+  for (const PathNode& node : nodes) {
+    const Vec2 d = node.position_m - origin;
+    const std::array<double, 6> terms = {1.0,           d.x(),         d.y(),
+                                         d.x() * d.x(), d.x() * d.y(), d.x() * d.x() * d.x()};
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      sums[i] += node.weight * terms[i];
+    }
+  }
+  return sums;
+}
+
+TEST(TwoNodes, KeepWhatALeastSquaresFitSees) {
+  // v is a parabola whose product with u has no sum: the principal axis is x.
+  const std::vector<PathNode> many = {
+      {{-3.0, 0.1}, 1.0}, {{-1.0, -0.1}, 2.0}, {{1.0, -0.1}, 2.0}, {{3.0, 0.1}, 1.0}};
+  const auto two = two_nodes(many);
+  const auto expected = sums_of(many, {0.0, 0.0});
+  const auto found = sums_of(two, {0.0, 0.0});
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(found[i], expected[i], 1e-13) << i;
+  }
+}
+
+TEST(TwoNodes, OfSamplesInOnePlaceLieThere) {
+  const std::vector<PathNode> many(5, {{2.0, -1.0}, 0.5});
+  const auto two = two_nodes(many);
+  EXPECT_EQ(two[0].position_m, Vec2(2.0, -1.0));
+  EXPECT_EQ(two[0].weight + two[1].weight, 2.5);
+}
+
+TEST(NodePyramid, HoldsEverySampleOfItsWindowOnce) {
+  NodePyramid pyramid;
+  std::vector<PathNode> nodes;
+  for (int i = 0; i < 5000; ++i) {
+    pyramid.add({0.001 * i, 0.0}, 1.0);
+    for (const std::uint64_t length : {16, 31, 100, 777, 4999}) {
+      if (length > pyramid.count()) {
+        continue;
+      }
+      const std::uint64_t asked = pyramid.count() - length;
+      const std::uint64_t first = pyramid.window(asked, &nodes);
+      ASSERT_GE(first, asked);
+      // No more than one block of a sixteenth of the window is left out.
+      ASSERT_LE(16 * (first - asked), length + 16);
+      ASSERT_LE(nodes.size(), NodePyramid::kMostNodes);
+      double weight = 0.0;
+      double moment = 0.0;
+      for (const PathNode& node : nodes) {
+        weight += node.weight;
+        moment += node.weight * node.position_m.x();
+      }
+      const auto held = static_cast<double>(pyramid.count() - first);
+      ASSERT_NEAR(weight, held, 1e-9);
+      ASSERT_NEAR(moment / weight, 0.0005 * static_cast<double>(first + pyramid.count() - 1), 1e-9);
+    }
+  }
+}
+
+/// Reduced or not, a window gives the same estimate: to a quarter of its standard deviation, which
+/// adds three per cent to what the estimate errs.
+TEST(NodePyramid, AWindowsEstimateIsThatOfItsSamples) {
+  auto rng = test::test_rng();
+  for (const test::TouchedArc& arc : test::touched_arcs()) {
+    for (const int count : {64, 128, 256, 512, 1024}) {
+      const double sigma = 4e-6;
+      const std::vector<Vec2> samples = test::with_noise(test::samples_of(arc, count), sigma, rng);
+      NodePyramid pyramid;
+      for (const Vec2& p : samples) {
+        pyramid.add(p, 1.0);
+      }
+      std::vector<PathNode> reduced;
+      ASSERT_EQ(pyramid.window(0, &reduced), 0U);
+      std::vector<PathNode> all;
+      for (const Vec2& p : samples) {
+        all.push_back({p, 1.0});
+      }
+      const WindowFit fast = fit_window(reduced, sigma, 0.0);
+      const WindowFit direct = fit_window(all, sigma, 0.0);
+      ASSERT_EQ(fast.result.status, direct.result.status) << arc.name << " " << count;
+      if (!direct.result || !direct.explained) {
+        continue;
+      }
+      const LocalEstimate& a = fast.result.estimate;
+      const LocalEstimate& b = direct.result.estimate;
+      // Each against the truth at its own place: the middles of the two lie a little apart.
+      const Eigen::Vector4d apart = test::error_of(a, arc) - test::error_of(b, arc);
+      for (int k = 1; k < 4; ++k) {
+        EXPECT_LT(std::abs(apart[k]) / std::sqrt(b.covariance(k, k)), 0.25)
+            << arc.name << " " << count << " " << k;
+      }
+      for (int k = 0; k < 4; ++k) {
+        EXPECT_NEAR(a.covariance(k, k) / b.covariance(k, k), 1.0, 0.1) << arc.name << " " << count;
+      }
+    }
+  }
+}
+
+TEST(SlidingWindow, EstimatesEveryShiftFromTheFirstWindowOnAndAllocatesNothing) {
+  auto rng = test::test_rng();
+  const std::vector<Vec2> samples =
+      test::with_noise(test::samples_of(test::touched_arcs()[2], 300), 2e-5, rng);
+  SlidingWindow window({.sigma_m = 2e-5});
+  std::uint64_t expected = kFewestWindowNodes;
+  std::uint64_t first = 0;
+  const std::size_t before = test::allocation_count();
+  std::uint64_t count = 0;
+  for (const Vec2& p : samples) {
+    const auto estimate = window.add(p);
+    ++count;
+    ASSERT_EQ(estimate.has_value(), count == expected);
+    if (estimate) {
+      expected += 4;
+      ASSERT_EQ(estimate->end_sample, count);
+      ASSERT_GE(estimate->first_sample, first);
+      first = estimate->first_sample;
+      ASSERT_EQ(estimate->result.status, LocalStatus::Ok);
+    }
+  }
+  EXPECT_EQ(test::allocation_count(), before);
+  window.reset();
+  EXPECT_EQ(window.count(), 0U);
+}
+
+/// A circle far away from the origin, for a hundred turns: the last window is as good as the first.
+TEST(SlidingWindow, GathersNoRounding) {
+  constexpr double kRadius = 0.02;
+  const Vec2 centre(1e4, -2e4);
+  SlidingWindow window({.sigma_m = 2e-6});
+  auto rng = test::test_rng();
+  std::normal_distribution<double> normal;
+  double worst = 0.0;
+  for (int i = 0; i < 62832; ++i) {
+    const double angle = 0.01 * i;
+    const Vec2 noise(normal(rng), normal(rng));
+    const auto estimate =
+        window.add(centre + kRadius * Vec2(std::cos(angle), std::sin(angle)) + 2e-6 * noise);
+    if (i > 61000 && estimate) {
+      ASSERT_EQ(estimate->result.status, LocalStatus::Ok);
+      worst = std::max(worst, std::abs(estimate->result.estimate.kappa - 1.0 / kRadius) /
+                                  std::sqrt(estimate->result.estimate.covariance(2, 2)));
+    }
+  }
+  // Some ten independent windows: a normal law is beyond five once in 10^5 such runs.
+  EXPECT_GT(worst, 0.0);
+  EXPECT_LT(worst, 5.0);
+}
+
+}  // namespace
+}  // namespace palpate
