@@ -283,9 +283,11 @@ void add_answer(const ContactGroup& group, const v1::Recognition& answer, SvgTab
   table.row("group", group.name + ", object " + std::to_string(group.object));
   // Of a long path the end tells more.
   constexpr std::size_t kMostOfPath = 36;
-  const bool is_long = group.file.size() > kMostOfPath;
-  table.row("file",
-            is_long ? "..." + group.file.substr(group.file.size() - kMostOfPath) : group.file);
+  std::string file = group.file;
+  if (file.size() > kMostOfPath) {
+    file.replace(0, file.size() - kMostOfPath, "...");
+  }
+  table.row("file", file);
   table.gap();
   table.words(advice_text(answer));
   table.gap();
