@@ -6,6 +6,7 @@
 #include "core/curves/algebraic/canonical_conic.h"
 #include "core/recognition/fit/touchable.h"
 #include "core/recognition/posterior/class_evidence.h"
+#include "core/recognition/smooth/arcs.h"
 
 namespace palpate {
 namespace {
@@ -46,36 +47,53 @@ ClassFit as_fit(const TouchedCurve& mode, double inflation) {
 
 }  // namespace
 
-ClassFits with_conic_mode(ClassFits fits, const FitData& reduced, double inflation) {
-  auto& ellipse = fits[static_cast<std::size_t>(CurveClass::Ellipse)];
-  const auto& circle = fits[static_cast<std::size_t>(CurveClass::Circle)];
-  if (has_optimum(ellipse) || has_optimum(fits[static_cast<std::size_t>(CurveClass::Hyperbola)]) ||
-      !circle) {
-    return fits;
+Contenders with_conic_mode(Contenders contenders, const Ground& ground, unsigned classes) {
+  constexpr auto kEllipse = static_cast<std::size_t>(CurveClass::Ellipse);
+  constexpr auto kHyperbola = static_cast<std::size_t>(CurveClass::Hyperbola);
+  const FitData& reduced = ground.reduced;
+  const double inflation = ground.likelihood.inflation();
+  const auto& line = contenders.coarse[static_cast<std::size_t>(CurveClass::Line)];
+  const auto& circle = contenders.coarse[static_cast<std::size_t>(CurveClass::Circle)];
+  const bool wanted =
+      (classes & (1U << kEllipse)) != 0 &&
+      static_cast<int>(ground.arcs.data.points.size()) > degrees_of_freedom(CurveClass::Ellipse);
+  if (!wanted || has_optimum(contenders.coarse[kEllipse]) ||
+      has_optimum(contenders.coarse[kHyperbola]) || !circle ||
+      (line && fits_well(line->chi2 / inflation, reduced.points.size()))) {
+    return contenders;
   }
   const auto start = to_canonical(*circle, reduced);
   if (!start) {
-    return fits;
+    return contenders;
   }
   // Half a right angle apart: an ellipse has two valleys, a right angle apart, and ridges between.
   // None along the points' principal axes, where patches across from each other may have a ridge.
   constexpr int kDirections = 4;
   constexpr double kApart = kPi / kDirections;
   const double first = reduced.frame.theta + 0.5 * kApart - start->world_T_curve.theta;
+  std::optional<ClassFit> best;
   double least = 0.0;
   for (int i = 0; i < kDirections; ++i) {
     const auto mode = posterior_mode(as_ellipse(*start, first + kApart * i), reduced, inflation);
     const double potential = mode ? 0.5 * mode->chi2 - mode->log_prior : 0.0;
-    if (!mode || (has_optimum(ellipse) && potential >= least)) {
+    if (!mode || (best && potential >= least)) {
       continue;
     }
     ClassFit fit = as_fit(*mode, inflation);
     if (is_touchable(*fit.implicit, reduced)) {
-      ellipse = std::move(fit);
+      best = std::move(fit);
       least = potential;
     }
   }
-  return fits;
+  if (best) {
+    contenders.fits[kEllipse] = best;
+    contenders.fits[kEllipse]->chi2 += ground.arcs.smooth.chi2;
+    contenders.coarse[kEllipse] = std::move(best);
+    contenders.evidences =
+        evidences_of(contenders.fits, contenders.coarse, ground.arcs.smooth, reduced,
+                     ground.likelihood, std::move(contenders.evidences));
+  }
+  return contenders;
 }
 
 }  // namespace palpate

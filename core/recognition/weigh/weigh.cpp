@@ -25,6 +25,14 @@ ClassFits testable(ClassFits fits, unsigned classes, std::size_t points) {
   return fits;
 }
 
+/// Whether one class has all but what no answer depends on.
+bool is_sure(const ClassProbabilities& probabilities) {
+  constexpr double kElsewhere = 1e-3;
+  const CurveClass best = most_probable(probabilities);
+  return best != CurveClass::Unclassified &&
+         probabilities[static_cast<std::size_t>(best)] > 1.0 - kElsewhere;
+}
+
 /// A class placed on all points, and its chi-square there.
 struct Placed {
   CanonicalFit canonical;
@@ -89,13 +97,14 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   SidedFits sided = fit_over_sides(patches, arcs, stated, options.classes, starts);
   Ground ground{arcs, sided.reduced, stated};
   Contenders contenders;
-  contenders.coarse =
-      testable(with_conic_mode(std::move(sided.fits), sided.reduced, stated.inflation()),
-               options.classes, arcs.data.points.size());
+  contenders.coarse = testable(std::move(sided.fits), options.classes, arcs.data.points.size());
   contenders.fits = as_told(contenders.coarse, arcs.smooth);
 
   const double margin = std::max(log_odds(options.recognized_probability), 0.0);
   contenders = refine_plausible(std::move(contenders), ground, margin);
+  if (!is_sure(probabilities_of(contenders, ground))) {
+    contenders = with_conic_mode(std::move(contenders), ground, options.classes);
+  }
   if (most_probable(probabilities_of(contenders, ground)) == CurveClass::Unclassified) {
     contenders = refine_sharp_bends(std::move(contenders), ground);
   }

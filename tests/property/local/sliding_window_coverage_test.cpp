@@ -11,6 +11,7 @@
 
 #include "core/local/stream/sliding_window.h"
 #include "tests/support/stroke.h"
+#include "tests/support/test_rng.h"
 
 namespace palpate {
 namespace {
@@ -51,7 +52,7 @@ struct Tallies {
 
 Tallies walk(bool stated) {
   Tallies tallies;
-  std::mt19937_64 rng(7);
+  std::mt19937_64 rng = test::test_rng();
   std::normal_distribution<double> normal;
   for (std::size_t shape = 0; shape < test::kStrokeShapes; ++shape) {
     for (const double length : kLengths_m) {
