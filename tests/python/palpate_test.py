@@ -160,6 +160,7 @@ class System(unittest.TestCase):
         # Its own process: this one has the messages from another folder.
         script = f"""
 import palpate, numpy as np
+from palpate.v1 import curve_pb2
 with palpate.Planner(RESULTS) as planner, palpate.Probe("finger", CONTACTS, sigma=0.02, unit="mm") as probe:
     for k, (start, end) in enumerate([(0.3, 1.5), (2.3, 3.6)]):
         t = np.linspace(start, end, 111)
@@ -169,7 +170,7 @@ with palpate.Planner(RESULTS) as planner, palpate.Probe("finger", CONTACTS, sigm
         answer = planner.receive(timeout=20)
         if answer.sample_count == 222:
             break
-    print(answer.curve_class, round(1e3 * answer.parameters.a))
+    print(curve_pb2.CurveClass.Name(answer.curve_class), round(1e3 * answer.parameters.a))
     try:
         planner.receive(timeout=0.2)
     except TimeoutError as error:
@@ -187,7 +188,7 @@ except TimeoutError as error:
                                   text=True, timeout=60)
         self.assertEqual(done.returncode, 0, done.stderr)
         lines = done.stdout.splitlines()
-        self.assertEqual(lines[0], "3 25")
+        self.assertEqual(lines[0], "CURVE_CLASS_ELLIPSE 25")
         self.assertIn("no answer from", lines[1])
         self.assertIn("no recognizer listens at", lines[2])
 

@@ -54,10 +54,17 @@ Tallies walk(bool stated) {
   Tallies tallies;
   std::mt19937_64 rng = test::test_rng();
   std::normal_distribution<double> normal;
+  constexpr int kAll = 100;
+  const int every =
+      std::max(1, kAll / test::stress_count(kAll));  // of the strokes, under a sanitizer
+  int turn = 0;
   for (std::size_t shape = 0; shape < test::kStrokeShapes; ++shape) {
     for (const double length : kLengths_m) {
       for (const double noise : kNoises) {
         for (int i = 0; i < kStrokes; ++i) {
+          if (turn++ % every != 0) {
+            continue;
+          }
           const test::Stroke stroke = test::random_stroke(shape, length, rng);
           // 0.2 mm apart, closer where that would be fewer than 60 samples.
           const auto stride = static_cast<std::size_t>(
@@ -101,12 +108,18 @@ INSTANTIATE_TEST_SUITE_P(Noise, SlidingWindowCoverage, testing::Bool(),
 
 TEST_P(SlidingWindowCoverage, PublishedDeviationsHoldTheErrors) {
   const Tallies tallies = walk(GetParam());
+  if (!test::counts_tell()) {
+    return;
+  }
   for (const auto& [name, tally] : tallies.cells) {
     tally.print(name);
-    // A short stroke's windows share one estimate of the noise, right to some 16 %: the ten strokes
-    // of a cell tell too little there.
-    for (std::size_t k = 0; k < 2 && GetParam(); ++k) {
-      EXPECT_GE(tally.share(k), 0.90) << name << (k == 0 ? " kappa" : " kappa_s");
+    // 0.9 less what chance takes from it with probability 1e-3; the windows of a stroke share
+    // samples and, where it is estimated, the noise, and count as four.
+    constexpr double kDeviations = 3.1;
+    constexpr double kIndependent = 4.0 * kStrokes * kNoises.size();
+    const double least = 0.90 - kDeviations * std::sqrt(0.90 * 0.10 / kIndependent);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_GE(tally.share(k), least) << name << (k == 0 ? " kappa" : " kappa_s");
     }
   }
   for (const auto& [name, tally] : tallies.classes) {
