@@ -30,17 +30,23 @@ constexpr double kRounding_m = 1e-16;
 struct Tally {
   double count = 0.0;
   std::array<double, 2> within{};
-  std::array<double, 2> squares{};
+  std::array<double, 2> gross{};
+  std::array<double, 2> squares{};  ///< of those that are not gross
 
   void add(std::size_t k, double z) {
+    constexpr double kGross = 4.0;
     within[k] += std::abs(z) <= 2.0 ? 1.0 : 0.0;
-    squares[k] += z * z;
+    gross[k] += std::abs(z) > kGross ? 1.0 : 0.0;
+    squares[k] += std::abs(z) > kGross ? 0.0 : z * z;
   }
   double share(std::size_t k) const { return within[k] / count; }
-  double rms(std::size_t k) const { return std::sqrt(squares[k] / count); }
+  double gross_share(std::size_t k) const { return gross[k] / count; }
+  double rms(std::size_t k) const { return std::sqrt(squares[k] / (count - gross[k])); }
   void print(const std::string& name) const {
-    std::printf("%-30s %6.0f   within 2: %5.1f %% %5.1f %%   rms z: %5.2f %5.2f\n", name.c_str(),
-                count, 100.0 * share(0), 100.0 * share(1), rms(0), rms(1));
+    std::printf(
+        "%-30s %6.0f   within 2: %5.1f %% %5.1f %%   beyond 4: %4.0f %4.0f   rms z: %5.2f %5.2f\n",
+        name.c_str(), count, 100.0 * share(0), 100.0 * share(1), gross[0], gross[1], rms(0),
+        rms(1));
   }
 };
 
@@ -125,6 +131,9 @@ TEST_P(SlidingWindowCoverage, PublishedDeviationsHoldTheErrors) {
   for (const auto& [name, tally] : tallies.classes) {
     tally.print(name);
     for (std::size_t k = 0; k < 2; ++k) {
+      // Beside a cusp the curvature has no bound, and a window no polynomial: a known limit.
+      constexpr double kMostGross = 0.01;
+      EXPECT_LE(tally.gross_share(k), kMostGross) << name << (k == 0 ? " kappa" : " kappa_s");
       EXPECT_LE(tally.rms(k), 1.1) << name << (k == 0 ? " kappa" : " kappa_s");
       // Not bought by width: the published variance is at most twice the errors'.
       EXPECT_GE(tally.rms(k), std::sqrt(0.5)) << name << (k == 0 ? " kappa" : " kappa_s");
