@@ -199,8 +199,8 @@ class ArmSearch {
     for (std::size_t p = 0; p < order_.size(); ++p) {
       order_[p] = p;
     }
-    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
-      return patches[a].size() > patches[b].size();
+    std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+      return patches[a].size() != patches[b].size() ? patches[a].size() > patches[b].size() : a < b;
     });
   }
 
