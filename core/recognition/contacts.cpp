@@ -1,5 +1,6 @@
 #include "core/recognition/contacts.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -1,6 +1,7 @@
 #include "core/recognition/posterior/class_evidence.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
