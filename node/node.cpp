@@ -1,5 +1,6 @@
 #include "node/node.h"
 
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -243,6 +244,7 @@ void Node::tick(SteadyTime now) {
                                       std::chrono::duration<double>(options_.probe_timeout_s), now);
   if (now >= next_status_) {
     log_rejections();
+    give_memory_back();
     publisher_.repeat_all();
     publish_status(now);
     compute_times_.clear();
@@ -253,15 +255,29 @@ void Node::tick(SteadyTime now) {
   }
 }
 
+std::uint64_t Node::connections_cut() const {
+  std::uint64_t count = 0;
+  for (const PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
+    if (peers != nullptr) count += peers->cut_count();
+  }
+  return count;
+}
+
+// What a peer made libzmq hold until it was cut is in scattered pieces, which the allocator would
+// keep. Asked for in two status periods: libzmq lets go of a peer a while after it has been cut.
+void Node::give_memory_back() {
+  const std::uint64_t cuts = connections_cut();
+  if (cuts != cuts_before_last_status_) ::malloc_trim(0);
+  cuts_before_last_status_ = std::exchange(cuts_at_last_status_, cuts);
+}
+
 void Node::publish_status(SteadyTime now) {
   NodeVitals vitals;
   vitals.uptime_s = std::chrono::duration<double>(now - started_).count();
   vitals.version = PALPATE_VERSION;
   vitals.recognitions_published = recognitions_published_;
   vitals.clients_denied = zap_ ? zap_->denied_count() : 0;
-  for (const PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
-    if (peers != nullptr) vitals.connections_cut += peers->cut_count();
-  }
+  vitals.connections_cut = connections_cut();
   fill_status(intake_, compute_times_, vitals, now, status_message_);
   publisher_.publish(TopicKind::Status, options_.name, *status_message_.mutable_header(),
                      status_message_);

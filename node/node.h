@@ -69,6 +69,8 @@ class Node {
   void tick(SteadyTime now);
   void publish_status(SteadyTime now);
   void log_rejections();
+  std::uint64_t connections_cut() const;
+  void give_memory_back();
   void reload_clients();
   void finish();
 
@@ -85,6 +87,8 @@ class Node {
   ResultPublisher publisher_;
   ComputeTimes compute_times_;
   std::uint64_t recognitions_published_ = 0;
+  std::uint64_t cuts_at_last_status_ = 0;
+  std::uint64_t cuts_before_last_status_ = 0;
   std::size_t at_a_time_;  // recognitions, where none is slow
   Workers workers_;
   std::vector<InWork> in_work_;  // by worker

@@ -4,25 +4,9 @@
 #include <cmath>
 
 #include "core/local/tip_radius.h"
+#include "core/recognition/samples/tip_sides.h"
 
 namespace palpate {
-namespace {
-
-/// As the probe says: +1 where the material is on the right, so that the tip lies left of travel.
-int stated_side(MaterialSide side) {
-  switch (side) {
-    case MaterialSide::Right:
-      return 1;
-    case MaterialSide::Left:
-      return -1;
-    case MaterialSide::Unspecified:
-      break;
-  }
-  return 0;
-}
-
-}  // namespace
-
 void EstimateStream::add(const PatchContext& context, std::span<const ContactSample> samples) {
   auto probe = std::find_if(probes_.begin(), probes_.end(), [&](const Probe& known) {
     return known.context.probe == context.probe;

@@ -28,8 +28,6 @@ struct RecognizerOptions {
   /// (of 1 for the dimensionless b and c of the cubics): beyond it the linearised covariance means
   /// little.
   double determined_fraction = 0.3;
-  /// Unstated deviations of a real part from its ideal curve up to this fraction of the touched
-  /// half extent count as form error, which is correlated along the arc and lowers the certainty;
   /// What is known of the part's making: the standard deviation of its surface from its ideal
   /// curve, smooth along the arc in whatever way (half of a drawing's +- tolerance); drift of the
   /// probe counts the same. Classes that differ by no more are not told apart, however many the

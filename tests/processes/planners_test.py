@@ -7,7 +7,7 @@ import time
 import unittest
 
 import zmq
-from bus import Bus, Probe, memory_kb, wait_for
+from bus import Bus, Probe, memory_kb, peak_memory_kb, wait_for
 
 
 def cpu_s(process):
@@ -21,6 +21,13 @@ class Planners(unittest.TestCase):
         probe.send(probe.batch(0, 20, object_number=object_number))
         wait_for(planner, lambda m: hasattr(m, "curve_class") and m.object == object_number, 30)
         return time.monotonic() - start
+
+    def memory_settled(self, node, enough_kb, timeout_s=10):
+        """As soon as it is little enough, or what it is after the timeout."""
+        deadline = time.monotonic() + timeout_s
+        while (held := memory_kb(node)) > enough_kb and time.monotonic() < deadline:
+            time.sleep(0.1)
+        return held
 
     def test_a_flood_of_subscriptions_is_cut_and_named(self):
         with Bus() as bus:
@@ -37,13 +44,16 @@ class Planners(unittest.TestCase):
                 flood.send(b"\1" + f"{number:08d}".encode() + os.urandom(492).hex().encode())
             slowest = max(self.latency(probe, planner, 2 + n) for n in range(100))
             status = wait_for(planner, lambda m: hasattr(m, "connections_cut") and m.connections_cut > 0)
-            peak = memory_kb(node)
             flood.close()
             slowest = max(slowest, *(self.latency(probe, planner, 1000 + n) for n in range(100)))
+            # While libzmq takes in what it has received nobody can cut it, so how far the memory rises is the
+            # scheduler's choice; what stays is not: at most the 64 kB that are permitted, of 32 bytes of
+            # memory each, twice as the allocator gives whole pages back.
+            permitted = 2 * 64 * 32
+            held = self.memory_settled(node, before + permitted)
             print(f"20,000 subscriptions of 1,000 bytes: {status.connections_cut} cuts, memory {before} -> "
-                  f"{peak} kB, slowest answer {1e3 * slowest:.1f} ms")
-            # 64 kB are permitted, 32 bytes of memory each; the whole flood may be on its way while it is cut.
-            self.assertLess(peak - before, (64 * 1024 * 32 + 20_000 * 1001) / 1024)
+                  f"{peak_memory_kb(node)} -> {held} kB, slowest answer {1e3 * slowest:.1f} ms")
+            self.assertLessEqual(held, before + permitted)
             self.assertLess(slowest, 1.0)
             self.assertRegex(node.log_path.read_text(),
                              rf"connections to results cut, the last of process {os.getpid()}: .*max_subscription_bytes")

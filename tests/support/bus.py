@@ -178,9 +178,13 @@ def errors_in_sigmas(answer, truth):
     return errors
 
 
-def memory_kb(process):
+def memory_kb(process, of="VmRSS"):
     status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
-    return int(re.search(r"VmRSS:\s+(\d+)", status).group(1))
+    return int(re.search(rf"{of}:\s+(\d+)", status).group(1))
+
+
+def peak_memory_kb(process):
+    return memory_kb(process, "VmHWM")
 
 
 def stop(process, with_signal=signal.SIGTERM, timeout=5):

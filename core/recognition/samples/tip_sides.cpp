@@ -5,6 +5,18 @@
 
 namespace palpate {
 
+int stated_side(MaterialSide side) {
+  switch (side) {
+    case MaterialSide::Left:
+      return -1;
+    case MaterialSide::Right:
+      return 1;
+    case MaterialSide::Unspecified:
+      break;
+  }
+  return 0;
+}
+
 std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
                                              const FitData& reduced) {
   std::vector<int> known(reduced.patches.size(), 0);
@@ -24,17 +36,8 @@ std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patche
                            points[i - 1].tangent.dot(points[i].tangent));
       }
       outside_of_bend[p] = turn >= 0.0 ? -1 : 1;
-      switch (patch.context.material_side) {
-        case MaterialSide::Left:
-          known[p] = -1;
-          break;
-        case MaterialSide::Right:
-          known[p] = 1;
-          break;
-        case MaterialSide::Unspecified:
-          any_unknown = true;
-          break;
-      }
+      known[p] = stated_side(patch.context.material_side);
+      any_unknown = any_unknown || known[p] == 0;
     }
     ++p;
   }

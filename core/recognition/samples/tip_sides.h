@@ -9,6 +9,10 @@
 
 namespace palpate {
 
+/// Where the probe says that the tip's centre lies: +1 left of travel (material on the right), -1
+/// right, 0 where it does not say.
+int stated_side(MaterialSide side);
+
 /// The ways in which the material may lie beside the patches: +1 where a tip centre lies to the
 /// left of travel, -1 to the right, per patch. One way where the probes say it; otherwise the part
 /// is taken to be convex everywhere or concave everywhere, or on the same side of every patch's
