@@ -2,7 +2,6 @@
 // is the class, and squared errors in units of the published covariance against their chi-square
 // law. Prints CSV.
 //   bench_calibration [--scenes N]
-#include <CLI/CLI.hpp>
 #include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <random>
 #include <string>
 
+#include "tests/bench/options/bench_options.h"
 #include "tests/support/scene_data.h"
 
 namespace {
@@ -86,11 +86,12 @@ void add(const test::Scene& scene, const Recognition& answer, Calibration* calib
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Published uncertainties against observed errors");
   int count = 20;
-  app.add_option("--scenes", count, "Scenes a class, noise and number of patches")
-      ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  if (const auto end = bench::BenchOptions("Published uncertainties against observed errors")
+                           .number("--scenes", count, "Scenes a class, noise and number of patches")
+                           .parse(argc, argv)) {
+    return *end;
+  }
   std::printf("kind,noise_stated,upper,expected,observed,count\n");
   for (const bool stated : {true, false}) {
     std::mt19937_64 rng(kSeed);

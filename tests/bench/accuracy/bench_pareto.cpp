@@ -2,7 +2,6 @@
 // its estimates, as in the paper), the tree on the default contacts (palpate fit --method tree),
 // and the refinement on all points. Prints CSV, a row a class, noise and pipeline.
 //   bench_pareto [--scenes N]
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -13,6 +12,7 @@
 
 #include "core/local/estimator.h"
 #include "core/recognition/tree/recognition_tree.h"
+#include "tests/bench/options/bench_options.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/touched_curve.h"
 
@@ -160,10 +160,14 @@ void print(CurveClass curve_class, double noise, const std::string& pipeline, in
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Speed against error of every local estimator, without and with refinement");
   int count = 30;
-  app.add_option("--scenes", count, "Scenes a class and noise")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  if (const auto end =
+          bench::BenchOptions(
+              "Speed against error of every local estimator, without and with refinement")
+              .number("--scenes", count, "Scenes a class and noise")
+              .parse(argc, argv)) {
+    return *end;
+  }
   std::printf(
       "class,noise_over_size,pipeline,window,shift,scenes,us_per_sample,us_per_recognition,kappa_"
       "error,"

@@ -3,7 +3,6 @@
 // errors beside their covariance and beside the bound, and the time of recognize(). Prints tables.
 //   bench_posterior [--scenes N] [--seed S] [--noise stated|unknown] [--classes-only]
 //   [--other-prior] [--csv FILE]
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/options/bench_options.h"
 #include "tests/support/calibration.h"
 #include "tests/support/joint_error.h"
 #include "tests/support/rivals.h"
@@ -271,20 +271,21 @@ void write_csv(const std::string& path, const std::vector<Row>& rows) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Certainty, calibration, errors and time on scenes drawn from a stated prior");
   Options options;
-  app.add_option("--scenes", options.scenes, "Number of scenes")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  app.add_option("--seed", options.seed, "Seed of the sequence of scenes")->capture_default_str();
-  app.add_option("--noise", options.noise, "Whether the samples state their noise")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"stated", "unknown"}));
-  app.add_flag("--classes-only", options.classes_only, "No curves of no class");
-  app.add_flag("--other-prior", options.other_prior,
-               "Scenes from another prior: splines five times as frequent, arcs half as long");
-  app.add_option("--csv", options.csv, "Write a row a scene into this file");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto end =
+          bench::BenchOptions(
+              "Certainty, calibration, errors and time on scenes drawn from a stated prior")
+              .number("--scenes", options.scenes, "Number of scenes")
+              .seed(options.seed)
+              .one_of({"stated", "unknown"}, "--noise", options.noise,
+                      "Whether the samples state their noise")
+              .flag("--classes-only", options.classes_only, "No curves of no class")
+              .flag("--other-prior", options.other_prior,
+                    "Scenes from another prior: splines five times as frequent, arcs half as long")
+              .text("--csv", options.csv, "Write a row a scene into this file")
+              .parse(argc, argv)) {
+    return *end;
+  }
   test::ScenePrior prior = options.other_prior ? test::other_prior() : test::even_prior();
   if (options.classes_only) prior = test::classes_only(prior);
   std::vector<Row> rows;

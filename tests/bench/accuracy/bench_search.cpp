@@ -1,13 +1,13 @@
 // How often the search for a class's optimum misses it: beside the optimum that the truth leads to
 // (tests/support/search_outcome.h). Prints tables by class, patches and noise.
 //   bench_search [--scenes N] [--seed S] [--list]
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
 
+#include "tests/bench/options/bench_options.h"
 #include "tests/support/search_outcome.h"
 
 namespace {
@@ -53,11 +53,13 @@ int main(int argc, char** argv) {
   int scenes = 1000;
   std::uint64_t seed = 2026;
   bool list = false;
-  CLI::App app{"How often the search for a class's optimum misses it"};
-  app.add_option("--scenes", scenes, "scenes of each class")->check(CLI::PositiveNumber);
-  app.add_option("--seed", seed, "of the scenes");
-  app.add_flag("--list", list, "print every case missed");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto end = bench::BenchOptions("How often the search for a class's optimum misses it")
+                           .number("--scenes", scenes, "Scenes of each class")
+                           .seed(seed)
+                           .flag("--list", list, "Print every case missed")
+                           .parse(argc, argv)) {
+    return *end;
+  }
 
   std::printf(
       "Chi-square above that of the optimum which the truth leads to: on the reduced points by "

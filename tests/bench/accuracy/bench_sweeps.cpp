@@ -2,7 +2,6 @@
 // class is right, recognised and recognised wrongly, errors beside the Kanatani-Cramer-Rao bound,
 // the condition number, the time.
 //   bench_sweeps [--scenes N]
-#include <CLI/CLI.hpp>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
@@ -13,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/options/bench_options.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/touched_curve.h"
 
@@ -272,10 +272,12 @@ void run(const Sweep& sweep, int count) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Sweeps towards the degeneracies");
   int count = 40;
-  app.add_option("--scenes", count, "Scenes a value")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  if (const auto end = bench::BenchOptions("Sweeps towards the degeneracies")
+                           .number("--scenes", count, "Scenes a value")
+                           .parse(argc, argv)) {
+    return *end;
+  }
   std::printf(
       "sweep,value,class,scenes,right_class,limit_class,recognized,recognized_wrongly,shape_error_"
       "median,shape_bound,"

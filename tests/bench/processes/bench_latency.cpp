@@ -9,7 +9,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -21,6 +20,7 @@
 #include "node/client/contact_publisher.h"
 #include "node/client/result_subscriber.h"
 #include "node/wire/socket.h"
+#include "tests/bench/options/bench_options.h"
 #include "tests/bench/processes/node_process.h"
 
 namespace {
@@ -152,10 +152,12 @@ bool measure(const std::string& transport, const Endpoints& node, const Endpoint
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Latency of palpate-node beside a bare relay");
   int rounds = 4000;
-  app.add_option("--rounds", rounds, "Batches a transport")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  if (const auto end = bench::BenchOptions("Latency of palpate-node beside a bare relay")
+                           .number("--rounds", rounds, "Batches a transport")
+                           .parse(argc, argv)) {
+    return *end;
+  }
   const TemporaryFolder folder;
   std::printf("transport,what,p50_us,p90_us,p99_us,max_us\n");
   std::fflush(stdout);

@@ -2,7 +2,6 @@
 // beyond what it takes; by one node, or two that share the probes by the beginning of their names.
 // Prints CSV: what was offered, taken and missing, how many recognitions, and the nodes' CPU time
 // and memory.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "node/client/contact_publisher.h"
 #include "node/client/result_subscriber.h"
+#include "tests/bench/options/bench_options.h"
 #include "tests/bench/processes/node_process.h"
 
 namespace {
@@ -111,10 +111,12 @@ bool run(const Load& load, double seconds, const std::string& folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Load on palpate-node: rates, probes, two nodes");
   double seconds = 4.0;
-  app.add_option("--seconds", seconds, "Of each load")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  if (const auto end = bench::BenchOptions("Load on palpate-node: rates, probes, two nodes")
+                           .number("--seconds", seconds, "Of each load")
+                           .parse(argc, argv)) {
+    return *end;
+  }
   std::printf(
       "offered_samples_per_s,sent_samples_per_s,probes,nodes,messages_sent,messages_taken,messages_"
       "missing,"

@@ -3,7 +3,6 @@
 // stream cost beside their median.
 //   bench_factors [--scenes N] [--seed S]
 // Costs are processor times of this thread, the least of three.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/options/bench_options.h"
 #include "tests/bench/worst_case/touched_input.h"
 
 namespace {
@@ -97,14 +97,14 @@ std::vector<double> updates_over_median(const TouchedInput& input) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("What makes recognize() dearer, and by how much");
   int scenes = 300;
   std::uint64_t seed = 1;
-  app.add_option("--scenes", scenes, "Number of scenes")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  app.add_option("--seed", seed, "Seed")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  if (const auto end = bench::BenchOptions("What makes recognize() dearer, and by how much")
+                           .number("--scenes", scenes, "Number of scenes")
+                           .seed(seed)
+                           .parse(argc, argv)) {
+    return *end;
+  }
   std::mt19937_64 rng(seed);
   std::vector<double> plain, sides, spikes, both, updates;
   for (int i = 0; i < scenes; ++i) {

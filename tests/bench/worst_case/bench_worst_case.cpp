@@ -6,7 +6,6 @@
 //   bench_worst_case FILE.csv ...       costs of these
 //   bench_worst_case --once FILE.csv    one recognize() of the file and nothing else, for callgrind
 // Costs are processor times of this thread, the least of three: a busy neighbour matters little.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -21,6 +20,7 @@
 #include <vector>
 
 #include "node/csv/contact_csv.h"
+#include "tests/bench/options/bench_options.h"
 #include "tests/bench/worst_case/touched_input.h"
 
 namespace {
@@ -140,9 +140,9 @@ int run_files(const std::vector<std::string>& files) {
 
 struct Options {
   double seconds = 60.0;
-  long tries = std::numeric_limits<long>::max();
+  int tries = std::numeric_limits<int>::max();
   std::uint64_t seed = 1;
-  std::size_t most_samples = 2000;
+  int most_samples = 2000;
   std::string save = "worst_case.csv";
 };
 
@@ -214,19 +214,21 @@ int search(const Options& options, const std::string& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("The worst case of recognize(), searched for, or of given files");
   Options options;
   std::vector<std::string> files;
   std::string once;
-  app.add_option("files", files, "CSV files to measure instead of searching");
-  app.add_option("--once", once, "One recognize() of this CSV file and nothing else");
-  app.add_option("--seconds", options.seconds, "End of the search")->capture_default_str();
-  app.add_option("--tries", options.tries, "Most inputs that are tried");
-  app.add_option("--seed", options.seed, "Seed of the search")->capture_default_str();
-  app.add_option("--most-samples", options.most_samples, "Most samples of an input")
-      ->capture_default_str();
-  app.add_option("--save", options.save, "Where the worst input goes")->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  if (const auto end =
+          bench::BenchOptions("The worst case of recognize(), searched for, or of given files")
+              .files(files, "CSV files to measure instead of searching")
+              .text("--once", once, "One recognize() of this CSV file and nothing else")
+              .number("--seconds", options.seconds, "End of the search")
+              .number("--tries", options.tries, "Most inputs that are tried")
+              .seed(options.seed)
+              .number("--most-samples", options.most_samples, "Most samples of an input")
+              .text("--save", options.save, "Where the worst input goes")
+              .parse(argc, argv)) {
+    return *end;
+  }
   if (!once.empty()) {
     const auto input = input_from(once);
     if (!input) return 2;
