@@ -56,6 +56,9 @@ double chi_square_survival(double chi2, int dof) {
   if (dof <= 0 || !(chi2 > 0.0)) {
     return 1.0;
   }
+  if (std::isinf(chi2)) {
+    return 0.0;
+  }
   // Q(x; 1) = erfc(sqrt(x / 2)), Q(x; 2) = exp(-x / 2) and
   // Q(x; k + 2) = Q(x; k) + (x / 2)^(k / 2) exp(-x / 2) / Gamma(k / 2 + 1).
   const double half = 0.5 * chi2;

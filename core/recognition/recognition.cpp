@@ -18,6 +18,8 @@ std::string_view name_of(Doubt doubt) {
       return "two_shapes";
     case Doubt::Undetermined:
       return "undetermined";
+    case Doubt::TreeRejects:
+      return "tree_rejects";
   }
   return "none";
 }

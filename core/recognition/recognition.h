@@ -7,6 +7,7 @@
 
 #include "core/curves/pose2.h"
 #include "core/curves/shape_parameters.h"
+#include "core/invariants/named_invariant.h"
 #include "core/recognition/localized_contact.h"
 #include "core/recognition/tree/decision.h"
 
@@ -27,6 +28,7 @@ enum class Doubt {
   Misfit,          ///< the residuals are larger than the noise can be
   TwoShapes,       ///< two shapes fit alike (a spline and its rival; tips on either side)
   Undetermined,  ///< the shape's standard deviations are too large, or no covariance describes them
+  TreeRejects,   ///< the recognition tree's tests on the local estimates reject the class
 };
 
 /// Lower-case name with underscores ("several_classes").
@@ -56,7 +58,13 @@ struct Recognition {
   ShapePoseCovariance covariance;      ///< of the most probable hypothesis
   std::vector<Hypothesis> hypotheses;  ///< most probable first
   std::vector<LocalizedContact> contacts;
-  std::vector<Decision> decisions;
+  std::vector<Decision> decisions;                   ///< the recognition tree's path
+  CurveClass tree_class = CurveClass::Unclassified;  ///< where the tree ended
+  /// By class, the least p-value of the tree's tests that it must pass; NaN where none was made.
+  ClassPValues tree_p_values = no_p_values();
+  /// What the tree asked about, pooled over the contacts `pooled_contacts` (indices).
+  std::vector<NamedInvariant> invariants;
+  std::vector<std::size_t> pooled_contacts;
   std::size_t sample_count = 0;      ///< samples that the answer rests on
   std::size_t outlier_count = 0;     ///< samples set aside as spikes
   double sigma_m = 0.0;              ///< noise used, given or estimated [m]

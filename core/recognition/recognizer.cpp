@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/numerics/chi_square.h"
@@ -75,6 +76,38 @@ Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
   return hypothesis;
 }
 
+void add_path(TreeResult tree, Recognition* answer) {
+  answer->decisions = std::move(tree.decisions);
+  answer->tree_class = tree.shape.curve_class;
+  answer->tree_p_values = tree.p_values;
+  answer->invariants = std::move(tree.invariants);
+  answer->pooled_contacts = std::move(tree.pooled);
+}
+
+/// One flag per point of `all`: not in `kept`, which has the others in their order.
+std::vector<bool> left_out(const FitData& all, const FitData& kept) {
+  std::vector<bool> flags(all.points.size(), true);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < flags.size() && next < kept.points.size(); ++i) {
+    if (all.points[i].position == kept.points[next].position) {
+      flags[i] = false;
+      ++next;
+    }
+  }
+  return flags;
+}
+
+/// Where the classes' fits on the samples lie.
+KnownCurves curves_of(const Weighing& w) {
+  KnownCurves curves;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    if (const auto& canonical = w.canonical[i]) {
+      curves[i] = CurveStart{canonical->shape.values, canonical->world_T_curve.theta};
+    }
+  }
+  return curves;
+}
+
 /// That chance alone makes the leaf's test as bad.
 double tail_probability(const TreeResult& tree) { return chi_square_survival(tree.chi2, tree.dof); }
 
@@ -139,14 +172,20 @@ class Recognizer::Impl {
       walk_tree(data, sigma_known, patches, &answer);
       return answer;
     }
-    Weighing w = weigh_once_more(data, sigma_known, patches);
+    std::vector<bool> outliers;
+    Weighing w = weigh_once_more(data, sigma_known, patches, &outliers);
     if (memory_.stored_count() > data.points.size()) {
       take_back_explained(patches, &w);
     }
     answer.outlier_count = memory_.stored_count() - w.data.points.size();
     fill(w, &answer);
-    answer.contacts = contacts_of(patches, w.sides);
-    answer.decisions = tree_of(answer.contacts).decisions;
+    answer.contacts = contacts_of(patches, w.sides, outliers);
+    add_path(tree_of(answer.contacts, curves_of(w)), &answer);
+    const double p_value = answer.tree_p_values[static_cast<std::size_t>(answer.shape.curve_class)];
+    if (answer.status == RecognitionStatus::Recognized && p_value < options_.tree.significance) {
+      answer.status = RecognitionStatus::Ambiguous;
+      answer.doubt = Doubt::TreeRejects;
+    }
     localise_contacts(answer.shape, answer.world_T_curve, &answer.contacts);
     return answer;
   }
@@ -164,34 +203,38 @@ class Recognizer::Impl {
   /// where they have grown by this, where there is another patch, and where a class comes out best
   /// that was out.
   Weighing weigh_once_more(const FitData& data, bool sigma_known,
-                           std::span<const StoredPatch> patches) {
+                           std::span<const StoredPatch> patches, std::vector<bool>* outliers) {
     constexpr double kGrowth = 1.25;
     constexpr double kOut = 0.01;  // probability
     const std::size_t samples = memory_.sample_count();
     const bool warm = last_ && last_->patches == data.patches.size() &&
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
     if (warm) {
-      Weighing w = weigh_without_outliers(data, sigma_known, patches, last_->starts);
+      Weighing w = weigh_without_outliers(data, sigma_known, patches, last_->starts, outliers);
       if (last_->probabilities[static_cast<std::size_t>(w.best)] > kOut) {
         last_->starts = w.starts;
         last_->probabilities = w.probabilities;
         return w;
       }
     }
-    Weighing w = weigh_without_outliers(data, sigma_known, patches, {});
+    Weighing w = weigh_without_outliers(data, sigma_known, patches, {}, outliers);
     last_ = Last{w.starts, w.probabilities, samples, data.patches.size()};
     return w;
   }
 
+  /// `outliers`: one flag per sample of the patches; empty where there are none.
   Weighing weigh_without_outliers(const FitData& data, bool sigma_known,
                                   std::span<const StoredPatch> patches,
-                                  std::span<const SidedStart> starts) const {
+                                  std::span<const SidedStart> starts,
+                                  std::vector<bool>* outliers) const {
+    outliers->clear();
     Weighing w = weigh(data, sigma_known, patches, weigh_options(), starts);
     if (const auto kept = without_outliers(w, data, options_.false_outlier_probability)) {
       // A search is not followed: the outliers may have led it astray.
       const std::vector<SidedStart> nearer =
           starts.empty() ? std::vector<SidedStart>{} : std::move(w.starts);
       w = weigh(*kept, sigma_known, patches, weigh_options(), nearer);
+      *outliers = left_out(data, *kept);
     }
     return w;
   }
@@ -217,7 +260,8 @@ class Recognizer::Impl {
     }
     bool sigma_known = false;
     const FitData data = make_fit_data(*more, options_.sigma_m, &sigma_known);
-    Weighing again = weigh_without_outliers(data, sigma_known, *more, last_->starts);
+    std::vector<bool> outliers;
+    Weighing again = weigh_without_outliers(data, sigma_known, *more, last_->starts, &outliers);
     if (again.best == w->best && again.canonical[static_cast<std::size_t>(again.best)]) {
       *w = std::move(again);
     }
@@ -231,6 +275,7 @@ class Recognizer::Impl {
     std::vector<LocalizedContact> contacts = {};
     std::size_t windows = 0;  ///< that the contacts are of; 0 = there are none yet
     int side = 0;
+    std::vector<bool> outliers = {};  ///< that the contacts are without
   };
 
   const std::vector<StoredPatch>& clean_patches() {
@@ -255,20 +300,40 @@ class Recognizer::Impl {
     return clean_;
   }
 
-  /// Of the clean patches: what was estimated of a patch stays while the patch does.
+  /// Of the clean patches without `outliers` (one flag per sample, or none): what was estimated of
+  /// a patch stays while the patch does.
   std::vector<LocalizedContact> contacts_of(const std::vector<StoredPatch>& patches,
-                                            const std::vector<int>& sides) {
+                                            const std::vector<int>& sides,
+                                            const std::vector<bool>& outliers = {}) {
     const ContactOptions options = contact_options();
     const std::size_t windows = windows_of_a_patch(patches.size(), options);
     std::vector<LocalizedContact> contacts;
+    std::size_t first = 0;  // sample of the patch among all
     for (std::size_t p = 0; p < patches.size(); ++p) {
       CleanPatch& state = clean_states_[p];
       const int side = p < sides.size() ? sides[p] : 0;
-      if (state.windows != windows || state.side != side) {
+      std::vector<bool> own;
+      if (!outliers.empty()) {
+        const auto begin = outliers.begin() + static_cast<std::ptrdiff_t>(first);
+        own.assign(begin, begin + static_cast<std::ptrdiff_t>(patches[p].samples.size()));
+      }
+      first += patches[p].samples.size();
+      const bool some = std::find(own.begin(), own.end(), true) != own.end();
+      if (!some) {
+        own.clear();
+      }
+      if (state.windows != windows || state.side != side || state.outliers != own) {
         state.contacts.clear();
-        add_contacts(patches[p], windows, side, options, &state.contacts);
+        if (some) {
+          StoredPatch rest = patches[p];
+          rest.samples = without_spikes(patches[p].samples, own);
+          add_contacts(rest, windows, side, options, &state.contacts);
+        } else {
+          add_contacts(patches[p], windows, side, options, &state.contacts);
+        }
         state.windows = windows;
         state.side = side;
+        state.outliers = std::move(own);
       }
       contacts.insert(contacts.end(), state.contacts.begin(), state.contacts.end());
     }
@@ -283,7 +348,8 @@ class Recognizer::Impl {
   }
 
   /// The tree over the contacts, whose windows share no sample.
-  TreeResult tree_of(const std::vector<LocalizedContact>& contacts) const {
+  TreeResult tree_of(const std::vector<LocalizedContact>& contacts,
+                     const KnownCurves& known = {}) const {
     std::vector<TreePoint> points;
     int patch = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -297,7 +363,7 @@ class Recognizer::Impl {
     if (options_.method == RecognitionMethod::MaximumLikelihood) {
       spline.fallback_starts = 0;  // the path is reported only: not worth the time
     }
-    return recognise_by_tree(points, options_.tree, spline);
+    return recognise_by_tree(points, options_.tree, known, spline);
   }
 
   /// The paper's way: nothing but the tree's answer. Where a round tip's side is not told, every
@@ -321,7 +387,6 @@ class Recognizer::Impl {
         answer->contacts = std::move(contacts);
       }
     }
-    answer->decisions = tree.decisions;
     answer->shape = tree.shape;
     double squares = 0.0;
     for (const LocalizedContact& contact : answer->contacts) {
@@ -354,6 +419,7 @@ class Recognizer::Impl {
       localise_contacts(answer->shape, answer->world_T_curve, &answer->contacts);
     }
     answer->hypotheses.push_back(only);
+    add_path(std::move(tree), answer);
   }
 
   void fill(const Weighing& w, Recognition* answer) const {

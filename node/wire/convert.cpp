@@ -96,6 +96,8 @@ v1::RecognitionDoubt to_wire(Doubt doubt) {
       return v1::RECOGNITION_DOUBT_TWO_SHAPES;
     case Doubt::Undetermined:
       return v1::RECOGNITION_DOUBT_UNDETERMINED;
+    case Doubt::TreeRejects:
+      return v1::RECOGNITION_DOUBT_TREE_REJECTS;
   }
   return v1::RECOGNITION_DOUBT_UNSPECIFIED;
 }
@@ -149,6 +151,17 @@ void to_wire(const Recognition& recognition, const ContactSourceOf& source_of,
     step.set_value(decision.value);
     step.set_threshold(decision.threshold);
     step.set_passed(decision.passed);
+    if (!std::isnan(decision.p_value)) step.set_p_value(decision.p_value);
+  }
+  for (const NamedInvariant& named : recognition.invariants) {
+    v1::Invariant& invariant = *out.add_invariants();
+    invariant.set_curve_class(to_wire(named.curve_class));
+    invariant.set_name(named.name.data(), named.name.size());
+    invariant.set_value(named.value);
+    invariant.set_sigma(named.sigma);
+    for (const std::size_t contact : recognition.pooled_contacts) {
+      invariant.add_contacts(static_cast<std::uint32_t>(contact));
+    }
   }
   out.set_sample_count(recognition.sample_count);
   out.set_outlier_count(recognition.outlier_count);

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "core/curves/pose2.h"
 #include "core/invariants/signature_fit/canonical_models.h"
@@ -32,18 +33,39 @@ double conic_orientation(CurveClass curve_class, const Eigen::Vector3d& p,
       const double t = ellipse_t(p[0], p[1], point.kappa, point.kappa_s);
       angle = geometry_of(EllipseModel::derivatives(p.data(), t)).tangent_angle;
     } else {
-      const LocalParameter place = local_parameter(curve_class, p, 0.0, point.kappa, point.kappa_s);
       assert(curve_class == CurveClass::Parabola || curve_class == CurveClass::Hyperbola);
       const double forward =
           curve_class == CurveClass::Parabola
-              ? geometry_of(ParabolaModel::derivatives(p.data(), place.t)).tangent_angle
-              : geometry_of(HyperbolaModel::derivatives(p.data(), place.t)).tangent_angle;
-      angle = forward + (place.direction < 0 ? kPi : 0.0);
+              ? geometry_of(ParabolaModel::derivatives(
+                                p.data(), parabola_parameter(point.kappa, point.kappa_s)))
+                    .tangent_angle
+              : geometry_of(
+                    HyperbolaModel::derivatives(
+                        p.data(), hyperbola_parameter(p[0], p[1], point.kappa, point.kappa_s)))
+                    .tangent_angle;
+      // Both bend to the right with t increasing.
+      angle = forward + (point.kappa > 0.0 ? kPi : 0.0);
     }
     const double multiple = symmetry * (point.tangent_angle - angle);
     sum += Vec2(std::cos(multiple), std::sin(multiple));
   }
   return std::atan2(sum.y(), sum.x()) / symmetry;
+}
+
+std::vector<CurveStart> conic_starts(CurveClass curve_class,
+                                     std::span<const Eigen::Vector3d> shapes,
+                                     std::span<const MeasuredGeometry> points) {
+  constexpr int kOrientations = 12;  // 30 degrees apart, 15 for the ellipse
+  constexpr std::size_t kKept = 4;
+  std::vector<CurveStart> starts;
+  for (const Eigen::Vector3d& shape : shapes) {
+    const double orientation = conic_orientation(curve_class, shape, points);
+    for (int k = 0; k < kOrientations; ++k) {
+      const double turn = 2.0 * kPi * k / (kOrientations * pose_symmetry(curve_class));
+      starts.push_back({shape, orientation + turn});
+    }
+  }
+  return best_starts(curve_class, points, std::move(starts), kKept);
 }
 
 }  // namespace palpate

@@ -3,9 +3,11 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "core/curves/curve_class.h"
 #include "core/invariants/measured_geometry.h"
+#include "core/invariants/signature_fit/semi_signature_fit.h"
 
 namespace palpate {
 
@@ -15,5 +17,11 @@ namespace palpate {
 /// != 0.
 double conic_orientation(CurveClass curve_class, const Eigen::Vector3d& parameters,
                          std::span<const MeasuredGeometry> points);
+
+/// The best of the shapes in every orientation, conic_orientation's and others around it: where
+/// kappa_s is noise its own is off by anything.
+std::vector<CurveStart> conic_starts(CurveClass curve_class,
+                                     std::span<const Eigen::Vector3d> shapes,
+                                     std::span<const MeasuredGeometry> points);
 
 }  // namespace palpate

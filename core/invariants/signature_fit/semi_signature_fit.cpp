@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/curves/pose2.h"
 #include "core/invariants/signature_fit/canonical_models.h"
@@ -91,23 +92,106 @@ bool in_class(CurveClass curve_class, const Eigen::Vector3d& p) {
   }
 }
 
+/// A point on a shape at the place that explains it best, and what is left of it.
+struct PlacedPoint {
+  LocalParameter place;
+  double chi2 = std::numeric_limits<double>::infinity();
+};
+
+template <typename Model>
+PlacedPoint best_place(CurveClass curve_class, const detail::WhitePoint& point,
+                       const Eigen::Vector3d& parameters, double orientation) {
+  const MeasuredGeometry& m = point.measured;
+  const double angle = m.tangent_angle - orientation;
+  PlacedPoint best;
+  for (const double t :
+       candidate_parameters(curve_class, parameters, angle, m.kappa, m.kappa_s).values()) {
+    const auto model = geometry_of(Model::derivatives(parameters.data(), t));
+    for (const int direction : {1, -1}) {
+      const double half_turn = direction < 0 ? kPi : 0.0;
+      const Eigen::Vector3d difference(wrap_angle(angle - half_turn - model.tangent_angle),
+                                       m.kappa - direction * model.kappa,
+                                       m.kappa_s - model.kappa_s);
+      const double chi2 = (point.whitening * difference).squaredNorm();
+      if (chi2 < best.chi2) {
+        best = {{t, direction}, chi2};
+      }
+    }
+  }
+  return best;
+}
+
+/// Calls `use` with the model of the class.
+template <typename Use>
+void with_model(CurveClass curve_class, const Use& use) {
+  switch (curve_class) {
+    case CurveClass::Ellipse:
+      use(EllipseModel{});
+      break;
+    case CurveClass::Parabola:
+      use(ParabolaModel{});
+      break;
+    case CurveClass::Hyperbola:
+      use(HyperbolaModel{});
+      break;
+    case CurveClass::CubicalParabola:
+      use(CubicalParabolaModel{});
+      break;
+    case CurveClass::SemiCubicalParabola:
+      use(SemiCubicalParabolaModel{});
+      break;
+    case CurveClass::CubicSpline:
+      use(CubicSplineModel{});
+      break;
+    case CurveClass::Line:
+    case CurveClass::Circle:
+    case CurveClass::Unclassified:
+      assert(false);
+      break;
+  }
+}
+
+/// Factors from a class's parameters to those in lengths of `unit`.
+Eigen::Vector3d to_units_of(CurveClass curve_class, double unit) {
+  const Eigen::Vector3d powers = unit_powers(curve_class);
+  return {std::pow(unit, -powers[0]), std::pow(unit, -powers[1]), std::pow(unit, -powers[2])};
+}
+
+/// In lengths of `unit`; nothing where a covariance is none.
+std::vector<detail::WhitePoint> whitened(std::span<const MeasuredGeometry> measured, double unit,
+                                         double relative_floor) {
+  std::vector<detail::WhitePoint> points;
+  points.reserve(measured.size());
+  for (const MeasuredGeometry& point : measured) {
+    detail::WhitePoint white{in_units_of(point, unit), Eigen::Matrix3d::Zero()};
+    const double size = curvature_scale({&white.measured, 1});
+    const Eigen::Vector3d floor = relative_floor * Eigen::Vector3d(1.0, size > 0.0 ? size : 1.0,
+                                                                   size > 0.0 ? size * size : 1.0);
+    Eigen::Matrix3d covariance = white.measured.covariance;
+    covariance.diagonal() += floor.cwiseAbs2();
+    Eigen::Matrix3d factor;
+    if (!cholesky(covariance, &factor)) {
+      return {};
+    }
+    white.whitening = inverse_lower(factor);
+    points.push_back(white);
+  }
+  return points;
+}
+
 template <typename Model>
 void fit_model(const std::vector<detail::WhitePoint>& points, double unit, int max_iterations,
                SemiSignatureFit& fit) {
   using ModelFitter = detail::SemiSignatureFitter<Model>;
   constexpr int kShape = ModelFitter::kShape;
-  const Eigen::Vector3d powers = unit_powers(fit.curve_class);
-  const Eigen::Vector3d to_normal(std::pow(unit, -powers[0]), std::pow(unit, -powers[1]),
-                                  std::pow(unit, -powers[2]));
+  const Eigen::Vector3d to_normal = to_units_of(fit.curve_class, unit);
   const double t_unit = std::pow(unit, parameter_power(fit.curve_class));
   const Eigen::Vector3d normal = to_normal.cwiseProduct(fit.parameters);
   typename ModelFitter::Global start;
   start << normal.head<kShape>(), fit.orientation;
   fit.places.clear();
   for (const detail::WhitePoint& point : points) {
-    fit.places.push_back(local_parameter(fit.curve_class, normal,
-                                         point.measured.tangent_angle - fit.orientation,
-                                         point.measured.kappa, point.measured.kappa_s));
+    fit.places.push_back(best_place<Model>(fit.curve_class, point, normal, fit.orientation).place);
   }
   ModelFitter fitter(points, start, fit.places);
   fit.status = fitter.solve(max_iterations);
@@ -178,50 +262,47 @@ SemiSignatureFit fit_semi_signature(CurveClass curve_class,
     return fit;
   }
   const double unit = 1.0 / scale;
-  std::vector<detail::WhitePoint> points;
-  points.reserve(measured.size());
-  for (const MeasuredGeometry& point : measured) {
-    detail::WhitePoint white{in_units_of(point, unit), Eigen::Matrix3d::Zero()};
-    const double size = curvature_scale({&white.measured, 1});
-    const Eigen::Vector3d floor =
-        options.relative_floor *
-        Eigen::Vector3d(1.0, size > 0.0 ? size : 1.0, size > 0.0 ? size * size : 1.0);
-    Eigen::Matrix3d covariance = white.measured.covariance;
-    covariance.diagonal() += floor.cwiseAbs2();
-    Eigen::Matrix3d factor;
-    if (!cholesky(covariance, &factor)) {
-      fit.status = InvariantStatus::NotFinite;  // not a covariance
-      return fit;
-    }
-    white.whitening = inverse_lower(factor);
-    points.push_back(white);
+  const std::vector<detail::WhitePoint> points = whitened(measured, unit, options.relative_floor);
+  if (points.size() != measured.size()) {
+    fit.status = InvariantStatus::NotFinite;
+    return fit;
   }
-  switch (curve_class) {
-    case CurveClass::Ellipse:
-      fit_model<EllipseModel>(points, unit, options.max_iterations, fit);
-      break;
-    case CurveClass::Parabola:
-      fit_model<ParabolaModel>(points, unit, options.max_iterations, fit);
-      break;
-    case CurveClass::Hyperbola:
-      fit_model<HyperbolaModel>(points, unit, options.max_iterations, fit);
-      break;
-    case CurveClass::CubicalParabola:
-      fit_model<CubicalParabolaModel>(points, unit, options.max_iterations, fit);
-      break;
-    case CurveClass::SemiCubicalParabola:
-      fit_model<SemiCubicalParabolaModel>(points, unit, options.max_iterations, fit);
-      break;
-    case CurveClass::CubicSpline:
-      fit_model<CubicSplineModel>(points, unit, options.max_iterations, fit);
-      break;
-    case CurveClass::Line:
-    case CurveClass::Circle:
-    case CurveClass::Unclassified:
-      assert(false);
-      break;
-  }
+  with_model(curve_class, [&](auto model) {
+    fit_model<decltype(model)>(points, unit, options.max_iterations, fit);
+  });
   return fit;
+}
+
+std::vector<CurveStart> best_starts(CurveClass curve_class,
+                                    std::span<const MeasuredGeometry> measured,
+                                    std::vector<CurveStart> starts, std::size_t keep,
+                                    const SemiSignatureOptions& options) {
+  const double scale = curvature_scale(measured);
+  if (!(scale > 0.0) || starts.size() <= 1) {
+    return starts;
+  }
+  const double unit = 1.0 / scale;
+  const Eigen::Vector3d to_normal = to_units_of(curve_class, unit);
+  const std::vector<detail::WhitePoint> points = whitened(measured, unit, options.relative_floor);
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const Eigen::Vector3d normal = to_normal.cwiseProduct(starts[i].parameters);
+    double left = 0.0;
+    with_model(curve_class, [&](auto model) {
+      for (const detail::WhitePoint& point : points) {
+        left += std::log1p(
+            best_place<decltype(model)>(curve_class, point, normal, starts[i].orientation).chi2);
+      }
+    });
+    order.emplace_back(left, i);
+  }
+  std::sort(order.begin(), order.end());
+  order.resize(std::min(order.size(), keep));
+  std::vector<CurveStart> best;
+  for (const auto& [left, i] : order) {
+    best.push_back(starts[i]);
+  }
+  return best;
 }
 
 }  // namespace palpate

@@ -21,6 +21,12 @@ struct SemiSignatureOptions {
   int max_iterations = 60;
 };
 
+/// Where a fit begins.
+struct CurveStart {
+  Eigen::Vector3d parameters = Eigen::Vector3d::Zero();  ///< order of parameter_letters(class)
+  double orientation = 0.0;  ///< of the canonical x axis in the frame of the tangent angles [rad]
+};
+
 struct SemiSignatureFit {
   InvariantStatus status = InvariantStatus::TooFewPoints;
   CurveClass curve_class = CurveClass::Unclassified;
@@ -42,6 +48,14 @@ SemiSignatureFit fit_semi_signature(CurveClass curve_class,
                                     std::span<const MeasuredGeometry> points,
                                     const Eigen::Vector3d& start_parameters,
                                     double start_orientation,
+                                    const SemiSignatureOptions& options = {});
+
+/// The `keep` of the starts that leave least unexplained where each point lies at the best of its
+/// candidate_parameters, the best first. A point counts by the logarithm of its chi-square: at a
+/// start the points that fit tell more than those that do not.
+std::vector<CurveStart> best_starts(CurveClass curve_class,
+                                    std::span<const MeasuredGeometry> points,
+                                    std::vector<CurveStart> starts, std::size_t keep,
                                     const SemiSignatureOptions& options = {});
 
 }  // namespace palpate

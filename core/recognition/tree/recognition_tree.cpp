@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <utility>
 
 #include "core/invariants/conic_line.h"
 #include "core/invariants/conic_parameters.h"
@@ -22,8 +24,8 @@ namespace {
 class SignificanceTree {
  public:
   SignificanceTree(std::span<const TreePoint> points, const RecognitionTreeOptions& options,
-                   const SplineOptions& spline)
-      : points_(points), options_(options), spline_(spline) {
+                   const KnownCurves& known, const SplineOptions& spline)
+      : points_(points), options_(options), known_(known), spline_(spline) {
     for (const TreePoint& point : points) {
       MeasuredGeometry measured = measured_geometry(point.estimate, point.patch);
       const double size = curvature_scale({&measured, 1});
@@ -31,6 +33,7 @@ class SignificanceTree {
           options.relative_floor * Eigen::Vector3d(1.0, size, size * size);
       measured.covariance.diagonal() += floor.cwiseAbs2();
       measured_.push_back(measured);
+      result_.pooled.push_back(result_.pooled.size());
     }
   }
 
@@ -44,17 +47,43 @@ class SignificanceTree {
   }
 
  private:
-  /// Records one chi-square test.
-  bool passes(std::string_view name, double chi2, int dof) {
-    const double threshold = chi_square_threshold(options_.significance, dof);
-    const bool passed = chi2 <= threshold;
-    result_.decisions.push_back({name, chi2, threshold, passed});
+  /// Records one chi-square test, which each of `classes` must pass.
+  bool passes(std::string_view name, double chi2, int dof,
+              std::initializer_list<CurveClass> classes) {
+    const double p_value = chi_square_survival(chi2, dof);
+    const bool passed = p_value >= options_.significance;
+    result_.decisions.push_back({name, chi2, threshold_of(dof), passed, p_value});
+    for (const CurveClass curve_class : classes) {
+      says(curve_class, p_value);
+    }
     return passed;
   }
 
-  /// Records a test that could not be made: its chi-square is infinite.
+  void says(CurveClass curve_class, double p_value) {
+    double& least = result_.p_values[static_cast<std::size_t>(curve_class)];
+    least = std::isnan(least) ? p_value : std::min(least, p_value);
+  }
+
+  /// The same few degrees of freedom are asked again and again.
+  double threshold_of(int dof) {
+    const auto known =
+        std::find_if(thresholds_.begin(), thresholds_.end(),
+                     [dof](const std::pair<int, double>& t) { return t.first == dof; });
+    return known != thresholds_.end()
+               ? known->second
+               : thresholds_.emplace_back(dof, chi_square_threshold(options_.significance, dof))
+                     .second;
+  }
+
+  void add_invariant(CurveClass curve_class, std::string_view name, double value, double variance) {
+    result_.invariants.push_back({curve_class, name, value, std::sqrt(variance)});
+  }
+
+  /// Records a test that could not be made: its chi-square is infinite, and it has no p-value.
   bool refused(std::string_view name, int dof) {
-    return passes(name, std::numeric_limits<double>::infinity(), dof);
+    result_.decisions.push_back(
+        {name, std::numeric_limits<double>::infinity(), threshold_of(dof), false});
+    return false;
   }
 
   void reach(CurveClass curve_class, const Eigen::Vector3d& parameters, double chi2, int dof) {
@@ -68,16 +97,18 @@ class SignificanceTree {
     if (fit.status != InvariantStatus::Ok) {
       return false;
     }
-    if (passes("line", fit.line_chi2, fit.line_dof)) {
+    add_invariant(CurveClass::Circle, "kappa", fit.kappa, fit.variance);
+    if (passes("line", fit.line_chi2, fit.line_dof, {CurveClass::Line})) {
       reach(CurveClass::Line, Eigen::Vector3d::Zero(), fit.line_chi2, fit.line_dof);
       result_.world_T_curve = line_pose(points_);
       return true;
     }
-    if (fit.kappa > 0.0 && passes("circle", fit.circle_chi2, fit.circle_dof)) {
+    if (fit.kappa > 0.0 &&
+        passes("circle", fit.circle_chi2, fit.circle_dof, {CurveClass::Circle})) {
       const double radius = 1.0 / fit.kappa;
       const TangentCircle circle = tangent_circle(points_, radius, options_.relative_floor);
       // Constant curvature within its errors: the places and tangents know better.
-      if (!passes("circle through tangents", circle.chi2, circle.dof)) {
+      if (!passes("circle through tangents", circle.chi2, circle.dof, {CurveClass::Circle})) {
         return false;
       }
       reach(CurveClass::Circle, {radius, 0.0, 0.0}, fit.circle_chi2, fit.circle_dof);
@@ -88,83 +119,200 @@ class SignificanceTree {
     return false;
   }
 
+  /// The points whose errors go into the conic's invariants linearly as far as a test looks. Ip
+  /// goes as kappa^(-10/3): at 3.3 standard deviations (1e-3) it is linear to a third where kappa's
+  /// own is below 3 % of it.
+  std::vector<MeasuredGeometry> of_linear_invariants() const {
+    constexpr double kMostRelativeError = 0.03;
+    std::vector<MeasuredGeometry> linear;
+    for (const MeasuredGeometry& point : measured_) {
+      if (std::sqrt(point.covariance(1, 1)) <= kMostRelativeError * std::abs(point.kappa)) {
+        linear.push_back(point);
+      }
+    }
+    return linear;
+  }
+
   bool conic() {
-    const ConicLine line = fit_conic_line(measured_);
-    const int dof = static_cast<int>(measured_.size()) - 2;
-    if (dof < 1) {
+    if (measured_.size() < 3) {
       return false;
     }
-    if (line.status == InvariantStatus::PointsTooAlike) {
-      // Curvatures equal within their errors, kappa_s not zero: no slope, hence no sign. What is
-      // left of the conic test is Ip, the parabola's.
-      return parabola(line);
+    // All points give the invariants, those of which the law is known test them.
+    const ConicLine tested = fit_conic_line(of_linear_invariants());
+    const ConicLine all = fit_conic_line(measured_);
+    const ConicLine& line = is_line(all) ? all : tested;
+    if (tested.status == InvariantStatus::SignChange || !is_line(line)) {
+      return refused("conic line", static_cast<int>(measured_.size()) - 2);
     }
+    if (line.status == InvariantStatus::Ok) {
+      const CurveClass of_sign = line.ic1 < 0.0 ? CurveClass::Hyperbola : CurveClass::Ellipse;
+      add_invariant(of_sign, "Ic1", line.ic1, line.covariance(0, 0));
+      add_invariant(of_sign, "Ic2", line.ic2, line.covariance(1, 1));
+    }
+    add_invariant(CurveClass::Parabola, "Ip", line.ip_mean, line.ip_variance);
+    if (tested.status == InvariantStatus::Ok && tested.dof > 0 &&
+        !passes("conic line", tested.chi2, tested.dof,
+                {CurveClass::Ellipse, CurveClass::Parabola, CurveClass::Hyperbola})) {
+      return false;
+    }
+    if (const int sign = sign_of_ic1(tested)) {
+      return central_conic(sign > 0 ? CurveClass::Ellipse : CurveClass::Hyperbola, tested.ic1,
+                           tested);
+    }
+    if (parabola(tested, line)) {
+      return true;
+    }
+    // Curvatures equal within their errors leave no slope, hence neither sign nor size.
     if (line.status != InvariantStatus::Ok) {
-      return refused("conic line", dof);
-    }
-    if (!passes("conic line", line.chi2, line.dof)) {
       return false;
-    }
-    const double sd = std::sqrt(line.covariance(0, 0));
-    const double threshold = std::sqrt(chi_square_threshold(options_.significance, 1));
-    const double sign = line.ic1 / sd;
-    const bool signed_conic = std::abs(sign) > threshold;
-    result_.decisions.push_back({"Ic1 not zero", std::abs(sign), threshold, signed_conic});
-    if (signed_conic) {
-      return central_conic(sign > 0.0 ? CurveClass::Ellipse : CurveClass::Hyperbola, line.ic1,
-                           line);
     }
     // The sign of Ic1 is not known: the tangents, which are measured far better, may decide.
-    const double size = std::max(std::abs(line.ic1), sd);
-    return parabola(line) || central_conic(CurveClass::Ellipse, size, line) ||
+    const double size = std::max(std::abs(line.ic1), std::sqrt(line.covariance(0, 0)));
+    return central_conic(CurveClass::Ellipse, size, line) ||
            central_conic(CurveClass::Hyperbola, -size, line);
   }
 
-  bool central_conic(CurveClass curve_class, double ic1, const ConicLine& line) {
-    const bool ellipse = curve_class == CurveClass::Ellipse;
-    const ConicParameters parameters = ellipse
-                                           ? ellipse_parameters(ic1, line.ic2, line.covariance)
-                                           : hyperbola_parameters(ic1, line.ic2, line.covariance);
-    if (parameters.status != InvariantStatus::Ok) {
-      return refused(ellipse ? "ellipse" : "hyperbola", static_cast<int>(measured_.size()) - 2);
-    }
-    return rotation(curve_class, {parameters.a, parameters.b, 0.0},
-                    ellipse ? "ellipse rotation" : "hyperbola rotation");
+  static bool is_line(const ConicLine& line) {
+    return line.status == InvariantStatus::Ok || line.status == InvariantStatus::PointsTooAlike;
   }
 
-  bool parabola(const ConicLine& line) {
-    if (!passes("parabola Ip", line.ip_chi2, line.ip_dof)) {
+  /// 0 where it is not known.
+  int sign_of_ic1(const ConicLine& tested) {
+    if (tested.status != InvariantStatus::Ok) {
+      return 0;
+    }
+    const double threshold = std::sqrt(threshold_of(1));
+    const double sign = tested.ic1 / std::sqrt(tested.covariance(0, 0));
+    const double p_value = chi_square_survival(sign * sign, 1);
+    const bool is_signed = std::abs(sign) > threshold;
+    result_.decisions.push_back({"Ic1 not zero", std::abs(sign), threshold, is_signed, p_value});
+    says(CurveClass::Parabola, p_value);
+    says(sign > 0.0 ? CurveClass::Hyperbola : CurveClass::Ellipse, p_value);
+    return !is_signed ? 0 : sign > 0.0 ? 1 : -1;
+  }
+
+  /// Where the sign of Ic1 is not known its size is not either: shapes along the line's intercept,
+  /// which is known better.
+  bool central_conic(CurveClass curve_class, double ic1, const ConicLine& line) {
+    const bool ellipse = curve_class == CurveClass::Ellipse;
+    std::vector<Eigen::Vector3d> shapes;
+    for (const double factor : {1.0, 0.3, 0.1, 3.0}) {
+      const ConicParameters parameters =
+          ellipse ? ellipse_parameters(factor * ic1, line.ic2, line.covariance)
+                  : hyperbola_parameters(factor * ic1, line.ic2, line.covariance);
+      if (parameters.status == InvariantStatus::Ok) {
+        shapes.emplace_back(parameters.a, parameters.b, 0.0);
+      }
+    }
+    return rotation(curve_class, shapes, ellipse ? "ellipse rotation" : "hyperbola rotation");
+  }
+
+  bool parabola(const ConicLine& tested, const ConicLine& line) {
+    if (is_line(tested) && tested.ip_dof > 0 &&
+        !passes("parabola Ip", tested.ip_chi2, tested.ip_dof, {CurveClass::Parabola})) {
       return false;
     }
     const ConicParameters parameters = parabola_parameters(line.ip_mean, line.ip_variance);
-    return parameters.status == InvariantStatus::Ok
-               ? rotation(CurveClass::Parabola, {parameters.a, 0.0, 0.0}, "parabola rotation")
-               : refused("parabola rotation", line.ip_dof);
+    std::vector<Eigen::Vector3d> shapes;
+    if (parameters.status == InvariantStatus::Ok) {
+      shapes.emplace_back(parameters.a, 0.0, 0.0);
+    }
+    return rotation(CurveClass::Parabola, shapes, "parabola rotation");
   }
 
   /// The conic's invariants do not see the tangent angles, which are the best-measured of all: the
   /// class must explain them too.
-  bool rotation(CurveClass curve_class, const Eigen::Vector3d& parameters, std::string_view name) {
-    const double orientation = conic_orientation(curve_class, parameters, measured_);
-    return leaf(fit_semi_signature(curve_class, measured_, parameters, orientation), name);
+  bool rotation(CurveClass curve_class, std::span<const Eigen::Vector3d> shapes,
+                std::string_view name) {
+    return leaf(
+        fit_of(curve_class,
+               [&] {
+                 SemiSignatureFit best;
+                 best.curve_class = curve_class;
+                 for (const CurveStart& start : conic_starts(curve_class, shapes, measured_)) {
+                   better(fit_semi_signature(curve_class, measured_, start.parameters,
+                                             start.orientation),
+                          &best);
+                   if (explains(best)) {
+                     break;
+                   }
+                 }
+                 return best;
+               }),
+        name);
+  }
+
+  /// Whether the leaf's test passes.
+  bool explains(const SemiSignatureFit& fit) {
+    return fit.status == InvariantStatus::Ok && fit.chi2 <= threshold_of(fit.dof);
+  }
+
+  static void better(SemiSignatureFit fit, SemiSignatureFit* best) {
+    const bool ok = fit.status == InvariantStatus::Ok;
+    const bool best_ok = best->status == InvariantStatus::Ok;
+    if (ok && (!best_ok || fit.chi2 < best->chi2)) {
+      *best = std::move(fit);
+    } else if (!best_ok) {
+      best->dof = fit.dof;
+    }
+  }
+
+  /// From where the curve is known to lie, else by `search`.
+  template <typename Search>
+  SemiSignatureFit fit_of(CurveClass curve_class, const Search& search) {
+    const auto& known = known_[static_cast<std::size_t>(curve_class)];
+    return known ? fit_semi_signature(curve_class, measured_, known->parameters, known->orientation)
+                 : search();
   }
 
   bool cubic(CurveClass curve_class) {
     if (curve_class == CurveClass::CubicalParabola) {
-      return measured_.size() >= 2 && leaf(fit_cubical_parabola(measured_), "cubical parabola");
+      return measured_.size() >= 2 &&
+             cubic_leaf(fit_of(curve_class, [&] { return fit_cubical_parabola(measured_); }),
+                        "cubical parabola");
     }
     if (curve_class == CurveClass::SemiCubicalParabola) {
       return measured_.size() >= 2 &&
-             leaf(fit_semi_cubical_parabola(measured_), "semi-cubical parabola");
+             cubic_leaf(fit_of(curve_class, [&] { return fit_semi_cubical_parabola(measured_); }),
+                        "semi-cubical parabola");
     }
-    return measured_.size() >= 4 && leaf(fit_cubic_spline(measured_, spline_), "cubic spline");
+    return measured_.size() >= 4 &&
+           cubic_leaf(fit_of(curve_class, [&] { return fit_cubic_spline(measured_, spline_); }),
+                      "cubic spline");
+  }
+
+  bool cubic_leaf(const SemiSignatureFit& fit, std::string_view name) {
+    if (fit.status == InvariantStatus::Ok) {
+      add_cubic_invariants(fit);
+    }
+    return leaf(fit, name);
+  }
+
+  /// The invariants of a cubic are its parameters, Iscp1 the square of one.
+  void add_cubic_invariants(const SemiSignatureFit& fit) {
+    const Eigen::Matrix3d covariance = shape_covariance(fit);
+    const auto add = [&](std::string_view name, Eigen::Index i) {
+      add_invariant(fit.curve_class, name, fit.parameters[i], covariance(i, i));
+    };
+    if (fit.curve_class == CurveClass::CubicalParabola) {
+      add("Icp1", 0);
+      add("Icp2", 1);
+    } else if (fit.curve_class == CurveClass::SemiCubicalParabola) {
+      const double a = fit.parameters[0];
+      add_invariant(fit.curve_class, "Iscp1", a * a, 4.0 * a * a * covariance(0, 0));
+      add("Iscp2", 1);
+    } else {
+      add("a", 0);
+      add("b", 1);
+      add("c", 2);
+    }
   }
 
   bool leaf(const SemiSignatureFit& fit, std::string_view name) {
     if (fit.status != InvariantStatus::Ok) {
       return refused(name, std::max(fit.dof, 1));
     }
-    if (!passes(name, fit.chi2, fit.dof)) {
+    if (!passes(name, fit.chi2, fit.dof, {fit.curve_class})) {
       return false;
     }
     reach(fit.curve_class, fit.parameters, fit.chi2, fit.dof);
@@ -176,15 +324,18 @@ class SignificanceTree {
 
   std::span<const TreePoint> points_;
   const RecognitionTreeOptions& options_;
+  const KnownCurves& known_;
   const SplineOptions& spline_;
   std::vector<MeasuredGeometry> measured_;
+  std::vector<std::pair<int, double>> thresholds_;  ///< by degrees of freedom
   TreeResult result_;
 };
 
 }  // namespace
 
 TreeResult recognise_by_tree(std::span<const TreePoint> points,
-                             const RecognitionTreeOptions& options, const SplineOptions& spline) {
+                             const RecognitionTreeOptions& options, const KnownCurves& known,
+                             const SplineOptions& spline) {
   TreeResult result;
   if (points.size() < 2) {
     return result;
@@ -197,7 +348,7 @@ TreeResult recognise_by_tree(std::span<const TreePoint> points,
     }
   }
   return options.relative_tolerance > 0.0 ? recognise_by_tolerance(points, options)
-                                          : SignificanceTree(points, options, spline).run();
+                                          : SignificanceTree(points, options, known, spline).run();
 }
 
 }  // namespace palpate

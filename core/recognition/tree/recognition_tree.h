@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "core/curves/pose2.h"
 #include "core/curves/shape_parameters.h"
 #include "core/invariants/invariant_status.h"
+#include "core/invariants/named_invariant.h"
 #include "core/invariants/signature_fit/local_parameter.h"
 #include "core/invariants/signature_fit/spline_least_squares.h"
 #include "core/local/local_estimate.h"
@@ -42,18 +44,28 @@ struct TreeResult {
   InvariantStatus status = InvariantStatus::TooFewPoints;  ///< Ok where a class was reached
   double chi2 = 0.0;                                       ///< of the leaf's last test
   int dof = 0;
-  std::vector<Decision> decisions;     ///< the path, in order
+  std::vector<Decision> decisions;  ///< the path, in order
+  /// By class, the least p-value of the tests that it must pass; NaN where none was made.
+  ClassPValues p_values = no_p_values();
+  /// Of every class that was asked about and has an answer, in the order asked: pooled over the
+  /// points `pooled` (indices).
+  std::vector<NamedInvariant> invariants;
+  std::vector<std::size_t> pooled;
   std::optional<Pose2> world_T_curve;  ///< where shape and tangent angles fix it
   std::vector<LocalParameter> places;  ///< one per point, where world_T_curve is given
 };
+
+/// Where the curves of the classes lie as far as it is known from elsewhere: a test's fit begins
+/// there, and what explains the points is not searched for again.
+using KnownCurves = std::array<std::optional<CurveStart>, kCurveClasses.size() + 1>;
 
 /// Tests, in order: line, circle (both beyond the paper); conic line, sign of Ic1 (parabola: Ip),
 /// tangent rotation of the conic; cubical parabola; semi-cubical parabola; cubic spline. A conic
 /// needs three points, the spline four (three and one that verifies), the other two. Points are
 /// taken as independent: neighbouring windows that share samples are not, and make the tests
-/// stricter than their significance says. `spline`: the effort on its leaf.
+/// stricter than their significance says.
 TreeResult recognise_by_tree(std::span<const TreePoint> points,
                              const RecognitionTreeOptions& options = {},
-                             const SplineOptions& spline = {});
+                             const KnownCurves& known = {}, const SplineOptions& spline = {});
 
 }  // namespace palpate

@@ -52,7 +52,8 @@ class ToleranceTree {
   ToleranceTree(std::span<const TreePoint> points, double tolerance) : tolerance_(tolerance) {
     const std::size_t count = std::min(points.size(), kPoints);
     for (std::size_t i = 0; i < count; ++i) {
-      points_.push_back(points[i * (points.size() - 1) / (count - 1)]);
+      result_.pooled.push_back(i * (points.size() - 1) / (count - 1));
+      points_.push_back(points[result_.pooled.back()]);
       measured_.push_back(measured_geometry(points_.back().estimate, points_.back().patch));
       measured_.back().covariance.setZero();
     }
@@ -75,6 +76,11 @@ class ToleranceTree {
     return passed;
   }
 
+  /// What a tolerance decides on has no standard deviation.
+  void add_invariant(CurveClass curve_class, std::string_view name, double value) {
+    result_.invariants.push_back({curve_class, name, value});
+  }
+
   bool constant_curvature() {
     const double scale = curvature_scale(measured_);
     if (scale == 0.0) {
@@ -88,6 +94,7 @@ class ToleranceTree {
       size.add(std::abs(point.kappa) / scale);
       change.add(point.kappa_s / (scale * scale));
     }
+    add_invariant(CurveClass::Circle, "kappa", size.mean() * scale);
     if (passes("circle", std::max(size.spread(), change.size()))) {
       const double radius = 1.0 / (size.mean() * scale);
       result_.shape = {CurveClass::Circle, {radius, 0.0, 0.0}};
@@ -126,6 +133,12 @@ class ToleranceTree {
         }
       }
     }
+    if (ic1.count > 0) {
+      const CurveClass of_sign = ic1.mean() < 0.0 ? CurveClass::Hyperbola : CurveClass::Ellipse;
+      add_invariant(of_sign, "Ic1", ic1.mean());
+      add_invariant(of_sign, "Ic2", ic2.mean());
+    }
+    add_invariant(CurveClass::Parabola, "Ip", ip.mean());
     const double natural = unit.low;
     const bool flat = ic1.size() <= tolerance_ * natural;
     if (!flat && !passes("conic Ic1", ic1.spread())) {
@@ -160,7 +173,7 @@ class ToleranceTree {
     const bool cubical = curve_class == CurveClass::CubicalParabola;
     double best = std::numeric_limits<double>::infinity();
     double best_value = best;
-    Eigen::Vector3d best_parameters = Eigen::Vector3d::Zero();
+    Eigen::Vector2d best_invariants = Eigen::Vector2d::Zero();
     for (std::size_t i = 0; i < measured_.size(); ++i) {
       for (std::size_t j = 0; j < measured_.size(); ++j) {
         const PairSolutions pair = i == j ? PairSolutions{}
@@ -181,16 +194,20 @@ class ToleranceTree {
           if (value < best) {
             best = value;
             best_value = value;
-            best_parameters = {cubical ? first.mean() : std::sqrt(std::abs(first.mean())),
-                               second.mean(), 0.0};
+            best_invariants = {first.mean(), second.mean()};
           }
         }
       }
     }
+    if (std::isfinite(best_value)) {
+      add_invariant(curve_class, cubical ? "Icp1" : "Iscp1", best_invariants[0]);
+      add_invariant(curve_class, cubical ? "Icp2" : "Iscp2", best_invariants[1]);
+    }
     if (!passes(cubical ? "cubical parabola" : "semi-cubical parabola", best_value)) {
       return false;
     }
-    result_.shape = {curve_class, best_parameters};
+    const double a = cubical ? best_invariants[0] : std::sqrt(std::abs(best_invariants[0]));
+    result_.shape = {curve_class, {a, best_invariants[1], 0.0}};
     return true;
   }
 
@@ -214,6 +231,12 @@ class ToleranceTree {
     for (std::size_t i = 3; i < measured_.size(); ++i) {
       const Eigen::Vector3d other = parameters_of(i);
       worst = std::max(worst, (other - first).norm() / std::max(first.norm(), other.norm()));
+    }
+    if (first.norm() > 0.0) {
+      const Eigen::Vector3d parameters = first.cwiseQuotient(to_numbers);
+      add_invariant(CurveClass::CubicSpline, "a", parameters[0]);
+      add_invariant(CurveClass::CubicSpline, "b", parameters[1]);
+      add_invariant(CurveClass::CubicSpline, "c", parameters[2]);
     }
     if (!passes("cubic spline",
                 std::isfinite(worst) ? worst : std::numeric_limits<double>::infinity())) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "core/invariants/signature_fit/canonical_models.h"
 
@@ -55,6 +56,29 @@ Pose2 pose_of(std::span<const TreePoint> points, const SemiSignatureFit& fit) {
   return pose;
 }
 
+namespace {
+
+/// The mean curvature of a patch, which turns to one side, in its standard deviations: single
+/// curvatures may be noise.
+double turn_of_patch(std::span<const TreePoint> points, int patch) {
+  double sum = 0.0;
+  double weights = 0.0;
+  for (const TreePoint& point : points) {
+    if (point.patch == patch) {
+      const double kappa = point.estimate.kappa;
+      // Exact estimates are known to rounding.
+      const double weight = 1.0 / std::max(point.estimate.covariance(2, 2),
+                                           std::numeric_limits<double>::epsilon() * kappa * kappa +
+                                               std::numeric_limits<double>::min());
+      sum += weight * kappa;
+      weights += weight;
+    }
+  }
+  return sum / std::sqrt(weights);
+}
+
+}  // namespace
+
 TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
                              double relative_floor) {
   // Unknown are the centre, from the points' mean, and the radius, both in units of `radius`. A
@@ -67,23 +91,33 @@ TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   double sum = 0.0;
+  // On which side of a patch the centre lies, its curvatures must tell from their noise; the best
+  // of them always counts.
+  constexpr double kCertain = 5.0;  // standard deviations
+  double largest = 0.0;
+  for (const TreePoint& point : points) {
+    largest = std::max(largest, std::abs(turn_of_patch(points, point.patch)));
+  }
+  const double side_limit = std::min(kCertain, largest);
   const auto add = [&](const Eigen::Vector3d& row, double value, double variance) {
     const double weight = 1.0 / (variance + relative_floor * relative_floor);
     normal_matrix += weight * row * row.transpose();
     right += weight * value * row;
     sum += weight * value * value;
   };
+  int unsided = 0;
   for (const TreePoint& point : points) {
     const LocalEstimate& estimate = point.estimate;
-    double turn = 0.0;  // a patch turns to one side: single curvatures may be noise
-    for (const TreePoint& other : points) {
-      turn += other.patch == point.patch ? other.estimate.kappa : 0.0;
-    }
+    const double turn = turn_of_patch(points, point.patch);
     const Vec2 tangent(std::cos(estimate.tangent_angle), std::sin(estimate.tangent_angle));
     const Vec2 inward = std::copysign(1.0, turn) * left_of(tangent);
     const Vec2 p = (estimate.position - mean) / radius;
-    add({inward.x(), inward.y(), -1.0}, inward.dot(p),
-        estimate.covariance(0, 0) / (radius * radius));
+    if (std::abs(turn) >= side_limit) {
+      add({inward.x(), inward.y(), -1.0}, inward.dot(p),
+          estimate.covariance(0, 0) / (radius * radius));
+    } else {
+      ++unsided;
+    }
     add({tangent.x(), tangent.y(), 0.0}, tangent.dot(p), estimate.covariance(1, 1));
   }
   const Eigen::Vector3d solution = normal_matrix.ldlt().solve(right);
@@ -91,7 +125,7 @@ TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
   const Vec2 centre = mean + radius * solution.head<2>();
   circle.pose = {centre.x(), centre.y(), 0.0};
   circle.chi2 = std::max(0.0, sum - right.dot(solution));
-  circle.dof = 2 * static_cast<int>(points.size()) - 3;
+  circle.dof = 2 * static_cast<int>(points.size()) - 3 - unsided;
   return circle;
 }
 

@@ -89,6 +89,11 @@ std::string ambiguous(const v1::Recognition& answer) {
     }
     case v1::RECOGNITION_DOUBT_UNDETERMINED:
       return undetermined(answer);
+    case v1::RECOGNITION_DOUBT_TREE_REJECTS:
+      return "The samples together are " + with_article(answer.curve_class()) +
+             ", but the local estimates along them are not: stroke on, and look at the contacts "
+             "and "
+             "the recognition tree's path where it stays so.";
     default:
       return "Not certain yet: touch further round.";
   }

@@ -118,8 +118,24 @@ void add_decisions(const v1::Recognition& answer, std::string& text) {
   }
   text += "  recognition tree\n";
   for (const v1::Decision& decision : answer.decisions()) {
-    add_row(text, "    %-34s %12.5g against %-12.5g %s\n", printable(decision.test()).c_str(),
-            decision.value(), decision.threshold(), decision.passed() ? "passed" : "failed");
+    const std::string chance = decision.has_p_value() ? ", p = " + number(decision.p_value()) : "";
+    add_row(text, "    %-34s %12.5g against %-12.5g %s%s\n", printable(decision.test()).c_str(),
+            decision.value(), decision.threshold(), decision.passed() ? "passed" : "failed",
+            chance.c_str());
+  }
+}
+
+void add_invariants(const v1::Recognition& answer, std::string& text) {
+  if (answer.invariants().empty()) {
+    return;
+  }
+  text += "  invariants, in powers of metres\n";
+  for (const v1::Invariant& invariant : answer.invariants()) {
+    const std::string value = std::isfinite(invariant.sigma())
+                                  ? with_sigma(invariant.value(), invariant.sigma())
+                                  : number(invariant.value());
+    add_row(text, "    %-6s of %-24s %s\n", printable(invariant.name()).c_str(),
+            spoken_name(invariant.curve_class()).c_str(), value.c_str());
   }
 }
 
@@ -186,6 +202,8 @@ std::string_view sentence_of(v1::RecognitionDoubt doubt) {
       return "the samples do not exclude a class of which this one is a limit";
     case v1::RECOGNITION_DOUBT_UNDETERMINED:
       return "the shape is not determined";
+    case v1::RECOGNITION_DOUBT_TREE_REJECTS:
+      return "the recognition tree rejects the class that all samples together are";
     default:
       return "no reason given";
   }
@@ -257,6 +275,7 @@ std::string report_text(const v1::Recognition& answer, bool noise_is_known) {
   add_hypotheses(answer, noise_is_known, text);
   add_contacts(answer, text);
   add_decisions(answer, text);
+  add_invariants(answer, text);
   return text;
 }
 

@@ -166,9 +166,20 @@ json decisions_json(const v1::Recognition& answer) {
     decisions.push_back({{"test", decision.test()},
                          {"value", decision.value()},
                          {"threshold", decision.threshold()},
-                         {"passed", decision.passed()}});
+                         {"passed", decision.passed()},
+                         {"pValue", decision.has_p_value() ? json(decision.p_value()) : json()}});
   }
   return decisions;
+}
+
+json invariants_json(const v1::Recognition& answer) {
+  json invariants = json::array();
+  for (const v1::Invariant& invariant : answer.invariants()) {
+    invariants.push_back({{"name", invariant.name()},
+                          {"class", spoken_name(invariant.curve_class())},
+                          {"text", with_sigma(invariant.value(), invariant.sigma())}});
+  }
+  return invariants;
 }
 
 json quantities_json(const v1::Recognition& answer) {
@@ -294,6 +305,7 @@ json picture_json(LiveGroup& group, SteadyTime now) {
       {"quantities", quantities_json(answer)},
       {"hypotheses", hypotheses_json(answer)},
       {"decisions", decisions_json(answer)},
+      {"invariants", invariants_json(answer)},
       {"contacts", contacts_json(drawing, place)},
       {"rivals", std::move(rivals)},
       {"sampleCount", answer.sample_count()},

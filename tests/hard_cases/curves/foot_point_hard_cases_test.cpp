@@ -39,14 +39,14 @@ TEST(FootPointHardCases, CentresOfCurvature) {
 }
 
 TEST(FootPointHardCases, VerticesSeenFromTheCuspOfTheEvolute) {
-  EXPECT_NEAR(Ellipse(2.0, 1.0).foot_point({1.5, 0.0}).distance, 0.5, 1e-15);
+  EXPECT_NEAR((Ellipse{2.0, 1.0}).foot_point({1.5, 0.0}).distance, 0.5, 1e-15);
   EXPECT_NEAR(Parabola{1.0}.foot_point({2.0, 0.0}).distance, -2.0, 1e-15);
-  EXPECT_NEAR(Hyperbola(3.0, 4.0).foot_point({25.0 / 3.0, 0.0}).distance, -16.0 / 3.0, 1e-14);
+  EXPECT_NEAR((Hyperbola{3.0, 4.0}).foot_point({25.0 / 3.0, 0.0}).distance, -16.0 / 3.0, 1e-14);
   // And just off the axis there, where the root is nearly triple.
   for (const double y : {1e-3, 1e-9, 1e-15, 1e-300}) {
-    EXPECT_NEAR(Ellipse(2.0, 1.0).foot_point({1.5, y}).distance, 0.5, y + 1e-15);
+    EXPECT_NEAR((Ellipse{2.0, 1.0}).foot_point({1.5, y}).distance, 0.5, y + 1e-15);
     EXPECT_NEAR(Parabola{1.0}.foot_point({2.0, -y}).distance, -2.0, y + 1e-15);
-    EXPECT_NEAR(Hyperbola(3.0, 4.0).foot_point({25.0 / 3.0, y}).distance, -16.0 / 3.0, y + 1e-14);
+    EXPECT_NEAR((Hyperbola{3.0, 4.0}).foot_point({25.0 / 3.0, y}).distance, -16.0 / 3.0, y + 1e-14);
   }
 }
 

@@ -3,9 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
+#include <vector>
 
+#include "core/recognition/recognizer.h"
 #include "core/recognition/tree/recognition_tree.h"
+#include "tests/support/calibration.h"
 #include "tests/support/canonical_points.h"
+#include "tests/support/scene_data.h"
+#include "tests/support/scene_prior.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
@@ -96,6 +102,37 @@ TEST_P(TreeOfEveryClass, ClassAndShapeDoNotDependOnUnitPlaceOrOrder) {
       }
     }
   }
+}
+
+TEST(RecognitionTreeProperty, RejectsTheTrueClassAsSeldomAsItsSignificanceSays) {
+  // A class passes three tests at most on its way; the estimates' law is not exactly normal, hence
+  // twice that.
+  constexpr double kTests = 3.0;
+  constexpr double kSlack = 2.0;
+  const double significance = RecognizerOptions{}.tree.significance;
+  const test::ScenePrior prior = test::classes_only(test::even_prior());
+  const int scenes = test::stress_count(1000);
+  std::vector<double> stated;
+  int rejected = 0;
+  for (int i = 0; i < scenes; ++i) {
+    const test::PriorScene drawn =
+        test::scene_from(prior, test::test_seed(), static_cast<std::uint32_t>(i));
+    const Recognition answer = test::recognise(drawn.scene, drawn.scene.sigma_m);
+    const double p = answer.tree_p_values[static_cast<std::size_t>(drawn.scene.curve_class)];
+    if (std::isnan(p)) {
+      continue;
+    }
+    stated.push_back(kSlack * kTests * significance);
+    rejected += p < significance ? 1 : 0;
+    // Where they disagree the answer says so.
+    const bool rejects =
+        answer.tree_p_values[static_cast<std::size_t>(answer.shape.curve_class)] < significance;
+    EXPECT_FALSE(rejects && answer.status == RecognitionStatus::Recognized) << "scene " << i;
+    EXPECT_TRUE(rejects || answer.doubt != Doubt::TreeRejects) << "scene " << i;
+  }
+  EXPECT_GT(stated.size(), static_cast<std::size_t>(scenes / 2));
+  EXPECT_LE(rejected, test::binomial_band(stated, 0.999).most) << "of " << stated.size();
+  std::cout << rejected << " of " << stated.size() << " rejected\n";
 }
 
 }  // namespace

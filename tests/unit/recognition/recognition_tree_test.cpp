@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "core/numerics/chi_square.h"
 #include "tests/support/canonical_points.h"
@@ -31,6 +35,62 @@ TEST(ChiSquare, AgreesWithTabulatedValues) {
   EXPECT_EQ(chi_square_threshold(0.05, 0), 0.0);
   EXPECT_NEAR(chi_square_survival(124.342, 100), 0.05, 1e-6);
   EXPECT_EQ(chi_square_survival(0.0, 5), 1.0);
+  for (const int dof : {1, 2, 3, 4}) {
+    EXPECT_EQ(chi_square_survival(std::numeric_limits<double>::infinity(), dof), 0.0);
+  }
+}
+
+/// The class's invariants by the paper's closed forms.
+std::map<std::string, double> true_invariants(CurveClass curve_class, const Eigen::Vector3d& p) {
+  const double product = p[0] * p[1];
+  const auto two_thirds = [](double x) { return std::cbrt(x * x); };
+  switch (curve_class) {
+    case CurveClass::Ellipse:
+      return {{"Ic1", 1.0 / two_thirds(product)},
+              {"Ic2", (p[0] * p[0] + p[1] * p[1]) / two_thirds(product * product)}};
+    case CurveClass::Hyperbola:
+      return {{"Ic1", -1.0 / two_thirds(product)},
+              {"Ic2", (p[0] * p[0] - p[1] * p[1]) / two_thirds(product * product)}};
+    case CurveClass::Parabola:
+      return {{"Ip", 1.0 / two_thirds(2.0 * p[0])}};
+    case CurveClass::CubicalParabola:
+      return {{"Icp1", p[0]}, {"Icp2", p[1]}};
+    case CurveClass::SemiCubicalParabola:
+      return {{"Iscp1", p[0] * p[0]}, {"Iscp2", p[1]}};
+    case CurveClass::CubicSpline:
+      return {{"a", p[0]}, {"b", p[1]}, {"c", p[2]}};
+    default:
+      return {};
+  }
+}
+
+TEST(RecognitionTree, InvariantsOfExactPointsAreTheClosedForms) {
+  auto rng = test::test_rng();
+  const int cases = test::stress_count(100);
+  for (const CurveClass curve_class : test::invariant_classes()) {
+    for (int i = 0; i < cases; ++i) {
+      const test::PlacedCurve curve = test::random_curve(curve_class, rng);
+      const auto places = test::random_places(curve, 5, rng);
+      const TreeResult result = recognise_by_tree(test::exact_points(curve, places, rng));
+      if (result.shape.curve_class != curve_class) {
+        continue;
+      }
+      std::map<std::string, double> expected = true_invariants(curve_class, curve.parameters);
+      for (const NamedInvariant& invariant : result.invariants) {
+        const auto truth = expected.find(std::string(invariant.name));
+        if (invariant.curve_class != curve_class || truth == expected.end()) {
+          continue;
+        }
+        // The floor of 1e-6 is the noise that the tree assumes of exact points.
+        EXPECT_NEAR(invariant.value, truth->second, 5.0 * invariant.sigma + 1e-12)
+            << name_of(curve_class) << " " << invariant.name;
+        EXPECT_TRUE(std::isfinite(invariant.sigma)) << invariant.name;
+        expected.erase(truth);
+      }
+      EXPECT_TRUE(expected.empty()) << name_of(curve_class) << ": " << expected.begin()->first;
+      EXPECT_EQ(result.pooled, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
+    }
+  }
 }
 
 TEST(RecognitionTree, RecognisesEveryClassFromFiveExactPoints) {

@@ -103,6 +103,10 @@ export class Panels {
     fill("decisions", decisions.map((decision) => row([
       decision.test, number(decision.value, 3), `against ${number(decision.threshold, 3)}`,
       html("span", decision.passed ? "passed" : "failed", decision.passed ? "good" : "bad"),
+      decision.pValue === null ? "" : `p = ${number(decision.pValue, 2)}`,
+    ])));
+    fill("invariants", (picture?.invariants ?? []).map((invariant) => row([
+      html("i", invariant.name), `of ${invariant.class}`, invariant.text,
     ])));
     byId("path").hidden = decisions.length === 0;
   }

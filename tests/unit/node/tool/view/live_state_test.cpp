@@ -164,8 +164,17 @@ TEST(PictureJson, NumbersThatAreNoneAndTextOfAnyBytesGiveValidJson) {
   v1::Decision& decision = *answer.add_decisions();
   decision.set_test("<b>\"\\\n</script>");
   decision.set_value(std::numeric_limits<double>::quiet_NaN());
+  v1::Invariant& invariant = *answer.add_invariants();
+  invariant.set_name("Ic1");
+  invariant.set_curve_class(v1::CURVE_CLASS_ELLIPSE);
+  invariant.set_value(163.4);
+  invariant.set_sigma(16.0);
   state.take(answer, kStart, 0);
   const auto picture = nlohmann::json::parse(to_text(picture_json(*state.find("part"), kStart)));
+  EXPECT_TRUE(picture["decisions"][0]["pValue"].is_null());
+  EXPECT_EQ(picture["invariants"][0]["name"], "Ic1");
+  EXPECT_EQ(picture["invariants"][0]["class"], "ellipse");
+  EXPECT_EQ(picture["invariants"][0]["text"], "163 +- 16");
   EXPECT_EQ(picture["decisions"][0]["test"], "<b>\"\\\n</script>");
   EXPECT_TRUE(picture["decisions"][0]["value"].is_null());
   EXPECT_EQ(picture["curve"]["points"].size(), 482U);
