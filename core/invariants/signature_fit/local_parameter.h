@@ -21,7 +21,8 @@ class ParameterCandidates {
   /// Kept finite, and where powers of it leave something of a double.
   void add(double t);
 
-  std::span<const double> values() const { return {values_.data(), count_}; }
+  std::span<const double> values() const& { return {values_.data(), count_}; }
+  std::span<const double> values() && = delete;  ///< would outlive them
 
  private:
   std::array<double, 4> values_{};

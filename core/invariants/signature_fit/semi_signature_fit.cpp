@@ -103,9 +103,10 @@ PlacedPoint best_place(CurveClass curve_class, const detail::WhitePoint& point,
                        const Eigen::Vector3d& parameters, double orientation) {
   const MeasuredGeometry& m = point.measured;
   const double angle = m.tangent_angle - orientation;
+  const ParameterCandidates candidates =
+      candidate_parameters(curve_class, parameters, angle, m.kappa, m.kappa_s);
   PlacedPoint best;
-  for (const double t :
-       candidate_parameters(curve_class, parameters, angle, m.kappa, m.kappa_s).values()) {
+  for (const double t : candidates.values()) {
     const auto model = geometry_of(Model::derivatives(parameters.data(), t));
     for (const int direction : {1, -1}) {
       const double half_turn = direction < 0 ? kPi : 0.0;
