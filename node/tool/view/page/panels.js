@@ -106,7 +106,7 @@ export class Panels {
       decision.pValue === null ? "" : `p = ${number(decision.pValue, 2)}`,
     ])));
     fill("invariants", (picture?.invariants ?? []).map((invariant) => row([
-      html("i", invariant.name), `of ${invariant.class}`, invariant.text,
+      html("i", invariant.name), `of ${invariant.class}`, readable(invariant.text),
     ])));
     byId("path").hidden = decisions.length === 0;
   }
