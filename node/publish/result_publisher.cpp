@@ -19,6 +19,7 @@ void ResultPublisher::publish(TopicKind kind, std::string_view name, v1::Header&
     found->second.epoch = has_forgotten_ ? random_epoch() : epoch_;
   }
   Feed& feed = found->second;
+  feed.is_kept = kind != TopicKind::Estimate;
   header.set_source(source_);
   header.set_epoch(feed.epoch);
   header.set_seq(feed.next_seq++);
@@ -45,8 +46,8 @@ void ResultPublisher::serve_subscriptions(int max_messages, PeerGuard* peers,
     if (ends) continue;
     for (auto feed = feeds_.lower_bound(prefix);
          feed != feeds_.end() && feed->first.starts_with(prefix); ++feed) {
-      feed->second.asked_for = true;
-      any_asked_for_ = true;
+      feed->second.asked_for = feed->second.is_kept;
+      any_asked_for_ = any_asked_for_ || feed->second.is_kept;
     }
   }
   if (!any_asked_for_ || now < next_repeat_) return;
@@ -59,7 +60,9 @@ void ResultPublisher::serve_subscriptions(int max_messages, PeerGuard* peers,
 }
 
 void ResultPublisher::repeat_all() {
-  for (const auto& [topic, feed] : feeds_) send_now(socket_, topic, feed.payload);
+  for (const auto& [topic, feed] : feeds_) {
+    if (feed.is_kept) send_now(socket_, topic, feed.payload);
+  }
 }
 
 void ResultPublisher::forget(TopicKind kind, std::string_view name) {

@@ -25,7 +25,9 @@ class ResultPublisher {
   /// ZMQ_XPUB_VERBOSE, so that every subscription is seen and not only a prefix's first.
   ResultPublisher(zmq::socket_t& socket, std::string source);
 
-  /// Fills in the header (a part of `message`; the frame stays as given), sends and remembers.
+  /// Fills in the header (a part of `message`; the frame stays as given), sends and remembers. An
+  /// estimate is one of a stream and not the state of something: sent once, it is not kept for those
+  /// who come late, and a hole in its seq says what a slow planner has lost.
   void publish(TopicKind kind, std::string_view name, v1::Header& header,
                const google::protobuf::MessageLite& message);
 
@@ -58,6 +60,7 @@ class ResultPublisher {
     std::uint64_t epoch = 0;
     std::uint64_t next_seq = 0;
     std::string payload;
+    bool is_kept = true;
     bool asked_for = false;
   };
 
