@@ -26,8 +26,8 @@ class ResultPublisher {
   ResultPublisher(zmq::socket_t& socket, std::string source);
 
   /// Fills in the header (a part of `message`; the frame stays as given), sends and remembers. An
-  /// estimate is one of a stream and not the state of something: sent once, it is not kept for those
-  /// who come late, and a hole in its seq says what a slow planner has lost.
+  /// estimate is one of a stream and not the state of something: sent once, it is not kept for
+  /// those who come late, and a hole in its seq says what a slow planner has lost.
   void publish(TopicKind kind, std::string_view name, v1::Header& header,
                const google::protobuf::MessageLite& message);
 
