@@ -3,7 +3,10 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cmath>
+
+#include "core/curves/curve_class.h"
 
 namespace palpate {
 
@@ -150,5 +153,28 @@ struct SemiCubicalParabolaModel {
             {T(0.0), 6.0 * p[0]}};
   }
 };
+
+/// Calls `use` with the model of the class, which must have one.
+template <typename Use>
+void with_model(CurveClass curve_class, const Use& use) {
+  switch (curve_class) {
+    case CurveClass::Ellipse:
+      return use(EllipseModel{});
+    case CurveClass::Parabola:
+      return use(ParabolaModel{});
+    case CurveClass::Hyperbola:
+      return use(HyperbolaModel{});
+    case CurveClass::CubicalParabola:
+      return use(CubicalParabolaModel{});
+    case CurveClass::SemiCubicalParabola:
+      return use(SemiCubicalParabolaModel{});
+    case CurveClass::CubicSpline:
+      return use(CubicSplineModel{});
+    case CurveClass::Line:
+    case CurveClass::Circle:
+    case CurveClass::Unclassified:
+      assert(false);
+  }
+}
 
 }  // namespace palpate

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
+#include "core/curves/pose2.h"
 #include "core/invariants/canonical_point.h"
 
 namespace palpate {
@@ -14,7 +14,7 @@ ParameterCandidates ellipse_candidates(const Eigen::Vector3d& p, double c, doubl
   ParameterCandidates candidates;
   const double t = std::atan2(-c * p[1], s * p[0]);
   candidates.add(t);
-  candidates.add(t + std::numbers::pi);  // travelled the other way
+  candidates.add(t + kPi);  // travelled the other way
   return candidates;
 }
 

@@ -1,7 +1,6 @@
 #include "core/invariants/signature_fit/semi_signature_fit.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -120,36 +119,6 @@ PlacedPoint best_place(CurveClass curve_class, const detail::WhitePoint& point,
     }
   }
   return best;
-}
-
-/// Calls `use` with the model of the class.
-template <typename Use>
-void with_model(CurveClass curve_class, const Use& use) {
-  switch (curve_class) {
-    case CurveClass::Ellipse:
-      use(EllipseModel{});
-      break;
-    case CurveClass::Parabola:
-      use(ParabolaModel{});
-      break;
-    case CurveClass::Hyperbola:
-      use(HyperbolaModel{});
-      break;
-    case CurveClass::CubicalParabola:
-      use(CubicalParabolaModel{});
-      break;
-    case CurveClass::SemiCubicalParabola:
-      use(SemiCubicalParabolaModel{});
-      break;
-    case CurveClass::CubicSpline:
-      use(CubicSplineModel{});
-      break;
-    case CurveClass::Line:
-    case CurveClass::Circle:
-    case CurveClass::Unclassified:
-      assert(false);
-      break;
-  }
 }
 
 /// Factors from a class's parameters to those in lengths of `unit`.

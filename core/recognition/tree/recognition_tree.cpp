@@ -138,8 +138,9 @@ class SignificanceTree {
       return false;
     }
     // All points give the invariants, those of which the law is known test them.
-    const ConicLine tested = fit_conic_line(of_linear_invariants());
+    const std::vector<MeasuredGeometry> linear = of_linear_invariants();
     const ConicLine all = fit_conic_line(measured_);
+    const ConicLine tested = linear.size() == measured_.size() ? all : fit_conic_line(linear);
     const ConicLine& line = is_line(all) ? all : tested;
     if (tested.status == InvariantStatus::SignChange || !is_line(line)) {
       return refused("conic line", static_cast<int>(measured_.size()) - 2);
@@ -230,9 +231,11 @@ class SignificanceTree {
                  SemiSignatureFit best;
                  best.curve_class = curve_class;
                  for (const CurveStart& start : conic_starts(curve_class, shapes, measured_)) {
-                   better(fit_semi_signature(curve_class, measured_, start.parameters,
-                                             start.orientation),
-                          &best);
+                   SemiSignatureFit fit = fit_semi_signature(curve_class, measured_,
+                                                             start.parameters, start.orientation);
+                   if (is_better(fit, best)) {
+                     best = std::move(fit);
+                   }
                    if (explains(best)) {
                      break;
                    }
@@ -247,14 +250,9 @@ class SignificanceTree {
     return fit.status == InvariantStatus::Ok && fit.chi2 <= threshold_of(fit.dof);
   }
 
-  static void better(SemiSignatureFit fit, SemiSignatureFit* best) {
-    const bool ok = fit.status == InvariantStatus::Ok;
-    const bool best_ok = best->status == InvariantStatus::Ok;
-    if (ok && (!best_ok || fit.chi2 < best->chi2)) {
-      *best = std::move(fit);
-    } else if (!best_ok) {
-      best->dof = fit.dof;
-    }
+  static bool is_better(const SemiSignatureFit& fit, const SemiSignatureFit& best) {
+    const bool best_ok = best.status == InvariantStatus::Ok;
+    return fit.status == InvariantStatus::Ok ? !best_ok || fit.chi2 < best.chi2 : !best_ok;
   }
 
   /// From where the curve is known to lie, else by `search`.

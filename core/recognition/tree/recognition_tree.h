@@ -56,7 +56,7 @@ struct TreeResult {
 };
 
 /// Where the curves of the classes lie as far as it is known from elsewhere: a test's fit begins
-/// there, and what explains the points is not searched for again.
+/// there, and that class is not searched for.
 using KnownCurves = std::array<std::optional<CurveStart>, kCurveClasses.size() + 1>;
 
 /// Tests, in order: line, circle (both beyond the paper); conic line, sign of Ic1 (parabola: Ip),

@@ -2,9 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "core/invariants/signature_fit/canonical_models.h"
 
@@ -13,50 +13,9 @@ namespace {
 
 Vec2 canonical_position(CurveClass curve_class, const Eigen::Vector3d& p, double t) {
   PlanePoint<double> position{0.0, 0.0};
-  switch (curve_class) {
-    case CurveClass::Ellipse:
-      position = EllipseModel::position(p.data(), t);
-      break;
-    case CurveClass::Parabola:
-      position = ParabolaModel::position(p.data(), t);
-      break;
-    case CurveClass::Hyperbola:
-      position = HyperbolaModel::position(p.data(), t);
-      break;
-    case CurveClass::CubicalParabola:
-      position = CubicalParabolaModel::position(p.data(), t);
-      break;
-    case CurveClass::SemiCubicalParabola:
-      position = SemiCubicalParabolaModel::position(p.data(), t);
-      break;
-    case CurveClass::CubicSpline:
-      position = CubicSplineModel::position(p.data(), t);
-      break;
-    case CurveClass::Line:
-    case CurveClass::Circle:
-    case CurveClass::Unclassified:
-      assert(false);
-      break;
-  }
+  with_model(curve_class, [&](auto model) { position = model.position(p.data(), t); });
   return {position.x, position.y};
 }
-
-}  // namespace
-
-Pose2 pose_of(std::span<const TreePoint> points, const SemiSignatureFit& fit) {
-  Pose2 pose{0.0, 0.0, fit.orientation};
-  Vec2 sum = Vec2::Zero();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    sum += points[i].estimate.position -
-           pose.rotate(canonical_position(fit.curve_class, fit.parameters, fit.places[i].t));
-  }
-  sum /= static_cast<double>(points.size());
-  pose.x = sum.x();
-  pose.y = sum.y();
-  return pose;
-}
-
-namespace {
 
 /// The mean curvature of a patch, which turns to one side, in its standard deviations: single
 /// curvatures may be noise.
@@ -79,6 +38,19 @@ double turn_of_patch(std::span<const TreePoint> points, int patch) {
 
 }  // namespace
 
+Pose2 pose_of(std::span<const TreePoint> points, const SemiSignatureFit& fit) {
+  Pose2 pose{0.0, 0.0, fit.orientation};
+  Vec2 sum = Vec2::Zero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    sum += points[i].estimate.position -
+           pose.rotate(canonical_position(fit.curve_class, fit.parameters, fit.places[i].t));
+  }
+  sum /= static_cast<double>(points.size());
+  pose.x = sum.x();
+  pose.y = sum.y();
+  return pose;
+}
+
 TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
                              double relative_floor) {
   // Unknown are the centre, from the points' mean, and the radius, both in units of `radius`. A
@@ -94,11 +66,13 @@ TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
   // On which side of a patch the centre lies, its curvatures must tell from their noise; the best
   // of them always counts.
   constexpr double kCertain = 5.0;  // standard deviations
-  double largest = 0.0;
+  std::vector<double> turns;
+  double side_limit = 0.0;
   for (const TreePoint& point : points) {
-    largest = std::max(largest, std::abs(turn_of_patch(points, point.patch)));
+    turns.push_back(turn_of_patch(points, point.patch));
+    side_limit = std::max(side_limit, std::abs(turns.back()));
   }
-  const double side_limit = std::min(kCertain, largest);
+  side_limit = std::min(side_limit, kCertain);
   const auto add = [&](const Eigen::Vector3d& row, double value, double variance) {
     const double weight = 1.0 / (variance + relative_floor * relative_floor);
     normal_matrix += weight * row * row.transpose();
@@ -106,9 +80,9 @@ TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
     sum += weight * value * value;
   };
   int unsided = 0;
-  for (const TreePoint& point : points) {
-    const LocalEstimate& estimate = point.estimate;
-    const double turn = turn_of_patch(points, point.patch);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const LocalEstimate& estimate = points[i].estimate;
+    const double turn = turns[i];
     const Vec2 tangent(std::cos(estimate.tangent_angle), std::sin(estimate.tangent_angle));
     const Vec2 inward = std::copysign(1.0, turn) * left_of(tangent);
     const Vec2 p = (estimate.position - mean) / radius;

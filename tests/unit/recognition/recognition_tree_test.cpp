@@ -64,14 +64,24 @@ std::map<std::string, double> true_invariants(CurveClass curve_class, const Eige
   }
 }
 
+/// A random curve of the class and what the tree says of five exact points of it.
+struct ExactWalk {
+  test::PlacedCurve curve;
+  TreeResult result;
+};
+
+ExactWalk walk_exactly(CurveClass curve_class, std::mt19937_64& rng) {
+  const test::PlacedCurve curve = test::random_curve(curve_class, rng);
+  const auto places = test::random_places(curve, 5, rng);
+  return {curve, recognise_by_tree(test::exact_points(curve, places, rng))};
+}
+
 TEST(RecognitionTree, InvariantsOfExactPointsAreTheClosedForms) {
   auto rng = test::test_rng();
   const int cases = test::stress_count(100);
   for (const CurveClass curve_class : test::invariant_classes()) {
     for (int i = 0; i < cases; ++i) {
-      const test::PlacedCurve curve = test::random_curve(curve_class, rng);
-      const auto places = test::random_places(curve, 5, rng);
-      const TreeResult result = recognise_by_tree(test::exact_points(curve, places, rng));
+      const auto [curve, result] = walk_exactly(curve_class, rng);
       if (result.shape.curve_class != curve_class) {
         continue;
       }
@@ -99,9 +109,7 @@ TEST(RecognitionTree, RecognisesEveryClassFromFiveExactPoints) {
   for (const CurveClass curve_class : test::invariant_classes()) {
     int right = 0;
     for (int i = 0; i < cases; ++i) {
-      const test::PlacedCurve curve = test::random_curve(curve_class, rng);
-      const auto places = test::random_places(curve, 5, rng);
-      const TreeResult result = recognise_by_tree(test::exact_points(curve, places, rng));
+      const auto [curve, result] = walk_exactly(curve_class, rng);
       if (result.shape.curve_class != curve_class) {
         continue;
       }
