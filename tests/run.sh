@@ -2,7 +2,7 @@
 # Installs what is missing (Debian), builds everything and runs every test.
 #
 #   tests/run.sh                  warnings as errors, all tests
-#   tests/run.sh --sanitize       besides: under the address, undefined and thread sanitizers
+#   tests/run.sh --sanitize       besides: under the address, undefined and thread sanitizers (needs clang)
 #   tests/run.sh --fuzz SECONDS   besides: each fuzz target for so long (needs clang)
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
@@ -42,7 +42,7 @@ packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-d
           libbenchmark-dev protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev
           libcli11-dev libboost-dev nlohmann-json3-dev zlib1g-dev libdxflib-dev python3 python3-protobuf python3-zmq
           python3-ezdxf python3-numpy pybind11-dev python3-dev clang-format chromium chromium-driver)
-if [ "$fuzz" != 0 ]; then packages+=(clang); fi
+if [ "$sanitize" = yes ] || [ "$fuzz" != 0 ]; then packages+=(clang); fi
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' ||

@@ -7,8 +7,20 @@
 #include "core/numerics/normal_law.h"
 
 namespace palpate {
+namespace {
+
+/// The quantile of Student's law of `dof` that a normal one z stands for: D. Wallace, "Bounds on
+/// normal approximations to Student's and the chi-square distributions", 1959. From five degrees of
+/// freedom on right to 4 % down to a probability of 1e-4; below that too wide, which keeps samples.
+double student_quantile(double z, double dof) {
+  const double widened = z * (8.0 * dof + 3.0) / (8.0 * dof + 1.0);
+  return std::sqrt(dof * std::expm1(widened * widened / dof));
+}
+
+}  // namespace
+
 std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,
-                                        double false_outlier_probability) {
+                                        bool sigma_known, double false_outlier_probability) {
   const CanonicalFit* fit = nullptr;
   double best = -1.0;
   for (std::size_t i = 1; i < weighing.canonical.size(); ++i) {
@@ -29,9 +41,15 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   std::vector<double> sorted = magnitude;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n / 2),
                    sorted.end());
-  const double scale = std::max(1.0, sorted[n / 2] / kMedianOfNormal);
+  // The fit has taken part of the noise; and what a median tells of a scale is worth 0.37 of the
+  // degrees of freedom (its efficiency beside the root mean square).
+  constexpr double kEfficiencyOfMedian = 0.37;
+  const double dof = static_cast<double>(n) - degrees_of_freedom(fit->shape.curve_class);
+  const double taken = std::sqrt(static_cast<double>(n) / std::max(dof, 1.0));
+  const double scale = std::max(1.0, taken * sorted[n / 2] / kMedianOfNormal);
+  const double z = two_sided_normal_quantile(false_outlier_probability / static_cast<double>(n));
   const double limit =
-      scale * two_sided_normal_quantile(false_outlier_probability / static_cast<double>(n));
+      scale * (sigma_known ? z : student_quantile(z, kEfficiencyOfMedian * std::max(dof, 1.0)));
   constexpr std::size_t kLongestRun = 3;
   constexpr std::size_t kMost = 2;
   constexpr std::size_t kOneIn = 20;

@@ -11,7 +11,9 @@ namespace palpate {
 /// in any point of a scene with probability `false_outlier_probability`. Runs of more than
 /// three such points, or more than two and a twentieth of all, are no leftovers of the spike
 /// detection but a curve that does not fit: nullopt, as when there are none.
+/// `sigma_known`: as make_fit_data says; a noise that the residuals themselves must tell is known
+/// by so many of them only.
 std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,
-                                        double false_outlier_probability);
+                                        bool sigma_known, double false_outlier_probability);
 
 }  // namespace palpate

@@ -29,6 +29,7 @@ enum class Doubt {
   TwoShapes,       ///< two shapes fit alike (a spline and its rival; tips on either side)
   Undetermined,  ///< the shape's standard deviations are too large, or no covariance describes them
   TreeRejects,   ///< the recognition tree's tests on the local estimates reject the class
+  FewPlaces,     ///< touched at so few places that they fit by chance
 };
 
 /// Lower-case name with underscores ("several_classes").
@@ -67,6 +68,7 @@ struct Recognition {
   std::vector<std::size_t> pooled_contacts;
   std::size_t sample_count = 0;      ///< samples that the answer rests on
   std::size_t outlier_count = 0;     ///< samples set aside as spikes
+  std::size_t forgotten_count = 0;   ///< samples of this object that had to make room for others
   double sigma_m = 0.0;              ///< noise used, given or estimated [m]
   double noise_correlation_m = 0.0;  ///< correlation length of the residuals; 0 = white [m]
 };

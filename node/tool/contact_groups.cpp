@@ -41,6 +41,7 @@ AddResult add_group(const ContactGroup& group, Recognizer& recognizer) {
     sum.rejected_not_finite += added.rejected_not_finite;
     sum.rejected_negative_sigma += added.rejected_negative_sigma;
     sum.repeated += added.repeated;
+    sum.forgotten += added.forgotten;
   }
   return sum;
 }

@@ -98,6 +98,8 @@ v1::RecognitionDoubt to_wire(Doubt doubt) {
       return v1::RECOGNITION_DOUBT_UNDETERMINED;
     case Doubt::TreeRejects:
       return v1::RECOGNITION_DOUBT_TREE_REJECTS;
+    case Doubt::FewPlaces:
+      return v1::RECOGNITION_DOUBT_FEW_PLACES;
   }
   return v1::RECOGNITION_DOUBT_UNSPECIFIED;
 }
@@ -165,6 +167,7 @@ void to_wire(const Recognition& recognition, const ContactSourceOf& source_of,
   }
   out.set_sample_count(recognition.sample_count);
   out.set_outlier_count(recognition.outlier_count);
+  out.set_forgotten_count(recognition.forgotten_count);
   out.set_sigma_m(recognition.sigma_m);
   out.set_noise_correlation_m(recognition.noise_correlation_m);
 }

@@ -61,7 +61,7 @@ LocalEstimate polar_geometry(const PolarRadius& p, double phi) {
 }
 
 /// By arc length from a start: fourth-order steps of d phi / ds = 1 / sqrt(r^2 + r'^2).
-void walk_polar(PolarRadius (*radius)(double), double phi, std::size_t count, Stroke* stroke) {
+void walk_polar(PolarRadius (*radius)(double), double phi, std::size_t count, TrueStroke* stroke) {
   const auto rate = [&](double at) {
     const PolarRadius p = radius(at);
     return kStep_m / std::hypot(p.r, p.d1);
@@ -76,7 +76,7 @@ void walk_polar(PolarRadius (*radius)(double), double phi, std::size_t count, St
   }
 }
 
-void walk_class(const TouchedArc& arc, double middle, std::size_t count, Stroke* stroke) {
+void walk_class(const TouchedArc& arc, double middle, std::size_t count, TrueStroke* stroke) {
   for (std::size_t i = 0; i < count; ++i) {
     const double s =
         arc.direction *
@@ -94,9 +94,9 @@ void walk_class(const TouchedArc& arc, double middle, std::size_t count, Stroke*
 
 }  // namespace
 
-Stroke random_stroke(std::size_t shape, double length_m, std::mt19937_64& rng) {
+TrueStroke random_stroke(std::size_t shape, double length_m, std::mt19937_64& rng) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  Stroke stroke;
+  TrueStroke stroke;
   stroke.step_m = kStep_m;
   const auto count = static_cast<std::size_t>(std::lround(length_m / kStep_m)) + 1;
   const double place = uniform(rng);
@@ -120,7 +120,7 @@ Stroke random_stroke(std::size_t shape, double length_m, std::mt19937_64& rng) {
   return stroke;
 }
 
-std::vector<Vec2> Stroke::samples(std::size_t stride) const {
+std::vector<Vec2> TrueStroke::samples(std::size_t stride) const {
   std::vector<Vec2> points;
   for (std::size_t i = 0; i < truth.size(); i += stride) {
     points.push_back(truth[i].position);
@@ -128,7 +128,7 @@ std::vector<Vec2> Stroke::samples(std::size_t stride) const {
   return points;
 }
 
-Eigen::Vector3d Stroke::error_of(const LocalEstimate& estimate) const {
+Eigen::Vector3d TrueStroke::error_of(const LocalEstimate& estimate) const {
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < truth.size(); ++i) {

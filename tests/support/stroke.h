@@ -12,7 +12,7 @@ namespace palpate::test {
 
 /// A curve walked along by arc length: points and true geometry at equal steps, some 20 um, so that
 /// the geometry between two of them is a straight line to 1e-7.
-struct Stroke {
+struct TrueStroke {
   std::string name;
   double step_m = 0.0;
   std::vector<LocalEstimate> truth;  ///< covariance zero
@@ -26,7 +26,7 @@ struct Stroke {
 
 /// A stroke of that length on a part of about 25 mm: the eight classes, a superellipse of exponent
 /// 4 and a logarithmic spiral. Where it begins and how the part is turned is random.
-Stroke random_stroke(std::size_t shape, double length_m, std::mt19937_64& rng);
+TrueStroke random_stroke(std::size_t shape, double length_m, std::mt19937_64& rng);
 inline constexpr std::size_t kStrokeShapes = 10;
 
 }  // namespace palpate::test

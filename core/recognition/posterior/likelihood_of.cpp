@@ -10,6 +10,18 @@
 
 namespace palpate {
 
+namespace {
+
+/// With the noise integrated out, prior 1 / sigma, parameters have Student's law. Where that has no
+/// variance: the square of its 97.5 % point over the normal law's.
+double variance_of_student(double dof) {
+  constexpr double kOfOne = 42.03;  // (12.706 / 1.95996)^2
+  constexpr double kOfTwo = 4.819;  // (4.3027 / 1.95996)^2
+  return dof > 2.0 ? dof / (dof - 2.0) : dof > 1.0 ? kOfTwo : kOfOne;
+}
+
+}  // namespace
+
 Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m) {
   const double n = static_cast<double>(arcs.data.points.size());
   Likelihood likelihood;
@@ -36,10 +48,13 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   // model's further coefficients; a false alarm costs an answer its certainty.
   constexpr double kFalseAlarm = 1e-6;
   const int more = smooth.parameters - parameters;
+  // (Touches that lie too far apart to show their noise leave the class alone to tell it.)
+  const bool noise_is_told = likelihood.sigma_known || smooth.dof() >= kFewestDegreesOfNoise;
   const bool misfits =
-      unclassified ||
-      (more > 0 &&
-       chi_square_survival((chi2 - smooth.chi2) / likelihood.inflation(), more) < kFalseAlarm);
+      (unclassified ||
+       (more > 0 &&
+        chi_square_survival((chi2 - smooth.chi2) / likelihood.inflation(), more) < kFalseAlarm)) &&
+      noise_is_told;
   std::vector<double> residuals;
   residuals.reserve(placed.points.size());
   for (const FittedPoint& point : placed.points) {
@@ -67,6 +82,7 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
     seen.likelihood->coherent_or_other = form_error;
   } else if (!likelihood.sigma_known) {
     seen.noise_inflation = misfit_of(chi2, likelihood) / dof;
+    seen.few_residuals = variance_of_student(dof);
   }
   return seen;
 }

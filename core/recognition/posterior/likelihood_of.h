@@ -16,7 +16,10 @@ Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m);
 struct SeenDeviation {
   /// The law with it, where it is noise or form error rather than another class.
   std::optional<Likelihood> likelihood;
-  double noise_inflation = 1.0;     ///< what variances of residuals count times
+  double noise_inflation = 1.0;  ///< what variances of residuals count times
+  /// What covariances are to be multiplied with beside that: a noise that few residuals tell may be
+  /// larger than they say.
+  double few_residuals = 1.0;
   double correlation_length = 0.0;  ///< over which residuals err together, normalised; 0 = white
 };
 

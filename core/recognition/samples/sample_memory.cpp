@@ -42,6 +42,14 @@ void merge_pairs(StoredPatch* patch) {
   }
 }
 
+std::size_t contacts_of(const StoredPatch& patch) {
+  double count = 0.0;
+  for (const StoredSample& sample : patch.samples) {
+    count += sample.weight;
+  }
+  return static_cast<std::size_t>(count);
+}
+
 }  // namespace
 
 AddResult SampleMemory::add(const PatchContext& context, std::span<const ContactSample> samples) {
@@ -59,9 +67,6 @@ AddResult SampleMemory::add(const PatchContext& context, std::span<const Contact
       continue;
     }
     if (place == patches_.end()) {
-      if (patches_.size() >= options_.most_patches) {
-        patches_.erase(patches_.begin());
-      }
       StoredPatch patch;
       patch.context = context;
       patches_.push_back(std::move(patch));
@@ -83,18 +88,40 @@ AddResult SampleMemory::add(const PatchContext& context, std::span<const Contact
       merge_pairs(&*place);
     }
     stored.push_back(contact);
+    if (stored.size() <= 2) {
+      const bool lone = stored.size() == 1;
+      result.forgotten +=
+          make_room(lone, lone ? options_.most_lone_touches : options_.most_patches, &place);
+    }
   }
   return result;
 }
 
-std::size_t SampleMemory::sample_count() const {
-  double count = 0.0;
-  for (const StoredPatch& patch : patches_) {
-    for (const StoredSample& sample : patch.samples) {
-      count += sample.weight;
-    }
+std::size_t SampleMemory::make_room(bool lone, std::size_t most, Patch* growing) {
+  const auto is_such = [&](const StoredPatch& patch) {
+    return (patch.samples.size() == 1) == lone;
+  };
+  const auto count = std::count_if(patches_.begin(), patches_.end(), is_such);
+  if (static_cast<std::size_t>(count) <= most) {
+    return 0;
   }
-  return static_cast<std::size_t>(count);
+  auto oldest = std::find_if(patches_.begin(), patches_.end(), is_such);
+  if (oldest == *growing) {
+    oldest = std::find_if(oldest + 1, patches_.end(), is_such);
+  }
+  const std::size_t contacts = contacts_of(*oldest);
+  const auto grown = *growing - patches_.begin() - (oldest < *growing ? 1 : 0);
+  patches_.erase(oldest);
+  *growing = patches_.begin() + grown;
+  return contacts;
+}
+
+std::size_t SampleMemory::sample_count() const {
+  std::size_t count = 0;
+  for (const StoredPatch& patch : patches_) {
+    count += contacts_of(patch);
+  }
+  return count;
 }
 
 std::size_t SampleMemory::stored_count() const {

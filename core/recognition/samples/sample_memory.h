@@ -31,8 +31,10 @@ struct MemoryOptions {
   /// on keeps means of twice as many contacts: no information on the noise's scale is lost, and the
   /// bias is stated (StoredPatch::merge_bias_m).
   std::size_t most_samples_per_patch = 1024;
-  /// Beyond this many patches the oldest is forgotten.
+  /// Beyond this many patches of two samples or more the oldest of them is forgotten.
   std::size_t most_patches = 64;
+  /// Likewise of touches alone in their patch: together as much as one patch holds.
+  std::size_t most_lone_touches = 1024;
 };
 
 /// Samples taken and samples refused, by reason.
@@ -40,19 +42,20 @@ struct AddResult {
   std::size_t accepted = 0;
   std::size_t rejected_not_finite = 0;
   std::size_t rejected_negative_sigma = 0;
-  std::size_t repeated = 0;  ///< at exactly the place of the sample before: they say nothing new
+  std::size_t forgotten = 0;  ///< contacts taken before, of patches that had to make room
+  std::size_t repeated = 0;   ///< at exactly the place of the sample before: they say nothing new
 };
 
 class SampleMemory {
  public:
   explicit SampleMemory(const MemoryOptions& options = {}) : options_(options) {}
 
-  /// Appends to the patch of that probe and number, which becomes the newest. Amortised O(samples).
+  /// Appends to the patch of that probe and number, or begins it. Amortised O(samples).
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples);
 
   void clear() { patches_.clear(); }
 
-  /// Oldest first.
+  /// In the order in which they were begun.
   const std::vector<StoredPatch>& patches() const { return patches_; }
 
   /// Contacts taken since the memory was clear, less those of forgotten patches.
@@ -62,6 +65,12 @@ class SampleMemory {
   std::size_t stored_count() const;
 
  private:
+  using Patch = std::vector<StoredPatch>::iterator;
+
+  /// Forgets the oldest patch of the kind, touches alone or longer ones, but the `growing` one,
+  /// where there are more than `most`, at least 1. Returns how many contacts it stood for.
+  std::size_t make_room(bool lone, std::size_t most, Patch* growing);
+
   MemoryOptions options_;
   std::vector<StoredPatch> patches_;
 };

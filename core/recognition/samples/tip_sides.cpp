@@ -18,7 +18,7 @@ int stated_side(MaterialSide side) {
 }
 
 std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
-                                             const FitData& reduced) {
+                                             const FitData& reduced, double lone_bend) {
   std::vector<int> known(reduced.patches.size(), 0);
   std::vector<int> outside_of_bend(reduced.patches.size(), 0);
   bool any_unknown = false;
@@ -30,13 +30,15 @@ std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patche
     if (patch.context.tip_radius_m > 0.0) {
       const auto points = reduced.patch(p);
       // A path that bends left has its tips outside, to the right, if the part is convex there.
-      double turn = 0.0;  // summed from point to point: a patch may go all the way round
+      const bool lone = points.size() == 1;
+      double turn = lone ? lone_bend : 0.0;
+      // (summed from point to point: a patch may go all the way round)
       for (std::size_t i = 1; i < points.size(); ++i) {
         turn += std::atan2(cross(points[i - 1].tangent, points[i].tangent),
                            points[i - 1].tangent.dot(points[i].tangent));
       }
       outside_of_bend[p] = turn >= 0.0 ? -1 : 1;
-      known[p] = stated_side(patch.context.material_side);
+      known[p] = lone ? 0 : stated_side(patch.context.material_side);
       any_unknown = any_unknown || known[p] == 0;
     }
     ++p;

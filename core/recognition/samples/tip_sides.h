@@ -17,8 +17,10 @@ int stated_side(MaterialSide side);
 /// left of travel, -1 to the right, per patch. One way where the probes say it; otherwise the part
 /// is taken to be convex everywhere or concave everywhere, or on the same side of every patch's
 /// travel. Surface contacts (no tip radius) have the single way of zeros.
+/// A touch alone in its patch has no travel that a probe could say a side of: its direction is that
+/// of its point's tangent, and all of them together bend to the left where `lone_bend` >= 0.
 std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
-                                             const FitData& reduced);
+                                             const FitData& reduced, double lone_bend = 0.0);
 
 /// Reduced points moved from tip centres to the surface along the normals of the centres' path,
 /// which are those of the surface.

@@ -11,10 +11,10 @@ namespace {
 bool estimate_noise(FitData* data, SmoothModel* smooth) {
   // With too few degrees of freedom there is no estimate; what fits to a millionth of the extent is
   // then as good as exact.
-  constexpr int kFewestDegrees = 4;
   constexpr double kNoEstimate = 1e-6;
   const double rounding = rounding_level(*data);
-  const double estimate = smooth->dof() >= kFewestDegrees ? smooth->noise_ratio() : kNoEstimate;
+  const double estimate =
+      smooth->dof() >= kFewestDegreesOfNoise ? smooth->noise_ratio() : kNoEstimate;
   const double sigma = std::max(estimate, rounding);
   scale_noise(sigma, data, smooth);
   return estimate <= rounding;

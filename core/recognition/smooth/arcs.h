@@ -6,6 +6,9 @@
 
 namespace palpate {
 
+/// With fewer degrees of freedom than this the smooth model's residuals tell no noise.
+inline constexpr int kFewestDegreesOfNoise = 4;
+
 struct Arcs {
   FitData data;  ///< all points: noise and tangents set
   SmoothModel smooth;

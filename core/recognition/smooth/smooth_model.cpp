@@ -64,7 +64,7 @@ void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
   model->sections.push_back({model->reduced.points.size(),
                              model->reduced.points.size() + section.size(), first + 0.5 * along,
                              whole > 0.0 ? Vec2(along / whole) : Vec2(1.0, 0.0),
-                             whole > 0.0 ? 0.5 * whole : 1.0, false});
+                             whole > 0.0 ? 0.5 * whole : 1.0, false, true});
   for (std::size_t i = section.begin; i < section.end; ++i) {
     const std::size_t before = i > section.begin ? i - 1 : i;
     const std::size_t after = i + 1 < section.end ? i + 1 : i;
@@ -156,8 +156,8 @@ void add_section(FitData* data, const SectionFit& fit, SmoothModel* model) {
   const auto rule = polynomials.gauss_rule(degree);
   const std::size_t begin = model->reduced.points.size();
   const double offset = data->points[fit.section.begin].offset;
-  model->sections.push_back(
-      {begin, begin + rule.size(), fit.frame.middle, fit.frame.axis, fit.frame.half_length, false});
+  model->sections.push_back({begin, begin + rule.size(), fit.frame.middle, fit.frame.axis,
+                             fit.frame.half_length, false, false});
   for (const auto& node : rule) {
     const auto value = polynomials.evaluate(node.x, degree);
     const double slope = value.derivative / fit.frame.half_length;

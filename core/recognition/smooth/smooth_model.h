@@ -16,6 +16,7 @@ struct ReducedSection {
   Vec2 axis = Vec2::UnitX();
   double half_length = 0.0;
   bool joined = false;  ///< continues the section before it, in the same patch
+  bool kept = false;    ///< too short to be smoothed: its points are the samples themselves
 };
 
 /// Piecewise polynomial fit in chord frames: a yardstick for every class, and the points reduced to

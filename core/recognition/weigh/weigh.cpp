@@ -128,7 +128,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   w.rival_share = rival_share(contenders.fits, ground.likelihood, contenders.evidences);
   w.noise_inflation = seen.noise_inflation;
   w.correlation_length = seen.correlation_length;
-  w.inflation = seen.noise_inflation + stated.coherent_variance;
+  w.inflation = seen.noise_inflation * seen.few_residuals + stated.coherent_variance;
   const auto b = static_cast<std::size_t>(w.best);
   const auto& best = contenders.fits[b];
   w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, ground.likelihood);
@@ -142,7 +142,9 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   w.fits = std::move(contenders.fits);
   w.coarse = std::move(contenders.coarse);
   w.sides = std::move(sided.sides);
-  w.sides_margin = sided.margin;
+  // Of evidence with the noise integrated out, where it is not known; what was seen to be more than
+  // that tempers it.
+  w.sides_margin = sided.margin / (seen.likelihood ? seen.noise_inflation : 1.0);
   w.sigma = arcs.sigma;
   w.data = std::move(arcs.data);
   w.smooth = std::move(arcs.smooth);

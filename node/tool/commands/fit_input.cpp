@@ -49,7 +49,9 @@ Result<std::vector<FitInput>> read_fit_input(const std::string& file,
 MemoryOptions memory_for(const ContactGroup& group, MemoryOptions memory,
                          bool patches_are_bounded) {
   if (!patches_are_bounded) {
-    memory.most_patches = std::max(memory.most_patches, patch_sizes(group).size());
+    const std::size_t patches = patch_sizes(group).size();
+    memory.most_patches = std::max(memory.most_patches, patches);
+    memory.most_lone_touches = std::max(memory.most_lone_touches, patches);
   }
   return memory;
 }
@@ -60,8 +62,8 @@ std::vector<std::string> notes_for(const FitInput& input, const MemoryOptions& m
   for (const std::string& warning : input.warnings) notes.push_back("WARNING: " + warning);
   notes.insert(notes.end(), input.notes.begin(), input.notes.end());
   const auto sizes = patch_sizes(input.group);
-  if (sizes.size() > memory.most_patches) {
-    notes.push_back("the oldest " + std::to_string(sizes.size() - memory.most_patches) + " of " +
+  if (added.forgotten > 0) {
+    notes.push_back(std::to_string(added.forgotten) + " samples of the oldest of " +
                     std::to_string(sizes.size()) + " patches are forgotten (--most-patches)");
   }
   const auto long_ones = std::count_if(sizes.begin(), sizes.end(), [&](const auto& patch) {

@@ -94,6 +94,8 @@ std::string ambiguous(const v1::Recognition& answer) {
              ", but the local estimates along them are not: stroke on, and look at the contacts "
              "and "
              "the recognition tree's path where it stays so.";
+    case v1::RECOGNITION_DOUBT_FEW_PLACES:
+      return "So few touches fit by chance: touch it at eight places at least.";
     default:
       return "Not certain yet: touch further round.";
   }

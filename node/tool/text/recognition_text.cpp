@@ -204,6 +204,8 @@ std::string_view sentence_of(v1::RecognitionDoubt doubt) {
       return "the shape is not determined";
     case v1::RECOGNITION_DOUBT_TREE_REJECTS:
       return "the recognition tree rejects the class that all samples together are";
+    case v1::RECOGNITION_DOUBT_FEW_PLACES:
+      return "touched at fewer than eight places: they may fit by chance";
     default:
       return "no reason given";
   }
@@ -269,6 +271,9 @@ std::string report_text(const v1::Recognition& answer, bool noise_is_known) {
   std::string samples = std::to_string(answer.sample_count());
   if (answer.outlier_count() > 0) {
     samples += ", of which " + std::to_string(answer.outlier_count()) + " set aside as spikes";
+  }
+  if (answer.forgotten_count() > 0) {
+    samples += "; " + std::to_string(answer.forgotten_count()) + " older ones forgotten";
   }
   add_line(text, "samples", samples);
   add_line(text, "time", number(1e-6 * static_cast<double>(answer.compute_ns())) + " ms");

@@ -185,35 +185,42 @@ TEST(RecognitionHardCases, RoundTipsOutsideAndInside) {
 
 // The offsets of an ellipse to its two sides fit a short arc alike; a part is rather touched from
 // outside.
+// Wrong no more often than the answers themselves say.
 TEST(RecognitionHardCases, TipsWhoseSideIsNotToldAreTakenToBeOutsideButNeverForCertainInside) {
   std::mt19937_64 rng = test::test_rng();
   PatchContext context;
   context.tip_radius_m = 0.002;
+  constexpr int kScenes = 100;
   int recognised = 0;
-  for (int i = 0; i < 20; ++i) {
-    const double start = 2.0 * kPi * i / 20;
+  int wrong = 0;
+  double stated = 0.0;
+  for (int i = 0; i < kScenes; ++i) {
+    const double start = 2.0 * kPi * i / kScenes;
     const Recognition answer = recognise(
         {elliptic_arc(start, rng, 5e-5, 0.002), elliptic_arc(start + 1.0, rng, 5e-5, 0.002)},
         context);
-    if (answer.status == RecognitionStatus::Recognized) {
-      ++recognised;
-      const Hypothesis& best = answer.hypotheses.front();
-      ASSERT_EQ(best.shape.curve_class, CurveClass::Ellipse);
-      for (const int k : {0, 1}) {
-        const double truth = k == 0 ? 0.025 : 0.0175;
-        EXPECT_NEAR(best.shape.values[k], truth, 5.0 * std::sqrt(best.covariance(k, k))) << start;
-      }
+    if (answer.status != RecognitionStatus::Recognized) continue;
+    ++recognised;
+    const Hypothesis& best = answer.hypotheses.front();
+    stated += 1.0 - best.probability;
+    bool right = best.shape.curve_class == CurveClass::Ellipse;
+    for (const int k : {0, 1}) {
+      const double truth = k == 0 ? 0.025 : 0.0175;
+      right =
+          right && std::abs(best.shape.values[k] - truth) < 5.0 * std::sqrt(best.covariance(k, k));
     }
+    wrong += right ? 0 : 1;
   }
-  EXPECT_GT(recognised, 10);
+  EXPECT_GT(recognised, kScenes / 2);
+  // More than four deviations of a count above what is stated comes about once in ten thousand
+  // runs.
+  EXPECT_LE(wrong, stated + 4.0 * std::sqrt(stated)) << "of " << recognised;
 }
 
 TEST(RecognitionHardCases, ALineTouchedByTipsWhoseSideIsNotToldIsEitherOfTwo) {
-  std::mt19937_64 rng = test::test_rng();
-  std::normal_distribution<double> noise(0.0, 1e-5);
   Patch patch;
   for (int i = 0; i < 100; ++i) {
-    patch.push_back({Vec2(1e-3 * i, noise(rng)), 1e-5, 0});
+    patch.push_back({Vec2(1e-3 * i, i % 2 == 0 ? 1e-5 : -1e-5), 1e-5, 0});
   }
   PatchContext context;
   context.tip_radius_m = 0.002;

@@ -71,7 +71,7 @@ Tallies walk(bool stated) {
           if (turn++ % every != 0) {
             continue;
           }
-          const test::Stroke stroke = test::random_stroke(shape, length, rng);
+          const test::TrueStroke stroke = test::random_stroke(shape, length, rng);
           // 0.2 mm apart, closer where that would be fewer than 60 samples.
           const auto stride = static_cast<std::size_t>(
               std::clamp(length / 60.0 / stroke.step_m, 1.0, 2e-4 / stroke.step_m));

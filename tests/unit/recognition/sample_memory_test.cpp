@@ -39,6 +39,44 @@ TEST(SampleMemory, PatchesAreKeptApartAndBounded) {
   EXPECT_EQ(memory.stored_count(), 6U);
 }
 
+TEST(SampleMemory, ThePatchThatGrowsIsNotForgottenHoweverOld) {
+  MemoryOptions options;
+  options.most_patches = 2;
+  SampleMemory memory(options);
+  const auto add = [&](std::uint32_t patch, std::vector<ContactSample> samples) {
+    PatchContext context;
+    context.patch = patch;
+    return memory.add(context, samples);
+  };
+  add(0, {at(0.0)});
+  add(1, {at(10.0), at(11.0), at(12.0)});
+  add(2, {at(20.0), at(21.0)});
+  const AddResult result = add(0, {at(1.0), at(2.0), at(3.0)});
+  EXPECT_EQ(result.accepted, 3U);
+  EXPECT_EQ(result.forgotten, 3U);
+  ASSERT_EQ(memory.patches().size(), 2U);
+  EXPECT_EQ(memory.patches().front().context.patch, 0U);
+  EXPECT_EQ(memory.patches().front().samples.size(), 4U);
+}
+
+TEST(SampleMemory, TouchesAloneAreBoundedApartFromStrokes) {
+  MemoryOptions options;
+  options.most_patches = 1;
+  options.most_lone_touches = 16;
+  SampleMemory memory(options);
+  std::size_t forgotten = 0;
+  for (std::uint32_t touch = 0; touch < 20; ++touch) {
+    PatchContext context;
+    context.patch = touch;
+    const ContactSample sample = at(touch);
+    forgotten += memory.add(context, {&sample, 1}).forgotten;
+  }
+  EXPECT_EQ(memory.patches().size(), 16U);
+  EXPECT_EQ(memory.patches().front().context.patch, 4U);
+  EXPECT_EQ(forgotten, 4U);
+  EXPECT_EQ(memory.sample_count() + forgotten, 20U);
+}
+
 TEST(SampleMemory, LongPatchesAreMergedWithoutLosingContactsAndWithTheBiasStated) {
   MemoryOptions options;
   options.most_samples_per_patch = 64;

@@ -172,7 +172,7 @@ class Formats(unittest.TestCase):
         self.assertNotIn("forgotten", self.notes)
         answer = self.fit(text, "--most-patches", "64")
         self.assertEqual(int(answer["sample_count"]), 64 * 9)
-        self.assertIn("the oldest 26 of 90 patches are forgotten", self.notes)
+        self.assertIn("234 samples of the oldest of 90 patches are forgotten", self.notes)
 
     def test_what_is_merged_or_dropped_is_said(self):
         self.fit("x_m,y_m\n" + self.rows() + self.rows().splitlines()[-1] + "\n")

@@ -1,0 +1,112 @@
+#include "core/recognition/likelihood_answer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/recognition/verdict/determined.h"
+
+namespace palpate {
+namespace {
+
+/// Whether noise of the stated size can have left this chi-square (five standard deviations).
+bool is_noise(double chi2, double dof) { return chi2 <= dof + 5.0 * std::sqrt(2.0 * dof); }
+
+Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
+  const auto i = static_cast<std::size_t>(curve_class);
+  Hypothesis hypothesis;
+  hypothesis.shape.curve_class = curve_class;
+  hypothesis.probability = w.probabilities[i];
+  if (curve_class == CurveClass::Unclassified) {
+    hypothesis.chi2 = w.smooth.chi2;
+    hypothesis.dof = w.smooth.dof();
+    return hypothesis;
+  }
+  hypothesis.chi2 = w.fits[i]->chi2;
+  hypothesis.dof = static_cast<int>(w.data.points.size()) - degrees_of_freedom(curve_class);
+  hypothesis.at_limit = w.fits[i]->at_limit;
+  if (const auto& canonical = w.canonical[i]) {
+    hypothesis.shape = canonical->shape;
+    hypothesis.world_T_curve = canonical->world_T_curve;
+    hypothesis.covariance = w.inflation * canonical->covariance;
+  }
+  return hypothesis;
+}
+
+/// What speaks against a class that is more probable than all others.
+Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOptions& options,
+                  std::size_t stored_samples) {
+  // A misfit that is no noise may be form error, or another class: the data cannot tell.
+  if (w.correlation_length > 0.0) {
+    return Doubt::FormError;
+  }
+  if (!(best.probability >= options.recognized_probability)) {
+    return Doubt::SeveralClasses;
+  }
+  const CurveClass curve_class = best.shape.curve_class;
+  // Where so many samples had to be set aside, what fits badly may be spikes that were not.
+  constexpr double kManySpikes = 0.1;  // of the samples
+  const auto stored = static_cast<double>(stored_samples);
+  const bool many_spikes =
+      stored - static_cast<double>(w.data.points.size()) > kManySpikes * stored;
+  if (many_spikes && !is_noise(w.counted_chi2, best.dof)) {
+    return Doubt::Misfit;
+  }
+  if (curve_class == CurveClass::Unclassified) {
+    if (!(w.margin_of_unclassified >= log_odds(options.recognized_probability))) {
+      return Doubt::SeveralClasses;
+    }
+    // What not even the smooth model follows says nothing about classes.
+    return many_spikes || !is_noise(best.chi2, best.dof) ? Doubt::Misfit : Doubt::None;
+  }
+  if (best.at_limit || best.covariance.size() == 0) {
+    return Doubt::AtLimit;
+  }
+  if (!is_noise(w.counted_chi2 / w.noise_inflation, best.dof)) {
+    return Doubt::Misfit;
+  }
+  // A second mode that has more than what RECOGNIZED leaves to doubt.
+  const double odds = log_odds(options.recognized_probability);
+  const bool has_rival = curve_class == CurveClass::CubicSpline &&
+                         w.rival_share > 1.0 - options.recognized_probability;
+  if (has_rival || w.sides_margin <= odds) {
+    return Doubt::TwoShapes;
+  }
+  const bool means_something =
+      is_determined(best.shape, best.covariance, w.data.scale, options.determined_fraction);
+  return means_something ? Doubt::None : Doubt::Undetermined;
+}
+
+}  // namespace
+
+double residual_noise_m(const Weighing& w) {
+  return w.sigma * w.data.scale * (w.correlation_length > 0.0 ? 1.0 : std::sqrt(w.noise_inflation));
+}
+
+Recognition answer_by_likelihood(const Weighing& w, const VerdictOptions& options,
+                                 std::size_t stored) {
+  Recognition answer;
+  for (std::size_t i = 0; i < w.probabilities.size(); ++i) {
+    if (i == 0 || w.fits[i]) {
+      answer.hypotheses.push_back(to_hypothesis(w, static_cast<CurveClass>(i)));
+    }
+  }
+  std::stable_sort(
+      answer.hypotheses.begin(), answer.hypotheses.end(),
+      [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
+  Hypothesis& best = answer.hypotheses.front();
+  const auto& canonical = w.canonical[static_cast<std::size_t>(best.shape.curve_class)];
+  if (canonical && w.moment) {
+    best.covariance = *w.moment;
+  }
+  answer.shape = best.shape;
+  answer.world_T_curve = best.world_T_curve;
+  answer.covariance = best.covariance;
+  answer.sigma_m = residual_noise_m(w);
+  answer.noise_correlation_m = w.correlation_length * w.data.scale;
+  answer.doubt = doubt_about(w, best, options, stored);
+  answer.status =
+      answer.doubt == Doubt::None ? RecognitionStatus::Recognized : RecognitionStatus::Ambiguous;
+  return answer;
+}
+
+}  // namespace palpate

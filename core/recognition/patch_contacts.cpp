@@ -1,0 +1,65 @@
+#include "core/recognition/patch_contacts.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/recognition/samples/stored_spikes.h"
+
+namespace palpate {
+
+bool PatchContacts::Known::same_as(const Known& other) const {
+  return probe == other.probe && patch == other.patch && samples == other.samples &&
+         contacts_per_sample == other.contacts_per_sample && newest_m == other.newest_m &&
+         windows == other.windows && side == other.side && outliers == other.outliers;
+}
+
+std::vector<LocalizedContact> PatchContacts::of(std::span<const StoredPatch> patches,
+                                                const std::vector<int>& sides,
+                                                const std::vector<bool>& outliers,
+                                                const ContactOptions& options) {
+  const std::size_t windows = windows_of_a_patch(patches.size(), options);
+  known_.resize(patches.size());
+  std::vector<LocalizedContact> contacts;
+  std::size_t first = 0;  // sample of the patch among all
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const StoredPatch& patch = patches[p];
+    Known now{patch.context.probe,
+              patch.context.patch,
+              patch.samples.size(),
+              patch.contacts_per_sample,
+              patch.newest_m,
+              windows,
+              p < sides.size() ? sides[p] : 0,
+              {},
+              {}};
+    if (!outliers.empty()) {
+      const auto begin = outliers.begin() + static_cast<std::ptrdiff_t>(first);
+      const auto end = begin + static_cast<std::ptrdiff_t>(patch.samples.size());
+      if (std::find(begin, end, true) != end) {
+        now.outliers.assign(begin, end);
+      }
+    }
+    first += patch.samples.size();
+    if (!known_[p].same_as(now)) {
+      if (now.outliers.empty()) {
+        add_contacts(patch, windows, now.side, options, &now.contacts);
+      } else {
+        StoredPatch rest = patch;
+        rest.samples = without_spikes(patch.samples, now.outliers);
+        add_contacts(rest, windows, now.side, options, &now.contacts);
+      }
+      known_[p] = std::move(now);
+    }
+    contacts.insert(contacts.end(), known_[p].contacts.begin(), known_[p].contacts.end());
+  }
+  return contacts;
+}
+
+int PatchContacts::side_of(std::uint32_t probe, std::uint32_t patch) const {
+  const auto found = std::find_if(known_.begin(), known_.end(), [&](const Known& known) {
+    return known.probe == probe && known.patch == patch;
+  });
+  return found != known_.end() ? found->side : 0;
+}
+
+}  // namespace palpate

@@ -1,0 +1,44 @@
+// Local estimates along the patches, made again only where a patch has changed.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/recognition/contacts.h"
+
+namespace palpate {
+
+class PatchContacts {
+ public:
+  /// add_contacts() of each patch, with the tips on these `sides` (per patch; missing: 0). Samples
+  /// flagged in `outliers` (one flag per sample of the patches, or none at all) are left out.
+  std::vector<LocalizedContact> of(std::span<const StoredPatch> patches,
+                                   const std::vector<int>& sides, const std::vector<bool>& outliers,
+                                   const ContactOptions& options);
+
+  /// The side that a patch's tips were taken to lie on; 0 where it has not been asked about.
+  int side_of(std::uint32_t probe, std::uint32_t patch) const;
+
+  void clear() { known_.clear(); }
+
+ private:
+  /// What the contacts of a patch were made of, and they.
+  struct Known {
+    std::uint32_t probe = 0;
+    std::uint32_t patch = 0;
+    std::size_t samples = 0;
+    double contacts_per_sample = 0.0;
+    Vec2 newest_m = Vec2::Zero();
+    std::size_t windows = 0;
+    int side = 0;
+    std::vector<bool> outliers;
+    std::vector<LocalizedContact> contacts;
+
+    bool same_as(const Known& other) const;
+  };
+
+  std::vector<Known> known_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,231 @@
+#include "core/recognition/touches/strung_touches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "core/curves/curve.h"
+#include "core/recognition/fit/canonical_fit.h"
+#include "core/recognition/fit/class_fits.h"
+#include "core/recognition/smooth/arcs.h"
+
+namespace palpate {
+namespace {
+
+/// As many touches together that turn by no more than this are a run: a polynomial of degree 5, the
+/// highest that the smooth model gives so few, follows a circle over so much to a millionth of its
+/// radius.
+constexpr std::size_t kRun = 12;
+constexpr double kTurn = 0.6;  // rad
+
+/// Touches that the curve for the order is sought through: more would cost time and tell no more of
+/// the order.
+constexpr std::size_t kSought = 48;
+
+using Indices = std::vector<std::size_t>;
+
+Indices lone_patches(std::span<const StoredPatch> patches) {
+  Indices lone;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    if (patches[p].samples.size() == 1) {
+      lone.push_back(p);
+    }
+  }
+  return lone;
+}
+
+/// `most` of the touches, each the farthest from those before it. O(most * touches).
+Indices spread(std::span<const StoredPatch> patches, const Indices& lone, std::size_t most) {
+  if (lone.size() <= most) {
+    return lone;
+  }
+  const auto at = [&](std::size_t k) { return patches[lone[k]].samples.front().position_m; };
+  std::vector<double> squares(lone.size(), std::numeric_limits<double>::infinity());
+  Indices chosen;
+  std::size_t next = 0;
+  while (chosen.size() < most) {
+    chosen.push_back(lone[next]);
+    const Vec2 last = at(next);
+    for (std::size_t k = 0; k < lone.size(); ++k) {
+      squares[k] = std::min(squares[k], (at(k) - last).squaredNorm());
+    }
+    next = static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) -
+                                    squares.begin());
+  }
+  return chosen;
+}
+
+/// Parameters in their order along the curve; on a closed one from behind the largest gap.
+template <typename T, typename ParameterOf>
+void sort_along(const Curve& curve, std::vector<T>* things, const ParameterOf& parameter_of) {
+  const auto before = [&](const T& a, const T& b) { return parameter_of(a) < parameter_of(b); };
+  std::sort(things->begin(), things->end(), before);
+  const double period = domain(curve).period;
+  if (!(period > 0.0) || things->size() < 2) {
+    return;
+  }
+  double widest = period + parameter_of(things->front()) - parameter_of(things->back());
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < things->size(); ++i) {
+    const double gap = parameter_of((*things)[i]) - parameter_of((*things)[i - 1]);
+    if (gap > widest) {
+      widest = gap;
+      first = i;
+    }
+  }
+  std::rotate(things->begin(), things->begin() + static_cast<std::ptrdiff_t>(first), things->end());
+}
+
+/// How far it is along the curve from the first of its touches to the last, in straight steps. [m]
+double touched_length_m(const CanonicalFit& fit, const Curve& curve) {
+  std::vector<double> places;
+  for (const FittedPoint& point : fit.points) {
+    places.push_back(point.t);
+  }
+  sort_along(curve, &places, [](double t) { return t; });
+  double length = 0.0;
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    length += (position(curve, places[i]) - position(curve, places[i - 1])).norm();
+  }
+  return length;
+}
+
+struct PlacedCurve {
+  Curve curve;
+  Pose2 world_T_curve;
+};
+
+/// The curve that explains the points best: by the Bayesian information criterion, each touch
+/// anywhere along the curve with the same density. (Without that a needle whose two sides share
+/// the points of a line would explain their noise.)
+std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, unsigned classes) {
+  const Arcs arcs = smooth_arcs(data, sigma_known);
+  const FitData& reduced = arcs.smooth.reduced;
+  const auto n = static_cast<double>(reduced.points.size());
+  std::optional<PlacedCurve> best;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& fit : fit_classes(reduced, nullptr, classes)) {
+    const auto canonical = fit && !fit->at_limit ? to_canonical(*fit, reduced) : std::nullopt;
+    const auto curve = canonical ? make_curve(canonical->shape.curve_class, canonical->shape.values)
+                                 : std::nullopt;
+    if (!curve) {
+      continue;
+    }
+    const double chi2 = std::max(fit->chi2, std::numeric_limits<double>::min());
+    const double criterion = (arcs.sigma_known ? chi2 : n * std::log(chi2)) +
+                             degrees_of_freedom(fit->curve_class) * std::log(n) +
+                             2.0 * n * std::log(touched_length_m(*canonical, *curve));
+    if (criterion < lowest) {
+      lowest = criterion;
+      best = PlacedCurve{*curve, canonical->world_T_curve};
+    }
+  }
+  return best;
+}
+
+/// A touch's place on the curve.
+struct Place {
+  std::size_t patch = 0;
+  double t = 0.0;
+};
+
+double angle_between(const Vec2& a, const Vec2& b) {
+  return std::abs(std::atan2(cross(a, b), a.dot(b)));
+}
+
+/// By how much the curve turns between two places: over the middle, so that more than half a turn
+/// shows.
+double turn_between(const Curve& curve, const Place& a, const Place& b) {
+  const double period = domain(curve).period;
+  const double end = b.t >= a.t ? b.t : b.t + period;
+  const auto tangent = [&](double t) { return derivatives(curve, t).first; };
+  const Vec2 middle = tangent(0.5 * (a.t + end));
+  return angle_between(tangent(a.t), middle) + angle_between(middle, tangent(end));
+}
+
+/// Which of `places`, in their order along the curve, are runs: [begin, end).
+std::vector<PatchSpan> runs_of(const Curve& curve, const std::vector<Place>& places) {
+  std::vector<PatchSpan> runs;
+  if (places.size() < kRun) {
+    return runs;
+  }
+  std::vector<double> turned = {0.0};  // up to each place
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    turned.push_back(turned.back() + turn_between(curve, places[i - 1], places[i]));
+  }
+  for (std::size_t begin = 0; begin + kRun <= places.size(); ++begin) {
+    const std::size_t end = begin + kRun;
+    if (turned[end - 1] - turned[begin] > kTurn) {
+      continue;
+    }
+    if (!runs.empty() && begin < runs.back().end) {
+      runs.back().end = end;
+    } else {
+      runs.push_back({begin, end});
+    }
+  }
+  return runs;
+}
+
+StoredPatch strung(std::span<const StoredPatch> patches, std::span<const Place> places) {
+  StoredPatch run;
+  run.context = patches[places.front().patch].context;
+  run.context.material_side = MaterialSide::Unspecified;
+  for (const Place& place : places) {
+    run.samples.push_back(patches[place.patch].samples.front());
+  }
+  run.newest_m = run.samples.back().position_m;
+  return run;
+}
+
+}  // namespace
+
+std::vector<StoredPatch> strung_touches(std::span<const StoredPatch> patches,
+                                        double default_sigma_m, unsigned classes) {
+  std::vector<StoredPatch> result(patches.begin(), patches.end());
+  const Indices lone = lone_patches(patches);
+  if (lone.size() < kRun) {
+    return result;
+  }
+  std::vector<StoredPatch> sought;
+  for (const StoredPatch& patch : patches) {
+    if (patch.samples.size() > 1) {
+      sought.push_back(patch);
+    }
+  }
+  for (const std::size_t p : spread(patches, lone, kSought)) {
+    sought.push_back(patches[p]);
+  }
+  bool sigma_known = false;
+  const FitData data = make_fit_data(sought, default_sigma_m, &sigma_known);
+  const auto curve = curve_through(data, sigma_known, classes);
+  if (!curve) {
+    return result;
+  }
+  std::map<double, std::vector<Place>> of_tip;  // by its radius [m]
+  for (const std::size_t p : lone) {
+    const Vec2 local = curve->world_T_curve.to_local(patches[p].samples.front().position_m);
+    of_tip[patches[p].context.tip_radius_m].push_back({p, foot_point(curve->curve, local).t});
+  }
+  std::vector<bool> taken(patches.size(), false);
+  std::vector<StoredPatch> runs;
+  for (auto& [tip_radius_m, places] : of_tip) {
+    sort_along(curve->curve, &places, [](const Place& place) { return place.t; });
+    for (const PatchSpan& run : runs_of(curve->curve, places)) {
+      const auto of_run = std::span(places).subspan(run.begin, run.size());
+      runs.push_back(strung(patches, of_run));
+      for (const Place& place : of_run) {
+        taken[place.patch] = true;
+      }
+    }
+  }
+  std::size_t next = 0;
+  std::erase_if(result, [&](const StoredPatch&) { return taken[next++]; });
+  result.insert(result.end(), runs.begin(), runs.end());
+  return result;
+}
+
+}  // namespace palpate

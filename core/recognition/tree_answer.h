@@ -1,0 +1,31 @@
+// The paper's way: nothing but the tree on local estimates.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/recognition/localized_contact.h"
+#include "core/recognition/recognition.h"
+#include "core/recognition/tree/recognition_tree.h"
+
+namespace palpate {
+
+/// The tree over contacts whose windows share no sample.
+TreeResult walk_tree_over(const std::vector<LocalizedContact>& contacts,
+                          const RecognitionTreeOptions& options, const KnownCurves& known,
+                          const SplineOptions& spline);
+
+/// The path, the invariants and where the tree ended, in the answer.
+void add_path(TreeResult tree, Recognition* answer);
+
+/// The answer by the tree alone. `ways`: in which round tips may lie, the sides of the patches each
+/// (samples/tip_sides.h); a second one that ends in a class leaves a doubt. `contacts_of`: contacts
+/// with the tips so. `extent_m`: half extent of the samples; `determined_fraction`: as
+/// RecognizerOptions. Counts of samples are the caller's.
+Recognition answer_by_tree(
+    const std::vector<std::vector<int>>& ways,
+    const std::function<std::vector<LocalizedContact>(const std::vector<int>&)>& contacts_of,
+    const RecognitionTreeOptions& options, double extent_m, double determined_fraction);
+
+}  // namespace palpate

@@ -1,0 +1,105 @@
+// Touches one at a time, in no order, as a trigger probe delivers them: how often the class is
+// recognised, how often wrongly, the errors beside the published deviations, and the time. Prints
+// a table.
+//   bench_touches [--scenes N] [--count N] [--noise SIGMA_OVER_SIZE] [--unstated] [--seed S]
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/recognition/recognizer.h"
+#include "tests/bench/options/bench_options.h"
+#include "tests/support/lone_touches.h"
+#include "tests/support/scene_data.h"
+
+namespace {
+
+using namespace palpate;
+
+struct Cell {
+  int scenes = 0, recognized = 0, wrong = 0, sure = 0;
+  double squares = 0.0;  ///< of shape errors over published deviations
+  int letters = 0;
+  std::vector<double> ms;
+  std::map<std::string, int> by_wrong;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int scenes = 50;
+  double noise = 1e-4;
+  std::uint64_t seed = 2026;
+  int count_only = 0;
+  bool unstated = false;
+  if (const auto end = bench::BenchOptions("Touches one at a time")
+                           .number("--scenes", scenes, "Number of scenes a row")
+                           .number("--count", count_only, "Touches of a scene; 0 = 4 to 1000")
+                           .flag("--unstated", unstated, "The samples do not state their noise")
+                           .number("--noise", noise, "Noise over the size")
+                           .seed(seed)
+                           .parse(argc, argv)) {
+    return *end;
+  }
+  std::printf("%-22s %5s %4s | %6s %5s %5s %5s | %9s | %7s %7s\n", "class", "count", "tip",
+              "scenes", "sure", "recog", "wrong", "err/dev", "ms p50", "max");
+  const std::vector<int> counts = count_only > 0
+                                      ? std::vector<int>{count_only}
+                                      : std::vector<int>{4, 6, 8, 12, 20, 40, 100, 200, 1000};
+  for (const int count : counts) {
+    for (const double tip : {0.0, 0.05}) {
+      for (const CurveClass curve_class : kCurveClasses) {
+        Cell cell;
+        for (int i = 0; i < scenes; ++i) {
+          std::seed_seq seeds{seed, static_cast<std::uint64_t>(curve_class),
+                              static_cast<std::uint64_t>(count), static_cast<std::uint64_t>(i)};
+          std::mt19937_64 rng(seeds);
+          const test::LoneTouches touches = test::lone_touches(curve_class, count, noise, tip, rng);
+          Recognizer recognizer;
+          PatchContext context;
+          context.tip_radius_m = touches.tip_radius_m;
+          for (const auto& patch : touches.scene.patches) {
+            const ContactSample sample{patch.front(), unstated ? 0.0 : touches.scene.sigma_m, 0};
+            recognizer.add(context, {&sample, 1});
+            ++context.patch;
+          }
+          const auto begin = std::chrono::steady_clock::now();
+          const Recognition answer = recognizer.recognize();
+          const std::chrono::duration<double, std::milli> ms =
+              std::chrono::steady_clock::now() - begin;
+          cell.ms.push_back(ms.count());
+          ++cell.scenes;
+          const Hypothesis* own = test::hypothesis_of(answer, curve_class);
+          cell.sure += own != nullptr && own->probability >= 0.95 ? 1 : 0;
+          if (answer.status != RecognitionStatus::Recognized) continue;
+          ++cell.recognized;
+          if (answer.shape.curve_class != curve_class) {
+            ++cell.wrong;
+            ++cell.by_wrong[std::string(name_of(answer.shape.curve_class))];
+            continue;
+          }
+          const Eigen::VectorXd error = test::error_of(answer.hypotheses.front(), touches.scene);
+          const auto letters = static_cast<Eigen::Index>(parameter_letters(curve_class).size());
+          for (Eigen::Index k = 0; k < letters; ++k) {
+            cell.squares += error[k] * error[k] / answer.covariance(k, k);
+            ++cell.letters;
+          }
+        }
+        std::sort(cell.ms.begin(), cell.ms.end());
+        std::printf("%-22s %5d %4.2f | %6d %5d %5d %5d | %9.2f | %7.2f %7.2f",
+                    std::string(name_of(curve_class)).c_str(), count, tip, cell.scenes, cell.sure,
+                    cell.recognized, cell.wrong,
+                    cell.letters > 0 ? std::sqrt(cell.squares / cell.letters) : 0.0,
+                    cell.ms[cell.ms.size() / 2], cell.ms.back());
+        for (const auto& [wrong, times] : cell.by_wrong) {
+          std::printf("  %s %d", wrong.c_str(), times);
+        }
+        std::printf("\n");
+      }
+    }
+  }
+  return 0;
+}

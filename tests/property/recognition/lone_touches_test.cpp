@@ -1,0 +1,162 @@
+// Touches one at a time, in no order, by points and by round tips whose side nobody tells.
+#include "tests/support/lone_touches.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/recognition/recognizer.h"
+#include "tests/support/scene_data.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+Recognition recognise(const test::LoneTouches& touches) {
+  Recognizer recognizer;
+  PatchContext context;
+  context.tip_radius_m = touches.tip_radius_m;
+  for (const auto& patch : touches.scene.patches) {
+    const ContactSample sample{patch.front(), touches.scene.sigma_m, 0};
+    recognizer.add(context, {&sample, 1});
+    ++context.patch;
+  }
+  return recognizer.recognize();
+}
+
+/// RECOGNIZED answers of many scenes.
+struct Tally {
+  int scenes = 0;
+  int recognized = 0;
+  int wrong = 0;
+  double stated_wrong = 0.0;  ///< by the answers' own probabilities
+  double squares = 0.0;       ///< of shape errors over published deviations
+  int letters = 0;
+
+  void add(const Recognition& answer, const test::Scene& scene) {
+    ++scenes;
+    if (answer.status != RecognitionStatus::Recognized) return;
+    ++recognized;
+    stated_wrong += 1.0 - answer.hypotheses.front().probability;
+    if (answer.shape.curve_class != scene.curve_class) {
+      ++wrong;
+      return;
+    }
+    const Eigen::VectorXd error = test::error_of(answer.hypotheses.front(), scene);
+    const auto count = static_cast<Eigen::Index>(parameter_letters(scene.curve_class).size());
+    for (Eigen::Index k = 0; k < count; ++k) {
+      squares += error[k] * error[k] / answer.covariance(k, k);
+      ++letters;
+    }
+  }
+
+  void expect_honest(const std::string& what) const {
+    // More than four deviations of a count above what is stated comes once in ten thousand runs.
+    EXPECT_LE(wrong, stated_wrong + 4.0 * std::sqrt(stated_wrong) + 1.0) << what;
+    if (letters < 20) return;
+    // Mean squares of normal errors, five deviations of it either way; the letters of a shape are
+    // correlated, so that only every third counts.
+    const double mean = squares / letters;
+    EXPECT_NEAR(mean, 1.0, 5.0 * std::sqrt(2.0 * 3.0 / letters)) << what;
+  }
+};
+
+constexpr CurveClass kWithoutSharpBends[] = {CurveClass::Circle, CurveClass::Ellipse,
+                                             CurveClass::Parabola, CurveClass::Hyperbola,
+                                             CurveClass::CubicalParabola};
+
+TEST(LoneTouches, AreRecognisedInNoOrderByPointsAndByTips) {
+  const int scenes = test::stress_count(20);
+  for (const double tip : {0.0, 0.05}) {
+    for (const int count : {12, 40, 200}) {
+      for (const CurveClass curve_class : kWithoutSharpBends) {
+        std::mt19937_64 rng = test::test_rng();
+        Tally tally;
+        for (int i = 0; i < scenes; ++i) {
+          const test::LoneTouches touches = test::lone_touches(curve_class, count, 1e-4, tip, rng);
+          tally.add(recognise(touches), touches.scene);
+        }
+        const std::string what = std::string(name_of(curve_class)) + ", " + std::to_string(count) +
+                                 (tip > 0.0 ? " by a tip" : " points");
+        tally.expect_honest(what);
+        if (test::counts_tell()) {
+          EXPECT_GE(10 * tally.recognized, 8 * tally.scenes) << what;
+        }
+      }
+    }
+  }
+}
+
+TEST(LoneTouches, NextToSharpBendsAreWrongNoMoreOftenThanTheySay) {
+  const int scenes = test::stress_count(60);
+  for (const double tip : {0.0, 0.02}) {
+    Tally tally;
+    for (const CurveClass curve_class :
+         {CurveClass::SemiCubicalParabola, CurveClass::CubicSpline}) {
+      std::mt19937_64 rng = test::test_rng();
+      for (int i = 0; i < scenes; ++i) {
+        const test::LoneTouches touches = test::lone_touches(curve_class, 30, 1e-4, tip, rng);
+        tally.add(recognise(touches), touches.scene);
+      }
+    }
+    EXPECT_LE(tally.wrong, tally.stated_wrong + 4.0 * std::sqrt(tally.stated_wrong) + 1.0)
+        << "of " << tally.recognized;
+  }
+}
+
+/// A needle around a line would have half of the points on either side.
+TEST(LoneTouches, OfAStraightEdgeAreNoNeedle) {
+  std::mt19937_64 rng = test::test_rng();
+  int recognised = 0;
+  for (const int count : {12, 60, 200, 500}) {
+    for (int i = 0; i < 5; ++i) {
+      const test::LoneTouches touches = test::lone_touches(CurveClass::Line, count, 1e-4, 0.0, rng);
+      const Recognition answer = recognise(touches);
+      recognised += answer.status == RecognitionStatus::Recognized ? 1 : 0;
+      EXPECT_TRUE(answer.status != RecognitionStatus::Recognized ||
+                  answer.shape.curve_class == CurveClass::Line)
+          << count;
+    }
+  }
+  EXPECT_GE(recognised, 15);
+}
+
+TEST(LoneTouches, OfTheSameCurveInAnotherOrderGiveTheSameAnswer) {
+  std::mt19937_64 rng = test::test_rng();
+  for (const int count : {9, 40, 150}) {
+    test::LoneTouches touches = test::lone_touches(CurveClass::Ellipse, count, 1e-4, 0.05, rng);
+    const Recognition first = recognise(touches);
+    std::shuffle(touches.scene.patches.begin(), touches.scene.patches.end(), rng);
+    const Recognition second = recognise(touches);
+    ASSERT_EQ(first.status, second.status) << count;
+    ASSERT_EQ(first.shape.curve_class, second.shape.curve_class) << count;
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      // To a hundredth of a deviation: where the refinement ends.
+      EXPECT_NEAR(first.shape.values[k], second.shape.values[k],
+                  0.01 * std::sqrt(first.covariance(k, k)))
+          << count;
+    }
+  }
+}
+
+TEST(LoneTouches, OfFewerThanEightPlacesAreAnsweredButNeverForCertain) {
+  std::mt19937_64 rng = test::test_rng();
+  for (const int count : {1, 2, 3, 4, 5, 6, 7}) {
+    const test::LoneTouches touches = test::lone_touches(CurveClass::Circle, count, 1e-4, 0.0, rng);
+    const Recognition answer = recognise(touches);
+    if (count < 4) {
+      EXPECT_EQ(answer.status, RecognitionStatus::Collecting) << count;
+      continue;
+    }
+    ASSERT_EQ(answer.status, RecognitionStatus::Ambiguous) << count;
+    const Hypothesis* circle = test::hypothesis_of(answer, CurveClass::Circle);
+    ASSERT_NE(circle, nullptr) << count;
+    EXPECT_NEAR(circle->shape.values[0], touches.scene.values[0],
+                5.0 * std::sqrt(circle->covariance(0, 0)))
+        << count;
+  }
+}
+
+}  // namespace
+}  // namespace palpate

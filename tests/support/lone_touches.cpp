@@ -1,0 +1,50 @@
+#include "tests/support/lone_touches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "core/curves/curve.h"
+
+namespace palpate::test {
+
+LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_size,
+                         double tip_over_size, std::mt19937_64& rng) {
+  SceneOptions options;
+  options.patches = 1;
+  options.points_per_patch = 20 * count;
+  options.sigma_over_size = sigma_over_size;
+  // Beside a cusp there is no longer patch than an arm.
+  const bool has_cusp = curve_class == CurveClass::SemiCubicalParabola;
+  options.least_fraction = has_cusp ? 0.3 : 0.7;
+  options.most_fraction = has_cusp ? 0.4 : 0.95;
+  LoneTouches touches;
+  touches.scene = random_scene(curve_class, options, rng);
+  touches.tip_radius_m = tip_over_size * options.size_m;
+  const auto curve = make_curve(touches.scene.curve_class, touches.scene.values);
+  const std::vector<Vec2> places = touches.scene.patches.front();
+  const std::vector<double> t = touches.scene.t.front();
+  double bend = 0.0;
+  for (const double at : t) bend += geometry(*curve, at).kappa;
+  const double side = bend >= 0.0 ? -1.0 : 1.0;  // of increasing t, on which the centres lie
+  std::vector<std::size_t> order(places.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  // Where the curve bends towards the tip more sharply than it is round, no tip comes.
+  std::erase_if(order, [&](std::size_t k) {
+    return side * touches.tip_radius_m * geometry(*curve, t[k]).kappa > 0.9;
+  });
+  std::shuffle(order.begin(), order.end(), rng);
+  touches.scene.patches.clear();
+  touches.scene.t.clear();
+  order.resize(std::min(order.size(), static_cast<std::size_t>(count)));
+  for (const std::size_t k : order) {
+    const Vec2 normal = left_of(derivatives(*curve, t[k]).first.normalized());
+    const Vec2 lift = side * touches.tip_radius_m * touches.scene.world_T_curve.rotate(normal);
+    touches.scene.patches.push_back({places[k] + lift});
+    touches.scene.t.push_back({t[k]});
+  }
+  return touches;
+}
+
+}  // namespace palpate::test

@@ -1,0 +1,20 @@
+// Curves touched here and there, one sample at a time, in no order: what a trigger probe delivers.
+#pragma once
+
+#include <random>
+
+#include "tests/support/random_scene.h"
+
+namespace palpate::test {
+
+struct LoneTouches {
+  Scene scene;  ///< one patch a touch; with a tip, positions are its centres
+  double tip_radius_m = 0.0;
+};
+
+/// `count` places drawn evenly along most of the curve piece. A tip lies on the outer side of the
+/// piece's bend, on the same side of the curve everywhere.
+LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_size,
+                         double tip_over_size, std::mt19937_64& rng);
+
+}  // namespace palpate::test
