@@ -20,6 +20,7 @@ constexpr double kShrink = 0.9;
 struct WeightedPath {
   std::vector<PathNode> nodes;
   std::optional<double> noise;  ///< nullopt = not known
+  double sigma_m = 0.0;         ///< of a typical contact
 };
 
 WeightedPath weighted_path(const StoredPatch& patch, double default_sigma_m) {
@@ -33,6 +34,12 @@ WeightedPath weighted_path(const StoredPatch& patch, double default_sigma_m) {
   }
   if (stated) {
     path.noise = 1.0;
+    double variances = 0.0;
+    for (const StoredSample& sample : patch.samples) {
+      const double sigma = sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+      variances += sigma * sigma;
+    }
+    path.sigma_m = std::sqrt(variances / static_cast<double>(patch.samples.size()));
     return path;
   }
   std::vector<Vec2> positions;
@@ -47,6 +54,7 @@ WeightedPath weighted_path(const StoredPatch& patch, double default_sigma_m) {
   const NoiseEstimate noise = estimate_noise(positions);
   if (noise.status == LocalStatus::Ok) {
     path.noise = noise.sigma_m * std::sqrt(weights / static_cast<double>(positions.size()));
+    path.sigma_m = *path.noise;
   }
   return path;
 }
@@ -78,6 +86,59 @@ double uncertainty(const LocalizedContact& contact) {
   return contact.estimate.covariance.bottomRightCorner<3, 3>().determinant();
 }
 
+/// Leaves kMostContactsOfAPatch at most.
+void keep_most_informative(std::vector<LocalizedContact>* found) {
+  if (found->size() <= kMostContactsOfAPatch) {
+    return;
+  }
+  std::vector<double> all;
+  all.reserve(found->size());
+  for (const LocalizedContact& contact : *found) {
+    all.push_back(uncertainty(contact));
+  }
+  std::vector<double> sorted = all;
+  std::nth_element(sorted.begin(), sorted.begin() + kMostContactsOfAPatch, sorted.end());
+  const double limit = sorted[kMostContactsOfAPatch];
+  std::size_t i = 0;
+  std::erase_if(*found, [&](const LocalizedContact&) { return !(all[i++] < limit); });
+}
+
+/// Noise of the stored samples, each the mean of several contacts; 0 where it is not known. [m]
+double sigma_of_samples(const StoredPatch& patch, double default_sigma_m) {
+  double squares = 0.0;
+  for (const StoredSample& sample : patch.samples) {
+    const double sigma = sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+    if (!(sigma > 0.0)) {
+      return 0.0;
+    }
+    squares += sigma * sigma / sample.weight;
+  }
+  return std::sqrt(squares / static_cast<double>(patch.samples.size()));
+}
+
+/// Windows side by side, as many as the patch has room for, in its middle.
+std::vector<LocalizedContact> fixed_windows(const StoredPatch& patch, EstimatorOptions estimator,
+                                            double default_sigma_m, double signed_radius) {
+  estimator.sigma_m = sigma_of_samples(patch, default_sigma_m);
+  std::vector<Vec2> positions;
+  positions.reserve(patch.samples.size());
+  for (const StoredSample& sample : patch.samples) {
+    positions.push_back(sample.position_m);
+  }
+  const std::size_t window = samples_per_estimate(estimator);
+  std::vector<LocalizedContact> found;
+  for (std::size_t first = positions.size() % window / 2; first + window <= positions.size();
+       first += window) {
+    const LocalResult result =
+        estimate_window(std::span(positions).subspan(first, window), estimator);
+    const auto surface = result ? surface_from_tip(result.estimate, signed_radius) : std::nullopt;
+    if (surface) {
+      found.push_back({patch.context.probe, patch.context.patch, 0.0, *surface});
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 std::size_t windows_of_a_patch(std::size_t patches, const ContactOptions& options) {
@@ -87,12 +148,19 @@ std::size_t windows_of_a_patch(std::size_t patches, const ContactOptions& option
 
 void add_contacts(const StoredPatch& patch, std::size_t least_windows, int side,
                   const ContactOptions& options, std::vector<LocalizedContact>* contacts) {
+  const double signed_radius = side * patch.context.tip_radius_m;
+  if (options.estimator) {
+    std::vector<LocalizedContact> found =
+        fixed_windows(patch, *options.estimator, options.sigma_m, signed_radius);
+    keep_most_informative(&found);
+    contacts->insert(contacts->end(), found.begin(), found.end());
+    return;
+  }
   const WeightedPath path = weighted_path(patch, options.sigma_m);
   const std::size_t n = path.nodes.size();
   if (!path.noise) {
     return;
   }
-  const double signed_radius = side * patch.context.tip_radius_m;
   // Means of several contacts lie off the curve by as much as stated, which is smooth along the
   // arc.
   const double form_m = std::hypot(options.form_deviation_m, patch.merge_bias_m);
@@ -116,22 +184,12 @@ void add_contacts(const StoredPatch& patch, std::size_t least_windows, int side,
       continue;
     }
     fit.result.estimate.window_samples = static_cast<int>(length);
+    fit.result.estimate.sigma_m = path.sigma_m;
     if (const auto surface = surface_from_tip(fit.result.estimate, signed_radius)) {
       found.push_back({patch.context.probe, patch.context.patch, 0.0, *surface});
     }
   }
-  if (found.size() > kMostContactsOfAPatch) {
-    std::vector<double> all;
-    all.reserve(found.size());
-    for (const LocalizedContact& contact : found) {
-      all.push_back(uncertainty(contact));
-    }
-    std::vector<double> sorted = all;
-    std::nth_element(sorted.begin(), sorted.begin() + kMostContactsOfAPatch, sorted.end());
-    const double limit = sorted[kMostContactsOfAPatch];
-    std::size_t i = 0;
-    std::erase_if(found, [&](const LocalizedContact&) { return !(all[i++] < limit); });
-  }
+  keep_most_informative(&found);
   contacts->insert(contacts->end(), found.begin(), found.end());
 }
 

@@ -1,11 +1,13 @@
 // Local estimates along the patches, and their places on the recognised curve.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/curves/pose2.h"
 #include "core/curves/shape_parameters.h"
+#include "core/local/estimator.h"
 #include "core/recognition/localized_contact.h"
 #include "core/recognition/samples/sample_memory.h"
 
@@ -23,6 +25,10 @@ struct ContactOptions {
   double sigma_m = 0.0;
   /// Smooth deviation of the part from its curve, one standard deviation. [m]
   double form_deviation_m = 0.0;
+  /// Windows of a fixed length by one of the estimators of core/local/estimator.h instead, side by
+  /// side; of it the kind, window and shift count. For comparison with the paper, whose own is the
+  /// two-round one.
+  std::optional<EstimatorOptions> estimator;
 };
 
 /// Contacts of a patch, at most: where its windows are more, the most informative ones.

@@ -174,7 +174,8 @@ class Recognizer::Impl {
     answer.contacts = contacts_.of(patches, w.sides, outliers, contact_options());
     SplineOptions spline;
     spline.fallback_starts = 0;  // the path is reported only: not worth the time
-    add_path(walk_tree_over(answer.contacts, options_.tree, curves_of(w), spline), &answer);
+    add_path(recognise_by_tree(tree_points(answer.contacts), options_.tree, curves_of(w), spline),
+             &answer);
     const double p_value = answer.tree_p_values[static_cast<std::size_t>(answer.shape.curve_class)];
     if (answer.status == RecognitionStatus::Recognized && p_value < options_.tree.significance) {
       answer.status = RecognitionStatus::Ambiguous;

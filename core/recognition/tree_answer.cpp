@@ -1,11 +1,11 @@
 #include "core/recognition/tree_answer.h"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/numerics/chi_square.h"
 #include "core/recognition/contacts.h"
+#include "core/recognition/tree/tree_covariance.h"
 #include "core/recognition/verdict/determined.h"
 
 namespace palpate {
@@ -22,20 +22,9 @@ double rms_sigma_m(std::span<const LocalizedContact> contacts) {
   return contacts.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(contacts.size()));
 }
 
-/// The tree does not propagate the pose's: what is not known has an infinite variance.
-ShapePoseCovariance covariance_of(const TreeResult& tree) {
-  const auto letters = static_cast<Eigen::Index>(parameter_letters(tree.shape.curve_class).size());
-  ShapePoseCovariance covariance = ShapePoseCovariance::Zero(letters + 3, letters + 3);
-  covariance.topLeftCorner(letters, letters) = tree.covariance.topLeftCorner(letters, letters);
-  covariance.diagonal().tail<3>().setConstant(std::numeric_limits<double>::infinity());
-  return covariance;
-}
-
 }  // namespace
 
-TreeResult walk_tree_over(const std::vector<LocalizedContact>& contacts,
-                          const RecognitionTreeOptions& options, const KnownCurves& known,
-                          const SplineOptions& spline) {
+std::vector<TreePoint> tree_points(const std::vector<LocalizedContact>& contacts) {
   std::vector<TreePoint> points;
   int patch = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -45,7 +34,7 @@ TreeResult walk_tree_over(const std::vector<LocalizedContact>& contacts,
     }
     points.push_back({contacts[i].estimate, patch});
   }
-  return recognise_by_tree(points, options, known, spline);
+  return points;
 }
 
 void add_path(TreeResult tree, Recognition* answer) {
@@ -65,7 +54,7 @@ Recognition answer_by_tree(
   std::size_t classes = 0;
   for (const std::vector<int>& sides : ways) {
     std::vector<LocalizedContact> contacts = contacts_of(sides);
-    TreeResult walked = walk_tree_over(contacts, options, {}, {});
+    TreeResult walked = recognise_by_tree(tree_points(contacts), options);
     const bool ends = walked.status == InvariantStatus::Ok &&
                       walked.shape.curve_class != CurveClass::Unclassified;
     const bool better = ends && (classes == 0 || tail_probability(walked) > tail_probability(tree));
@@ -78,7 +67,7 @@ Recognition answer_by_tree(
   answer.sigma_m = rms_sigma_m(answer.contacts);
   Hypothesis only;
   only.shape = tree.shape;
-  only.covariance = covariance_of(tree);
+  only.covariance = propagated_covariance(tree_points(answer.contacts), tree, options);
   only.probability = 1.0;
   only.chi2 = tree.chi2;
   only.dof = tree.dof;

@@ -11,10 +11,8 @@
 
 namespace palpate {
 
-/// The tree over contacts whose windows share no sample.
-TreeResult walk_tree_over(const std::vector<LocalizedContact>& contacts,
-                          const RecognitionTreeOptions& options, const KnownCurves& known,
-                          const SplineOptions& spline);
+/// The contacts as the tree takes them: their windows share no sample.
+std::vector<TreePoint> tree_points(const std::vector<LocalizedContact>& contacts);
 
 /// The path, the invariants and where the tree ended, in the answer.
 void add_path(TreeResult tree, Recognition* answer);

@@ -12,6 +12,17 @@ std::string resolve(const RecognizerWords& words, RecognizerOptions& recognizer)
   } else {
     return "method: expected ml or tree";
   }
+  recognizer.contacts.estimator.reset();
+  if (words.estimator != "sliding") {
+    const std::optional<EstimatorKind> kind = estimator_kind_from_name(words.estimator);
+    if (!kind) {
+      return "estimator: expected sliding, finite-difference, circle, two-round or jet";
+    }
+    EstimatorOptions& estimator = recognizer.contacts.estimator.emplace();
+    estimator.kind = *kind;
+    estimator.window = static_cast<int>(words.window);
+    estimator.shift = static_cast<int>(words.shift);
+  }
   recognizer.classes = words.classes.empty() ? ~0U : 0U;
   for (const std::string& name : words.classes) {
     const std::optional<CurveClass> curve_class = curve_class_from_name(name);

@@ -22,6 +22,9 @@ struct OptionInfo {
 struct RecognizerWords {
   std::string method = "ml";
   std::vector<std::string> classes;  ///< empty = all
+  std::string estimator = "sliding";
+  std::size_t window = static_cast<std::size_t>(EstimatorOptions{}.window);
+  std::size_t shift = static_cast<std::size_t>(EstimatorOptions{}.shift);
 };
 
 /// Sets what the words say; returns what is wrong with them, or nothing.
@@ -59,6 +62,15 @@ void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& vi
         recognizer.contacts.least_windows);
   visit({"window_samples", "Local estimates: fewest samples of a window", 4, kMostSamples},
         recognizer.contacts.window_samples);
+  visit({"estimator",
+         "Local estimates: sliding (windows as long as the data allow), or finite-difference, "
+         "circle, two-round or jet over windows of a fixed length"},
+        words.estimator);
+  visit({"window", "Samples of a fixed window (two-round: of each first-round window)", 5, 1e4},
+        words.window);
+  visit({"shift", "Samples from one first-round window of the two-round estimator to the next", 1,
+         1e4},
+        words.shift);
   visit({"tree_significance", "Tree: probability that a test rejects the true class", 0, 1},
         recognizer.tree.significance);
   visit({"tree_relative_floor", "Tree: standard deviation added to every estimate", 0, 1},

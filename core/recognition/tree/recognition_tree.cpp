@@ -46,6 +46,26 @@ class SignificanceTree {
     return std::move(result_);
   }
 
+  TreeResult leaf_again(const TreeResult& answer) {
+    result_.status = InvariantStatus::Ok;
+    const CurveClass curve_class = answer.shape.curve_class;
+    if (curve_class == CurveClass::Line || curve_class == CurveClass::Circle) {
+      const ConstantCurvature fit = fit_constant_curvature(measured_);
+      if (curve_class == CurveClass::Line) {
+        reach_line(fit);
+      } else if (fit.kappa > 0.0) {
+        reach_circle(fit, tangent_circle(points_, 1.0 / fit.kappa, options_.relative_floor));
+      }
+      return std::move(result_);
+    }
+    const SemiSignatureFit fit = fit_semi_signature(curve_class, measured_, answer.shape.values,
+                                                    answer.world_T_curve->theta);
+    if (fit.status == InvariantStatus::Ok) {
+      reach_fit(fit);
+    }
+    return std::move(result_);
+  }
+
  private:
   /// Records one chi-square test, which each of `classes` must pass.
   bool passes(std::string_view name, double chi2, int dof,
@@ -99,8 +119,7 @@ class SignificanceTree {
     }
     add_invariant(CurveClass::Circle, "kappa", fit.kappa, fit.variance);
     if (passes("line", fit.line_chi2, fit.line_dof, {CurveClass::Line})) {
-      reach(CurveClass::Line, Eigen::Vector3d::Zero(), fit.line_chi2, fit.line_dof);
-      result_.world_T_curve = line_pose(points_);
+      reach_line(fit);
       return true;
     }
     if (fit.kappa > 0.0 &&
@@ -111,12 +130,22 @@ class SignificanceTree {
       if (!passes("circle through tangents", circle.chi2, circle.dof, {CurveClass::Circle})) {
         return false;
       }
-      reach(CurveClass::Circle, {radius, 0.0, 0.0}, fit.circle_chi2, fit.circle_dof);
-      result_.covariance(0, 0) = std::pow(radius, 4) * fit.variance;
-      result_.world_T_curve = circle.pose;
+      reach_circle(fit, circle);
       return true;
     }
     return false;
+  }
+
+  void reach_line(const ConstantCurvature& fit) {
+    reach(CurveClass::Line, Eigen::Vector3d::Zero(), fit.line_chi2, fit.line_dof);
+    result_.world_T_curve = line_pose(points_);
+  }
+
+  void reach_circle(const ConstantCurvature& fit, const TangentCircle& circle) {
+    const double radius = 1.0 / fit.kappa;
+    reach(CurveClass::Circle, {radius, 0.0, 0.0}, fit.circle_chi2, fit.circle_dof);
+    result_.covariance(0, 0) = std::pow(radius, 4) * fit.variance;
+    result_.world_T_curve = circle.pose;
   }
 
   /// The points whose errors go into the conic's invariants linearly as far as a test looks. Ip
@@ -313,11 +342,15 @@ class SignificanceTree {
     if (!passes(name, fit.chi2, fit.dof, {fit.curve_class})) {
       return false;
     }
+    reach_fit(fit);
+    return true;
+  }
+
+  void reach_fit(const SemiSignatureFit& fit) {
     reach(fit.curve_class, fit.parameters, fit.chi2, fit.dof);
     result_.covariance = shape_covariance(fit);
     result_.world_T_curve = pose_of(points_, fit);
     result_.places = fit.places;
-    return true;
   }
 
   std::span<const TreePoint> points_;
@@ -347,6 +380,11 @@ TreeResult recognise_by_tree(std::span<const TreePoint> points,
   }
   return options.relative_tolerance > 0.0 ? recognise_by_tolerance(points, options)
                                           : SignificanceTree(points, options, known, spline).run();
+}
+
+TreeResult solve_leaf(std::span<const TreePoint> points, const TreeResult& answer,
+                      const RecognitionTreeOptions& options) {
+  return SignificanceTree(points, options, {}, {}).leaf_again(answer);
 }
 
 }  // namespace palpate

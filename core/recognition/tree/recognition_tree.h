@@ -68,4 +68,9 @@ TreeResult recognise_by_tree(std::span<const TreePoint> points,
                              const RecognitionTreeOptions& options = {},
                              const KnownCurves& known = {}, const SplineOptions& spline = {});
 
+/// The leaf that `answer` reached once more, for points near those that it is of: no test on the
+/// way there and no search.
+TreeResult solve_leaf(std::span<const TreePoint> points, const TreeResult& answer,
+                      const RecognitionTreeOptions& options);
+
 }  // namespace palpate

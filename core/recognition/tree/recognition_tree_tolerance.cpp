@@ -81,6 +81,12 @@ class ToleranceTree {
     result_.invariants.push_back({curve_class, name, value});
   }
 
+  /// `frame`: orientation of the curve, where its places ask for it.
+  void reach(CurveClass curve_class, const Eigen::Vector3d& parameters, double frame) {
+    result_.shape = {curve_class, parameters};
+    result_.world_T_curve = pose_by_places(result_.shape, points_, frame);
+  }
+
   bool constant_curvature() {
     const double scale = curvature_scale(measured_);
     if (scale == 0.0) {
@@ -163,7 +169,7 @@ class ToleranceTree {
     if (parameters.status != InvariantStatus::Ok) {
       return false;
     }
-    result_.shape = {curve_class, {parameters.a, parameters.b, 0.0}};
+    reach(curve_class, {parameters.a, parameters.b, 0.0}, 0.0);
     return true;
   }
 
@@ -174,6 +180,7 @@ class ToleranceTree {
     double best = std::numeric_limits<double>::infinity();
     double best_value = best;
     Eigen::Vector2d best_invariants = Eigen::Vector2d::Zero();
+    double best_frame = 0.0;
     for (std::size_t i = 0; i < measured_.size(); ++i) {
       for (std::size_t j = 0; j < measured_.size(); ++j) {
         const PairSolutions pair = i == j ? PairSolutions{}
@@ -195,6 +202,7 @@ class ToleranceTree {
             best = value;
             best_value = value;
             best_invariants = {first.mean(), second.mean()};
+            best_frame = frame;
           }
         }
       }
@@ -207,7 +215,7 @@ class ToleranceTree {
       return false;
     }
     const double a = cubical ? best_invariants[0] : std::sqrt(std::abs(best_invariants[0]));
-    result_.shape = {curve_class, {a, best_invariants[1], 0.0}};
+    reach(curve_class, {a, best_invariants[1], 0.0}, best_frame);
     return true;
   }
 
@@ -219,9 +227,13 @@ class ToleranceTree {
     // In lengths of 1 / scale (a, b, c) are pure numbers, which one norm may compare.
     const double scale = curvature_scale(measured_);
     const Eigen::Vector3d to_numbers(1.0 / std::sqrt(scale), 1.0, std::sqrt(scale));
+    double frame = 0.0;
     const auto parameters_of = [&](std::size_t third) -> Eigen::Vector3d {
       const std::array three{measured_[0], measured_[1], measured_[third]};
       const SemiSignatureFit fit = fit_cubic_spline(three);
+      if (third == 2) {
+        frame = fit.orientation;
+      }
       return fit.status == InvariantStatus::Ok
                  ? Eigen::Vector3d(to_numbers.cwiseProduct(fit.parameters))
                  : Eigen::Vector3d::Zero();
@@ -242,7 +254,7 @@ class ToleranceTree {
                 std::isfinite(worst) ? worst : std::numeric_limits<double>::infinity())) {
       return false;
     }
-    result_.shape = {CurveClass::CubicSpline, first.cwiseQuotient(to_numbers)};
+    reach(CurveClass::CubicSpline, first.cwiseQuotient(to_numbers), frame);
     return true;
   }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/curves/curve.h"
 #include "core/invariants/signature_fit/canonical_models.h"
 
 namespace palpate {
@@ -48,6 +49,52 @@ Pose2 pose_of(std::span<const TreePoint> points, const SemiSignatureFit& fit) {
   sum /= static_cast<double>(points.size());
   pose.x = sum.x();
   pose.y = sum.y();
+  return pose;
+}
+
+std::optional<Pose2> pose_by_places(const ShapeParameters& shape, std::span<const TreePoint> points,
+                                    double frame) {
+  const auto curve = make_curve(shape.curve_class, shape.values);
+  if (!curve) {
+    return std::nullopt;
+  }
+  struct Place {
+    Vec2 touched;
+    Vec2 on_curve;
+  };
+  std::vector<Place> places;
+  double first_theta = 0.0;
+  double turns = 0.0;  // from the first point's orientation
+  // A curve that half a turn about its centre leaves as it is has every place twice.
+  const double symmetry = pose_symmetry(shape.curve_class) == 2 ? kPi : 2.0 * kPi;
+  for (const TreePoint& point : points) {
+    const LocalEstimate& estimate = point.estimate;
+    const auto place = localise(
+        *curve, {wrap_angle(estimate.tangent_angle - frame), estimate.kappa, estimate.kappa_s});
+    if (!place) {
+      continue;
+    }
+    const double theta =
+        pose_from_contact(*curve, *place, estimate.position, estimate.tangent_angle).theta;
+    if (places.empty()) {
+      first_theta = theta;
+    }
+    const double turn = std::remainder(theta - first_theta, symmetry);
+    const bool other_half = std::cos(theta - first_theta - turn) < 0.0;
+    const Vec2 on_curve = position(*curve, place->t);
+    places.push_back({estimate.position, other_half ? Vec2(-on_curve) : on_curve});
+    turns += turn;
+  }
+  if (places.empty()) {
+    return std::nullopt;
+  }
+  const auto count = static_cast<double>(places.size());
+  Pose2 pose{0.0, 0.0, wrap_angle(first_theta + turns / count)};
+  for (const Place& place : places) {
+    const Vec2 shift = (place.touched - pose.rotate(place.on_curve)) / count;
+    pose.x += shift.x();
+    pose.y += shift.y();
+  }
   return pose;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 
 #include "core/curves/pose2.h"
@@ -12,6 +13,12 @@ namespace palpate {
 
 /// Orientation from the fit, position as the mean of (touched point - the curve's point turned).
 Pose2 pose_of(std::span<const TreePoint> points, const SemiSignatureFit& fit);
+
+/// Where the places that curvatures (and, in the turned `frame` of the classes that ask for it, the
+/// tangent angle) name on a curve of that shape put it: section 5.3, mean over the points. nullopt
+/// where they name none.
+std::optional<Pose2> pose_by_places(const ShapeParameters& shape, std::span<const TreePoint> points,
+                                    double frame);
 
 /// The circle that touched points and tangents say, without their curvatures.
 struct TangentCircle {

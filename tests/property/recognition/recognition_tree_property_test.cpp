@@ -135,5 +135,57 @@ TEST(RecognitionTreeProperty, RejectsTheTrueClassAsSeldomAsItsSignificanceSays) 
   std::cout << rejected << " of " << stated.size() << " rejected\n";
 }
 
+/// `within` of `count` errors lie within two deviations: as of normal laws, to four deviations of
+/// that share. The errors of one answer hang together: three count as one.
+void expect_two_deviations(int within, int count, const std::string& what) {
+  if (!test::counts_tell()) return;
+  ASSERT_GT(count, 30) << what;
+  constexpr double kLaw = 0.9545;
+  const double tolerance = 4.0 * std::sqrt(kLaw * (1.0 - kLaw) * 3.0 / count);
+  const double share = within / static_cast<double>(count);
+  EXPECT_GE(share, kLaw - tolerance) << what;
+  EXPECT_LE(share, std::min(1.0, kLaw + tolerance)) << what;
+}
+
+/// From strokes to pose by nothing but local estimates: the errors of all that is published lie
+/// within two published deviations as often as those of normal laws do.
+TEST(RecognitionTree, ShapeAndPoseErrAsTheirPropagatedCovarianceSays) {
+  RecognizerOptions options;
+  options.method = RecognitionMethod::Tree;
+  const int scenes = test::stress_count(60);
+  int all = 0;
+  int all_within = 0;
+  for (const CurveClass curve_class : kCurveClasses) {
+    auto rng = test::test_rng();
+    int count = 0;
+    int within = 0;
+    for (int i = 0; i < scenes; ++i) {
+      test::SceneOptions scene_options;
+      scene_options.patches = 4;
+      scene_options.sigma_over_size = 1e-4;
+      const test::Scene scene = test::random_scene(curve_class, scene_options, rng);
+      const Recognition answer = test::recognise(scene, scene.sigma_m, options);
+      if (answer.status != RecognitionStatus::Recognized ||
+          answer.shape.curve_class != curve_class) {
+        continue;
+      }
+      const Eigen::VectorXd error = test::error_of(answer.hypotheses.front(), scene);
+      for (Eigen::Index k = 0; k < error.size(); ++k) {
+        const double deviation = std::sqrt(answer.covariance(k, k));
+        if (curve_class == CurveClass::Line ? k != 2 : deviation == 0.0) continue;
+        ASSERT_TRUE(std::isfinite(deviation)) << name_of(curve_class);
+        ++count;
+        const double off =
+            curve_class == CurveClass::Line ? std::remainder(error[k], kPi) : error[k];
+        within += std::abs(off) < 2.0 * deviation ? 1 : 0;
+      }
+    }
+    expect_two_deviations(within, count, std::string(name_of(curve_class)));
+    all += count;
+    all_within += within;
+  }
+  expect_two_deviations(all_within, all, "all");
+}
+
 }  // namespace
 }  // namespace palpate

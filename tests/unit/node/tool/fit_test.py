@@ -117,6 +117,32 @@ class Fit(unittest.TestCase):
         self.assertEqual(answers[0].curve_class, curve_pb2.CURVE_CLASS_ELLIPSE)
         self.assertAlmostEqual(answers[0].parameters.a / A, 1, places=2)
 
+    def test_the_papers_pipeline_from_samples_to_pose(self):
+        # Strokes of four times 111 samples; the two-round fit's windows take 111 of them each. Without noise to speak of
+        # what is left is the method's bias, W^2 / 56 of the curvature's second derivative.
+        strokes = [(start, start + 0.6) for start in (0.2, 1.0, 2.3, 3.4)]
+        pipeline = ["--method", "tree", "--estimator", "two-round", "--window", "75", "--shift", "4",
+                    "--relative-tolerance", "0.05"]
+        answers, _ = self.answers(*pipeline, "-", text_in=HEADER + ellipse(strokes, sigma=1e-9))
+        answer = answers[0]
+        self.assertEqual(answer.curve_class, curve_pb2.CURVE_CLASS_ELLIPSE)
+        self.assertEqual([c.patch for c in answer.contacts], [0, 1, 2, 3])
+        self.assertLess(abs(answer.parameters.a / A - 1), 0.05)
+        self.assertLess(abs(answer.parameters.b / B - 1), 0.05)
+        self.assertLess(math.hypot(answer.pose.x_m - POSE[0], answer.pose.y_m - POSE[1]), 0.05 * A)
+        self.assertTrue(all(0 < answer.covariance[6 * i] < 1e-6 for i in range(5)))
+        # With noise it may come to another class: every entry has its deviation all the same.
+        answers, _ = self.answers(*pipeline[:-1], "0.5", "-", text_in=HEADER + ellipse(strokes))
+        size = math.isqrt(len(answers[0].covariance))
+        self.assertTrue(all(answers[0].covariance[(size + 1) * i] > 0 for i in range(size)))
+        self.assertTrue(answers[0].decisions)
+
+    def test_an_estimator_that_is_none_is_told(self):
+        path = self.write("part.csv", HEADER + ellipse())
+        code, out, err = run(TOOL, "fit", path, "--estimator", "magic")
+        self.assertEqual((code, out), (2, ""))
+        self.assertIn("two-round", err)
+
     def test_plots_are_svg_one_a_group(self):
         path = self.write("part.csv", HEADER + ellipse() + ellipse(object_number=2))
         self.answers("--plot", self.folder / "plot.svg", path)
