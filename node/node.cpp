@@ -212,7 +212,7 @@ void Node::give_out_work(SteadyTime now) {
     Group* group = intake_.groups().next_waiting(/*only_quick=*/slow >= at_a_time_);
     if (group == nullptr) return;
     std::shared_ptr<GroupRecognizer> recognizer = intake_.groups().begin_work(*group);
-    recognizer->wants_estimates = options_.publish_estimates;
+    recognizer->wants_estimates = options_.publish_estimates && publisher_.estimates_are_wanted();
     in_work_[workers_.start(std::move(recognizer))] = {group, !group->is_quick(), now};
   }
 }

@@ -28,7 +28,7 @@ struct NodeOptions {
   double probe_timeout_s = 0.5;
   double status_period_s = 1.0;
   std::uint32_t workers = 0;  ///< 0 = as many as there are cores
-  bool publish_estimates = false;
+  bool publish_estimates = true;
   std::string log_level = "info";
   RecognizerWords words;
   PeerBounds peers;
@@ -103,7 +103,8 @@ void for_each_option(Options& options, Visit&& visit) {
   visit({"gap_break_spacings",
          "After lost messages, the hole that breaks the arc [sample spacings]", 0, 1e9},
         intake.group.gap_break_spacings);
-  visit({"publish_estimates", "Publish local estimates on estimate/<probe>/ too"},
+  visit({"publish_estimates",
+         "Publish local estimates on estimate/<probe>/ while a planner subscribes to any"},
         options.publish_estimates);
   visit({"log_level", "trace, debug, info, warning, error or off"}, options.log_level);
   for_each_recognizer_option(options.words, recognizer, visit);

@@ -29,6 +29,15 @@ void ResultPublisher::publish(TopicKind kind, std::string_view name, v1::Header&
   ++published_count_;
 }
 
+namespace {
+
+/// Whether a subscription to `prefix` asks for topics that begin with `topics`.
+bool meets(std::string_view prefix, std::string_view topics) {
+  return prefix.starts_with(topics) || topics.starts_with(prefix);
+}
+
+}  // namespace
+
 void ResultPublisher::serve_subscriptions(int max_messages, PeerGuard* peers,
                                           std::chrono::steady_clock::time_point now) {
   TwoFrames message;
@@ -42,6 +51,14 @@ void ResultPublisher::serve_subscriptions(int max_messages, PeerGuard* peers,
     const std::string_view prefix = text.substr(1);
     if (peers != nullptr) {
       peers->count_subscription(descriptor_of(message.topic), begins, prefix.size());
+    }
+    if (meets(prefix, topic_prefix(TopicKind::Estimate))) {
+      // (One that repeats its subscription ends it once: the estimates then go on for nobody.)
+      if (begins) {
+        ++estimate_subscriptions_;
+      } else if (estimate_subscriptions_ > 0) {
+        --estimate_subscriptions_;
+      }
     }
     if (ends) continue;
     for (auto feed = feeds_.lower_bound(prefix);

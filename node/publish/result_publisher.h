@@ -22,7 +22,8 @@ namespace palpate {
 class ResultPublisher {
  public:
   /// `source`: name of the node. The socket must outlive this and be an XPUB with
-  /// ZMQ_XPUB_VERBOSE, so that every subscription is seen and not only a prefix's first.
+  /// ZMQ_XPUB_VERBOSER, so that every subscription is seen and not only a prefix's first, and the
+  /// end of each.
   ResultPublisher(zmq::socket_t& socket, std::string source);
 
   /// Fills in the header (a part of `message`; the frame stays as given), sends and remembers. An
@@ -44,6 +45,9 @@ class ResultPublisher {
                            std::chrono::steady_clock::time_point now);
 
   static constexpr std::chrono::milliseconds kLeastRepeat{50};
+
+  /// Whether anybody has subscribed to estimates, of any probe.
+  bool estimates_are_wanted() const { return estimate_subscriptions_ > 0; }
 
   /// Sends the latest of all topics again: a planner that has lost the newest message to a full
   /// queue would otherwise stay with an old answer until the next touch.
@@ -70,6 +74,7 @@ class ResultPublisher {
   bool has_forgotten_ = false;
   std::map<std::string, Feed, std::less<>> feeds_;  // by topic: a prefix is a range
   bool any_asked_for_ = false;
+  std::uint64_t estimate_subscriptions_ = 0;
   std::chrono::steady_clock::time_point next_repeat_;
   std::uint64_t published_count_ = 0;
 };

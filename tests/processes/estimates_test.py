@@ -3,8 +3,8 @@ import math
 import time
 import unittest
 
-from bus import Bus, Probe, receive_any
-from palpate.v1 import local_estimate_pb2
+from bus import Bus, Probe, receive_any, wait_for
+from palpate.v1 import local_estimate_pb2, recognition_pb2
 
 RADIUS_M = 0.02
 
@@ -24,7 +24,7 @@ def estimates_of(socket, timeout_s=1.0):
 class Estimates(unittest.TestCase):
     def test_they_come_in_order_with_true_uncertainties(self):
         with Bus() as bus:
-            bus.start_node("--publish-estimates")
+            bus.start_node()
             socket = bus.publisher()
             listener = bus.subscriber("estimate/", "status/")
             # Estimates are not kept for those who come late: the node must have heard of the planner first.
@@ -55,19 +55,31 @@ class Estimates(unittest.TestCase):
                 self.assertLess(newest.kappa_sigma_per_m, 0.5 / RADIUS_M)
                 self.assertLess(abs(newest.kappa_s_per_m2), 4.0 * newest.kappa_s_sigma_per_m2)
 
-    def test_none_without_being_asked(self):
-        with Bus() as bus:
-            bus.start_node()
-            socket = bus.publisher()
-            everything = bus.subscriber("")
-            # Contacts are not kept for those who come late: the node must have heard of the planner first.
-            self.assertIsNotNone(receive_any(everything, 10))
-            Probe(socket).stroke()
-            topics = set()
-            deadline = time.monotonic() + 3.0
-            while (message := receive_any(everything, max(0.0, deadline - time.monotonic()))) is not None:
-                topics.add(message[0].split(b"/")[0])
-            self.assertEqual(topics, {b"status", b"recognition", b"contact"})
+    def test_they_begin_with_the_first_who_asks_and_can_be_forbidden(self):
+        for allowed in (True, False):
+            with Bus() as bus:
+                bus.start_node(*([] if allowed else ["--no-publish-estimates"]))
+                socket = bus.publisher()
+                answers = bus.subscriber("recognition/", "status/")
+                self.assertIsNotNone(receive_any(answers, 10))
+                probe = Probe(socket)
+                for number in range(10):
+                    probe.send(probe.batch(10 * number))
+                wait_for(answers, lambda m: isinstance(m, recognition_pb2.Recognition) and m.sample_count >= 100)
+                # A planner that comes in the middle of the stroke: windows begin with it.
+                late = bus.subscriber("estimate/", "status/")
+                self.assertIsNotNone(receive_any(late, 10))
+                for number in range(10, 30):
+                    probe.send(probe.batch(10 * number))
+                found = estimates_of(late, timeout_s=2.0)
+                self.assertEqual(bool(found), allowed)
+                if not allowed:
+                    continue
+                self.assertEqual([e.header.seq for _, e in found], list(range(len(found))))
+                first = found[0][1]
+                # The first window holds samples of after the planner's coming alone.
+                angle = math.atan2(first.y_m - 0.1, first.x_m - 0.3)
+                self.assertGreater(angle, 0.01 * 100)
 
 
 if __name__ == "__main__":

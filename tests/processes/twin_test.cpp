@@ -36,7 +36,6 @@ TEST(Twin, NodeProbesAndPlannersShareNothing) {
   options.contacts = {"tcp://127.0.0.1:*"};
   options.results = {"tcp://127.0.0.1:*"};
   options.status_period_s = 0.1;
-  options.publish_estimates = true;
   Node node(options, NodeKeys{});
   const std::string contacts = node.contacts_address();
   const std::string results = node.results_address();
@@ -45,6 +44,7 @@ TEST(Twin, NodeProbesAndPlannersShareNothing) {
   constexpr int kProbes = 3;
   constexpr std::uint64_t kObjects = 5;
   std::atomic<int> answered = 0;
+  std::atomic<int> estimates = 0;
   std::vector<std::jthread> threads;
   for (int p = 0; p < kProbes; ++p) {
     threads.emplace_back([&, p] {
@@ -52,6 +52,7 @@ TEST(Twin, NodeProbesAndPlannersShareNothing) {
       client::ResultSubscriberOptions subscription;
       subscription.endpoint = results;
       subscription.groups = {name};
+      subscription.estimates = true;
       client::ResultSubscriber planner(subscription);
       client::ContactPublisherOptions publication;
       publication.endpoint = contacts;
@@ -61,6 +62,10 @@ TEST(Twin, NodeProbesAndPlannersShareNothing) {
         stroke(publisher, name, object);
         for (bool done = false; !done;) {
           const client::ReceivedResult result = planner.receive(std::chrono::seconds(20));
+          if (result.estimate != nullptr) {
+            ++estimates;
+            continue;
+          }
           ASSERT_NE(result.recognition, nullptr) << name << ", object " << object;
           done =
               result.recognition->object() == object && result.recognition->sample_count() == 200;
@@ -71,6 +76,7 @@ TEST(Twin, NodeProbesAndPlannersShareNothing) {
   }
   threads.clear();
   EXPECT_EQ(answered.load(), kProbes * static_cast<int>(kObjects));
+  EXPECT_GT(estimates.load(), 0);
 }
 
 }  // namespace
