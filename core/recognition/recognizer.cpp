@@ -191,8 +191,9 @@ class Recognizer::Impl {
     const auto contacts_of = [&](const std::vector<int>& sides) {
       return contacts_.of(patches, sides, {}, contact_options());
     };
-    Recognition answer = answer_by_tree(possible_sides(patches, reduced), contacts_of,
-                                        options_.tree, data.scale, options_.determined_fraction);
+    Recognition answer =
+        answer_by_tree(possible_sides(patches, reduced, turns_of(reduced)), contacts_of,
+                       options_.tree, data.scale, options_.determined_fraction);
     answer.outlier_count = outliers;
     return answer;
   }

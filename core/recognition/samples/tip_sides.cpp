@@ -17,8 +17,45 @@ int stated_side(MaterialSide side) {
   return 0;
 }
 
+namespace {
+
+double turn_of(std::span<const FitPoint> patch) {
+  double turn = 0.0;
+  for (std::size_t i = 1; i < patch.size(); ++i) {
+    turn += std::atan2(cross(patch[i - 1].tangent, patch[i].tangent),
+                       patch[i - 1].tangent.dot(patch[i].tangent));
+  }
+  return turn;
+}
+
+}  // namespace
+
+std::optional<double> certain_turn(std::span<const FitPoint> patch) {
+  constexpr double kCertain = 5.0;  // standard deviations
+  double weight = 0.0;
+  double length = 0.0;
+  for (std::size_t i = 0; i < patch.size(); ++i) {
+    weight += patch[i].inverse_sigma * patch[i].inverse_sigma;
+    length += i > 0 ? (patch[i].position - patch[i - 1].position).norm() : 0.0;
+  }
+  const double turn = turn_of(patch);
+  // That of a parabola fitted to evenly spread samples: sigma sqrt(720 / n) over the length.
+  return weight > 0.0 && std::abs(turn) * length > kCertain * std::sqrt(720.0 / weight)
+             ? std::optional(turn)
+             : std::nullopt;
+}
+
+std::vector<double> turns_of(const FitData& reduced) {
+  std::vector<double> turns;
+  for (std::size_t p = 0; p < reduced.patches.size(); ++p) {
+    turns.push_back(turn_of(reduced.patch(p)));
+  }
+  return turns;
+}
+
 std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
-                                             const FitData& reduced, double lone_bend) {
+                                             const FitData& reduced,
+                                             std::span<const double> bends) {
   std::vector<int> known(reduced.patches.size(), 0);
   std::vector<int> outside_of_bend(reduced.patches.size(), 0);
   bool any_unknown = false;
@@ -28,16 +65,9 @@ std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patche
       continue;
     }
     if (patch.context.tip_radius_m > 0.0) {
-      const auto points = reduced.patch(p);
       // A path that bends left has its tips outside, to the right, if the part is convex there.
-      const bool lone = points.size() == 1;
-      double turn = lone ? lone_bend : 0.0;
-      // (summed from point to point: a patch may go all the way round)
-      for (std::size_t i = 1; i < points.size(); ++i) {
-        turn += std::atan2(cross(points[i - 1].tangent, points[i].tangent),
-                           points[i - 1].tangent.dot(points[i].tangent));
-      }
-      outside_of_bend[p] = turn >= 0.0 ? -1 : 1;
+      outside_of_bend[p] = bends[p] >= 0.0 ? -1 : 1;
+      const bool lone = patch.samples.size() == 1;
       known[p] = lone ? 0 : stated_side(patch.context.material_side);
       any_unknown = any_unknown || known[p] == 0;
     }

@@ -1,6 +1,7 @@
 // Round probe tips: from tip centres to surface points.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,14 +14,22 @@ namespace palpate {
 /// right, 0 where it does not say.
 int stated_side(MaterialSide side);
 
+/// By how much a patch turns from point to point, left positive (it may go all the way round), as
+/// its reduced points' tangents say; nullopt where that is less than five standard deviations.
+/// [rad]
+std::optional<double> certain_turn(std::span<const FitPoint> patch);
+
 /// The ways in which the material may lie beside the patches: +1 where a tip centre lies to the
 /// left of travel, -1 to the right, per patch. One way where the probes say it; otherwise the part
 /// is taken to be convex everywhere or concave everywhere, or on the same side of every patch's
 /// travel. Surface contacts (no tip radius) have the single way of zeros.
-/// A touch alone in its patch has no travel that a probe could say a side of: its direction is that
-/// of its point's tangent, and all of them together bend to the left where `lone_bend` >= 0.
+/// `bends`: the side to which each patch bends, > 0 for left. A touch alone in its patch has no
+/// travel that a probe could say a side of: its direction is that of its point's tangent.
 std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
-                                             const FitData& reduced, double lone_bend = 0.0);
+                                             const FitData& reduced, std::span<const double> bends);
+
+/// The turns of the patches, certain or not.
+std::vector<double> turns_of(const FitData& reduced);
 
 /// Reduced points moved from tip centres to the surface along the normals of the centres' path,
 /// which are those of the surface.

@@ -161,8 +161,10 @@ void add_section(FitData* data, const SectionFit& fit, SmoothModel* model) {
   for (const auto& node : rule) {
     const auto value = polynomials.evaluate(node.x, degree);
     const double slope = value.derivative / fit.frame.half_length;
-    model->reduced.points.push_back({fit.frame.at(node.x, value.value),
-                                     fit.frame.tangent(value.derivative),
+    // The direction, along which a tip is taken off, by what is significant: two degrees more swing
+    // with the noise.
+    const double along = polynomials.evaluate(node.x, fit.degree).derivative;
+    model->reduced.points.push_back({fit.frame.at(node.x, value.value), fit.frame.tangent(along),
                                      std::sqrt(node.weight * (1.0 + slope * slope)), offset});
   }
   for (std::size_t i = fit.section.begin; i < fit.section.end; ++i) {

@@ -9,7 +9,7 @@
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/weigh/contenders.h"
-#include "core/recognition/weigh/kept_directions.h"
+#include "core/recognition/weigh/tip_directions.h"
 
 namespace palpate {
 namespace {
@@ -48,24 +48,39 @@ Way way_of(ClassFits fits, FitData reduced, const SmoothModel& smooth,
   return way;
 }
 
-/// Fits with the tips on these sides of `touches`, whose kept points' directions come from the
-/// curve found: a direction that is off by an angle puts the surface off by half its square times
-/// the tip's radius, so that each round squares the error.
-Way fit_way(FitData touches, std::span<const int> sides, const SmoothModel& smooth,
+bool has_tips(const FitData& data) {
+  return std::any_of(data.points.begin(), data.points.end(),
+                     [](const FitPoint& point) { return point.offset > 0.0; });
+}
+
+/// Whether the reduced points, tips taken off, tell of the candidate what all points do.
+bool agrees(const Way& way, const SmoothModel& smooth, const FitData& data) {
+  constexpr double kAgreement = 4.0;  // of chi-square: some units
+  const auto refined = way.settled ? refine_on_all(*way.settled, smooth, data) : std::nullopt;
+  return !refined || std::abs(way.settled->chi2 + smooth.chi2 - refined->chi2) <= kAgreement;
+}
+
+/// Fits with the tips on these sides of `touches`. Where points show no direction of their own, or
+/// one so swayed by noise that tips taken off along it no longer lie as all points do, directions
+/// come from the curve found: one that is off by an angle puts the surface off by half its square
+/// times the tip's radius, so that each round squares the error.
+Way fit_way(FitData touches, std::span<const int> sides, const Arcs& arcs,
             const Likelihood& likelihood, unsigned classes, std::span<const SidedStart> starts) {
+  const SmoothModel& smooth = arcs.smooth;
   FitData reduced = on_surface(touches, sides);
   ClassFits fits = fit_classes_from(starts, sides, reduced, classes);
   Way way = way_of(std::move(fits), std::move(reduced), smooth, likelihood);
-  if (!has_kept_tips(smooth)) {
-    return way;
-  }
   constexpr int kRounds = 3;  // an angle of a tenth becomes one of 1e-8
   for (int round = 0; round < kRounds; ++round) {
-    const auto curve = way.settled ? to_canonical(*way.settled, way.reduced) : std::nullopt;
+    const bool swayed = !agrees(way, smooth, arcs.data);
+    const auto curve = (swayed || has_kept_tips(smooth)) && way.settled
+                           ? to_canonical(*way.settled, way.reduced)
+                           : std::nullopt;
     if (!curve) {
       break;
     }
-    set_kept_directions(*curve, smooth, &touches);
+    set_directions(swayed ? DirectionsOf::AllPoints : DirectionsOf::KeptPoints, *curve, smooth,
+                   &touches);
     FitData nearer = on_surface(touches, sides);
     const PolynomialFits carried = carried_to(warm_start_from(way.fits, way.reduced), nearer);
     ClassFits again = fit_classes(nearer, &carried, classes);
@@ -74,16 +89,28 @@ Way fit_way(FitData touches, std::span<const int> sides, const SmoothModel& smoo
   return way;
 }
 
-/// The reduced points with directions for those that show none: from the curve that fits the tips'
-/// centres best. `bend`: of touches alone in their patch.
-FitData with_directions(const SmoothModel& smooth, const Likelihood& likelihood, unsigned classes,
-                        double* bend) {
-  FitData touches = smooth.reduced;
-  const Way centres = way_of(fit_classes(touches, nullptr, classes), touches, smooth, likelihood);
-  if (const auto curve = centres.settled ? to_canonical(*centres.settled, touches) : std::nullopt) {
-    *bend = set_kept_directions(*curve, smooth, &touches).sum;
+/// The reduced points with directions for those that show none, and the sides to which the patches
+/// bend.
+struct Directed {
+  FitData touches;
+  std::vector<double> bends;
+};
+
+/// What the tips do not show by themselves comes from the curve that fits their centres best.
+Directed directed(const SmoothModel& smooth, const Likelihood& likelihood, unsigned classes) {
+  Directed result{smooth.reduced, {}};
+  if (has_kept_tips(smooth) || has_uncertain_bends(smooth)) {
+    const Way centres =
+        way_of(fit_classes(result.touches, nullptr, classes), result.touches, smooth, likelihood);
+    if (const auto curve =
+            centres.settled ? to_canonical(*centres.settled, result.touches) : std::nullopt) {
+      set_directions(DirectionsOf::KeptPoints, *curve, smooth, &result.touches);
+      result.bends = bends_of(*curve, result.touches);
+      return result;
+    }
   }
-  return touches;
+  result.bends = turns_of(result.touches);
+  return result;
 }
 
 }  // namespace
@@ -95,18 +122,15 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
   // Tips that touch a part from within a bend are rare: probes come from outside.
   constexpr double kInsideProbability = 0.01;
   const auto& [data, smooth, sigma_known, sigma] = arcs;
-  double lone_bend = 0.0;
-  const FitData touches = has_kept_tips(smooth)
-                              ? with_directions(smooth, likelihood, classes, &lone_bend)
-                              : smooth.reduced;
-  const auto ways = possible_sides(patches, touches, lone_bend);
-  if (ways.size() == 1 && !has_kept_tips(smooth)) {
+  const auto [touches, bends] = directed(smooth, likelihood, classes);
+  const auto ways = possible_sides(patches, touches, bends);
+  if (!has_tips(smooth.reduced)) {
     FitData reduced = on_surface(touches, ways.front());
     ClassFits fits = fit_classes_from(starts, ways.front(), reduced, classes);
     return {std::move(fits), std::move(reduced), ways.front(), kInfinity, {}};
   }
   if (ways.size() == 1) {
-    Way way = fit_way(touches, ways.front(), smooth, likelihood, classes, starts);
+    Way way = fit_way(touches, ways.front(), arcs, likelihood, classes, starts);
     return {std::move(way.fits), std::move(way.reduced), ways.front(), kInfinity, {}};
   }
   const double log_price_of_inside = log_odds(1.0 - kInsideProbability);
@@ -115,7 +139,7 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
   double highest = -kInfinity;
   double second = -kInfinity;
   for (const std::vector<int>& sides : ways) {
-    Way way = fit_way(touches, sides, smooth, likelihood, classes, starts);
+    Way way = fit_way(touches, sides, arcs, likelihood, classes, starts);
     const auto refined = way.settled ? refine_on_all(*way.settled, smooth, data) : std::nullopt;
     const bool first = &sides == &ways.front();
     // A line has no bend to be outside of.

@@ -6,6 +6,7 @@
 #include <iomanip>
 #include <limits>
 #include <map>
+#include <random>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -151,6 +152,35 @@ std::vector<std::string> print_rows(const EllipsePart& part, const PatchContext&
   return wrong;
 }
 
+/// Touches one at a time: random ones of the contacts, in random order. Prints the wrong answers.
+void print_touches(const EllipsePart& part, const std::vector<Polar>& contacts, std::ostream& out) {
+  constexpr int kDraws = 36;
+  out << "\nOf the same contacts, touched one at a time in no order, " << kDraws
+      << " draws a row; no side told, no form deviation.\n\n"
+      << "| touches | median error [%] | answers | RECOGNIZED, another class | RECOGNIZED, wrong "
+         "axis |\n|---|---|---|---|---|\n";
+  std::vector<std::string> wrong;
+  for (const std::size_t touches : {8U, 12U, 20U, 40U, 80U, 200U}) {
+    if (touches > contacts.size()) break;
+    Counts counts;
+    for (int i = 0; i < kDraws; ++i) {
+      std::mt19937_64 rng(static_cast<std::uint64_t>(i));
+      std::vector<Polar> drawn = contacts;
+      std::shuffle(drawn.begin(), drawn.end(), rng);
+      std::vector<Vec2> points;
+      for (std::size_t k = 0; k < touches; ++k) points.push_back(drawn[k].point);
+      add(std::to_string(touches) + " touches, draw " + std::to_string(i),
+          recognise_touches(part.recording.context, points), part, &counts);
+    }
+    out << "| " << touches << " | " << std::setprecision(3) << 100.0 * median(counts.errors)
+        << " | " << joined(counts.answers) << " | " << counts.other_class << " | "
+        << counts.wrong_axis << " |\n";
+    wrong.insert(wrong.end(), counts.wrong.begin(), counts.wrong.end());
+  }
+  out << "\nThe wrong ones (" << wrong.size() << "):\n";
+  for (const std::string& line : wrong) out << "- " << line << '\n';
+}
+
 }  // namespace
 
 void print_ellipse_part(const EllipsePart& part,
@@ -188,6 +218,7 @@ void print_ellipse_part(const EllipsePart& part,
   for (const std::string& line : wrong) {
     out << "- " << line << '\n';
   }
+  print_touches(part, contacts, out);
   if (arcs_csv) {
     for (const int degrees : kArcDegrees) {
       for (int i = 0; i < kArcs; ++i) {

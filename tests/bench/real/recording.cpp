@@ -36,6 +36,18 @@ Recognition recognise(const PatchContext& context, const std::vector<Vec2>& poin
   return recognizer.recognize();
 }
 
+Recognition recognise_touches(const PatchContext& context, const std::vector<Vec2>& points,
+                              const RecognizerOptions& options) {
+  Recognizer recognizer(options);
+  PatchContext touch = context;
+  for (const Vec2& point : points) {
+    const ContactSample sample{point, 0.0, 0};
+    recognizer.add(touch, {&sample, 1});
+    ++touch.patch;
+  }
+  return recognizer.recognize();
+}
+
 std::string_view name_of(RecognitionStatus status) {
   switch (status) {
     case RecognitionStatus::Recognized:

@@ -20,6 +20,10 @@ Recording read_recording(const std::filesystem::path& path);
 Recognition recognise(const PatchContext& context, const std::vector<Vec2>& points,
                       const RecognizerOptions& options = {});
 
+/// The same where each point was touched for itself: as many patches.
+Recognition recognise_touches(const PatchContext& context, const std::vector<Vec2>& points,
+                              const RecognizerOptions& options = {});
+
 /// "RECOGNIZED", "AMBIGUOUS", "COLLECTING".
 std::string_view name_of(RecognitionStatus status);
 

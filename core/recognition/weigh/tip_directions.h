@@ -1,0 +1,29 @@
+// Directions and bends where the samples of a round tip do not show them by themselves.
+#pragma once
+
+#include <vector>
+
+#include "core/recognition/fit/canonical_fit.h"
+#include "core/recognition/smooth/smooth_model.h"
+
+namespace palpate {
+
+/// Whether any tip's centre is among the points that were too few to be smoothed.
+bool has_kept_tips(const SmoothModel& smooth);
+
+/// Whether any patch of tips' centres bends less for certain than noise may bend it.
+bool has_uncertain_bends(const SmoothModel& smooth);
+
+enum class DirectionsOf { KeptPoints, AllPoints };
+
+/// Gives points of `touches` (the smooth model's reduced points) the tangents of a curve that was
+/// fitted to them, or to a curve parallel to theirs: parallel curves have the same normals. A point
+/// that had a direction keeps its sense; one that had none gets the curve's.
+void set_directions(DirectionsOf which, const CanonicalFit& curve, const SmoothModel& smooth,
+                    FitData* touches);
+
+/// The sides to which the patches bend (tip_sides.h): as they turn by themselves, where that is
+/// certain, else as the curve through the tips' centres bends beside them.
+std::vector<double> bends_of(const CanonicalFit& curve, const FitData& touches);
+
+}  // namespace palpate
