@@ -7,16 +7,11 @@ using std::chrono::milliseconds;
 
 // Ages are shown in tenths of a second.
 constexpr milliseconds kOverviewPeriod{200};
-// A viewer that follows leaves a group that has been silent for so long for one that is touched.
-constexpr milliseconds kFollowAfter{1000};
 
 }  // namespace
 
 std::string LiveFeed::group_for(const Viewer& viewer, SteadyTime now) {
-  if (!viewer.wanted.empty()) return viewer.wanted;
-  const LiveGroup* const shown = state_.find(viewer.shown);
-  if (shown != nullptr && now - shown->last_heard < kFollowAfter) return viewer.shown;
-  return state_.latest_group();
+  return viewer.wanted.empty() ? state_.followed_group(viewer.shown, now) : viewer.wanted;
 }
 
 const std::string& LiveFeed::picture_of(LiveGroup& group, SteadyTime now) {

@@ -8,6 +8,9 @@
 namespace palpate {
 namespace {
 
+// Who follows leaves a group that has been silent for so long for one that is touched.
+constexpr std::chrono::milliseconds kFollowAfter{1000};
+
 /// Keeps every second sample of every run; of runs that have a single one, the later half.
 void thin(LiveGroup& group) {
   std::vector<ContactRun> kept;
@@ -62,7 +65,11 @@ LiveGroup* LiveState::find(std::string_view name) {
   return found == groups_.end() ? nullptr : &found->second;
 }
 
-std::string LiveState::latest_group() const {
+std::string LiveState::followed_group(std::string_view shown, SteadyTime now) const {
+  const auto present = groups_.find(shown);
+  if (present != groups_.end() && now - present->second.last_heard < kFollowAfter) {
+    return present->first;
+  }
   const auto latest = std::max_element(
       groups_.begin(), groups_.end(),
       [](const auto& a, const auto& b) { return a.second.last_heard < b.second.last_heard; });

@@ -70,8 +70,9 @@ class LiveState {
 
   /// nullptr where there is none of that name.
   LiveGroup* find(std::string_view name);
-  /// The name of the group heard last; empty where there is none.
-  std::string latest_group() const;
+  /// The group to show to who follows the touch: the one `shown` as long as it is touched, else the
+  /// one heard last; empty where there is none.
+  std::string followed_group(std::string_view shown, SteadyTime now) const;
   /// Changes where what overviews show of probes and recognizers has changed at once.
   std::uint64_t status_version() const { return status_version_; }
 

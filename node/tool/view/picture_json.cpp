@@ -6,6 +6,7 @@
 
 #include "node/tool/drawing/drawing.h"
 #include "node/tool/drawing/enlarged_residuals.h"
+#include "node/tool/drawing/pose_ellipse.h"
 #include "node/tool/text/advice.h"
 #include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
@@ -321,6 +322,13 @@ json picture_json(LiveGroup& group, SteadyTime now) {
     json at = json::array();
     place.add(at, {answer.pose().x_m(), answer.pose().y_m()});
     picture["pose"] = {{"at", std::move(at)}, {"theta", answer.pose().theta_rad()}};
+    if (const auto model = model_of(answer); model) {
+      if (const auto ellipse = pose_ellipse(*model)) {
+        picture["pose"]["ellipse"] = {{"long", significant(ellipse->long_m, kChartDigits)},
+                                      {"short", significant(ellipse->short_m, kChartDigits)},
+                                      {"angle", significant(ellipse->angle_rad, kChartDigits)}};
+      }
+    }
   }
   add_residuals(group, drawing, place, touched_size_of(group, size_m), picture);
   return picture;

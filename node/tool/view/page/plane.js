@@ -63,6 +63,7 @@ export class Plane {
     this.points = svg("g", {class: "layer-samples"}, this.world);
     this.curve = svg("path", {class: "layer-curve curve", id: "curve-path"}, this.world);
     this.tips = svg("g", {class: "layer-tips"}, this.world);
+    this.origin = svg("ellipse", {class: "layer-frame origin"}, this.world);
     // In pixels, of constant size.
     this.far = svg("path", {class: "layer-samples far"}, clipped);
     this.tangents = svg("path", {class: "layer-samples tangents"}, clipped);
@@ -114,6 +115,19 @@ export class Plane {
       d += `M${lines[i] * MM} ${-lines[i + 1] * MM}L${lines[i + 2] * MM} ${-lines[i + 3] * MM}`;
     }
     this.residuals.setAttribute("d", d);
+    this.drawOrigin();
+  }
+
+  /** Where the frame's origin lies with 95 %. */
+  drawOrigin() {
+    const pose = this.picture?.pose;
+    const ellipse = pose?.ellipse;
+    if (!pose || !ellipse) return this.origin.setAttribute("display", "none");
+    const [x, y] = [pose.at[0] * MM, -pose.at[1] * MM];
+    const shape = {cx: x, cy: y, rx: ellipse.long * MM, ry: ellipse.short * MM,
+                   transform: `rotate(${-ellipse.angle * 180 / Math.PI} ${x} ${y})`};
+    for (const [key, value] of Object.entries(shape)) this.origin.setAttribute(key, String(value));
+    this.origin.removeAttribute("display");
   }
 
   /** @param {SampleStore|null} store @param {number[]|null} counts null = all */

@@ -17,7 +17,8 @@
  *   decisions: {test: string, value: number|null, threshold: number|null, passed: boolean,
  *     pValue: number|null}[],
  *   invariants: {name: string, class: string, text: string}[],
- *   contacts: Contact[], curve?: Curve, rivals: Curve[], pose?: {at: number[], theta: number},
+ *   contacts: Contact[], curve?: Curve, rivals: Curve[],
+ *   pose?: {at: number[], theta: number, ellipse?: {long: number, short: number, angle: number}},
  *   residuals?: {gain: number, lines: number[]}, far?: number[], sampleCount: number,
  *   outlierCount: number, noise: string, noiseCorrelationMm: number, computeMs: number,
  *   answersPerS: number, touchMs: number, answerMs: number}} Picture */

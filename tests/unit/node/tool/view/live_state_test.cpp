@@ -92,7 +92,7 @@ TEST(LiveState, IsBoundedAndSaysWhatItDrops) {
   EXPECT_EQ(state.groups().size(), kMostGroupsKept);
   EXPECT_EQ(state.nodes().size(), kMostNodesKept);
   EXPECT_EQ(state.nodes().begin()->second.status.probes_size(), kMostProbesShown);
-  EXPECT_EQ(state.latest_group(), "group-999");
+  EXPECT_EQ(state.followed_group("", kStart + 1h), "group-999");
 }
 
 TEST(LiveState, TakesNothingThatIsNoContact) {
