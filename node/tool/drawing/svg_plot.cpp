@@ -344,7 +344,7 @@ EnlargedResiduals residuals_of_picture(const ContactGroup& group, const v1::Reco
 }  // namespace
 
 std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer) {
-  const Drawing drawing = make_drawing(group, answer);
+  const Drawing drawing = make_drawing(group, answer, Curvature::None);
   const View view = view_of(group, answer, drawing);
   // Dots are 3.6 pixels wide: half a pixel beside another one, one is not seen.
   constexpr double kCellPixels = 0.5;

@@ -59,7 +59,7 @@ std::vector<std::string> terminal_plot(const ContactGroup& group, const v1::Reco
                                        std::size_t columns, std::size_t rows) {
   constexpr std::size_t kLeastSide = 3;  // characters: less shows no shape
   if (columns < kLeastSide || rows < kLeastSide + 1) return {};
-  const Drawing drawing = make_drawing(group, answer);
+  const Drawing drawing = make_drawing(group, answer, Curvature::None);
   const std::optional<Extent> extent = shown_extent(group, answer, drawing);
   if (!extent) return {};
   BrailleCanvas canvas(columns, rows - 1);

@@ -9,6 +9,7 @@ import {download, fromHash, standalone, toHash} from "./saving.js";
 
 /** @typedef {import("./types.js").Message} Message */
 /** @typedef {import("./types.js").Picture} Picture */
+/** @typedef {import("./types.js").Details} Details */
 /** @typedef {import("./types.js").SampleStore} SampleStore */
 /** @typedef {import("./types.js").Samples} Samples */
 /** @typedef {import("./types.js").Overview} Overview */
@@ -16,17 +17,15 @@ import {download, fromHash, standalone, toHash} from "./saving.js";
 const FOLLOW = "";
 const LATENCIES_KEPT = 500;
 
-/** @type {{picture: Picture|null, store: SampleStore|null, overview: Overview|null, group: string}} */
-const live = {picture: null, store: null, overview: null, group: ""};
+/** @type {{picture: Picture|null, details: Details|null, store: SampleStore|null, overview: Overview|null,
+ *   group: string}} */
+const live = {picture: null, details: null, store: null, overview: null, group: ""};
 let isPaused = false;
 let isOpen = false;
 let isScheduled = false;
 let isHealthNew = true;
-/** The picture follows every answer; words and numbers are read, and change a few times a second. */
-const PANELS_INTERVAL_MS = 120;
-let panelsVersion = -1;
-let panelsDrawnMs = 0;
-let panelsTimer = 0;
+/** @type {Details|null|undefined} what the panels show */
+let shownDetails = undefined;
 let measuredVersion = -1;
 /** Touch to pixel, of the last answers; kept where tests find it. [ms] @type {number[]} */
 const latencies = [];
@@ -57,17 +56,17 @@ function take(message) {
     isHealthNew = true;
     live.group = message.group;
     live.picture = null;
+    live.details = null;
     live.store = null;
   }
   if (message.samples) takeSamples(message.samples);
-  if (message.picture) {
-    live.picture = message.picture;
-  }
+  if (message.picture) live.picture = message.picture;
+  if (message.details) live.details = message.details;
   if (message.overview) {
     live.overview = message.overview;
     isHealthNew = true;
   }
-  if (message.picture || message.samples) history.add(live.picture, live.store);
+  if (message.picture || message.details || message.samples) history.add(live.picture, live.details, live.store);
   schedule();
 }
 
@@ -85,26 +84,19 @@ function draw() {
   if (isHealthNew) showHealth();
   isHealthNew = false;
   if (isPaused) return showMoment();
-  plane.show(live.picture, live.store, null);
+  plane.show(live.picture, live.details, live.store, null);
   panels.showSampleCounts(live.store);
   measureLatency(live.picture);
-  drawPanels();
+  drawPanels(live.details);
 }
 
-function drawPanels() {
-  const version = live.picture?.version ?? 0;
-  if (isPaused || version === panelsVersion) return;
-  const left = panelsDrawnMs + PANELS_INTERVAL_MS - performance.now();
-  clearTimeout(panelsTimer);
-  if (left > 0) {
-    panelsTimer = setTimeout(drawPanels, left);
-    return;
-  }
-  panelsVersion = version;
-  panelsDrawnMs = performance.now();
-  panels.show(live.picture);
+/** @param {Details|null} details */
+function drawPanels(details) {
+  if (details === shownDetails) return;
+  shownDetails = details;
+  panels.show(details);
   // For tests: what the words and numbers are about.
-  Object.assign(window, {palpateObject: live.picture?.object, palpateOrigin: live.picture?.origin});
+  Object.assign(window, {palpateObject: details?.object, palpateOrigin: live.picture?.origin});
 }
 
 /** @param {Picture|null} picture */
@@ -171,8 +163,8 @@ function showMoment() {
   const scrub = /** @type {HTMLInputElement} */ (byId("scrub"));
   const moment = pausedMoments[Number(scrub.value)];
   if (!moment) return;
-  plane.show(moment.picture, moment.store, moment.counts);
-  panels.show(moment.picture);
+  plane.show(moment.picture, moment.details, moment.store, moment.counts);
+  drawPanels(moment.details);
   byId("scrub-time").textContent = `${((moment.timeMs - pausedAt) / 1000).toFixed(1)} s, ` +
       new Date(moment.timeMs).toLocaleTimeString();
 }
@@ -195,8 +187,6 @@ function setPaused(pause) {
   byId("past").hidden = !pause;
   byId("pause").textContent = pause ? "Live" : "Pause";
   byId("pause").setAttribute("aria-pressed", String(pause));
-  panelsVersion = -1;
-  panelsDrawnMs = 0;
   draw();
   if (pause) scrub.focus();
 }
@@ -284,7 +274,6 @@ function wireControls() {
   });
   new ResizeObserver(() => {
     plane.resize();
-    panelsVersion = -1;
     schedule();
   }).observe(byId("plane"));
   window.addEventListener("hashchange", readLink);

@@ -4,6 +4,7 @@
 import {svg, tickStep, ticks, tickText} from "./picture.js";
 
 /** @typedef {import("./types.js").Picture} Picture */
+/** @typedef {import("./types.js").Details} Details */
 /** @typedef {import("./types.js").SampleStore} SampleStore */
 /** @typedef {{x: number, y: number, scale: number}} View centre [mm] and pixels per mm */
 
@@ -46,6 +47,8 @@ export class Plane {
     this.isFitted = true;
     /** @type {Picture|null} */
     this.picture = null;
+    /** @type {Details|null} */
+    this.details = null;
     /** @type {SampleStore|null} */
     this.store = null;
     /** @type {number[]|null} */
@@ -86,11 +89,16 @@ export class Plane {
     this.place();
   }
 
-  /** @param {Picture|null} picture @param {SampleStore|null} store @param {number[]|null} counts */
-  show(picture, store, counts) {
+  /** @param {Picture|null} picture @param {Details|null} details @param {SampleStore|null} store
+   * @param {number[]|null} counts of samples of each run; null = all */
+  show(picture, details, store, counts) {
     if (picture !== this.picture) {
       this.picture = picture;
       this.drawCurve();
+    }
+    if (details !== this.details) {
+      this.details = details;
+      this.drawResiduals();
     }
     this.drawSamples(store, counts);
     if (this.isFitted) this.fit();
@@ -109,13 +117,16 @@ export class Plane {
       path.style.opacity = String(0.25 + 0.65 * rival.probability);
       svg("title", {}, path).textContent = `${rival.class} ${(100 * rival.probability).toPrecision(3)} %`;
     }
+    this.drawOrigin();
+  }
+
+  drawResiduals() {
     let d = "";
-    const lines = picture?.residuals?.lines ?? [];
+    const lines = this.details?.residuals?.lines ?? [];
     for (let i = 0; i + 3 < lines.length; i += 4) {
       d += `M${lines[i] * MM} ${-lines[i + 1] * MM}L${lines[i + 2] * MM} ${-lines[i + 3] * MM}`;
     }
     this.residuals.setAttribute("d", d);
-    this.drawOrigin();
   }
 
   /** Where the frame's origin lies with 95 %. */
@@ -302,7 +313,7 @@ export class Plane {
 
   drawMarks() {
     let far = "";
-    const points = this.picture?.far ?? [];
+    const points = this.details?.far ?? [];
     for (let i = 0; i < points.length; i += 2) {
       const [x, y] = this.toPixels(points[i] * MM, -points[i + 1] * MM);
       far += `M${x - 4} ${y - 4}l8 8m0 -8l-8 8`;

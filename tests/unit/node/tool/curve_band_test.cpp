@@ -103,6 +103,27 @@ TEST(CurveBand, IsAbsentWhereTheCovarianceSaysNothing) {
   EXPECT_FALSE(band_at(*model_of(message), 0.0));
 }
 
+TEST(CurveBand, IsDrawnToATwentiethOfItsWidth) {
+  // A band of 20 pixels, which is a wide one, so is right to a pixel.
+  constexpr double kTolerance = 0.05;
+  std::mt19937_64 rng = test::test_rng();
+  for (const CurveClass curve_class : kCurveClasses) {
+    v1::Recognition message;
+    const CurveModel model = known_model(curve_class, rng, message);
+    const Drawing drawing = make_drawing({}, message, Curvature::None);
+    ASSERT_TRUE(drawing.curve) << name_of(curve_class);
+    for (const CurvePlace& place : drawing.curve->places) {
+      const auto band = band_at(model, place.t);
+      ASSERT_TRUE(band && place.band) << name_of(curve_class);
+      const double width = band->left_m - band->right_m;
+      EXPECT_NEAR(place.band->left_m, band->left_m, kTolerance * width)
+          << name_of(curve_class) << " at " << place.t;
+      EXPECT_NEAR(place.band->right_m, band->right_m, kTolerance * width)
+          << name_of(curve_class) << " at " << place.t;
+    }
+  }
+}
+
 TEST(PoseEllipse, HoldsTheOriginIn95Of100) {
   std::mt19937_64 rng = test::test_rng();
   std::normal_distribution<double> normal;
@@ -163,7 +184,7 @@ TEST(Drawing, ShowsTheCurveBesideEveryTouchedPlace) {
     const test::Scene scene = test::random_scene(curve_class, options, rng);
     const v1::Recognition message = message_of(test::recognise(scene, scene.sigma_m));
     const ContactGroup group = group_of(scene);
-    const Drawing drawing = make_drawing(group, message);
+    const Drawing drawing = make_drawing(group, message, Curvature::Along);
     ASSERT_TRUE(drawing.curve) << name_of(curve_class);
     EXPECT_EQ(drawing.contacts.size(), static_cast<std::size_t>(message.contacts_size()));
     // Every sample has the drawn polyline beside it: within its noise and a chord's height.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "node/tool/view/details_json.h"
 #include "node/tool/view/live_feed.h"
 #include "node/tool/view/picture_json.h"
 
@@ -170,13 +171,15 @@ TEST(PictureJson, NumbersThatAreNoneAndTextOfAnyBytesGiveValidJson) {
   invariant.set_value(163.4);
   invariant.set_sigma(16.0);
   state.take(answer, kStart, 0);
-  const auto picture = nlohmann::json::parse(to_text(picture_json(*state.find("part"), kStart)));
-  EXPECT_TRUE(picture["decisions"][0]["pValue"].is_null());
-  EXPECT_EQ(picture["invariants"][0]["name"], "Ic1");
-  EXPECT_EQ(picture["invariants"][0]["class"], "ellipse");
-  EXPECT_EQ(picture["invariants"][0]["text"], "163 +- 16");
-  EXPECT_EQ(picture["decisions"][0]["test"], "<b>\"\\\n</script>");
-  EXPECT_TRUE(picture["decisions"][0]["value"].is_null());
+  LiveGroup& group = *state.find("part");
+  const auto picture = nlohmann::json::parse(to_text(picture_json(group)));
+  const auto details = nlohmann::json::parse(to_text(details_json(group, kStart)));
+  EXPECT_TRUE(details["decisions"][0]["pValue"].is_null());
+  EXPECT_EQ(details["invariants"][0]["name"], "Ic1");
+  EXPECT_EQ(details["invariants"][0]["class"], "ellipse");
+  EXPECT_EQ(details["invariants"][0]["text"], "163 +- 16");
+  EXPECT_EQ(details["decisions"][0]["test"], "<b>\"\\\n</script>");
+  EXPECT_TRUE(details["decisions"][0]["value"].is_null());
   EXPECT_EQ(picture["curve"]["points"].size(), 482U);
   EXPECT_FALSE(picture["curve"].contains("left"));
   EXPECT_NE(to_text("\xff\xfe").find("\xef\xbf\xbd"), std::string::npos);
