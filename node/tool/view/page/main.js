@@ -1,8 +1,8 @@
 // palpate view: wires the live feed to picture, panels and controls.
 // @ts-check
 import {Connection} from "./connection.js";
-import {History} from "./history.js";
 import {Panels, SILENT_S} from "./panels.js";
+import {Past} from "./past.js";
 import {byId, html, number} from "./picture.js";
 import {Plane} from "./plane.js";
 import {download, fromHash, standalone, toHash} from "./saving.js";
@@ -31,7 +31,10 @@ let measuredVersion = -1;
 const latencies = [];
 Object.assign(window, {palpateLatenciesMs: latencies});
 
-const history = new History();
+const past = new Past((moment) => {
+  showMoment(moment);
+  writeLink();
+});
 const panels = new Panels();
 const plane = new Plane(byId("plane"), writeLink);
 const layers = /** @type {HTMLInputElement[]} */ ([...document.querySelectorAll("#layers input")]);
@@ -66,7 +69,6 @@ function take(message) {
     live.overview = message.overview;
     isHealthNew = true;
   }
-  if (message.picture || message.details || message.samples) history.add(live.picture, live.details, live.store);
   schedule();
 }
 
@@ -83,8 +85,8 @@ function schedule() {
 function draw() {
   if (isHealthNew) showHealth();
   isHealthNew = false;
-  if (isPaused) return showMoment();
-  plane.show(live.picture, live.details, live.store, null);
+  if (isPaused) return past.moment ? showMoment(past.moment) : undefined;
+  plane.show(live.picture, live.details, live.store);
   panels.showSampleCounts(live.store);
   measureLatency(live.picture);
   drawPanels(live.details);
@@ -159,42 +161,35 @@ function showGroups(overview) {
   }
 }
 
-function showMoment() {
-  const scrub = /** @type {HTMLInputElement} */ (byId("scrub"));
-  const moment = pausedMoments[Number(scrub.value)];
-  if (!moment) return;
-  plane.show(moment.picture, moment.details, moment.store, moment.counts);
+/** @param {import("./types.js").Moment} moment */
+function showMoment(moment) {
+  plane.show(moment.picture, moment.details, moment.store);
+  panels.showSampleCounts(moment.store);
   drawPanels(moment.details);
-  byId("scrub-time").textContent = `${((moment.timeMs - pausedAt) / 1000).toFixed(1)} s, ` +
-      new Date(moment.timeMs).toLocaleTimeString();
 }
 
-let pausedAt = 0;
-/** @type {import("./types.js").Moment[]} */
-let pausedMoments = [];
-
-/** @param {boolean} pause */
-function setPaused(pause) {
+/** @param {boolean} pause @param {string=} group @param {number|null=} atMs Unix time of a moment */
+function setPaused(pause, group = live.group, atMs = null) {
   isPaused = pause;
-  const scrub = /** @type {HTMLInputElement} */ (byId("scrub"));
-  if (pause) {
-    // What is looked at stays while new moments come in and the oldest go.
-    pausedMoments = [...history.moments];
-    pausedAt = pausedMoments[pausedMoments.length - 1]?.timeMs ?? Date.now();
-    scrub.max = String(Math.max(pausedMoments.length - 1, 0));
-    scrub.value = scrub.max;
-  }
   byId("past").hidden = !pause;
   byId("pause").textContent = pause ? "Live" : "Pause";
   byId("pause").setAttribute("aria-pressed", String(pause));
+  if (pause) {
+    past.open(group, atMs);
+    byId("scrub").focus();
+  } else {
+    past.close();
+    writeLink();
+  }
   draw();
-  if (pause) scrub.focus();
 }
 
 function settings() {
   const base = new Map(layers.map((box) => [box.name, box.defaultChecked]));
   return {
-    group: connection.wanted,
+    // A moment is one group's, whichever was followed.
+    group: past.moment ? past.group : connection.wanted,
+    at: past.moment ? past.moment.timeMs : null,
     view: plane.isFitted ? null : plane.view,
     hidden: layers.filter((box) => !box.checked && base.get(box.name)).map((box) => box.name),
     shown: layers.filter((box) => box.checked && !base.get(box.name)).map((box) => box.name),
@@ -214,6 +209,8 @@ function readLink() {
   if (wanted.view) plane.setView(wanted.view);
   else plane.isFitted = true;
   connection.want(wanted.group);
+  if (wanted.at !== null) setPaused(true, wanted.group, wanted.at);
+  else if (isPaused) setPaused(false);
   isHealthNew = true;
   schedule();
 }
@@ -225,7 +222,6 @@ function applyLayers() {
 function wireControls() {
   byId("pause").onclick = () => setPaused(!isPaused);
   byId("resume").onclick = () => setPaused(false);
-  byId("scrub").oninput = showMoment;
   byId("fit").onclick = () => plane.fitAlways();
   byId("zoom-in").onclick = () => plane.zoom(1.4);
   byId("zoom-out").onclick = () => plane.zoom(1 / 1.4);
@@ -234,6 +230,8 @@ function wireControls() {
     isHealthNew = true;
     schedule();
     plane.isFitted = true;
+    // What is looked back at is the group chosen, from now on.
+    if (isPaused && connection.wanted) past.open(connection.wanted, past.moment?.timeMs ?? null);
     writeLink();
   };
   for (const box of layers) {

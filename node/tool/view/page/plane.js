@@ -51,8 +51,6 @@ export class Plane {
     this.details = null;
     /** @type {SampleStore|null} */
     this.store = null;
-    /** @type {number[]|null} */
-    this.counts = null;
 
     this.grid = svg("g", {class: "grid"}, root);
     const clip = svg("clipPath", {id: "plane-clip"}, svg("defs", {}, root));
@@ -89,9 +87,8 @@ export class Plane {
     this.place();
   }
 
-  /** @param {Picture|null} picture @param {Details|null} details @param {SampleStore|null} store
-   * @param {number[]|null} counts of samples of each run; null = all */
-  show(picture, details, store, counts) {
+  /** @param {Picture|null} picture @param {Details|null} details @param {SampleStore|null} store */
+  show(picture, details, store) {
     if (picture !== this.picture) {
       this.picture = picture;
       this.drawCurve();
@@ -100,7 +97,7 @@ export class Plane {
       this.details = details;
       this.drawResiduals();
     }
-    this.drawSamples(store, counts);
+    this.drawSamples(store);
     if (this.isFitted) this.fit();
     this.place();
   }
@@ -141,22 +138,20 @@ export class Plane {
     this.origin.removeAttribute("display");
   }
 
-  /** @param {SampleStore|null} store @param {number[]|null} counts null = all */
-  drawSamples(store, counts) {
-    const isMore = store === this.store && counts === null && this.counts === null;
-    if (!isMore) {
+  /** @param {SampleStore|null} store */
+  drawSamples(store) {
+    if (store !== this.store) {
       this.points.replaceChildren();
       this.sweeps.replaceChildren();
       this.chunks = [];
       this.sweepPaths = [];
     }
     this.store = store;
-    this.counts = counts;
     this.tips.replaceChildren();
     const colours = this.coloursOfProbes();
     const newest = new Map();
     (store?.runs ?? []).forEach((run, number) => {
-      const total = counts ? counts[number] ?? 0 : run.points.length / 2;
+      const total = run.points.length / 2;
       if (total === 0) return;
       const colour = colours.get(run.probe);
       this.appendSamples(number, run, total, colour);
@@ -209,12 +204,11 @@ export class Plane {
       low = [Math.min(low[0], x - pad), Math.min(low[1], y - pad)];
       high = [Math.max(high[0], x + pad), Math.max(high[1], y + pad)];
     };
-    (this.store?.runs ?? []).forEach((run, number) => {
-      const total = this.counts ? this.counts[number] ?? 0 : run.points.length / 2;
-      for (let i = 0; i < total; ++i) {
-        include(run.points[2 * i] * MM, -run.points[2 * i + 1] * MM, run.tipRadius * MM);
+    for (const run of this.store?.runs ?? []) {
+      for (let i = 0; i + 1 < run.points.length; i += 2) {
+        include(run.points[i] * MM, -run.points[i + 1] * MM, run.tipRadius * MM);
       }
-    });
+    }
     for (const contact of this.picture?.contacts ?? []) include(contact.at[0] * MM, -contact.at[1] * MM);
     const touched = Math.max(high[0] - low[0], high[1] - low[1]);
     const centre = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];

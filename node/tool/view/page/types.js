@@ -46,15 +46,15 @@
 /** @typedef {{groups: {name: string, object: string, status: string, class: string, probability: number,
  *   ageS: number}[], nodes: Node[]}} Overview */
 
-/** @typedef {{group: string, picture?: Picture, details?: Details, samples?: Samples, overview?: Overview}} Message */
+/** @typedef {{group: string, picture?: Picture, details?: Details, samples?: Samples, overview?: Overview,
+ *   timeMs?: number}} Message */
 
 /** One unbroken touch. @typedef {{probe: string, patch: number, tipRadius: number, points: number[]}} Run */
 
 /** Samples of one object as far as they have come.
  * @typedef {{group: string, origin: number[], received: number, kept: number, runs: Run[]}} SampleStore */
 
-/** A moment that can be looked at again: how many samples of each run there were.
- * @typedef {{timeMs: number, picture: Picture|null, details: Details|null,
- *   store: SampleStore|null, counts: number[]}} Moment */
+/** A moment that is looked at again.
+ * @typedef {{timeMs: number, picture: Picture|null, details: Details|null, store: SampleStore|null}} Moment */
 
 export {};
