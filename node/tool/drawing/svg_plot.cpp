@@ -25,8 +25,8 @@ constexpr double kTop = 24.0;
 constexpr double kRight = 324.0;  // the table's place
 constexpr double kBottom = 60.0;
 
-constexpr const char* kPatchColours[] = {"#0072b2", "#d55e00", "#008f6b", "#a64d8b",
-                                         "#9a7200", "#3a7f9c", "#7a4b2b", "#5b5b5b"};
+constexpr const char* kPatchColours[] = {"#0072b2", "#b85000", "#00805f", "#a64d8b",
+                                         "#8a6600", "#35758f", "#7a4b2b", "#5b5b5b"};
 constexpr const char* kCurveColour = "#1b1f24";
 constexpr const char* kBandColour = "#2f7fd6";
 constexpr const char* kRivalColour = "#8a5cc2";
