@@ -1,6 +1,8 @@
 """palpate watch, list, hz, record, replay and check against a running system."""
+import codecs
 import fcntl
 import json
+import math
 import os
 import pty
 import re
@@ -15,6 +17,40 @@ from palpate.v1 import curve_pb2
 from programs import SIM, SOURCE, TOOL, run
 
 SCENE = SOURCE / "sim/scenes/ellipse.textproto"
+
+
+class Terminal:
+    """A terminal of that size; reads the tables that are drawn on it."""
+
+    def __init__(self, rows, columns):
+        self._near_end, self.far_end = pty.openpty()
+        fcntl.ioctl(self.far_end, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+        os.set_blocking(self._near_end, False)
+        self._decoder = codecs.getincrementaldecoder("utf-8")()
+        self.read = ""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        os.close(self.far_end)
+        os.close(self._near_end)
+
+    def wait_for_table(self, accept):
+        """The newest table that is whole and accepted, as lines."""
+        deadline = time.monotonic() + 15
+        while time.monotonic() < deadline:
+            try:
+                self.read += self._decoder.decode(os.read(self._near_end, 1 << 20))
+            except BlockingIOError:
+                time.sleep(0.02)
+            tables = self.read.split("\x1b[J")
+            if len(tables) > 1:
+                # After the cursor has gone up to the table before.
+                table = re.sub(r"\x1b\[\d*[AK]|\x1b\[2K", "", tables[-2]).split("\r\n")
+                if accept("\n".join(table)):
+                    return [line for line in table if line]
+        raise AssertionError(self.read[-3000:])
 
 
 class Tool(unittest.TestCase):
@@ -32,48 +68,50 @@ class Tool(unittest.TestCase):
             self.assertEqual(answer["curve_class"], "CURVE_CLASS_ELLIPSE")
 
     def test_watch_on_a_terminal_is_one_table_that_is_drawn_anew(self):
-        with Bus() as bus:
+        with Bus() as bus, Terminal(rows=24, columns=100) as terminal:
             node = bus.start_node("--status-period-s", "0.1")
-            terminal, far_end = pty.openpty()
-            fcntl.ioctl(far_end, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
-            watch = bus.start(TOOL, "watch", "--results", bus.results, "--interval", "0.1", stdout=far_end)
-            os.set_blocking(terminal, False)
-            read = ""
-
-            def wait_for_table(accept):
-                """The newest table that is whole and accepted, as lines."""
-                nonlocal read
-                deadline = time.monotonic() + 15
-                while time.monotonic() < deadline:
-                    try:
-                        read += os.read(terminal, 1 << 20).decode()
-                    except BlockingIOError:
-                        time.sleep(0.02)
-                    tables = read.split("\x1b[J")
-                    if len(tables) > 1:
-                        # After the cursor has gone up to the table before.
-                        table = re.sub(r"\x1b\[\d*[AK]|\x1b\[2K", "", tables[-2]).split("\r\n")
-                        if accept("\n".join(table)):
-                            return [line for line in table if line]
-                raise AssertionError(read[-3000:])
-
+            watch = bus.start(TOOL, "watch", "--results", bus.results, "--interval", "0.1", stdout=terminal.far_end)
             bus.simulate(SCENE, "--fast")
-            table = wait_for_table(lambda text: "recognized" in text and "finger" in text)
+            table = terminal.wait_for_table(lambda text: "recognized" in text and "finger" in text)
             self.assertRegex(table[0], r"recognizer alive for \d+ s")
             self.assertTrue(any(re.match(r"part +\d+ ellipse +recognized +333", line) for line in table), table)
             self.assertTrue(any(re.match(r"finger +part +(alive|SILENT)", line) for line in table), table)
             self.assertLessEqual(max(map(len, table)), 100)
-            # In its place: the cursor goes up as many lines as the table before had.
-            tables = read.split("\x1b[J")[:-1]
-            for before, after in zip(tables, tables[1:]):
-                self.assertEqual(int(re.match(r"\x1b\[(\d+)A", after).group(1)), before.count("\r\n"))
+            self.check_places(terminal)
             node.kill()
             node.wait()
-            wait_for_table(lambda text: "recognizer silent for 3 s" in text)
+            terminal.wait_for_table(lambda text: "recognizer silent for 3 s" in text)
             watch.terminate()
             self.assertEqual(watch.wait(5), 0)
-            os.close(far_end)
-            os.close(terminal)
+
+    def check_places(self, terminal):
+        """In its place: the cursor goes up as many lines as the table before had."""
+        tables = terminal.read.split("\x1b[J")[:-1]
+        for before, after in zip(tables, tables[1:]):
+            self.assertEqual(int(re.match(r"\x1b\[(\d+)A", after).group(1)), before.count("\r\n"))
+
+    def test_watch_draws_a_small_picture_on_a_terminal(self):
+        with Bus() as bus, Terminal(rows=30, columns=80) as terminal:
+            bus.start_node("--status-period-s", "0.1")
+            watch = bus.start(TOOL, "watch", "--results", bus.results, "--interval", "0.1", "--plot",
+                              stdout=terminal.far_end)
+            terminal.wait_for_table(lambda text: "recognizer alive" in text)  # it has subscribed
+            bus.simulate(SCENE, "--fast")
+            table = terminal.wait_for_table(lambda text: "recognized" in text and "finger" in text)
+            plain = [re.sub(r"\x1b\[\d*m", "", line) for line in table]
+            self.assertLessEqual(max(map(len, plain)), 80)
+            drawn = [line for line in plain if any("\u2800" <= c <= "\u28ff" for c in line)]
+            self.assertGreater(len(drawn), 12, table)
+            self.assertTrue(any("\x1b[36m" in line for line in table), table)  # what was touched
+            # The part's ellipse of 60 by 40 mm: turned by any angle, its box has the same diagonal.
+            width, height = map(int, re.match(r"part, object \d+: (\d+) x (\d+) mm$", plain[-1]).groups())
+            self.assertAlmostEqual(math.hypot(width, height), math.hypot(60, 40), delta=1)
+            self.check_places(terminal)
+            watch.terminate()
+            self.assertEqual(watch.wait(5), 0)
+        code, _, err = run(TOOL, "watch", "--plot")
+        self.assertEqual(code, 2)
+        self.assertIn("--plot draws on a terminal", err)
 
     def test_watch_fails_where_nothing_is_heard(self):
         with Bus() as bus:

@@ -148,7 +148,8 @@ class HostileView(unittest.TestCase):
                 if kind == 1:
                     path = rng.choice(["/../../etc/passwd", "/%2e%2e/x", "//", "/main.js/", "/samples/.csv",
                                        "/samples/a b.csv", "/samples/../x.csv", "/answer/%00.json", "*",
-                                       "/answer/nobody.json", "/live", "/" + "a" * rng.randrange(300), "/\x80"])
+                                       "/answer/nobody.json", "/moments/a/b.json", "/moment/-1/x.json",
+                                       "/moment/99999999999999999999/x.json", "/moment/1/nobody.json", "/live", "/" + "a" * rng.randrange(300), "/\x80"])
                     return request_for(port, path)
                 if kind == 2:
                     return request_for(port, method=rng.choice(["POST", "PUT", "DELETE", "OPTIONS", "TRACE", "get",

@@ -12,7 +12,7 @@ from programs import SOURCE
 from view_process import start_view
 
 SCENE = SOURCE / "sim/scenes/two_finger_grasp.textproto"
-PICTURES = {"view-light": (1280, 860, False), "view-dark": (1280, 860, True), "view-phone": (390, 844, False)}
+PICTURES = {"view-light": (1280, 960, False), "view-dark": (1280, 960, True), "view-phone": (390, 844, False)}
 
 
 def main(folder):
@@ -23,8 +23,9 @@ def main(folder):
             browser.open(url)
             browser.wait("return document.querySelector('#link-state').textContent === 'live'")
             bus.simulate(SCENE)
-            browser.wait("return document.querySelector('#class').dataset.status === 'recognized'")
-            time.sleep(0.5)
+            browser.wait("return document.querySelector('#class').dataset.status === 'recognized' && "
+                         "document.querySelector('#sample-count').value === '242'")
+            time.sleep(0.25)  # until the numbers beside are the last ones, and the probes not yet silent
             browser.screenshot(folder / f"{name}.png")
             print(folder / f"{name}.png", browser.problems())
 

@@ -226,18 +226,32 @@ class View(unittest.TestCase):
             total = self.browser.run("return document.querySelector('#sample-count').value")
             self.browser.press(SPACE)
             self.browser.wait("return !document.querySelector('#past').hidden")
-            moments = self.browser.run("return Number(document.querySelector('#scrub').max) + 1")
-            self.assertGreater(moments, 4)
-            # Back to the first moment: less was known.
+            self.browser.wait("return Number(document.querySelector('#scrub').max) > 3")
+            # Back to the first moments: less was known.
             self.browser.run("const scrub = document.querySelector('#scrub'); scrub.value = 1; scrub.oninput()")
-            early = self.browser.run("return document.querySelector('#sample-count')?.value ?? '0'")
-            self.assertLess(int(early), int(total))
+            early = self.browser.wait("const count = document.querySelector('#sample-count')?.value; "
+                                      "return Number(count) < arguments[0] && count", int(total))
+            # A link to it shows it to whoever comes later, though the part has been another one since.
+            link = self.browser.wait("return location.hash.includes('at=') && location.href")
             # What comes meanwhile is shown when the picture goes on.
             bus.simulate(SOURCE / "sim/scenes/ellipse.textproto", "--fast")
             time.sleep(0.3)
             self.assertNotEqual(self.browser.text("#class"), "ellipse")
             self.browser.run("document.querySelector('#resume').click()")
             self.browser.wait("return document.querySelector('#class').textContent === 'ellipse'")
+            self.assertNotIn("at=", self.browser.run("return location.hash"))
+            with Browser() as other:
+                other.open(link)
+                other.wait("return document.querySelector('#sample-count')?.value === arguments[0]", early)
+                self.assertFalse(other.run("return document.querySelector('#past').hidden"))
+                dots = other.run("return [...document.querySelectorAll('#plane path.samples')].reduce("
+                                 "(sum, path) => sum + path.getAttribute('d').split('M').length - 1, 0)")
+                self.assertEqual(dots, int(early))
+                # The slider goes as far as the page's own group does, before this page was opened.
+                self.assertEqual(other.run("return document.querySelector('#scrub').value"), "1")
+                other.run("document.querySelector('#resume').click()")
+                other.wait("return document.querySelector('#class').textContent === 'ellipse'")
+                self.assertEqual(other.problems(), [])
 
     def test_a_link_reproduces_the_view(self):
         with Bus() as bus:
@@ -335,6 +349,96 @@ class View(unittest.TestCase):
             self.assertEqual(self.browser.run("return document.querySelectorAll('img, script').length"), 1)
             self.assertLessEqual(self.browser.run("return document.querySelector('#group').options.length"), 65)
             self.assertIsNone(view.poll())
+
+    def test_every_control_is_reached_and_used_by_keyboard(self):
+        tab, enter, arrow_left = "\ue004", "\ue007", "\ue012"
+        with Bus() as bus:
+            self.look(bus)
+            bus.simulate(SOURCE / "sim/scenes/circle.textproto")
+            self.browser.wait("return document.querySelector('#class').textContent === 'circle'")
+            controls = self.browser.run("return [...document.querySelectorAll('select, button, a, input, #plane')]"
+                                        ".filter((e) => e.checkVisibility()).map((e) => e.id || e.name)")
+            reached = []
+            for _ in controls:
+                self.browser.press(tab)
+                reached.append(self.browser.run("return document.activeElement.id || document.activeElement.name"))
+            self.assertEqual(reached, controls)
+            # What is focused is seen.
+            self.assertNotEqual(self.browser.run("return getComputedStyle(document.activeElement).outlineStyle"), "none")
+            self.browser.run("document.querySelector('#plane').focus()")
+            scale = "return document.querySelector('#plane .world').getCTM().a"
+            moved = "return document.querySelector('#plane .world').getCTM().e"
+            before, at = self.browser.run(scale), self.browser.run(moved)
+            self.browser.press(arrow_left)
+            self.assertGreater(self.browser.run(moved), at)
+            self.browser.press("+")
+            self.assertGreater(self.browser.run(scale), before)
+            self.browser.press("f")
+            self.assertAlmostEqual(self.browser.run(scale), before, delta=0.05 * before)
+            self.browser.press("g")
+            self.assertEqual(self.browser.run("return document.activeElement.id"), "group")
+            self.browser.run("document.querySelector('#pause').focus()")
+            self.browser.press(enter)
+            self.browser.wait("return document.activeElement.id === 'scrub' && Number(scrub.value) > 1")
+            at = self.browser.run("return Number(scrub.value)")
+            self.browser.press(arrow_left)
+            self.assertEqual(self.browser.run("return Number(scrub.value)"), at - 1)
+
+    def test_words_are_read_in_light_and_dark_and_on_a_phone(self):
+        # Contrast of at least 4.5 (WCAG 2.1, AA) for every text, against what lies behind it.
+        faint = """
+            const parts = (colour) => colour.match(/[\\d.]+/g).map(Number);
+            const light = ([r, g, b]) => [r, g, b].map((v) => v / 255)
+                .map((v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
+                .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
+            const behind = (e) => {
+              for (; e; e = e.parentElement) {
+                const colour = parts(getComputedStyle(e).backgroundColor);
+                if (colour.length === 3 || colour[3] === 1) return colour;
+              }
+              return [255, 255, 255];
+            };
+            const bad = [];
+            for (const e of document.querySelectorAll('body *')) {
+              const own = [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
+              if (!own || !e.checkVisibility() || e.closest('noscript, option')) continue;
+              const style = getComputedStyle(e);
+              const ink = light(parts(e instanceof SVGElement ? style.fill : style.color)), back = light(behind(e));
+              const contrast = (Math.max(ink, back) + 0.05) / (Math.min(ink, back) + 0.05);
+              if (contrast < 4.5) bad.push(`${e.tagName} ${e.textContent}: ${contrast.toFixed(2)}`);
+            }
+            return bad;"""
+        for width, dark in ((1280, False), (1280, True), (390, False), (390, True)):
+            with self.subTest(width=width, dark=dark), Bus() as bus, Browser(width, 844, dark) as browser:
+                bus.start_node()
+                _, url = start_view(bus)
+                browser.open(url)
+                browser.wait("return document.querySelector('#link-state').textContent === 'live'")
+                bus.simulate(SOURCE / "sim/scenes/two_finger_grasp.textproto", "--fast")
+                browser.wait("return document.querySelector('#sample-count')?.value === '242'")
+                self.assertEqual(browser.run(faint), [])
+                # Nothing beside the screen, and buttons that a finger hits (WCAG 2.2: 24 pixels).
+                self.assertLessEqual(browser.run("return document.documentElement.scrollWidth"), width)
+                small = browser.run("return [...document.querySelectorAll('button, .button, select')].filter((e) => "
+                                    "e.checkVisibility() && Math.min(e.offsetWidth, e.offsetHeight) < 24).map((e) => e.id)")
+                self.assertEqual(small, [])
+
+    def test_any_address_after_the_hash_is_harmless(self):
+        with Bus() as bus:
+            _, _, url = self.look(bus)
+            bus.simulate(SOURCE / "sim/scenes/circle.textproto", "--fast")
+            for fragment in ("group=<img src=x onerror=window.hacked=1>", "view=NaN,1e999,-1", "view=1,2,0", "at=-1&group=part",
+                             "at=99999999999999999999&group=part", "at=5&group=nobody", "hide=<b>,,curve&show=%00", "%",
+                             "group=../../answer/part&at=1", "x" * 5000):
+                self.browser.open("about:blank")
+                self.browser.open(f"{url}/#{fragment}")
+                self.browser.wait("return document.querySelector('#link-state').textContent === 'live'")
+                self.assertIsNone(self.browser.run("return window.hacked ?? null"))
+                self.assertEqual(self.browser.run("return document.querySelectorAll('img, script').length"), 1)
+            self.browser.wait("return document.querySelector('#class').textContent === 'circle'")
+            problems = self.browser.problems()
+            # A group that is not there has no moments, which is no error; nothing else is asked for.
+            self.assertEqual(self.expected_problems(problems), [])
 
     def test_touch_to_pixel(self):
         with Bus() as bus:

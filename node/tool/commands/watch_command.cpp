@@ -16,10 +16,12 @@
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
 #include "node/tool/commands/command.h"
+#include "node/tool/drawing/terminal_plot.h"
 #include "node/tool/text/message_json.h"
 #include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
 #include "node/tool/text/watch_table.h"
+#include "node/tool/view/live_state.h"
 
 namespace palpate {
 namespace {
@@ -33,6 +35,7 @@ struct WatchCommand {
   std::uint64_t count = 0;
   double timeout_s = 0.0;
   double interval_s = 0.2;
+  bool plot = false;
 };
 
 /// Since the newest sample was taken, by the two clocks. 0 = not known. [ms]
@@ -62,6 +65,8 @@ class WatchOutput {
   virtual ~WatchOutput() = default;
   virtual void take(const v1::Recognition& answer) = 0;
   virtual void take(const v1::NodeStatus& status) = 0;
+  /// Comes where contacts are subscribed to.
+  virtual void take(const v1::ContactBatch&) {}
   /// Called at least every 50 ms. `silent_s`: since anything was heard; `last`: nothing comes
   /// after.
   virtual void refresh(Clock::time_point now, double silent_s, bool last) = 0;
@@ -156,13 +161,23 @@ class TextLines : public WatchOutput {
   bool was_silent_ = false;
 };
 
-/// For a terminal: one table, drawn again in its place.
+/// For a terminal: one table, drawn again in its place; with a picture of the group touched last
+/// under it, where that is asked for.
 class Table : public WatchOutput {
  public:
-  explicit Table(double interval_s) : interval_(interval_s) {}
+  explicit Table(const WatchCommand& command)
+      : interval_(command.interval_s), plot_(command.plot), wanted_(command.groups) {}
 
   void take(const v1::Recognition& answer) override {
     state_.groups[answer.group()] = {answer, latency_ms_of(answer)};
+    if (plot_) touched_.take(answer, Clock::now(), unix_time_ns());
+  }
+
+  void take(const v1::ContactBatch& batch) override {
+    const std::string& group = batch.group().empty() ? batch.header().source() : batch.group();
+    const bool is_wanted =
+        wanted_.empty() || std::find(wanted_.begin(), wanted_.end(), group) != wanted_.end();
+    if (is_wanted) touched_.take(batch, Clock::now());
   }
 
   void take(const v1::NodeStatus& status) override {
@@ -175,8 +190,12 @@ class Table : public WatchOutput {
     drawn_ = now;
     state_.silent_s = silent_s;
     const TerminalSize size = terminal_size().value_or(TerminalSize());
-    // The last row is the cursor's.
-    const auto lines = watch_table(state_, size.columns, size.rows - 1);
+    // The last row is the cursor's. The picture gets what the table leaves, at least half.
+    const std::size_t rows = size.rows - 1;
+    auto lines = watch_table(state_, size.columns, plot_ ? rows - rows / 2 : rows);
+    for (std::string& line : picture(now, size.columns, rows - lines.size())) {
+      lines.push_back(std::move(line));
+    }
     std::string screen;
     if (lines_ > 0) screen += "\033[" + std::to_string(lines_) + "A";
     for (const std::string& line : lines) screen += "\033[2K" + line + "\n";
@@ -185,7 +204,19 @@ class Table : public WatchOutput {
   }
 
  private:
+  std::vector<std::string> picture(Clock::time_point now, std::size_t columns, std::size_t rows) {
+    if (!plot_) return {};
+    shown_ = touched_.followed_group(shown_, now);
+    const LiveGroup* const group = touched_.find(shown_);
+    if (group == nullptr) return {};
+    return terminal_plot(group->touched, group->answer, columns, rows);
+  }
+
   std::chrono::duration<double> interval_;
+  bool plot_;
+  const std::vector<std::string>& wanted_;
+  LiveState touched_;
+  std::string shown_;  // group in the picture
   WatchedState state_;
   Clock::time_point drawn_;
   std::size_t lines_ = 0;
@@ -193,7 +224,7 @@ class Table : public WatchOutput {
 
 std::unique_ptr<WatchOutput> make_output(const WatchCommand& command) {
   if (command.format == "json") return std::make_unique<JsonLines>();
-  if (terminal_size()) return std::make_unique<Table>(command.interval_s);
+  if (terminal_size()) return std::make_unique<Table>(command);
   return std::make_unique<TextLines>(command.interval_s);
 }
 
@@ -227,6 +258,7 @@ class Watch {
         output_->take(*result.recognition);
       }
       if (result.status != nullptr) output_->take(*result.status);
+      if (result.contact != nullptr) output_->take(*result.contact);
       const bool last = command_.count > 0 && recognitions >= command_.count;
       output_->refresh(now, silent_s, last);
       if (last || !std::cout) break;
@@ -246,10 +278,15 @@ int run(const WatchCommand& command) {
   if (!curve) {
     return complain(curve.error, kUsage);
   }
+  if (command.plot && (command.format == "json" || !terminal_size())) {
+    return complain("--plot draws on a terminal: this output is none (palpate view shows more)",
+                    kUsage);
+  }
   client::ResultSubscriberOptions options;
   options.endpoint = command.connection.endpoint;
   options.groups = command.groups;
   options.status = true;
+  options.contacts = command.plot;
   options.curve = *curve.value;
   const int stop_fd = take_stop_signals();
   try {
@@ -286,6 +323,9 @@ void add_watch_command(CLI::App& app, int& exit_code) {
       ->check(non_negative_number())
       ->capture_default_str()
       ->type_name("S");
+  command->add_flag("--plot", watch->plot,
+                    "On a terminal, under the table: a small picture of what was touched last, in "
+                    "braille dots");
   command->add_option("--count", watch->count, "End after so many recognitions; 0 = never")
       ->capture_default_str()
       ->type_name("N");

@@ -36,19 +36,42 @@ std::vector<Vec2> touched_points(const ContactGroup& group, const v1::Recognitio
   return points;
 }
 
-/// The curvature's deviation changes slowly along the curve: computed at every fourth place, which
-/// is most of a picture's work, and interpolated between.
-void add_curvature_deviations(const CurveModel& model, std::vector<CurvePlace>& places) {
-  constexpr std::size_t kStep = 4;
-  static_assert(kCurvePieces % kStep == 0);
+/// Band and curvature's deviation change slowly along the curve: computed, which is most of a
+/// drawing's work, at every fourth place, and interpolated between.
+constexpr std::size_t kStep = 4;
+static_assert(kCurvePieces % kStep == 0);
+
+double between(double before, double after, double part) {
+  return (1.0 - part) * before + part * after;
+}
+
+void add_band(const CurveModel& model, std::vector<CurvePlace>& places) {
+  for (std::size_t i = 0; i < places.size(); i += kStep) {
+    places[i].band = band_at(model, places[i].t);
+    if (!places[i].band) return;
+    for (std::size_t k = 1; i > 0 && k < kStep; ++k) {
+      const double part = static_cast<double>(k) / kStep;
+      const BandWidth& before = *places[i - kStep].band;
+      const BandWidth& after = *places[i].band;
+      places[i - kStep + k].band = BandWidth{between(before.left_m, after.left_m, part),
+                                             between(before.right_m, after.right_m, part)};
+    }
+  }
+}
+
+void add_curvature(const CurveModel& model, std::vector<CurvePlace>& places) {
+  for (CurvePlace& place : places) {
+    const LocalGeometry local = geometry(model.curve, place.t);
+    place.kappa = local.kappa;
+    place.kappa_s = local.kappa_s;
+  }
   const CurvatureDeviation deviation(model);
   for (std::size_t i = 0; i < places.size(); i += kStep) {
     places[i].kappa_sigma = deviation.at(places[i].t);
     if (!places[i].kappa_sigma) return;
     for (std::size_t k = 1; i > 0 && k < kStep; ++k) {
-      const double part = static_cast<double>(k) / kStep;
-      places[i - kStep + k].kappa_sigma =
-          (1.0 - part) * *places[i - kStep].kappa_sigma + part * *places[i].kappa_sigma;
+      places[i - kStep + k].kappa_sigma = between(
+          *places[i - kStep].kappa_sigma, *places[i].kappa_sigma, static_cast<double>(k) / kStep);
     }
   }
 }
@@ -61,11 +84,8 @@ std::vector<CurvePlace> sampled(const CurveModel& model, const CurveSpan& span, 
     const double t = span.from + (span.to - span.from) * i / pieces;
     const Vec2 position = model.world_position(t);
     if (!places.empty()) arc += (position - places.back().position).norm();
-    const LocalGeometry local = geometry(model.curve, t);
-    places.push_back({t, position, model.world_left(t), arc, band_at(model, t), local.kappa,
-                      local.kappa_s, std::nullopt});
+    places.push_back({t, position, model.world_left(t), arc, std::nullopt, 0.0, 0.0, std::nullopt});
   }
-  add_curvature_deviations(model, places);
   return places;
 }
 
@@ -123,20 +143,28 @@ std::vector<DrawnContact> draw_contacts(const v1::Recognition& answer,
 
 }  // namespace
 
-Drawing make_drawing(const ContactGroup& group, const v1::Recognition& answer) {
+Drawing make_drawing(const ContactGroup& group, const v1::Recognition& answer,
+                     Curvature curvature) {
   const std::vector<Vec2> touched = touched_points(group, answer);
   const std::optional<CurveModel> model = model_of(answer);
   Drawing drawing;
   drawing.curve = draw(model, answer.curve_class(), probability_of(answer), touched, kCurvePieces);
+  if (drawing.curve) add_band(*model, drawing.curve->places);
+  if (drawing.curve && curvature == Curvature::Along) {
+    add_curvature(*model, drawing.curve->places);
+  }
   drawing.contacts = draw_contacts(answer, model, drawing.curve);
   for (const v1::Hypothesis& hypothesis : answer.hypotheses()) {
     if (hypothesis.curve_class() == answer.curve_class() ||
         !(hypothesis.probability() >= kWorthDrawing)) {
       continue;
     }
-    auto rival = draw(model_of(hypothesis), hypothesis.curve_class(), hypothesis.probability(),
-                      touched, kRivalPieces);
-    if (rival) drawing.rivals.push_back(std::move(*rival));
+    const std::optional<CurveModel> other = model_of(hypothesis);
+    auto rival =
+        draw(other, hypothesis.curve_class(), hypothesis.probability(), touched, kRivalPieces);
+    if (!rival) continue;
+    if (curvature == Curvature::Along) add_curvature(*other, rival->places);
+    drawing.rivals.push_back(std::move(*rival));
   }
   return drawing;
 }

@@ -21,8 +21,9 @@ struct CurvePlace {
   Vec2 left;                      ///< unit normal, to the left of increasing t
   double arc_m = 0.0;             ///< arc length from the first place, by chords
   std::optional<BandWidth> band;  ///< 95 %
-  double kappa = 0.0;             ///< signed by increasing t; not finite at a cusp [1/m]
-  double kappa_s = 0.0;           ///< [1/m^2]
+  // With Curvature::Along:
+  double kappa = 0.0;    ///< signed by increasing t; not finite at a cusp [1/m]
+  double kappa_s = 0.0;  ///< [1/m^2]
   std::optional<double> kappa_sigma;
 };
 
@@ -49,8 +50,11 @@ struct Drawing {
   std::vector<DrawnContact> contacts;
 };
 
+/// Only charts show the curvature, and its deviations are most of a drawing's work.
+enum class Curvature { Along, None };
+
 /// Views contacts of `answer`, which must outlive it.
-Drawing make_drawing(const ContactGroup& group, const v1::Recognition& answer);
+Drawing make_drawing(const ContactGroup& group, const v1::Recognition& answer, Curvature curvature);
 
 /// What a sample leaves beside the curve.
 struct SampleResidual {

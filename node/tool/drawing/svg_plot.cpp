@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <optional>
 
 #include "node/tool/drawing/drawing.h"
 #include "node/tool/drawing/enlarged_residuals.h"
+#include "node/tool/drawing/pose_ellipse.h"
+#include "node/tool/drawing/shown_extent.h"
 #include "node/tool/drawing/svg_table.h"
 #include "node/tool/drawing/visible_samples.h"
 #include "node/tool/text/advice.h"
@@ -24,8 +25,8 @@ constexpr double kTop = 24.0;
 constexpr double kRight = 324.0;  // the table's place
 constexpr double kBottom = 60.0;
 
-constexpr const char* kPatchColours[] = {"#0072b2", "#d55e00", "#008f6b", "#a64d8b",
-                                         "#9a7200", "#3a7f9c", "#7a4b2b", "#5b5b5b"};
+constexpr const char* kPatchColours[] = {"#0072b2", "#b85000", "#00805f", "#a64d8b",
+                                         "#8a6600", "#35758f", "#7a4b2b", "#5b5b5b"};
 constexpr const char* kCurveColour = "#1b1f24";
 constexpr const char* kBandColour = "#2f7fd6";
 constexpr const char* kRivalColour = "#8a5cc2";
@@ -75,34 +76,9 @@ double tick_step(double length, double count) {
 }
 
 View view_of(const ContactGroup& group, const v1::Recognition& answer, const Drawing& drawing) {
-  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
-  Vec2 high = -low;
-  const auto include = [&](const Vec2& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  };
-  for (const ContactRun& run : group.runs) {
-    for (const ContactSample& sample : run.samples) include(sample.position_m);
-  }
-  if (!drawing.curve) return View(low, high);
-  // A curve that is not far larger than what was touched is shown whole; of another one, as of an
-  // arc that is not yet determined, what is near.
-  const double size = (high - low).maxCoeff();
-  const Vec2 centre = 0.5 * (low + high);
-  const auto distance = [&](const Vec2& p) { return (p - centre).cwiseAbs().maxCoeff() / size; };
-  constexpr double kWhole = 3.0;  // sizes of what was touched
-  constexpr double kNear = 1.0;
-  double furthest = 0.0;
-  for (const CurvePlace& place : drawing.curve->places) {
-    furthest = std::max(furthest, distance(place.position));
-  }
-  const double shown = furthest < kWhole ? kWhole : kNear;
-  for (const CurvePlace& place : drawing.curve->places) {
-    if (distance(place.position) < shown) include(place.position);
-  }
-  const Vec2 origin(answer.pose().x_m(), answer.pose().y_m());
-  if (answer.curve_class() != v1::CURVE_CLASS_LINE && distance(origin) < shown) include(origin);
-  return View(low, high);
+  const Extent extent =
+      shown_extent(group, answer, drawing).value_or(Extent{Vec2::Zero(), Vec2::Zero()});
+  return View(extent.low, extent.high);
 }
 
 std::string axes_svg(const View& view) {
@@ -206,6 +182,18 @@ std::string frame_svg(const View& view, const v1::Recognition& answer, const Dra
         "stroke=\"%s\" "
         "stroke-width=\"2\"/>\n",
         origin.x(), origin.y(), tip.x(), tip.y(), axis == 0 ? kXAxisColour : kYAxisColour);
+  }
+  const std::optional<CurveModel> model = model_of(answer);
+  if (const auto ellipse = model ? pose_ellipse(*model) : std::optional<PoseEllipse>()) {
+    // As large as the picture says: beyond it, its border cannot be seen anyway.
+    constexpr double kFar = 1e5;
+    svg += formatted(
+        "<ellipse class=\"origin\" clip-path=\"url(#picture)\" rx=\"%.2f\" ry=\"%.2f\" "
+        "transform=\"translate(%.2f %.2f) rotate(%.2f)\" fill=\"%s\" fill-opacity=\"0.3\" "
+        "stroke=\"%s\"/>\n",
+        std::min(ellipse->long_m / view.metres(1.0), kFar),
+        std::min(ellipse->short_m / view.metres(1.0), kFar), origin.x(), origin.y(),
+        -kDegrees * ellipse->angle_rad, kBandColour, kBandColour);
   }
   return svg;
 }
@@ -319,6 +307,7 @@ void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSa
     if (drawing.curve->places.front().band) table.key(kBandColour, band_label(*drawing.curve));
     table.key(kXAxisColour, "its x axis");
     table.key(kYAxisColour, "its y axis");
+    if (drawing.curve->places.front().band) table.key(kBandColour, "ellipse: its origin, 95 %");
   }
   for (const DrawnCurve& rival : drawing.rivals) {
     table.key(kRivalColour,
@@ -355,7 +344,7 @@ EnlargedResiduals residuals_of_picture(const ContactGroup& group, const v1::Reco
 }  // namespace
 
 std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer) {
-  const Drawing drawing = make_drawing(group, answer);
+  const Drawing drawing = make_drawing(group, answer, Curvature::None);
   const View view = view_of(group, answer, drawing);
   // Dots are 3.6 pixels wide: half a pixel beside another one, one is not seen.
   constexpr double kCellPixels = 0.5;

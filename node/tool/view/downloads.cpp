@@ -2,6 +2,8 @@
 
 #include "node/csv/contact_csv.h"
 #include "node/tool/text/message_json.h"
+#include "node/tool/view/details_json.h"
+#include "node/tool/view/picture_json.h"
 
 namespace palpate {
 
@@ -24,5 +26,24 @@ std::string samples_csv(const LiveGroup& group) {
 }
 
 std::string answer_json(const LiveGroup& group) { return json_line(group.answer); }
+
+std::string moments_json(LiveState& state, std::string_view group) {
+  return to_text({{"times", state.moments_of(group)}});
+}
+
+std::string moment_json(const LiveState& state, std::string_view group, std::int64_t time_ms,
+                        SteadyTime now) {
+  const Moment* const moment = state.history().nearest(group, time_ms);
+  if (moment == nullptr) return {};
+  LiveGroup then = state.group_at(*moment);
+  SentSamples none;
+  // As to a browser that has another generation: all of them, even if there is none.
+  none.generation = then.generation + 1;
+  return to_text({{"group", then.touched.name},
+                  {"timeMs", moment->time_ms},
+                  {"picture", picture_json(then)},
+                  {"details", details_json(then, now)},
+                  {"samples", samples_json(then, none)}});
+}
 
 }  // namespace palpate

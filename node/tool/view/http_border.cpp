@@ -46,7 +46,23 @@ std::optional<Route> group_route(std::string_view target, std::string_view befor
   }
   const std::string_view name =
       target.substr(before.size(), target.size() - before.size() - after.size());
-  return is_valid_name(name) ? std::optional(Route{kind, name}) : std::nullopt;
+  return is_valid_name(name) ? std::optional(Route{kind, name, 0}) : std::nullopt;
+}
+
+/// "/moment/<digits>/<group>.json".
+std::optional<Route> moment_route(std::string_view target) {
+  constexpr std::string_view kBefore = "/moment/";
+  if (!target.starts_with(kBefore)) return std::nullopt;
+  target.remove_prefix(kBefore.size());
+  const std::size_t digits = target.find('/');
+  // A minus sign would be a number to from_chars.
+  if (digits == std::string_view::npos || target.starts_with('-')) return std::nullopt;
+  std::int64_t time_ms = 0;
+  const auto [stop, error] = std::from_chars(target.data(), target.data() + digits, time_ms);
+  if (error != std::errc() || stop != target.data() + digits) return std::nullopt;
+  auto route = group_route(target.substr(digits), "/", ".json", Route::Kind::MomentJson);
+  if (route) route->time_ms = time_ms;
+  return route;
 }
 
 }  // namespace
@@ -86,15 +102,19 @@ bool is_own_origin(std::string_view origin_header, std::string_view host_header)
 
 std::optional<Route> parse_route(std::string_view target) {
   target = target.substr(0, target.find('?'));
-  if (target == "/") return Route{Route::Kind::Page, "index.html"};
-  if (target == "/live") return Route{Route::Kind::Live, {}};
+  if (target == "/") return Route{Route::Kind::Page, "index.html", 0};
+  if (target == "/live") return Route{Route::Kind::Live, {}, 0};
   if (auto route = group_route(target, "/samples/", ".csv", Route::Kind::SamplesCsv)) return route;
   if (auto route = group_route(target, "/answer/", ".json", Route::Kind::AnswerJson)) return route;
+  if (auto route = group_route(target, "/moments/", ".json", Route::Kind::MomentsJson)) {
+    return route;
+  }
+  if (auto route = moment_route(target)) return route;
   // The page's files have plain names in one folder.
   if (target.size() < 2 || target.front() != '/' || !is_valid_name(target.substr(1))) {
     return std::nullopt;
   }
-  return Route{Route::Kind::Page, target.substr(1)};
+  return Route{Route::Kind::Page, target.substr(1), 0};
 }
 
 }  // namespace palpate

@@ -31,14 +31,15 @@ bool is_own_origin(std::string_view origin_header, std::string_view host_header)
 
 /// A request's target. `name` views the target.
 struct Route {
-  enum class Kind { Page, Live, SamplesCsv, AnswerJson };
+  enum class Kind { Page, Live, SamplesCsv, AnswerJson, MomentsJson, MomentJson };
   Kind kind = Kind::Page;
-  std::string_view name;  ///< file of the page, or a group
+  std::string_view name;     ///< file of the page, or a group
+  std::int64_t time_ms = 0;  ///< of a moment, Unix time
 };
 
-/// "/", "/main.js", "/live", "/samples/<group>.csv", "/answer/<group>.json"; what follows a
-/// question mark is ignored. nullopt for anything else. Files of the page are looked up by the
-/// caller.
+/// "/", "/main.js", "/live", "/samples/<group>.csv", "/answer/<group>.json",
+/// "/moments/<group>.json", "/moment/<Unix time in ms>/<group>.json"; what follows a question mark
+/// is ignored. nullopt for anything else. Files of the page are looked up by the caller.
 std::optional<Route> parse_route(std::string_view target);
 
 }  // namespace palpate

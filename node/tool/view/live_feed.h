@@ -15,12 +15,14 @@ struct Viewer {
   std::string wanted;  ///< group chosen; empty = follow the one that is touched
   std::string shown;   ///< group that it was sent last
   std::uint64_t sent_version = 0;
+  std::uint64_t sent_details_version = 0;
   SentSamples sent_samples;
   std::uint64_t sent_status_version = 0;
   SteadyTime sent_overview;
 };
 
-/// Pictures are drawn when a viewer is due for them, once however many viewers there are.
+/// Pictures are drawn when a viewer is due for them, once however many viewers there are; what is
+/// read beside them a few times a second only.
 class LiveFeed {
  public:
   explicit LiveFeed(LiveState& state) : state_(state) {}
@@ -32,10 +34,14 @@ class LiveFeed {
   struct Drawn {
     std::uint64_t version = 0;
     std::string picture;
+    std::uint64_t details_version = 0;
+    SteadyTime details_drawn;
+    std::string details;
   };
 
   std::string group_for(const Viewer& viewer, SteadyTime now);
-  const std::string& picture_of(LiveGroup& group, SteadyTime now);
+  Drawn& drawn_of(const LiveGroup& group);
+  void add_group(LiveGroup& group, Viewer& viewer, SteadyTime now, std::string& parts);
 
   LiveState& state_;
   std::map<std::string, Drawn, std::less<>> drawn_;

@@ -2,11 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <utility>
 
 #include "node/wire/topics.h"
 
 namespace palpate {
 namespace {
+
+constexpr std::int64_t kNsPerMs = 1'000'000;
+
+// Who follows leaves a group that has been silent for so long for one that is touched.
+constexpr std::chrono::milliseconds kFollowAfter{1000};
 
 /// Keeps every second sample of every run; of runs that have a single one, the later half.
 void thin(LiveGroup& group) {
@@ -47,12 +54,13 @@ bool is_drawable(const v1::ContactBatch& batch) {
          std::all_of(batch.samples().begin(), batch.samples().end(), is_finite);
 }
 
+/// The one to go where there are as many as there may be; the end where there is room.
 template <typename Map>
-void make_room(Map& map, std::size_t most) {
-  if (map.size() < most) return;
-  map.erase(std::min_element(map.begin(), map.end(), [](const auto& a, const auto& b) {
+auto one_too_many(Map& map, std::size_t most) {
+  if (map.size() < most) return map.end();
+  return std::min_element(map.begin(), map.end(), [](const auto& a, const auto& b) {
     return a.second.last_heard < b.second.last_heard;
-  }));
+  });
 }
 
 }  // namespace
@@ -62,7 +70,11 @@ LiveGroup* LiveState::find(std::string_view name) {
   return found == groups_.end() ? nullptr : &found->second;
 }
 
-std::string LiveState::latest_group() const {
+std::string LiveState::followed_group(std::string_view shown, SteadyTime now) const {
+  const auto present = groups_.find(shown);
+  if (present != groups_.end() && now - present->second.last_heard < kFollowAfter) {
+    return present->first;
+  }
   const auto latest = std::max_element(
       groups_.begin(), groups_.end(),
       [](const auto& a, const auto& b) { return a.second.last_heard < b.second.last_heard; });
@@ -72,7 +84,10 @@ std::string LiveState::latest_group() const {
 LiveGroup& LiveState::group(std::string_view name, SteadyTime now) {
   auto found = groups_.find(name);
   if (found == groups_.end()) {
-    make_room(groups_, kMostGroupsKept);
+    if (const auto gone = one_too_many(groups_, kMostGroupsKept); gone != groups_.end()) {
+      seal_era(gone->second);
+      groups_.erase(gone);
+    }
     found = groups_.emplace(std::string(name), LiveGroup()).first;
     found->second.touched.name = std::string(name);
   }
@@ -80,7 +95,61 @@ LiveGroup& LiveState::group(std::string_view name, SteadyTime now) {
   return found->second;
 }
 
+void LiveState::keep_moment(LiveGroup& group) {
+  Moment moment{group.touched.name,
+                group.answer_received_ns / kNsPerMs,
+                group.answer.SerializeAsString(),
+                group.origin_m,
+                group.samples_received,
+                group.era,
+                {}};
+  for (const ContactRun& run : group.touched.runs) {
+    moment.counts.push_back(static_cast<std::uint32_t>(run.samples.size()));
+  }
+  group.last_moment_ns = group.answer_received_ns;
+  history_.add(std::move(moment));
+}
+
+void LiveState::seal_era(LiveGroup& group) {
+  history_.seal(std::exchange(group.era, std::make_shared<SampleEra>()), group.touched);
+}
+
+std::vector<std::int64_t> LiveState::moments_of(std::string_view name) {
+  LiveGroup* const present = find(name);
+  const bool is_news = present != nullptr && present->has_answer &&
+                       present->last_moment_ns != present->answer_received_ns;
+  if (is_news) keep_moment(*present);
+  return history_.times(name);
+}
+
+LiveGroup LiveState::group_at(const Moment& moment) const {
+  LiveGroup then;
+  const auto present = groups_.find(moment.group);
+  if (moment.era->past) {
+    then.touched = *moment.era->past;
+  } else if (present != groups_.end() && present->second.era == moment.era) {
+    then.touched = present->second.touched;
+  }
+  auto& runs = then.touched.runs;
+  runs.resize(std::min(runs.size(), moment.counts.size()));
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    runs[i].samples.resize(std::min<std::size_t>(runs[i].samples.size(), moment.counts[i]));
+    then.samples_kept += runs[i].samples.size();
+  }
+  then.samples_received = moment.samples_received;
+  then.origin_m = moment.origin_m;
+  then.answer.ParseFromString(moment.answer);
+  then.has_answer = true;
+  then.answer_received_ns = moment.time_ms * kNsPerMs;
+  then.touched.name = moment.group;
+  then.touched.object = then.answer.object();
+  return then;
+}
+
 void LiveState::begin_object(LiveGroup& group, std::uint64_t object) {
+  // The last look of an object is worth keeping, however soon it came after the one before.
+  if (group.has_answer && group.last_moment_ns != group.answer_received_ns) keep_moment(group);
+  seal_era(group);
   group.has_previous_object = group.has_object;
   group.previous_object = group.touched.object;
   group.has_object = true;
@@ -124,6 +193,7 @@ void LiveState::take(const v1::ContactBatch& batch, SteadyTime now) {
   live.samples_received += count;
   live.samples_kept += count;
   while (live.samples_kept > kMostSamplesKept) {
+    seal_era(live);
     thin(live);
     live.generation = ++next_version_;
   }
@@ -148,6 +218,10 @@ void LiveState::take(const v1::Recognition& answer, SteadyTime now, std::int64_t
   live.answer_received_ns = received_ns;
   live.answer_rate.add(now, 1);
   live.version = ++next_version_;
+  // By the distance from the last one, whichever way the clock was set.
+  if (std::abs(received_ns - live.last_moment_ns) >= LiveHistory::kLeastInterval_ms * kNsPerMs) {
+    keep_moment(live);
+  }
 }
 
 void LiveState::take(const v1::NodeStatus& status, SteadyTime now) {
@@ -155,7 +229,9 @@ void LiveState::take(const v1::NodeStatus& status, SteadyTime now) {
   if (!is_valid_name(name)) return;
   auto found = nodes_.find(name);
   if (found == nodes_.end()) {
-    make_room(nodes_, kMostNodesKept);
+    if (const auto gone = one_too_many(nodes_, kMostNodesKept); gone != nodes_.end()) {
+      nodes_.erase(gone);
+    }
     found = nodes_.emplace(name, LiveNode()).first;
   }
   found->second.status = status;

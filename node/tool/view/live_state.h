@@ -11,6 +11,7 @@
 
 #include "node/intake/rate_meter.h"
 #include "node/tool/contact_groups.h"
+#include "node/tool/view/live_history.h"
 #include "palpate/v1/contact.pb.h"
 #include "palpate/v1/node_status.pb.h"
 #include "palpate/v1/recognition.pb.h"
@@ -46,6 +47,10 @@ struct LiveGroup {
   std::uint64_t version = 0;
   SteadyTime last_heard;
 
+  /// Of the samples, for moments to look back at.
+  std::shared_ptr<SampleEra> era = std::make_shared<SampleEra>();
+  std::int64_t last_moment_ns = 0;  // Unix time
+
   // Of the object before: an answer that was on its way when the object changed.
   std::uint64_t previous_object = 0;
   bool has_previous_object = false;
@@ -67,21 +72,30 @@ class LiveState {
 
   const std::map<std::string, LiveGroup, std::less<>>& groups() const { return groups_; }
   const std::map<std::string, LiveNode, std::less<>>& nodes() const { return nodes_; }
+  const LiveHistory& history() const { return history_; }
+  /// Times of a group's moments, the present one included. [Unix time, ms]
+  std::vector<std::int64_t> moments_of(std::string_view name);
+  /// A group as it was at a moment of the history, as far as it is still known.
+  LiveGroup group_at(const Moment& moment) const;
 
   /// nullptr where there is none of that name.
   LiveGroup* find(std::string_view name);
-  /// The name of the group heard last; empty where there is none.
-  std::string latest_group() const;
+  /// The group to show to who follows the touch: the one `shown` as long as it is touched, else the
+  /// one heard last; empty where there is none.
+  std::string followed_group(std::string_view shown, SteadyTime now) const;
   /// Changes where what overviews show of probes and recognizers has changed at once.
   std::uint64_t status_version() const { return status_version_; }
 
  private:
   LiveGroup& group(std::string_view name, SteadyTime now);
   void begin_object(LiveGroup& group, std::uint64_t object);
+  void keep_moment(LiveGroup& group);
+  void seal_era(LiveGroup& group);
   void place_origin(LiveGroup& group, const Vec2& first);
 
   std::map<std::string, LiveGroup, std::less<>> groups_;
   std::map<std::string, LiveNode, std::less<>> nodes_;
+  LiveHistory history_;
   std::uint64_t next_version_ = 0;  // of all groups: a group that comes back is no old one
   std::uint64_t status_version_ = 0;
 };

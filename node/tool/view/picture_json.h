@@ -1,5 +1,5 @@
-// What a browser is sent, as JSON. Every text from the bus stays text: it is escaped here and
-// becomes a text node there.
+// What a browser draws, as JSON: it comes with every answer, as fast as the browser draws. Every
+// text from the bus stays text: it is escaped here and becomes a text node there.
 #pragma once
 
 #include <cstdint>
@@ -7,15 +7,21 @@
 #include <string>
 #include <vector>
 
+#include "node/tool/drawing/drawing.h"
+#include "node/tool/view/json_numbers.h"
 #include "node/tool/view/live_state.h"
 
 namespace palpate {
 
-/// Lists all groups, probes and recognizers, with their ages.
-nlohmann::json overview_json(const LiveState& state, SteadyTime now);
+/// Size of curve and touched places. [m]
+double drawn_size_m(const Drawing& drawing, const LiveGroup& group);
 
-/// Answer and drawing of one group; coordinates in metres relative to its origin.
-nlohmann::json picture_json(LiveGroup& group, SteadyTime now);
+/// Steps as fine as the drawing needs.
+StepCoordinates coordinates_of(const Drawing& drawing, const LiveGroup& group);
+
+/// Curve, band, rivals, contacts and frame of a group's answer; coordinates in steps from its
+/// origin.
+nlohmann::json picture_json(const LiveGroup& group);
 
 /// Which of a group's samples a browser has.
 struct SentSamples {

@@ -93,6 +93,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         return send_group(route->name, "text/csv", samples_csv);
       case Route::Kind::AnswerJson:
         return send_group(route->name, "application/json", answer_json);
+      case Route::Kind::MomentsJson:
+        return respond(http::status::ok, moments_json(server_.state(), route->name),
+                       "application/json", parser_->keep_alive());
+      case Route::Kind::MomentJson:
+        return send_moment(*route);
     }
   }
 
@@ -121,6 +126,13 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const LiveGroup* group = server_.state().find(name);
     if (group == nullptr) return refuse(http::status::not_found, "no such group\n");
     respond(http::status::ok, text(*group), type, parser_->keep_alive());
+  }
+
+  void send_moment(const Route& route) {
+    std::string text =
+        moment_json(server_.state(), route.name, route.time_ms, std::chrono::steady_clock::now());
+    if (text.empty()) return refuse(http::status::not_found, "no such moment\n");
+    respond(http::status::ok, std::move(text), "application/json", parser_->keep_alive());
   }
 
   void refuse(http::status status, const char* why) {

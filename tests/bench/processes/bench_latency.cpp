@@ -149,18 +149,49 @@ bool measure(const std::string& transport, const Endpoints& node, const Endpoint
   return true;
 }
 
+/// Measures one transport beside a relay of its own.
+bool measure_transport(const std::string& transport, const Endpoints& node, const Endpoints& bare,
+                       int rounds) {
+  const pid_t relay_pid = fork();
+  if (relay_pid == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    relay(bare);
+  }
+  const bool good = measure(transport, node, bare, rounds);
+  kill(relay_pid, SIGKILL);
+  waitpid(relay_pid, nullptr, 0);
+  if (!good) {
+    std::fprintf(stderr, "bench_latency: no answer from the node over %s\n", transport.c_str());
+  }
+  return good;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   int rounds = 4000;
-  if (const auto end = bench::BenchOptions("Latency of palpate-node beside a bare relay")
-                           .number("--rounds", rounds, "Batches a transport")
-                           .parse(argc, argv)) {
+  std::string contacts;
+  std::string results;
+  if (const auto end =
+          bench::BenchOptions("Latency of palpate-node beside a bare relay")
+              .number("--rounds", rounds, "Batches a transport")
+              .text("--contacts", contacts, "Contacts of a node that runs already, with --results")
+              .text("--results", results, "Its results: no node is started, one transport measured")
+              .parse(argc, argv)) {
     return *end;
+  }
+  if (contacts.empty() != results.empty()) {
+    std::fprintf(stderr, "bench_latency: --contacts and --results name one node together\n");
+    return 2;
   }
   const TemporaryFolder folder;
   std::printf("transport,what,p50_us,p90_us,p99_us,max_us\n");
   std::fflush(stdout);
+  if (!contacts.empty()) {
+    const std::string at = "ipc://" + folder.path();
+    return measure_transport("given", {contacts, results}, {at + "/in", at + "/out"}, rounds) ? 0
+                                                                                              : 1;
+  }
   for (const std::string transport : {"ipc", "tcp"}) {
     const auto at = [&](const char* name, const char* port) {
       return transport == "ipc" ? "ipc://" + folder.path() + "/" + name
@@ -168,22 +199,8 @@ int main(int argc, char** argv) {
     };
     const Endpoints bare{at("relay_in", "15583"), at("relay_out", "15584")};
     const Endpoints ours{at("node_in", "15581"), at("node_out", "15582")};
-    const pid_t relay_pid = fork();
-    if (relay_pid == 0) {
-      prctl(PR_SET_PDEATHSIG, SIGKILL);
-      relay(bare);
-    }
-    bool good = false;
-    {
-      const NodeProcess node(ours.in, ours.out);
-      good = measure(transport, ours, bare, rounds);
-    }
-    kill(relay_pid, SIGKILL);
-    waitpid(relay_pid, nullptr, 0);
-    if (!good) {
-      std::fprintf(stderr, "bench_latency: no answer from the node over %s\n", transport.c_str());
-      return 1;
-    }
+    const NodeProcess node(ours.in, ours.out);
+    if (!measure_transport(transport, ours, bare, rounds)) return 1;
   }
   return 0;
 }

@@ -122,6 +122,13 @@ def load_table(rows):
                   for r in rows])
 
 
+def view_table(rows):
+    return table(("what", "measured", "unit", "at most", "holds"),
+                 [(r["what"], number(r["value"], 4), r["unit"] if isinstance(r["unit"], str) else "",
+                   number(r["at_most"], 4), "" if not isinstance(r["at_most"], float) or math.isnan(r["at_most"])
+                   else "yes" if r["value"] <= r["at_most"] else "NO") for r in rows])
+
+
 def time_table(rows, names):
     return table(("what", "which", "us"),
                  [(r["name"].split("/")[0], r["label"] if isinstance(r["label"], str) else "",
@@ -188,6 +195,7 @@ def write(folder, scale):
     load = rows_of(folder / "load.csv")
     recognition = rows_of(folder / "recognition.csv")
     local = rows_of(folder / "local.csv")
+    view = rows_of(folder / "view.csv")
     figures.pareto(pareto, folder)
     figures.local_errors(pareto, folder)
     figures.sweeps(sweeps, folder)
@@ -267,6 +275,12 @@ the published covariance, which are chi-square where each tenth holds a tenth.
 {load_table(load)}
 ![Processes](processes.svg)
 
+## The live picture
+
+`palpate view` in headless Chromium, its server under load, and the node beside it (`tests/view/bench_view.py`). "Without" and "with" are
+turns of one run on one node.
+
+{view_table(view)}
 ## Time
 
 {speed_table(recognition)}

@@ -4,6 +4,25 @@
 
 const RETRY_MS = 500;
 
+/** Makes whole steps metres. @param {number[]|undefined} places @param {number} step */
+function toMetres(places, step) {
+  for (let i = 0; places && i < places.length; ++i) places[i] *= step;
+}
+
+/** @param {Message} message */
+export function decoded(message) {
+  const {picture, details, samples} = message;
+  if (picture) {
+    for (const curve of [picture.curve, ...picture.rivals]) {
+      for (const places of [curve?.points, curve?.left, curve?.right]) toMetres(places, picture.step);
+    }
+    for (const {at} of [...picture.contacts, ...(picture.pose ? [picture.pose] : [])]) toMetres(at, picture.step);
+  }
+  for (const places of [details?.residuals?.lines, details?.far]) toMetres(places, details?.step ?? 1);
+  for (const run of samples?.runs ?? []) toMetres(run.points, samples?.step ?? 1);
+  return message;
+}
+
 export class Connection {
   /**
    * @param {(message: Message) => void} onMessage
@@ -23,7 +42,7 @@ export class Connection {
       this.onChange(true);
       this.ready();
     };
-    socket.onmessage = (event) => this.onMessage(JSON.parse(event.data));
+    socket.onmessage = (event) => this.onMessage(decoded(JSON.parse(event.data)));
     socket.onclose = () => {
       this.onChange(false);
       setTimeout(() => this.open(), RETRY_MS);

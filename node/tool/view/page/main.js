@@ -1,14 +1,15 @@
 // palpate view: wires the live feed to picture, panels and controls.
 // @ts-check
 import {Connection} from "./connection.js";
-import {History} from "./history.js";
 import {Panels, SILENT_S} from "./panels.js";
+import {Past} from "./past.js";
 import {byId, html, number} from "./picture.js";
 import {Plane} from "./plane.js";
 import {download, fromHash, standalone, toHash} from "./saving.js";
 
 /** @typedef {import("./types.js").Message} Message */
 /** @typedef {import("./types.js").Picture} Picture */
+/** @typedef {import("./types.js").Details} Details */
 /** @typedef {import("./types.js").SampleStore} SampleStore */
 /** @typedef {import("./types.js").Samples} Samples */
 /** @typedef {import("./types.js").Overview} Overview */
@@ -16,23 +17,24 @@ import {download, fromHash, standalone, toHash} from "./saving.js";
 const FOLLOW = "";
 const LATENCIES_KEPT = 500;
 
-/** @type {{picture: Picture|null, store: SampleStore|null, overview: Overview|null, group: string}} */
-const live = {picture: null, store: null, overview: null, group: ""};
+/** @type {{picture: Picture|null, details: Details|null, store: SampleStore|null, overview: Overview|null,
+ *   group: string}} */
+const live = {picture: null, details: null, store: null, overview: null, group: ""};
 let isPaused = false;
 let isOpen = false;
 let isScheduled = false;
 let isHealthNew = true;
-/** The picture follows every answer; words and numbers are read, and change a few times a second. */
-const PANELS_INTERVAL_MS = 120;
-let panelsVersion = -1;
-let panelsDrawnMs = 0;
-let panelsTimer = 0;
+/** @type {Details|null|undefined} what the panels show */
+let shownDetails = undefined;
 let measuredVersion = -1;
 /** Touch to pixel, of the last answers; kept where tests find it. [ms] @type {number[]} */
 const latencies = [];
 Object.assign(window, {palpateLatenciesMs: latencies});
 
-const history = new History();
+const past = new Past((moment) => {
+  showMoment(moment);
+  writeLink();
+});
 const panels = new Panels();
 const plane = new Plane(byId("plane"), writeLink);
 const layers = /** @type {HTMLInputElement[]} */ ([...document.querySelectorAll("#layers input")]);
@@ -57,17 +59,16 @@ function take(message) {
     isHealthNew = true;
     live.group = message.group;
     live.picture = null;
+    live.details = null;
     live.store = null;
   }
   if (message.samples) takeSamples(message.samples);
-  if (message.picture) {
-    live.picture = message.picture;
-  }
+  if (message.picture) live.picture = message.picture;
+  if (message.details) live.details = message.details;
   if (message.overview) {
     live.overview = message.overview;
     isHealthNew = true;
   }
-  if (message.picture || message.samples) history.add(live.picture, live.store);
   schedule();
 }
 
@@ -84,27 +85,20 @@ function schedule() {
 function draw() {
   if (isHealthNew) showHealth();
   isHealthNew = false;
-  if (isPaused) return showMoment();
-  plane.show(live.picture, live.store, null);
+  if (isPaused) return past.moment ? showMoment(past.moment) : undefined;
+  plane.show(live.picture, live.details, live.store);
   panels.showSampleCounts(live.store);
   measureLatency(live.picture);
-  drawPanels();
+  drawPanels(live.details);
 }
 
-function drawPanels() {
-  const version = live.picture?.version ?? 0;
-  if (isPaused || version === panelsVersion) return;
-  const left = panelsDrawnMs + PANELS_INTERVAL_MS - performance.now();
-  clearTimeout(panelsTimer);
-  if (left > 0) {
-    panelsTimer = setTimeout(drawPanels, left);
-    return;
-  }
-  panelsVersion = version;
-  panelsDrawnMs = performance.now();
-  panels.show(live.picture);
+/** @param {Details|null} details */
+function drawPanels(details) {
+  if (details === shownDetails) return;
+  shownDetails = details;
+  panels.show(details);
   // For tests: what the words and numbers are about.
-  Object.assign(window, {palpateObject: live.picture?.object, palpateOrigin: live.picture?.origin});
+  Object.assign(window, {palpateObject: details?.object, palpateOrigin: live.picture?.origin});
 }
 
 /** @param {Picture|null} picture */
@@ -167,44 +161,35 @@ function showGroups(overview) {
   }
 }
 
-function showMoment() {
-  const scrub = /** @type {HTMLInputElement} */ (byId("scrub"));
-  const moment = pausedMoments[Number(scrub.value)];
-  if (!moment) return;
-  plane.show(moment.picture, moment.store, moment.counts);
-  panels.show(moment.picture);
-  byId("scrub-time").textContent = `${((moment.timeMs - pausedAt) / 1000).toFixed(1)} s, ` +
-      new Date(moment.timeMs).toLocaleTimeString();
+/** @param {import("./types.js").Moment} moment */
+function showMoment(moment) {
+  plane.show(moment.picture, moment.details, moment.store);
+  panels.showSampleCounts(moment.store);
+  drawPanels(moment.details);
 }
 
-let pausedAt = 0;
-/** @type {import("./types.js").Moment[]} */
-let pausedMoments = [];
-
-/** @param {boolean} pause */
-function setPaused(pause) {
+/** @param {boolean} pause @param {string=} group @param {number|null=} atMs Unix time of a moment */
+function setPaused(pause, group = live.group, atMs = null) {
   isPaused = pause;
-  const scrub = /** @type {HTMLInputElement} */ (byId("scrub"));
-  if (pause) {
-    // What is looked at stays while new moments come in and the oldest go.
-    pausedMoments = [...history.moments];
-    pausedAt = pausedMoments[pausedMoments.length - 1]?.timeMs ?? Date.now();
-    scrub.max = String(Math.max(pausedMoments.length - 1, 0));
-    scrub.value = scrub.max;
-  }
   byId("past").hidden = !pause;
   byId("pause").textContent = pause ? "Live" : "Pause";
   byId("pause").setAttribute("aria-pressed", String(pause));
-  panelsVersion = -1;
-  panelsDrawnMs = 0;
+  if (pause) {
+    past.open(group, atMs);
+    byId("scrub").focus();
+  } else {
+    past.close();
+    writeLink();
+  }
   draw();
-  if (pause) scrub.focus();
 }
 
 function settings() {
   const base = new Map(layers.map((box) => [box.name, box.defaultChecked]));
   return {
-    group: connection.wanted,
+    // A moment is one group's, whichever was followed.
+    group: past.moment ? past.group : connection.wanted,
+    at: past.moment ? past.moment.timeMs : null,
     view: plane.isFitted ? null : plane.view,
     hidden: layers.filter((box) => !box.checked && base.get(box.name)).map((box) => box.name),
     shown: layers.filter((box) => box.checked && !base.get(box.name)).map((box) => box.name),
@@ -224,6 +209,8 @@ function readLink() {
   if (wanted.view) plane.setView(wanted.view);
   else plane.isFitted = true;
   connection.want(wanted.group);
+  if (wanted.at !== null) setPaused(true, wanted.group, wanted.at);
+  else if (isPaused) setPaused(false);
   isHealthNew = true;
   schedule();
 }
@@ -235,7 +222,6 @@ function applyLayers() {
 function wireControls() {
   byId("pause").onclick = () => setPaused(!isPaused);
   byId("resume").onclick = () => setPaused(false);
-  byId("scrub").oninput = showMoment;
   byId("fit").onclick = () => plane.fitAlways();
   byId("zoom-in").onclick = () => plane.zoom(1.4);
   byId("zoom-out").onclick = () => plane.zoom(1 / 1.4);
@@ -244,6 +230,8 @@ function wireControls() {
     isHealthNew = true;
     schedule();
     plane.isFitted = true;
+    // What is looked back at is the group chosen, from now on.
+    if (isPaused && connection.wanted) past.open(connection.wanted, past.moment?.timeMs ?? null);
     writeLink();
   };
   for (const box of layers) {
@@ -284,7 +272,6 @@ function wireControls() {
   });
   new ResizeObserver(() => {
     plane.resize();
-    panelsVersion = -1;
     schedule();
   }).observe(byId("plane"));
   window.addEventListener("hashchange", readLink);

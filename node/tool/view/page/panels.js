@@ -3,7 +3,7 @@
 import {byId, data, html, number} from "./picture.js";
 import {Chart} from "./chart.js";
 
-/** @typedef {import("./types.js").Picture} Picture */
+/** @typedef {import("./types.js").Details} Details */
 /** @typedef {import("./types.js").Overview} Overview */
 
 /** @param {(string|HTMLElement)[]} cells @param {string=} className */
@@ -43,49 +43,49 @@ export class Panels {
     this.signature = new Chart(byId("signature"), "κ [1/m]", "dκ/ds [1/m²]");
   }
 
-  /** @param {Picture|null} picture */
-  show(picture) {
-    byId("class").textContent = picture?.hasAnswer ? picture.class : "nothing yet";
-    byId("class").dataset.status = picture?.status ?? "collecting";
-    byId("status").textContent = picture?.statusText ?? "";
-    byId("advice").textContent = picture?.advice ?? "Waiting for contacts.";
-    byId("gain").textContent = picture?.residuals ? `× ${number(picture.residuals.gain)}` : "";
-    byId("band-width").textContent = picture?.curve?.bandWidth ? `± ${readable(picture.curve.bandWidth)}` : "";
-    this.showQuantities(picture);
-    this.showHypotheses(picture);
-    this.showDecisions(picture);
-    this.showCharts(picture);
+  /** @param {Details|null} details */
+  show(details) {
+    byId("class").textContent = details?.hasAnswer ? details.class : "nothing yet";
+    byId("class").dataset.status = details?.status ?? "collecting";
+    byId("status").textContent = details?.statusText ?? "";
+    byId("advice").textContent = details?.advice ?? "Waiting for contacts.";
+    byId("gain").textContent = details?.residuals ? `× ${number(details.residuals.gain)}` : "";
+    byId("band-width").textContent = details?.bandWidth ? `± ${readable(details.bandWidth)}` : "";
+    this.showQuantities(details);
+    this.showHypotheses(details);
+    this.showDecisions(details);
+    this.showCharts(details);
   }
 
-  /** @param {Picture|null} picture */
-  showQuantities(picture) {
-    const rows = (picture?.quantities ?? []).map((quantity) => {
+  /** @param {Details|null} details */
+  showQuantities(details) {
+    const rows = (details?.quantities ?? []).map((quantity) => {
       const value = data(quantity.value, readable(quantity.text));
       value.dataset.sigma = quantity.sigma === null ? "" : String(quantity.sigma);
       value.id = `quantity-${quantity.name}`;
       return row([quantity.name === "theta" ? "θ" : quantity.name, value]);
     });
-    if (picture?.hasAnswer) {
-      const spikes = picture.outlierCount > 0 ? `, of which ${picture.outlierCount} set aside as spikes` : "";
-      const samples = data(picture.sampleCount, `${picture.sampleCount}${spikes}`);
+    if (details?.hasAnswer) {
+      const spikes = details.outlierCount > 0 ? `, of which ${details.outlierCount} set aside as spikes` : "";
+      const samples = data(details.sampleCount, `${details.sampleCount}${spikes}`);
       samples.id = "sample-count";
       rows.push(row(["samples", samples]));
-      const correlated = picture.noiseCorrelationMm > 0 ?
-          `, correlated over ${number(picture.noiseCorrelationMm)} mm` : "";
-      rows.push(row(["noise", readable(picture.noise) + correlated]));
-      rows.push(row(["frame", picture.frame]));
-      const latency = html("span", picture.touchMs > 0 ?
-          `${number(picture.answerMs - picture.touchMs, 3)} ms after the touch, ` : "");
+      const correlated = details.noiseCorrelationMm > 0 ?
+          `, correlated over ${number(details.noiseCorrelationMm)} mm` : "";
+      rows.push(row(["noise", readable(details.noise) + correlated]));
+      rows.push(row(["frame", details.frame]));
+      const latency = html("span", details.touchMs > 0 ?
+          `${number(details.answerMs - details.touchMs, 3)} ms after the touch, ` : "");
       latency.id = "latency";
-      latency.append(`${number(picture.computeMs, 3)} ms computed, ${number(picture.answersPerS, 3)} a second`);
+      latency.append(`${number(details.computeMs, 3)} ms computed, ${number(details.answersPerS, 3)} a second`);
       rows.push(row(["answer", latency]));
     }
     fill("quantities", rows);
   }
 
-  /** @param {Picture|null} picture */
-  showHypotheses(picture) {
-    const worth = (picture?.hypotheses ?? []).filter((h, i) => i < 3 || h.probability >= 1e-3);
+  /** @param {Details|null} details */
+  showHypotheses(details) {
+    const worth = (details?.hypotheses ?? []).filter((h, i) => i < 3 || h.probability >= 1e-3);
     fill("hypotheses", worth.map((hypothesis) => {
       const bar = /** @type {HTMLMeterElement} */ (html("meter"));
       bar.max = 1;
@@ -97,30 +97,29 @@ export class Panels {
     }));
   }
 
-  /** @param {Picture|null} picture */
-  showDecisions(picture) {
-    const decisions = picture?.decisions ?? [];
+  /** @param {Details|null} details */
+  showDecisions(details) {
+    const decisions = details?.decisions ?? [];
     fill("decisions", decisions.map((decision) => row([
       decision.test, number(decision.value, 3), `against ${number(decision.threshold, 3)}`,
       html("span", decision.passed ? "passed" : "failed", decision.passed ? "good" : "bad"),
       decision.pValue === null ? "" : `p = ${number(decision.pValue, 2)}`,
     ])));
-    fill("invariants", (picture?.invariants ?? []).map((invariant) => row([
+    fill("invariants", (details?.invariants ?? []).map((invariant) => row([
       html("i", invariant.name), `of ${invariant.class}`, readable(invariant.text),
     ])));
     byId("path").hidden = decisions.length === 0;
   }
 
-  /** @param {Picture|null} picture */
-  showCharts(picture) {
-    const contacts = picture?.contacts ?? [];
+  /** @param {Details|null} details */
+  showCharts(details) {
+    const {contacts, rivals, curve} = details?.charts ?? {contacts: [], rivals: [], curve: undefined};
     const probes = [...new Set(contacts.map((contact) => contact.probe))];
     const colour = (/** @type {string} */ probe) => probes.indexOf(probe) % 8;
-    const curve = picture?.curve;
     this.curvature.show(
         curve ? [{x: curve.arc.map((s) => 1e3 * s), y: curve.kappa, sigma: curve.kappaSigma, className: "curve"}] : [],
         contacts.map((c) => ({x: 1e3 * c.arc, y: c.kappa, dy: c.kappaSigma, colour: colour(c.probe)})));
-    const lines = (picture?.rivals ?? []).map((rival) => ({x: rival.kappa, y: rival.kappaS, className: "rival"}));
+    const lines = rivals.map((rival) => ({x: rival.kappa, y: rival.kappaS, className: "rival"}));
     if (curve) lines.push({x: curve.kappa, y: curve.kappaS, className: "curve"});
     this.signature.show(lines, contacts.map((c) => (
       {x: c.kappa, y: c.kappaS, dx: c.kappaSigma, dy: c.kappaSSigma, colour: colour(c.probe)})));

@@ -4,6 +4,7 @@
 import {svg, tickStep, ticks, tickText} from "./picture.js";
 
 /** @typedef {import("./types.js").Picture} Picture */
+/** @typedef {import("./types.js").Details} Details */
 /** @typedef {import("./types.js").SampleStore} SampleStore */
 /** @typedef {{x: number, y: number, scale: number}} View centre [mm] and pixels per mm */
 
@@ -46,10 +47,10 @@ export class Plane {
     this.isFitted = true;
     /** @type {Picture|null} */
     this.picture = null;
+    /** @type {Details|null} */
+    this.details = null;
     /** @type {SampleStore|null} */
     this.store = null;
-    /** @type {number[]|null} */
-    this.counts = null;
 
     this.grid = svg("g", {class: "grid"}, root);
     const clip = svg("clipPath", {id: "plane-clip"}, svg("defs", {}, root));
@@ -63,6 +64,7 @@ export class Plane {
     this.points = svg("g", {class: "layer-samples"}, this.world);
     this.curve = svg("path", {class: "layer-curve curve", id: "curve-path"}, this.world);
     this.tips = svg("g", {class: "layer-tips"}, this.world);
+    this.origin = svg("ellipse", {class: "layer-frame origin"}, this.world);
     // In pixels, of constant size.
     this.far = svg("path", {class: "layer-samples far"}, clipped);
     this.tangents = svg("path", {class: "layer-samples tangents"}, clipped);
@@ -85,13 +87,17 @@ export class Plane {
     this.place();
   }
 
-  /** @param {Picture|null} picture @param {SampleStore|null} store @param {number[]|null} counts */
-  show(picture, store, counts) {
+  /** @param {Picture|null} picture @param {Details|null} details @param {SampleStore|null} store */
+  show(picture, details, store) {
     if (picture !== this.picture) {
       this.picture = picture;
       this.drawCurve();
     }
-    this.drawSamples(store, counts);
+    if (details !== this.details) {
+      this.details = details;
+      this.drawResiduals();
+    }
+    this.drawSamples(store);
     if (this.isFitted) this.fit();
     this.place();
   }
@@ -108,30 +114,44 @@ export class Plane {
       path.style.opacity = String(0.25 + 0.65 * rival.probability);
       svg("title", {}, path).textContent = `${rival.class} ${(100 * rival.probability).toPrecision(3)} %`;
     }
+    this.drawOrigin();
+  }
+
+  drawResiduals() {
     let d = "";
-    const lines = picture?.residuals?.lines ?? [];
+    const lines = this.details?.residuals?.lines ?? [];
     for (let i = 0; i + 3 < lines.length; i += 4) {
       d += `M${lines[i] * MM} ${-lines[i + 1] * MM}L${lines[i + 2] * MM} ${-lines[i + 3] * MM}`;
     }
     this.residuals.setAttribute("d", d);
   }
 
-  /** @param {SampleStore|null} store @param {number[]|null} counts null = all */
-  drawSamples(store, counts) {
-    const isMore = store === this.store && counts === null && this.counts === null;
-    if (!isMore) {
+  /** Where the frame's origin lies with 95 %. */
+  drawOrigin() {
+    const pose = this.picture?.pose;
+    const ellipse = pose?.ellipse;
+    if (!pose || !ellipse) return this.origin.setAttribute("display", "none");
+    const [x, y] = [pose.at[0] * MM, -pose.at[1] * MM];
+    const shape = {cx: x, cy: y, rx: ellipse.long * MM, ry: ellipse.short * MM,
+                   transform: `rotate(${-ellipse.angle * 180 / Math.PI} ${x} ${y})`};
+    for (const [key, value] of Object.entries(shape)) this.origin.setAttribute(key, String(value));
+    this.origin.removeAttribute("display");
+  }
+
+  /** @param {SampleStore|null} store */
+  drawSamples(store) {
+    if (store !== this.store) {
       this.points.replaceChildren();
       this.sweeps.replaceChildren();
       this.chunks = [];
       this.sweepPaths = [];
     }
     this.store = store;
-    this.counts = counts;
     this.tips.replaceChildren();
     const colours = this.coloursOfProbes();
     const newest = new Map();
     (store?.runs ?? []).forEach((run, number) => {
-      const total = counts ? counts[number] ?? 0 : run.points.length / 2;
+      const total = run.points.length / 2;
       if (total === 0) return;
       const colour = colours.get(run.probe);
       this.appendSamples(number, run, total, colour);
@@ -184,12 +204,11 @@ export class Plane {
       low = [Math.min(low[0], x - pad), Math.min(low[1], y - pad)];
       high = [Math.max(high[0], x + pad), Math.max(high[1], y + pad)];
     };
-    (this.store?.runs ?? []).forEach((run, number) => {
-      const total = this.counts ? this.counts[number] ?? 0 : run.points.length / 2;
-      for (let i = 0; i < total; ++i) {
-        include(run.points[2 * i] * MM, -run.points[2 * i + 1] * MM, run.tipRadius * MM);
+    for (const run of this.store?.runs ?? []) {
+      for (let i = 0; i + 1 < run.points.length; i += 2) {
+        include(run.points[i] * MM, -run.points[i + 1] * MM, run.tipRadius * MM);
       }
-    });
+    }
     for (const contact of this.picture?.contacts ?? []) include(contact.at[0] * MM, -contact.at[1] * MM);
     const touched = Math.max(high[0] - low[0], high[1] - low[1]);
     const centre = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
@@ -288,7 +307,7 @@ export class Plane {
 
   drawMarks() {
     let far = "";
-    const points = this.picture?.far ?? [];
+    const points = this.details?.far ?? [];
     for (let i = 0; i < points.length; i += 2) {
       const [x, y] = this.toPixels(points[i] * MM, -points[i + 1] * MM);
       far += `M${x - 4} ${y - 4}l8 8m0 -8l-8 8`;

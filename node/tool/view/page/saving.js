@@ -44,12 +44,14 @@ export function download(text, type, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-/** @typedef {{group: string, view: import("./plane.js").View|null, hidden: string[], shown: string[]}} Settings */
+/** `at`: Unix time of a moment, in ms.
+ * @typedef {{group: string, at: number|null, view: import("./plane.js").View|null, hidden: string[], shown: string[]}} Settings */
 
 /** @param {Settings} settings */
 export function toHash(settings) {
   const words = new URLSearchParams();
   if (settings.group) words.set("group", settings.group);
+  if (settings.at !== null) words.set("at", String(settings.at));
   if (settings.view) {
     words.set("view", [settings.view.x, settings.view.y, settings.view.scale]
         .map((value) => Number(value.toPrecision(9))).join(","));
@@ -65,8 +67,11 @@ export function fromHash(hash) {
   const numbers = (words.get("view") ?? "").split(",").map(Number);
   const isView = numbers.length === 3 && numbers.every(Number.isFinite) && numbers[2] > 0;
   const list = (/** @type {string} */ name) => (words.get(name) ?? "").split(",").filter(Boolean);
+  const group = /^[A-Za-z0-9_.-]{1,64}$/.test(words.get("group") ?? "") ? words.get("group") ?? "" : "";
+  const at = /^\d{1,15}$/.test(words.get("at") ?? "") && group !== "" ? Number(words.get("at")) : null;
   return {
-    group: /^[A-Za-z0-9_.-]{1,64}$/.test(words.get("group") ?? "") ? words.get("group") ?? "" : "",
+    group,
+    at,
     view: isView ? {x: numbers[0], y: numbers[1], scale: numbers[2]} : null,
     hidden: list("hide"),
     shown: list("show"),

@@ -1,29 +1,38 @@
-// Shapes of what the server sends (node/tool/view/picture_json.cpp). Lengths in metres, relative to `origin`.
+// Shapes of what the server sends (node/tool/view/picture_json.cpp, details_json.cpp, overview_json.cpp). Lengths
+// in metres; places come in whole steps and are made metres relative to `origin` as they arrive (connection.js).
 // Numbers that are not finite come as null.
 
-/** @typedef {{class: string, probability: number, closed: boolean, points: number[], arc: number[],
- *   kappa: (number|null)[], kappaS: (number|null)[], left?: number[], right?: number[], bandWidth?: string,
- *   kappaSigma?: number[]}} Curve */
+/** @typedef {{class: string, probability: number, closed: boolean, points: number[], left?: number[],
+ *   right?: number[]}} Curve */
 
-/** @typedef {{probe: string, patch: number, at: number[], tangent: number, arc: number, kappa: number,
- *   kappaSigma: number|null, kappaS: number, kappaSSigma: number|null}} Contact */
+/** What is drawn with every answer.
+ * @typedef {{group: string, object: string, version: number, origin: number[], step: number, class: string,
+ *   contacts: {at: number[], tangent: number}[], curve?: Curve, rivals: Curve[],
+ *   pose?: {at: number[], theta: number, ellipse?: {long: number, short: number, angle: number}},
+ *   sampleCount: number, touchMs: number, answerMs: number}} Picture */
+
+/** @typedef {{arc: number[], kappa: (number|null)[], kappaS: (number|null)[], kappaSigma?: number[]}} CurveChart */
+
+/** @typedef {{probe: string, arc: number, kappa: number, kappaSigma: number|null, kappaS: number,
+ *   kappaSSigma: number|null}} ContactChart */
 
 /** @typedef {{name: string, value: number, sigma: number|null, text: string}} Quantity */
 
-/** @typedef {{group: string, object: string, version: number, origin: number[], hasAnswer: boolean,
+/** What is read, a few times a second.
+ * @typedef {{group: string, object: string, hasAnswer: boolean,
  *   status: string, statusText: string, advice: string, class: string, frame: string,
  *   quantities: Quantity[],
  *   hypotheses: {class: string, probability: number, chi2: number, dof: number, atLimit: boolean}[],
  *   decisions: {test: string, value: number|null, threshold: number|null, passed: boolean,
  *     pValue: number|null}[],
  *   invariants: {name: string, class: string, text: string}[],
- *   contacts: Contact[], curve?: Curve, rivals: Curve[], pose?: {at: number[], theta: number},
- *   residuals?: {gain: number, lines: number[]}, far?: number[], sampleCount: number,
+ *   charts: {contacts: ContactChart[], rivals: CurveChart[], curve?: CurveChart}, bandWidth?: string,
+ *   step?: number, residuals?: {gain: number, lines: number[]}, far?: number[], sampleCount: number,
  *   outlierCount: number, noise: string, noiseCorrelationMm: number, computeMs: number,
- *   answersPerS: number, touchMs: number, answerMs: number}} Picture */
+ *   answersPerS: number, touchMs: number, answerMs: number}} Details */
 
 /** @typedef {{group: string, object: string, generation: number, anew: boolean, received: number,
- *   kept: number, origin: number[],
+ *   kept: number, origin: number[], step: number,
  *   runs: {run: number, probe: string, patch: number, tipRadius: number, points: number[]}[]}} Samples */
 
 /** @typedef {{name: string, group: string, alive: boolean, samplesPerS: number, batchesPerS: number,
@@ -37,14 +46,15 @@
 /** @typedef {{groups: {name: string, object: string, status: string, class: string, probability: number,
  *   ageS: number}[], nodes: Node[]}} Overview */
 
-/** @typedef {{group: string, picture?: Picture, samples?: Samples, overview?: Overview}} Message */
+/** @typedef {{group: string, picture?: Picture, details?: Details, samples?: Samples, overview?: Overview,
+ *   timeMs?: number}} Message */
 
 /** One unbroken touch. @typedef {{probe: string, patch: number, tipRadius: number, points: number[]}} Run */
 
 /** Samples of one object as far as they have come.
  * @typedef {{group: string, origin: number[], received: number, kept: number, runs: Run[]}} SampleStore */
 
-/** A moment that can be looked at again: how many samples of each run there were.
- * @typedef {{timeMs: number, picture: Picture|null, store: SampleStore|null, counts: number[]}} Moment */
+/** A moment that is looked at again.
+ * @typedef {{timeMs: number, picture: Picture|null, details: Details|null, store: SampleStore|null}} Moment */
 
 export {};

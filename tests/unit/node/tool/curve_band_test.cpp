@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <random>
 
 #include "node/tool/drawing/drawing.h"
+#include "node/tool/drawing/pose_ellipse.h"
 #include "node/wire/convert.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
@@ -101,6 +103,54 @@ TEST(CurveBand, IsAbsentWhereTheCovarianceSaysNothing) {
   EXPECT_FALSE(band_at(*model_of(message), 0.0));
 }
 
+TEST(CurveBand, IsDrawnToATwentiethOfItsWidth) {
+  // A band of 20 pixels, which is a wide one, so is right to a pixel.
+  constexpr double kTolerance = 0.05;
+  std::mt19937_64 rng = test::test_rng();
+  for (const CurveClass curve_class : kCurveClasses) {
+    v1::Recognition message;
+    const CurveModel model = known_model(curve_class, rng, message);
+    const Drawing drawing = make_drawing({}, message, Curvature::None);
+    ASSERT_TRUE(drawing.curve) << name_of(curve_class);
+    for (const CurvePlace& place : drawing.curve->places) {
+      const auto band = band_at(model, place.t);
+      ASSERT_TRUE(band && place.band) << name_of(curve_class);
+      const double width = band->left_m - band->right_m;
+      EXPECT_NEAR(place.band->left_m, band->left_m, kTolerance * width)
+          << name_of(curve_class) << " at " << place.t;
+      EXPECT_NEAR(place.band->right_m, band->right_m, kTolerance * width)
+          << name_of(curve_class) << " at " << place.t;
+    }
+  }
+}
+
+TEST(PoseEllipse, HoldsTheOriginIn95Of100) {
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> normal;
+  constexpr int kDraws = 4000;
+  for (const CurveClass curve_class : {CurveClass::Circle, CurveClass::Ellipse}) {
+    v1::Recognition message;
+    const CurveModel model = known_model(curve_class, rng, message);
+    const auto ellipse = pose_ellipse(model);
+    ASSERT_TRUE(ellipse);
+    EXPECT_GE(ellipse->long_m, ellipse->short_m);
+    const Eigen::Index letters = model.covariance.rows() - 3;
+    const Eigen::Matrix2d root =
+        Eigen::LLT<Eigen::Matrix2d>(model.covariance.block(letters, letters, 2, 2)).matrixL();
+    int inside = 0;
+    for (int draw = 0; draw < kDraws; ++draw) {
+      const Vec2 offset = root * Vec2(normal(rng), normal(rng));
+      const Vec2 along(std::cos(ellipse->angle_rad), std::sin(ellipse->angle_rad));
+      const double u = offset.dot(along) / ellipse->long_m;
+      const double v = offset.dot(left_of(along)) / ellipse->short_m;
+      inside += u * u + v * v <= 1.0 ? 1 : 0;
+    }
+    // Five standard deviations of the share of so many draws.
+    EXPECT_NEAR(inside / double{kDraws}, 0.95, 5.0 * std::sqrt(0.95 * 0.05 / kDraws))
+        << name_of(curve_class);
+  }
+}
+
 TEST(CurveModel, IsAbsentForMessagesThatNameNoCurve) {
   v1::Recognition message;
   EXPECT_FALSE(model_of(message));
@@ -134,7 +184,7 @@ TEST(Drawing, ShowsTheCurveBesideEveryTouchedPlace) {
     const test::Scene scene = test::random_scene(curve_class, options, rng);
     const v1::Recognition message = message_of(test::recognise(scene, scene.sigma_m));
     const ContactGroup group = group_of(scene);
-    const Drawing drawing = make_drawing(group, message);
+    const Drawing drawing = make_drawing(group, message, Curvature::Along);
     ASSERT_TRUE(drawing.curve) << name_of(curve_class);
     EXPECT_EQ(drawing.contacts.size(), static_cast<std::size_t>(message.contacts_size()));
     // Every sample has the drawn polyline beside it: within its noise and a chord's height.

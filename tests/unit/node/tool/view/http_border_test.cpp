@@ -65,6 +65,15 @@ TEST(RouteOf, KnowsThePageTheFeedAndTheDownloads) {
   EXPECT_EQ(parse_route("/samples/cup-1.csv")->kind, Route::Kind::SamplesCsv);
   EXPECT_EQ(parse_route("/samples/cup-1.csv")->name, "cup-1");
   EXPECT_EQ(parse_route("/answer/cup.json.json")->name, "cup.json");
+  EXPECT_EQ(parse_route("/moments/cup.json")->kind, Route::Kind::MomentsJson);
+  EXPECT_EQ(parse_route("/moment/1700000000000/cup.json")->kind, Route::Kind::MomentJson);
+  EXPECT_EQ(parse_route("/moment/1700000000000/cup.json")->time_ms, 1700000000000);
+  EXPECT_EQ(parse_route("/moment/1700000000000/cup.json")->name, "cup");
+  for (const char* const target :
+       {"/moment/-1/cup.json", "/moment//cup.json", "/moment/1x/cup.json", "/moment/1/.json",
+        "/moment/99999999999999999999/cup.json", "/moment/1/a/b.json", "/moment/1"}) {
+    EXPECT_FALSE(parse_route(target)) << target;
+  }
   for (const char* const target :
        {"", "*", "main.js", "//", "/a/b", "/samples/.csv", "/samples/a b.csv", "/samples/../x.csv",
         "/%2e%2e", "http://127.0.0.1/", "/answer/x"}) {

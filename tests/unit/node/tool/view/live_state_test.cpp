@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "node/tool/view/details_json.h"
 #include "node/tool/view/live_feed.h"
 #include "node/tool/view/picture_json.h"
 
@@ -92,7 +93,7 @@ TEST(LiveState, IsBoundedAndSaysWhatItDrops) {
   EXPECT_EQ(state.groups().size(), kMostGroupsKept);
   EXPECT_EQ(state.nodes().size(), kMostNodesKept);
   EXPECT_EQ(state.nodes().begin()->second.status.probes_size(), kMostProbesShown);
-  EXPECT_EQ(state.latest_group(), "group-999");
+  EXPECT_EQ(state.followed_group("", kStart + 1h), "group-999");
 }
 
 TEST(LiveState, TakesNothingThatIsNoContact) {
@@ -108,6 +109,79 @@ TEST(LiveState, TakesNothingThatIsNoContact) {
   state.take(batch_of(0), kStart);
   state.take(answer_of(1, "a/b"), kStart, 0);
   EXPECT_TRUE(state.groups().empty());
+}
+
+constexpr std::int64_t kNsPerMs = 1'000'000;
+
+TEST(LiveHistory, ShowsAGroupAsItWasThroughNewSamplesAndObjects) {
+  LiveState state;
+  SteadyTime now = kStart;
+  for (int i = 1; i <= 3; ++i) {
+    state.take(batch_of(10, 1), now);
+    v1::Recognition answer = answer_of(1);
+    answer.set_sample_count(static_cast<std::uint64_t>(10 * i));
+    // A second apart; then one that comes soon after: the last look of an object is kept too.
+    state.take(answer, now, (i < 3 ? 1000 * i : 2050) * kNsPerMs);
+  }
+  EXPECT_EQ(state.history().times("part"), (std::vector<std::int64_t>{1000, 2000}));
+  state.take(batch_of(4, 2), now);
+  EXPECT_EQ(state.history().times("part"), (std::vector<std::int64_t>{1000, 2000, 2050}));
+  EXPECT_TRUE(state.history().times("another").empty());
+  EXPECT_EQ(state.history().nearest("another", 0), nullptr);
+  for (const auto& [time_ms, samples] :
+       {std::pair<std::int64_t, std::size_t>{-5, 10}, {1400, 10}, {2000, 20}, {9999, 30}}) {
+    const LiveGroup then = state.group_at(*state.history().nearest("part", time_ms));
+    EXPECT_EQ(then.touched.object, 1U);
+    EXPECT_EQ(then.samples_kept, samples) << time_ms;
+    EXPECT_EQ(then.answer.sample_count(), samples);
+    ASSERT_EQ(then.touched.runs.size(), 1U);
+    EXPECT_EQ(then.touched.runs[0].samples.size(), samples);
+  }
+}
+
+TEST(LiveHistory, KeepsThePresentWhenItIsAskedFor) {
+  LiveState state;
+  state.take(batch_of(10), kStart);
+  state.take(answer_of(1), kStart, 1000 * kNsPerMs);
+  state.take(answer_of(1), kStart, 1050 * kNsPerMs);
+  EXPECT_EQ(state.moments_of("part"), (std::vector<std::int64_t>{1000, 1050}));
+  EXPECT_EQ(state.moments_of("part"), (std::vector<std::int64_t>{1000, 1050}));
+  EXPECT_TRUE(state.moments_of("nobody").empty());
+}
+
+TEST(LiveHistory, IsBoundedInTimeAndBytes) {
+  LiveState state;
+  std::int64_t time_ns = 0;
+  v1::Recognition answer = answer_of(1);
+  for (int i = 0; i < 2000; ++i) {
+    time_ns += 200 * kNsPerMs;
+    state.take(answer, kStart, time_ns);
+  }
+  EXPECT_LE(state.history().times("part").size(), 901U);
+  EXPECT_GE(state.history().times("part").front(), 220'000);
+  // Answers and samples of any size: every object's samples are kept until there is no room.
+  answer.mutable_header()->set_frame(std::string(100'000, 'x'));
+  for (int i = 0; i < 2000; ++i) {
+    time_ns += 200 * kNsPerMs;
+    const auto object = static_cast<std::uint64_t>(2 + i);
+    answer.set_object(object);
+    state.take(batch_of(5000, object), kStart);
+    state.take(answer, kStart, time_ns);
+    ASSERT_LE(state.history().bytes(), LiveHistory::kMostBytes);
+  }
+  EXPECT_GT(state.history().times("part").size(), 100U);
+  // When they have all gone, so has what they held.
+  state.take(answer_of(1, "other"), kStart, time_ns + 10 * LiveHistory::kLongest_ms * kNsPerMs);
+  EXPECT_LT(state.history().bytes(), 1000U);
+}
+
+TEST(LiveHistory, SamplesLeftOutLaterAreInTheMomentsBefore) {
+  LiveState state;
+  state.take(batch_of(static_cast<int>(kMostSamplesKept)), kStart);
+  state.take(answer_of(1), kStart, 1000 * kNsPerMs);
+  state.take(batch_of(10), kStart);
+  EXPECT_LT(state.find("part")->samples_kept, kMostSamplesKept);
+  EXPECT_EQ(state.group_at(*state.history().nearest("part", 1000)).samples_kept, kMostSamplesKept);
 }
 
 TEST(LiveFeed, TellsEachViewerWhatItDoesNotKnowAndNothingTwice) {
@@ -170,13 +244,15 @@ TEST(PictureJson, NumbersThatAreNoneAndTextOfAnyBytesGiveValidJson) {
   invariant.set_value(163.4);
   invariant.set_sigma(16.0);
   state.take(answer, kStart, 0);
-  const auto picture = nlohmann::json::parse(to_text(picture_json(*state.find("part"), kStart)));
-  EXPECT_TRUE(picture["decisions"][0]["pValue"].is_null());
-  EXPECT_EQ(picture["invariants"][0]["name"], "Ic1");
-  EXPECT_EQ(picture["invariants"][0]["class"], "ellipse");
-  EXPECT_EQ(picture["invariants"][0]["text"], "163 +- 16");
-  EXPECT_EQ(picture["decisions"][0]["test"], "<b>\"\\\n</script>");
-  EXPECT_TRUE(picture["decisions"][0]["value"].is_null());
+  LiveGroup& group = *state.find("part");
+  const auto picture = nlohmann::json::parse(to_text(picture_json(group)));
+  const auto details = nlohmann::json::parse(to_text(details_json(group, kStart)));
+  EXPECT_TRUE(details["decisions"][0]["pValue"].is_null());
+  EXPECT_EQ(details["invariants"][0]["name"], "Ic1");
+  EXPECT_EQ(details["invariants"][0]["class"], "ellipse");
+  EXPECT_EQ(details["invariants"][0]["text"], "163 +- 16");
+  EXPECT_EQ(details["decisions"][0]["test"], "<b>\"\\\n</script>");
+  EXPECT_TRUE(details["decisions"][0]["value"].is_null());
   EXPECT_EQ(picture["curve"]["points"].size(), 482U);
   EXPECT_FALSE(picture["curve"].contains("left"));
   EXPECT_NE(to_text("\xff\xfe").find("\xef\xbf\xbd"), std::string::npos);

@@ -1,0 +1,84 @@
+#include "node/tool/drawing/braille_canvas.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+// Bits of Unicode's braille patterns (U+2800 and on), by the dot's row and column.
+constexpr std::uint8_t kBitOfDot[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
+
+/// U+2800 + dots in UTF-8.
+std::string braille(std::uint8_t dots) {
+  const char bytes[] = {'\xe2', static_cast<char>(0xa0 + (dots >> 6)),
+                        static_cast<char>(0x80 + (dots & 0x3f))};
+  return {bytes, sizeof bytes};
+}
+
+const char* escape_of(Ink ink) {
+  switch (ink) {
+    case Ink::RivalInk:
+      return "\033[35m";
+    case Ink::SampleInk:
+      return "\033[36m";
+    default:
+      return "\033[0m";
+  }
+}
+
+}  // namespace
+
+void BrailleCanvas::dot(double x, double y, Ink ink) {
+  if (!(x >= 0.0 && x < width() && y >= 0.0 && y < height())) return;
+  const auto across = static_cast<std::size_t>(x);
+  const auto down = static_cast<std::size_t>(y);
+  Cell& cell = cells_[down / kDotsDown * columns_ + across / kDotsAcross];
+  cell.dots |= kBitOfDot[down % kDotsDown][across % kDotsAcross];
+  cell.ink = std::max(cell.ink, ink);
+}
+
+void BrailleCanvas::line(double x0, double y0, double x1, double y1, Ink ink) {
+  // The part of it that lies within the canvas, after Liang and Barsky.
+  const double dx = x1 - x0;
+  const double dy = y1 - y0;
+  double from = 0.0;
+  double to = 1.0;
+  for (const auto& [step, room] :
+       {std::pair(-dx, x0), {dx, width() - x0}, {-dy, y0}, {dy, height() - y0}}) {
+    // A line beside the border that runs along it lies outside as a whole.
+    if (step == 0.0 && room < 0.0) return;
+    if (step < 0.0) from = std::max(from, room / step);
+    if (step > 0.0) to = std::min(to, room / step);
+  }
+  if (!(from <= to)) return;
+  const auto steps =
+      static_cast<int>(std::ceil((to - from) * std::max(std::abs(dx), std::abs(dy))));
+  for (int i = 0; i <= steps; ++i) {
+    const double part = from + (to - from) * (steps > 0 ? static_cast<double>(i) / steps : 0.0);
+    dot(x0 + part * dx, y0 + part * dy, ink);
+  }
+}
+
+std::vector<std::string> BrailleCanvas::lines() const {
+  std::vector<std::string> lines;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    std::string line;
+    Ink ink = Ink::None;
+    for (std::size_t column = 0; column < columns_; ++column) {
+      const Cell& cell = cells_[row * columns_ + column];
+      if (cell.dots != 0 && cell.ink != ink) {
+        line += escape_of(cell.ink);
+        ink = cell.ink;
+      }
+      line += cell.dots == 0 ? " " : braille(cell.dots);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    if (ink != Ink::None) line += "\033[0m";
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+}  // namespace palpate

@@ -1,0 +1,44 @@
+// A picture of dots for a plain terminal: a character of Unicode's braille block is two dots wide
+// and four high, so that dots are about as far apart either way.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace palpate {
+
+/// Of two inks in one character the later of these gives the colour.
+enum class Ink : std::uint8_t { None, RivalInk, CurveInk, SampleInk };
+
+class BrailleCanvas {
+ public:
+  static constexpr int kDotsAcross = 2;  // of a character
+  static constexpr int kDotsDown = 4;
+
+  BrailleCanvas(std::size_t columns, std::size_t rows)
+      : columns_(columns), rows_(rows), cells_(columns * rows) {}
+
+  double width() const { return static_cast<double>(kDotsAcross * columns_); }
+  double height() const { return static_cast<double>(kDotsDown * rows_); }
+
+  /// From the upper left corner; what lies outside is not drawn.
+  void dot(double x, double y, Ink ink);
+  void line(double x0, double y0, double x1, double y1, Ink ink);
+
+  /// In UTF-8, with the terminal's colours.
+  std::vector<std::string> lines() const;
+
+ private:
+  struct Cell {
+    std::uint8_t dots = 0;
+    Ink ink = Ink::None;
+  };
+
+  std::size_t columns_;
+  std::size_t rows_;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace palpate
