@@ -145,6 +145,7 @@ void Node::run(int stop_fd, int reload_fd) {
     if (peers != nullptr) items.push_back({peers->events().handle(), 0, ZMQ_POLLIN, 0});
   }
   if (zap_) items.push_back({zap_->socket().handle(), 0, ZMQ_POLLIN, 0});
+  service_manager_.ready("contacts on " + contacts_address() + ", results on " + results_address());
   for (;;) {
     const SteadyTime before = now_steady();
     const auto until_tick =
@@ -239,6 +240,7 @@ void Node::publish(Group& group) {
 
 void Node::tick(SteadyTime now) {
   next_tick_ = now + kTick;
+  service_manager_.alive(now);
   for (const auto& reconnect : guards_) reconnect->tend(now);
   const int changes = update_liveness(intake_.probes(),
                                       std::chrono::duration<double>(options_.probe_timeout_s), now);
@@ -319,6 +321,7 @@ void Node::reload_clients() {
 }
 
 void Node::finish() {
+  service_manager_.stopping();
   const SteadyTime deadline = now_steady() + kFinishTime;
   // What flows on for longer is not what was received when the stop came.
   const SteadyTime drained = now_steady() + kFinishDrainTime;

@@ -16,6 +16,7 @@
 #include "node/groups/intake.h"
 #include "node/groups/workers.h"
 #include "node/options.h"
+#include "node/process/service_manager.h"
 #include "node/publish/result_publisher.h"
 #include "node/security/node_keys.h"
 #include "node/security/peer_guard.h"
@@ -92,6 +93,7 @@ class Node {
   std::size_t at_a_time_;  // recognitions, where none is slow
   Workers workers_;
   std::vector<InWork> in_work_;  // by worker
+  ServiceManager service_manager_;
   SteadyTime started_;
   SteadyTime next_tick_;
   SteadyTime next_status_;

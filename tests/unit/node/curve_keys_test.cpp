@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -57,6 +58,19 @@ TEST_F(CurveKeysTest, NothingIsOverwrittenAndSecretsStaySecret) {
   EXPECT_THAT(read_public_keys(path("a.key")).error, HasSubstr("secret"));
   ::chmod(path("a.key").c_str(), 0644);
   EXPECT_THAT(read_curve_keys(path("a.key")).error, HasSubstr("chmod 600"));
+}
+
+TEST_F(CurveKeysTest, TheGroupsRightsOfACredentialAreAnAccessList) {
+  const CurveKeyPair keys = *generate_curve_keys().value;
+  ASSERT_EQ(write_curve_keys(keys, path("a.key"), path("a.pub")), "");
+  ::chmod(path("a.key").c_str(), 0440);
+  ::setenv("CREDENTIALS_DIRECTORY", path("elsewhere").c_str(), 1);
+  EXPECT_THAT(read_curve_keys(path("a.key")).error, HasSubstr("chmod 600"));
+  ::setenv("CREDENTIALS_DIRECTORY", std::filesystem::path(path("a.key")).parent_path().c_str(), 1);
+  EXPECT_TRUE(read_curve_keys(path("a.key")));
+  ::chmod(path("a.key").c_str(), 0444);
+  EXPECT_THAT(read_curve_keys(path("a.key")).error, HasSubstr("chmod 600"));
+  ::unsetenv("CREDENTIALS_DIRECTORY");
 }
 
 TEST_F(CurveKeysTest, BadFilesAreRefused) {
