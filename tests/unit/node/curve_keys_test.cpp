@@ -91,6 +91,14 @@ TEST_F(CurveKeysTest, BadFilesAreRefused) {
   EXPECT_FALSE(read_public_keys(path("missing")));
   write("# two\npublic-key " + keys.public_key + "\r\npublic-key " + other.public_key);
   EXPECT_EQ(read_public_keys(path("x")).value->size(), 2U);
+  const std::string zeros(40, '0');
+  write("metadata\n    public-key = \"" + zeros +
+        "\"\n    name = \"us\"\ncurve\n    public-key = '" + keys.public_key + "'\n");
+  EXPECT_EQ(*read_public_keys(path("x")).value, std::vector<std::string>{keys.public_key});
+  write("metadata\ncurve\n    public-key = \"" + keys.public_key + "\n");
+  EXPECT_THAT(read_public_keys(path("x")).error, HasSubstr(":3:"));
+  write("curve\n    colour = \"red\"\n");
+  EXPECT_THAT(read_public_keys(path("x")).error, HasSubstr(":2:"));
 }
 
 std::string raw(const std::string& z85) {
