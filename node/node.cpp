@@ -245,7 +245,8 @@ void Node::tick(SteadyTime now) {
   const int changes = update_liveness(intake_.probes(),
                                       std::chrono::duration<double>(options_.probe_timeout_s), now);
   if (now >= next_status_) {
-    log_rejections();
+    operator_log_.tell(intake_, zap_ ? &*zap_ : nullptr, now);
+    log_cuts();
     give_memory_back();
     publisher_.repeat_all();
     publish_status(now);
@@ -285,15 +286,7 @@ void Node::publish_status(SteadyTime now) {
                      status_message_);
 }
 
-// Once a status period and a line a reason, however many messages there were.
-void Node::log_rejections() {
-  const auto& rejected = intake_.counters().rejected;
-  for (std::size_t i = 0; i < rejected.size(); ++i) {
-    if (rejected[i] == rejections_logged_[i]) continue;
-    spdlog::warn("{} messages rejected: {}", rejected[i] - rejections_logged_[i],
-                 v1::RejectReason_Name(static_cast<v1::RejectReason>(i)));
-  }
-  rejections_logged_ = rejected;
+void Node::log_cuts() {
   for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
     const std::string report = peers == nullptr ? std::string() : peers->take_report();
     if (!report.empty()) spdlog::warn("{}", report);

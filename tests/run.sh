@@ -76,7 +76,7 @@ step "about $(how_long $cost) on this machine, $(nproc) cores$(
 
 begin_part "building (strict)" 420
 build strict
-begin_part "testing (strict)" 360
+begin_part "testing (strict)" 420
 ctest --test-dir build/strict --output-on-failure -j "$jobs"
 
 if [ "$sanitize" = yes ]; then
