@@ -1,5 +1,11 @@
 """What an operator reads in the node's log: who comes, who falls silent, who is turned away, whose messages are bad."""
+import fcntl
+import os
+import pty
 import re
+import select
+import struct
+import termios
 import time
 import unittest
 
@@ -67,6 +73,53 @@ class Log(unittest.TestCase):
             run(SIM, SOURCE / "sim/scenes/circle.textproto", "--contacts", bus.contacts, "--wait", "1", "--curve-secret-key",
                 bus.folder / "stranger.secret", "--curve-server-key", bus.folder / "node.public")
             self.wait_for(node, r"\d+ clients denied: their keys are not on the list; the last from 127\.0\.0\.1")
+
+
+class Terminal:
+    """What a program draws on its standard error (or output)."""
+
+    def __init__(self, bus, *command, stream="stderr"):
+        self.ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
+        self.process = bus.start(*command, **{stream: theirs})
+        os.close(theirs)
+        self.text = ""
+
+    def wait_for(self, pattern, timeout_s=20):
+        deadline = time.monotonic() + timeout_s
+        while not (found := re.search(pattern, self.text)):
+            if not select.select([self.ours], [], [], max(0.0, deadline - time.monotonic()))[0]:
+                raise AssertionError(f"{pattern} not in {self.text[-2000:]!r}")
+            try:
+                self.text += os.read(self.ours, 1 << 16).decode()
+            except OSError as ended:  # of a program that has gone
+                raise AssertionError(f"{pattern} not in {self.text[-2000:]!r}") from ended
+        return found
+
+
+class Progress(unittest.TestCase):
+    def test_who_waits_says_for_what(self):
+        with Bus() as bus:
+            scene = bus.folder / "scene.csv"
+            self.assertEqual(run(SIM, SOURCE / "sim/scenes/circle.textproto", "--csv", scene)[0], 0)
+            Terminal(bus, TOOL, "record", bus.folder / "a.rec", "--contacts", bus.contacts).wait_for("a.rec: waiting for messages")
+            Terminal(bus, TOOL, "replay", scene, "--contacts", f"ipc://{bus.folder}/nobody").wait_for("waiting for a recognizer at ipc:")
+            Terminal(bus, TOOL, "watch", "--results", f"ipc://{bus.folder}/nobody", stream="stdout").wait_for("no recognizer heard yet")
+
+    def test_record_and_replay_say_how_far_they_are(self):
+        with Bus() as bus:
+            scene = bus.folder / "scene.csv"
+            self.assertEqual(run(SIM, SOURCE / "sim/scenes/circle.textproto", "--csv", scene)[0], 0)
+            record = Terminal(bus, TOOL, "record", bus.folder / "a.rec", "--contacts", bus.contacts)
+            record.wait_for("waiting")
+            replay = Terminal(bus, TOOL, "replay", scene, "--contacts", bus.contacts, "--speed", "0.5")
+            replay.wait_for(r"scene\.csv: [1-9]\d* messages, \d+ samples\x1b")
+            record.wait_for(r"a\.rec: [1-9]\d* messages\x1b")
+            record.process.terminate()
+            record.wait_for(r"\r\x1b\[K\S+a\.rec: [1-9]\d* messages\r\n")
+            # Where nobody looks on, nothing is drawn.
+            code, _, err = run(TOOL, "record", bus.folder / "b.rec", "--results", bus.results, "--seconds", "0.2")
+            self.assertEqual((code, err), (0, f"{bus.folder}/b.rec: 0 messages\n"))
 
 
 if __name__ == "__main__":
