@@ -72,6 +72,17 @@ if(TARGET palpate-sim)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/sim/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate COMPONENT runtime)
 endif()
 
+# API pages of all of it, where Doxygen is: target palpate_api. A warning is an error.
+find_program(PALPATE_DOXYGEN doxygen)
+if(PALPATE_DOXYGEN)
+  set(palpate_api_files ${palpate_core_headers} ${palpate_client_headers})
+  list(TRANSFORM palpate_api_files PREPEND ${PROJECT_SOURCE_DIR}/)
+  list(JOIN palpate_api_files " " palpate_api_files)
+  configure_file(${PROJECT_SOURCE_DIR}/core/package/Doxyfile.in Doxyfile @ONLY)
+  add_custom_target(palpate_api COMMAND ${PALPATE_DOXYGEN} ${CMAKE_CURRENT_BINARY_DIR}/Doxyfile
+                    COMMENT "API pages in ${PROJECT_BINARY_DIR}/api/html" VERBATIM)
+endif()
+
 configure_package_config_file(${PROJECT_SOURCE_DIR}/core/package/palpate-config.cmake.in palpate-config.cmake
                               INSTALL_DESTINATION ${PALPATE_CMAKE_DIR})
 write_basic_package_version_file(palpate-config-version.cmake COMPATIBILITY SameMinorVersion)

@@ -303,6 +303,20 @@ except ValueError as error:
         self.assertIn("ellipse (recognized)", done.stdout)
         self.assertIn("ambiguous", done.stdout)
 
+    def test_the_tutorials_picture(self):
+        import importlib.util
+        import tempfile
+        if importlib.util.find_spec("matplotlib") is None:
+            self.skipTest("matplotlib is not installed: no picture was drawn")
+        with tempfile.TemporaryDirectory(prefix="palpate-") as folder:
+            subprocess.run([sys.executable, SOURCE / "node/examples/tutorial.py", "--plot", f"{folder}/tutorial.svg"],
+                           env=os.environ | {"PYTHONPATH": str(BUILD / "node/python"), "MPLBACKEND": "Agg"}, check=True,
+                           stdout=subprocess.DEVNULL, timeout=120)
+            with open(f"{folder}/tutorial.svg") as picture:
+                text = picture.read()
+        self.assertIn("ellipse (recognized)", text)
+        self.assertGreater(text.count("<use "), 222)  # each point, and ticks
+
 
 if __name__ == "__main__":
     unittest.main()

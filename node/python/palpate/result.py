@@ -107,9 +107,9 @@ class Result:
         if ax is None:
             import matplotlib.pyplot as plt
             _, ax = plt.subplots()
-        ax.plot(*self._touched.T, ".", markersize=3, label="points")
         if self._curve is not None:
-            ax.plot(*self.sample().T, label=f"{self.curve_class} ({self.status})")
+            ax.plot(*self.sample().T, linewidth=4, alpha=0.4, label=f"{self.curve_class} ({self.status})")
+        ax.plot(*self._touched.T, "k.", markersize=2, label="points")
         ax.set_aspect("equal")
         ax.set_xlabel(f"x [{self.unit}]")
         ax.set_ylabel(f"y [{self.unit}]")
