@@ -100,8 +100,12 @@ function(palpate_library)
     install(EXPORT palpate-${ARG_SET}-${kind}-targets NAMESPACE palpate:: DESTINATION ${PALPATE_CMAKE_DIR}
             COMPONENT ${component})
   endforeach()
-  # What a library inlines of others' templates stays its own; all symbols it needs are there.
+  # What a library inlines of others' templates stays its own; all symbols it needs are there, but for those of
+  # sanitizers, which the program brings.
   target_link_options(palpate_${ARG_SET}_shared PRIVATE
-    LINKER:--version-script=${script} LINKER:--no-undefined LINKER:-z,now LINKER:-Bsymbolic-functions)
+    LINKER:--version-script=${script} LINKER:-z,now LINKER:-Bsymbolic-functions)
+  if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+    target_link_options(palpate_${ARG_SET}_shared PRIVATE LINKER:--no-undefined)
+  endif()
   set_target_properties(palpate_${ARG_SET}_shared PROPERTIES LINK_DEPENDS ${script})
 endfunction()

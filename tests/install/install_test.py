@@ -72,6 +72,24 @@ class Install(unittest.TestCase):
         with self.assertRaisesRegex(AssertionError, "sphere"):
             call("cmake", "-S", project, "-B", project / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}")
 
+    def test_fetch_content(self):
+        # As far as the build's plan: compiling all of it again would take minutes.
+        fetched = PROJECT.replace("find_package(palpate 0.1 REQUIRED COMPONENTS core client)", f"""
+include(FetchContent)
+FetchContent_Declare(palpate SOURCE_DIR {SOURCE})
+FetchContent_MakeAvailable(palpate)
+enable_testing()
+""")
+        project = write_project(self.folder / "fetching", fetched)
+        call("cmake", "-S", project, "-B", project / "build", "-G", "Unix Makefiles", "-DPALPATE_BUILD_SIM=OFF")
+        # What each is linked to; and nothing of ours is installed with the stranger's.
+        links = {program: (project / f"build/CMakeFiles/{program}.dir/link.txt").read_text() for program in ANSWERS}
+        self.assertIn("libpalpate_core.a", links["circle"])
+        self.assertNotIn("zmq", links["circle"])
+        for library in ("libpalpate_client.a", "libpalpate_proto.a", "zmq", "protobuf"):
+            self.assertIn(library, links["probe"])
+        self.assertFalse(list((project / "build").rglob("palpate-config.cmake")))
+
     def test_pkg_config(self):
         where = {"PKG_CONFIG_PATH": str(self.libraries / "pkgconfig")}
         for name, program in (("core", "circle"), ("client", "probe")):
