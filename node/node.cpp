@@ -145,6 +145,7 @@ void Node::run(int stop_fd, int reload_fd) {
     if (peers != nullptr) items.push_back({peers->events().handle(), 0, ZMQ_POLLIN, 0});
   }
   if (zap_) items.push_back({zap_->socket().handle(), 0, ZMQ_POLLIN, 0});
+  service_manager_.ready("contacts on " + contacts_address() + ", results on " + results_address());
   for (;;) {
     const SteadyTime before = now_steady();
     const auto until_tick =
@@ -239,11 +240,13 @@ void Node::publish(Group& group) {
 
 void Node::tick(SteadyTime now) {
   next_tick_ = now + kTick;
+  service_manager_.alive(now);
   for (const auto& reconnect : guards_) reconnect->tend(now);
   const int changes = update_liveness(intake_.probes(),
                                       std::chrono::duration<double>(options_.probe_timeout_s), now);
   if (now >= next_status_) {
-    log_rejections();
+    operator_log_.tell(intake_, zap_ ? &*zap_ : nullptr, now);
+    log_cuts();
     give_memory_back();
     publisher_.repeat_all();
     publish_status(now);
@@ -283,15 +286,7 @@ void Node::publish_status(SteadyTime now) {
                      status_message_);
 }
 
-// Once a status period and a line a reason, however many messages there were.
-void Node::log_rejections() {
-  const auto& rejected = intake_.counters().rejected;
-  for (std::size_t i = 0; i < rejected.size(); ++i) {
-    if (rejected[i] == rejections_logged_[i]) continue;
-    spdlog::warn("{} messages rejected: {}", rejected[i] - rejections_logged_[i],
-                 v1::RejectReason_Name(static_cast<v1::RejectReason>(i)));
-  }
-  rejections_logged_ = rejected;
+void Node::log_cuts() {
   for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
     const std::string report = peers == nullptr ? std::string() : peers->take_report();
     if (!report.empty()) spdlog::warn("{}", report);
@@ -319,6 +314,7 @@ void Node::reload_clients() {
 }
 
 void Node::finish() {
+  service_manager_.stopping();
   const SteadyTime deadline = now_steady() + kFinishTime;
   // What flows on for longer is not what was received when the stop came.
   const SteadyTime drained = now_steady() + kFinishDrainTime;

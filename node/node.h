@@ -16,6 +16,8 @@
 #include "node/groups/intake.h"
 #include "node/groups/workers.h"
 #include "node/options.h"
+#include "node/process/service_manager.h"
+#include "node/publish/operator_log.h"
 #include "node/publish/result_publisher.h"
 #include "node/security/node_keys.h"
 #include "node/security/peer_guard.h"
@@ -68,7 +70,7 @@ class Node {
   void forget_evicted();
   void tick(SteadyTime now);
   void publish_status(SteadyTime now);
-  void log_rejections();
+  void log_cuts();
   std::uint64_t connections_cut() const;
   void give_memory_back();
   void reload_clients();
@@ -92,10 +94,11 @@ class Node {
   std::size_t at_a_time_;  // recognitions, where none is slow
   Workers workers_;
   std::vector<InWork> in_work_;  // by worker
+  ServiceManager service_manager_;
   SteadyTime started_;
   SteadyTime next_tick_;
   SteadyTime next_status_;
-  decltype(IntakeCounters::rejected) rejections_logged_{};
+  OperatorLog operator_log_;
 
   // Reused: parsing and filling them again allocates nothing.
   TwoFrames incoming_;

@@ -33,7 +33,7 @@ class ContactPublisher {
   /// Waits until a recognizer listens; false after `timeout`. Before that, messages are lost.
   bool wait_for_recognizer(std::chrono::milliseconds timeout);
 
-  /// Publishes the batch on contact/<probe>/ after filling in its header's source, epoch, seq and
+  /// Publishes the batch on `contact/<probe>/` after filling in its header's source, epoch, seq and
   /// stamp; the frame stays as given. Returns false where the probe's name is invalid (nothing is
   /// sent) or the high-water mark has dropped the message.
   bool publish(std::string_view probe, v1::ContactBatch& batch);

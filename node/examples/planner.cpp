@@ -2,12 +2,22 @@
 #include <chrono>
 #include <cstdio>
 
+#include "node/client/connection.h"
 #include "node/client/result_subscriber.h"
 
 int main(int argc, char** argv) {
   palpate::client::ResultSubscriberOptions options;
   if (argc > 1) options.endpoint = argv[1];
+  if (argc > 3) {  // CURVE: our secret key file, the recognizer's public one
+    const auto keys = palpate::client::read_curve_client(argv[2], argv[3]);
+    if (!keys) {
+      std::fprintf(stderr, "%s\n", keys.error.c_str());
+      return 2;
+    }
+    options.curve = *keys.value;
+  }
   palpate::client::ResultSubscriber subscriber(options);
+  std::fprintf(stderr, "listening to %s (palpate-node)\n", options.endpoint.c_str());
   for (;;) {
     // Only the present matters to a planner: update() takes in all that has come.
     if (!subscriber.update(std::chrono::seconds(1))) continue;

@@ -5,16 +5,20 @@ Needs python3-zmq, python3-protobuf and the generated package on the path:
   PYTHONPATH=build/release/proto/python python3 node/examples/planner.py
 """
 import argparse
+import sys
 
 import zmq
 from palpate.v1 import recognition_pb2
 from palpate.v1.curve_pb2 import CurveClass
+from zmq.auth import load_certificate
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--endpoint", default="tcp://127.0.0.1:5582", help="the recognizer's results")
     parser.add_argument("--once", action="store_true", help="end with the first recognised object")
+    parser.add_argument("--curve-secret-key", metavar="FILE", help="CURVE: our own key (palpate keygen)")
+    parser.add_argument("--curve-server-key", metavar="FILE", help="CURVE: the recognizer's public key")
     options = parser.parse_args()
 
     socket = zmq.Context().socket(zmq.SUB)
@@ -23,7 +27,12 @@ def main():
     # A cut cable is noticed; not by HEARTBEAT_IVL, with which libzmq 4.3 can abort a reader that pauses.
     socket.setsockopt(zmq.TCP_KEEPALIVE, 1)
     socket.setsockopt(zmq.TCP_KEEPALIVE_IDLE, 1)  # [s]
+    if options.curve_secret_key:
+        socket.curve_publickey, socket.curve_secretkey = load_certificate(options.curve_secret_key)
+        socket.curve_serverkey, _ = load_certificate(options.curve_server_key)
     socket.connect(options.endpoint)
+
+    print(f"listening to {options.endpoint} (palpate-node)", file=sys.stderr)
 
     newest = {}  # of each group: (epoch, seq)
     while True:

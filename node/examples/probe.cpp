@@ -5,12 +5,22 @@
 #include <string>
 #include <thread>
 
+#include "node/client/connection.h"
 #include "node/client/contact_publisher.h"
 
 int main(int argc, char** argv) {
   palpate::client::ContactPublisherOptions options;
   if (argc > 1) options.endpoint = argv[1];
+  if (argc > 3) {  // CURVE: our secret key file, the recognizer's public one
+    const auto keys = palpate::client::read_curve_client(argv[2], argv[3]);
+    if (!keys) {
+      std::fprintf(stderr, "%s\n", keys.error.c_str());
+      return 2;
+    }
+    options.curve = *keys.value;
+  }
   palpate::client::ContactPublisher publisher(options);
+  std::fprintf(stderr, "waiting for a recognizer at %s (palpate-node)\n", options.endpoint.c_str());
   if (!publisher.wait_for_recognizer(std::chrono::seconds(5))) {
     std::fprintf(stderr, "no recognizer on %s\n", options.endpoint.c_str());
     return 1;

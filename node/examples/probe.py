@@ -7,10 +7,12 @@ Needs python3-zmq, python3-protobuf and the generated package on the path:
 import argparse
 import math
 import random
+import sys
 import time
 
 import zmq
 from palpate.v1.contact_pb2 import ContactBatch
+from zmq.auth import load_certificate
 
 
 def touch():
@@ -25,12 +27,18 @@ def main():
     parser.add_argument("--endpoint", default="tcp://127.0.0.1:5581", help="the recognizer's contacts")
     parser.add_argument("--name", default="finger", help="this probe's name")
     parser.add_argument("--rate", type=float, default=200.0, help="samples a second")
+    parser.add_argument("--curve-secret-key", metavar="FILE", help="CURVE: our own key (palpate keygen)")
+    parser.add_argument("--curve-server-key", metavar="FILE", help="CURVE: the recognizer's public key")
     options = parser.parse_args()
 
     socket = zmq.Context().socket(zmq.XPUB)
     socket.setsockopt(zmq.LINGER, 200)  # [ms] do not hang at exit where nobody listens
     socket.setsockopt(zmq.RECONNECT_IVL, 10)
+    if options.curve_secret_key:
+        socket.curve_publickey, socket.curve_secretkey = load_certificate(options.curve_secret_key)
+        socket.curve_serverkey, _ = load_certificate(options.curve_server_key)
     socket.connect(options.endpoint)
+    print(f"waiting for a recognizer at {options.endpoint} (palpate-node)", file=sys.stderr)
     socket.recv()  # the recognizer's subscription: from here on nothing is lost
 
     batch = ContactBatch()

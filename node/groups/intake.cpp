@@ -59,6 +59,7 @@ RejectReason Intake::take(std::size_t frame_count, std::string_view topic, std::
   }
   if (reason != v1::REJECT_REASON_UNSPECIFIED) {
     ++counters_.rejected[static_cast<std::size_t>(reason)];
+    counters_.rejected_last[static_cast<std::size_t>(reason)] = decoder_.probe();
     if (probe != nullptr) ++probe->rejected;
     return reason;
   }

@@ -28,6 +28,8 @@ struct IntakeCounters {
   std::uint64_t samples_received = 0;                                ///< of the messages accepted
   std::uint64_t samples_refused = 0;                                 ///< of them, by the recognizer
   std::array<std::uint64_t, v1::RejectReason_ARRAYSIZE> rejected{};  ///< by RejectReason
+  /// Name of the probe on whose topic the last of each came; empty where the topic is none.
+  std::array<std::string, v1::RejectReason_ARRAYSIZE> rejected_last;
 };
 
 class Intake {

@@ -29,6 +29,8 @@ struct Probe {
   RateMeter message_rate;
   RateMeter sample_rate;
   std::int64_t latency_ns = 0;  ///< of the latest message, publication to arrival
+  enum class Told { Nothing, Up, Silent };
+  Told told = Told::Nothing;  ///< of what the operator has read
 };
 
 class ProbeRegistry {

@@ -4,11 +4,16 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/curves/curve.h"
+#include "core/recognition/given/given_class.h"
 #include "core/recognition/recognizer.h"
 
 namespace py = pybind11;
@@ -71,26 +76,42 @@ py::dict contact_of(const palpate::LocalizedContact& contact) {
   return result;
 }
 
-py::dict recognition_of(const palpate::Recognition& answer) {
-  py::dict result;
-  result["status"] = name_of(answer.status);
-  result["doubt"] = std::string(palpate::name_of(answer.doubt));
-  result["curve_class"] = std::string(palpate::name_of(answer.shape.curve_class));
-  result["params"] = answer.shape.values;
-  result["pose"] = pose_of(answer.world_T_curve);
-  result["covariance"] = Eigen::MatrixXd(answer.covariance);
-  result["sample_count"] = answer.sample_count;
-  result["outlier_count"] = answer.outlier_count;
-  result["sigma_m"] = answer.sigma_m;
-  result["noise_correlation_m"] = answer.noise_correlation_m;
-  py::list hypotheses;
-  for (const auto& hypothesis : answer.hypotheses) hypotheses.append(hypothesis_of(hypothesis));
-  result["hypotheses"] = hypotheses;
-  py::list contacts;
-  for (const auto& contact : answer.contacts) contacts.append(contact_of(contact));
-  result["contacts"] = contacts;
-  return result;
+/// An answer: what is asked of it is made for Python then.
+struct Answer {
+  palpate::Recognition recognition;
+  double compute_s = 0.0;
+
+  py::list hypotheses() const {
+    py::list result;
+    for (const auto& hypothesis : recognition.hypotheses) result.append(hypothesis_of(hypothesis));
+    return result;
+  }
+  py::list contacts() const {
+    py::list result;
+    for (const auto& contact : recognition.contacts) result.append(contact_of(contact));
+    return result;
+  }
+};
+
+template <typename Get>
+void add_property(py::class_<Answer>& type, const char* name, Get get) {
+  type.def_property_readonly(name, [get](const Answer& answer) { return get(answer.recognition); });
 }
+
+/// Adds the time of its scope: what is C++'s own, without the way from Python and back.
+class ComputeTime {
+ public:
+  explicit ComputeTime(double& sum_s) : sum_s_(sum_s) {}
+  ~ComputeTime() {
+    sum_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  ComputeTime(const ComputeTime&) = delete;
+  ComputeTime& operator=(const ComputeTime&) = delete;
+
+ private:
+  double& sum_s_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 class Recognizer {
  public:
@@ -113,9 +134,22 @@ class Recognizer {
     const palpate::PatchContext context{probe, patch, tip_radius_m, side_called(side)};
     const double* xy = points.data();
     const double* sigma = sigma_m.data();
+    // Nothing of a patch is taken where a part of it cannot be.
+    std::size_t not_finite = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      not_finite += std::isfinite(xy[2 * i]) && std::isfinite(xy[2 * i + 1]) ? 0 : 1;
+    }
+    if (not_finite > 0) {
+      throw std::invalid_argument("points: " + std::to_string(not_finite) + " are not finite");
+    }
+    if (!std::all_of(sigma, sigma + sigmas,
+                     [](double value) { return std::isfinite(value) && value >= 0.0; })) {
+      throw std::invalid_argument("sigma: must be finite and not below 0");
+    }
     palpate::AddResult added;
     {
       const py::gil_scoped_release release;
+      const ComputeTime time(compute_s_);
       samples_.resize(count);
       for (std::size_t i = 0; i < count; ++i) {
         samples_[i].position_m = palpate::Vec2(xy[2 * i], xy[2 * i + 1]);
@@ -123,17 +157,18 @@ class Recognizer {
       }
       added = recognizer_.add(context, samples_);
     }
-    return py::make_tuple(added.accepted, added.repeated, added.rejected_not_finite,
-                          added.rejected_negative_sigma);
+    return py::make_tuple(added.accepted, added.repeated);
   }
 
-  py::dict recognize() {
-    palpate::Recognition answer;
+  Answer recognize() {
+    const py::gil_scoped_release release;
+    Answer answer;
     {
-      const py::gil_scoped_release release;
-      answer = recognizer_.recognize();
+      const ComputeTime time(compute_s_);
+      answer.recognition = recognizer_.recognize();
     }
-    return recognition_of(answer);
+    answer.compute_s = std::exchange(compute_s_, 0.0);
+    return answer;
   }
 
   void reset() { recognizer_.reset(); }
@@ -157,6 +192,7 @@ class Recognizer {
 
   palpate::Recognizer recognizer_;
   std::vector<palpate::ContactSample> samples_;
+  double compute_s_ = 0.0;  // since the last answer
 };
 
 /// A curve where it lies in the world, in metres.
@@ -213,6 +249,34 @@ class PlacedCurve {
   palpate::Pose2 world_T_curve_;
 };
 
+/// The least squares of a class that is given, on points n x 2 in any unit of length.
+py::dict fit_given(const std::string& name, const Array& points, double sigma) {
+  if (points.ndim() != 2 || points.shape(1) != 2) {
+    throw std::invalid_argument("points must be an array of shape (n, 2)");
+  }
+  const palpate::CurveClass curve_class = class_called(name);
+  const double* xy = points.data();
+  std::vector<palpate::GivenPoint> given(static_cast<std::size_t>(points.shape(0)));
+  palpate::GivenFit fit;
+  {
+    const py::gil_scoped_release release;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      given[i].position_m = palpate::Vec2(xy[2 * i], xy[2 * i + 1]);
+    }
+    fit = palpate::fit_given_class(curve_class, given, {.sigma_m = sigma});
+  }
+  py::dict result;
+  result["status"] = std::string(palpate::name_of(fit.status));
+  result["params"] = fit.shape.values;
+  result["pose"] = pose_of(fit.world_T_curve);
+  result["covariance"] = Eigen::MatrixXd(fit.covariance);
+  result["rms"] = fit.rms_m;
+  result["peak_to_valley"] = fit.peak_to_valley_m;
+  result["sigma"] = fit.sigma_m;
+  result["dof"] = fit.dof;
+  return result;
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_core, module) {
@@ -221,11 +285,30 @@ PYBIND11_MODULE(_core, module) {
       .def("add", &Recognizer::add)
       .def("recognize", &Recognizer::recognize)
       .def("reset", &Recognizer::reset);
+  py::class_<Answer> answer(module, "Answer");
+  add_property(answer, "status", [](const auto& r) { return name_of(r.status); });
+  add_property(answer, "doubt", [](const auto& r) { return palpate::name_of(r.doubt); });
+  add_property(answer, "curve_class",
+               [](const auto& r) { return palpate::name_of(r.shape.curve_class); });
+  add_property(answer, "params", [](const auto& r) -> Eigen::Vector3d { return r.shape.values; });
+  add_property(answer, "pose", [](const auto& r) { return pose_of(r.world_T_curve); });
+  add_property(answer, "covariance", [](const auto& r) -> Eigen::MatrixXd { return r.covariance; });
+  add_property(answer, "sample_count", [](const auto& r) { return r.sample_count; });
+  add_property(answer, "outlier_count", [](const auto& r) { return r.outlier_count; });
+  add_property(answer, "sigma_m", [](const auto& r) { return r.sigma_m; });
+  add_property(answer, "noise_correlation_m", [](const auto& r) { return r.noise_correlation_m; });
+  answer.def_readonly("compute_s", &Answer::compute_s)
+      .def_property_readonly("hypotheses", &Answer::hypotheses)
+      .def_property_readonly("contacts", &Answer::contacts);
   py::class_<PlacedCurve>(module, "PlacedCurve")
       .def(py::init<const std::string&, const Eigen::Vector3d&, double, double, double>())
       .def_property_readonly("period", &PlacedCurve::period)
       .def("at", &PlacedCurve::at)
       .def("feet", &PlacedCurve::feet);
+  module.def("fit_given", &fit_given);
+  module.def("degrees_of_freedom", [](const std::string& name) {
+    return palpate::degrees_of_freedom(class_called(name));
+  });
   module.def("parameter_letters", [](const std::string& name) {
     return std::string(palpate::parameter_letters(class_called(name)));
   });

@@ -56,7 +56,11 @@ void ZapHandler::serve() {
       frames.push_back(frame.to_string());
     }
     const std::array<std::string, 6> reply = zap_reply(frames, clients_);
-    if (reply[2] != "200") ++denied_count_;
+    if (reply[2] != "200") {
+      ++denied_count_;
+      constexpr std::size_t kAddress = 3;
+      last_denied_ = frames.size() > kAddress ? frames[kAddress] : std::string();
+    }
     for (std::size_t i = 0; i < reply.size(); ++i) {
       zmq_send(socket_.handle(), reply[i].data(), reply[i].size(),
                i + 1 < reply.size() ? ZMQ_SNDMORE : 0);

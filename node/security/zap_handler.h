@@ -52,11 +52,14 @@ class ZapHandler {
   zmq::socket_t& socket() { return socket_; }
 
   std::uint64_t denied_count() const { return denied_count_; }
+  /// Address of the last client that was denied.
+  const std::string& last_denied() const { return last_denied_; }
 
  private:
   ClientList clients_;
   zmq::socket_t socket_;
   std::uint64_t denied_count_ = 0;
+  std::string last_denied_;
 };
 
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <sstream>
 #include <string_view>
@@ -19,8 +20,9 @@ namespace {
 
 constexpr std::size_t kKeyBytes = 32;
 constexpr std::size_t kZ85Length = 40;
-constexpr std::string_view kPublicKey = "public-key ";
-constexpr std::string_view kSecretKey = "secret-key ";
+constexpr std::string_view kPublicKey = "public-key";
+constexpr std::string_view kSecretKey = "secret-key";
+constexpr std::string_view kBlanks = " \t\r";
 // Larger than any list of keys that a person keeps; bounds what a wrong path makes us read.
 constexpr std::size_t kMaxKeys = 10000;
 constexpr std::size_t kMostKeyFileBytes = std::size_t{4} << 20;
@@ -35,25 +37,65 @@ struct KeyLines {
   std::vector<std::string> secret_keys;
 };
 
+std::string_view trimmed(std::string_view text, std::string_view of = kBlanks) {
+  const std::size_t first = text.find_first_not_of(of);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(of) - first + 1);
+}
+
+// What a line gives, "NAME = VALUE" or "NAME VALUE", the value perhaps in quotes.
+struct Setting {
+  std::string_view name;
+  std::string_view value;
+};
+
+Setting setting_of(std::string_view line) {
+  const std::size_t end = line.find_first_of(" \t=");
+  if (end == std::string_view::npos) return {line, {}};
+  std::string_view value = trimmed(line.substr(end));
+  if (value.starts_with('=')) value = trimmed(value.substr(1));
+  for (const char quote : {'"', '\''}) {
+    if (value.size() >= 2 && value.front() == quote && value.back() == quote) {
+      value = value.substr(1, value.size() - 2);
+    }
+  }
+  return {line.substr(0, end), value};
+}
+
 Result<KeyLines> read_key_lines(const std::string& path) {
   const Result<std::string> text = read_bounded(path, kMostKeyFileBytes);
   if (!text) return Result<KeyLines>::fail(text.error);
   std::istringstream file(*text.value);
   KeyLines keys;
   std::string line;
+  bool in_metadata = false;  // which says what it likes
   for (std::size_t number = 1; std::getline(file, line); ++number) {
-    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-    if (line.empty() || line.front() == '#') continue;
-    const bool is_public = line.starts_with(kPublicKey);
-    const bool is_secret = line.starts_with(kSecretKey);
-    std::string key = is_public || is_secret ? line.substr(kPublicKey.size()) : std::string();
-    if (!is_z85_key(key) || keys.public_keys.size() >= kMaxKeys) {
+    const std::string_view said = trimmed(line);
+    if (said.empty() || said.front() == '#') continue;
+    const bool is_section = line.front() != ' ' && line.front() != '\t';
+    if (is_section) in_metadata = said == "metadata";
+    if (in_metadata || (is_section && said == "curve")) continue;
+    const Setting setting = setting_of(said);
+    const bool is_public = setting.name == kPublicKey;
+    std::string key(setting.value);
+    if ((!is_public && setting.name != kSecretKey) || !is_z85_key(key) ||
+        keys.public_keys.size() >= kMaxKeys) {
       return Result<KeyLines>::fail(path + ":" + std::to_string(number) +
-                                    ": expected \"public-key KEY\" or \"secret-key KEY\"");
+                                    ": expected public-key = \"KEY\" or secret-key = \"KEY\"");
     }
     (is_public ? keys.public_keys : keys.secret_keys).push_back(std::move(key));
   }
   return Result<KeyLines>::ok(std::move(keys));
+}
+
+std::string certificate(const char* comment, const CurveKeyPair& keys, bool with_secret) {
+  std::string text = std::string("# palpate: ") + comment + "\nmetadata\ncurve\n";
+  const auto add = [&text](std::string_view name, const std::string& key) {
+    text += "    " + std::string(name) + " = \"" + key + "\"\n";
+  };
+  add(kPublicKey, keys.public_key);
+  if (with_secret) add(kSecretKey, keys.secret_key);
+  return text;
 }
 
 std::string write_new_file(const std::string& path, mode_t mode, const std::string& text) {
@@ -83,17 +125,15 @@ Result<CurveKeyPair> generate_curve_keys() {
 
 std::string write_curve_keys(const CurveKeyPair& keys, const std::string& secret_path,
                              const std::string& public_path) {
-  const std::string public_line = std::string(kPublicKey) + keys.public_key + "\n";
-  const std::string secret_line = std::string(kSecretKey) + keys.secret_key + "\n";
   constexpr mode_t kPrivate = 0600;
   constexpr mode_t kShared = 0644;
-  if (std::string error =
-          write_new_file(secret_path, kPrivate,
-                         "# palpate: keep this file to yourself\n" + public_line + secret_line);
+  if (std::string error = write_new_file(secret_path, kPrivate,
+                                         certificate("keep this file to yourself", keys, true));
       !error.empty()) {
     return error;
   }
-  std::string error = write_new_file(public_path, kShared, public_line);
+  std::string error =
+      write_new_file(public_path, kShared, certificate("give this to the other side", keys, false));
   if (!error.empty()) ::unlink(secret_path.c_str());
   return error;
 }
@@ -104,7 +144,11 @@ Result<CurveKeyPair> read_curve_keys(const std::string& secret_path) {
   if (::stat(secret_path.c_str(), &info) != 0) {
     return Keys::fail(secret_path + ": " + std::strerror(errno));
   }
-  if ((info.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+  // A credential of systemd's is ours by an access list, whose mask shows as the group's rights.
+  const char* credentials = std::getenv("CREDENTIALS_DIRECTORY");
+  const bool granted =
+      credentials != nullptr && secret_path.starts_with(std::string(credentials) + "/");
+  if ((info.st_mode & (granted ? S_IWGRP | S_IRWXO : S_IRWXG | S_IRWXO)) != 0) {
     return Keys::fail(secret_path + ": others may read it; chmod 600 it");
   }
   Result<KeyLines> lines = read_key_lines(secret_path);

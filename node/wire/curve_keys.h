@@ -1,8 +1,14 @@
-// CURVE keys and their files.
+// CURVE keys and their files: certificates as CZMQ and pyzmq write and read them (ZPL, ZeroMQ's
+// RFC 4), so that each side may have made its own.
 //
-// A key file is text: lines "public-key KEY" and "secret-key KEY", KEY in Z85 (40 characters);
-// empty lines and lines that begin with '#' are skipped. A public file has the first line only;
-// several of them, one after the other, are an allow-clients file.
+//     metadata
+//     curve
+//         public-key = "KEY"
+//         secret-key = "KEY"
+//
+// KEY in Z85 (40 characters). A public file has no secret key; several of them, one after the
+// other, are an allow-clients file. Bare lines "public-key KEY" are read too, empty lines and lines
+// that begin with '#' skipped.
 #pragma once
 
 #include <string>

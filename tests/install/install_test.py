@@ -1,5 +1,4 @@
 """cmake --install to a place of its own, and strangers' projects built against it."""
-import os
 import pathlib
 import re
 import subprocess
@@ -7,53 +6,7 @@ import tempfile
 import unittest
 
 from programs import BUILD, SOURCE
-
-CIRCLE = """
-#include <palpate/recognizer.h>
-
-#include <cmath>
-#include <cstdio>
-#include <vector>
-
-int main() {
-  std::vector<palpate::ContactSample> samples;
-  for (int i = 0; i < 60; ++i) {
-    samples.push_back({{0.1 + 0.02 * std::cos(0.1 * i), 0.02 * std::sin(0.1 * i)}, 1e-6, 0});
-  }
-  palpate::Recognizer recognizer;
-  recognizer.add({}, samples);
-  const palpate::Recognition answer = recognizer.recognize();
-  std::printf("%s %.6f\\n", name_of(answer.shape.curve_class).data(), answer.shape.values[0]);
-}
-"""
-PROBE = """
-#include <palpate/client.h>
-
-#include <cstdio>
-
-int main() {
-  palpate::client::ContactPublisherOptions options;
-  options.endpoint = "ipc://nobody-listens-here";
-  palpate::client::ContactPublisher publisher(options);
-  std::printf("%d\\n", publisher.wait_for_recognizer(std::chrono::milliseconds(10)));
-}
-"""
-PROJECT = """
-cmake_minimum_required(VERSION 3.25)
-project(stranger LANGUAGES CXX)
-find_package(palpate 0.1 REQUIRED COMPONENTS core client)
-add_executable(circle circle.cpp)
-target_link_libraries(circle PRIVATE palpate::core)
-add_executable(probe probe.cpp)
-target_link_libraries(probe PRIVATE palpate::client)
-"""
-
-
-def call(*command, **environment):
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, env=os.environ | environment)
-    if done.returncode != 0:
-        raise AssertionError(" ".join(map(str, command)) + "\n" + done.stdout + done.stderr)
-    return done.stdout
+from strangers import ANSWERS, PROJECT, call, write_project
 
 
 class Install(unittest.TestCase):
@@ -64,45 +17,98 @@ class Install(unittest.TestCase):
         cls.folder = pathlib.Path(cls.temporary.name)
         cls.prefix = cls.folder / "prefix"
         call("cmake", "--install", BUILD, "--prefix", cls.prefix)
-        cls.project = cls.folder / "stranger"
-        cls.project.mkdir()
-        for name, text in (("circle.cpp", CIRCLE), ("probe.cpp", PROBE), ("CMakeLists.txt", PROJECT)):
-            (cls.project / name).write_text(text)
+        cls.project = write_project(cls.folder / "stranger")
         cls.version = re.search(r"project\(palpate VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
+        cls.libraries = next(cls.prefix.glob("lib/**/libpalpate_core.a")).parent
+
+    def build(self, name, *arguments):
+        build = self.folder / name
+        call("cmake", "-S", self.project, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}", *arguments)
+        call("cmake", "--build", build)
+        for program, answer in ANSWERS.items():
+            self.assertEqual(call(build / program), answer)
+        return build
+
+    def needed(self, program):
+        return set(re.findall(r"NEEDED.*\[(.*)\]", call("readelf", "--dynamic", program)))
 
     def test_the_programs_run_from_there(self):
         for program in ("palpate", "palpate-node", "palpate-sim"):
             self.assertIn(self.version, call(self.prefix / "bin" / program, "--version"))
 
-    def test_a_cmake_project_of_a_stranger(self):
-        build = self.project / "build"
-        call("cmake", "-S", self.project, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}")
-        call("cmake", "--build", build)
-        self.assertEqual(call(build / "circle"), "circle 0.020000\n")
-        self.assertEqual(call(build / "probe"), "0\n")
+    def test_a_cmake_project_of_a_stranger_static(self):
+        build = self.build("static")
+        for program in ANSWERS:
+            self.assertFalse([name for name in self.needed(build / program) if "palpate" in name])
+
+    def test_a_cmake_project_of_a_stranger_shared(self):
+        build = self.build("shared", "-DBUILD_SHARED_LIBS=ON")
+        minor = ".".join(self.version.split(".")[:2])
+        self.assertIn(f"libpalpate_core.so.{minor}", self.needed(build / "circle"))
+        self.assertIn(f"libpalpate_client.so.{minor}", self.needed(build / "probe"))
+
+    def test_a_shared_library_shows_what_its_headers_declare_and_no_more(self):
+        headers = " ".join(path.read_text() for path in (self.prefix / "include").rglob("*.h"))
+        declared = set(re.findall(r"\w+", headers))
+        for name, most in (("core", 250), ("client", 2000)):
+            lines = call("nm", "--dynamic", "--demangle", "--defined-only", self.libraries / f"libpalpate_{name}.so").splitlines()
+            symbols = [line.split(maxsplit=2)[2] for line in lines]
+            own = [symbol for symbol in symbols if not re.match(r"PALPATE_|descriptor_table_palpate_", symbol)]
+            self.assertGreater(len(own), 50)
+            self.assertLess(len(own), most)
+            for symbol in own:
+                self.assertRegex(symbol, r"^((vtable|typeinfo|typeinfo name) for )?palpate::")
+                # palpate::Recognizer::add(...): each word of its name stands in a header.
+                words = re.match(r"(?:.* for )?([\w:~]+)", symbol)[1].replace("~", "").split("::")
+                self.assertTrue(set(filter(None, words)) <= declared | {"operator"}, symbol)
+        # What is hidden: in the static library, behind no door.
+        everything = call("nm", "--demangle", "--defined-only", self.libraries / "libpalpate_core.a")
+        self.assertIn("palpate::fit_smooth_model(", everything)
+        self.assertNotIn("palpate::fit_smooth_model(",
+                         call("nm", "--dynamic", "--demangle", self.libraries / "libpalpate_core.so"))
 
     def test_a_component_that_there_is_not(self):
-        (self.project / "bad").mkdir()
-        (self.project / "bad/CMakeLists.txt").write_text(PROJECT.replace("core client", "core sphere"))
+        project = write_project(self.folder / "bad", PROJECT.replace("core client", "core sphere"))
         with self.assertRaisesRegex(AssertionError, "sphere"):
-            call("cmake", "-S", self.project / "bad", "-B", self.project / "bad/build",
-                 f"-DCMAKE_PREFIX_PATH={self.prefix}")
+            call("cmake", "-S", project, "-B", project / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}")
+
+    def test_fetch_content(self):
+        # As far as the build's plan: compiling all of it again would take minutes.
+        fetched = PROJECT.replace("find_package(palpate 0.1 REQUIRED COMPONENTS core client)", f"""
+include(FetchContent)
+FetchContent_Declare(palpate SOURCE_DIR {SOURCE})
+FetchContent_MakeAvailable(palpate)
+enable_testing()
+""")
+        project = write_project(self.folder / "fetching", fetched)
+        call("cmake", "-S", project, "-B", project / "build", "-G", "Unix Makefiles", "-DPALPATE_BUILD_SIM=OFF")
+        # What each is linked to; and nothing of ours is installed with the stranger's.
+        links = {program: (project / f"build/CMakeFiles/{program}.dir/link.txt").read_text() for program in ANSWERS}
+        self.assertIn("libpalpate_core.a", links["circle"])
+        self.assertNotIn("zmq", links["circle"])
+        for library in ("libpalpate_client.a", "libpalpate_proto.a", "zmq", "protobuf"):
+            self.assertIn(library, links["probe"])
+        self.assertFalse(list((project / "build").rglob("palpate-config.cmake")))
 
     def test_pkg_config(self):
-        where = next(self.prefix.glob("lib*/**/pkgconfig"))
-        for name, out in (("core", "circle 0.020000\n"), ("client", "0\n")):
-            flags = call("pkg-config", "--cflags", "--libs", f"palpate-{name}", PKG_CONFIG_PATH=str(where)).split()
-            source = self.project / ("circle.cpp" if name == "core" else "probe.cpp")
-            program = self.folder / name
-            call("g++", "-std=c++20", source, "-o", program, *flags)
-            self.assertEqual(call(program), out)
-            self.assertEqual(call("pkg-config", "--modversion", f"palpate-{name}", PKG_CONFIG_PATH=str(where)),
-                             self.version + "\n")
+        where = {"PKG_CONFIG_PATH": str(self.libraries / "pkgconfig")}
+        for name, program in (("core", "circle"), ("client", "probe")):
+            flags = call("pkg-config", "--cflags", "--libs", f"palpate-{name}", **where).split()
+            call("g++", "-std=c++20", self.project / f"{program}.cpp", "-o", self.folder / name, *flags)
+            self.assertEqual(call(self.folder / name, LD_LIBRARY_PATH=str(self.libraries)), ANSWERS[program])
+            self.assertEqual(call("pkg-config", "--modversion", f"palpate-{name}", **where), self.version + "\n")
 
     def test_nothing_lies_beside_its_own_folder(self):
         self.assertEqual([p.name for p in (self.prefix / "include").iterdir()], ["palpate"])
         for header in (self.prefix / "include").rglob("*.h"):
             self.assertNotIn(str(SOURCE), header.read_text())
+
+    def test_every_header_that_is_installed_stands_alone_with_its_own_folder(self):
+        # Nothing includes what is not there: the doors' headers are all that is.
+        folder = self.prefix / "include/palpate"
+        for header in folder.rglob("*.h"):
+            for name in re.findall(r'^#include "([^"]+)"', header.read_text(), re.MULTILINE):
+                self.assertTrue((folder / name).is_file() or (folder.parent / name).is_file(), f"{header}: {name}")
 
 
 if __name__ == "__main__":

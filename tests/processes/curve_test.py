@@ -1,8 +1,12 @@
 """CURVE: the right key works, a wrong one or none gets nothing and is counted."""
+import os
 import signal
 import subprocess
 import time
 import unittest
+
+import zmq
+from zmq.auth import create_certificates, load_certificate
 
 from bus import Bus, Probe, wait_for
 from programs import SIM, SOURCE, TOOL, run
@@ -103,6 +107,19 @@ class Curve(unittest.TestCase):
             code, _, err = run(TOOL, "check", "--contacts", "tcp://0.0.0.0:*", "--seconds", "1")
             self.assertEqual(code, 2)
             self.assertIn("open to the network", err)
+
+    def test_certificates_are_those_of_pyzmq_and_czmq(self):
+        with Bus("tcp") as bus:
+            self.assertEqual(run(TOOL, "keygen", bus.folder / "node")[0], 0)
+            create_certificates(bus.folder, "finger")  # pyzmq's: finger.key, finger.key_secret
+            os.chmod(bus.folder / "finger.key_secret", 0o600)
+            bus.start_node("--curve-secret-key", bus.folder / "node.secret", "--allow-clients", bus.folder / "finger.key")
+            self.assertEqual(run(SIM, SOURCE / "sim/scenes/circle.textproto", "--contacts", bus.contacts, "--fast",
+                                 "--wait", "5", "--curve-secret-key", bus.folder / "finger.key_secret",
+                                 "--curve-server-key", bus.folder / "node.public")[0], 0)
+            public, secret = load_certificate(bus.folder / "node.secret")
+            self.assertEqual(zmq.curve_public(secret), public)
+            self.assertEqual(load_certificate(bus.folder / "node.public"), (public, None))
 
     def test_keys_are_never_overwritten(self):
         with Bus() as bus:

@@ -5,17 +5,24 @@ import threading
 import unittest
 
 from bus import Bus
-from programs import BUILD, SOURCE
+from programs import BUILD, SOURCE, TOOL, run
 
 EXAMPLES = SOURCE / "node/examples"
 
 
 class Examples(unittest.TestCase):
-    def pair(self, probe, planner):
-        with Bus() as bus:
-            bus.start_node()
-            reader = bus.start(*planner(bus.results), stdout=subprocess.PIPE)
-            writer = bus.start(*probe(bus.contacts))
+    def pair(self, probe, planner, curve=False):
+        with Bus("tcp" if curve else "ipc") as bus:
+            keys = []
+            if curve:
+                for name in ("node", "us"):
+                    self.assertEqual(run(TOOL, "keygen", bus.folder / name)[0], 0)
+                bus.start_node("--curve-secret-key", bus.folder / "node.secret", "--allow-clients", bus.folder / "us.public")
+                keys = [bus.folder / "us.secret", bus.folder / "node.public"]
+            else:
+                bus.start_node()
+            reader = bus.start(*planner(bus.results, *keys), stdout=subprocess.PIPE)
+            writer = bus.start(*probe(bus.contacts, *keys))
             self.assertEqual(writer.wait(20), 0)
             silent = threading.Timer(20, reader.kill)  # ends the reading below
             silent.start()
@@ -30,11 +37,14 @@ class Examples(unittest.TestCase):
 
     @staticmethod
     def python(name):
-        return lambda endpoint: (sys.executable, EXAMPLES / f"{name}.py", "--endpoint", endpoint)
+        def call(endpoint, *keys):
+            flags = zip(("--curve-secret-key", "--curve-server-key"), keys)
+            return (sys.executable, EXAMPLES / f"{name}.py", "--endpoint", endpoint, *(part for pair in flags for part in pair))
+        return call
 
     @staticmethod
     def cpp(name):
-        return lambda endpoint: (BUILD / f"node/examples/palpate_example_{name}", endpoint)
+        return lambda endpoint, *keys: (BUILD / f"node/examples/palpate_example_{name}", endpoint, *keys)
 
     def test_python_probe_and_planner(self):
         self.pair(self.python("probe"), self.python("planner"))
@@ -44,6 +54,18 @@ class Examples(unittest.TestCase):
 
     def test_cpp_probe_and_python_planner(self):
         self.pair(self.cpp("probe"), self.python("planner"))
+
+    def test_with_keys(self):
+        self.pair(self.python("probe"), self.cpp("planner"), curve=True)
+        self.pair(self.cpp("probe"), self.python("planner"), curve=True)
+
+    def test_who_waits_says_for_what(self):
+        with Bus() as bus:
+            for call in (self.python("probe"), self.python("planner"), self.cpp("probe"), self.cpp("planner")):
+                waiting = bus.start(*call(bus.results), stderr=subprocess.PIPE)
+                self.assertIn(bus.results, waiting.stderr.readline())
+                waiting.kill()
+                waiting.communicate()
 
 
 if __name__ == "__main__":

@@ -131,6 +131,9 @@ class Tool(unittest.TestCase):
             self.assertEqual(code, 0)
             rate = float(next(l for l in out.splitlines() if l.startswith("status")).split()[1])
             self.assertGreater(rate, 0.7)
+            # One answer, repeated with each status for planners that come late: no rate of its own.
+            answers = next(l for l in out.splitlines() if l.startswith("recognition"))
+            self.assertRegex(answers, r" 0\.0 Hz .* 1 messages, [2-9] repeats$")
 
     def test_a_recording_replayed_gives_the_same_answer(self):
         with Bus() as bus:

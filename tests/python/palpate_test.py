@@ -138,6 +138,56 @@ class Fit(unittest.TestCase):
             sys.setswitchinterval(before)
         self.assertLess(len(done), most)
 
+    def test_what_a_call_costs_beside_the_recognition(self):
+        # 30 us at most; where all of Python is slower than on the machine of tests/README.md, so much more.
+        import overhead
+        slower = max(1.0, overhead.least_us(overhead.reference) / overhead.REFERENCE_US)
+        costs = overhead.costs()
+        print({name: f"{us:.1f} us" for name, us in costs.items()}, f"this machine: {slower:.2f}")
+        for name, us in costs.items():
+            self.assertLess(us, 30 * slower, name)
+
+    def test_many_small_adds_cost_no_more_than_few(self):
+        # A picture's points are kept beside: nothing grows with how often was added.
+        recognizer = palpate.Recognizer()
+        points = ellipse(0, 5.5, 20000)
+        for start in range(0, len(points), 1):
+            recognizer.add(points[start:start + 1])
+        self.assertEqual(recognizer._drawn, 20000)
+        recognizer.add(ellipse(0, 5, 60000))
+        self.assertEqual(recognizer._drawn, 40000)
+
+    def test_a_class_that_is_known_in_the_habits_of_scikit_image(self):
+        for unit in (1.0, 1e-3):
+            points = unit * np.random.default_rng(5).permutation(np.concatenate(PATCHES))
+            Ellipse = palpate.models.model("ellipse")
+            self.assertEqual((Ellipse.__name__, Ellipse.min_samples), ("EllipseModel", 5))
+            ellipse_model = Ellipse()
+            self.assertTrue(ellipse_model.estimate(points), ellipse_model.status)
+            sigmas = np.sqrt(np.diag(ellipse_model.covariance))
+            truth = np.array([A * unit, B * unit, POSE[0] * unit, POSE[1] * unit, POSE[2]])
+            self.assertTrue((abs(ellipse_model.params - truth) < 4 * sigmas).all(), ellipse_model.params)
+            residuals = ellipse_model.residuals(points)
+            self.assertAlmostEqual(np.sqrt((residuals**2).mean()), ellipse_model.rms)
+            self.assertAlmostEqual(np.ptp(residuals), ellipse_model.peak_to_valley)
+            on_it = ellipse_model.predict_xy(np.linspace(-3, 3, 9))
+            np.testing.assert_allclose(ellipse_model.residuals(on_it), 0, atol=1e-9 * unit)
+            # Least squares: no neighbour has less.
+            for i, step in enumerate(0.3 * sigmas):
+                for sign in (-1, 1):
+                    other = ellipse_model.params.copy()
+                    other[i] += sign * step
+                    moved = Ellipse()
+                    moved.params = other
+                    self.assertGreater((moved.residuals(points)**2).sum(), (residuals**2).sum())
+        line = palpate.models.model("line")()
+        self.assertFalse(line.estimate([[1.0, 2.0]]))
+        self.assertEqual(line.status, "too few points")
+        with self.assertRaisesRegex(ValueError, "too few points"):
+            line.residuals([[0.0, 0.0]])
+        with self.assertRaises(ValueError):
+            palpate.models.model("sphere")
+
     def test_stubs_name_what_there_is(self):
         import ast
         core = palpate._core
@@ -192,6 +242,59 @@ except TimeoutError as error:
         self.assertIn("no answer from", lines[1])
         self.assertIn("no recognizer listens at", lines[2])
 
+    def test_curve_with_the_keys_of_palpate_keygen(self):
+        from bus import Bus
+        from programs import TOOL
+        with Bus("tcp") as bus:
+            for name in ("node", "finger"):
+                subprocess.run([TOOL, "keygen", bus.folder / name], check=True, stdout=subprocess.DEVNULL)
+            bus.start_node("--curve-secret-key", bus.folder / "node.secret", "--allow-clients", bus.folder / "finger.public")
+            script = f"""
+import palpate, numpy as np
+keys = dict(secret_key="{bus.folder}/finger.secret", server_key="{bus.folder}/node.public")
+with palpate.Planner({bus.results!r}, **keys) as planner, palpate.Probe("finger", {bus.contacts!r}, sigma=1e-3, unit="mm", **keys) as probe:
+    t = np.linspace(0, 5, 100)
+    probe.send(15 * np.column_stack([np.cos(t), np.sin(t)]))
+    print(round(1e3 * planner.receive(timeout=20).parameters.a, 2))
+try:
+    palpate.Probe("finger", {bus.contacts!r}, timeout=0.5)
+except TimeoutError:
+    print("turned away")
+try:
+    palpate.Planner({bus.results!r}, secret_key="{bus.folder}/finger.public", server_key="{bus.folder}/node.public")
+except ValueError as error:
+    print(error)
+"""
+            done = subprocess.run([sys.executable, "-c", script], env=os.environ | {"PYTHONPATH": str(BUILD / "node/python")},
+                                  capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.splitlines(), ["15.0", "turned away", f"{bus.folder}/finger.public: no secret key in it"])
+
+    def test_a_wheel_is_whole(self):
+        import importlib.util
+        import pathlib
+        import tempfile
+        import zipfile
+        if any(importlib.util.find_spec(name) is None for name in ("pip", "setuptools", "wheel")):
+            self.skipTest("pip, setuptools or wheel is not installed: no wheel was made")
+        with tempfile.TemporaryDirectory(prefix="palpate-") as folder:
+            # From what is built: PALPATE_BUILD, as all of these tests have it.
+            subprocess.run([sys.executable, "-m", "pip", "wheel", "--quiet", "--no-index", "--no-deps", "--no-build-isolation",
+                            "--wheel-dir", folder, SOURCE / "node/python"], check=True, timeout=120)
+            wheel, = pathlib.Path(folder).glob("*.whl")
+            self.assertRegex(wheel.name, r"^palpate-\d+\.\d+\.\d+-cp3\d+-cp3\d+-linux_")
+            with zipfile.ZipFile(wheel) as archive:
+                archive.extractall(f"{folder}/site")
+                names = set(archive.namelist())
+            self.assertTrue({"palpate/py.typed", "palpate/_core.pyi", "palpate/v1/recognition_pb2.py",
+                             "palpate/v1/recognition_pb2.pyi"} <= names)
+            script = "import palpate; from palpate.v1 import contact_pb2; palpate.Probe; print(palpate.__file__, palpate.fit([[0, 0], [1, 0]]))"
+            done = subprocess.run([sys.executable, "-c", script], env={"PYTHONPATH": f"{folder}/site"}, capture_output=True,
+                                  text=True, cwd="/", timeout=60)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"{folder}/site", done.stdout)
+            self.assertIn("collecting", done.stdout)
+
     def test_the_tutorial_runs(self):
         done = subprocess.run([sys.executable, SOURCE / "node/examples/tutorial.py", "--no-plot"],
                               env=os.environ | {"PYTHONPATH": str(BUILD / "node/python")}, capture_output=True,
@@ -199,6 +302,20 @@ except TimeoutError as error:
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("ellipse (recognized)", done.stdout)
         self.assertIn("ambiguous", done.stdout)
+
+    def test_the_tutorials_picture(self):
+        import importlib.util
+        import tempfile
+        if importlib.util.find_spec("matplotlib") is None:
+            self.skipTest("matplotlib is not installed: no picture was drawn")
+        with tempfile.TemporaryDirectory(prefix="palpate-") as folder:
+            subprocess.run([sys.executable, SOURCE / "node/examples/tutorial.py", "--plot", f"{folder}/tutorial.svg"],
+                           env=os.environ | {"PYTHONPATH": str(BUILD / "node/python"), "MPLBACKEND": "Agg"}, check=True,
+                           stdout=subprocess.DEVNULL, timeout=120)
+            with open(f"{folder}/tutorial.svg") as picture:
+                text = picture.read()
+        self.assertIn("ellipse (recognized)", text)
+        self.assertGreater(text.count("<use "), 222)  # each point, and ticks
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ calibration_reference_s=4.1
 # Core seconds there of what the scripts do, from empty folders. Of a build: tests/support/cpu_seconds.py.
 demo_build_cost=320
 strict_build_cost=800
-strict_test_cost=280
+strict_test_cost=340
 sanitize_cost=2570
 fuzz_cost=500
 

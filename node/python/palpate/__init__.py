@@ -14,14 +14,15 @@ from typing import TYPE_CHECKING, Iterable, Sequence
 
 import numpy as np
 
-from . import _core
+from . import _core, models
 from .result import Result, units
 
 if TYPE_CHECKING:
     from .bus import Planner, Probe
 
-__all__ = ["Planner", "Probe", "Recognizer", "Result", "fit"]
+__all__ = ["Planner", "Probe", "Recognizer", "Result", "fit", "models"]
 
+_NONE = np.empty(0)
 _MOST_DRAWN = 1 << 16  # points kept for the picture of a stream; then every second one
 
 
@@ -35,6 +36,7 @@ class Recognizer:
         self._core = _core.Recognizer(self._scale * (sigma or 0.0), list(classes), self._scale * form_deviation,
                                       most_patches, most_samples_per_patch)
         self._points: list[np.ndarray] = []
+        self._drawn = 0
         self._tip_radius = 0.0
         self.dropped = 0
         """Points that said nothing new: at exactly the place of the one before."""
@@ -44,18 +46,16 @@ class Recognizer:
         """Appends points of one patch, in their order. Gives how many were taken; raises ValueError on points
         that are not finite."""
         points = np.asarray(points, dtype=np.float64)
-        if not np.isfinite(points).all():
-            raise ValueError(f"points: {int((~np.isfinite(points)).any(axis=-1).sum())} are not finite")
-        sigmas = np.empty(0) if sigma is None else self._scale * np.atleast_1d(np.asarray(sigma, dtype=np.float64))
-        if not (np.isfinite(sigmas).all() and (sigmas >= 0).all()):
-            raise ValueError("sigma: must be finite and not below 0")
         in_metres = points if self._scale == 1.0 else self._scale * points
-        accepted, repeated, _, _ = self._core.add(in_metres, sigmas, probe, patch, self._scale * tip_radius, material_side)
+        sigmas = _NONE if sigma is None else self._scale * np.atleast_1d(np.asarray(sigma, dtype=np.float64))
+        accepted, repeated = self._core.add(in_metres, sigmas, probe, patch, self._scale * tip_radius, material_side)
         self.dropped += repeated
         self._tip_radius = max(self._tip_radius, tip_radius)
-        self._points.append(np.array(points))
-        if sum(map(len, self._points)) > _MOST_DRAWN:
+        self._points.append(points.copy())
+        self._drawn += len(points)
+        if self._drawn > _MOST_DRAWN:
             self._points = [np.concatenate(self._points)[::2]]
+            self._drawn = len(self._points[0])
         return accepted
 
     def recognize(self) -> Result:
@@ -66,6 +66,7 @@ class Recognizer:
         """A new object."""
         self._core.reset()
         self._points.clear()
+        self._drawn = 0
         self.dropped = 0
 
 

@@ -7,6 +7,7 @@ from typing import Iterator
 
 import numpy as np
 import zmq
+from zmq.auth import load_certificate
 
 from palpate.v1 import contact_pb2, recognition_pb2
 
@@ -17,17 +18,16 @@ RESULTS = "tcp://127.0.0.1:5582"
 
 
 def _secure(socket: zmq.Socket, secret_key: str | None, server_key: str | None) -> None:
-    """CURVE by the key files that `palpate keygen` writes."""
+    """CURVE by certificate files: of `palpate keygen`, CZMQ or zmq.auth.create_certificates."""
     if secret_key is None and server_key is None:
         return
     if secret_key is None or server_key is None:
         raise ValueError("CURVE needs both secret_key and server_key")
-    with open(secret_key, encoding="ascii") as file:
-        secret = file.read().split()[0].encode()
-    with open(server_key, encoding="ascii") as file:
-        socket.curve_serverkey = file.read().split()[0].encode()
-    socket.curve_secretkey = secret
-    socket.curve_publickey = zmq.curve_public(secret)
+    public, secret = load_certificate(secret_key)
+    if secret is None:
+        raise ValueError(f"{secret_key}: no secret key in it")
+    socket.curve_publickey, socket.curve_secretkey = public, secret
+    socket.curve_serverkey, _ = load_certificate(server_key)
 
 
 class _Peer:

@@ -1,6 +1,9 @@
 """What was recognised, in the unit of the points."""
 from __future__ import annotations
 
+from functools import cached_property
+from typing import Any
+
 import numpy as np
 
 from . import _core
@@ -23,36 +26,49 @@ class Result:
     """status: "collecting", "ambiguous" or "recognized"; doubt: why it is ambiguous, else "none".
     curve_class; params: {"a": ...}; pose: (x, y, theta); covariance: of [params; x; y; theta].
     probabilities: {class: posterior}. contacts: local geometry of the touched places, in metres.
-    sigma: the noise, given or estimated. sample_count, outlier_count."""
+    sigma: the noise, given or estimated. sample_count, outlier_count.
+    compute_s: what the recognition took since the answer before, without the way from Python and back."""
 
-    def __init__(self, core: dict, unit: str, touched: np.ndarray, tip_radius: float) -> None:
+    def __init__(self, core: _core.Answer, unit: str, touched: np.ndarray, tip_radius: float) -> None:
         self._core, self.unit, self._touched, self._tip_radius = core, unit, touched, tip_radius
         self._scale = scale = units(unit)
-        self.status: str = core["status"]
-        self.doubt: str = core["doubt"]
-        self.curve_class: str = core["curve_class"]
+        self.status = core.status
+        self.doubt = core.doubt
+        self.curve_class = core.curve_class
         letters = "" if self.curve_class == "unclassified" else _core.parameter_letters(self.curve_class)
         powers = _POWERS.get(self.curve_class, {})
-        factors = [scale ** -powers.get(letter, 1.0) for letter in letters]
+        self._factors = [scale ** -powers.get(letter, 1.0) for letter in letters]
         self.params: dict[str, float] = {
-            letter: factor * value for letter, factor, value in zip(letters, factors, core["params"])}
-        x, y, theta = core["pose"]
+            letter: factor * value for letter, factor, value in zip(letters, self._factors, core.params.tolist())}
+        x, y, theta = core.pose
         self.pose = (x / scale, y / scale, theta)
-        factors = np.array(factors + [1 / scale, 1 / scale, 1.0])
-        covariance = core["covariance"]
-        self.covariance: np.ndarray = (
-            covariance * np.outer(factors, factors) if covariance.shape[0] == len(factors) else np.empty((0, 0)))
-        self.probabilities: dict[str, float] = {h["curve_class"]: h["probability"] for h in core["hypotheses"]}
-        self.contacts: list[dict] = core["contacts"]
-        self.sigma: float = core["sigma_m"] / scale
-        self.sample_count: int = core["sample_count"]
-        self.outlier_count: int = core["outlier_count"]
-        self._curve = None
-        if letters or self.curve_class == "line":
-            try:
-                self._curve = _core.PlacedCurve(self.curve_class, core["params"], x, y, theta)
-            except ValueError:
-                pass  # it has no shape of its own: best at the limit of another class
+        self.sigma = core.sigma_m / scale
+        self.compute_s = core.compute_s
+        self.sample_count = core.sample_count
+        self.outlier_count = core.outlier_count
+
+    @cached_property
+    def covariance(self) -> np.ndarray:
+        factors = np.array(self._factors + [1 / self._scale, 1 / self._scale, 1.0])
+        covariance = self._core.covariance
+        return covariance * np.outer(factors, factors) if covariance.shape[0] == len(factors) else np.empty((0, 0))
+
+    @cached_property
+    def probabilities(self) -> dict[str, float]:
+        return {h["curve_class"]: h["probability"] for h in self._core.hypotheses}
+
+    @cached_property
+    def contacts(self) -> list[dict[str, Any]]:
+        return self._core.contacts
+
+    @cached_property
+    def _curve(self) -> _core.PlacedCurve | None:
+        if not self.params and self.curve_class != "line":
+            return None
+        try:
+            return _core.PlacedCurve(self.curve_class, self._core.params, *self._core.pose)
+        except ValueError:
+            return None  # it has no shape of its own: best at the limit of another class
 
     def _need_curve(self):
         if self._curve is None:
@@ -91,9 +107,9 @@ class Result:
         if ax is None:
             import matplotlib.pyplot as plt
             _, ax = plt.subplots()
-        ax.plot(*self._touched.T, ".", markersize=3, label="points")
         if self._curve is not None:
-            ax.plot(*self.sample().T, label=f"{self.curve_class} ({self.status})")
+            ax.plot(*self.sample().T, linewidth=4, alpha=0.4, label=f"{self.curve_class} ({self.status})")
+        ax.plot(*self._touched.T, "k.", markersize=2, label="points")
         ax.set_aspect("equal")
         ax.set_xlabel(f"x [{self.unit}]")
         ax.set_ylabel(f"y [{self.unit}]")

@@ -16,9 +16,13 @@ struct HzCommand {
 
 void print(const std::map<std::string, TopicCount>& counts) {
   for (const auto& [topic, count] : counts) {
-    std::printf("%-40s %8.1f Hz  intervals %.1f to %.1f ms  %llu messages\n",
+    std::printf("%-40s %8.1f Hz  intervals %.1f to %.1f ms  %llu messages",
                 printable(topic).c_str(), count.rate_hz(), 1e3 * count.shortest_s,
                 1e3 * count.longest_s, static_cast<unsigned long long>(count.messages));
+    if (count.repeats > 0) {
+      std::printf(", %llu repeats", static_cast<unsigned long long>(count.repeats));
+    }
+    std::printf("\n");
   }
   std::fflush(stdout);
 }

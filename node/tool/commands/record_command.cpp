@@ -9,6 +9,7 @@
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/listening_place.h"
 #include "node/tool/recording.h"
+#include "node/tool/text/progress.h"
 
 namespace palpate {
 namespace {
@@ -74,6 +75,8 @@ int run(const RecordCommand& command) {
   RecordedMessage message;
   std::uint64_t recorded = 0;
   bool good = true;
+  Progress progress;
+  progress.tell([&] { return command.file + ": waiting for messages"; });
   place.listen(stop_fd, end, [&](const TwoFrames& frames) {
     message.received_ns = clock.now_ns();
     message.frame_count = static_cast<std::uint32_t>(frames.frame_count);
@@ -81,8 +84,10 @@ int run(const RecordCommand& command) {
     message.payload = frames.payload.to_string();
     good = writer.write(message);
     recorded += good ? 1 : 0;
+    progress.tell([&] { return command.file + ": " + std::to_string(recorded) + " messages"; });
     return good && (command.count == 0 || recorded < command.count);
   });
+  progress.end();
   if (!good) {
     return complain(command.file + ": cannot be written", kFailed);
   }

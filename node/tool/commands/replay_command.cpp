@@ -18,6 +18,7 @@
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/contact_groups.h"
 #include "node/tool/recording.h"
+#include "node/tool/text/progress.h"
 #include "node/wire/topics.h"
 
 namespace palpate {
@@ -256,7 +257,9 @@ int run(const ReplayCommand& command) {
   client::ContactPublisher publisher(options);
   const auto give_up =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(command.wait_s);
+  Progress progress;
   while (!publisher.wait_for_recognizer(std::chrono::milliseconds(50))) {
+    progress.tell([&] { return "waiting for a recognizer at " + options.endpoint; });
     if (stop_requested(stop_fd)) {
       return kDone;
     }
@@ -287,7 +290,12 @@ int run(const ReplayCommand& command) {
     ++messages;
     samples += static_cast<std::uint64_t>(message.batch.samples_size());
     refused += publisher.publish(message.probe, message.batch) ? 0 : 1;
+    progress.tell([&] {
+      return command.file + ": " + std::to_string(messages) + " messages, " +
+             std::to_string(samples) + " samples";
+    });
   }
+  progress.end();
   std::cerr << command.file << ": " << messages << " messages, " << samples << " samples";
   std::cerr << (refused > 0 ? ", " + std::to_string(refused) + " not taken\n" : "\n");
   const bool is_whole = !recording || recording->report();

@@ -5,13 +5,15 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "node/tool/commands/command.h"
 
 namespace palpate {
 
 struct TopicCount {
-  std::uint64_t messages = 0;
+  std::uint64_t messages = 0;  ///< each once
+  std::uint64_t repeats = 0;   ///< of the latest answer, for planners that come late
   std::uint64_t bytes = 0;
   std::chrono::steady_clock::time_point first;
   std::chrono::steady_clock::time_point last;
@@ -20,7 +22,11 @@ struct TopicCount {
 
   /// Messages a second between the first and the last; 0 for fewer than two.
   double rate_hz() const;
-  void take(std::size_t size, std::chrono::steady_clock::time_point now);
+  void take(std::string_view payload, std::chrono::steady_clock::time_point now);
+
+ private:
+  std::uint64_t epoch_ = 0;
+  std::uint64_t seq_ = 0;
 };
 
 /// Subscribes to everything and counts, until `until` says so (asked after every message and at

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -59,6 +60,19 @@ TEST_F(CurveKeysTest, NothingIsOverwrittenAndSecretsStaySecret) {
   EXPECT_THAT(read_curve_keys(path("a.key")).error, HasSubstr("chmod 600"));
 }
 
+TEST_F(CurveKeysTest, TheGroupsRightsOfACredentialAreAnAccessList) {
+  const CurveKeyPair keys = *generate_curve_keys().value;
+  ASSERT_EQ(write_curve_keys(keys, path("a.key"), path("a.pub")), "");
+  ::chmod(path("a.key").c_str(), 0440);
+  ::setenv("CREDENTIALS_DIRECTORY", path("elsewhere").c_str(), 1);
+  EXPECT_THAT(read_curve_keys(path("a.key")).error, HasSubstr("chmod 600"));
+  ::setenv("CREDENTIALS_DIRECTORY", std::filesystem::path(path("a.key")).parent_path().c_str(), 1);
+  EXPECT_TRUE(read_curve_keys(path("a.key")));
+  ::chmod(path("a.key").c_str(), 0444);
+  EXPECT_THAT(read_curve_keys(path("a.key")).error, HasSubstr("chmod 600"));
+  ::unsetenv("CREDENTIALS_DIRECTORY");
+}
+
 TEST_F(CurveKeysTest, BadFilesAreRefused) {
   const CurveKeyPair keys = *generate_curve_keys().value;
   const CurveKeyPair other = *generate_curve_keys().value;
@@ -77,6 +91,14 @@ TEST_F(CurveKeysTest, BadFilesAreRefused) {
   EXPECT_FALSE(read_public_keys(path("missing")));
   write("# two\npublic-key " + keys.public_key + "\r\npublic-key " + other.public_key);
   EXPECT_EQ(read_public_keys(path("x")).value->size(), 2U);
+  const std::string zeros(40, '0');
+  write("metadata\n    public-key = \"" + zeros +
+        "\"\n    name = \"us\"\ncurve\n    public-key = '" + keys.public_key + "'\n");
+  EXPECT_EQ(*read_public_keys(path("x")).value, std::vector<std::string>{keys.public_key});
+  write("metadata\ncurve\n    public-key = \"" + keys.public_key + "\n");
+  EXPECT_THAT(read_public_keys(path("x")).error, HasSubstr(":3:"));
+  write("curve\n    colour = \"red\"\n");
+  EXPECT_THAT(read_public_keys(path("x")).error, HasSubstr(":2:"));
 }
 
 std::string raw(const std::string& z85) {

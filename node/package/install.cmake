@@ -1,0 +1,36 @@
+# What stands beside the programs: manual pages, completions, the service and its configuration.
+
+# All made by what the programs say of themselves.
+set(programs palpate palpate-node)
+if(TARGET palpate-sim)
+  list(APPEND programs palpate-sim)
+endif()
+set(folder ${PROJECT_BINARY_DIR}/manual)
+set(files ${folder}/node.textproto)
+set(paths)
+foreach(program IN LISTS programs)
+  list(APPEND files ${folder}/man/${program}.1 ${folder}/bash/${program} ${folder}/zsh/_${program})
+  list(APPEND paths $<TARGET_FILE:${program}>)
+endforeach()
+foreach(program IN LISTS programs)
+  target_link_options(${program} PRIVATE LINKER:-z,relro,-z,now)
+endforeach()
+find_program(PALPATE_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(NOT PALPATE_PYTHON)
+  message(STATUS "palpate: no python3, so no manual pages and no completions")
+  return()
+endif()
+# A configuration that says nothing yet, and everything that can be said.
+add_custom_command(OUTPUT ${files}
+  COMMAND ${PALPATE_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/manual.py ${folder} ${paths}
+  COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:palpate-node> -DOUT=${folder}/node.textproto
+          -P ${CMAKE_CURRENT_LIST_DIR}/configuration.cmake
+  DEPENDS ${programs} ${CMAKE_CURRENT_LIST_DIR}/manual.py ${CMAKE_CURRENT_LIST_DIR}/configuration.cmake
+  COMMENT "Manual pages and completions" VERBATIM)
+add_custom_target(palpate_manual ALL DEPENDS ${files})
+
+install(DIRECTORY ${folder}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+install(DIRECTORY ${folder}/bash/ DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
+install(DIRECTORY ${folder}/zsh/ DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT runtime)
+install(FILES ${folder}/node.textproto DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate COMPONENT runtime)
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/palpate-node.service DESTINATION lib/systemd/system COMPONENT runtime)

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""What a call from Python costs above what C++ computes in it, in microseconds.
+
+  PYTHONPATH=build/strict/node/python python3 tests/python/overhead.py
+"""
+import time
+
+import numpy as np
+
+import palpate
+
+# Python's own speed: this takes so long on the machine of tests/README.md.
+REFERENCE_US = 21.0
+
+
+def least_us(call, times=300):
+    """The least of many times, less what C++ took of it: whatever else the machine does only adds."""
+    least = float("inf")
+    for _ in range(times):
+        start = time.perf_counter_ns()
+        computed_s = call()
+        least = min(least, (time.perf_counter_ns() - start) / 1e3 - 1e6 * computed_s)
+    return least
+
+
+def reference():
+    numbers = {}
+    for i in range(400):
+        numbers[i % 7] = numbers.get(i % 5, 0) + i
+    return 0.0
+
+
+def stroke(n):
+    t = np.linspace(0, 5.5, n)
+    return 15 * np.column_stack([np.cos(t), np.sin(t)]) + np.random.default_rng(1).normal(0, 0.01, (n, 2))
+
+
+def costs():
+    """Name of a call: its overhead."""
+    points, few = stroke(100), stroke(100)[:10]
+    recognizer = palpate.Recognizer(sigma=0.01, unit="mm", classes=["circle"])
+
+    def fit():
+        return palpate.fit(points, sigma=0.01, unit="mm", classes=["circle"]).compute_s
+
+    def add():
+        recognizer.reset()
+        recognizer.add(few)
+        return 0.0
+
+    recognizer.add(points)
+    recognizer.recognize()
+
+    def recognize():
+        return recognizer.recognize().compute_s
+
+    return {"palpate.fit": least_us(fit), "Recognizer.recognize": least_us(recognize), "Recognizer.add": least_us(add, 3000)}
+
+
+if __name__ == "__main__":
+    print(f"this machine's Python takes {least_us(reference) / REFERENCE_US:.2f} of the reference's time")
+    for name, us in costs().items():
+        print(f"{name:22s} {us:6.1f} us above C++")
