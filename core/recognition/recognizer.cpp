@@ -30,6 +30,18 @@ constexpr std::size_t kFewestPlaces = 8;
 /// could be, and where it would lie. A circle takes three, and one speaks for or against it.
 constexpr std::size_t kFewestTouches = 4;
 
+/// Touches in no order whose noise nobody states may lie about any curve, if the noise is large
+/// enough: of the half extent, beyond this nothing is measured.
+constexpr double kLargestNoise = 0.01;
+
+/// Whether most of the patches are of one sample: no neighbours tell the noise from the shape.
+bool are_touches(std::span<const StoredPatch> patches) {
+  const auto lone = std::count_if(patches.begin(), patches.end(), [](const StoredPatch& patch) {
+    return patch.samples.size() == 1;
+  });
+  return 2 * lone > static_cast<std::ptrdiff_t>(patches.size());
+}
+
 /// At how many different places the points lie, up to kFewestPlaces.
 std::size_t places_of(const FitData& data) {
   std::array<Vec2, kFewestPlaces> places;
@@ -151,6 +163,11 @@ class Recognizer::Impl {
     answer = options_.method == RecognitionMethod::Tree
                  ? by_tree(data, sigma_known, patches)
                  : by_likelihood(data, sigma_known, patches, clean);
+    if (answer.status == RecognitionStatus::Recognized && !sigma_known && are_touches(clean) &&
+        answer.sigma_m > kLargestNoise * data.scale) {
+      answer.status = RecognitionStatus::Ambiguous;
+      answer.doubt = Doubt::Misfit;
+    }
     if (places < kFewestPlaces && answer.status == RecognitionStatus::Recognized) {
       answer.status = RecognitionStatus::Ambiguous;
       answer.doubt = Doubt::FewPlaces;

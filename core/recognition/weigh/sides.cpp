@@ -60,6 +60,19 @@ bool agrees(const Way& way, const SmoothModel& smooth, const FitData& data) {
   return !refined || std::abs(way.settled->chi2 + smooth.chi2 - refined->chi2) <= kAgreement;
 }
 
+/// Whether directions could be what keeps the curve found from the points: none is off by more than
+/// a third, which puts the surface off by a twentieth of the tip's radius.
+bool directions_may_explain(const ClassFit& settled, const FitData& reduced) {
+  constexpr double kOfRadius = 0.05;
+  constexpr double kNoise = 25.0;  // squares of residuals that noise leaves: five deviations
+  double most = 0.0;
+  for (const FitPoint& point : reduced.points) {
+    const double off = kOfRadius * point.offset * point.inverse_sigma;
+    most += off * off + kNoise;
+  }
+  return settled.chi2 <= most;
+}
+
 /// Fits with the tips on these sides of `touches`. Where points show no direction of their own, or
 /// one so swayed by noise that tips taken off along it no longer lie as all points do, directions
 /// come from the curve found: one that is off by an angle puts the surface off by half its square
@@ -72,6 +85,9 @@ Way fit_way(FitData touches, std::span<const int> sides, const Arcs& arcs,
   Way way = way_of(std::move(fits), std::move(reduced), smooth, likelihood);
   constexpr int kRounds = 3;  // an angle of a tenth becomes one of 1e-8
   for (int round = 0; round < kRounds; ++round) {
+    if (way.settled && !directions_may_explain(*way.settled, touches)) {
+      break;
+    }
     const bool swayed = !agrees(way, smooth, arcs.data);
     const auto curve = (swayed || has_kept_tips(smooth)) && way.settled
                            ? to_canonical(*way.settled, way.reduced)

@@ -122,6 +122,32 @@ TEST(LoneTouches, OfAStraightEdgeAreNoNeedle) {
   EXPECT_GE(recognised, 15);
 }
 
+/// Where nobody states the noise, anything lies about a curve if the noise is large enough.
+TEST(LoneTouches, OfNoCurveAreNotCertainlyOne) {
+  std::mt19937_64 rng = test::test_rng();
+  std::uniform_real_distribution<double> anywhere(-0.05, 0.05);
+  std::uniform_real_distribution<double> angle(0.0, 2.0 * kPi);
+  for (const double sigma_m : {0.0, 1e-5}) {
+    for (const int count : {20, 64, 200, 1000}) {
+      for (const bool flower : {true, false}) {
+        test::LoneTouches touches;
+        touches.scene.sigma_m = sigma_m;
+        for (int i = 0; i < count; ++i) {
+          const double t = angle(rng);
+          const double r = 0.02 * (1.0 + 0.3 * std::cos(5.0 * t));
+          touches.scene.patches.push_back({flower ? Vec2(r * std::cos(t), r * std::sin(t))
+                                                  : Vec2(anywhere(rng), anywhere(rng))});
+        }
+        const Recognition answer = recognise(touches);
+        EXPECT_TRUE(answer.status != RecognitionStatus::Recognized ||
+                    answer.shape.curve_class == CurveClass::Unclassified)
+            << count << (flower ? " of a flower: " : " of nothing: ")
+            << name_of(answer.shape.curve_class);
+      }
+    }
+  }
+}
+
 TEST(LoneTouches, OfTheSameCurveInAnotherOrderGiveTheSameAnswer) {
   std::mt19937_64 rng = test::test_rng();
   for (const int count : {9, 40, 150}) {
