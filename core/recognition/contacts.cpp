@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/curves/curve.h"
 #include "core/local/noise.h"
@@ -86,21 +87,24 @@ double uncertainty(const LocalizedContact& contact) {
   return contact.estimate.covariance.bottomRightCorner<3, 3>().determinant();
 }
 
-/// Leaves kMostContactsOfAPatch at most.
+/// Leaves kMostContactsOfAPatch at most, of equally informative ones the first.
 void keep_most_informative(std::vector<LocalizedContact>* found) {
   if (found->size() <= kMostContactsOfAPatch) {
     return;
   }
-  std::vector<double> all;
-  all.reserve(found->size());
+  std::vector<std::pair<double, std::size_t>> order;
+  order.reserve(found->size());
   for (const LocalizedContact& contact : *found) {
-    all.push_back(uncertainty(contact));
+    order.emplace_back(uncertainty(contact), order.size());
   }
-  std::vector<double> sorted = all;
-  std::nth_element(sorted.begin(), sorted.begin() + kMostContactsOfAPatch, sorted.end());
-  const double limit = sorted[kMostContactsOfAPatch];
+  const auto end = order.begin() + kMostContactsOfAPatch;
+  std::nth_element(order.begin(), end, order.end());
+  std::vector<bool> kept(found->size(), false);
+  for (auto chosen = order.begin(); chosen != end; ++chosen) {
+    kept[chosen->second] = true;
+  }
   std::size_t i = 0;
-  std::erase_if(*found, [&](const LocalizedContact&) { return !(all[i++] < limit); });
+  std::erase_if(*found, [&](const LocalizedContact&) { return !kept[i++]; });
 }
 
 /// Noise of the stored samples, each the mean of several contacts; 0 where it is not known. [m]

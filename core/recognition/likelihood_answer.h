@@ -7,8 +7,8 @@
 namespace palpate {
 
 struct VerdictOptions {
-  double recognized_probability = 0.95;  ///< as RecognizerOptions
-  double determined_fraction = 0.3;      ///< likewise
+  double recognized_probability;  ///< as RecognizerOptions
+  double determined_fraction;     ///< likewise
 };
 
 /// Noise of the typical sample; where it was estimated, by the best class's residuals. [m]

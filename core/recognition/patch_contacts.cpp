@@ -1,6 +1,7 @@
 #include "core/recognition/patch_contacts.h"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "core/recognition/samples/stored_spikes.h"
@@ -10,7 +11,8 @@ namespace palpate {
 bool PatchContacts::Known::same_as(const Known& other) const {
   return probe == other.probe && patch == other.patch && samples == other.samples &&
          contacts_per_sample == other.contacts_per_sample && newest_m == other.newest_m &&
-         windows == other.windows && side == other.side && outliers == other.outliers;
+         touches == other.touches && windows == other.windows && side == other.side &&
+         outliers == other.outliers;
 }
 
 std::vector<LocalizedContact> PatchContacts::of(std::span<const StoredPatch> patches,
@@ -21,17 +23,23 @@ std::vector<LocalizedContact> PatchContacts::of(std::span<const StoredPatch> pat
   known_.resize(patches.size());
   std::vector<LocalizedContact> contacts;
   std::size_t first = 0;  // sample of the patch among all
+  std::size_t sided = 0;  // patch among those with samples
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const StoredPatch& patch = patches[p];
-    Known now{patch.context.probe,
-              patch.context.patch,
-              patch.samples.size(),
-              patch.contacts_per_sample,
-              patch.newest_m,
-              windows,
-              p < sides.size() ? sides[p] : 0,
-              {},
-              {}};
+    Known now;
+    now.probe = patch.context.probe;
+    now.patch = patch.context.patch;
+    now.samples = patch.samples.size();
+    now.contacts_per_sample = patch.contacts_per_sample;
+    now.newest_m = patch.newest_m;
+    now.windows = windows;
+    if (!sides.empty() && !patch.samples.empty()) {
+      assert(sided < sides.size());
+      now.side = sides[sided++];
+    }
+    for (std::size_t i = 0; patch.strung && i < patch.samples.size(); ++i) {
+      now.touches.push_back(patch.samples[i].position_m);
+    }
     if (!outliers.empty()) {
       const auto begin = outliers.begin() + static_cast<std::ptrdiff_t>(first);
       const auto end = begin + static_cast<std::ptrdiff_t>(patch.samples.size());
@@ -59,7 +67,7 @@ int PatchContacts::side_of(std::uint32_t probe, std::uint32_t patch) const {
   const auto found = std::find_if(known_.begin(), known_.end(), [&](const Known& known) {
     return known.probe == probe && known.patch == patch;
   });
-  return found != known_.end() ? found->side : 0;
+  return found != known_.end() && found->touches.empty() ? found->side : 0;
 }
 
 }  // namespace palpate

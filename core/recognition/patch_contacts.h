@@ -11,13 +11,15 @@ namespace palpate {
 
 class PatchContacts {
  public:
-  /// add_contacts() of each patch, with the tips on these `sides` (per patch; missing: 0). Samples
-  /// flagged in `outliers` (one flag per sample of the patches, or none at all) are left out.
+  /// add_contacts() of each patch, with the tips on these `sides` (one per patch with samples, or
+  /// none at all). Samples flagged in `outliers` (one flag per sample of the patches, or none at
+  /// all) are left out.
   std::vector<LocalizedContact> of(std::span<const StoredPatch> patches,
                                    const std::vector<int>& sides, const std::vector<bool>& outliers,
                                    const ContactOptions& options);
 
-  /// The side that a patch's tips were taken to lie on; 0 where it has not been asked about.
+  /// The side that a stroke's tips were taken to lie on by the last call of of(); 0 where it was
+  /// not among the patches.
   int side_of(std::uint32_t probe, std::uint32_t patch) const;
 
   void clear() { known_.clear(); }
@@ -30,6 +32,7 @@ class PatchContacts {
     std::size_t samples = 0;
     double contacts_per_sample = 0.0;
     Vec2 newest_m = Vec2::Zero();
+    std::vector<Vec2> touches;  ///< of a run, which may change anywhere
     std::size_t windows = 0;
     int side = 0;
     std::vector<bool> outliers;

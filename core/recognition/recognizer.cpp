@@ -150,19 +150,22 @@ class Recognizer::Impl {
     Recognition answer;
     const std::vector<StoredPatch>& clean =
         clean_.of(memory_.patches(), options_.false_outlier_probability);
-    const std::vector<StoredPatch> patches =
-        strung_touches(clean, options_.sigma_m, options_.classes);
     bool sigma_known = false;
-    const FitData data = make_fit_data(patches, options_.sigma_m, &sigma_known);
+    FitData data = make_fit_data(clean, options_.sigma_m, &sigma_known);
     const std::size_t places = places_of(data);
     const std::size_t fewest =
         memory_.patches().size() < kFewestTouches ? kFewestPlaces : kFewestTouches;
     if (places < fewest || !have_extent(data)) {
       return answer;
     }
+    const std::vector<StoredPatch> patches =
+        strung_touches(clean, options_.sigma_m, options_.classes);
+    if (patches.size() != clean.size()) {
+      data = make_fit_data(patches, options_.sigma_m, &sigma_known);
+    }
     answer = options_.method == RecognitionMethod::Tree
                  ? by_tree(data, sigma_known, patches)
-                 : by_likelihood(data, sigma_known, patches, clean);
+                 : by_likelihood(data, patches, sigma_known, clean);
     if (answer.status == RecognitionStatus::Recognized && !sigma_known && are_touches(clean) &&
         answer.sigma_m > kLargestNoise * data.scale) {
       answer.status = RecognitionStatus::Ambiguous;
@@ -176,14 +179,13 @@ class Recognizer::Impl {
   }
 
   /// `patches`: those that the data are of; `clean`: as they were touched.
-  Recognition by_likelihood(const FitData& data, bool sigma_known,
-                            std::span<const StoredPatch> patches,
+  Recognition by_likelihood(const FitData& data, std::vector<StoredPatch> patches, bool sigma_known,
                             std::span<const StoredPatch> clean) {
     std::vector<bool> outliers;
     Weighing w = weigh_once_more(data, sigma_known, patches, &outliers);
     const std::size_t stored = memory_.stored_count();
     if (stored > data.points.size()) {
-      take_back_explained(clean, &w);
+      take_back_explained(clean, &w, &patches, &outliers);
     }
     Recognition answer = answer_by_likelihood(
         w, {options_.recognized_probability, options_.determined_fraction}, stored);
@@ -268,8 +270,10 @@ class Recognizer::Impl {
     return {options_.classes, options_.recognized_probability, options_.form_deviation_m};
   }
 
-  /// Weighs again with the spikes that the best class explains; that stands where the class does.
-  void take_back_explained(std::span<const StoredPatch> clean, Weighing* w) const {
+  /// Weighs again with the spikes that the best class explains; that stands where the class does,
+  /// with the patches and outliers that it is of.
+  void take_back_explained(std::span<const StoredPatch> clean, Weighing* w,
+                           std::vector<StoredPatch>* patches, std::vector<bool>* outliers) const {
     const auto& best = w->canonical[static_cast<std::size_t>(w->best)];
     const auto curve = best ? make_curve(w->best, best->shape.values) : std::nullopt;
     if (!curve) {
@@ -283,14 +287,15 @@ class Recognizer::Impl {
     if (!more) {
       return;
     }
-    const std::vector<StoredPatch> patches =
-        strung_touches(*more, options_.sigma_m, options_.classes);
+    std::vector<StoredPatch> strung = strung_touches(*more, options_.sigma_m, options_.classes);
     bool sigma_known = false;
-    const FitData data = make_fit_data(patches, options_.sigma_m, &sigma_known);
-    std::vector<bool> outliers;
-    Weighing again = weigh_without_outliers(data, sigma_known, patches, last_->starts, &outliers);
+    const FitData data = make_fit_data(strung, options_.sigma_m, &sigma_known);
+    std::vector<bool> set_aside;
+    Weighing again = weigh_without_outliers(data, sigma_known, strung, last_->starts, &set_aside);
     if (again.best == w->best && again.canonical[static_cast<std::size_t>(again.best)]) {
       *w = std::move(again);
+      *patches = std::move(strung);
+      *outliers = std::move(set_aside);
     }
   }
 

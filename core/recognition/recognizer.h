@@ -55,11 +55,15 @@ class Recognizer {
   /// Appends samples of one patch in their order along the arc.
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples);
 
-  /// The answer for all samples in memory. O(samples).
+  /// The answer for all samples in memory. Linear in the samples, beside a search of bounded cost.
+  /// Touches alone in their patch need no order; where they lie densely they are taken together,
+  /// and their local estimates bear the name of the first of them. From four patches on there is an
+  /// answer; it is not RECOGNIZED before eight places have been touched.
   Recognition recognize();
 
   /// From now on the sliding windows run along with the samples (core/local/stream), or no longer.
-  /// They are off at first: nothing in recognize() needs them.
+  /// They are off at first: nothing in recognize() needs them. Switched on in the middle of a
+  /// stroke, they begin there.
   void stream_estimates(bool on);
 
   /// The windows' estimates that no call before has given, in order for each probe, on the surface.

@@ -52,6 +52,7 @@ Recognition answer_by_tree(
   Recognition answer;
   TreeResult tree;
   std::size_t classes = 0;
+  const std::vector<int>* best = nullptr;
   for (const std::vector<int>& sides : ways) {
     std::vector<LocalizedContact> contacts = contacts_of(sides);
     TreeResult walked = recognise_by_tree(tree_points(contacts), options);
@@ -62,7 +63,11 @@ Recognition answer_by_tree(
     if (better || answer.contacts.empty()) {
       tree = std::move(walked);
       answer.contacts = std::move(contacts);
+      best = &sides;
     }
+  }
+  if (best != nullptr && best != &ways.back()) {
+    answer.contacts = contacts_of(*best);  // the last asked for are those that stay
   }
   answer.sigma_m = rms_sigma_m(answer.contacts);
   Hypothesis only;

@@ -19,8 +19,8 @@ void add_path(TreeResult tree, Recognition* answer);
 
 /// The answer by the tree alone. `ways`: in which round tips may lie, the sides of the patches each
 /// (samples/tip_sides.h); a second one that ends in a class leaves a doubt. `contacts_of`: contacts
-/// with the tips so. `extent_m`: half extent of the samples; `determined_fraction`: as
-/// RecognizerOptions. Counts of samples are the caller's.
+/// with the tips so, the last call being that of the answer. `extent_m`: half extent of the
+/// samples; `determined_fraction`: as RecognizerOptions. Counts of samples are the caller's.
 Recognition answer_by_tree(
     const std::vector<std::vector<int>>& ways,
     const std::function<std::vector<LocalizedContact>(const std::vector<int>&)>& contacts_of,

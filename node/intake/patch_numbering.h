@@ -38,8 +38,8 @@ class PatchNumbering {
   }
 
  private:
-  // Far more than the patches that one recognition holds.
-  static constexpr std::size_t kRemembered = 1024;
+  // Twice the strokes (most_patches, 1,024 at most) and touches (1,024) that one recognition holds.
+  static constexpr std::size_t kRemembered = 4096;
 
   void begin(std::uint32_t wire_patch) {
     wire_patches_.push_back(wire_patch);

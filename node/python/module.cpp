@@ -182,6 +182,7 @@ class Recognizer {
     options.sigma_m = sigma_m;
     options.form_deviation_m = form_deviation_m;
     options.memory.most_patches = most_patches;
+    options.memory.most_lone_touches = std::max(options.memory.most_lone_touches, most_patches);
     options.memory.most_samples_per_patch = most_samples_per_patch;
     if (!classes.empty()) options.classes = 0;
     for (const std::string& name : classes) {
@@ -295,6 +296,7 @@ PYBIND11_MODULE(_core, module) {
   add_property(answer, "covariance", [](const auto& r) -> Eigen::MatrixXd { return r.covariance; });
   add_property(answer, "sample_count", [](const auto& r) { return r.sample_count; });
   add_property(answer, "outlier_count", [](const auto& r) { return r.outlier_count; });
+  add_property(answer, "forgotten_count", [](const auto& r) { return r.forgotten_count; });
   add_property(answer, "sigma_m", [](const auto& r) { return r.sigma_m; });
   add_property(answer, "noise_correlation_m", [](const auto& r) { return r.noise_correlation_m; });
   answer.def_readonly("compute_s", &Answer::compute_s)

@@ -69,6 +69,15 @@ class Fit(unittest.TestCase):
         self.assertEqual(result.curve_class, "circle")
         self.assertAlmostEqual(result.params["a"], 15, places=2)
 
+
+    def test_no_touch_is_forgotten_of_a_list_that_is_there_at_once(self):
+        rng = np.random.default_rng(7)
+        t = rng.uniform(0, 2 * np.pi, 3000)
+        points = np.c_[20 * np.cos(t), 20 * np.sin(t)] + rng.normal(0, 0.005, (3000, 2))
+        result = palpate.fit(points, sigma=0.005, unit="mm", touches=True)
+        self.assertEqual((result.sample_count, result.forgotten_count), (3000, 0))
+        self.assertAlmostEqual(result.params["a"], 20, delta=0.001)
+
     def test_no_patch_of_a_list_is_forgotten(self):
         patches = [ellipse(0.065 * k, 0.065 * k + 0.05, 9, seed=k) for k in range(90)]
         self.assertEqual(palpate.fit(patches, sigma=SIGMA, unit="mm").sample_count, 810)

@@ -16,7 +16,8 @@ struct ContactSample {
   std::int64_t stamp_ns = 0;
 };
 
-/// Where a run of samples belongs: one unbroken touch of one probe.
+/// Where a run of samples belongs: one unbroken touch of one probe. A patch of a single sample is a
+/// touch by itself: it has no direction of travel, so that its material side says nothing.
 struct PatchContext {
   std::uint32_t probe = 0;
   std::uint32_t patch = 0;

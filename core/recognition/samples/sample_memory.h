@@ -24,6 +24,9 @@ struct StoredPatch {
   Vec2 newest_m = Vec2::Zero();       ///< last contact taken
   /// How far a mean of contacts over an arc w lies off the curve: kappa w^2 / 24, the largest [m]
   double merge_bias_m = 0.0;
+  /// Touches strung into a run (touches/strung_touches.h): it changes anywhere, not only at its
+  /// end.
+  bool strung = false;
 };
 
 struct MemoryOptions {
@@ -50,7 +53,8 @@ class SampleMemory {
  public:
   explicit SampleMemory(const MemoryOptions& options = {}) : options_(options) {}
 
-  /// Appends to the patch of that probe and number, or begins it. Amortised O(samples).
+  /// Appends to the patch of that probe and number, or begins it. Amortised
+  /// O(samples + patches).
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples);
 
   void clear() { patches_.clear(); }

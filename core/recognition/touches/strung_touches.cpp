@@ -178,6 +178,7 @@ StoredPatch strung(std::span<const StoredPatch> patches, std::span<const Place> 
     run.samples.push_back(patches[place.patch].samples.front());
   }
   run.newest_m = run.samples.back().position_m;
+  run.strung = true;
   return run;
 }
 

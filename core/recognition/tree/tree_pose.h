@@ -24,7 +24,7 @@ std::optional<Pose2> pose_by_places(const ShapeParameters& shape, std::span<cons
 struct TangentCircle {
   Pose2 pose;         ///< its centre
   double chi2 = 0.0;  ///< of "one circle has all these points and tangents"
-  int dof = 0;        ///< 2 points - 3
+  int dof = 0;        ///< 2 points - 3, less one a point whose side is not told
 };
 
 /// Weighted least squares over centre and radius; `radius` as the curvatures say weighs the

@@ -33,17 +33,21 @@ struct Way {
   FitData reduced;  ///< surface points
   CurveClass candidate = CurveClass::Unclassified;
   std::optional<ClassFit> settled;  ///< the candidate at its optimum on the reduced points
+  std::optional<ClassFit> refined;  ///< on all points
   Evidences evidences;
 };
 
-Way way_of(ClassFits fits, FitData reduced, const SmoothModel& smooth,
-           const Likelihood& likelihood) {
-  Way way{std::move(fits), std::move(reduced), CurveClass::Unclassified, std::nullopt, {}};
+Way way_of(ClassFits fits, FitData reduced, const Arcs& arcs, const Likelihood& likelihood) {
+  const SmoothModel& smooth = arcs.smooth;
+  Way way;
+  way.fits = std::move(fits);
+  way.reduced = std::move(reduced);
   const ClassFits told = as_told(way.fits, smooth);
   way.evidences = evidences_of(told, way.fits, smooth, way.reduced, likelihood);
   way.candidate = best_class(told, likelihood, way.evidences);
   if (const auto& fit = way.fits[static_cast<std::size_t>(way.candidate)]) {
     way.settled = settled(*fit, way.reduced, RivalOf::Best);
+    way.refined = refine_on_all(*way.settled, smooth, arcs.data);
   }
   return way;
 }
@@ -53,21 +57,21 @@ bool has_tips(const FitData& data) {
                      [](const FitPoint& point) { return point.offset > 0.0; });
 }
 
-/// Whether the reduced points, tips taken off, tell of the candidate what all points do.
-bool agrees(const Way& way, const SmoothModel& smooth, const FitData& data) {
-  constexpr double kAgreement = 4.0;  // of chi-square: some units
-  const auto refined = way.settled ? refine_on_all(*way.settled, smooth, data) : std::nullopt;
-  return !refined || std::abs(way.settled->chi2 + smooth.chi2 - refined->chi2) <= kAgreement;
+/// Whether the reduced points, tips taken off, tell of the candidate what all points do: to within
+/// what changes odds less than tenfold.
+bool agrees(const Way& way, const SmoothModel& smooth) {
+  constexpr double kAgreement = 4.6;  // of chi-square: 2 ln 10
+  return !way.refined ||
+         std::abs(way.settled->chi2 + smooth.chi2 - way.refined->chi2) <= kAgreement;
 }
 
-/// Whether directions could be what keeps the curve found from the points: none is off by more than
-/// a third, which puts the surface off by a twentieth of the tip's radius.
-bool directions_may_explain(const ClassFit& settled, const FitData& reduced) {
-  constexpr double kOfRadius = 0.05;
+/// Whether directions could be what keeps the curve found from the points: one that is wholly wrong
+/// puts the surface off by the tip's radius.
+bool directions_may_explain(const ClassFit& settled, const FitData& touches) {
   constexpr double kNoise = 25.0;  // squares of residuals that noise leaves: five deviations
   double most = 0.0;
-  for (const FitPoint& point : reduced.points) {
-    const double off = kOfRadius * point.offset * point.inverse_sigma;
+  for (const FitPoint& point : touches.points) {
+    const double off = point.offset * point.inverse_sigma;
     most += off * off + kNoise;
   }
   return settled.chi2 <= most;
@@ -82,25 +86,27 @@ Way fit_way(FitData touches, std::span<const int> sides, const Arcs& arcs,
   const SmoothModel& smooth = arcs.smooth;
   FitData reduced = on_surface(touches, sides);
   ClassFits fits = fit_classes_from(starts, sides, reduced, classes);
-  Way way = way_of(std::move(fits), std::move(reduced), smooth, likelihood);
-  constexpr int kRounds = 3;  // an angle of a tenth becomes one of 1e-8
+  Way way = way_of(std::move(fits), std::move(reduced), arcs, likelihood);
+  constexpr int kRounds = 3;
+  constexpr double kSettledTurn = 1e-3;  // rad: puts the surface off by a millionth of the radius
   for (int round = 0; round < kRounds; ++round) {
-    if (way.settled && !directions_may_explain(*way.settled, touches)) {
+    if (!way.settled || !directions_may_explain(*way.settled, touches)) {
       break;
     }
-    const bool swayed = !agrees(way, smooth, arcs.data);
-    const auto curve = (swayed || has_kept_tips(smooth)) && way.settled
-                           ? to_canonical(*way.settled, way.reduced)
-                           : std::nullopt;
+    const bool swayed = !agrees(way, smooth);
+    const auto curve =
+        swayed || has_kept_tips(smooth) ? to_canonical(*way.settled, way.reduced) : std::nullopt;
     if (!curve) {
       break;
     }
-    set_directions(swayed ? DirectionsOf::AllPoints : DirectionsOf::KeptPoints, *curve, smooth,
-                   &touches);
+    const DirectionsOf which = swayed ? DirectionsOf::AllPoints : DirectionsOf::KeptPoints;
+    if (set_directions(which, *curve, smooth, &touches) < kSettledTurn) {
+      break;
+    }
     FitData nearer = on_surface(touches, sides);
     const PolynomialFits carried = carried_to(warm_start_from(way.fits, way.reduced), nearer);
     ClassFits again = fit_classes(nearer, &carried, classes);
-    way = way_of(std::move(again), std::move(nearer), smooth, likelihood);
+    way = way_of(std::move(again), std::move(nearer), arcs, likelihood);
   }
   return way;
 }
@@ -113,11 +119,12 @@ struct Directed {
 };
 
 /// What the tips do not show by themselves comes from the curve that fits their centres best.
-Directed directed(const SmoothModel& smooth, const Likelihood& likelihood, unsigned classes) {
+Directed directed(const Arcs& arcs, const Likelihood& likelihood, unsigned classes) {
+  const SmoothModel& smooth = arcs.smooth;
   Directed result{smooth.reduced, {}};
   if (has_kept_tips(smooth) || has_uncertain_bends(smooth)) {
     const Way centres =
-        way_of(fit_classes(result.touches, nullptr, classes), result.touches, smooth, likelihood);
+        way_of(fit_classes(result.touches, nullptr, classes), result.touches, arcs, likelihood);
     if (const auto curve =
             centres.settled ? to_canonical(*centres.settled, result.touches) : std::nullopt) {
       set_directions(DirectionsOf::KeptPoints, *curve, smooth, &result.touches);
@@ -137,10 +144,9 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   // Tips that touch a part from within a bend are rare: probes come from outside.
   constexpr double kInsideProbability = 0.01;
-  const auto& [data, smooth, sigma_known, sigma] = arcs;
-  const auto [touches, bends] = directed(smooth, likelihood, classes);
+  const auto [touches, bends] = directed(arcs, likelihood, classes);
   const auto ways = possible_sides(patches, touches, bends);
-  if (!has_tips(smooth.reduced)) {
+  if (!has_tips(touches)) {
     FitData reduced = on_surface(touches, ways.front());
     ClassFits fits = fit_classes_from(starts, ways.front(), reduced, classes);
     return {std::move(fits), std::move(reduced), ways.front(), kInfinity, {}};
@@ -156,13 +162,13 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
   double second = -kInfinity;
   for (const std::vector<int>& sides : ways) {
     Way way = fit_way(touches, sides, arcs, likelihood, classes, starts);
-    const auto refined = way.settled ? refine_on_all(*way.settled, smooth, data) : std::nullopt;
     const bool first = &sides == &ways.front();
     // A line has no bend to be outside of.
     const double price = first || way.candidate == CurveClass::Line ? 0.0 : log_price_of_inside;
     const double evidence =
-        refined ? log_evidence(likelihood, way.evidences, way.candidate, refined->chi2) - price
-                : -kInfinity;
+        way.refined
+            ? log_evidence(likelihood, way.evidences, way.candidate, way.refined->chi2) - price
+            : -kInfinity;
     if (first || evidence > highest) {
       if (!first) {
         others.push_back({best.sides, warm_start_from(best.fits, best.reduced)});

@@ -1,6 +1,7 @@
 #include "core/recognition/weigh/tip_directions.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/curves/curve.h"
 #include "core/recognition/samples/tip_sides.h"
@@ -34,11 +35,12 @@ bool has_uncertain_bends(const SmoothModel& smooth) {
   return false;
 }
 
-void set_directions(DirectionsOf which, const CanonicalFit& fit, const SmoothModel& smooth,
-                    FitData* touches) {
+double set_directions(DirectionsOf which, const CanonicalFit& fit, const SmoothModel& smooth,
+                      FitData* touches) {
   const auto curve = make_curve(fit.shape.curve_class, fit.shape.values);
+  double largest = 0.0;
   if (!curve) {
-    return;
+    return largest;
   }
   for (const ReducedSection& section : smooth.sections) {
     if (which == DirectionsOf::KeptPoints && !section.kept) {
@@ -47,11 +49,18 @@ void set_directions(DirectionsOf which, const CanonicalFit& fit, const SmoothMod
     for (std::size_t i = section.begin; i < section.end; ++i) {
       FitPoint& point = touches->points[i];
       const Vec2 tangent = direction_at(*curve, fit, i, touches->frame);
-      if (!tangent.isZero()) {
-        point.tangent = tangent.dot(point.tangent) < 0.0 ? Vec2(-tangent) : tangent;
+      if (tangent.isZero()) {
+        continue;
       }
+      const Vec2 turned = tangent.dot(point.tangent) < 0.0 ? Vec2(-tangent) : tangent;
+      largest = std::max(largest, point.tangent.isZero()
+                                      ? kPi
+                                      : std::abs(std::atan2(cross(point.tangent, turned),
+                                                            point.tangent.dot(turned))));
+      point.tangent = turned;
     }
   }
+  return largest;
 }
 
 std::vector<double> bends_of(const CanonicalFit& fit, const FitData& touches) {

