@@ -179,8 +179,9 @@ bool Node::drain_contacts(SteadyTime deadline) {
   bool more = true;
   while (now < deadline && (more = receive_now(contacts_, incoming_))) {
     if (contact_peers_) contact_peers_->hear(descriptor_of(incoming_.topic));
-    const v1::RejectReason reason = intake_.take(incoming_.frame_count, view_of(incoming_.topic),
-                                                 view_of(incoming_.payload), now, unix_time_ns());
+    const v1::RejectReason reason =
+        intake_.take(incoming_.frame_count, view_of(incoming_.topic), view_of(incoming_.payload),
+                     now, unix_time_ns(), zap_ ? zap_->sender_of(incoming_.topic) : Sender());
     if (reason == v1::REJECT_REASON_UNSPECIFIED) publisher_.forward(incoming_);
     now = now_steady();
   }
@@ -298,7 +299,7 @@ void Node::reload_clients() {
     spdlog::info("asked to reread the allowed clients: without CURVE there are none");
     return;
   }
-  const Result<std::vector<std::string>> keys = read_public_keys(options_.allow_clients);
+  const Result<std::vector<AllowedClient>> keys = read_allowed_clients(options_.allow_clients);
   if (!keys) {
     spdlog::error("allowed clients stay as they were: {}", keys.error);
     return;

@@ -215,6 +215,9 @@ struct Player {
     constexpr double kStepS = 0.05;
     for (double waited_s = 0.0;; waited_s += kStepS) {
       if (publisher.wait_for_recognizer(std::chrono::milliseconds(50))) return kPlayed;
+      if (!publisher.refusal().empty()) {
+        return failed("the recognizer at " + options.contacts + " " + publisher.refusal());
+      }
       if (sim::wait_or_stop(0.0, stop_fd)) return kPlayed;
       if (waited_s >= options.wait_s) {
         return failed("no recognizer listens at " + options.contacts + " (start palpate-node)");

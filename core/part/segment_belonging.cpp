@@ -21,6 +21,10 @@ constexpr std::size_t kFewestSamples = 2 * kCubicDegrees;
 /// effect; more would cost significance.
 constexpr std::size_t kKnots = 15;
 
+/// Samples of a patch that joints are sought with: the time is theirs times the joints found, some
+/// seconds at most. A stroke of 100 mm then has a sample each tenth of a millimetre.
+constexpr std::size_t kMostTested = 1000;
+
 /// A run of samples and its most likely cubic.
 struct Run {
   FitData data;
@@ -198,6 +202,28 @@ void settle(const JointTest& test, std::size_t count, std::vector<SegmentJoint>*
   }
 }
 
+/// The numbers of at most kMostTested of so many samples, evenly spread.
+std::vector<std::size_t> tested_of(std::size_t count) {
+  const std::size_t tested = std::min(count, kMostTested);
+  std::vector<std::size_t> numbers;
+  for (std::size_t k = 0; k < tested; ++k) {
+    numbers.push_back(k * count / tested);
+  }
+  return numbers;
+}
+
+/// A joint among the tested samples as one among all `count`: those between two of them may lie on
+/// either side.
+SegmentJoint among_all(SegmentJoint joint, const std::vector<std::size_t>& tested,
+                       std::size_t count) {
+  const auto first_after = [&](std::size_t i) { return i > 0 ? tested[i - 1] + 1 : 0; };
+  const auto at = [&](std::size_t i) { return i < tested.size() ? tested[i] : count; };
+  joint.earliest = first_after(joint.earliest);
+  joint.latest = at(joint.latest);
+  joint.index = (first_after(joint.index) + at(joint.index)) / 2;
+  return joint;
+}
+
 /// The noise of samples that bring none: the residuals of a smooth model of no class. [m]
 double noise_of(const StoredPatch& patch, double sigma_m) {
   bool sigma_known = false;
@@ -235,9 +261,17 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, doubl
       sample.sigma_m = noise_m;
     }
   }
-  const JointTest test(kept.samples, kept.context, noise_m, significance);
-  part_run(test, 0, kept.samples.size(), &result.joints);
-  settle(test, kept.samples.size(), &result.joints);
+  const std::vector<std::size_t> tested = tested_of(kept.samples.size());
+  std::vector<StoredSample> tested_samples;
+  for (const std::size_t i : tested) {
+    tested_samples.push_back(kept.samples[i]);
+  }
+  const JointTest test(tested_samples, kept.context, noise_m, significance);
+  part_run(test, 0, tested.size(), &result.joints);
+  settle(test, tested.size(), &result.joints);
+  for (SegmentJoint& joint : result.joints) {
+    joint = among_all(joint, tested, kept.samples.size());
+  }
 
   // Between one joint and the next; `core` without the samples that may lie on either side.
   std::size_t longest = 0;

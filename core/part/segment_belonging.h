@@ -36,7 +36,8 @@ struct SegmentBelonging {
 /// knot: likelihood ratio of the bend at each of some knots, chi-square with 2 degrees of freedom,
 /// at `significance` over their number. So a patch of one cubic is parted with probability at most
 /// `significance` (core/README.md, "Joints without a model"). `sigma_m`: noise of samples that
-/// bring none; 0 = from the data. O(samples) times the number of knots.
+/// bring none; 0 = from the data. Of a patch of more than 1,000 samples, so many that are evenly
+/// spread: what is sought in is bounded, whatever has been recorded.
 SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m = 0.0,
                                  double significance = 0.01);
 

@@ -22,6 +22,7 @@ ContactPublisher::ContactPublisher(const ContactPublisherOptions& options)
     : context_(1),
       // XPUB: the recognizer's subscription arrives as a message and says that it listens.
       socket_(make_socket(context_, zmq::socket_type::xpub, settings_of(options))),
+      handshakes_(context_, socket_),
       epoch_(random_epoch()) {
   const Result<Endpoint> endpoint = parse_endpoint(options.endpoint, /*bind_by_default=*/false);
   if (!endpoint) throw std::invalid_argument(endpoint.error);
@@ -43,10 +44,12 @@ void ContactPublisher::take_subscriptions() {
 
 bool ContactPublisher::wait_for_recognizer(std::chrono::milliseconds timeout) {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
-  std::vector<zmq::pollitem_t> items{{socket_.handle(), 0, ZMQ_POLLIN, 0}};
+  std::vector<zmq::pollitem_t> items{{socket_.handle(), 0, ZMQ_POLLIN, 0},
+                                     {handshakes_.events().handle(), 0, ZMQ_POLLIN, 0}};
   for (;;) {
     take_subscriptions();
     if (listeners_ > 0) return true;
+    if (!refusal().empty()) return false;
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
         deadline - std::chrono::steady_clock::now());
     if (left.count() <= 0) return false;

@@ -10,6 +10,7 @@
 #include <zmq.hpp>
 
 #include "node/wire/endpoint.h"
+#include "node/wire/handshake_watch.h"
 #include "node/wire/socket.h"
 #include "palpate/v1/contact.pb.h"
 
@@ -30,8 +31,13 @@ class ContactPublisher {
   /// Throws std::invalid_argument on a bad endpoint and zmq::error_t where it cannot be attached.
   explicit ContactPublisher(const ContactPublisherOptions& options = {});
 
-  /// Waits until a recognizer listens; false after `timeout`. Before that, messages are lost.
+  /// Waits until a recognizer listens; false after `timeout`, or at once where it refuses us: see
+  /// refusal(). Before that, messages are lost.
   bool wait_for_recognizer(std::chrono::milliseconds timeout);
+
+  /// Why the recognizer refuses this client, to be read after its name: "refuses our key: ...".
+  /// Empty where it does not. libzmq does not try again: only a new publisher can.
+  const std::string& refusal() { return handshakes_.refusal(); }
 
   /// Publishes the batch on `contact/<probe>/` after filling in its header's source, epoch, seq and
   /// stamp; the frame stays as given. Returns false where the probe's name is invalid (nothing is
@@ -51,6 +57,7 @@ class ContactPublisher {
 
   zmq::context_t context_;
   zmq::socket_t socket_;
+  HandshakeWatch handshakes_;
   std::uint64_t epoch_;
   int listeners_ = 0;
   std::map<std::string, Probe, std::less<>> probes_;

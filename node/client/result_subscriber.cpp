@@ -26,6 +26,7 @@ bool parse(Message& message, const zmq::message_t& payload) {
 ResultSubscriber::ResultSubscriber(const ResultSubscriberOptions& options)
     : context_(1),
       socket_(make_socket(context_, zmq::socket_type::sub, settings_of(options))),
+      handshakes_(context_, socket_),
       most_topics_(options.most_topics) {
   const Result<Endpoint> endpoint = parse_endpoint(options.endpoint, /*bind_by_default=*/false);
   if (!endpoint) throw std::invalid_argument(endpoint.error);

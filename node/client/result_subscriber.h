@@ -13,6 +13,7 @@
 
 #include "node/intake/sequence_tracker.h"
 #include "node/wire/endpoint.h"
+#include "node/wire/handshake_watch.h"
 #include "node/wire/socket.h"
 #include "palpate/v1/contact.pb.h"
 #include "palpate/v1/local_estimate.pb.h"
@@ -83,6 +84,10 @@ class ResultSubscriber {
 
   const SubscriberCounters& counters() const { return counters_; }
 
+  /// Why the recognizer refuses this client, to be read after its name: "refuses our key: ...".
+  /// Empty where it does not. libzmq does not try again: only a new subscriber can.
+  const std::string& refusal() { return handshakes_.refusal(); }
+
   /// ZeroMQ's socket, to be polled beside others: readable where receive() may have news.
   zmq::socket_t& socket() { return socket_; }
 
@@ -100,6 +105,7 @@ class ResultSubscriber {
 
   zmq::context_t context_;
   zmq::socket_t socket_;
+  HandshakeWatch handshakes_;
   std::size_t most_topics_;
   std::map<std::string, Feed, std::less<>> feeds_;
   v1::Recognition recognition_;

@@ -46,10 +46,25 @@ RejectReason Intake::judge(const Probe* probe, const Group* group, SteadyTime no
              : v1::REJECT_REASON_OVERLOAD;
 }
 
+void Intake::reject(RejectReason reason, const Sender& sender, Probe* probe) {
+  const auto number = static_cast<std::size_t>(reason);
+  ++counters_.rejected[number];
+  std::string& last = counters_.rejected_last[number];
+  last = decoder_.probe();
+  if (reason == v1::REJECT_REASON_NOT_ALLOWED) {
+    last.append(", which the key ").append(sender.key).append(" may not publish as");
+  } else if (probe != nullptr) {
+    ++probe->rejected;  // what others send in its name is none of its own
+  }
+}
+
 RejectReason Intake::take(std::size_t frame_count, std::string_view topic, std::string_view payload,
-                          SteadyTime now, std::int64_t now_unix_ns) {
+                          SteadyTime now, std::int64_t now_unix_ns, const Sender& sender) {
   ++counters_.messages_received;
   RejectReason reason = decoder_.decode(frame_count, topic, payload);
+  if (!decoder_.probe().empty() && !sender.may_publish_as(decoder_.probe())) {
+    reason = v1::REJECT_REASON_NOT_ALLOWED;
+  }
   Probe* probe = decoder_.probe().empty() ? nullptr : probes_.find(decoder_.probe());
   const ContactMessage& message = decoder_.message();
   Group* group = nullptr;
@@ -58,9 +73,7 @@ RejectReason Intake::take(std::size_t frame_count, std::string_view topic, std::
     reason = judge(probe, group, now);
   }
   if (reason != v1::REJECT_REASON_UNSPECIFIED) {
-    ++counters_.rejected[static_cast<std::size_t>(reason)];
-    counters_.rejected_last[static_cast<std::size_t>(reason)] = decoder_.probe();
-    if (probe != nullptr) ++probe->rejected;
+    reject(reason, sender, probe);
     return reason;
   }
 

@@ -11,6 +11,7 @@
 #include "node/groups/group_registry.h"
 #include "node/intake/ingest.h"
 #include "node/intake/probe_registry.h"
+#include "node/security/sender.h"
 
 namespace palpate {
 
@@ -28,7 +29,8 @@ struct IntakeCounters {
   std::uint64_t samples_received = 0;                                ///< of the messages accepted
   std::uint64_t samples_refused = 0;                                 ///< of them, by the recognizer
   std::array<std::uint64_t, v1::RejectReason_ARRAYSIZE> rejected{};  ///< by RejectReason
-  /// Name of the probe on whose topic the last of each came; empty where the topic is none.
+  /// Name of the probe on whose topic the last of each came; empty where the topic is none. Of
+  /// NOT_ALLOWED with the key that sent it.
   std::array<std::string, v1::RejectReason_ARRAYSIZE> rejected_last;
 };
 
@@ -39,7 +41,7 @@ class Intake {
   /// Takes one message, or counts why not; a message that is not taken changes nothing else.
   /// `now_unix_ns` is the wall clock, for the latency shown.
   v1::RejectReason take(std::size_t frame_count, std::string_view topic, std::string_view payload,
-                        SteadyTime now, std::int64_t now_unix_ns);
+                        SteadyTime now, std::int64_t now_unix_ns, const Sender& sender = {});
 
   GroupRegistry& groups() { return groups_; }
   ProbeRegistry& probes() { return probes_; }
@@ -58,6 +60,7 @@ class Intake {
   Forgotten take_forgotten();
 
  private:
+  void reject(v1::RejectReason reason, const Sender& sender, Probe* probe);
   v1::RejectReason judge(const Probe* probe, const Group* group, SteadyTime now) const;
 
   ContactDecoder decoder_;

@@ -105,8 +105,9 @@ std::optional<std::size_t> Workers::take_finished() {
       ++idle_count_;
       return i;
     }
-    // Who finishes after this rings again: looked for once more, nobody is missed.
-    finished_->hear();
+    // Who finishes after this rings again: looked for once more, nobody is missed. Heard twice, the
+    // ring of who has finished since would be lost.
+    if (attempt == 0) finished_->hear();
   }
   return std::nullopt;
 }

@@ -9,7 +9,7 @@ Result<NodeKeys> read_node_keys(const std::string& secret_key_path,
   if (!curve_available()) return Result<NodeKeys>::fail("libzmq was built without CURVE");
   Result<CurveKeyPair> own = read_curve_keys(secret_key_path);
   if (!own) return Result<NodeKeys>::fail(own.error);
-  Result<std::vector<std::string>> clients = read_public_keys(allowed_path);
+  Result<std::vector<AllowedClient>> clients = read_allowed_clients(allowed_path);
   if (!clients) return Result<NodeKeys>::fail(clients.error);
   keys.own = std::move(*own.value);
   keys.clients = std::move(*clients.value);

@@ -13,8 +13,8 @@
 namespace palpate {
 
 struct NodeKeys {
-  std::optional<CurveKeyPair> own;   ///< nullopt = no CURVE
-  std::vector<std::string> clients;  ///< public keys, Z85
+  std::optional<CurveKeyPair> own;  ///< nullopt = no CURVE
+  std::vector<AllowedClient> clients;
 };
 
 /// Reads the key files; with an empty path there is nothing to read: CURVE is not asked for.

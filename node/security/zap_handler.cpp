@@ -13,22 +13,37 @@ constexpr const char* kZapAddress = "inproc://zeromq.zap.01";
 constexpr std::string_view kZapVersion = "1.0";
 constexpr std::size_t kKeyBytes = 32;
 constexpr std::size_t kZapFrames = 7;
+constexpr std::size_t kZ85Length = 40;
+constexpr const char* kUserId = "User-Id";  // ZMTP's name for the ZAP reply's user id
+
+std::string z85_of(std::string_view bytes) {
+  std::array<char, kZ85Length + 1> text{};
+  if (bytes.size() != kKeyBytes) return {};
+  zmq_z85_encode(text.data(), reinterpret_cast<const std::uint8_t*>(bytes.data()), kKeyBytes);
+  return text.data();
+}
 
 }  // namespace
 
-ClientList::ClientList(const std::vector<std::string>& public_keys) {
-  for (const std::string& key : public_keys) {
+ClientList::ClientList(const std::vector<AllowedClient>& clients) {
+  for (const AllowedClient& client : clients) {
     std::array<std::uint8_t, kKeyBytes> bytes{};
-    if (zmq_z85_decode(bytes.data(), key.c_str()) != nullptr) {
-      keys_.emplace(bytes.begin(), bytes.end());
+    if (zmq_z85_decode(bytes.data(), client.public_key.c_str()) != nullptr) {
+      clients_.emplace(client.public_key, client.probes);
     }
   }
 }
 
-bool ClientList::allows(std::string_view key) const { return keys_.find(key) != keys_.end(); }
+Sender ClientList::sender(std::string_view key) const {
+  static const ProbeNames kNobody;
+  const auto client = clients_.find(key);
+  if (client == clients_.end()) return {key, &kNobody};
+  return {key, client->second ? &*client->second : nullptr};
+}
 
 bool ClientList::allows_all_of(const ClientList& other) const {
-  return std::includes(keys_.begin(), keys_.end(), other.keys_.begin(), other.keys_.end());
+  return std::all_of(other.clients_.begin(), other.clients_.end(),
+                     [this](const auto& client) { return allows(client.first); });
 }
 
 std::array<std::string, 6> zap_reply(std::span<const std::string> frames,
@@ -36,8 +51,9 @@ std::array<std::string, 6> zap_reply(std::span<const std::string> frames,
   const std::string request_id = frames.size() > 1 ? frames[1] : std::string();
   const bool well_formed = frames.size() == kZapFrames && frames[0] == kZapVersion &&
                            frames[2] == kZapDomain && frames[5] == "CURVE";
-  if (well_formed && clients.allows(frames[6])) {
-    return {std::string(kZapVersion), request_id, "200", "OK", "", ""};
+  const std::string key = well_formed ? z85_of(frames[6]) : std::string();
+  if (!key.empty() && clients.allows(key)) {
+    return {std::string(kZapVersion), request_id, "200", "OK", key, ""};
   }
   return {std::string(kZapVersion), request_id, "400", "not allowed", "", ""};
 }
@@ -66,6 +82,11 @@ void ZapHandler::serve() {
                i + 1 < reply.size() ? ZMQ_SNDMORE : 0);
     }
   }
+}
+
+Sender ZapHandler::sender_of(const zmq::message_t& frame) const {
+  const char* key = zmq_msg_gets(frame.handle(), kUserId);
+  return clients_.sender(key == nullptr ? std::string_view() : std::string_view(key));
 }
 
 }  // namespace palpate

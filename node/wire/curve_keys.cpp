@@ -10,10 +10,12 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <sstream>
 #include <string_view>
 
 #include "node/files/bounded_file.h"
+#include "node/wire/topics.h"
 
 namespace palpate {
 namespace {
@@ -33,7 +35,8 @@ bool is_z85_key(const std::string& text) {
 }
 
 struct KeyLines {
-  std::vector<std::string> public_keys;
+  std::vector<AllowedClient> public_keys;
+  std::vector<std::size_t> line_numbers;  // of the public keys
   std::vector<std::string> secret_keys;
 };
 
@@ -43,23 +46,59 @@ std::string_view trimmed(std::string_view text, std::string_view of = kBlanks) {
   return text.substr(first, text.find_last_not_of(of) - first + 1);
 }
 
-// What a line gives, "NAME = VALUE" or "NAME VALUE", the value perhaps in quotes.
+std::string at_line(const std::string& path, std::size_t number, std::string_view what) {
+  return (path + ":" + std::to_string(number) + ": ").append(what);
+}
+
+// What a line gives, "NAME = VALUE" or "NAME VALUE", the value perhaps in quotes, and what follows.
 struct Setting {
   std::string_view name;
   std::string_view value;
+  std::string_view rest;
 };
 
 Setting setting_of(std::string_view line) {
   const std::size_t end = line.find_first_of(" \t=");
-  if (end == std::string_view::npos) return {line, {}};
+  if (end == std::string_view::npos) return {line, {}, {}};
   std::string_view value = trimmed(line.substr(end));
   if (value.starts_with('=')) value = trimmed(value.substr(1));
-  for (const char quote : {'"', '\''}) {
-    if (value.size() >= 2 && value.front() == quote && value.back() == quote) {
-      value = value.substr(1, value.size() - 2);
-    }
+  const bool is_quoted = value.starts_with('"') || value.starts_with('\'');
+  const std::size_t closing =
+      is_quoted ? value.find(value.front(), 1) : value.find_first_of(kBlanks);
+  if (closing == std::string_view::npos) return {line.substr(0, end), value, {}};
+  return {line.substr(0, end), value.substr(is_quoted ? 1 : 0, closing - (is_quoted ? 1 : 0)),
+          trimmed(value.substr(closing + (is_quoted ? 1 : 0)))};
+}
+
+// A line that is a key and what the client may do. No key begins with '#': in Z85 its first five
+// characters would be a number beyond 32 bits.
+bool is_bare_key(std::string_view line) {
+  return is_z85_key(std::string(line.substr(0, line.find_first_of(kBlanks))));
+}
+
+// "probes=a,b": an empty string, or what is wrong.
+std::string read_rights(std::string_view text, AllowedClient* client) {
+  constexpr std::string_view kProbes = "probes=";
+  if (text.empty()) return {};
+  if (text.starts_with("groups=")) {
+    return "groups=: what a client reads cannot be restricted; give its readers a recognizer of "
+           "their own";
   }
-  return {line.substr(0, end), value};
+  if (!text.starts_with(kProbes) || text.find_first_of(kBlanks) != std::string_view::npos) {
+    return "expected nothing or probes=NAME,NAME after the key";
+  }
+  client->probes.emplace();
+  for (std::string_view names = text.substr(kProbes.size()); !names.empty();) {
+    const std::size_t comma = names.find(',');
+    const std::string_view name = names.substr(0, comma);
+    const bool ends_in_comma = comma != std::string_view::npos && comma + 1 == names.size();
+    if (!is_valid_name(name) || ends_in_comma) {
+      return "probes=: names are 1 to 64 of A-Z a-z 0-9 _ . -, with commas between";
+    }
+    client->probes->emplace(name);
+    names = comma == std::string_view::npos ? std::string_view() : names.substr(comma + 1);
+  }
+  return {};
 }
 
 Result<KeyLines> read_key_lines(const std::string& path) {
@@ -72,18 +111,30 @@ Result<KeyLines> read_key_lines(const std::string& path) {
   for (std::size_t number = 1; std::getline(file, line); ++number) {
     const std::string_view said = trimmed(line);
     if (said.empty() || said.front() == '#') continue;
+    const bool is_bare = is_bare_key(said);
     const bool is_section = line.front() != ' ' && line.front() != '\t';
     if (is_section) in_metadata = said == "metadata";
     if (in_metadata || (is_section && said == "curve")) continue;
-    const Setting setting = setting_of(said);
+    const Setting setting =
+        is_bare ? Setting{kPublicKey, said.substr(0, kZ85Length), trimmed(said.substr(kZ85Length))}
+                : setting_of(said);
     const bool is_public = setting.name == kPublicKey;
     std::string key(setting.value);
-    if ((!is_public && setting.name != kSecretKey) || !is_z85_key(key) ||
+    if ((!is_public && (setting.name != kSecretKey || !setting.rest.empty())) || !is_z85_key(key) ||
         keys.public_keys.size() >= kMaxKeys) {
-      return Result<KeyLines>::fail(path + ":" + std::to_string(number) +
-                                    ": expected public-key = \"KEY\" or secret-key = \"KEY\"");
+      return Result<KeyLines>::fail(
+          at_line(path, number, "expected public-key = \"KEY\" or secret-key = \"KEY\""));
     }
-    (is_public ? keys.public_keys : keys.secret_keys).push_back(std::move(key));
+    if (!is_public) {
+      keys.secret_keys.push_back(std::move(key));
+      continue;
+    }
+    AllowedClient client{std::move(key), std::nullopt};
+    if (const std::string error = read_rights(setting.rest, &client); !error.empty()) {
+      return Result<KeyLines>::fail(at_line(path, number, error));
+    }
+    keys.public_keys.push_back(std::move(client));
+    keys.line_numbers.push_back(number);
   }
   return Result<KeyLines>::ok(std::move(keys));
 }
@@ -163,21 +214,47 @@ Result<CurveKeyPair> read_curve_keys(const std::string& secret_path) {
     return Keys::fail(secret_path + ": " + zmq_strerror(zmq_errno()));
   }
   keys.public_key = public_key.data();
-  if (!lines.value->public_keys.empty() && lines.value->public_keys.front() != keys.public_key) {
+  if (!lines.value->public_keys.empty() &&
+      lines.value->public_keys.front().public_key != keys.public_key) {
     return Keys::fail(secret_path + ": public and secret key do not belong together");
   }
   return Keys::ok(std::move(keys));
 }
 
+Result<std::vector<AllowedClient>> read_allowed_clients(const std::string& path) {
+  using Clients = Result<std::vector<AllowedClient>>;
+  Result<KeyLines> lines = read_key_lines(path);
+  if (!lines) return Clients::fail(lines.error);
+  if (!lines.value->secret_keys.empty()) {
+    return Clients::fail(path + ": holds a secret key; give the public key files only");
+  }
+  std::vector<AllowedClient> clients;
+  std::map<std::string, std::size_t> index_of;
+  for (std::size_t i = 0; i < lines.value->public_keys.size(); ++i) {
+    const AllowedClient& client = lines.value->public_keys[i];
+    const auto [found, is_new] = index_of.try_emplace(client.public_key, i);
+    if (is_new) {
+      clients.push_back(client);
+    } else if (lines.value->public_keys[found->second].probes != client.probes) {
+      return Clients::fail(at_line(path, lines.value->line_numbers[i],
+                                   "this key has other probes in line " +
+                                       std::to_string(lines.value->line_numbers[found->second])));
+    }
+  }
+  if (clients.empty()) return Clients::fail(path + ": no public key");
+  return Clients::ok(std::move(clients));
+}
+
 Result<std::vector<std::string>> read_public_keys(const std::string& path) {
   using Keys = Result<std::vector<std::string>>;
-  Result<KeyLines> lines = read_key_lines(path);
-  if (!lines) return Keys::fail(lines.error);
-  if (!lines.value->secret_keys.empty()) {
-    return Keys::fail(path + ": holds a secret key; give the public key files only");
+  const Result<std::vector<AllowedClient>> clients = read_allowed_clients(path);
+  if (!clients) return Keys::fail(clients.error);
+  std::vector<std::string> keys;
+  for (const AllowedClient& client : *clients.value) {
+    if (client.probes) return Keys::fail(path + ": probes= is for a recognizer's list of clients");
+    keys.push_back(client.public_key);
   }
-  if (lines.value->public_keys.empty()) return Keys::fail(path + ": no public key");
-  return Keys::ok(std::move(lines.value->public_keys));
+  return Keys::ok(std::move(keys));
 }
 
 }  // namespace palpate

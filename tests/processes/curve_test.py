@@ -6,9 +6,11 @@ import time
 import unittest
 
 import zmq
+import zmq.auth
 from zmq.auth import create_certificates, load_certificate
 
-from bus import Bus, Probe, wait_for
+from bus import Bus
+from palpate.v1 import contact_pb2, node_status_pb2
 from programs import SIM, SOURCE, TOOL, run
 
 
@@ -43,6 +45,119 @@ class Curve(unittest.TestCase):
                 self.assertEqual((code, out), (1, ""), key)
             _, out, _ = watch("friend")
             self.assertIn("CURVE_CLASS_CIRCLE", out)
+
+    def test_a_key_publishes_as_its_probes_alone(self):
+        with Bus("tcp") as bus:
+            for name in ("node", "left", "right", "planner"):
+                self.assertEqual(run(TOOL, "keygen", bus.folder / name)[0], 0)
+            keys = {name: zmq.auth.load_certificate(bus.folder / f"{name}.public")[0].decode()
+                    for name in ("left", "right", "planner")}
+            allowed = bus.folder / "allowed"
+            allowed.write_text(f"# one line a client\n{keys['left']} probes=left,other\n"
+                               f"{keys['planner']} probes=\n" + (bus.folder / "right.public").read_text())
+            node = bus.start_node("--curve-secret-key", bus.folder / "node.secret", "--allow-clients", allowed,
+                                  "--status-period-s", "0.2")
+            server, _ = load_certificate(bus.folder / "node.public")
+
+            def connect(kind, key, endpoint):
+                socket = bus.context.socket(kind)
+                socket.linger = 0
+                socket.curve_publickey, socket.curve_secretkey = load_certificate(bus.folder / f"{key}.secret")
+                socket.curve_serverkey = server
+                socket.connect(endpoint)
+                return socket
+
+            def said(text):
+                deadline = time.monotonic() + 10
+                while text not in node.log_path.read_text():
+                    self.assertLess(time.monotonic(), deadline, (text, node.log_path.read_text()))
+                    time.sleep(0.01)
+
+            status = connect(zmq.SUB, "planner", bus.results)
+            status.subscribe(b"status/")
+
+            def counts():
+                while True:
+                    self.assertTrue(status.poll(5000))
+                    message = node_status_pb2.NodeStatus.FromString(status.recv_multipart()[1])
+                    yield ({count.reason: count.count for count in message.rejected},
+                           {probe.probe: (probe.messages, probe.rejected) for probe in message.probes})
+
+            def wait_until(reached):
+                deadline = time.monotonic() + 10
+                for rejected, probes in counts():
+                    if reached(rejected.get(node_status_pb2.REJECT_REASON_NOT_ALLOWED, 0), probes):
+                        return
+                    self.assertLess(time.monotonic(), deadline, (rejected, probes, node.log_path.read_text()))
+
+            publishers = {key: connect(zmq.XPUB, key, bus.contacts) for key in keys}
+            for key, publisher in publishers.items():
+                self.assertTrue(publisher.poll(5000), key)
+                publisher.recv()
+            seq = {"left": 0, "other": 0, "right": 0, "third": 0}
+
+            def send(key, probe):
+                batch = contact_pb2.ContactBatch()
+                batch.header.source, batch.header.epoch, batch.header.seq = probe, 7, seq[probe]
+                batch.samples.add(stamp_ns=time.time_ns(), x_m=0.001 * seq[probe], sigma_m=1e-5)
+                seq[probe] += 1
+                publishers[key].send_multipart([f"contact/{probe}/".encode(), batch.SerializeToString()])
+
+            send("left", "left")
+            send("left", "other")
+            send("right", "right")  # without rights named: as anybody
+            send("right", "third")
+            wait_until(lambda refused, probes: set(probes) == {"left", "other", "right", "third"} and refused == 0)
+            # In the name of others: refused, counted and named, and no blemish on the other's record.
+            send("left", "right")
+            send("planner", "left")
+            send("planner", "third")
+            wait_until(lambda refused, probes: refused == 3 and
+                       all(probe == (1, 0) for probe in probes.values()))
+            said(f"NOT_ALLOWED, the last of probe third, which the key {keys['planner']} may not publish as")
+            # Read again, the list holds for connections that stand.
+            allowed.write_text(f"{keys['left']} probes=left\n{keys['planner']} probes=third\n{keys['right']}\n")
+            node.send_signal(signal.SIGHUP)
+            said("3 allowed clients reread")
+            seq["third"] = 1  # those refused were never heard
+            send("planner", "third")
+            send("left", "other")
+            wait_until(lambda refused, probes: refused == 4 and probes["third"] == (2, 0))
+            for line, why in ((f"{keys['left']} groups=a", "what a client reads cannot be restricted"),
+                               (f"{keys['left']} probes=a b", "expected nothing or probes=NAME,NAME"),
+                               (f"{keys['left']} probes=a/b", "names are 1 to 64"),
+                               (f"{keys['left']} probes=a\n{keys['left']} probes=b", ":2: this key has other probes")):
+                allowed.write_text(line + "\n")
+                node.send_signal(signal.SIGHUP)
+                said(why)
+
+    def test_who_is_refused_hears_why(self):
+        with Bus("tcp") as bus:
+            for name in ("node", "friend", "stranger"):
+                self.assertEqual(run(TOOL, "keygen", bus.folder / name)[0], 0)
+            allowed = bus.folder / "allowed"
+            allowed.write_text((bus.folder / "friend.public").read_text())
+            bus.start_node("--curve-secret-key", bus.folder / "node.secret", "--allow-clients", allowed)
+            scene = SOURCE / "sim/scenes/circle.textproto"
+            stranger = ("--curve-secret-key", bus.folder / "stranger.secret", "--curve-server-key",
+                        bus.folder / "node.public")
+            points = bus.folder / "points.csv"
+            points.write_text("x_m,y_m\n" + "".join(f"{0.001 * i},0\n" for i in range(30)))
+            for keys, said in ((stranger, "refuses our key: it is not on its list of clients"),
+                               ((), "we do not agree on CURVE")):
+                for program in ((SIM, scene, "--contacts", bus.contacts, "--wait", "30"),
+                                (TOOL, "replay", points, "--contacts", bus.contacts, "--wait", "30"),
+                                (TOOL, "watch", "--results", bus.results, "--timeout", "30"),
+                                (TOOL, "hz", "--results", bus.results, "--seconds", "30"),
+                                (TOOL, "list", "--results", bus.results, "--seconds", "30")):
+                    begin = time.monotonic()
+                    code, out, err = run(*program, *keys)
+                    took = time.monotonic() - begin
+                    print(f"refused: {program[1]} said so after {took:.2f} s")
+                    self.assertNotEqual(code, 0, program)
+                    self.assertEqual(out, "", program)
+                    self.assertIn(said, err, program)
+                    self.assertLess(took, 5.0, program)
 
     def test_sighup_rereads_who_may_connect(self):
         with Bus("tcp") as bus:

@@ -8,6 +8,7 @@ from typing import Iterator
 import numpy as np
 import zmq
 from zmq.auth import load_certificate
+from zmq.utils.monitor import recv_monitor_message
 
 from palpate.v1 import contact_pb2, recognition_pb2
 
@@ -39,9 +40,27 @@ class _Peer:
         self._socket.setsockopt(zmq.TCP_KEEPALIVE, 1)
         self._socket.setsockopt(zmq.TCP_KEEPALIVE_IDLE, 1)  # [s]
         _secure(self._socket, secret_key, server_key)
+        # A refusal is told once, and libzmq does not try again.
+        self._refusals = self._socket.get_monitor_socket(zmq.EVENT_HANDSHAKE_FAILED_AUTH |
+                                                         zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL)
         self.endpoint = endpoint
 
+    def _wait(self, timeout: float) -> bool:
+        """True where there is something to receive; raises ConnectionRefusedError where the recognizer refuses us."""
+        poller = zmq.Poller()
+        poller.register(self._socket, zmq.POLLIN)
+        poller.register(self._refusals, zmq.POLLIN)
+        ready = dict(poller.poll(max(0, int(1000 * timeout))))
+        if self._refusals not in ready:
+            return bool(ready)
+        is_key = recv_monitor_message(self._refusals)["event"] == zmq.EVENT_HANDSHAKE_FAILED_AUTH
+        raise ConnectionRefusedError(f"the recognizer at {self.endpoint} " + (
+            "refuses our key: it is not on its list of clients" if is_key else
+            "and we do not agree on CURVE: one of us has keys, the other none"))
+
     def close(self) -> None:
+        self._socket.disable_monitor()
+        self._refusals.close()
         self._socket.close()
         self._context.term()
 
@@ -63,7 +82,8 @@ class Probe(_Peer):
     def __init__(self, name: str, endpoint: str = CONTACTS, group: str = "", sigma: float = 0.0, unit: str = "m",
                  tip_radius: float = 0.0, timeout: float = 10.0, secret_key: str | None = None,
                  server_key: str | None = None) -> None:
-        """Waits until a recognizer listens; raises TimeoutError after `timeout` seconds."""
+        """Waits until a recognizer listens; raises TimeoutError after `timeout` seconds, and ConnectionRefusedError
+        where it refuses our keys."""
         self._scale = units(unit)
         super().__init__(zmq.XPUB, endpoint, secret_key, server_key)
         self._topic = f"contact/{name}/".encode()
@@ -75,9 +95,12 @@ class Probe(_Peer):
         batch.object = time.time_ns() // 1_000_000
         batch.tip_radius_m = self._scale * tip_radius
         self._socket.connect(endpoint)
-        if not self._socket.poll(int(1000 * timeout)):
+        try:
+            if not self._wait(timeout):
+                raise TimeoutError(f"no recognizer listens at {endpoint} (palpate-node)")
+        except OSError:
             self.close()
-            raise TimeoutError(f"no recognizer listens at {endpoint} (palpate-node)")
+            raise
         self._socket.recv()
 
     def send(self, points) -> None:
@@ -120,11 +143,11 @@ class Planner(_Peer):
         self._socket.connect(endpoint)
 
     def receive(self, timeout: float = 10.0) -> recognition_pb2.Recognition:
-        """The next new answer; raises TimeoutError."""
+        """The next new answer; raises TimeoutError, and ConnectionRefusedError where our keys are refused."""
         deadline = time.monotonic() + timeout
         while True:
             left = deadline - time.monotonic()
-            if left <= 0 or not self._socket.poll(max(1, int(1000 * left))):
+            if left <= 0 or not self._wait(max(0.001, left)):
                 raise TimeoutError(f"no answer from {self.endpoint} within {timeout:g} s (palpate-node, a probe?)")
             frames = self._socket.recv_multipart()
             answer = recognition_pb2.Recognition.FromString(frames[1])

@@ -74,7 +74,8 @@ int run(const CheckCommand& command) {
                        std::chrono::duration<double>(command.seconds)),
                [&](const TwoFrames& frames) {
                  check.take(frames.frame_count, frames.topic.to_string_view(),
-                            frames.payload.to_string_view(), unix_time_ns());
+                            frames.payload.to_string_view(), unix_time_ns(),
+                            place.sender_of(frames.topic));
                  return true;
                });
   if (place.denied_count() > 0) {

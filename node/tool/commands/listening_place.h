@@ -39,6 +39,11 @@ class ListeningPlace {
   void listen(int stop_fd, std::optional<std::chrono::steady_clock::time_point> end,
               const std::function<bool(const TwoFrames&)>& take);
 
+  /// Who sent this frame; anybody, who may do anything, without CURVE.
+  Sender sender_of(const zmq::message_t& frame) const {
+    return zap_ ? zap_->sender_of(frame) : Sender();
+  }
+
   std::uint64_t denied_count() const { return zap_ ? zap_->denied_count() : 0; }
 
  private:

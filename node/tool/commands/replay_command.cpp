@@ -259,6 +259,9 @@ int run(const ReplayCommand& command) {
       std::chrono::steady_clock::now() + std::chrono::duration<double>(command.wait_s);
   Progress progress;
   while (!publisher.wait_for_recognizer(std::chrono::milliseconds(50))) {
+    if (!publisher.refusal().empty()) {
+      return complain("the recognizer at " + options.endpoint + " " + publisher.refusal(), kFailed);
+    }
     progress.tell([&] { return "waiting for a recognizer at " + options.endpoint; });
     if (stop_requested(stop_fd)) {
       return kDone;

@@ -69,6 +69,8 @@ std::string cure_of(v1::RejectReason reason) {
       return "tip_radius_m is in metres, 0 for surface points";
     case v1::REJECT_REASON_MATERIAL_SIDE:
       return "use a value of MaterialSide";
+    case v1::REJECT_REASON_NOT_ALLOWED:
+      return "add the probe's name to probes= behind its key in the recognizer's list of clients";
     default:
       return "see RejectReason in node_status.proto";
   }
@@ -77,9 +79,12 @@ std::string cure_of(v1::RejectReason reason) {
 }  // namespace
 
 void StreamCheck::take(std::size_t frame_count, std::string_view topic, std::string_view payload,
-                       std::int64_t now_unix_ns) {
+                       std::int64_t now_unix_ns, const Sender& sender) {
   ++messages_;
-  const v1::RejectReason reason = decoder_.decode(frame_count, topic, payload);
+  v1::RejectReason reason = decoder_.decode(frame_count, topic, payload);
+  if (!decoder_.probe().empty() && !sender.may_publish_as(decoder_.probe())) {
+    reason = v1::REJECT_REASON_NOT_ALLOWED;
+  }
   if (reason != v1::REJECT_REASON_UNSPECIFIED) {
     const bool is_known = probes_.contains(decoder_.probe()) || rejected_.size() < kMostProbes;
     ++rejected_[{std::string(is_known ? decoder_.probe() : std::string_view()), reason}];

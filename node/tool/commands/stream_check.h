@@ -9,6 +9,7 @@
 
 #include "node/intake/ingest.h"
 #include "node/intake/sequence_tracker.h"
+#include "node/security/sender.h"
 
 namespace palpate {
 
@@ -52,7 +53,7 @@ class StreamCheck {
  public:
   /// One message that arrived at `now_unix_ns`.
   void take(std::size_t frame_count, std::string_view topic, std::string_view payload,
-            std::int64_t now_unix_ns);
+            std::int64_t now_unix_ns, const Sender& sender = {});
 
   /// Worst first.
   std::vector<Finding> findings() const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "node/wire/endpoint.h"
+#include "node/wire/handshake_watch.h"
 #include "node/wire/socket.h"
 #include "palpate/v1/header.pb.h"
 
@@ -69,6 +70,7 @@ Result<std::map<std::string, TopicCount>> count_topics(
   SocketSettings settings;
   settings.curve_client = *curve.value;
   zmq::socket_t socket = make_socket(context, zmq::socket_type::sub, settings);
+  HandshakeWatch handshakes(context, socket);
   socket.set(zmq::sockopt::subscribe, "");
   if (const std::string error = attach(socket, *endpoint.value); !error.empty()) {
     return Counts::fail(error);
@@ -79,6 +81,9 @@ Result<std::map<std::string, TopicCount>> count_topics(
   while (!until(counts)) {
     constexpr int kStepMs = 50;
     poll(items, kStepMs);
+    if (const std::string& refusal = handshakes.refusal(); !refusal.empty()) {
+      return Counts::fail("the recognizer at " + connection.endpoint + " " + refusal);
+    }
     constexpr int kMostAtOnce = 1000;
     const auto turn = std::chrono::steady_clock::now() + std::chrono::milliseconds(kStepMs);
     drain(socket, message, kMostAtOnce, turn, [&](const TwoFrames&) {

@@ -242,6 +242,11 @@ class Watch {
       const client::ReceivedResult result = subscriber_.receive(step);
       const auto now = Clock::now();
       if (result) alive = now;
+      if (!subscriber_.refusal().empty()) {
+        return complain(
+            "the recognizer at " + command_.connection.endpoint + " " + subscriber_.refusal(),
+            kFailed);
+      }
       const double silent_s = std::chrono::duration<double>(now - alive).count();
       // Where recognitions are waited for, the node's being alive is none.
       if (command_.count > 0 ? result.recognition != nullptr : static_cast<bool>(result)) {

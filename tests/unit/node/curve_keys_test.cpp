@@ -101,6 +101,54 @@ TEST_F(CurveKeysTest, BadFilesAreRefused) {
   EXPECT_THAT(read_public_keys(path("x")).error, HasSubstr(":2:"));
 }
 
+TEST_F(CurveKeysTest, AClientsProbesStandBehindItsKey) {
+  const std::string left = generate_curve_keys().value->public_key;
+  const std::string right = generate_curve_keys().value->public_key;
+  const std::string third = generate_curve_keys().value->public_key;
+  const auto read = [&](const std::string& text) {
+    std::ofstream(path("x")) << text;
+    return read_allowed_clients(path("x"));
+  };
+  const auto clients =
+      read("# " + third + "\n" + left + "  probes=a,b.c\r\npublic-key = \"" + right +
+           "\" probes=\ncurve\n    public-key = '" + third + "'\n" + left + " probes=b.c,a\n");
+  ASSERT_TRUE(clients) << clients.error;
+  ASSERT_EQ(clients.value->size(), 3U);  // said twice alike, once counted
+  EXPECT_EQ((*clients.value)[0].public_key, left);
+  EXPECT_EQ((*clients.value)[0].probes, (ProbeNames{"a", "b.c"}));
+  EXPECT_EQ((*clients.value)[1].probes, ProbeNames());
+  EXPECT_EQ((*clients.value)[2].public_key, third);
+  EXPECT_EQ((*clients.value)[2].probes, std::nullopt);
+  // Z85 cannot begin with '#': what looks like a comment is one.
+  std::array<std::uint8_t, 32> bytes{};
+  EXPECT_EQ(zmq_z85_decode(bytes.data(), ("#" + std::string(39, '0')).c_str()), nullptr);
+  EXPECT_THAT(read(left + "\n" + right + " probes=a,\n").error, HasSubstr(":2: probes=: names"));
+  for (const char* bad : {" probes=,a", " probes=a,,b", " probes=a b", " probe=a", " probes", " a",
+                          " probes=a probes=b", " groups=a", "probes=a"}) {
+    EXPECT_THAT(read(left + bad).error, HasSubstr(":1:")) << bad;
+  }
+  EXPECT_THAT(read(left + "\n" + left + " probes=a").error, HasSubstr(":2: this key has other"));
+  // Rights are the list's: a recognizer's own public key has none.
+  std::ofstream(path("x")) << left << " probes=a";
+  EXPECT_THAT(read_public_keys(path("x")).error, HasSubstr("list of clients"));
+}
+
+TEST(ClientList, SaysWhoMayPublishAsWhom) {
+  const std::string a(40, '0');
+  const std::string b = "2" + std::string(39, '0');
+  const std::string c = "1" + std::string(39, '0');
+  const ClientList clients({{a, std::nullopt}, {b, ProbeNames{"left"}}, {c, ProbeNames{}}});
+  EXPECT_TRUE(clients.sender(a).may_publish_as("left"));
+  EXPECT_TRUE(clients.sender(b).may_publish_as("left"));
+  EXPECT_FALSE(clients.sender(b).may_publish_as("lef"));
+  EXPECT_FALSE(clients.sender(b).may_publish_as("right"));
+  EXPECT_FALSE(clients.sender(c).may_publish_as("left"));
+  EXPECT_FALSE(clients.sender("").may_publish_as("left"));
+  EXPECT_TRUE(Sender().may_publish_as("left"));  // without CURVE
+  EXPECT_TRUE(clients.allows_all_of(ClientList({{b, std::nullopt}})));
+  EXPECT_FALSE(ClientList({{b, std::nullopt}}).allows_all_of(clients));
+}
+
 std::string raw(const std::string& z85) {
   std::array<std::uint8_t, 32> bytes{};
   EXPECT_NE(zmq_z85_decode(bytes.data(), z85.c_str()), nullptr);
@@ -110,13 +158,14 @@ std::string raw(const std::string& z85) {
 TEST(ZapReply, OnlyAListedCurveKeyOfOurDomainIsAllowed) {
   const CurveKeyPair keys = *generate_curve_keys().value;
   const CurveKeyPair other = *generate_curve_keys().value;
-  const ClientList clients({keys.public_key});
+  const ClientList clients({{keys.public_key, std::nullopt}});
   const std::vector<std::string> good = {"1.0", "42",    "palpate",           "127.0.0.1",
                                          "",    "CURVE", raw(keys.public_key)};
   const auto reply = zap_reply(good, clients);
   EXPECT_EQ(reply[0], "1.0");
   EXPECT_EQ(reply[1], "42");
   EXPECT_EQ(reply[2], "200");
+  EXPECT_EQ(reply[4], keys.public_key);  // whom libzmq tells us with each message
   const auto status_with = [&](std::size_t frame, const std::string& text) {
     std::vector<std::string> frames = good;
     frames[frame] = text;

@@ -66,6 +66,30 @@ class IntakeTest : public ::testing::Test {
   Intake intake_{IntakeOptions()};
 };
 
+TEST_F(IntakeTest, AKeyThatMayNotPublishAsAProbeChangesNothingOfIt) {
+  const ProbeNames left{"left"};
+  const Sender sender{"KEY", &left};
+  const auto send = [&](const std::string& topic, const std::string& bytes) {
+    return intake_.take(2, topic, bytes, now_, 0, sender);
+  };
+  EXPECT_EQ(give("right", line_batch("right", 5, 0)), kTaken);
+  EXPECT_EQ(send(contact_topic("right"), line_batch("right", 5, 1).SerializeAsString()),
+            v1::REJECT_REASON_NOT_ALLOWED);
+  EXPECT_EQ(send(contact_topic("right"), "nonsense"), v1::REJECT_REASON_NOT_ALLOWED);
+  EXPECT_EQ(send("nonsense", "nonsense"), v1::REJECT_REASON_TOPIC);
+  EXPECT_EQ(send(contact_topic("new"), line_batch("new", 5, 0).SerializeAsString()),
+            v1::REJECT_REASON_NOT_ALLOWED);
+  EXPECT_EQ(intake_.probes().find("new"), nullptr);
+  EXPECT_EQ(intake_.probes().find("right")->rejected, 0U);
+  EXPECT_EQ(give("right", line_batch("right", 5, 1)), kTaken);  // its seq was not used up
+  EXPECT_EQ(send(contact_topic("left"), line_batch("left", 5, 0).SerializeAsString()), kTaken);
+  const IntakeCounters& counters = intake_.counters();
+  EXPECT_EQ(counters.rejected[v1::REJECT_REASON_NOT_ALLOWED], 3U);
+  EXPECT_EQ(counters.rejected_last[v1::REJECT_REASON_NOT_ALLOWED],
+            "new, which the key KEY may not publish as");
+  EXPECT_EQ(counters.messages_received, counters.messages_accepted + rejected_sum(intake_));
+}
+
 TEST_F(IntakeTest, TheLedgerIsExact) {
   EXPECT_EQ(give("p", line_batch("p", 1, 0)), kTaken);
   EXPECT_EQ(give("p", line_batch("p", 1, 4)), kTaken);                         // 3 missing

@@ -97,6 +97,29 @@ TEST(LongestSegment, TwoJointsAreFoundOneAfterTheOther) {
   EXPECT_GT(chi_square_survival(found.chi2, found.dof), 1e-3);
 }
 
+TEST(LongestSegment, ALongPatchHasItsJointAmongAllItsSamples) {
+  const ClosedSpline part = test::paper_part();
+  auto rng = test::test_rng();
+  const test::TouchedPart touched =
+      test::touch(part, test::random_pose(rng), {{1.35, 0.035, 20'011}}, kSigma, kSigma, rng);
+  const std::size_t truth = joint_index(touched.t[0]);
+  const SegmentBelonging found = longest_segment(touched.patches[0]);
+  ASSERT_EQ(found.joints.size(), 1U);
+  const SegmentJoint& joint = found.joints[0];
+  EXPECT_LE(joint.earliest, truth);
+  EXPECT_GE(joint.latest, truth);
+  EXPECT_GE(joint.latest - joint.earliest, 20U);  // those between two that were tested
+  EXPECT_LE(joint.latest - joint.earliest, 20'011U / 4);
+  EXPECT_LE(joint.earliest, joint.index);
+  EXPECT_LE(joint.index, joint.latest);
+  const bool first_is_longer = joint.index >= 20'011 - joint.index;
+  EXPECT_EQ(found.begin, first_is_longer ? 0 : joint.index);
+  EXPECT_EQ(found.end, first_is_longer ? joint.index : 20'011);
+  EXPECT_EQ(static_cast<std::size_t>(found.dof) + 6,  // the cubic's own test is of all samples
+            first_is_longer ? joint.earliest : 20'011 - joint.latest);
+  EXPECT_GT(chi_square_survival(found.chi2, found.dof), 1e-3);
+}
+
 TEST(LongestSegment, RoundTipsAndUnknownNoise) {
   const ClosedSpline part = test::paper_part();
   auto rng = test::test_rng();
