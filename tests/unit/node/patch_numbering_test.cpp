@@ -53,13 +53,15 @@ TEST(PatchNumbering, AnEndedRunIsNotContinued) {
 
 TEST(PatchNumbering, OldRunsAreForgottenAndNewOnesKept) {
   PatchNumbering numbering;
-  constexpr std::uint32_t kMany = 5000;
+  constexpr std::uint32_t kMany = 10000;
+  constexpr std::uint32_t kOfOneRecognition = 2048;  // strokes and touches, 1,024 of each
   std::uint32_t run = 0;
   for (std::uint32_t patch = 0; patch < kMany; ++patch) {
     run = numbering.run_of(patch, false, kBreak, samples_from(0.0, 1));
     ASSERT_EQ(numbering.wire_patch(run), patch);
   }
-  EXPECT_FALSE(numbering.wire_patch(run - 2000));
+  EXPECT_EQ(numbering.wire_patch(run - kOfOneRecognition), kMany - 1 - kOfOneRecognition);
+  EXPECT_FALSE(numbering.wire_patch(run - kMany / 2));
   EXPECT_FALSE(numbering.wire_patch(run + 1));
 }
 
