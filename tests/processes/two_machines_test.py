@@ -10,7 +10,7 @@ import unittest
 from bus import Bus
 from programs import NODE, SIM, SOURCE, TOOL
 
-RECIPE = (SOURCE / "node/README.md").read_text().partition("## Beyond this machine")[2].partition("\n## ")[0]
+RECIPE = (SOURCE / "node/README.md").read_text().partition("## Beyond this machine")[2].partition("\n##")[0]
 PROGRAMS = {"palpate": TOOL, "palpate-node": NODE, "palpate-sim": SIM}
 
 # Their cable, laid by the test inside its own namespaces: all of it is gone when they end.
