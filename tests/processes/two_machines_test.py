@@ -72,7 +72,7 @@ class TwoMachines(unittest.TestCase):
                 self.say(other, f"{watch} --format json --count 1 --timeout 30 > answer.json 2> watch.log & echo $! > watch.pid")
                 self.say(other, f"{sim} --wait 20 --quiet")
                 # What has no key hears why.
-                stranger = sim.replace("--curve-secret-key finger.secret --curve-server-key node.public", "--wait 1 --quiet")
+                stranger = sim.replace("--curve-secret-key finger.secret --curve-server-key node.public", "--wait 20 --quiet")
                 self.assertIn("do not agree on CURVE", self.say(other, f"{stranger} 2>&1 || true"))
                 deadline = time.monotonic() + 30
                 while "CURVE_CLASS" not in (bus.folder / "answer.json").read_text():
