@@ -6,7 +6,8 @@ on, the package manager's knowledge of them included: no download, and all that 
 
     unshare --mount clean_root.py FOLDER PACKAGE,... -- COMMAND...
 
-runs COMMAND there; FOLDER is what it has of this machine, as /given.
+runs COMMAND there; FOLDER is what it has of this machine, as /given. Ends with MAY_NOT where the machine allows no such
+root.
 """
 import os
 import pathlib
@@ -15,6 +16,7 @@ import stat
 import subprocess
 import sys
 
+MAY_NOT = 77
 STATUS = pathlib.Path("/var/lib/dpkg/status")
 # Where a file that nobody depends on could be found by accident.
 SEARCHED = ("/usr/include/", "/usr/lib/", "/usr/bin/", "/usr/sbin/", "/usr/share/cmake", "/usr/share/pkgconfig/",
@@ -76,7 +78,8 @@ def main():
     command = sys.argv[sys.argv.index("--") + 1:]
 
     def mount(*arguments):
-        subprocess.run(["mount", *map(str, arguments)], check=True)
+        if subprocess.run(["mount", *map(str, arguments)]).returncode != 0:
+            sys.exit(MAY_NOT)
 
     paragraphs = {}
     for paragraph in STATUS.read_text().split("\n\n"):
@@ -92,7 +95,10 @@ def main():
     upper, work, root = (pathlib.Path("/mnt") / name for name in ("upper", "work", "root"))
     for folder in (upper, work, root):
         folder.mkdir()
-    hide_all_but(kept, packages, upper)
+    try:
+        hide_all_but(kept, packages, upper)
+    except PermissionError:
+        sys.exit(MAY_NOT)
     (upper / "var/lib/dpkg").mkdir(parents=True)
     (upper / "var/lib/dpkg/status").write_text("\n\n".join(paragraphs[name] for name in sorted(kept)) + "\n\n")
     mount("-t", "overlay", "overlay", "-o", f"lowerdir=/,upperdir={upper},workdir={work}", root)

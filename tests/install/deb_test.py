@@ -6,6 +6,7 @@ import subprocess
 import tempfile
 import unittest
 
+from clean_root import MAY_NOT
 from programs import BUILD
 from strangers import ANSWERS, call, write_project
 
@@ -70,8 +71,13 @@ class Deb(unittest.TestCase):
         write_project(self.folder / "stranger")
         depends = {name.split("(")[0].split("|")[0].strip() for package in self.packages
                    for name in call("dpkg-deb", "--field", package, "Depends").split(",")}
-        out = call("unshare", "--mount", "/usr/bin/python3", HERE / "clean_root.py", self.folder,
-                   ",".join(sorted(depends | set(TOOLS))), "--", "sh", "-c", IN_THE_ROOT)
+        done = subprocess.run(["unshare", "--mount", "/usr/bin/python3", HERE / "clean_root.py", self.folder,
+                               ",".join(sorted(depends | set(TOOLS))), "--", "sh", "-c", IN_THE_ROOT],
+                              capture_output=True, text=True)
+        if done.returncode == MAY_NOT:
+            self.skipTest("this machine allows no root under an overlay")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        out = done.stdout
         for answer in ANSWERS.values():
             self.assertIn(f"cmake: {answer}", out)
         self.assertIn(f"pkg-config: {ANSWERS['circle']}", out)

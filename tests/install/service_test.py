@@ -107,6 +107,8 @@ class Unit(unittest.TestCase):
     @unittest.skipUnless(ANALYZE and shutil.which("strace"), "no systemd-analyze or no strace: calls were not counted")
     def test_the_filter_of_system_calls_lets_through_what_the_node_does(self):
         # A call that is refused ends the node, as libzmq's of sched_setscheduler did.
+        if subprocess.run(["strace", "--output", "/dev/null", "true"], capture_output=True).returncode != 0:
+            self.skipTest("nothing may be traced here: calls were not counted")
         def members(name):
             found = set()
             for line in call(ANALYZE, "syscall-filter", name).splitlines()[1:]:
