@@ -109,7 +109,7 @@ TEST(LongestSegment, ALongPatchHasItsJointAmongAllItsSamples) {
   EXPECT_LE(joint.earliest, truth);
   EXPECT_GE(joint.latest, truth);
   EXPECT_GE(joint.latest - joint.earliest, 20U);  // those between two that were tested
-  EXPECT_LE(joint.latest - joint.earliest, 20'011U / 4);
+  EXPECT_LE(joint.latest - joint.earliest, 20'011U / 2);
   EXPECT_LE(joint.earliest, joint.index);
   EXPECT_LE(joint.index, joint.latest);
   const bool first_is_longer = joint.index >= 20'011 - joint.index;
