@@ -17,6 +17,11 @@ namespace {
 /// What is left of a window that is too long: as of the stream's (sliding_window.h).
 constexpr double kShrink = 0.9;
 
+/// Noise of one of a sample's contacts; 0 where it is not known. [m]
+double sigma_of(const StoredSample& sample, double default_sigma_m) {
+  return sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+}
+
 /// The samples of a patch with their weights, and the noise of one of weight 1.
 struct WeightedPath {
   std::vector<PathNode> nodes;
@@ -28,18 +33,15 @@ WeightedPath weighted_path(const StoredPatch& patch, double default_sigma_m) {
   WeightedPath path;
   path.nodes.reserve(patch.samples.size());
   bool stated = true;
+  double variances = 0.0;
   for (const StoredSample& sample : patch.samples) {
-    const double sigma = sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+    const double sigma = sigma_of(sample, default_sigma_m);
     stated = stated && sigma > 0.0;
+    variances += sigma * sigma;
     path.nodes.push_back({sample.position_m, sample.weight / (sigma * sigma)});
   }
   if (stated) {
     path.noise = 1.0;
-    double variances = 0.0;
-    for (const StoredSample& sample : patch.samples) {
-      const double sigma = sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
-      variances += sigma * sigma;
-    }
     path.sigma_m = std::sqrt(variances / static_cast<double>(patch.samples.size()));
     return path;
   }
@@ -111,7 +113,7 @@ void keep_most_informative(std::vector<LocalizedContact>* found) {
 double sigma_of_samples(const StoredPatch& patch, double default_sigma_m) {
   double squares = 0.0;
   for (const StoredSample& sample : patch.samples) {
-    const double sigma = sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+    const double sigma = sigma_of(sample, default_sigma_m);
     if (!(sigma > 0.0)) {
       return 0.0;
     }

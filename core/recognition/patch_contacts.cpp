@@ -9,10 +9,8 @@
 namespace palpate {
 
 bool PatchContacts::Known::same_as(const Known& other) const {
-  return probe == other.probe && patch == other.patch && samples == other.samples &&
-         contacts_per_sample == other.contacts_per_sample && newest_m == other.newest_m &&
-         touches == other.touches && windows == other.windows && side == other.side &&
-         outliers == other.outliers;
+  return version == other.version && touches == other.touches && windows == other.windows &&
+         side == other.side && outliers == other.outliers;
 }
 
 std::vector<LocalizedContact> PatchContacts::of(std::span<const StoredPatch> patches,
@@ -27,11 +25,7 @@ std::vector<LocalizedContact> PatchContacts::of(std::span<const StoredPatch> pat
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const StoredPatch& patch = patches[p];
     Known now;
-    now.probe = patch.context.probe;
-    now.patch = patch.context.patch;
-    now.samples = patch.samples.size();
-    now.contacts_per_sample = patch.contacts_per_sample;
-    now.newest_m = patch.newest_m;
+    now.version = version_of(patch);
     now.windows = windows;
     if (!sides.empty() && !patch.samples.empty()) {
       assert(sided < sides.size());
@@ -65,7 +59,7 @@ std::vector<LocalizedContact> PatchContacts::of(std::span<const StoredPatch> pat
 
 int PatchContacts::side_of(std::uint32_t probe, std::uint32_t patch) const {
   const auto found = std::find_if(known_.begin(), known_.end(), [&](const Known& known) {
-    return known.probe == probe && known.patch == patch;
+    return known.version.probe == probe && known.version.patch == patch;
   });
   return found != known_.end() && found->touches.empty() ? found->side : 0;
 }

@@ -27,11 +27,7 @@ class PatchContacts {
  private:
   /// What the contacts of a patch were made of, and they.
   struct Known {
-    std::uint32_t probe = 0;
-    std::uint32_t patch = 0;
-    std::size_t samples = 0;
-    double contacts_per_sample = 0.0;
-    Vec2 newest_m = Vec2::Zero();
+    PatchVersion version;
     std::vector<Vec2> touches;  ///< of a run, which may change anywhere
     std::size_t windows = 0;
     int side = 0;

@@ -13,6 +13,7 @@
 #include "core/recognition/likelihood_answer.h"
 #include "core/recognition/outliers.h"
 #include "core/recognition/patch_contacts.h"
+#include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/samples/clean_patches.h"
 #include "core/recognition/samples/explained_spikes.h"
 #include "core/recognition/samples/tip_sides.h"
@@ -26,13 +27,9 @@ namespace {
 /// Fewer places than this fit almost anything: nothing is RECOGNIZED.
 constexpr std::size_t kFewestPlaces = 8;
 
-/// From so many touches that lie apart there is an answer all the same, if an AMBIGUOUS one: what
+/// From so many patches that lie apart there is an answer all the same, if an AMBIGUOUS one: what
 /// could be, and where it would lie. A circle takes three, and one speaks for or against it.
-constexpr std::size_t kFewestTouches = 4;
-
-/// Touches in no order whose noise nobody states may lie about any curve, if the noise is large
-/// enough: of the half extent, beyond this nothing is measured.
-constexpr double kLargestNoise = 0.01;
+constexpr std::size_t kFewestPatches = 4;
 
 /// Whether most of the patches are of one sample: no neighbours tell the noise from the shape.
 bool are_touches(std::span<const StoredPatch> patches) {
@@ -66,6 +63,14 @@ bool have_extent(const FitData& data) {
   constexpr double kSmallest = 1e-100;
   constexpr double kLargest = 1e100;
   return rounding_level(data) < kMostRounding && data.scale > kSmallest && data.scale < kLargest;
+}
+
+/// What speaks against an answer that nothing has spoken against yet.
+void doubt(Recognition* answer, Doubt doubt) {
+  if (answer->status == RecognitionStatus::Recognized) {
+    answer->status = RecognitionStatus::Ambiguous;
+    answer->doubt = doubt;
+  }
 }
 
 /// One flag per point of `all`: not in `kept`, which has the others in their order.
@@ -154,51 +159,59 @@ class Recognizer::Impl {
     FitData data = make_fit_data(clean, options_.sigma_m, &sigma_known);
     const std::size_t places = places_of(data);
     const std::size_t fewest =
-        memory_.patches().size() < kFewestTouches ? kFewestPlaces : kFewestTouches;
+        memory_.patches().size() < kFewestPatches ? kFewestPlaces : kFewestPatches;
     if (places < fewest || !have_extent(data)) {
       return answer;
     }
-    const std::vector<StoredPatch> patches =
-        strung_touches(clean, options_.sigma_m, options_.classes);
-    if (patches.size() != clean.size()) {
-      data = make_fit_data(patches, options_.sigma_m, &sigma_known);
+    const auto strung = strung_touches(clean, options_.sigma_m, options_.classes);
+    if (strung) {
+      data = make_fit_data(*strung, options_.sigma_m, &sigma_known);
     }
+    const std::span<const StoredPatch> patches = strung ? *strung : clean;
     answer = options_.method == RecognitionMethod::Tree
                  ? by_tree(data, sigma_known, patches)
-                 : by_likelihood(data, patches, sigma_known, clean);
-    if (answer.status == RecognitionStatus::Recognized && !sigma_known && are_touches(clean) &&
-        answer.sigma_m > kLargestNoise * data.scale) {
-      answer.status = RecognitionStatus::Ambiguous;
-      answer.doubt = Doubt::Misfit;
+                 : by_likelihood(data, sigma_known, patches, clean);
+    // Touches in no order whose noise nobody states lie about any curve, if the noise is large
+    // enough.
+    if (!sigma_known && are_touches(clean) && answer.sigma_m > kLargestNoise * data.scale) {
+      doubt(&answer, Doubt::Misfit);
     }
-    if (places < kFewestPlaces && answer.status == RecognitionStatus::Recognized) {
-      answer.status = RecognitionStatus::Ambiguous;
-      answer.doubt = Doubt::FewPlaces;
+    if (places < kFewestPlaces) {
+      doubt(&answer, Doubt::FewPlaces);
     }
     return answer;
   }
 
+  /// A weighing, and what it is of.
+  struct Weighed {
+    Weighing w;
+    std::vector<bool> outliers;  ///< one flag per sample of the patches; empty where there are none
+    /// Where these are others than were asked about.
+    std::optional<std::vector<StoredPatch>> patches;
+  };
+
   /// `patches`: those that the data are of; `clean`: as they were touched.
-  Recognition by_likelihood(const FitData& data, std::vector<StoredPatch> patches, bool sigma_known,
+  Recognition by_likelihood(const FitData& data, bool sigma_known,
+                            std::span<const StoredPatch> patches,
                             std::span<const StoredPatch> clean) {
-    std::vector<bool> outliers;
-    Weighing w = weigh_once_more(data, sigma_known, patches, &outliers);
+    Weighed weighed = weigh_once_more(data, sigma_known, patches);
     const std::size_t stored = memory_.stored_count();
     if (stored > data.points.size()) {
-      take_back_explained(clean, &w, &patches, &outliers);
+      weighed = with_explained(std::move(weighed), clean);
     }
+    const Weighing& w = weighed.w;
     Recognition answer = answer_by_likelihood(
         w, {options_.recognized_probability, options_.determined_fraction}, stored);
     answer.outlier_count = stored - w.data.points.size();
-    answer.contacts = contacts_.of(patches, w.sides, outliers, contact_options());
+    answer.contacts = contacts_.of(weighed.patches ? *weighed.patches : patches, w.sides,
+                                   weighed.outliers, contact_options());
     SplineOptions spline;
     spline.fallback_starts = 0;  // the path is reported only: not worth the time
     add_path(recognise_by_tree(tree_points(answer.contacts), options_.tree, curves_of(w), spline),
              &answer);
     const double p_value = answer.tree_p_values[static_cast<std::size_t>(answer.shape.curve_class)];
-    if (answer.status == RecognitionStatus::Recognized && p_value < options_.tree.significance) {
-      answer.status = RecognitionStatus::Ambiguous;
-      answer.doubt = Doubt::TreeRejects;
+    if (p_value < options_.tree.significance) {
+      doubt(&answer, Doubt::TreeRejects);
     }
     localise_contacts(answer.shape, answer.world_T_curve, &answer.contacts);
     return answer;
@@ -228,75 +241,74 @@ class Recognizer::Impl {
   /// From the last weighing while the object is touched on in the same patches; from a new search
   /// where they have grown by this, where there is another patch, and where a class comes out best
   /// that was out.
-  Weighing weigh_once_more(const FitData& data, bool sigma_known,
-                           std::span<const StoredPatch> patches, std::vector<bool>* outliers) {
+  Weighed weigh_once_more(const FitData& data, bool sigma_known,
+                          std::span<const StoredPatch> patches) {
     constexpr double kGrowth = 1.25;
     constexpr double kOut = 0.01;  // probability
     const std::size_t samples = memory_.sample_count();
     const bool warm = last_ && last_->patches == data.patches.size() &&
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
     if (warm) {
-      Weighing w = weigh_without_outliers(data, sigma_known, patches, last_->starts, outliers);
+      Weighed weighed = weigh_without_outliers(data, sigma_known, patches, last_->starts);
+      const Weighing& w = weighed.w;
       if (last_->probabilities[static_cast<std::size_t>(w.best)] > kOut) {
         last_->starts = w.starts;
         last_->probabilities = w.probabilities;
-        return w;
+        return weighed;
       }
     }
-    Weighing w = weigh_without_outliers(data, sigma_known, patches, {}, outliers);
-    last_ = Last{w.starts, w.probabilities, samples, data.patches.size()};
-    return w;
+    Weighed weighed = weigh_without_outliers(data, sigma_known, patches, {});
+    last_ = Last{weighed.w.starts, weighed.w.probabilities, samples, data.patches.size()};
+    return weighed;
   }
 
-  /// `outliers`: one flag per sample of the patches; empty where there are none.
-  Weighing weigh_without_outliers(const FitData& data, bool sigma_known,
-                                  std::span<const StoredPatch> patches,
-                                  std::span<const SidedStart> starts,
-                                  std::vector<bool>* outliers) const {
-    outliers->clear();
-    Weighing w = weigh(data, sigma_known, patches, weigh_options(), starts);
+  Weighed weigh_without_outliers(const FitData& data, bool sigma_known,
+                                 std::span<const StoredPatch> patches,
+                                 std::span<const SidedStart> starts) const {
+    Weighed weighed{weigh(data, sigma_known, patches, weigh_options(), starts), {}, {}};
+    Weighing& w = weighed.w;
     if (const auto kept =
             without_outliers(w, data, sigma_known, options_.false_outlier_probability)) {
       // A search is not followed: the outliers may have led it astray.
       const std::vector<SidedStart> nearer =
           starts.empty() ? std::vector<SidedStart>{} : std::move(w.starts);
       w = weigh(*kept, sigma_known, patches, weigh_options(), nearer);
-      *outliers = left_out(data, *kept);
+      weighed.outliers = left_out(data, *kept);
     }
-    return w;
+    return weighed;
   }
 
   WeighOptions weigh_options() const {
     return {options_.classes, options_.recognized_probability, options_.form_deviation_m};
   }
 
-  /// Weighs again with the spikes that the best class explains; that stands where the class does,
-  /// with the patches and outliers that it is of.
-  void take_back_explained(std::span<const StoredPatch> clean, Weighing* w,
-                           std::vector<StoredPatch>* patches, std::vector<bool>* outliers) const {
-    const auto& best = w->canonical[static_cast<std::size_t>(w->best)];
-    const auto curve = best ? make_curve(w->best, best->shape.values) : std::nullopt;
+  /// Weighed again with the spikes that the best class explains, where the class stands then.
+  Weighed with_explained(Weighed weighed, std::span<const StoredPatch> clean) const {
+    const Weighing& w = weighed.w;
+    const auto& best = w.canonical[static_cast<std::size_t>(w.best)];
+    const auto curve = best ? make_curve(w.best, best->shape.values) : std::nullopt;
     if (!curve) {
-      return;
+      return weighed;
     }
-    const double noise_m = residual_noise_m(*w);
+    const double noise_m = residual_noise_m(w);
     const double limit = two_sided_normal_quantile(options_.false_outlier_probability /
                                                    static_cast<double>(memory_.stored_count()));
-    const auto more = with_explained_spikes(memory_.patches(), clean, *curve, best->world_T_curve,
-                                            noise_m, limit);
+    auto more = with_explained_spikes(memory_.patches(), clean, *curve, best->world_T_curve,
+                                      noise_m, limit);
     if (!more) {
-      return;
+      return weighed;
     }
-    std::vector<StoredPatch> strung = strung_touches(*more, options_.sigma_m, options_.classes);
+    if (auto strung = strung_touches(*more, options_.sigma_m, options_.classes)) {
+      more = std::move(strung);
+    }
     bool sigma_known = false;
-    const FitData data = make_fit_data(strung, options_.sigma_m, &sigma_known);
-    std::vector<bool> set_aside;
-    Weighing again = weigh_without_outliers(data, sigma_known, strung, last_->starts, &set_aside);
-    if (again.best == w->best && again.canonical[static_cast<std::size_t>(again.best)]) {
-      *w = std::move(again);
-      *patches = std::move(strung);
-      *outliers = std::move(set_aside);
+    const FitData data = make_fit_data(*more, options_.sigma_m, &sigma_known);
+    Weighed again = weigh_without_outliers(data, sigma_known, *more, last_->starts);
+    if (again.w.best != w.best || !again.w.canonical[static_cast<std::size_t>(again.w.best)]) {
+      return weighed;
     }
+    again.patches = std::move(more);
+    return again;
   }
 
   ContactOptions contact_options() const {

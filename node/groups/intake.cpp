@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "node/security/decode_from.h"
+
 namespace palpate {
 namespace {
 
@@ -61,10 +63,7 @@ void Intake::reject(RejectReason reason, const Sender& sender, Probe* probe) {
 RejectReason Intake::take(std::size_t frame_count, std::string_view topic, std::string_view payload,
                           SteadyTime now, std::int64_t now_unix_ns, const Sender& sender) {
   ++counters_.messages_received;
-  RejectReason reason = decoder_.decode(frame_count, topic, payload);
-  if (!decoder_.probe().empty() && !sender.may_publish_as(decoder_.probe())) {
-    reason = v1::REJECT_REASON_NOT_ALLOWED;
-  }
+  RejectReason reason = decode_from(sender, decoder_, frame_count, topic, payload);
   Probe* probe = decoder_.probe().empty() ? nullptr : probes_.find(decoder_.probe());
   const ContactMessage& message = decoder_.message();
   Group* group = nullptr;

@@ -6,17 +6,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cstring>
 #include <utility>
 
 namespace palpate {
 namespace {
-
-std::string unique_monitor_address() {
-  static std::atomic<std::uint64_t> count{0};
-  return "inproc://palpate-peer-guard-" + std::to_string(count.fetch_add(1));
-}
 
 /// Address and port, or the process at the other end of an ipc connection.
 std::string name_of_peer(int descriptor) {
@@ -54,35 +47,13 @@ PeerGuard::PeerGuard(zmq::context_t& context, zmq::socket_t& socket, const PeerB
     : socket_(socket),
       bounds_(bounds),
       what_(std::move(what)),
-      events_(context, zmq::socket_type::pair) {
-  const std::string monitor = unique_monitor_address();
-  if (zmq_socket_monitor(socket_.handle(), monitor.c_str(),
-                         ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_DISCONNECTED) != 0) {
-    throw zmq::error_t();
-  }
-  // libzmq's thread waits where the queue of events is full: it must not be by a flood of peers.
-  events_.set(zmq::sockopt::rcvhwm, 0);
-  events_.set(zmq::sockopt::linger, 0);
-  events_.connect(monitor);
-}
-
-PeerGuard::~PeerGuard() { zmq_socket_monitor(socket_.handle(), nullptr, 0); }
+      monitor_(context, socket, ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_DISCONNECTED) {}
 
 void PeerGuard::tend(Time now) {
-  // Each event is two frames: number and value, then the address.
-  zmq::message_t frame;
-  while (zmq_msg_recv(frame.handle(), events_.handle(), ZMQ_DONTWAIT) >= 0) {
-    std::uint16_t event = 0;
-    std::uint32_t value = 0;
-    if (frame.size() >= sizeof event + sizeof value) {
-      std::memcpy(&event, frame.data(), sizeof event);
-      std::memcpy(&value, frame.data<char>() + sizeof event, sizeof value);
-    }
-    while (frame.more() && zmq_msg_recv(frame.handle(), events_.handle(), ZMQ_DONTWAIT) >= 0) {
-    }
-    const int descriptor = static_cast<int>(value);
+  while (const auto told = monitor_.next()) {
+    const int descriptor = static_cast<int>(told->value);
     if (const auto known = peers_.find(descriptor); known != peers_.end()) forget(known);
-    if (event == ZMQ_EVENT_ACCEPTED) peers_.emplace(descriptor, Peer{now});
+    if (told->event == ZMQ_EVENT_ACCEPTED) peers_.emplace(descriptor, Peer{now});
   }
   while (peers_.size() > bounds_.max_peers) {
     // The one silent for longest, if that is long enough; else the last to come.

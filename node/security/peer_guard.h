@@ -8,6 +8,8 @@
 #include <string>
 #include <zmq.hpp>
 
+#include "node/wire/socket_monitor.h"
+
 namespace palpate {
 
 struct PeerBounds {
@@ -33,15 +35,12 @@ class PeerGuard {
   /// `what`: name of the socket in logs. Throws zmq::error_t where the monitor cannot be made.
   PeerGuard(zmq::context_t& context, zmq::socket_t& socket, const PeerBounds& bounds,
             std::string what);
-  ~PeerGuard();
-  PeerGuard(const PeerGuard&) = delete;
-  PeerGuard& operator=(const PeerGuard&) = delete;
 
   /// Takes the events that have come, and cuts who is too many.
   void tend(Time now);
 
   /// To be polled for input: tend() then.
-  zmq::socket_t& events() { return events_; }
+  zmq::socket_t& events() { return monitor_.events(); }
 
   /// The peer of that descriptor (descriptor_of) has said something.
   void hear(int descriptor);
@@ -72,7 +71,7 @@ class PeerGuard {
   zmq::socket_t& socket_;
   PeerBounds bounds_;
   std::string what_;
-  zmq::socket_t events_;
+  SocketMonitor monitor_;
   Peers peers_;  // by descriptor
   std::size_t subscription_bytes_ = 0;
   std::uint64_t cut_count_ = 0;

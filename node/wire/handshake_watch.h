@@ -4,6 +4,8 @@
 #include <string>
 #include <zmq.hpp>
 
+#include "node/wire/socket_monitor.h"
+
 namespace palpate {
 
 /// Who connects and is refused hears it once, and libzmq does not try again: without this it looks
@@ -13,20 +15,16 @@ class HandshakeWatch {
  public:
   /// Make it before the socket connects. Throws zmq::error_t where the monitor cannot be made.
   HandshakeWatch(zmq::context_t& context, zmq::socket_t& socket);
-  ~HandshakeWatch();
-  HandshakeWatch(const HandshakeWatch&) = delete;
-  HandshakeWatch& operator=(const HandshakeWatch&) = delete;
 
   /// Takes the events that have come. What the latest refusal was, for a person to read after the
   /// address; empty where there was none.
   const std::string& refusal();
 
   /// To be polled for input: refusal() then.
-  zmq::socket_t& events() { return events_; }
+  zmq::socket_t& events() { return monitor_.events(); }
 
  private:
-  zmq::socket_t& socket_;
-  zmq::socket_t events_;
+  SocketMonitor monitor_;
   std::string refusal_;
 };
 

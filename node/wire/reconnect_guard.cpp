@@ -1,9 +1,6 @@
 #include "node/wire/reconnect_guard.h"
 
 #include <algorithm>
-#include <atomic>
-#include <cstdint>
-#include <cstring>
 
 namespace palpate {
 namespace {
@@ -11,38 +8,22 @@ namespace {
 // Longer than the longest pause before libzmq's own retry, which also is announced at once.
 constexpr std::chrono::milliseconds kPatience{100};
 
-std::string unique_monitor_address() {
-  static std::atomic<std::uint64_t> count{0};
-  return "inproc://palpate-reconnect-guard-" + std::to_string(count.fetch_add(1));
-}
-
 }  // namespace
 
 ReconnectGuard::ReconnectGuard(zmq::context_t& context, zmq::socket_t& socket,
                                std::vector<std::string> addresses)
-    : socket_(socket), addresses_(std::move(addresses)), events_(context, zmq::socket_type::pair) {
-  const std::string monitor = unique_monitor_address();
-  const int events = ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_CONNECT_RETRIED |
-                     ZMQ_EVENT_CONNECT_DELAYED | ZMQ_EVENT_CONNECTED;
-  if (zmq_socket_monitor(socket_.handle(), monitor.c_str(), events) != 0) throw zmq::error_t();
-  events_.set(zmq::sockopt::linger, 0);
-  events_.connect(monitor);
-}
-
-ReconnectGuard::~ReconnectGuard() { zmq_socket_monitor(socket_.handle(), nullptr, 0); }
+    : socket_(socket),
+      addresses_(std::move(addresses)),
+      monitor_(context, socket,
+               ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_CONNECT_RETRIED | ZMQ_EVENT_CONNECT_DELAYED |
+                   ZMQ_EVENT_CONNECTED) {}
 
 bool ReconnectGuard::tend(std::chrono::steady_clock::time_point now) {
-  // Each event is two frames: number and value, then the address.
-  zmq::message_t frame;
-  while (zmq_msg_recv(frame.handle(), events_.handle(), ZMQ_DONTWAIT) >= 0) {
-    std::uint16_t event = 0;
-    if (frame.size() >= sizeof(event)) std::memcpy(&event, frame.data(), sizeof(event));
-    if (!frame.more()) continue;
-    if (zmq_msg_recv(frame.handle(), events_.handle(), ZMQ_DONTWAIT) < 0) break;
-    if (event == ZMQ_EVENT_DISCONNECTED) {
-      silent_since_.emplace(frame.to_string(), now);
+  while (const auto told = monitor_.next()) {
+    if (told->event == ZMQ_EVENT_DISCONNECTED) {
+      silent_since_.emplace(told->address, now);
     } else {
-      silent_since_.erase(frame.to_string());
+      silent_since_.erase(told->address);
     }
   }
   bool reconnected = false;

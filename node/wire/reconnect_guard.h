@@ -7,6 +7,8 @@
 #include <vector>
 #include <zmq.hpp>
 
+#include "node/wire/socket_monitor.h"
+
 namespace palpate {
 
 /// libzmq (4.3.4) gives a connection up for good when a frame exceeds ZMQ_MAXMSGSIZE: it reports
@@ -19,9 +21,6 @@ class ReconnectGuard {
   /// cannot be made.
   ReconnectGuard(zmq::context_t& context, zmq::socket_t& socket,
                  std::vector<std::string> addresses);
-  ~ReconnectGuard();
-  ReconnectGuard(const ReconnectGuard&) = delete;
-  ReconnectGuard& operator=(const ReconnectGuard&) = delete;
 
   /// Call often; cheap. Returns true where it has connected again.
   bool tend(std::chrono::steady_clock::time_point now);
@@ -31,7 +30,7 @@ class ReconnectGuard {
 
   zmq::socket_t& socket_;
   std::vector<std::string> addresses_;
-  zmq::socket_t events_;
+  SocketMonitor monitor_;
   std::map<std::string, std::chrono::steady_clock::time_point> silent_since_;  // by address
 };
 

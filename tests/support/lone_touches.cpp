@@ -47,4 +47,14 @@ LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_si
   return touches;
 }
 
+void add_touches(const LoneTouches& touches, double sigma_m, Recognizer* recognizer) {
+  PatchContext context;
+  context.tip_radius_m = touches.tip_radius_m;
+  for (const auto& patch : touches.scene.patches) {
+    const ContactSample sample{patch.front(), sigma_m, 0};
+    recognizer->add(context, {&sample, 1});
+    ++context.patch;
+  }
+}
+
 }  // namespace palpate::test

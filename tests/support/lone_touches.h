@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "core/recognition/recognizer.h"
 #include "tests/support/random_scene.h"
 
 namespace palpate::test {
@@ -16,5 +17,8 @@ struct LoneTouches {
 /// piece's bend, on the same side of the curve everywhere.
 LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_size,
                          double tip_over_size, std::mt19937_64& rng);
+
+/// Adds each touch as a patch of its own; `sigma_m` is what they claim (0 = not known).
+void add_touches(const LoneTouches& touches, double sigma_m, Recognizer* recognizer);
 
 }  // namespace palpate::test

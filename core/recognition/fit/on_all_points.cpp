@@ -73,8 +73,7 @@ void carry_to_all(const SmoothModel& smooth, PolynomialFit* curve) {
 /// A fit on the reduced points, not refined on all points yet.
 ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
                       std::span<const FitPoint> points) {
-  const bool tips = std::any_of(points.begin(), points.end(),
-                                [](const FitPoint& point) { return point.offset > 0.0; });
+  const bool tips = has_tips(points);
   ClassFit start = fit;
   start.weighed = start.on_all = true;
   if (start.rival && start.rival->chi2 > start.polynomial->chi2 + kHopeless) {

@@ -65,8 +65,7 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   // (outliers, samples out of order); correlated ones are form error up to its limit, neighbours
   // erring together, so that only one in `time` counts.
   constexpr double kMuchLarger = 1.5;
-  constexpr double kLargestNoise = 0.01;      // of the half extent: beyond it nothing is measured
-  constexpr double kLargestFormError = 1e-3;  // likewise: beyond it, it is another shape
+  constexpr double kLargestFormError = 1e-3;  // of the half extent: beyond it, it is another shape
   const bool noisy =
       correlation.time == 1.0 && variance > kMuchLarger * noise && excess <= kLargestNoise;
   const bool form_error = correlation.time > 1.0 && excess <= kLargestFormError;

@@ -1,7 +1,6 @@
 // The patches in memory without their spikes, looked at again only where they have changed.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "core/recognition/samples/sample_memory.h"
@@ -16,15 +15,8 @@ class CleanPatches {
   void clear();
 
  private:
-  /// What tells that a patch has not changed.
-  struct Seen {
-    std::size_t samples = 0;
-    double contacts_per_sample = 0.0;
-    Vec2 newest_m = Vec2::Zero();
-  };
-
   std::vector<StoredPatch> clean_;
-  std::vector<Seen> seen_;
+  std::vector<PatchVersion> seen_;  ///< of the patches as they came
 };
 
 }  // namespace palpate

@@ -76,6 +76,11 @@ double least_sigma(std::span<const FitPoint> points) {
   return 1.0 / sharpest;
 }
 
+bool has_tips(std::span<const FitPoint> points) {
+  return std::any_of(points.begin(), points.end(),
+                     [](const FitPoint& point) { return point.offset > 0.0; });
+}
+
 double rounding_level(const FitData& data) {
   // A coordinate carries half a unit in the last place; a few such errors meet in a residual.
   constexpr double kRoundings = 4.0;

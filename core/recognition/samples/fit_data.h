@@ -53,6 +53,9 @@ double rms_sigma(const FitData& data);
 /// The least noise of any of the points, normalised; infinite without points.
 double least_sigma(std::span<const FitPoint> points);
 
+/// Whether any of the points is the centre of a tip.
+bool has_tips(std::span<const FitPoint> points);
+
 /// Rounding of the data's coordinates, in normalised units: no noise is smaller than that.
 double rounding_level(const FitData& data);
 

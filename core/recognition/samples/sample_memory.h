@@ -29,6 +29,22 @@ struct StoredPatch {
   bool strung = false;
 };
 
+/// What tells that a patch of a memory, whose samples come at its end, is still the same.
+struct PatchVersion {
+  std::uint32_t probe = 0;
+  std::uint32_t patch = 0;
+  std::size_t samples = 0;
+  double contacts_per_sample = 0.0;
+  Vec2 newest_m = Vec2::Zero();
+
+  bool operator==(const PatchVersion&) const = default;
+};
+
+inline PatchVersion version_of(const StoredPatch& patch) {
+  return {patch.context.probe, patch.context.patch, patch.samples.size(), patch.contacts_per_sample,
+          patch.newest_m};
+}
+
 struct MemoryOptions {
   /// A patch that grows beyond this many samples has its neighbours merged pairwise, and from then
   /// on keeps means of twice as many contacts: no information on the noise's scale is lost, and the

@@ -19,6 +19,9 @@ int stated_side(MaterialSide side);
 /// [rad]
 std::optional<double> certain_turn(std::span<const FitPoint> patch);
 
+/// The turns of all patches, certain or not.
+std::vector<double> turns_of(const FitData& reduced);
+
 /// The ways in which the material may lie beside the patches: +1 where a tip centre lies to the
 /// left of travel, -1 to the right, per patch. One way where the probes say it; otherwise the part
 /// is taken to be convex everywhere or concave everywhere, or on the same side of every patch's
@@ -27,9 +30,6 @@ std::optional<double> certain_turn(std::span<const FitPoint> patch);
 /// travel that a probe could say a side of: its direction is that of its point's tangent.
 std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
                                              const FitData& reduced, std::span<const double> bends);
-
-/// The turns of the patches, certain or not.
-std::vector<double> turns_of(const FitData& reduced);
 
 /// Reduced points moved from tip centres to the surface along the normals of the centres' path,
 /// which are those of the surface.

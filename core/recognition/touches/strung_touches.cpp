@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -184,12 +185,11 @@ StoredPatch strung(std::span<const StoredPatch> patches, std::span<const Place> 
 
 }  // namespace
 
-std::vector<StoredPatch> strung_touches(std::span<const StoredPatch> patches,
-                                        double default_sigma_m, unsigned classes) {
-  std::vector<StoredPatch> result(patches.begin(), patches.end());
+std::optional<std::vector<StoredPatch>> strung_touches(std::span<const StoredPatch> patches,
+                                                       double default_sigma_m, unsigned classes) {
   const Indices lone = lone_patches(patches);
   if (lone.size() < kRun) {
-    return result;
+    return std::nullopt;
   }
   std::vector<StoredPatch> sought;
   for (const StoredPatch& patch : patches) {
@@ -204,7 +204,7 @@ std::vector<StoredPatch> strung_touches(std::span<const StoredPatch> patches,
   const FitData data = make_fit_data(sought, default_sigma_m, &sigma_known);
   const auto curve = curve_through(data, sigma_known, classes);
   if (!curve) {
-    return result;
+    return std::nullopt;
   }
   std::map<double, std::vector<Place>> of_tip;  // by its radius [m]
   for (const std::size_t p : lone) {
@@ -223,9 +223,16 @@ std::vector<StoredPatch> strung_touches(std::span<const StoredPatch> patches,
       }
     }
   }
-  std::size_t next = 0;
-  std::erase_if(result, [&](const StoredPatch&) { return taken[next++]; });
-  result.insert(result.end(), runs.begin(), runs.end());
+  if (runs.empty()) {
+    return std::nullopt;
+  }
+  std::vector<StoredPatch> result;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    if (!taken[p]) {
+      result.push_back(patches[p]);
+    }
+  }
+  std::move(runs.begin(), runs.end(), std::back_inserter(result));
   return result;
 }
 

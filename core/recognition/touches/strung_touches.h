@@ -1,6 +1,7 @@
 // Touches one at a time, strung into runs along the curve where they lie close enough.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,9 +14,9 @@ namespace palpate {
 /// with local geometry, a noise that shows and few reduced points. The order comes from the curve
 /// that explains the touches best; a run turns so little from touch to touch that a polynomial
 /// follows it. Touches of different tips are not mixed. A run has the name of its first touch, and
-/// no side that a probe could have said. `default_sigma_m`: of samples that bring none; `classes`:
-/// by bit 1 << CurveClass.
-std::vector<StoredPatch> strung_touches(std::span<const StoredPatch> patches,
-                                        double default_sigma_m, unsigned classes);
+/// no side that a probe could have said. nullopt where there is no run. `default_sigma_m`: of
+/// samples that bring none; `classes`: by bit 1 << CurveClass.
+std::optional<std::vector<StoredPatch>> strung_touches(std::span<const StoredPatch> patches,
+                                                       double default_sigma_m, unsigned classes);
 
 }  // namespace palpate

@@ -69,7 +69,7 @@ ShapePoseCovariance propagated_covariance(std::span<const TreePoint> points,
   constexpr double kStep = 0.1;  // of a deviation
   std::vector<TreePoint> there(points.begin(), points.end());
   ShapePoseCovariance covariance = ShapePoseCovariance::Zero(n, n);
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (const std::size_t i : answer.pooled) {  // the answer does not depend on the others
     if (!points[i].estimate.covariance.allFinite()) {
       return unknown;
     }

@@ -115,8 +115,9 @@ TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
   constexpr double kCertain = 5.0;  // standard deviations
   std::vector<double> turns;
   double side_limit = 0.0;
-  for (const TreePoint& point : points) {
-    turns.push_back(turn_of_patch(points, point.patch));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool same_patch = i > 0 && points[i].patch == points[i - 1].patch;
+    turns.push_back(same_patch ? turns.back() : turn_of_patch(points, points[i].patch));
     side_limit = std::max(side_limit, std::abs(turns.back()));
   }
   side_limit = std::min(side_limit, kCertain);

@@ -52,11 +52,6 @@ Way way_of(ClassFits fits, FitData reduced, const Arcs& arcs, const Likelihood& 
   return way;
 }
 
-bool has_tips(const FitData& data) {
-  return std::any_of(data.points.begin(), data.points.end(),
-                     [](const FitPoint& point) { return point.offset > 0.0; });
-}
-
 /// Whether the reduced points, tips taken off, tell of the candidate what all points do: to within
 /// what changes odds less than tenfold.
 bool agrees(const Way& way, const SmoothModel& smooth) {
@@ -146,7 +141,7 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
   constexpr double kInsideProbability = 0.01;
   const auto [touches, bends] = directed(arcs, likelihood, classes);
   const auto ways = possible_sides(patches, touches, bends);
-  if (!has_tips(touches)) {
+  if (!has_tips(touches.points)) {
     FitData reduced = on_surface(touches, ways.front());
     ClassFits fits = fit_classes_from(starts, ways.front(), reduced, classes);
     return {std::move(fits), std::move(reduced), ways.front(), kInfinity, {}};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/local/noise.h"
+#include "node/security/decode_from.h"
 #include "node/tool/text/quantity.h"
 
 namespace palpate {
@@ -81,10 +82,7 @@ std::string cure_of(v1::RejectReason reason) {
 void StreamCheck::take(std::size_t frame_count, std::string_view topic, std::string_view payload,
                        std::int64_t now_unix_ns, const Sender& sender) {
   ++messages_;
-  v1::RejectReason reason = decoder_.decode(frame_count, topic, payload);
-  if (!decoder_.probe().empty() && !sender.may_publish_as(decoder_.probe())) {
-    reason = v1::REJECT_REASON_NOT_ALLOWED;
-  }
+  v1::RejectReason reason = decode_from(sender, decoder_, frame_count, topic, payload);
   if (reason != v1::REJECT_REASON_UNSPECIFIED) {
     const bool is_known = probes_.contains(decoder_.probe()) || rejected_.size() < kMostProbes;
     ++rejected_[{std::string(is_known ? decoder_.probe() : std::string_view()), reason}];

@@ -59,13 +59,7 @@ int main(int argc, char** argv) {
           std::mt19937_64 rng(seeds);
           const test::LoneTouches touches = test::lone_touches(curve_class, count, noise, tip, rng);
           Recognizer recognizer;
-          PatchContext context;
-          context.tip_radius_m = touches.tip_radius_m;
-          for (const auto& patch : touches.scene.patches) {
-            const ContactSample sample{patch.front(), unstated ? 0.0 : touches.scene.sigma_m, 0};
-            recognizer.add(context, {&sample, 1});
-            ++context.patch;
-          }
+          test::add_touches(touches, unstated ? 0.0 : touches.scene.sigma_m, &recognizer);
           const auto begin = std::chrono::steady_clock::now();
           const Recognition answer = recognizer.recognize();
           const std::chrono::duration<double, std::milli> ms =

@@ -17,14 +17,7 @@ enum class Noise { Stated, Unstated };
 
 Recognition recognise(const test::LoneTouches& touches, Noise noise = Noise::Stated) {
   Recognizer recognizer;
-  PatchContext context;
-  context.tip_radius_m = touches.tip_radius_m;
-  for (const auto& patch : touches.scene.patches) {
-    const double sigma_m = noise == Noise::Stated ? touches.scene.sigma_m : 0.0;
-    const ContactSample sample{patch.front(), sigma_m, 0};
-    recognizer.add(context, {&sample, 1});
-    ++context.patch;
-  }
+  test::add_touches(touches, noise == Noise::Stated ? touches.scene.sigma_m : 0.0, &recognizer);
   return recognizer.recognize();
 }
 
