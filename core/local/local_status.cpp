@@ -18,6 +18,8 @@ std::string_view name_of(LocalStatus status) {
       return "doubles_back";
     case LocalStatus::TurnsTooFar:
       return "turns_too_far";
+    case LocalStatus::NotFollowed:
+      return "not_followed";
   }
   return "unknown";
 }

@@ -17,6 +17,7 @@ enum class LocalStatus {
   DoublesBack,    ///< abscissae run back by more than the noise: samples out of order, or a window
                   ///< that turns by more than a right angle from its axis
   TurnsTooFar,    ///< the window turns too far for this test
+  NotFollowed,    ///< residuals larger than the noise: a bend that the polynomial cannot follow
 };
 
 /// Lower-case name with underscores ("too_few_samples").

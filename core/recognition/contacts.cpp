@@ -26,21 +26,21 @@ double sigma_of(const StoredSample& sample, double default_sigma_m) {
 struct WeightedPath {
   std::vector<PathNode> nodes;
   std::optional<double> noise;  ///< nullopt = not known
+  bool stated = true;           ///< by the samples or as a default, not estimated
   double sigma_m = 0.0;         ///< of a typical contact
 };
 
 WeightedPath weighted_path(const StoredPatch& patch, double default_sigma_m) {
   WeightedPath path;
   path.nodes.reserve(patch.samples.size());
-  bool stated = true;
   double variances = 0.0;
   for (const StoredSample& sample : patch.samples) {
     const double sigma = sigma_of(sample, default_sigma_m);
-    stated = stated && sigma > 0.0;
+    path.stated = path.stated && sigma > 0.0;
     variances += sigma * sigma;
     path.nodes.push_back({sample.position_m, sample.weight / (sigma * sigma)});
   }
-  if (stated) {
+  if (path.stated) {
     path.noise = 1.0;
     path.sigma_m = std::sqrt(variances / static_cast<double>(patch.samples.size()));
     return path;
@@ -176,22 +176,23 @@ void add_contacts(const StoredPatch& patch, std::size_t least_windows, int side,
   std::vector<LocalizedContact> found;
   for (std::size_t first = 0; first + std::min(longest, fewest) <= n && longest > 0;) {
     std::size_t length = std::min(longest, n - first);
-    WindowFit fit;
-    while (true) {
-      fit = fit_window(reduced(std::span(path.nodes).subspan(first, length)), *path.noise, form_m);
+    LocalResult fit;
+    for (bool shortest = false; !fit && !shortest;) {
       const auto shorter = static_cast<std::size_t>(kShrink * static_cast<double>(length));
-      if ((fit.result && fit.explained) || shorter < fewest) {
-        break;
+      shortest = shorter < fewest;
+      fit = fit_window(reduced(std::span(path.nodes).subspan(first, length)), *path.noise, form_m,
+                       shortest && !path.stated);
+      if (!fit && !shortest) {
+        length = shorter;
       }
-      length = shorter;
     }
     first += length;
-    if (!fit.result) {
+    if (!fit) {
       continue;
     }
-    fit.result.estimate.window_samples = static_cast<int>(length);
-    fit.result.estimate.sigma_m = path.sigma_m;
-    if (const auto surface = surface_from_tip(fit.result.estimate, signed_radius)) {
+    fit.estimate.window_samples = static_cast<int>(length);
+    fit.estimate.sigma_m = path.sigma_m;
+    if (const auto surface = surface_from_tip(fit.estimate, signed_radius)) {
       found.push_back({patch.context.probe, patch.context.patch, 0.0, *surface});
     }
   }

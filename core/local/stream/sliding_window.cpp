@@ -57,13 +57,13 @@ WindowEstimate SlidingWindow::estimate() {
   }
   while (true) {
     first_ = pyramid_.window(first_, &nodes_);
-    const WindowFit fit = fit_window(nodes_, *noise, options_.form_deviation_m);
     answer.first_sample = first_;
-    answer.result = fit.result;
-    answer.result.estimate.window_samples = static_cast<int>(end - first_);
     const auto length = static_cast<double>(end - first_);
     const std::uint64_t shorter = end - static_cast<std::uint64_t>(kShrink * length);
-    if ((fit.result && fit.explained) || end - shorter < kFewestWindowNodes) {
+    const bool shortest = end - shorter < kFewestWindowNodes;
+    answer.result = fit_window(nodes_, *noise, options_.form_deviation_m, shortest && !stated_);
+    if (answer.result || shortest) {
+      answer.result.estimate.window_samples = static_cast<int>(end - first_);
       return answer;
     }
     first_ = shorter;

@@ -36,7 +36,12 @@ constexpr double kMaxSlope = 1.0;
 
 /// Grid of the prior: A in units of the size of c_2 and c_3, rho of the fall-off.
 constexpr std::array<double, 4> kAmplitudes = {0.125, 0.25, 0.5, 1.0};
-constexpr std::array<double, 8> kFallOffs = {0.012, 0.021, 0.036, 0.06, 0.1, 0.15, 0.22, 0.3};
+constexpr std::array<double, 10> kFallOffs = {0.012, 0.021, 0.036, 0.06, 0.1,
+                                              0.15,  0.22,  0.3,   0.45, 0.65};
+/// What speaks for a fall-off before the window's terms do. Windows end where the highest terms are
+/// noise, so that slower ones than 0.3 are the exception: beside bends, about one window in a
+/// hundred.
+constexpr std::array<double, 10> kPriorOdds = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.01, 0.01};
 
 /// Prior standard deviations of the terms from kFirstPrior on: mean squares over the grid, weighed
 /// by the evidence of the free fit's terms (their correlations left out).
@@ -48,10 +53,11 @@ Deviations prior_deviations(const Vector& c, const Vector& variance) {
   double best = -std::numeric_limits<double>::infinity();
   std::size_t i = 0;
   for (const double amplitude : kAmplitudes) {
-    for (const double fall_off : kFallOffs) {
+    for (std::size_t j = 0; j < kFallOffs.size(); ++j) {
+      const double fall_off = kFallOffs[j];
       double sd2 = amplitude * size * amplitude * size;
       double sum = 0.0;
-      double product = 1.0;
+      double product = 1.0 / (kPriorOdds[j] * kPriorOdds[j]);
       for (int k = kFirstEvidence; k < kSize; ++k) {
         const double total = sd2 + variance[k];
         // Relative to the first term's, so that the product stays a number.
@@ -94,11 +100,11 @@ double squared(double x) { return x * x; }
 
 }  // namespace
 
-WindowFit fit_window(std::span<const PathNode> nodes, double noise, double form_deviation_m) {
-  WindowFit answer;
-  LocalResult& result = answer.result;
+LocalResult fit_window(std::span<const PathNode> nodes, double noise, double form_deviation_m,
+                       bool may_enlarge_noise) {
+  LocalResult result;
   if (nodes.size() < kFewestWindowNodes) {
-    return answer;
+    return result;
   }
   // Nothing is allocated for a pyramid's window.
   std::array<Vec2, 2 * NodePyramid::kMostNodes> few;
@@ -114,7 +120,7 @@ WindowFit fit_window(std::span<const PathNode> nodes, double noise, double form_
   const auto [status, frame] = aligned_frame(positions);
   if (status != LocalStatus::Ok) {
     result.status = status;
-    return answer;
+    return result;
   }
   const double unit = frame.half_extent_m;
   // Noise of the lightest node, which may run back the farthest.
@@ -122,11 +128,11 @@ WindowFit fit_window(std::span<const PathNode> nodes, double noise, double form_
   const double node_noise = std::max(noise / std::sqrt(mean_weight) / unit, frame.rounding);
   result.status = check_backtrack(frame, 2.0 * node_noise, 0.0);
   if (result.status != LocalStatus::Ok) {
-    return answer;
+    return result;
   }
   result.status = LocalStatus::Unresolved;
   if (kMinHalfExtentSigmas * node_noise >= 1.0) {
-    return answer;
+    return result;
   }
   LegendreFit<4> smooth;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -134,7 +140,7 @@ WindowFit fit_window(std::span<const PathNode> nodes, double noise, double form_
     smooth.add(uv[i].x(), uv[i].y(), nodes[i].weight / mean_weight);
   }
   if (!smooth.factorise(0.0)) {
-    return answer;
+    return result;
   }
   // The tangent's slope from the quartic: the full polynomial's own swings with the noise.
   const LegendreVector<5> quartic = smooth.coefficients();
@@ -144,7 +150,7 @@ WindowFit fit_window(std::span<const PathNode> nodes, double noise, double form_
     const double s = slope<5>(quartic, uv[i].x());
     if (std::abs(s) > kMaxSlope) {
       result.status = LocalStatus::TurnsTooFar;
-      return answer;
+      return result;
     }
     const double weight = nodes[i].weight / mean_weight / (1.0 + s * s);
     fit.add(uv[i].x(), uv[i].y(), weight);
@@ -152,14 +158,21 @@ WindowFit fit_window(std::span<const PathNode> nodes, double noise, double form_
     overlap += weight * p.head<kSize>() * p.tail<kTail>().transpose();
   }
   if (!fit.factorise(0.0)) {
-    return answer;
+    return result;
   }
   // Form error that is smooth along the arc adds at most this to any combination of the residuals.
   const double precision =
       weight_sum / std::max(squared(noise), squared(frame.rounding * unit) * mean_weight);
   const double coherent = 1.0 + squared(form_deviation_m) * precision;
-  const double variance_of_unit = squared(node_noise) * coherent;
-  answer.explained = fit.scores().tail<2>().squaredNorm() <= kAdequate * variance_of_unit;
+  double variance_of_unit = squared(node_noise) * coherent;
+  const double highest = fit.scores().tail<2>().squaredNorm();
+  if (highest > kAdequate * variance_of_unit) {
+    if (!may_enlarge_noise) {
+      result.status = LocalStatus::NotFollowed;
+      return result;
+    }
+    variance_of_unit = 0.5 * highest;  // the mean square of two
+  }
 
   const Matrix inverse_factor = inverse_lower(fit.factor());
   const Vector variance = variance_of_unit * inverse_factor.colwise().squaredNorm().transpose();
@@ -170,7 +183,7 @@ WindowFit fit_window(std::span<const PathNode> nodes, double noise, double form_
   }
   Matrix factor;
   if (!cholesky(information, &factor)) {
-    return answer;
+    return result;
   }
   const Vector c = solve_cholesky(factor, fit.moments());
 
@@ -201,7 +214,7 @@ WindowFit fit_window(std::span<const PathNode> nodes, double noise, double form_
         e.covariance.allFinite() && std::isfinite(e.window_arc_m))) {
     result = {LocalStatus::NotFinite, {}};
   }
-  return answer;
+  return result;
 }
 
 }  // namespace palpate

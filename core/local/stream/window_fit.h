@@ -11,12 +11,6 @@
 
 namespace palpate {
 
-struct WindowFit {
-  LocalResult result;
-  /// The polynomial's two highest terms are no more than noise: the window is not too long.
-  bool explained = false;
-};
-
 /// `nodes` in order of travel. `noise` is the standard deviation of a node of weight 1: with
 /// weights 1/sigma_i^2 it is 1, with weights 1 the samples' sigma. [m] sqrt(weight)
 /// `form_deviation_m`: smooth deviations of the part from its curve, one standard deviation.
@@ -25,7 +19,12 @@ struct WindowFit {
 /// falls off geometrically, with size and rate by the evidence of the terms themselves, and the
 /// first terms that the polynomial lacks stand in the covariance with the prior's variance.
 /// core/README.md, "The sliding window".
-WindowFit fit_window(std::span<const PathNode> nodes, double noise, double form_deviation_m);
+///
+/// NotFollowed where the polynomial's two highest terms are more than noise: a shorter window may
+/// be followed. With `may_enlarge_noise`, where nobody stated it and no shorter window is left,
+/// they are noise as large as they say.
+LocalResult fit_window(std::span<const PathNode> nodes, double noise, double form_deviation_m,
+                       bool may_enlarge_noise = false);
 
 /// Fewest nodes of such a window; below, there is no estimate.
 inline constexpr std::size_t kFewestWindowNodes = 16;

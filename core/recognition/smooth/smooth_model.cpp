@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "core/numerics/orthogonal_polynomials.h"
 
@@ -55,9 +56,6 @@ std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch) 
 
 /// A section too short to be smoothed stands for itself.
 void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
-  if (section.size() == 0) {
-    return;  // a patch whose every sample was set aside
-  }
   const Vec2 first = data->points[section.begin].position;
   const Vec2 along = data->points[section.end - 1].position - first;
   const double whole = along.norm();
@@ -97,6 +95,10 @@ struct SectionFit {
   ChordFrame frame;
   OrthogonalPolynomials polynomials;
   int degree = 0;  ///< chosen by the criterion
+
+  /// Two degrees more than describe the arc: what is not yet significant in one patch may tell
+  /// classes apart in several.
+  int reduced_degree() const { return std::min(degree + 2, polynomials.degree()); }
 };
 
 std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& section,
@@ -146,11 +148,9 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
   return fit;
 }
 
-void add_section(FitData* data, const SectionFit& fit, SmoothModel* model) {
+void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model) {
   const OrthogonalPolynomials& polynomials = fit.polynomials;
-  // Two degrees more than describe the arc: what is not yet significant in one patch may tell
-  // classes apart in several.
-  const int degree = std::min(fit.degree + 2, polynomials.degree());
+  const int degree = fit.reduced_degree();
   model->chi2 += polynomials.residual_sum(degree);
   model->parameters += degree + 1;
   const auto rule = polynomials.gauss_rule(degree);
@@ -178,21 +178,102 @@ void add_section(FitData* data, const SectionFit& fit, SmoothModel* model) {
   }
 }
 
+/// A section as it will stand: its polynomial, or its samples where there is none.
+struct Section {
+  PatchSpan points;
+  std::optional<SectionFit> fit;
+
+  double chi2() const { return fit->polynomials.residual_sum(fit->reduced_degree()); }
+  int dof() const { return fit ? static_cast<int>(points.size()) - fit->reduced_degree() - 1 : 0; }
+};
+
 /// Smooths a section, or its halves where even a high degree does not follow it (a sharp bend).
-void smooth_section(FitData* data, const PatchSpan& section, bool sigma_known, SmoothModel* model) {
-  const auto whole = fit_section(*data, section, sigma_known);
-  if (!whole) {
-    keep_points(data, section, model);
-    return;
-  }
+void smooth_section(const FitData& data, const PatchSpan& points, bool sigma_known,
+                    std::vector<Section>* sections) {
+  auto whole = fit_section(data, points, sigma_known);
   constexpr int kHighDegree = OrthogonalPolynomials::kMaxDegree - 2;
-  if (whole->degree >= kHighDegree && section.size() >= 4 * kFewestPoints) {
-    const std::size_t middle = section.begin + section.size() / 2;
-    smooth_section(data, {section.begin, middle}, sigma_known, model);
-    smooth_section(data, {middle, section.end}, sigma_known, model);
+  if (whole && whole->degree >= kHighDegree && points.size() >= 4 * kFewestPoints) {
+    const std::size_t middle = points.begin + points.size() / 2;
+    smooth_section(data, {points.begin, middle}, sigma_known, sections);
+    smooth_section(data, {middle, points.end}, sigma_known, sections);
     return;
   }
-  add_section(data, *whole, model);
+  sections->push_back({points, std::move(whole)});
+}
+
+/// The variance, in units of the stated one, that the quieter sections show: the lower quartile,
+/// each counted by its degrees of freedom. Neither a few sections that are not followed raise it
+/// nor noise that is stated too low.
+double quiet_variance(const std::vector<Section>& sections) {
+  std::vector<std::pair<double, int>> ratios;
+  int whole = 0;
+  for (const Section& section : sections) {
+    if (section.dof() > 0) {
+      ratios.emplace_back(section.chi2() / section.dof(), section.dof());
+      whole += section.dof();
+    }
+  }
+  std::sort(ratios.begin(), ratios.end());
+  int below = 0;
+  for (const auto& [ratio, dof] : ratios) {
+    below += dof;
+    if (4 * below >= whole) {
+      return ratio;
+    }
+  }
+  return 1.0;
+}
+
+/// Whether a section's residuals are larger than the noise can be: no polynomial follows a bend
+/// that only some of its samples see. Chi-square exceeds dof + 2 sqrt(dof x) + 2 x with probability
+/// exp(-x) at most (B. Laurent and P. Massart, 2000, lemma 1): by chance fewer than one section in
+/// a million, which then costs time alone.
+bool is_not_followed(const Section& section, double variance) {
+  constexpr double kMinusLogChance = 13.8;
+  const int dof = section.dof();
+  return dof > 0 && section.chi2() > variance * (dof + 2.0 * std::sqrt(dof * kMinusLogChance) +
+                                                 2.0 * kMinusLogChance);
+}
+
+void cut_until_followed(const FitData& data, Section section, bool sigma_known, double variance,
+                        std::vector<Section>* sections) {
+  const PatchSpan points = section.points;
+  if (!is_not_followed(section, variance)) {
+    sections->push_back(std::move(section));
+    return;
+  }
+  if (points.size() < 2 * kFewestPoints) {
+    sections->push_back({points, std::nullopt});
+    return;
+  }
+  const std::size_t middle = points.begin + points.size() / 2;
+  for (const PatchSpan& half : {PatchSpan{points.begin, middle}, PatchSpan{middle, points.end}}) {
+    cut_until_followed(data, {half, fit_section(data, half, sigma_known)}, sigma_known, variance,
+                       sections);
+  }
+}
+
+/// The sections, those that are not followed cut into halves until what remains is, or is too short
+/// to be smoothed.
+std::vector<Section> followed(const FitData& data, std::vector<Section> sections, bool sigma_known,
+                              double variance) {
+  if (std::none_of(sections.begin(), sections.end(),
+                   [&](const Section& section) { return is_not_followed(section, variance); })) {
+    return sections;
+  }
+  std::vector<Section> result;
+  for (Section& section : sections) {
+    cut_until_followed(data, std::move(section), sigma_known, variance, &result);
+  }
+  return result;
+}
+
+void add_section(FitData* data, const Section& section, SmoothModel* model) {
+  if (section.fit) {
+    add_smoothed(data, *section.fit, model);
+  } else {
+    keep_points(data, section.points, model);
+  }
 }
 
 }  // namespace
@@ -207,14 +288,26 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known) {
   model.nearest_reduced.resize(data->points.size());
   model.reduced.frame = data->frame;
   model.reduced.scale = data->scale;
+  std::vector<Section> sections;
+  for (const PatchSpan& patch : data->patches) {
+    if (patch.size() == 0) {
+      continue;  // every sample was set aside
+    }
+    for (const PatchSpan& points : sections_of(*data, patch)) {
+      smooth_section(*data, points, sigma_known, &sections);
+    }
+  }
+  const double quiet = quiet_variance(sections);
+  sections =
+      followed(*data, std::move(sections), sigma_known, sigma_known ? std::max(quiet, 1.0) : quiet);
+
+  auto section = sections.begin();
   for (const PatchSpan& patch : data->patches) {
     const std::size_t begin = model.reduced.points.size();
-    const std::size_t first_section = model.sections.size();
-    for (const PatchSpan& section : sections_of(*data, patch)) {
-      smooth_section(data, section, sigma_known, &model);
-    }
-    for (std::size_t s = first_section + 1; s < model.sections.size(); ++s) {
-      model.sections[s].joined = true;
+    const auto first = section;
+    for (; section != sections.end() && section->points.begin < patch.end; ++section) {
+      add_section(data, *section, &model);
+      model.sections.back().joined = section != first;
     }
     model.reduced.patches.push_back({begin, model.reduced.points.size()});
   }

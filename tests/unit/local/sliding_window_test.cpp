@@ -93,14 +93,14 @@ TEST(NodePyramid, AWindowsEstimateIsThatOfItsSamples) {
       for (const Vec2& p : samples) {
         all.push_back({p, 1.0});
       }
-      const WindowFit fast = fit_window(reduced, sigma, 0.0);
-      const WindowFit direct = fit_window(all, sigma, 0.0);
-      ASSERT_EQ(fast.result.status, direct.result.status) << arc.name << " " << count;
-      if (!direct.result || !direct.explained) {
+      const LocalResult fast = fit_window(reduced, sigma, 0.0);
+      const LocalResult direct = fit_window(all, sigma, 0.0);
+      ASSERT_EQ(fast.status, direct.status) << arc.name << " " << count;
+      if (!direct) {
         continue;
       }
-      const LocalEstimate& a = fast.result.estimate;
-      const LocalEstimate& b = direct.result.estimate;
+      const LocalEstimate& a = fast.estimate;
+      const LocalEstimate& b = direct.estimate;
       // Each against the truth at its own place: the middles of the two lie a little apart.
       const Eigen::Vector4d apart = test::error_of(a, arc) - test::error_of(b, arc);
       for (int k = 1; k < 4; ++k) {
@@ -112,6 +112,45 @@ TEST(NodePyramid, AWindowsEstimateIsThatOfItsSamples) {
       }
     }
   }
+}
+
+/// Splines whose inner bend has a radius of some three sample spacings.
+TEST(SlidingWindow, BesideABendTheDeviationHoldsOrThereIsNoEstimate) {
+  auto rng = test::test_rng();
+  constexpr double kSigma = 1e-5;
+  int estimates = 0;
+  int beyond = 0;
+  for (const Eigen::Vector3d& shape :
+       {Eigen::Vector3d(15.582, -0.82201, 0.082246), Eigen::Vector3d(22.87, 0.89533, 0.052078),
+        Eigen::Vector3d(19.727, -0.92105, 0.063407)}) {
+    const test::TouchedArc arc{
+        "bend", *make_curve(CurveClass::CubicSpline, shape), {0.1, 0.2, 0.7}, 0.0, 0.06, 1};
+    for (int draw = 0; draw < 10; ++draw) {
+      std::vector<PathNode> nodes;
+      for (const Vec2& p : test::with_noise(test::samples_of(arc, 200), kSigma, rng)) {
+        nodes.push_back({p, 1.0});
+      }
+      for (std::size_t length = 20; length <= 60; length += 5) {
+        for (std::size_t first = 0; first + length <= nodes.size(); first += 3) {
+          const LocalResult result =
+              fit_window(std::span(nodes).subspan(first, length), kSigma, 0.0);
+          if (result) {
+            ++estimates;
+            const Eigen::Vector4d error = test::error_of(result.estimate, arc);
+            const auto sd = result.estimate.covariance.diagonal().cwiseSqrt();
+            beyond += std::abs(error[2]) > 4.0 * sd[2] || std::abs(error[3]) > 4.0 * sd[3] ? 1 : 0;
+          }
+        }
+      }
+    }
+  }
+  // 4 deviations are passed by chance in 1e-4. What of a bend is beyond a window's polynomial, and
+  // happens to look like none of its terms, is not known: rare, and stated here as one in two
+  // hundred.
+  RecordProperty("estimates", estimates);
+  RecordProperty("beyond", beyond);
+  EXPECT_GT(estimates, 5000);
+  EXPECT_LT(beyond, estimates / 200);
 }
 
 TEST(SlidingWindow, EstimatesEveryShiftFromTheFirstWindowOnAndAllocatesNothing) {
