@@ -177,7 +177,15 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
     return survey;
   }
   if (!is_resolved() && !(sigma_m > 0.0)) {
-    survey.status = LocalStatus::Unresolved;
+    // Noise as large as the patch, or spikes that pass for it: then the third differences tell how
+    // long blocks must be, and half of each lies near a parabola.
+    std::vector<double> sizes;
+    survey.length = block_length(samples, low_noise_of(samples, sizes));
+    look_for_spiked_noise(samples, blocks.largest, &survey);
+    survey.is_any_off = survey.is_noise_spiked;
+    if (!survey.is_noise_spiked) {
+      survey.status = LocalStatus::Unresolved;
+    }
     return survey;
   }
   // Where noise scatters samples along the axis as well, their order there tells nothing.
