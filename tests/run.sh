@@ -77,7 +77,8 @@ step "about $(how_long $cost) on this machine, $(nproc) cores$(
 begin_part "building (strict)" 420
 build strict
 begin_part "testing (strict)" 420
-ctest --test-dir build/strict --output-on-failure -j "$jobs"
+# One more at a time than cores: tests of processes wait for most of theirs.
+ctest --test-dir build/strict --output-on-failure -j $((jobs + 1))
 
 if [ "$sanitize" = yes ]; then
   export ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1

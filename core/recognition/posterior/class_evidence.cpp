@@ -245,6 +245,9 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
   // enough to be walked along.
   constexpr int kStepsPerLevel = 12;
   constexpr double kLevel = 0.5;  // of the deviation
+  // At the first level chi-square is the number of points, and where a valley leads to the noise it
+  // stays about that. Three levels at which the curve did not come nearer: there is none.
+  constexpr double kLost = 64.0;
   const double n = static_cast<double>(data.points.size());
   const double full = touch->weight;
   double weight = full * std::min(1.0, std::sqrt(n / curve->chi2));
@@ -255,6 +258,9 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
       return std::nullopt;
     }
     curve = descend(*touch, data, *std::move(curve), -1, kStepsPerLevel);
+    if (curve->chi2 > kLost * n) {
+      return std::nullopt;
+    }
     weight /= kLevel;
   }
   touch->weight = full;

@@ -44,9 +44,9 @@ enum class Integration {
 /// (or -1) does not move.
 TouchedMatrix hessian_of(const TouchedCurve& curve, int fixed);
 
-/// The mode of likelihood times prior that lies downhill from a curve; nullopt where `start` is no
-/// curve of its class in double precision. Arguments as of evidence_of, but `start` need not be an
-/// optimum.
+/// The mode of likelihood times prior that lies downhill from a curve; nullopt where none comes
+/// near the points, and where `start` is no curve of its class in double precision. Arguments as of
+/// evidence_of, but `start` need not be an optimum.
 std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
                                            double inflation);
 

@@ -171,26 +171,6 @@ Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
   return w;
 }
 
-Contenders refine_sharp_bends(Contenders w, const Ground& ground) {
-  for (const CurveClass curve_class : {CurveClass::SemiCubicalParabola, CurveClass::CubicSpline}) {
-    const auto i = static_cast<std::size_t>(curve_class);
-    if (!w.coarse[i]) {
-      continue;
-    }
-    constexpr RefineEffort kAll{};
-    ClassFit start = settled(*w.coarse[i], ground.reduced, RivalOf::Best);
-    auto refined = refine_on_all(start, ground.arcs.smooth, ground.arcs.data, kAll);
-    if (refined && refined->chi2 < w.fits[i]->chi2) {
-      refined->polished = true;
-      w.fits[i] = std::move(refined);
-      w.coarse[i] = std::move(start);
-    }
-  }
-  w.evidences = evidences_of(w.fits, w.coarse, ground.arcs.smooth, ground.reduced,
-                             ground.likelihood, std::move(w.evidences));
-  return w;
-}
-
 Contenders decided(Contenders w, const Ground& ground) {
   const auto& [arcs, reduced, likelihood] = ground;
   while (true) {

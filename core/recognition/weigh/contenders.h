@@ -37,10 +37,6 @@ CurveClass most_probable(const ClassProbabilities& probabilities);
 /// being RECOGNIZED. The coarse fit of whatever it has to do with is settled.
 Contenders refine_plausible(Contenders contenders, const Ground& ground, double margin);
 
-/// Spares no effort on the models with sharp bends: a narrow valley may not have been walked to its
-/// end.
-Contenders refine_sharp_bends(Contenders contenders, const Ground& ground);
-
 /// With the integrals that matter, and the most probable class at its optimum on all points.
 Contenders decided(Contenders contenders, const Ground& ground);
 

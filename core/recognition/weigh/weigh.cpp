@@ -105,9 +105,6 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   if (!is_sure(probabilities_of(contenders, ground))) {
     contenders = with_conic_mode(std::move(contenders), ground, options.classes);
   }
-  if (most_probable(probabilities_of(contenders, ground)) == CurveClass::Unclassified) {
-    contenders = refine_sharp_bends(std::move(contenders), ground);
-  }
   std::optional<Placed> best_placed = best_on_all(contenders, ground);
   const SeenDeviation seen =
       best_placed ? seen_deviation(arcs, stated, best_placed->chi2, best_placed->canonical,
