@@ -70,9 +70,39 @@ void carry_to_all(const SmoothModel& smooth, PolynomialFit* curve) {
   curve->t = std::move(t);
 }
 
+/// The parameters of the nearest of places along the curve, for all points: where one that is
+/// followed from its reduced point ends on the wrong arm of a bend.
+void seek_feet(std::span<const FitPoint> points, PolynomialFit* curve) {
+  // Reduced points lie densest where sections end; two places more between neighbours.
+  constexpr int kPlaces = 3;
+  std::vector<double> sorted = curve->t;
+  std::sort(sorted.begin(), sorted.end());
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  std::vector<std::pair<double, Vec2>> places;
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    const double step = k + 1 < sorted.size() ? (sorted[k + 1] - sorted[k]) / kPlaces : 0.0;
+    for (int i = 0; i < (step > 0.0 ? kPlaces : 1); ++i) {
+      const double t = sorted[k] + i * step;
+      places.emplace_back(t, position_at(curve->coefficients, t));
+    }
+  }
+  curve->t.clear();
+  for (const FitPoint& point : points) {
+    const auto nearest =
+        std::min_element(places.begin(), places.end(), [&](const auto& a, const auto& b) {
+          return (a.second - point.position).squaredNorm() <
+                 (b.second - point.position).squaredNorm();
+        });
+    curve->t.push_back(nearest->first);
+  }
+}
+
+/// How the points' feet are found from the reduced points'.
+enum class Feet { Followed, Sought };
+
 /// A fit on the reduced points, not refined on all points yet.
 ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
-                      std::span<const FitPoint> points) {
+                      std::span<const FitPoint> points, Feet feet = Feet::Followed) {
   const bool tips = has_tips(points);
   ClassFit start = fit;
   start.weighed = start.on_all = true;
@@ -84,7 +114,11 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
   }
   for (auto* curve : {&start.polynomial, &start.rival}) {
     if (*curve) {
-      carry_to_all(smooth, &**curve);
+      if (feet == Feet::Sought) {
+        seek_feet(points, &**curve);
+      } else {
+        carry_to_all(smooth, &**curve);
+      }
       (*curve)->side = tips ? side_of_tips(distances_from(**curve, points), points) : 0;
     }
   }
@@ -163,7 +197,16 @@ double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData
 std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& smooth,
                                       const FitData& data, const RefineEffort& effort) {
   const std::span<const FitPoint> points(data.points);
-  const ClassFit refined = refine_parts(start_on_all(fit, smooth, points), points, effort);
+  ClassFit refined = refine_parts(start_on_all(fit, smooth, points), points, effort);
+  // All points can leave no more than the reduced ones and the smooth model do: some feet are on
+  // the wrong arm of a bend.
+  if (fit.polynomial && fits_well(fit.chi2, smooth.reduced.points.size()) &&
+      !fits_well(refined.chi2 - smooth.chi2, smooth.reduced.points.size())) {
+    ClassFit again = refine_parts(start_on_all(fit, smooth, points, Feet::Sought), points, effort);
+    if (again.chi2 < refined.chi2) {
+      refined = std::move(again);
+    }
+  }
   return is_what_it_says(refined, data) ? std::optional(refined) : std::nullopt;
 }
 
