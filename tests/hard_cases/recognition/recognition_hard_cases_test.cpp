@@ -122,6 +122,25 @@ TEST(RecognitionHardCases, ABendSharperThanTheSpacingIsNoSpike) {
   }
 }
 
+// A patch that ends in a spline's bend: feet followed from the reduced points ended on its other
+// arm, in one direction of travel.
+TEST(RecognitionHardCases, APatchMayEndInABend) {
+  const Curve spline = make_curve(CurveClass::CubicSpline, {29.103, -0.12605, -0.10527}).value();
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < 20; ++i) {
+    for (const int direction : {1, -1}) {
+      const test::Stroke strokes[] = {{-0.11111, 0.035075, 111, 1},
+                                      {0.099696, 0.0475 + 1e-4 * i, 111, direction}};
+      const test::Scene scene =
+          test::touched_curve(spline, {0.128, -0.4496, 1.983}, strokes, 1e-5, rng);
+      const Recognition answer = test::recognise(scene, scene.sigma_m);
+      EXPECT_EQ(answer.shape.curve_class, CurveClass::CubicSpline) << i << " " << direction;
+      EXPECT_NE(answer.doubt, Doubt::Misfit) << i << " " << direction;
+      EXPECT_NE(answer.doubt, Doubt::FormError) << i << " " << direction;
+    }
+  }
+}
+
 // Neighbours of spikes are suspected with them; what the ellipse explains comes back.
 TEST(RecognitionHardCases, SpikesCostNoMoreThanThemselves) {
   std::mt19937_64 rng = test::test_rng();
