@@ -83,7 +83,8 @@ void add_cells(const OffsetModel& model, int highest, double log_ratio, double l
       }
       const Eigen::LDLT<Eigen::MatrixXd> factor(matrix);
       const Eigen::VectorXd solution = factor.solve(sums.right.head(columns));
-      const double squares = sums.squares - sums.right.head(columns).dot(solution);
+      const double squares = std::max(sums.squares - sums.right.head(columns).dot(solution),
+                                      degrees * model.least_noise_m * model.least_noise_m);
       Cell cell{order, log_ratio, log_length, 0.0, squares / (degrees - 2.0), size, degrees, {}};
       cell.log_evidence = -0.5 * sums.log_determinant -
                           0.5 * factor.vectorD().array().abs().log().sum() - log_sizes -
@@ -187,7 +188,7 @@ Range lengths_of(const OffsetModel& model) {
 
 }  // namespace
 
-OffsetEvidence weigh_offsets(const OffsetModel& model) {
+std::optional<OffsetEvidence> weigh_offsets(const OffsetModel& model) {
   constexpr int kCoarse = 9;
   constexpr int kFine = 15;
   const int columns = static_cast<int>(model.basis.cols());
@@ -197,9 +198,11 @@ OffsetEvidence weigh_offsets(const OffsetModel& model) {
   const Range ratios{std::log(0.01), std::log(30.0)};
   const Range lengths = lengths_of(model);
   const std::vector<Cell> coarse = grid(model, highest, ratios, lengths, kCoarse);
+  if (coarse.empty()) return std::nullopt;
   std::vector<Cell> cells =
       grid(model, highest, where_told(coarse, ratios, kCoarse, &Cell::log_ratio),
            where_told(coarse, lengths, kCoarse, &Cell::log_length), kFine);
+  if (cells.empty()) return std::nullopt;
 
   OffsetEvidence result;
   const double top = highest_evidence(cells);

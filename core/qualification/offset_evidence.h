@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct OffsetModel {
   std::vector<StrokePlaces> strokes;
   std::vector<double> arc_m;
   std::vector<char> used;
+  double least_noise_m = 0.0;  ///< what rounding leaves of samples without noise [m]
 };
 
 struct OffsetEvidence {
@@ -36,7 +38,8 @@ struct OffsetEvidence {
 };
 
 /// Exact but for the grid: given noise, coherence and the harmonics' size, all integrals are normal
-/// ones, and that over the noise is Student's. Needs more used samples than columns and two.
-OffsetEvidence weigh_offsets(const OffsetModel& model);
+/// ones, and that over the noise is Student's. Needs more used samples than columns and two;
+/// nullopt where the numbers leave a double's range all the same.
+std::optional<OffsetEvidence> weigh_offsets(const OffsetModel& model);
 
 }  // namespace palpate

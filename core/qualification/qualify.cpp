@@ -16,8 +16,9 @@ namespace {
 /// Lobes of a stylus' bending and of a triggering sensor's three legs are 2, 3 and 6 a turn; their
 /// overtones fall off.
 constexpr int kHighestOrder = 8;
-/// Of normals, beyond which a direction counts as not touched. [rad]
-constexpr double kGap = kPi / 6.0;
+/// Of normals, beyond which a direction counts as not touched: twelve touches evenly around leave
+/// no gap, whatever their noise. [rad]
+constexpr double kGap = 1.01 * kPi / 6.0;
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -174,6 +175,17 @@ std::vector<std::pair<double, double>> gaps_between(std::vector<double> angles) 
   return gaps;
 }
 
+/// Radius of curvature of the artefact where it was touched, the middle one.
+double radius_of(const Curve& artefact, const Ground& ground, const std::vector<Pose2>& poses) {
+  std::vector<double> bends;
+  for (const ArtefactSample& sample : ground.samples) {
+    const FootPoint foot =
+        foot_point(artefact, poses[sample.recording].to_local(sample.position_m));
+    bends.push_back(std::abs(geometry(artefact, foot.t).kappa));
+  }
+  return 1.0 / median_of(std::move(bends));
+}
+
 Estimate rate_of(std::size_t count, std::size_t of) {
   // Jeffreys' prior: a recording without any does not say that there are none.
   const double mean = (static_cast<double>(count) + 0.5) / (static_cast<double>(of) + 1.0);
@@ -275,9 +287,11 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   for (int round = 0; round < kRounds; ++round) {
     about = residuals_about(artefact, material, ground.samples, unknowns, highest);
     const Eigen::Index known = offset_coefficients(unknowns.offset.order);
-    evidence = weigh_offsets(
+    const auto weighed = weigh_offsets(
         {about.residual_m + about.basis.leftCols(known) * unknowns.offset.coefficients_m,
-         about.flat, about.basis, ground.strokes, ground.arc_m, used});
+         about.flat, about.basis, ground.strokes, ground.arc_m, used, least_scale});
+    if (!weighed) return failed(QualificationStatus::NotTheArtefact);
+    evidence = *weighed;
     set_order(unknowns, evidence.order);
     const bool lag = result.both_directions && evidence.order > 0;
     unknowns.lag_m = lag ? std::optional(unknowns.lag_m.value_or(0.0)) : std::nullopt;
@@ -292,6 +306,13 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
     lag_variance = *fitted;
   }
   unknowns.offset.covariance_m2 += evidence.spread_m2;
+  // A ring of another size, a wrong unit or no curve at all can be laid on anything with an offset
+  // and a noise of their own size: no probe is as bad as a tenth of that.
+  constexpr double kMostOff = 0.1;
+  const double most = kMostOff * radius_of(artefact, ground, unknowns.poses);
+  if (std::abs(unknowns.offset.coefficients_m[0]) > most || evidence.sigma_m.value > most) {
+    return failed(QualificationStatus::NotTheArtefact);
+  }
 
   result.probe.tip_radius_m = ground.samples.front().tip_radius_m;
   result.probe.offset = unknowns.offset;

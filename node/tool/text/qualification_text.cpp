@@ -68,7 +68,9 @@ std::string qualification_text(const Qualification& qualification,
   add_line(text, "noise", length_text(probe.sigma_m.value, probe.sigma_m.deviation));
   add_line(text, "drift", size_text(probe.deviation_m));
   if (probe.deviation_m.value > probe.deviation_m.deviation) {
-    add_line(text, "over", size_text(probe.deviation_length_m) + " of a stroke");
+    add_line(text, "over",
+             length_text(probe.deviation_length_m.value, probe.deviation_length_m.deviation) +
+                 " of a stroke");
   }
   add_line(
       text, "spikes",

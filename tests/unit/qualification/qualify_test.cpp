@@ -191,5 +191,33 @@ TEST(Qualify, RefusesWhatIsNone) {
   EXPECT_EQ(qualify(scene.curve, {{still}}).status, QualificationStatus::NotTheArtefact);
 }
 
+TEST(Qualify, SamplesWithoutAnyNoiseAreTakenAtTheirWord) {
+  ArtefactRecording recording;
+  ArtefactStroke& stroke = recording.strokes.emplace_back();
+  for (int i = 0; i < 200; ++i) {
+    const double t = 2.0 * kPi * i / 200;
+    stroke.samples.push_back({Vec2(0.02501 * std::cos(t), 0.02501 * std::sin(t)), 0.0, 0});
+  }
+  const Qualification result = qualify(Circle{0.025}, {{recording}});
+  EXPECT_NEAR(result.probe.offset.coefficients_m[0], 1e-5, 1e-12);
+  EXPECT_LT(result.probe.sigma_m.value, 1e-12);
+}
+
+TEST(Qualify, AnotherArtefactIsNotTakenForThis) {
+  auto rng = test::test_rng();
+  ProbeScene scene;
+  scene.probe = plain_probe(1e-5);
+  const ArtefactRecording recording = simulate(scene, rng);
+  EXPECT_EQ(qualify(Circle{0.05}, {{recording}}).status, QualificationStatus::NotTheArtefact);
+  EXPECT_EQ(qualify(Circle{25.0}, {{recording}}).status, QualificationStatus::NotTheArtefact);
+  ArtefactRecording cloud;
+  std::normal_distribution<double> normal;
+  cloud.strokes.emplace_back();
+  for (int i = 0; i < 200; ++i) {
+    cloud.strokes[0].samples.push_back({Vec2(normal(rng), normal(rng)), 0.0, 0});
+  }
+  EXPECT_EQ(qualify(Circle{0.025}, {{cloud}}).status, QualificationStatus::NotTheArtefact);
+}
+
 }  // namespace
 }  // namespace palpate
