@@ -144,8 +144,9 @@ void set_order(OffsetUnknowns& unknowns, int order) {
 }
 
 /// Samples beyond what normal noise of the middle residuals' size leaves.
-std::vector<char> within_noise(const Eigen::VectorXd& residuals, double false_probability) {
-  const double scale = median_size(residuals) / kMedianOfNormal;
+std::vector<char> within_noise(const Eigen::VectorXd& residuals, double least_scale,
+                               double false_probability) {
+  const double scale = std::max(median_size(residuals) / kMedianOfNormal, least_scale);
   const double most =
       scale * two_sided_normal_quantile(false_probability / static_cast<double>(residuals.size()));
   std::vector<char> used;
@@ -277,7 +278,8 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
     about = residuals_about(artefact, material, ground.samples, unknowns, highest);
     scale = median_size(about.residual_m) / kMedianOfNormal;
   }
-  const std::vector<char> used = within_noise(about.residual_m, options.false_spike_probability);
+  const std::vector<char> used =
+      within_noise(about.residual_m, least_scale, options.false_spike_probability);
 
   Qualification result;
   result.both_directions = runs_both_ways(ground.samples);

@@ -201,6 +201,7 @@ TEST(Qualify, SamplesWithoutAnyNoiseAreTakenAtTheirWord) {
   const Qualification result = qualify(Circle{0.025}, {{recording}});
   EXPECT_NEAR(result.probe.offset.coefficients_m[0], 1e-5, 1e-12);
   EXPECT_LT(result.probe.sigma_m.value, 1e-12);
+  for (const QualifiedSample& sample : result.samples) EXPECT_FALSE(sample.spike);
 }
 
 TEST(Qualify, AnotherArtefactIsNotTakenForThis) {
