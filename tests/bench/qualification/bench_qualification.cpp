@@ -87,7 +87,8 @@ struct Axes {
   void print(const std::string& name) const {
     std::cout << "| " << name << " | " << runs << " | " << std::sqrt(squares / runs) << " | "
               << std::sqrt(squares / predicted) << " | " << normalised / runs << " | "
-              << 100.0 * held / runs << " |\n";
+              << 100.0 * held / runs << " |\n"
+              << std::flush;
   }
 };
 
@@ -109,6 +110,10 @@ void print_applied(const test::ProbeScene& ring, double arc_deg, int runs) {
       ProbedPatch& patch = patches.emplace_back();
       patch.context.patch = static_cast<std::uint32_t>(patches.size());
       patch.context.tip_radius_m = stroke.tip_radius_m;
+      // Every other stroke runs back. Without the side a short arc may be taken for touched from
+      // within.
+      patch.context.material_side =
+          patches.size() % 2 == 1 ? MaterialSide::Left : MaterialSide::Right;
       patch.samples = stroke.samples;
     }
     without.add(recognise_probed(patches, {}).recognition, truth);
