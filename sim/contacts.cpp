@@ -78,8 +78,57 @@ Sensed sense(const Vec2& true_position, const v1::SceneNoise& noise, Random& ran
   return sensed;
 }
 
+/// Drift along a patch: exp(-distance / length) is the law of a chain, each value from the one
+/// before.
+class Drift {
+ public:
+  Drift(const v1::SceneProbe& probe, Random& random) : probe_(probe), random_(random) {}
+
+  double at(const Vec2& centre) {
+    const double fresh = random_.normal_pair().x();
+    const double kept = begun_ && probe_.drift_m() > 0.0
+                            ? std::exp(-(centre - last_).norm() / probe_.drift_length_m())
+                            : 0.0;
+    begun_ = true;
+    last_ = centre;
+    drift_ = kept * drift_ + std::sqrt(1.0 - kept * kept) * probe_.drift_m() * fresh;
+    return drift_;
+  }
+
+ private:
+  const v1::SceneProbe& probe_;
+  Random& random_;
+  bool begun_ = false;
+  Vec2 last_ = Vec2::Zero();
+  double drift_ = 0.0;
+};
+
+/// Out of the material, by the direction of the normal there.
+double offset_of(const v1::SceneProbe& probe, const Vec2& outward) {
+  double offset = probe.offset_m();
+  const double phi = std::atan2(outward.y(), outward.x());
+  for (const v1::ProbeHarmonic& lobe : probe.lobes()) {
+    offset += lobe.cosine_m() * std::cos(lobe.order() * phi) +
+              lobe.sine_m() * std::sin(lobe.order() * phi);
+  }
+  return offset;
+}
+
+/// A place where a tip is.
+struct TipPlace {
+  Vec2 centre;           ///< in the shape's frame
+  Vec2 outward;          ///< unit normal out of the material there
+  double stretch = 1.0;  ///< length of the tip's path over that of the surface
+};
+
+TipPlace tip_at(const Shape& shape, double t, double side, double radius) {
+  const ShapePoint place = point_at(shape, t);
+  const Vec2 outward = -side * left_of(place.first.normalized());
+  return {place.position + radius * outward, outward, 1.0 + side * radius * curvature(place)};
+}
+
 SimulatedPatch touch(const Scene& scene, const v1::SceneProbe& probe, const v1::ScenePatch& patch,
-                     double start_s, Random& random) {
+                     double start_s, Random& random, Random& drift_random) {
   const v1::SceneNoise& noise = noise_of(scene.description, probe);
   const double side = material_sign(scene.description);
   PatchWalk walk(scene.shape, probe, patch);
@@ -88,15 +137,24 @@ SimulatedPatch touch(const Scene& scene, const v1::SceneProbe& probe, const v1::
   touched.side_is_reported = !probe.hide_material_side();
   touched.start_t = walk.t();
   touched.samples.reserve(walk.count());
+  Drift drift(probe, drift_random);
+  const double radius = probe.tip_radius_m();
+  const double backwards = patch.backwards() ? -1.0 : 1.0;
   for (std::size_t i = 0; i < walk.count(); ++i) {
     if (i > 0) walk.advance();
     touched.end_t = walk.t();
-    const ShapePoint place = point_at(scene.shape, walk.t());
-    Vec2 centre = place.position;
-    if (probe.tip_radius_m() > 0.0) {
-      centre -= side * probe.tip_radius_m() * left_of(place.first.normalized());
+    const TipPlace here = tip_at(scene.shape, walk.t(), side, radius);
+    TipPlace reported = here;
+    if (probe.lag_m() > 0.0 && here.stretch > 0.0) {
+      reported = tip_at(
+          scene.shape,
+          parameter_at_arc_length(scene.shape, walk.t(), -backwards * probe.lag_m() / here.stretch),
+          side, radius);
     }
-    const Sensed sensed = sense(scene.world_T_shape * centre, noise, random);
+    const Vec2 outward = scene.world_T_shape.rotate(here.outward);
+    const double off = offset_of(probe, outward) + drift.at(here.centre);
+    const Sensed sensed =
+        sense(scene.world_T_shape * reported.centre + off * outward, noise, random);
     if (!sensed.lost) {
       touched.samples.push_back({sensed.position, noise.hide_sigma() ? 0.0 : noise.sigma_m(),
                                  start_s + static_cast<double>(i) * walk.interval_s(), walk.t()});
@@ -122,7 +180,11 @@ std::vector<SimulatedProbe> simulate_contacts(const Scene& scene, std::uint64_t 
   std::vector<SimulatedProbe> probes;
   for (int i = 0; i < scene.description.probes_size(); ++i) {
     const v1::SceneProbe& described = scene.description.probes(i);
-    Random random(scene.description.seed(), (repetition << 16) + static_cast<std::uint64_t>(i));
+    const std::uint64_t stream = (repetition << 16) + static_cast<std::uint64_t>(i);
+    Random random(scene.description.seed(), stream);
+    // Of its own, so that a scene without drift has the samples that it always had.
+    constexpr std::uint64_t kDriftStream = std::uint64_t{1} << 63;
+    Random drift_random(scene.description.seed(), stream | kDriftStream);
     SimulatedProbe probe;
     probe.name = described.name();
     probe.tip_radius_m = described.tip_radius_m();
@@ -130,7 +192,7 @@ std::vector<SimulatedProbe> simulate_contacts(const Scene& scene, std::uint64_t 
         described.batch_samples() > 0 ? described.batch_samples() : kDefaultBatchSamples;
     double start_s = described.start_s();
     for (const v1::ScenePatch& patch : described.patches()) {
-      SimulatedPatch touched = touch(scene, described, patch, start_s, random);
+      SimulatedPatch touched = touch(scene, described, patch, start_s, random, drift_random);
       touched.number = static_cast<std::uint32_t>(probe.patches.size());
       start_s += duration_s(scene.shape, described, patch);
       probe.patches.push_back(std::move(touched));

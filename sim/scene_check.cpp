@@ -229,8 +229,22 @@ bool SceneCheck::check_probe(const Place& probe, const Shape& shape) {
   if (!is_valid_name(described.name())) {
     return fail(probe, "name", "must be 1 to 64 of A-Z a-z 0-9 _ . -");
   }
-  for (const char* field : {"tip_radius_m", "rate_hz", "start_s"}) {
+  for (const char* field :
+       {"tip_radius_m", "rate_hz", "start_s", "drift_m", "drift_length_m", "lag_m"}) {
     if (!not_negative(probe, field)) return false;
+  }
+  if (!std::isfinite(described.offset_m())) return fail(probe, "offset_m", "must be a number");
+  for (int i = 0; i < described.lobes_size(); ++i) {
+    const v1::ProbeHarmonic& lobe = described.lobes(i);
+    if (lobe.order() == 0) return fail(probe.child("lobes", i), "order", "must be at least 1");
+    for (const char* field : {"cosine_m", "sine_m"}) {
+      if (!std::isfinite(number(lobe, field))) {
+        return fail(probe.child("lobes", i), field, "must be a number");
+      }
+    }
+  }
+  if (described.drift_m() > 0.0 && !(described.drift_length_m() > 0.0)) {
+    return fail(probe, "drift_length_m", "must be a number > 0 where there is drift_m");
   }
   if (described.batch_samples() > IngestLimits{}.max_samples_per_batch) {
     return fail(probe, "batch_samples", "more than the recognizer takes in a message");

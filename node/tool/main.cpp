@@ -71,6 +71,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = palpate::kDone;
   palpate::add_fit_command(app, exit_code);
+  palpate::add_calibrate_command(app, exit_code);
   palpate::add_estimate_command(app, exit_code);
   palpate::add_watch_command(app, exit_code);
   palpate::add_view_command(app, exit_code);

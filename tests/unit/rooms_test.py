@@ -13,7 +13,7 @@ CORE = [
     "core/invariants",
     "core/invariants/signature_fit", "core/recognition/samples", "core/recognition/smooth", "core/recognition/fit", "core/recognition/touches",
     "core/recognition/given", "core/recognition/posterior", "core/recognition/weigh", "core/recognition/verdict",
-    "core/recognition/tree", "core/recognition", "core/part",
+    "core/recognition/tree", "core/recognition", "core/part", "core/qualification",
 ]
 NODE = CORE + [
     "node/python",

@@ -13,6 +13,7 @@ namespace palpate {
 enum ExitCode { kDone = 0, kFailed = 1, kUsage = 2 };
 
 /// Each adds one subcommand; when it is chosen, `exit_code` receives how it ended.
+void add_calibrate_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
 void add_estimate_command(CLI::App& app, int& exit_code);
 void add_fit_command(CLI::App& app, int& exit_code);

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "core/qualification/probe_correction.h"
 #include "node/files/printable.h"
+#include "node/files/probe_file.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/commands/fit_input.h"
@@ -32,6 +34,7 @@ struct FitCommand {
   std::string curve_file;
   std::string part;
   std::string given_class;
+  std::vector<std::string> probe_files;
   std::vector<std::size_t> left_out;
   FileFlags file;
   bool patches_are_bounded = false;  ///< --most-patches was said
@@ -92,15 +95,81 @@ bool noise_is_known(const FitInput& input, const RecognizerOptions& options) {
   return input.noise_is_known || options.sigma_m > 0.0;
 }
 
+/// The qualified probe of that name, or the only one there is.
+const QualifiedProbe* probe_called(const std::string& name,
+                                   const std::vector<QualifiedProbe>& probes) {
+  if (probes.size() == 1) return &probes.front();
+  const auto found = std::find_if(probes.begin(), probes.end(), [&](const QualifiedProbe& probe) {
+    return probe.described.name() == name;
+  });
+  return found == probes.end() ? nullptr : &*found;
+}
+
+/// An object as qualified probes have touched it; `answer` and `notes` receive which files it rests
+/// on.
+std::vector<ProbedPatch> probed_patches(const ContactGroup& group,
+                                        const std::vector<QualifiedProbe>& probes,
+                                        v1::Recognition& answer, std::vector<std::string>& notes) {
+  std::vector<ProbedPatch> patches;
+  std::vector<bool> told(group.probes.size(), false);
+  for (const ContactRun& run : group.runs) {
+    const std::string& name = group.probes[run.context.probe];
+    const QualifiedProbe* probe = probe_called(name, probes);
+    patches.push_back({run.context, run.samples, probe == nullptr ? nullptr : &probe->character});
+    if (told[run.context.probe]) continue;
+    told[run.context.probe] = true;
+    if (probe == nullptr) {
+      notes.push_back("WARNING: no probe file is of probe " + printable(name));
+      continue;
+    }
+    const auto& files = answer.probe_files();
+    if (std::find(files.begin(), files.end(), probe->file) == files.end()) {
+      answer.add_probe_files(probe->file);
+    }
+    if (!probe->described.name().empty() && probe->described.name() != name) {
+      notes.push_back("probe " + printable(name) + " is taken for " +
+                      printable(probe->described.name()) + " of " + probe->file);
+    }
+    if (probe->described.verdict() == v1::QUALIFICATION_VERDICT_INSUFFICIENT) {
+      notes.push_back("WARNING: " + probe->file + ": its qualification was insufficient");
+    }
+    const double radius = probe->character.tip_radius_m;
+    if (radius > 0.0 && run.context.tip_radius_m > 0.0 && run.context.tip_radius_m != radius) {
+      notes.push_back("the tip radius of " + probe->file + " counts, not that of the samples");
+    }
+  }
+  return patches;
+}
+
 /// `notes` receives what is to be said beside the answer.
 v1::Recognition recognise(const FitInput& input, const RecognizerOptions& options,
+                          const std::vector<QualifiedProbe>& probes,
                           std::vector<std::string>& notes) {
   const ContactGroup& group = input.group;
-  Recognizer recognizer(options);
-  const AddResult added = add_group(group, recognizer);
-  const auto start = std::chrono::steady_clock::now();
-  const Recognition recognition = recognizer.recognize();
-  const auto taken = std::chrono::steady_clock::now() - start;
+  Recognition recognition;
+  AddResult added;
+  std::chrono::steady_clock::duration taken{};
+  v1::Recognition probed;
+  std::vector<std::string> probe_notes;
+  if (probes.empty()) {
+    Recognizer recognizer(options);
+    added = add_group(group, recognizer);
+    const auto start = std::chrono::steady_clock::now();
+    recognition = recognizer.recognize();
+    taken = std::chrono::steady_clock::now() - start;
+  } else {
+    const std::vector<ProbedPatch> patches = probed_patches(group, probes, probed, probe_notes);
+    const auto start = std::chrono::steady_clock::now();
+    ProbedRecognition result = recognise_probed(patches, options);
+    taken = std::chrono::steady_clock::now() - start;
+    recognition = std::move(result.recognition);
+    added = result.added;
+    if (!result.corrected && probed.probe_files_size() > 0) {
+      probed.clear_probe_files();
+      probe_notes.push_back(
+          "WARNING: no curve was found to take normals from: the probe's offset is not taken off");
+    }
+  }
   v1::Recognition answer;
   to_wire(
       recognition,
@@ -109,7 +178,9 @@ v1::Recognition recognise(const FitInput& input, const RecognizerOptions& option
       },
       answer);
   fill_origin(group, taken, answer);
+  answer.mutable_probe_files()->Swap(probed.mutable_probe_files());
   notes = notes_for(input, options.memory, added);
+  notes.insert(notes.end(), probe_notes.begin(), probe_notes.end());
   return answer;
 }
 
@@ -189,6 +260,12 @@ int run(FitCommand& fit) {
     return complain("--class: no class is called " + printable(fit.given_class), kUsage);
   }
   // Nothing is answered before every file has been read: a bad one costs no half-done work.
+  std::vector<QualifiedProbe> probes;
+  for (const std::string& file : fit.probe_files) {
+    Result<QualifiedProbe> probe = read_probe(file);
+    if (!probe) return complain(probe.error, kUsage);
+    probes.push_back(*std::move(probe.value));
+  }
   std::vector<FitInput> inputs;
   bool bad = false;
   for (const std::string& file : fit.files) {
@@ -224,8 +301,9 @@ int run(FitCommand& fit) {
     if (fit.given_class.empty()) {
       RecognizerOptions options = fit.recognizer;
       options.memory = memory_for(group, options.memory, fit.patches_are_bounded);
-      answer = recognise(input, options, notes);
-      text = json ? json_line(answer) : report_text(answer, noise_is_known(input, options));
+      answer = recognise(input, options, probes, notes);
+      const bool known = noise_is_known(input, options) || answer.probe_files_size() > 0;
+      text = json ? json_line(answer) : report_text(answer, known);
     } else {
       const v1::GivenClassAnswer given = fit_given(group, fit);
       notes = input.notes;
@@ -321,6 +399,16 @@ void add_fit_command(CLI::App& app, int& exit_code) {
           "PartMatch (palpate/v1/part_match.proto) a line")
       ->excludes(plot)
       ->excludes(given)
+      ->type_name("FILE");
+  command
+      ->add_option("--probe", fit->probe_files,
+                   "Probe file of palpate calibrate: its offsets are taken off by the normals "
+                   "found, its noise, drift and tip radius count, and the answer names it. May be "
+                   "repeated: of several files each is for the probe that it names")
+      ->excludes(given)
+      ->excludes("--part")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("FILE");
   add_file_flags(*command, fit->file);
   add_recognizer_flags(*command, *fit);

@@ -276,6 +276,8 @@ std::string report_text(const v1::Recognition& answer, bool noise_is_known) {
     samples += "; " + std::to_string(answer.forgotten_count()) + " older ones forgotten";
   }
   add_line(text, "samples", samples);
+  for (const std::string& file : answer.probe_files())
+    add_line(text, "probe file", printable(file));
   add_line(text, "time", number(1e-6 * static_cast<double>(answer.compute_ns())) + " ms");
   add_hypotheses(answer, noise_is_known, text);
   add_contacts(answer, text);

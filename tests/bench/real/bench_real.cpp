@@ -9,6 +9,7 @@
 
 #include "tests/bench/real/ellipse_part.h"
 #include "tests/bench/real/mirrors.h"
+#include "tests/bench/real/qualified_part.h"
 
 namespace {
 
@@ -23,7 +24,10 @@ constexpr const char* kAbout =
       The axes and radius above are those of part "ellip2" and its pusher in the public data set
       "More than a Million Ways to Be Pushed" (K.-T. Yu, M. Bauza, N. Fazeli, A. Rodriguez, IROS 2016;
       MIT MCube Lab): contacts of a robot's cylindrical pusher, whose centres in the part's
-      frame are x_m, y_m. The data are not part of this repository.)";
+      frame are x_m, y_m. The data are not part of this repository.
+  bench_real --ring RING --ring-radius 0.0525 --ellipse-part FILE --semi-axes 0.065445,0.0525 --tip-radius 0.00475
+      the same part by a probe that is qualified on a ring (part "ellip1" of that set), touched on the
+      same surface, beside the answers without that.)";
 
 /// The data's makers state no tolerance of the part: a round figure, half of the +-0.1 mm that
 /// cutting plates of that size keeps to without special care.
@@ -63,6 +67,14 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->needs(part);
+  std::optional<std::string> ring;
+  double ring_radius = 0.0;
+  auto* ring_file =
+      app.add_option("--ring", ring, "Contacts around a ring, to qualify the probe on, CSV")
+          ->needs(part);
+  ring_file->needs(app.add_option("--ring-radius", ring_radius, "Of the ring [m]")
+                       ->check(CLI::PositiveNumber)
+                       ->needs(ring_file));
   CLI11_PARSE(app, argc, argv);
   try {
     if (!file) {
@@ -74,6 +86,12 @@ int main(int argc, char** argv) {
         std::min(semi_axes[0], semi_axes[1]), side_known, form_deviation_m};
     if (tip_radius) {
       ellipse.recording.context.tip_radius_m = *tip_radius;
+    }
+    if (ring) {
+      palpate::bench::Ring artefact{palpate::bench::read_recording(*ring), ring_radius};
+      if (tip_radius) artefact.recording.context.tip_radius_m = *tip_radius;
+      palpate::bench::print_qualified_part(artefact, ellipse, std::cout);
+      return 0;
     }
     palpate::bench::print_ellipse_part(ellipse, arcs, std::cout);
   } catch (const std::runtime_error& error) {

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "sim/contacts.h"
 #include "sim/scene_file.h"
@@ -127,6 +130,93 @@ TEST(SceneFile, EveryBadFieldIsNamedWithItsLine) {
   EXPECT_THAT(error_of(std::string(kCircle) +
                        "probes { name: \"a b\" patches { start_t: 0 arc_m: 1 spacing_m: 1 } }"),
               HasSubstr("name"));
+}
+
+std::string with_probe(const std::string& probe_fields, const std::string& patches) {
+  return std::string(kCircle) + "probes { name: \"p\" " + probe_fields + " " + patches + " }\n";
+}
+
+TEST(Simulation, OffsetAndLobesGoOutAlongTheNormal) {
+  const sim::Scene scene = scene_of(with_probe(
+      "tip_radius_m: 0.003 offset_m: -2e-5 lobes { order: 2 cosine_m: 3e-5 sine_m: 1e-5 }",
+      "patches { start_t: 0 arc_m: 0.1 spacing_m: 1e-3 }"));
+  const auto probes = sim::simulate_contacts(scene, 0);
+  for (const auto& sample : probes[0].patches[0].samples) {
+    const Vec2 from = sample.position_m - Vec2(0.1, 0.2);
+    const double off = -2e-5 + 3e-5 * std::cos(2 * sample.t) + 1e-5 * std::sin(2 * sample.t);
+    EXPECT_NEAR(from.norm(), 0.023 + off, 1e-15);
+    EXPECT_NEAR(std::remainder(std::atan2(from.y(), from.x()) - sample.t, 2 * kPi), 0.0, 1e-12);
+  }
+}
+
+TEST(Simulation, ALagLeavesTheOffsetAheadOfThePlaceBothWays) {
+  const std::string patches =
+      "patches { start_t: 0 arc_m: 0.05 spacing_m: 1e-3 }"
+      "patches { start_t: 3 arc_m: 0.05 spacing_m: 1e-3 backwards: true }";
+  const sim::Scene scene = scene_of(
+      with_probe("tip_radius_m: 0.005 lag_m: 5e-4 lobes { order: 3 sine_m: 4e-5 }", patches));
+  const auto probes = sim::simulate_contacts(scene, 0);
+  for (std::size_t patch = 0; patch < 2; ++patch) {
+    const double ahead = (patch == 0 ? 1.0 : -1.0) * 5e-4 / 0.025;
+    for (const auto& sample : probes[0].patches[patch].samples) {
+      const Vec2 from = sample.position_m - Vec2(0.1, 0.2);
+      const double angle = std::atan2(from.y(), from.x());
+      // The offset's normal is turned by the lag: its part along the circle moves the angle by
+      // 4e-5 * 0.02 / 0.025 at most, the rest is shorter by half of 0.02 squared.
+      EXPECT_NEAR(std::remainder(angle - (sample.t - ahead), 2 * kPi), 0.0, 3.3e-5);
+      EXPECT_NEAR(from.norm(), 0.025 + 4e-5 * std::sin(3 * sample.t), 1e-8);
+    }
+  }
+}
+
+TEST(Simulation, DriftHasItsSizeAndItsLength) {
+  const sim::Scene scene = scene_of(with_probe("drift_m: 1e-5 drift_length_m: 2e-3",
+                                               "patches { start_t: 0 arc_m: 4 spacing_m: 1e-3 }"));
+  const auto probes = sim::simulate_contacts(scene, 0);
+  const auto& samples = probes[0].patches[0].samples;
+  ASSERT_EQ(samples.size(), 4001U);
+  double square = 0.0;
+  double product = 0.0;
+  double last = 0.0;
+  for (const auto& sample : samples) {
+    const double drift = (sample.position_m - Vec2(0.1, 0.2)).norm() - 0.02;
+    square += drift * drift / 4001.0;
+    product += drift * last / 4000.0;
+    last = drift;
+  }
+  // Four deviations: 4,001 samples correlated by exp(-1/2) are worth 4001 (1 - r^2) / (1 + r^2).
+  const double r = std::exp(-0.5);
+  const double share = 4.0 * std::sqrt(2.0 / (4001.0 * (1.0 - r * r) / (1.0 + r * r)));
+  EXPECT_NEAR(square, 1e-10, share * 1e-10);
+  EXPECT_NEAR(product / square, r, 4.0 * std::sqrt((1.0 - r * r) / 4001.0));
+}
+
+TEST(Simulation, AnIdealProbeHasTheSamplesThatItAlwaysHad) {
+  const std::string patches = "patches { start_t: 0 arc_m: 0.05 spacing_m: 1e-3 }";
+  const auto plain =
+      sim::simulate_contacts(scene_of(with_probe("noise { sigma_m: 1e-5 }", patches)));
+  const auto drifting = sim::simulate_contacts(
+      scene_of(with_probe("noise { sigma_m: 1e-5 } drift_m: 1e-6 drift_length_m: 1e-2", patches)));
+  for (std::size_t i = 0; i < plain[0].patches[0].samples.size(); ++i) {
+    const Vec2 off =
+        drifting[0].patches[0].samples[i].position_m - plain[0].patches[0].samples[i].position_m;
+    EXPECT_LT(off.norm(), 6e-6);  // the drift alone: noise has drawn the same numbers
+    EXPECT_GT(off.norm(), 0.0);
+  }
+}
+
+TEST(Simulation, ABadProbeIsNamed) {
+  const std::string patches = "patches { start_t: 0 arc_m: 0.05 spacing_m: 1e-3 }";
+  for (const auto& [fields, why] : std::vector<std::pair<std::string, std::string>>{
+           {"drift_m: 1e-6", "probes[0].drift_length_m: must be a number > 0"},
+           {"lag_m: -1", "probes[0].lag_m: must be a number >= 0"},
+           {"offset_m: nan", "probes[0].offset_m: must be a number"},
+           {"lobes { sine_m: 1 }", "probes[0].lobes[0].order: must be at least 1"},
+           {"lobes { order: 2 sine_m: inf }", "probes[0].lobes[0].sine_m: must be a number"}}) {
+    const auto scene = sim::parse_scene(with_probe(fields, patches), "scene.textproto");
+    EXPECT_THAT(scene.error, HasSubstr(why));
+    EXPECT_THAT(scene.error, StartsWith("scene.textproto:"));
+  }
 }
 
 }  // namespace

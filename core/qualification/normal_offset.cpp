@@ -1,0 +1,39 @@
+#include "core/qualification/normal_offset.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate {
+
+int offset_coefficients(int order) { return 1 + 2 * std::max(order - 1, 0); }
+
+Eigen::RowVectorXd offset_basis(double phi, int order) {
+  Eigen::RowVectorXd basis(offset_coefficients(order));
+  basis[0] = 1.0;
+  for (int k = 2; k <= order; ++k) {
+    basis[2 * k - 3] = std::cos(k * phi);
+    basis[2 * k - 2] = std::sin(k * phi);
+  }
+  return basis;
+}
+
+Eigen::RowVectorXd offset_basis_slope(double phi, int order) {
+  Eigen::RowVectorXd slope(offset_coefficients(order));
+  slope[0] = 0.0;
+  for (int k = 2; k <= order; ++k) {
+    slope[2 * k - 3] = -k * std::sin(k * phi);
+    slope[2 * k - 2] = k * std::cos(k * phi);
+  }
+  return slope;
+}
+
+double offset_at(const NormalOffset& offset, double phi) {
+  return offset_basis(phi, offset.order).dot(offset.coefficients_m);
+}
+
+double offset_deviation_at(const NormalOffset& offset, double phi) {
+  const Eigen::RowVectorXd basis = offset_basis(phi, offset.order);
+  return std::sqrt(std::max(0.0, (basis * offset.covariance_m2).dot(basis)));
+}
+
+}  // namespace palpate

@@ -1,0 +1,256 @@
+#include "core/qualification/offset_evidence.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/numerics/log_gamma.h"
+#include "core/qualification/normal_offset.h"
+
+namespace palpate {
+namespace {
+
+/// One point of the grid.
+struct Cell {
+  int order = 0;
+  double log_ratio = 0.0;
+  double log_length = 0.0;
+  double log_evidence = -std::numeric_limits<double>::infinity();
+  double variance = 0.0;  ///< mean of the white noise's, given the cell [m^2]
+  double harmonic = 0.0;  ///< over the noise
+  double degrees = 0.0;
+  Eigen::VectorXd coefficients;
+};
+
+/// Evenly spaced values; their ends are the range of the prior.
+struct Range {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Sums that the evidence of all orders needs, for one coherence.
+struct NormalEquations {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd right;
+  double squares = 0.0;
+  double log_determinant = 0.0;
+};
+
+NormalEquations normal_equations(const OffsetModel& model, const Coherence& coherence) {
+  const Eigen::Index rows = model.residual_m.size();
+  const Eigen::Index columns = model.flat.cols() + model.basis.cols();
+  Eigen::MatrixXd white(rows, columns + 1);
+  white << model.flat, model.basis, model.residual_m;
+  NormalEquations sums;
+  sums.log_determinant = whiten(coherence, model.strokes, model.arc_m, model.used, white);
+  sums.matrix = white.leftCols(columns).transpose() * white.leftCols(columns);
+  sums.right = white.leftCols(columns).transpose() * white.col(columns);
+  sums.squares = white.col(columns).squaredNorm();
+  return sums;
+}
+
+/// Standard deviation of the harmonics over that of the noise, alike probable in its logarithm:
+/// from what no number of samples shows to what everybody sees at a single one.
+std::vector<double> harmonic_sizes() {
+  std::vector<double> sizes;
+  for (double size = 0.01; size < 200.0; size *= 2.0) sizes.push_back(size);
+  return sizes;
+}
+
+/// Size of a harmonic over that of the second: an offset that bends nowhere sharply has overtones
+/// that fall off with the square of their order.
+double overtone(int order) { return 4.0 / (order * order); }
+
+/// Cells of all orders for one coherence.
+void add_cells(const OffsetModel& model, int highest, double log_ratio, double log_length,
+               std::vector<Cell>& cells) {
+  const double ratio = std::exp(log_ratio);
+  const NormalEquations sums = normal_equations(model, {ratio, std::exp(log_length)});
+  const Eigen::Index flat = model.flat.cols() + 1;
+  const auto used = static_cast<double>(std::count(model.used.begin(), model.used.end(), 1));
+  const double degrees = used - static_cast<double>(flat);
+  static const std::vector<double> sizes = harmonic_sizes();
+  for (int order = 0; order <= highest; order = order == 0 ? 2 : order + 1) {
+    const Eigen::Index columns = model.flat.cols() + offset_coefficients(order);
+    for (const double size : sizes) {
+      Eigen::MatrixXd matrix = sums.matrix.topLeftCorner(columns, columns);
+      double log_sizes = 0.0;
+      for (Eigen::Index i = flat; i < columns; ++i) {
+        const double expected = size * overtone(static_cast<int>(i - flat) / 2 + 2);
+        matrix(i, i) += 1.0 / (expected * expected);
+        log_sizes += std::log(expected);
+      }
+      const Eigen::LDLT<Eigen::MatrixXd> factor(matrix);
+      const Eigen::VectorXd solution = factor.solve(sums.right.head(columns));
+      const double squares = std::max(sums.squares - sums.right.head(columns).dot(solution),
+                                      degrees * model.least_noise_m * model.least_noise_m);
+      Cell cell{order, log_ratio, log_length, 0.0, squares / (degrees - 2.0), size, degrees, {}};
+      cell.log_evidence = -0.5 * sums.log_determinant -
+                          0.5 * factor.vectorD().array().abs().log().sum() - log_sizes -
+                          0.5 * degrees * std::log(0.5 * squares) + log_gamma(0.5 * degrees) -
+                          // Without harmonics their size says nothing: one cell for all of them.
+                          (order == 0 ? 0.0 : std::log(static_cast<double>(sizes.size())));
+      cell.coefficients = solution.tail(offset_coefficients(order));
+      if (std::isfinite(cell.log_evidence)) cells.push_back(std::move(cell));
+      if (order == 0) break;
+    }
+  }
+}
+
+std::vector<Cell> grid(const OffsetModel& model, int highest, Range ratios, Range lengths,
+                       int steps) {
+  std::vector<Cell> cells;
+  for (int i = 0; i <= steps; ++i) {
+    for (int j = 0; j <= steps; ++j) {
+      add_cells(model, highest, ratios.low + (ratios.high - ratios.low) * i / steps,
+                lengths.low + (lengths.high - lengths.low) * j / steps, cells);
+    }
+  }
+  return cells;
+}
+
+double highest_evidence(const std::vector<Cell>& cells) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const Cell& cell : cells) highest = std::max(highest, cell.log_evidence);
+  return highest;
+}
+
+/// The part of a range where anything is left of the evidence, and a step beyond.
+Range where_told(const std::vector<Cell>& cells, Range range, int steps, double Cell::*field) {
+  constexpr double kNothing = 12.0;  // e^-12
+  const double highest = highest_evidence(cells);
+  Range told{range.high, range.low};
+  for (const Cell& cell : cells) {
+    if (cell.log_evidence > highest - kNothing) {
+      told.low = std::min(told.low, cell.*field);
+      told.high = std::max(told.high, cell.*field);
+    }
+  }
+  const double step = (range.high - range.low) / steps;
+  return {std::max(told.low - step, range.low), std::min(told.high + step, range.high)};
+}
+
+/// The lowest order that no higher one beats by what counts as substantial evidence (H. Jeffreys).
+int fewest_asked_for(const std::vector<double>& by_order) {
+  constexpr double kSubstantial = 3.0;
+  for (auto order = by_order.begin(); order != by_order.end(); ++order) {
+    if (kSubstantial * *order >= *std::max_element(order, by_order.end())) {
+      const auto index = static_cast<int>(order - by_order.begin());
+      return index == 0 ? 0 : index + 1;
+    }
+  }
+  return 0;
+}
+
+/// Mean and deviation over cells with weights that sum to 1.
+template <typename Value>
+Estimate estimate_over(const std::vector<Cell>& cells, const std::vector<double>& weights,
+                       const Value& value) {
+  double mean = 0.0;
+  double square = 0.0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Estimate e = value(cells[i]);
+    mean += weights[i] * e.value;
+    square += weights[i] * (e.value * e.value + e.deviation * e.deviation);
+  }
+  return {mean, std::sqrt(std::max(0.0, square - mean * mean))};
+}
+
+Estimate sigma_of(const Cell& cell) {
+  const double sigma = std::sqrt(cell.variance);
+  return {sigma, sigma / std::sqrt(2.0 * cell.degrees)};
+}
+
+/// From a few of the samples' distances to a part of the longest stroke: what is shorter counts as
+/// noise, what is longer cannot be told from a constant.
+Range lengths_of(const OffsetModel& model) {
+  std::vector<double> steps;
+  double longest = 0.0;
+  for (const StrokePlaces& stroke : model.strokes) {
+    for (Eigen::Index i = stroke.begin + 1; i < stroke.end; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      steps.push_back(model.arc_m[k] - model.arc_m[k - 1]);
+    }
+    if (stroke.end > stroke.begin) {
+      longest = std::max(longest, model.arc_m[static_cast<std::size_t>(stroke.end - 1)] -
+                                      model.arc_m[static_cast<std::size_t>(stroke.begin)]);
+    }
+  }
+  constexpr double kFewestSteps = 4.0;
+  constexpr double kShare = 0.5;  // of a stroke: beyond it the constant takes it up
+  if (steps.empty() || !(longest > 0.0)) return {0.0, 0.0};
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  const double shortest = std::max(kFewestSteps * *middle, 1e-6 * longest);
+  return {std::log(std::min(shortest, kShare * longest)), std::log(kShare * longest)};
+}
+
+}  // namespace
+
+std::optional<OffsetEvidence> weigh_offsets(const OffsetModel& model) {
+  constexpr int kCoarse = 9;
+  constexpr int kFine = 15;
+  const int columns = static_cast<int>(model.basis.cols());
+  const int highest = columns == 1 ? 0 : (columns + 1) / 2;
+  // Alike probable in the logarithm, as the noise is: no size is preferred. Below a hundredth no
+  // number of samples shows it.
+  const Range ratios{std::log(0.01), std::log(30.0)};
+  const Range lengths = lengths_of(model);
+  const std::vector<Cell> coarse = grid(model, highest, ratios, lengths, kCoarse);
+  if (coarse.empty()) return std::nullopt;
+  std::vector<Cell> cells =
+      grid(model, highest, where_told(coarse, ratios, kCoarse, &Cell::log_ratio),
+           where_told(coarse, lengths, kCoarse, &Cell::log_length), kFine);
+  if (cells.empty()) return std::nullopt;
+
+  OffsetEvidence result;
+  const double top = highest_evidence(cells);
+  std::vector<double> by_order(static_cast<std::size_t>(std::max(highest, 1)), 0.0);
+  double total = 0.0;
+  for (const Cell& cell : cells) {
+    const double weight = std::exp(cell.log_evidence - top);
+    by_order[static_cast<std::size_t>(std::max(cell.order - 1, 0))] += weight;
+    total += weight;
+  }
+  for (double& p : by_order) p /= total;
+  result.order = fewest_asked_for(by_order);
+  result.probabilities = std::move(by_order);
+
+  cells.erase(std::remove_if(cells.begin(), cells.end(),
+                             [&](const Cell& cell) { return cell.order != result.order; }),
+              cells.end());
+  const Cell& best_cell = *std::max_element(
+      cells.begin(), cells.end(),
+      [](const Cell& a, const Cell& b) { return a.log_evidence < b.log_evidence; });
+  result.coherence = {std::exp(best_cell.log_ratio), std::exp(best_cell.log_length)};
+  std::vector<double> weights;
+  total = 0.0;
+  for (const Cell& cell : cells) {
+    weights.push_back(std::exp(cell.log_evidence - top));
+    total += weights.back();
+  }
+  for (double& weight : weights) weight /= total;
+  result.sigma_m = estimate_over(cells, weights, sigma_of);
+  result.deviation_m = estimate_over(cells, weights, [](const Cell& cell) {
+    const Estimate sigma = sigma_of(cell);
+    const double ratio = std::exp(cell.log_ratio);
+    return Estimate{ratio * sigma.value, ratio * sigma.deviation};
+  });
+  result.deviation_length_m = estimate_over(cells, weights, [](const Cell& cell) {
+    return Estimate{std::exp(cell.log_length), 0.0};
+  });
+  result.harmonic_m = estimate_over(cells, weights, [](const Cell& cell) {
+                        return Estimate{cell.harmonic * std::sqrt(cell.variance), 0.0};
+                      }).value;
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(offset_coefficients(result.order));
+  for (std::size_t i = 0; i < cells.size(); ++i) mean += weights[i] * cells[i].coefficients;
+  result.spread_m2 = Eigen::MatrixXd::Zero(mean.size(), mean.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Eigen::VectorXd off = cells[i].coefficients - mean;
+    result.spread_m2 += weights[i] * off * off.transpose();
+  }
+  return result;
+}
+
+}  // namespace palpate

@@ -1,0 +1,231 @@
+#include "core/qualification/probe_correction.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace palpate {
+namespace {
+
+/// +1: the patch runs along increasing parameter, -1: against it, 0: neither.
+int travel_of(const Curve& curve, const Pose2& pose, std::span<const ContactSample> samples) {
+  const double period = domain(curve).period;
+  double forth = 0.0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const double from = foot_point(curve, pose.to_local(samples[i - 1].position_m)).t;
+    const double step = foot_point(curve, pose.to_local(samples[i].position_m)).t - from;
+    forth += period > 0.0 ? std::remainder(step, period) : step;
+  }
+  return forth > 0.0 ? 1 : (forth < 0.0 ? -1 : 0);
+}
+
+int majority(int votes) { return votes > 0 ? 1 : (votes < 0 ? -1 : 0); }
+
+/// Columns of the orthogonal distance's derivative, out of the material, by shape, x, y and theta.
+Eigen::RowVectorXd distance_slope(const Curve& curve, const Pose2& pose, const Vec2& normal,
+                                  const FootPoint& foot) {
+  const auto shape = static_cast<Eigen::Index>(parameter_letters(class_of(curve)).size());
+  Eigen::RowVectorXd slope(shape + 3);
+  const Eigen::Matrix<double, 2, 3> by_shape = position_by_parameters(curve, foot.t);
+  for (Eigen::Index i = 0; i < shape; ++i) slope[i] = -normal.dot(pose.rotate(by_shape.col(i)));
+  slope[shape] = -normal.x();
+  slope[shape + 1] = -normal.y();
+  slope[shape + 2] = -normal.dot(left_of(pose.rotate(foot.position)));
+  return slope;
+}
+
+/// Of a quantity known as well as that.
+double mean_square(const Estimate& estimate) {
+  return estimate.value * estimate.value + estimate.deviation * estimate.deviation;
+}
+
+/// Where a sample touches, and how the normal out of the material lies there.
+struct Touch {
+  FootPoint foot;
+  Vec2 normal;
+  double offset_angle = 0.0;  ///< direction that the offset belongs to [rad]
+};
+
+Touch touch_of(const ProbedPatch& patch, const Curve& curve, const Pose2& pose, int material,
+               int travel, const ContactSample& sample) {
+  Touch touch;
+  touch.foot = foot_point(curve, pose.to_local(sample.position_m));
+  const LocalGeometry local = geometry(curve, touch.foot.t);
+  const double angle = local.tangent_angle + pose.theta - material * 0.5 * kPi;
+  touch.normal = {std::cos(angle), std::sin(angle)};
+  const double lag = patch.probe->lag_m ? patch.probe->lag_m->value : 0.0;
+  touch.offset_angle = angle + lag * travel * local.kappa /
+                                   (1.0 + material * patch.context.tip_radius_m * local.kappa);
+  return touch;
+}
+
+AddResult add_all(std::span<const ProbedPatch> patches, Recognizer& recognizer) {
+  AddResult sum;
+  for (const ProbedPatch& patch : patches) {
+    const AddResult added = recognizer.add(patch.context, patch.samples);
+    sum.accepted += added.accepted;
+    sum.rejected_not_finite += added.rejected_not_finite;
+    sum.rejected_negative_sigma += added.rejected_negative_sigma;
+    sum.forgotten += added.forgotten;
+    sum.repeated += added.repeated;
+  }
+  return sum;
+}
+
+/// The curve that the answer thinks the most probable; nullopt where that is none.
+std::optional<Curve> curve_of(const Recognition& answer) {
+  return answer.hypotheses.empty() || answer.hypotheses.front().at_limit
+             ? std::nullopt
+             : make_curve(answer.shape.curve_class, answer.shape.values);
+}
+
+}  // namespace
+
+int material_sign(const Curve& curve, const Pose2& pose, const ProbedPatch& patch) {
+  int off = 0;
+  int bend = 0;
+  for (const ContactSample& sample : patch.samples) {
+    const FootPoint foot = foot_point(curve, pose.to_local(sample.position_m));
+    const double kappa = geometry(curve, foot.t).kappa;
+    off += foot.distance < 0.0 ? 1 : -1;
+    bend += kappa > 0.0 ? 1 : (kappa < 0.0 ? -1 : 0);
+  }
+  if (patch.context.tip_radius_m > 0.0) return majority(off);
+  if (patch.context.material_side != MaterialSide::Unspecified) {
+    const int side = patch.context.material_side == MaterialSide::Left ? 1 : -1;
+    if (const int travel = travel_of(curve, pose, patch.samples); travel != 0) return side * travel;
+  }
+  return majority(bend);
+}
+
+std::vector<ContactSample> without_offset(const ProbedPatch& patch, const Curve& curve,
+                                          const Pose2& pose) {
+  std::vector<ContactSample> samples(patch.samples);
+  const int material = patch.probe == nullptr ? 0 : material_sign(curve, pose, patch);
+  if (material == 0) return samples;
+  const int travel = patch.probe->lag_m ? travel_of(curve, pose, patch.samples) : 0;
+  for (ContactSample& sample : samples) {
+    const Touch touch = touch_of(patch, curve, pose, material, travel, sample);
+    sample.position_m -= offset_at(patch.probe->offset, touch.offset_angle) * touch.normal;
+  }
+  return samples;
+}
+
+ProbedPatch as_qualified(ProbedPatch patch) {
+  if (patch.probe == nullptr) return patch;
+  if (patch.probe->tip_radius_m > 0.0) patch.context.tip_radius_m = patch.probe->tip_radius_m;
+  for (ContactSample& sample : patch.samples) {
+    if (!(sample.sigma_m > 0.0)) sample.sigma_m = patch.probe->sigma_m.value;
+  }
+  return patch;
+}
+
+ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& pose,
+                                         std::span<const ProbedPatch> patches) {
+  const auto size = static_cast<Eigen::Index>(parameter_letters(class_of(curve)).size()) + 3;
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
+  std::map<const ProbeCharacter*, Eigen::MatrixXd> by_probe;     // J^T W B
+  Eigen::MatrixXd coherent = Eigen::MatrixXd::Zero(size, size);  // J^T W D W J
+  for (const ProbedPatch& patch : patches) {
+    const int material = material_sign(curve, pose, patch);
+    const int travel =
+        patch.probe != nullptr && patch.probe->lag_m ? travel_of(curve, pose, patch.samples) : 0;
+    // With D_ij = d^2 exp(-|s_i - s_j| / length) the sum over all pairs runs along the patch.
+    Eigen::VectorXd before = Eigen::VectorXd::Zero(size);
+    Vec2 last = Vec2::Zero();
+    for (const ContactSample& sample : patch.samples) {
+      const double weight = sample.sigma_m > 0.0 ? 1.0 / (sample.sigma_m * sample.sigma_m) : 1.0;
+      const FootPoint foot = foot_point(curve, pose.to_local(sample.position_m));
+      const double angle = geometry(curve, foot.t).tangent_angle + pose.theta -
+                           (material == 0 ? 1 : material) * 0.5 * kPi;
+      const Vec2 normal(std::cos(angle), std::sin(angle));
+      const Eigen::RowVectorXd slope = distance_slope(curve, pose, normal, foot);
+      information += weight * slope.transpose() * slope;
+      if (patch.probe == nullptr) continue;
+      const Vec2 at = pose * foot.position;
+      before *= std::exp(-(at - last).norm() / patch.probe->deviation_length_m.value);
+      last = at;
+      const Eigen::VectorXd here = weight * slope.transpose();
+      const double variance = mean_square(patch.probe->deviation_m);
+      coherent += variance *
+                  (here * here.transpose() + here * before.transpose() + before * here.transpose());
+      before += here;
+      if (material == 0) continue;
+      const Touch touch = touch_of(patch, curve, pose, material, travel, sample);
+      const Eigen::RowVectorXd basis = offset_basis(touch.offset_angle, patch.probe->offset.order);
+      Eigen::MatrixXd& sum =
+          by_probe.try_emplace(patch.probe, Eigen::MatrixXd::Zero(size, basis.size()))
+              .first->second;
+      sum += weight * slope.transpose() * basis;
+    }
+  }
+  // In units of what each unknown moves the samples by; what its symmetry leaves free stays out.
+  const Eigen::VectorXd moves =
+      information.diagonal().cwiseSqrt().unaryExpr([](double v) { return v > 0.0 ? v : 1.0; });
+  const Eigen::MatrixXd scaled =
+      moves.cwiseInverse().asDiagonal() * information * moves.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  constexpr double kFree = 1e-12;  // rounding of a matrix of unit diagonal, and some digits
+  const Eigen::VectorXd inverse =
+      eigen.eigenvalues().unaryExpr([](double v) { return v > kFree ? 1.0 / v : 0.0; });
+  const Eigen::MatrixXd solve = moves.cwiseInverse().asDiagonal() * eigen.eigenvectors() *
+                                inverse.asDiagonal() * eigen.eigenvectors().transpose() *
+                                moves.cwiseInverse().asDiagonal();
+  Eigen::MatrixXd covariance = solve * coherent * solve;
+  for (const auto& [probe, sum] : by_probe) {
+    const Eigen::MatrixXd influence = solve * sum;
+    covariance += influence * probe->offset.covariance_m2 * influence.transpose();
+  }
+  return covariance;
+}
+
+ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
+                                   const RecognizerOptions& options) {
+  std::vector<ProbedPatch> raw;
+  double coherent = 0.0;
+  for (const ProbedPatch& patch : patches) {
+    raw.push_back(as_qualified(patch));
+    if (patch.probe != nullptr)
+      coherent = std::max(coherent, mean_square(patch.probe->deviation_m));
+  }
+  RecognizerOptions cautious = options;
+  cautious.form_deviation_m =
+      std::sqrt(options.form_deviation_m * options.form_deviation_m + coherent);
+
+  ProbedRecognition result;
+  std::vector<ProbedPatch> corrected = raw;
+  constexpr int kRounds = 2;
+  for (int round = 0; round <= kRounds; ++round) {
+    Recognizer recognizer(cautious);
+    result.added = add_all(corrected, recognizer);
+    result.recognition = recognizer.recognize();
+    const std::optional<Curve> curve = curve_of(result.recognition);
+    if (!curve) return result;
+    if (round == kRounds) break;
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      // Always off the samples as they came: what changes is where the curve has its normals.
+      corrected[i].samples = without_offset(raw[i], *curve, result.recognition.world_T_curve);
+    }
+    result.corrected = true;
+  }
+
+  Recognition& answer = result.recognition;
+  Recognizer recognizer(options);
+  add_all(corrected, recognizer);
+  const Recognition plain = recognizer.recognize();
+  const std::optional<Curve> curve = curve_of(plain);
+  if (!curve || plain.shape.curve_class != answer.shape.curve_class) return result;
+  const ShapePoseCovariance more = covariance_of_probes(*curve, plain.world_T_curve, corrected);
+  if (more.rows() != plain.covariance.rows()) return result;
+  answer.shape = plain.shape;
+  answer.world_T_curve = plain.world_T_curve;
+  answer.covariance = plain.covariance + more;
+  Hypothesis& best = answer.hypotheses.front();
+  best.shape = answer.shape;
+  best.world_T_curve = answer.world_T_curve;
+  best.covariance = plain.hypotheses.front().covariance + more;
+  return result;
+}
+
+}  // namespace palpate

@@ -1,0 +1,351 @@
+#include "core/qualification/qualify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/numerics/normal_law.h"
+#include "core/qualification/offset_evidence.h"
+#include "core/qualification/offset_fit.h"
+#include "core/recognition/given/given_class.h"
+
+namespace palpate {
+namespace {
+
+/// Lobes of a stylus' bending and of a triggering sensor's three legs are 2, 3 and 6 a turn; their
+/// overtones fall off.
+constexpr int kHighestOrder = 8;
+/// Of normals, beyond which a direction counts as not touched: twelve touches evenly around leave
+/// no gap, whatever their noise. [rad]
+constexpr double kGap = 1.01 * kPi / 6.0;
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double median_size(const Eigen::VectorXd& values) {
+  std::vector<double> sizes(values.data(), values.data() + values.size());
+  for (double& size : sizes) size = std::abs(size);
+  return median_of(std::move(sizes));
+}
+
+bool is_usable(std::span<const ArtefactRecording> recordings) {
+  for (const ArtefactRecording& recording : recordings) {
+    for (const ArtefactStroke& stroke : recording.strokes) {
+      if (!(std::isfinite(stroke.tip_radius_m) && stroke.tip_radius_m >= 0.0)) return false;
+      for (const ContactSample& sample : stroke.samples) {
+        if (!sample.position_m.allFinite()) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// A recording's samples, at most so many, evenly taken.
+std::vector<ArtefactSample> thinned(const ArtefactRecording& recording, std::size_t most) {
+  std::vector<ArtefactSample> all;
+  for (const ArtefactStroke& stroke : recording.strokes) {
+    for (const ContactSample& sample : stroke.samples) {
+      ArtefactSample& added = all.emplace_back();
+      added.position_m = sample.position_m;
+      added.tip_radius_m = stroke.tip_radius_m;
+    }
+  }
+  if (all.size() <= most) return all;
+  std::vector<ArtefactSample> some;
+  for (std::size_t i = 0; i < most; ++i) some.push_back(all[i * all.size() / most]);
+  return some;
+}
+
+/// Distances of the samples from the artefact, beyond their middle one: how badly a pose fits.
+double scatter(const Curve& artefact, MaterialSign material, const Pose2& pose,
+               const std::vector<ArtefactSample>& samples) {
+  std::vector<double> distances;
+  for (const ArtefactSample& sample : samples) {
+    distances.push_back(beside(artefact, material, pose, sample).distance_m);
+  }
+  const double middle = median_of(distances);
+  for (double& distance : distances) distance = std::abs(distance - middle);
+  return median_of(std::move(distances));
+}
+
+/// Where the artefact lies, roughly: the class of its shape fitted freely, laid on the samples in
+/// the way that its symmetries leave open.
+std::optional<Pose2> rough_pose(const Curve& artefact, const std::vector<ArtefactSample>& samples) {
+  std::vector<GivenPoint> points;
+  for (const ArtefactSample& sample : samples) {
+    points.emplace_back().position_m = sample.position_m;
+  }
+  const GivenFit fit = fit_given_class(class_of(artefact), points);
+  if (fit.status != GivenStatus::Fitted && fit.status != GivenStatus::NotDetermined) {
+    return std::nullopt;
+  }
+  std::optional<Pose2> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double turn : {0.0, 0.5 * kPi}) {
+    Pose2 pose = fit.world_T_curve;
+    pose.theta = wrap_angle(pose.theta + turn);
+    const double here = scatter(artefact, 1, pose, samples);
+    if (here < least) {
+      least = here;
+      best = pose;
+    }
+  }
+  return best;
+}
+
+/// The side that the tips' centres lie on, by where the nominal radius leaves less.
+MaterialSign side_of(const Curve& artefact, const Pose2& pose,
+                     const std::vector<ArtefactSample>& samples, bool bore) {
+  std::vector<double> outside;
+  std::vector<double> inside;
+  bool tips = false;
+  for (const ArtefactSample& sample : samples) {
+    outside.push_back(std::abs(beside(artefact, 1, pose, sample).distance_m));
+    inside.push_back(std::abs(beside(artefact, -1, pose, sample).distance_m));
+    tips = tips || sample.tip_radius_m > 0.0;
+  }
+  if (!tips) return bore ? -1 : 1;
+  return median_of(std::move(outside)) <= median_of(std::move(inside)) ? 1 : -1;
+}
+
+/// All recordings' samples in one row.
+struct Ground {
+  std::vector<ArtefactSample> samples;
+  std::vector<StrokePlaces> strokes;
+  std::vector<double> arc_m;
+};
+
+Ground ground_of(const Curve& artefact, std::span<const ArtefactRecording> recordings,
+                 const std::vector<Pose2>& poses) {
+  Ground ground;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const PlacedSamples placed = place_samples(artefact, recordings[i], i, poses[i]);
+    const auto begin = static_cast<Eigen::Index>(ground.samples.size());
+    for (const StrokePlaces& stroke : placed.strokes) {
+      ground.strokes.push_back({begin + stroke.begin, begin + stroke.end});
+    }
+    ground.samples.insert(ground.samples.end(), placed.samples.begin(), placed.samples.end());
+  }
+  for (const ArtefactSample& sample : ground.samples) ground.arc_m.push_back(sample.arc_m);
+  return ground;
+}
+
+void set_order(OffsetUnknowns& unknowns, int order) {
+  const Eigen::VectorXd before = unknowns.offset.coefficients_m;
+  const Eigen::Index count = offset_coefficients(order);
+  unknowns.offset.order = order;
+  unknowns.offset.coefficients_m = Eigen::VectorXd::Zero(count);
+  const Eigen::Index kept = std::min(count, before.size());
+  unknowns.offset.coefficients_m.head(kept) = before.head(kept);
+}
+
+/// Samples beyond what normal noise of the middle residuals' size leaves.
+std::vector<char> within_noise(const Eigen::VectorXd& residuals, double least_scale,
+                               double false_probability) {
+  const double scale = std::max(median_size(residuals) / kMedianOfNormal, least_scale);
+  const double most =
+      scale * two_sided_normal_quantile(false_probability / static_cast<double>(residuals.size()));
+  std::vector<char> used;
+  for (const double residual : residuals) used.push_back(std::abs(residual) <= most ? 1 : 0);
+  return used;
+}
+
+bool runs_both_ways(const std::vector<ArtefactSample>& samples) {
+  constexpr double kLeastShare = 0.1;
+  double forth = 0.0;
+  double back = 0.0;
+  for (const ArtefactSample& sample : samples) {
+    forth += sample.travel > 0 ? 1.0 : 0.0;
+    back += sample.travel < 0 ? 1.0 : 0.0;
+  }
+  return std::min(forth, back) > kLeastShare * static_cast<double>(samples.size());
+}
+
+/// [from, to] of every gap between neighbouring directions.
+std::vector<std::pair<double, double>> gaps_between(std::vector<double> angles) {
+  std::vector<std::pair<double, double>> gaps;
+  std::sort(angles.begin(), angles.end());
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double next = i + 1 < angles.size() ? angles[i + 1] : angles.front() + 2.0 * kPi;
+    if (next - angles[i] > kGap) gaps.emplace_back(angles[i], next);
+  }
+  return gaps;
+}
+
+/// Radius of curvature of the artefact where it was touched, the middle one.
+double radius_of(const Curve& artefact, const Ground& ground, const std::vector<Pose2>& poses) {
+  std::vector<double> bends;
+  for (const ArtefactSample& sample : ground.samples) {
+    const FootPoint foot =
+        foot_point(artefact, poses[sample.recording].to_local(sample.position_m));
+    bends.push_back(std::abs(geometry(artefact, foot.t).kappa));
+  }
+  return 1.0 / median_of(std::move(bends));
+}
+
+Estimate rate_of(std::size_t count, std::size_t of) {
+  // Jeffreys' prior: a recording without any does not say that there are none.
+  const double mean = (static_cast<double>(count) + 0.5) / (static_cast<double>(of) + 1.0);
+  return {mean, std::sqrt(mean * (1.0 - mean) / (static_cast<double>(of) + 2.0))};
+}
+
+QualificationStatus verdict_of(const Qualification& result) {
+  if (!(result.worst_offset_deviation_m <= result.probe.sigma_m.value)) {
+    return QualificationStatus::Insufficient;
+  }
+  return result.untouched.empty() ? QualificationStatus::Sufficient : QualificationStatus::Partial;
+}
+
+Qualification failed(QualificationStatus status) {
+  Qualification result;
+  result.status = status;
+  return result;
+}
+
+}  // namespace
+
+std::string_view name_of(QualificationStatus status) {
+  switch (status) {
+    case QualificationStatus::Sufficient:
+      return "sufficient";
+    case QualificationStatus::Partial:
+      return "partial";
+    case QualificationStatus::Insufficient:
+      return "insufficient";
+    case QualificationStatus::NotFinite:
+      return "not finite";
+    case QualificationStatus::BadArtefact:
+      return "bad artefact";
+    case QualificationStatus::TooFewSamples:
+      return "too few samples";
+    case QualificationStatus::NotTheArtefact:
+      return "not the artefact";
+  }
+  return "unknown";
+}
+
+Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> recordings,
+                      const QualificationOptions& options) {
+  if (!is_usable(recordings)) return failed(QualificationStatus::NotFinite);
+  if (class_of(artefact) == CurveClass::Line) return failed(QualificationStatus::BadArtefact);
+  // Three of a pose, the constant, noise, and as many again to see anything by.
+  constexpr std::size_t kFewest = 12;
+  std::vector<std::vector<ArtefactSample>> thin;
+  for (const ArtefactRecording& recording : recordings) {
+    constexpr std::size_t kEnoughForPose = 1000;
+    thin.push_back(thinned(recording, kEnoughForPose));
+    if (thin.back().size() < kFewest) return failed(QualificationStatus::TooFewSamples);
+  }
+  if (thin.empty()) return failed(QualificationStatus::TooFewSamples);
+
+  OffsetUnknowns unknowns;
+  for (const auto& samples : thin) {
+    const std::optional<Pose2> pose = rough_pose(artefact, samples);
+    if (!pose) return failed(QualificationStatus::NotTheArtefact);
+    unknowns.poses.push_back(*pose);
+  }
+  const MaterialSign material =
+      side_of(artefact, unknowns.poses.front(), thin.front(), options.bore);
+
+  // Spikes: as many harmonics as there may be, so that none of them is taken for spikes.
+  Ground ground = ground_of(artefact, recordings, unknowns.poses);
+  const auto count = static_cast<int>(ground.samples.size());
+  const int highest =
+      std::clamp((count / 4 - 3 * static_cast<int>(recordings.size())) / 2 + 1, 1, kHighestOrder);
+  double scale = 0.0;
+  for (std::size_t i = 0; i < thin.size(); ++i) {
+    scale = std::max(scale, scatter(artefact, material, unknowns.poses[i], thin[i]));
+  }
+  // Samples without any noise: what rounding leaves of positions of that size.
+  double size = 0.0;
+  for (const ArtefactSample& sample : ground.samples) {
+    size = std::max(size, sample.position_m.cwiseAbs().maxCoeff());
+  }
+  const double least_scale = 1e-12 * size;
+  set_order(unknowns, highest);
+  OffsetResiduals about;
+  constexpr int kRobustRounds = 3;
+  for (int round = 0; round < kRobustRounds; ++round) {
+    scale = std::max(scale, least_scale);
+    if (!fit_robustly(artefact, material, ground.samples, scale, {4.0 * scale}, unknowns)) {
+      return failed(QualificationStatus::NotTheArtefact);
+    }
+    ground = ground_of(artefact, recordings, unknowns.poses);
+    about = residuals_about(artefact, material, ground.samples, unknowns, highest);
+    scale = median_size(about.residual_m) / kMedianOfNormal;
+  }
+  const std::vector<char> used =
+      within_noise(about.residual_m, least_scale, options.false_spike_probability);
+
+  Qualification result;
+  result.both_directions = runs_both_ways(ground.samples);
+  OffsetEvidence evidence;
+  double lag_variance = 0.0;
+  constexpr int kRounds = 2;  // the second one with a lag, once there are harmonics to see it by
+  for (int round = 0; round < kRounds; ++round) {
+    about = residuals_about(artefact, material, ground.samples, unknowns, highest);
+    const Eigen::Index known = offset_coefficients(unknowns.offset.order);
+    const auto weighed = weigh_offsets(
+        {about.residual_m + about.basis.leftCols(known) * unknowns.offset.coefficients_m,
+         about.flat, about.basis, ground.strokes, ground.arc_m, used, least_scale});
+    if (!weighed) return failed(QualificationStatus::NotTheArtefact);
+    evidence = *weighed;
+    set_order(unknowns, evidence.order);
+    const bool lag = result.both_directions && evidence.order > 0;
+    unknowns.lag_m = lag ? std::optional(unknowns.lag_m.value_or(0.0)) : std::nullopt;
+    const KnownNoise noise{evidence.sigma_m.value, evidence.coherence, ground.strokes, ground.arc_m,
+                           used};
+    // The size that served to weigh the orders must not draw the answer to 0: ten times as wide, a
+    // harmonic of that size loses at most a tenth of its deviation to it.
+    constexpr double kWide = 10.0;
+    const auto fitted = fit_under_noise(artefact, material, ground.samples, noise,
+                                        {kWide * evidence.harmonic_m}, unknowns);
+    if (!fitted) return failed(QualificationStatus::NotTheArtefact);
+    lag_variance = *fitted;
+  }
+  unknowns.offset.covariance_m2 += evidence.spread_m2;
+  // A ring of another size, a wrong unit or no curve at all can be laid on anything with an offset
+  // and a noise of their own size: no probe is as bad as a tenth of that.
+  constexpr double kMostOff = 0.1;
+  const double most = kMostOff * radius_of(artefact, ground, unknowns.poses);
+  if (std::abs(unknowns.offset.coefficients_m[0]) > most || evidence.sigma_m.value > most) {
+    return failed(QualificationStatus::NotTheArtefact);
+  }
+
+  result.probe.tip_radius_m = ground.samples.front().tip_radius_m;
+  result.probe.offset = unknowns.offset;
+  result.probe.sigma_m = evidence.sigma_m;
+  result.probe.deviation_m = evidence.deviation_m;
+  result.probe.deviation_length_m = evidence.deviation_length_m;
+  const auto spikes = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
+  result.probe.spike_probability = rate_of(spikes, used.size());
+  if (unknowns.lag_m) result.probe.lag_m = Estimate{*unknowns.lag_m, std::sqrt(lag_variance)};
+  result.poses = unknowns.poses;
+  result.order_probabilities = evidence.probabilities;
+  result.bore = material < 0;
+  about = residuals_about(artefact, material, ground.samples, unknowns, unknowns.offset.order);
+  std::vector<double> touched;
+  for (std::size_t i = 0; i < ground.samples.size(); ++i) {
+    const ArtefactSample& sample = ground.samples[i];
+    const double residual = about.residual_m[static_cast<Eigen::Index>(i)];
+    const double offset =
+        about.basis.row(static_cast<Eigen::Index>(i)).dot(unknowns.offset.coefficients_m);
+    result.samples.push_back({sample.recording, sample.stroke, sample.number, about.normal_angle[i],
+                              residual + offset, residual, used[i] == 0});
+    if (used[i] != 0) {
+      touched.push_back(about.normal_angle[i]);
+      result.worst_offset_deviation_m =
+          std::max(result.worst_offset_deviation_m,
+                   offset_deviation_at(unknowns.offset, about.normal_angle[i]));
+    }
+  }
+  result.untouched = gaps_between(std::move(touched));
+  result.status = verdict_of(result);
+  return result;
+}
+
+}  // namespace palpate

@@ -1,0 +1,168 @@
+// palpate calibrate: what a probe does to positions, from touches of a known artefact.
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "node/files/printable.h"
+#include "node/files/probe_file.h"
+#include "node/tool/commands/command.h"
+#include "node/tool/commands/file_flags.h"
+#include "node/tool/contact_groups.h"
+#include "node/tool/drawing/lobes_plot.h"
+#include "node/tool/qualification_answer.h"
+#include "node/tool/text/message_json.h"
+#include "node/tool/text/quantity.h"
+
+namespace palpate {
+namespace {
+
+struct CalibrateCommand {
+  std::vector<std::string> files;
+  std::string format = "text";
+  std::string output;
+  std::string plot;
+  std::vector<std::vector<double>> parameters = std::vector<std::vector<double>>(9);  // by class
+  FileFlags file;
+  QualificationOptions options;
+};
+
+/// The one artefact that was named.
+Result<Curve> artefact_of(const CalibrateCommand& calibrate, std::string& name) {
+  const auto named = std::count_if(calibrate.parameters.begin(), calibrate.parameters.end(),
+                                   [](const auto& values) { return !values.empty(); });
+  if (named > 1)
+    return Result<Curve>::fail("one artefact at a time, here are " + std::to_string(named));
+  for (const CurveClass curve_class : kCurveClasses) {
+    const std::vector<double>& values = calibrate.parameters[static_cast<std::size_t>(curve_class)];
+    if (values.empty()) continue;
+    Eigen::Vector3d shape = Eigen::Vector3d::Zero();
+    name = std::string(name_of(curve_class));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      shape[static_cast<Eigen::Index>(i)] = values[i];
+      name += " " + number(values[i]);
+    }
+    std::optional<Curve> curve = make_curve(curve_class, shape);
+    if (!curve) {
+      return Result<Curve>::fail(
+          name +
+          ": out of the range of its class (core/README.md, \"Curves\": an ellipse has a >= b)");
+    }
+    return Result<Curve>::ok(*std::move(curve));
+  }
+  return Result<Curve>::fail("the artefact's class and parameters are needed: --circle A, ...");
+}
+
+/// Each object of each file is a recording, with a pose of its own.
+Result<std::vector<ArtefactRecording>> read_recordings(const CalibrateCommand& calibrate,
+                                                       std::set<std::string>& probes) {
+  using Read = Result<std::vector<ArtefactRecording>>;
+  std::vector<ArtefactRecording> recordings;
+  for (const std::string& file : calibrate.files) {
+    const Result<ContactFile> read = read_contact_file(file, options_of(calibrate.file));
+    if (!read) return Read::fail(read.error);
+    for (const std::string& note : read.value->notes) complain(file + ": " + note, kDone);
+    for (const ContactGroup& group : contact_groups(file, read.value->table)) {
+      probes.insert(group.probes.begin(), group.probes.end());
+      ArtefactRecording& recording = recordings.emplace_back();
+      for (const ContactRun& run : group.runs) {
+        recording.strokes.push_back({run.samples, run.context.tip_radius_m});
+      }
+    }
+  }
+  return Read::ok(std::move(recordings));
+}
+
+int write(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::trunc);
+  return file << text << std::flush ? kDone : complain(path + ": cannot be written", kFailed);
+}
+
+int run(const CalibrateCommand& calibrate) {
+  QualificationOrigin origin;
+  const Result<Curve> artefact = artefact_of(calibrate, origin.artefact);
+  if (!artefact) return complain(artefact.error, kUsage);
+  std::set<std::string> probes;
+  const Result<std::vector<ArtefactRecording>> recordings = read_recordings(calibrate, probes);
+  if (!recordings) return complain(recordings.error, kUsage);
+  if (probes.size() > 1) {
+    std::string names;
+    for (const std::string& name : probes) names += " " + printable(name);
+    return complain("the files have several probes, one is qualified at a time:" + names, kUsage);
+  }
+  origin.recordings = calibrate.files;
+  if (!probes.empty()) origin.probe = *probes.begin();
+  const Qualification result = qualify(*artefact.value, *recordings.value, calibrate.options);
+  if (!is_estimate(result.status)) return complain(why_not(result.status), kFailed);
+  const v1::Probe probe = probe_message(result, origin);
+  std::cout << (calibrate.format == "json" ? json_line(probe) : qualification_text(result, origin));
+  if (!calibrate.output.empty()) {
+    if (const int code = write(calibrate.output, probe_text(probe)); code != kDone) return code;
+  }
+  if (!calibrate.plot.empty()) {
+    const std::string title = "Probe " + origin.probe + " on " + origin.artefact;
+    if (const int code = write(calibrate.plot, lobes_plot(result, title)); code != kDone) {
+      return code;
+    }
+  }
+  if (result.status == QualificationStatus::Insufficient) {
+    return complain("the samples do not suffice; what they tell is said and written all the same",
+                    kFailed);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App& app, int& exit_code) {
+  auto calibrate = std::make_shared<CalibrateCommand>();
+  CLI::App* command = app.add_subcommand(
+      "calibrate",
+      "Qualify a probe on a known artefact: its effective tip radius, its offset by the direction\n"
+      "of the surface's normal (lobes), noise, drift, spikes and lag, each with its deviation.\n"
+      "Every object of every file is a recording of its own, in a pose of its own. A ring touched\n"
+      "all around tells the most; with an ellipse lay it in several directions.\n"
+      "Exit code 1: the samples do not suffice, or are not of that artefact.");
+  command->add_option("FILE", calibrate->files, "Files of points; - is standard input")
+      ->required()
+      ->type_name("");
+  for (const CurveClass curve_class : kCurveClasses) {
+    const std::string_view letters = parameter_letters(curve_class);
+    if (letters.empty()) continue;
+    std::string flag(name_of(curve_class));
+    std::replace(flag.begin(), flag.end(), '_', '-');
+    std::string parameters;
+    for (const char letter : letters) {
+      parameters +=
+          (parameters.empty() ? "" : ",") + std::string(1, static_cast<char>(letter - 'a' + 'A'));
+    }
+    command
+        ->add_option("--" + flag, calibrate->parameters[static_cast<std::size_t>(curve_class)],
+                     curve_class == CurveClass::Circle    ? "Ring or bore of radius A"
+                     : curve_class == CurveClass::Ellipse ? "Ellipse of semi-axes A >= B"
+                                                          : "The canonical form's parameters")
+        ->delimiter(',')
+        ->expected(static_cast<int>(letters.size()))
+        ->type_name(parameters)
+        ->group("Artefact [m], exactly one");
+  }
+  command
+      ->add_option("--output", calibrate->output, "Write the probe file (palpate/v1/probe.proto)")
+      ->type_name("FILE");
+  command->add_option("--plot", calibrate->plot, "Draw the probe's lobes and the residuals as SVG")
+      ->type_name("FILE");
+  command
+      ->add_option("--format", calibrate->format,
+                   "text or json: what --output writes, as one line of JSON")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str()
+      ->type_name("FORMAT");
+  command->add_flag("--bore", calibrate->options.bore,
+                    "The material lies around the curve, not within it; a tip radius tells it too");
+  add_file_flags(*command, calibrate->file);
+  command->callback([calibrate, &exit_code] { exit_code = run(*calibrate); });
+}
+
+}  // namespace palpate

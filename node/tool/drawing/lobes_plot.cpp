@@ -1,0 +1,120 @@
+#include "node/tool/drawing/lobes_plot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "node/tool/drawing/svg_table.h"
+#include "node/tool/text/quantity.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kRound = 480.0;   // side of the polar picture's square [px]
+constexpr double kCircle = 130.0;  // radius of offset 0 in it [px]
+constexpr double kReach = 85.0;    // of the largest offset beyond it [px]
+constexpr double kStrip = 500.0;   // width of the residuals' strip [px]
+constexpr const char* kSampleColour = "#0072b2";
+constexpr const char* kSpikeColour = "#c2185b";
+constexpr const char* kOffsetColour = "#1b1f24";
+constexpr const char* kBandColour = "#2f7fd6";
+
+/// Place in the polar picture.
+std::string polar(double angle, double offset_px) {
+  const double radius = kCircle + offset_px;
+  return formatted("%.1f,%.1f ", 0.5 * kRound + radius * std::cos(angle),
+                   0.5 * kRound - radius * std::sin(angle));
+}
+
+/// The offset with so many deviations, all around.
+std::string ring(const NormalOffset& offset, double deviations, double px_per_m) {
+  std::string points;
+  constexpr int kSteps = 360;
+  for (int i = 0; i < kSteps; ++i) {
+    const double phi = 2.0 * kPi * i / kSteps;
+    points += polar(
+        phi, px_per_m * (offset_at(offset, phi) + deviations * offset_deviation_at(offset, phi)));
+  }
+  return points;
+}
+
+/// What is not a spike reaches so far. [m]
+double largest(const Qualification& qualification, double QualifiedSample::*field) {
+  double most = 1e-12;
+  for (const QualifiedSample& sample : qualification.samples) {
+    if (!sample.spike) most = std::max(most, std::abs(sample.*field));
+  }
+  return most;
+}
+
+}  // namespace
+
+std::string lobes_plot(const Qualification& qualification, const std::string& title) {
+  constexpr std::size_t kMostDrawn = 4000;
+  const std::size_t step = qualification.samples.size() / kMostDrawn + 1;
+  const NormalOffset& offset = qualification.probe.offset;
+  const double reach_m = largest(qualification, &QualifiedSample::distance_m);
+  const double px_per_m = kReach / reach_m;
+  std::string svg = formatted(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" "
+      "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%%\" height=\"100%%\" "
+      "fill=\"#fff\"/>\n",
+      kRound + kStrip + 60.0, kRound + 40.0);
+  svg += "<text x=\"12\" y=\"20\" font-size=\"14\">" + escaped(title) + "</text>\n";
+  svg += "<g transform=\"translate(0 30)\">\n";
+  svg += formatted("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"none\" stroke=\"#bbb\"/>\n",
+                   0.5 * kRound, 0.5 * kRound, kCircle);
+  // 95 % of a normal law.
+  constexpr double kBand = 1.96;
+  svg += "<path fill=\"" + std::string(kBandColour) +
+         "\" fill-opacity=\"0.25\" fill-rule=\"evenodd\" d=\"M" + ring(offset, kBand, px_per_m) +
+         "Z M" + ring(offset, -kBand, px_per_m) + "Z\"/>\n";
+  for (std::size_t i = 0; i < qualification.samples.size(); i += step) {
+    const QualifiedSample& sample = qualification.samples[i];
+    const double px = std::clamp(px_per_m * sample.distance_m, -kReach, kReach);
+    const std::string place = polar(sample.normal_angle, px);
+    const std::size_t comma = place.find(',');
+    svg += "<circle cx=\"" + place.substr(0, comma) + "\" cy=\"" +
+           place.substr(comma + 1, place.size() - comma - 2) + "\" r=\"1.5\" fill=\"" +
+           (sample.spike ? kSpikeColour : kSampleColour) + "\"/>\n";
+  }
+  svg += "<polygon fill=\"none\" stroke=\"" + std::string(kOffsetColour) +
+         "\" stroke-width=\"1.5\" points=\"" + ring(offset, 0.0, px_per_m) + "\"/>\n";
+  const LengthUnit unit = length_unit_for(reach_m);
+  const std::string name(unit.name);
+  svg += formatted(
+      "<text x=\"12\" y=\"%.0f\">offset by the normal's direction; circle: 0, "
+      "outermost sample: %s %s</text>\n",
+      kRound - 4.0, number(reach_m * unit.per_m).c_str(), name.c_str());
+  svg += "</g>\n";
+
+  // Residuals over the direction.
+  const double most_m = largest(qualification, &QualifiedSample::residual_m);
+  const LengthUnit small = length_unit_for(most_m);
+  const double left = kRound + 40.0;
+  const double middle = 30.0 + 0.5 * kRound;
+  const double half = 0.4 * kRound;
+  svg += formatted("<line x1=\"%.0f\" y1=\"%.1f\" x2=\"%.0f\" y2=\"%.1f\" stroke=\"#bbb\"/>\n",
+                   left, middle, left + kStrip, middle);
+  for (int tick = -180; tick <= 180; tick += 90) {
+    const double x = left + kStrip * (tick + 180.0) / 360.0;
+    svg += formatted("<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"#eee\"/>\n", x,
+                     middle - half, x, middle + half);
+    svg += formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%d</text>\n", x,
+                     middle + half + 16.0, tick);
+  }
+  for (std::size_t i = 0; i < qualification.samples.size(); i += step) {
+    const QualifiedSample& sample = qualification.samples[i];
+    const double x = left + kStrip * (wrap_angle(sample.normal_angle) + kPi) / (2.0 * kPi);
+    const double y = middle - half * std::clamp(sample.residual_m / most_m, -1.0, 1.0);
+    svg += formatted("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"1.5\" fill=\"%s\"/>\n", x, y,
+                     sample.spike ? kSpikeColour : kSampleColour);
+  }
+  svg += formatted(
+      "<text x=\"%.0f\" y=\"%.1f\">residuals within %s %s, over the normal's direction "
+      "[deg]; red: spikes%s</text>\n",
+      left, middle + half + 36.0, number(most_m * small.per_m).c_str(),
+      std::string(small.name).c_str(), step > 1 ? "; not all samples are drawn" : "");
+  return svg + "</svg>\n";
+}
+
+}  // namespace palpate

@@ -1,0 +1,104 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "node/tool/qualification_answer.h"
+#include "node/tool/text/quantity.h"
+
+namespace palpate {
+namespace {
+
+std::string length_text(double value_m, double deviation_m) {
+  const LengthUnit unit = length_unit_for(std::max(std::abs(value_m), deviation_m));
+  return with_sigma(value_m * unit.per_m, deviation_m * unit.per_m) + " " + std::string(unit.name);
+}
+
+void add_line(std::string& text, const std::string& name, const std::string& value) {
+  text += "  " + name + std::string(name.size() < 16 ? 16 - name.size() : 1, ' ') + value + "\n";
+}
+
+std::string degrees(double angle) { return std::to_string(std::lround(angle * kDegrees)) + " deg"; }
+
+/// Lower bound on what a size may be where its deviation is as large as itself.
+std::string size_text(const Estimate& size) {
+  if (size.value > size.deviation) return length_text(size.value, size.deviation);
+  const double most = size.value + 2.0 * size.deviation;
+  const LengthUnit unit = length_unit_for(most);
+  return "at most " + number(most * unit.per_m) + " " + std::string(unit.name) + ", if any";
+}
+
+}  // namespace
+
+std::string why_not(QualificationStatus status) {
+  switch (status) {
+    case QualificationStatus::NotFinite:
+      return "a coordinate or tip radius is no finite number";
+    case QualificationStatus::BadArtefact:
+      return "a line has one normal only: its place and the probe's offset are the same";
+    case QualificationStatus::TooFewSamples:
+      return "fewer than 12 samples of the artefact in one of the recordings";
+    case QualificationStatus::NotTheArtefact:
+      return "the artefact cannot be laid on the samples: is it the right one, and its unit?";
+    default:
+      return "";
+  }
+}
+
+std::string qualification_text(const Qualification& qualification,
+                               const QualificationOrigin& origin) {
+  const ProbeCharacter& probe = qualification.probe;
+  const NormalOffset& offset = probe.offset;
+  std::string text = "qualified on " + origin.artefact + (qualification.bore ? ", a bore" : "") +
+                     ": " + std::string(name_of(qualification.status)) + "\n";
+  const auto deviation = [&](Eigen::Index i) { return std::sqrt(offset.covariance_m2(i, i)); };
+  add_line(text, "offset",
+           length_text(offset.coefficients_m[0], deviation(0)) + " out of the material");
+  if (probe.tip_radius_m > 0.0) {
+    add_line(text, "tip radius",
+             length_text(probe.tip_radius_m + offset.coefficients_m[0], deviation(0)) +
+                 ", nominal " + length_text(probe.tip_radius_m, 0.0));
+  }
+  for (int order = 2; order <= offset.order; ++order) {
+    const Eigen::Index i = 2 * order - 3;
+    add_line(text, std::to_string(order) + " lobes",
+             "cos " + length_text(offset.coefficients_m[i], deviation(i)) + ", sin " +
+                 length_text(offset.coefficients_m[i + 1], deviation(i + 1)));
+  }
+  if (offset.order == 0) add_line(text, "lobes", "none that the samples ask for");
+  add_line(text, "noise", length_text(probe.sigma_m.value, probe.sigma_m.deviation));
+  add_line(text, "drift", size_text(probe.deviation_m));
+  if (probe.deviation_m.value > probe.deviation_m.deviation) {
+    add_line(text, "over",
+             length_text(probe.deviation_length_m.value, probe.deviation_length_m.deviation) +
+                 " of a stroke");
+  }
+  add_line(
+      text, "spikes",
+      with_sigma(100.0 * probe.spike_probability.value, 100.0 * probe.spike_probability.deviation) +
+          " % of the samples");
+  add_line(text, "lag",
+           probe.lag_m ? length_text(probe.lag_m->value, probe.lag_m->deviation)
+           : qualification.both_directions
+               ? std::string("not told: no lobes show it")
+               : std::string("not told: stroke the artefact both ways"));
+  add_line(text, "samples",
+           std::to_string(qualification.samples.size()) + " in " +
+               std::to_string(qualification.poses.size()) + " recordings");
+  for (const auto& [from, to] : qualification.untouched) {
+    add_line(
+        text, "not touched",
+        "normals from " + degrees(from) + " to " + degrees(to) + ": the offset there is a guess");
+  }
+  add_line(
+      text, "not told",
+      "one lobe, an offset as the cosine of the normal's direction: it is a shift of the frame");
+  if (qualification.status == QualificationStatus::Insufficient) {
+    add_line(text, "verdict",
+             "the offset is open by " + length_text(qualification.worst_offset_deviation_m, 0.0) +
+                 ", more than a sample's noise: touch more of the artefact, more often, or in "
+                 "several directions of it");
+  }
+  return text;
+}
+
+}  // namespace palpate

@@ -1,0 +1,141 @@
+#include "tests/bench/real/qualified_part.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/numerics/chi_square.h"
+#include "core/qualification/probe_correction.h"
+#include "core/qualification/qualify.h"
+#include "tests/support/scene_data.h"
+
+namespace palpate::bench {
+namespace {
+
+constexpr int kStarts = 72;
+/// Of the worse axis: beyond it, where the 95 % region does not hold the truth either, even the
+/// right class is a wrong answer.
+constexpr double kAxisBeyondUse = 0.1;
+
+std::vector<ContactSample> samples_of(const std::vector<Vec2>& points) {
+  std::vector<ContactSample> samples;
+  for (const Vec2& point : points) samples.push_back({point, 0.0, 0});
+  return samples;
+}
+
+struct Row {
+  std::vector<double> errors;
+  int recognised = 0;
+  int recognised_held = 0;
+  int ellipses = 0;
+  int ellipses_held = 0;
+  int wrong = 0;
+};
+
+void add(const Recognition& answer, const EllipsePart& part, Row* row) {
+  const Hypothesis* ellipse = test::hypothesis_of(answer, CurveClass::Ellipse);
+  const Eigen::Vector2d truth(part.semi_major_m, part.semi_minor_m);
+  double worst = std::numeric_limits<double>::infinity();
+  if (ellipse != nullptr && !ellipse->at_limit) {
+    const Eigen::Vector2d off = ellipse->shape.values.head<2>() - truth;
+    worst = off.cwiseQuotient(truth).cwiseAbs().maxCoeff();
+  }
+  row->errors.push_back(worst);
+  const bool recognised = answer.status == RecognitionStatus::Recognized;
+  const bool is_ellipse = answer.shape.curve_class == CurveClass::Ellipse;
+  if (recognised && !is_ellipse) ++row->wrong;
+  if (!is_ellipse || ellipse == nullptr || ellipse->at_limit) return;
+  const Eigen::Vector2d off = answer.shape.values.head<2>() - truth;
+  const Eigen::Matrix2d covariance = answer.covariance.topLeftCorner<2, 2>();
+  const bool held = off.dot(covariance.inverse() * off) <= chi_square_threshold(0.05, 2);
+  if (recognised && worst > kAxisBeyondUse && !held) ++row->wrong;
+  ++row->ellipses;
+  row->ellipses_held += held ? 1 : 0;
+  row->recognised += recognised ? 1 : 0;
+  row->recognised_held += recognised && held ? 1 : 0;
+}
+
+double middle_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::string share(int part, int whole) {
+  return whole == 0 ? "-"
+                    : std::to_string(static_cast<int>(std::lround(100.0 * part / whole))) +
+                          " % of " + std::to_string(whole);
+}
+
+}  // namespace
+
+void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostream& out) {
+  ArtefactRecording recording;
+  recording.strokes.push_back(
+      {samples_of(ring.recording.points), ring.recording.context.tip_radius_m});
+  const Qualification result = qualify(Circle{ring.radius_m}, {{recording}});
+  const ProbeCharacter& probe = result.probe;
+  const auto um = [](const Estimate& e) {
+    return std::to_string(1e6 * e.value) + " +- " + std::to_string(1e6 * e.deviation) + " um";
+  };
+  out << "Ring of radius " << ring.radius_m << " m, " << result.samples.size()
+      << " contacts: " << name_of(result.status) << "; noise " << um(probe.sigma_m)
+      << ", coherent deviation " << um(probe.deviation_m) << " of length "
+      << um(probe.deviation_length_m) << ", spikes " << probe.spike_probability.value << " +- "
+      << probe.spike_probability.deviation << ". Offset, constant and harmonics from 2 on:";
+  for (Eigen::Index i = 0; i < probe.offset.coefficients_m.size(); ++i) {
+    out << (i > 0 ? ", " : " ")
+        << um({probe.offset.coefficients_m[i], std::sqrt(probe.offset.covariance_m2(i, i))});
+  }
+  out << ". Probability of no harmonic, of harmonic 2, to 3, ...:";
+  for (const double p : result.order_probabilities) out << ' ' << p;
+  out << ".\n\n"
+      << "| arc [deg] | qualified | median error of the worse axis [%] | 95 % region holds the "
+         "truth, RECOGNIZED | the same, every ellipse | RECOGNIZED and wrong |\n"
+      << "|---|---|---|---|---|---|\n";
+  Recording whole = part.recording;
+  const auto answer_to = [&](const std::vector<Vec2>& points, bool qualified) {
+    if (!qualified) return recognise(whole.context, points);
+    const ProbedPatch patch{whole.context, samples_of(points), &probe};
+    return recognise_probed({&patch, 1}, {}).recognition;
+  };
+  const Recognition centred = recognise(whole.context, whole.points);
+  const Vec2 centre = centred.world_T_curve.translation();
+  for (const int degrees : {60, 90, 120, 180}) {
+    for (const bool qualified : {false, true}) {
+      Row row;
+      for (int i = 0; i < kStarts; ++i) {
+        const double start = 2.0 * kPi * i / kStarts;
+        std::vector<std::pair<double, Vec2>> inside;
+        for (const Vec2& point : whole.points) {
+          const Vec2 away = point - centre;
+          double from = std::fmod(std::atan2(away.y(), away.x()) - start + 4.0 * kPi, 2.0 * kPi);
+          if (from < degrees * kPi / 180.0) inside.emplace_back(from, point);
+        }
+        std::stable_sort(inside.begin(), inside.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        std::vector<Vec2> points;
+        for (const auto& [from, point] : inside) points.push_back(point);
+        add(answer_to(points, qualified), part, &row);
+      }
+      out << "| " << degrees << " | " << (qualified ? "yes" : "no") << " | "
+          << 100.0 * middle_of(row.errors) << " | " << share(row.recognised_held, row.recognised)
+          << " | " << share(row.ellipses_held, row.ellipses) << " | " << row.wrong << " |\n"
+          << std::flush;
+    }
+  }
+  out << "\n| full turn | a - truth [um] | b - truth [um] |\n|---|---|---|\n";
+  for (const bool qualified : {false, true}) {
+    const Recognition answer = answer_to(whole.points, qualified);
+    out << "| " << (qualified ? "qualified" : "as it came") << " | "
+        << 1e6 * (answer.shape.values[0] - part.semi_major_m) << " +- "
+        << 1e6 * std::sqrt(answer.covariance(0, 0)) << " | "
+        << 1e6 * (answer.shape.values[1] - part.semi_minor_m) << " +- "
+        << 1e6 * std::sqrt(answer.covariance(1, 1)) << " |\n";
+  }
+}
+
+}  // namespace palpate::bench

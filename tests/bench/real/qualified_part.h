@@ -1,0 +1,19 @@
+// A probe qualified on a ring, and an elliptic part touched by it: with and without the
+// qualification.
+#pragma once
+
+#include <ostream>
+
+#include "tests/bench/real/ellipse_part.h"
+
+namespace palpate::bench {
+
+struct Ring {
+  Recording recording;  ///< contacts on a circle
+  double radius_m = 0.0;
+};
+
+/// Prints the probe's terms, the full turn's axes and arcs of 60 to 180 degrees in markdown.
+void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostream& out);
+
+}  // namespace palpate::bench

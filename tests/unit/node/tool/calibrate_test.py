@@ -1,0 +1,155 @@
+"""palpate calibrate and fit --probe, called as a user calls them."""
+import json
+import math
+import pathlib
+import random
+import tempfile
+import unittest
+import xml.dom.minidom
+
+from google.protobuf import json_format, text_format
+
+from palpate.v1 import curve_pb2, probe_pb2, recognition_pb2
+from programs import TOOL, run
+
+TIP = 0.002
+SIGMA = 5e-6
+
+
+def lobes(phi):
+    return -3e-5 + 4e-5 * math.cos(2 * phi)
+
+
+def ellipse(a, b, seed, count=400, probe="p", turn=2 * math.pi, tip=TIP):
+    """Centres of a tip all around an ellipse, as a probe with two lobes says them."""
+    rng = random.Random(seed)
+    text = "probe,patch,x_m,y_m,tip_radius_m\n"
+    for i in range(count):
+        t = turn * i / count
+        phi = math.atan2(a * math.sin(t), b * math.cos(t))
+        off = tip + lobes(phi) + rng.gauss(0, SIGMA)
+        text += f"{probe},0,{a * math.cos(t) + off * math.cos(phi)!r},{b * math.sin(t) + off * math.sin(phi)!r},{tip}\n"
+    return text
+
+
+class Calibrate(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def calibrated(self, *more):
+        path = self.folder / "p.probe"
+        code, out, err = run(TOOL, "calibrate", "--circle", "0.025", "--output", str(path), *more, "-",
+                             text_in=ellipse(0.025, 0.025, 1))
+        self.assertEqual(code, 0, err)
+        return path, out
+
+    def test_a_ring_tells_offset_and_lobes(self):
+        plot = self.folder / "p.svg"
+        path, out = self.calibrated("--plot", str(plot))
+        self.assertIn("sufficient", out)
+        self.assertIn("2 lobes", out)
+        probe = text_format.Parse(path.read_text(), probe_pb2.Probe())
+        self.assertEqual(probe.name, "p")
+        self.assertEqual(probe.artefact, "circle 0.025")
+        self.assertEqual(probe.verdict, probe_pb2.QUALIFICATION_VERDICT_SUFFICIENT)
+        deviation = math.sqrt(probe.offset_covariance_m2[0])
+        self.assertLess(abs(probe.offset_m + 3e-5), 4 * deviation)
+        self.assertLess(deviation, SIGMA)
+        self.assertEqual([harmonic.order for harmonic in probe.harmonics][0], 2)
+        self.assertAlmostEqual(probe.harmonics[0].cosine_m, 4e-5, delta=3e-6)
+        self.assertAlmostEqual(probe.sigma_m.value, SIGMA, delta=4 * probe.sigma_m.deviation)
+        self.assertFalse(probe.HasField("lag_m"))
+        self.assertEqual(xml.dom.minidom.parse(str(plot)).documentElement.tagName, "svg")
+
+    def test_json_says_what_the_file_says(self):
+        path, out = self.calibrated("--format", "json")
+        written = text_format.Parse(path.read_text(), probe_pb2.Probe())
+        self.assertEqual(json_format.Parse(out, probe_pb2.Probe()), written)
+
+    def fit(self, *arguments, text):
+        code, out, err = run(TOOL, "fit", "--format", "json", *arguments, "-", text_in=text)
+        self.assertEqual(code, 0, err)
+        message = json.loads(out)
+        notes = message.pop("notes", [])
+        return json_format.ParseDict(message, recognition_pb2.Recognition()), notes
+
+    def test_a_part_is_measured_with_it(self):
+        path, _ = self.calibrated()
+        part = ellipse(0.03, 0.02, 2)
+        plain, _ = self.fit(text=part)
+        self.assertEqual(list(plain.probe_files), [])
+        answer, notes = self.fit("--probe", str(path), text=part)
+        self.assertEqual(list(answer.probe_files), [str(path)])
+        self.assertEqual(answer.curve_class, curve_pb2.CURVE_CLASS_ELLIPSE)
+        self.assertEqual(answer.status, recognition_pb2.RECOGNITION_STATUS_RECOGNIZED)
+        self.assertEqual(notes, [])
+        # As it came b is off by offset and lobes together, 7e-5.
+        self.assertAlmostEqual(plain.parameters.b, 0.02 - 7e-5, delta=1e-5)
+        for value, truth, i in ((answer.parameters.a, 0.03, 0), (answer.parameters.b, 0.02, 1)):
+            self.assertLess(abs(value - truth), 4 * math.sqrt(answer.covariance[i * 5 + i]))
+            self.assertLess(math.sqrt(answer.covariance[i * 5 + i]), 1e-5)
+
+    def test_the_text_names_the_file(self):
+        path, _ = self.calibrated()
+        code, out, _ = run(TOOL, "fit", "--format", "text", "--probe", str(path), "-", text_in=ellipse(0.03, 0.02, 2))
+        self.assertEqual(code, 0)
+        self.assertIn(f"probe file   {path}\n", out)
+
+    def test_of_several_files_each_is_for_its_probe(self):
+        path, _ = self.calibrated()
+        other = self.folder / "other.probe"
+        other.write_text(path.read_text().replace('name: "p"', 'name: "q"'))
+        answer, notes = self.fit("--probe", str(path), "--probe", str(other), text=ellipse(0.03, 0.02, 2, probe="q"))
+        self.assertEqual(list(answer.probe_files), [str(other)])
+        _, notes = self.fit("--probe", str(path), "--probe", str(other), text=ellipse(0.03, 0.02, 2, probe="r"))
+        self.assertTrue(any("no probe file is of probe r" in note for note in notes))
+
+    def test_a_short_arc_does_not_suffice(self):
+        code, out, err = run(TOOL, "calibrate", "--circle", "0.025", "-", text_in=ellipse(0.025, 0.025, 1, turn=0.5))
+        self.assertEqual(code, 1)
+        self.assertIn("insufficient", out)
+        self.assertIn("not touched", out)
+        self.assertIn("do not suffice", err)
+
+    def test_what_is_no_qualification_is_refused(self):
+        ring = ellipse(0.025, 0.025, 1)
+        for arguments, text, code, why in (
+                ((), ring, 2, "--circle"),
+                (("--circle", "0.025", "--ellipse", "0.03,0.02"), ring, 2, "one artefact"),
+                (("--circle", "-1"), ring, 2, "out of the range"),
+                (("--ellipse", "0.02,0.03"), ring, 2, "a >= b"),
+                (("--circle", "0.025"), "probe,patch,x_m,y_m\np,0,nan,0\n", 2, "standard input:2:5:"),
+                (("--circle", "0.025"), ellipse(0.025, 0.025, 1, count=6), 1, "fewer than 12"),
+                (("--circle", "0.025"), ring + ellipse(0.025, 0.025, 1, probe="q").partition("\n")[2], 2, "p q")):
+            done = run(TOOL, "calibrate", *arguments, "-", text_in=text)
+            self.assertEqual(done[0], code, (arguments, done))
+            self.assertIn(why, done[2])
+
+    def test_a_bad_probe_file_is_named_by_line_and_field(self):
+        good = "tip_radius_m: 0.002\noffset_m: 1e-5\n"
+        for text, why in (
+                (good + "nonsense: 3\n", ":3:"),
+                (good + "sigma_m { value: -1 }\n", ":3: sigma_m:"),
+                (good + "sigma_m { value: nan }\n", ":3: sigma_m:"),
+                ("offset_m: inf\n", ":1: offset_m:"),
+                ("\ntip_radius_m: -2\n", ":2: tip_radius_m:"),
+                (good + "harmonics { order: 3 cosine_m: 1e-5 }\n", ":3: harmonics[0]: order must be 2"),
+                (good + "\nharmonics { order: 2 cosine_m: nan }\n", ":4: harmonics[0]:"),
+                (good + "offset_covariance_m2: [1, 2]\n", ":3: offset_covariance_m2[0]: must be 1"),
+                (good + "offset_covariance_m2: -1\n", ":3: offset_covariance_m2[0]: is no covariance"),
+                (good + "spike_probability { value: 2 }\n", ":3: spike_probability:"),
+                (good + "deviation_m { value: 1e-6 }\n", ":3: deviation_m:"),
+                (good + "lag_m { value: 1e-3 deviation: -1 }\n", ":3: lag_m:")):
+            path = self.folder / "bad.probe"
+            path.write_text(text)
+            code, out, err = run(TOOL, "fit", "--probe", str(path), "-", text_in=ellipse(0.03, 0.02, 2))
+            self.assertEqual((code, out), (2, ""), text)
+            self.assertIn(f"{path}{why}", err)
+        path.write_text(good)
+        self.assertEqual(run(TOOL, "fit", "--probe", str(path), "-", text_in=ellipse(0.03, 0.02, 2))[0], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,125 @@
+// A part touched by a qualified probe: at the bound with its file, and honest.
+#include "core/qualification/probe_correction.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <iostream>
+
+#include "core/numerics/chi_square.h"
+#include "core/qualification/qualify.h"
+#include "tests/support/calibration.h"
+#include "tests/support/probe_scene.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+std::vector<ProbedPatch> patches_of(const ArtefactRecording& recording,
+                                    const ProbeCharacter* probe) {
+  std::vector<ProbedPatch> patches;
+  for (const ArtefactStroke& stroke : recording.strokes) {
+    ProbedPatch& patch = patches.emplace_back();
+    patch.context.patch = static_cast<std::uint32_t>(patches.size());
+    patch.context.tip_radius_m = stroke.tip_radius_m;
+    patch.samples = stroke.samples;
+    patch.probe = probe;
+  }
+  return patches;
+}
+
+TEST(ProbeCorrection, WithTheFileTheEllipseIsAtTheBoundAndHeld) {
+  auto rng = test::test_rng();
+  const int runs = test::stress_count(40);
+  test::ProbeScene ring;
+  ring.probe = test::lobed_probe();
+  test::ProbeScene part = ring;
+  part.curve = Ellipse{0.03, 0.022};
+  part.start_t = 0.4;
+  part.arc_t = 1.2 * kPi;
+  const Eigen::Vector2d truth(0.03, 0.022);
+  int held = 0;
+  int held_without = 0;
+  double with = 0.0;
+  double without = 0.0;
+  double normalised = 0.0;
+  for (int run = 0; run < runs; ++run) {
+    const std::vector<ArtefactRecording> recordings = {simulate(ring, rng)};
+    const Qualification qualification = qualify(ring.curve, recordings);
+    const ArtefactRecording touched = simulate(part, rng);
+    RecognizerOptions options;
+    const ProbedRecognition answer =
+        recognise_probed(patches_of(touched, &qualification.probe), options);
+    ASSERT_TRUE(answer.corrected);
+    ASSERT_EQ(answer.recognition.shape.curve_class, CurveClass::Ellipse);
+    const Recognition plain = recognise_probed(patches_of(touched, nullptr), options).recognition;
+    const auto error = [&](const Recognition& r) -> Eigen::Vector2d {
+      return r.shape.values.head<2>() - truth;
+    };
+    const auto squared = [&](const Recognition& r) {
+      const Eigen::Matrix2d covariance = r.covariance.topLeftCorner<2, 2>();
+      return error(r).dot(covariance.inverse() * error(r));
+    };
+    normalised += squared(answer.recognition) / runs;
+    held += squared(answer.recognition) <= chi_square_threshold(0.05, 2) ? 1 : 0;
+    held_without += squared(plain) <= chi_square_threshold(0.05, 2) ? 1 : 0;
+    with += error(answer.recognition).squaredNorm() / runs;
+    without += error(plain).squaredNorm() / runs;
+  }
+  std::cout << "rms error " << std::sqrt(with) << " m with the file, " << std::sqrt(without)
+            << " without; held " << held << " and " << held_without << " of " << runs
+            << ", squared error over covariance " << normalised << " (law: 2)\n";
+  if (!test::counts_tell()) return;
+  const auto band = [&](double p) {
+    return test::binomial_band(std::vector<double>(static_cast<std::size_t>(runs), p), 1.0 - 2e-4);
+  };
+  EXPECT_GE(held, band(0.95).least);
+  // Of the chi-square law with two degrees of freedom, mean 2 and variance 4.
+  EXPECT_NEAR(normalised, 2.0, 4.0 * 2.0 / std::sqrt(runs));
+  EXPECT_LT(with, without);
+  EXPECT_LT(held_without, band(0.95).least);  // what the file is for
+}
+
+TEST(ProbeCorrection, TakesOffWhatTheProbePutOn) {
+  auto rng = test::test_rng();
+  test::ProbeScene part;
+  part.curve = Ellipse{0.03, 0.022};
+  part.probe = test::lobed_probe();
+  part.probe.sigma_m.value = 0.0;
+  part.probe.deviation_m.value = 0.0;
+  part.probe.spike_probability.value = 0.0;
+  const ArtefactRecording lobed = simulate(part, rng);
+  for (std::size_t s = 0; s < lobed.strokes.size(); ++s) {
+    ProbedPatch patch{{}, lobed.strokes[s].samples, &part.probe};
+    patch.context.tip_radius_m = part.tip_radius_m;
+    const auto corrected = without_offset(patch, part.curve, part.world_T_curve);
+    for (std::size_t i = 0; i < corrected.size(); ++i) {
+      // Normal to the surface; along it the sample stays behind by its lag, 0.3 mm. The offset's
+      // direction is ahead by kappa times that, to first order: with kappa up to 60 / m and a
+      // relative change of it along the lag of 0.02, 5e-5 m lose less than 5e-5 * 3 * 0.02^2.
+      const FootPoint foot =
+          foot_point(part.curve, part.world_T_curve.to_local(corrected[i].position_m));
+      EXPECT_NEAR(std::abs(foot.distance), part.tip_radius_m, 6e-8);
+    }
+  }
+}
+
+TEST(ProbeCorrection, CovarianceOfTheConstantIsThatOfACirclesRadius) {
+  auto rng = test::test_rng();
+  test::ProbeScene ring;
+  ring.probe.sigma_m.value = 1e-6;
+  ring.probe.deviation_length_m.value = 1.0;
+  ProbeCharacter probe;
+  probe.sigma_m.value = 1e-6;
+  probe.deviation_length_m.value = 1.0;
+  probe.offset.covariance_m2(0, 0) = 4e-10;
+  const auto patches = patches_of(simulate(ring, rng), &probe);
+  const ShapePoseCovariance covariance =
+      covariance_of_probes(ring.curve, ring.world_T_curve, patches);
+  EXPECT_NEAR(covariance(0, 0), 4e-10, 1e-14);
+  EXPECT_NEAR(covariance(1, 1), 0.0, 1e-14);
+}
+
+}  // namespace
+}  // namespace palpate
