@@ -41,7 +41,7 @@ begin_part() {  # name, seconds
 packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-dev libgmock-dev
           libbenchmark-dev protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev
           libcli11-dev libboost-dev nlohmann-json3-dev zlib1g-dev libdxflib-dev python3 python3-protobuf python3-zmq
-          python3-ezdxf python3-numpy pybind11-dev python3-dev clang-format chromium chromium-driver
+          python3-ezdxf python3-numpy git pybind11-dev python3-dev clang-format chromium chromium-driver
           doxygen dpkg-dev file iproute2 lintian make man-db python3-pip python3-setuptools python3-wheel strace systemd zsh)
 if [ "$sanitize" = yes ] || [ "$fuzz" != 0 ]; then packages+=(clang); fi
 missing=()
@@ -98,7 +98,7 @@ if [ "$sanitize" = yes ]; then
 fi
 
 if [ "$fuzz" != 0 ]; then
-  targets=(config contact_csv http_border ingest keys recording scene)
+  targets=(answers config contact_csv http_border ingest keys part recording scene)
   # Some inputs a second under sanitizers: it tells something in minutes only.
   if [ "$fuzz" -ge 120 ]; then targets+=(recognizer); fi
   begin_part "building (fuzz)" 300

@@ -157,6 +157,10 @@ KnottedCubicFit rescaled(PolynomialFit fit) {
 
 Vec2 KnottedCubic::position(double t) const { return derivatives(*this, t).position; }
 
+Vec2 KnottedCubic::left(double t) const {
+  return left_of(derivatives(*this, t).first).normalized();
+}
+
 KnottedCubicFit fit_single_cubic(const FitData& data) {
   FitData points = data;
   const SmoothModel smooth = fit_smooth_model(&points, true);

@@ -18,6 +18,8 @@ struct KnottedCubic {
   double knot = 0.0;
 
   Vec2 position(double t) const;
+  /// Unit normal, to the left of increasing t.
+  Vec2 left(double t) const;
 };
 
 struct KnottedCubicFit {

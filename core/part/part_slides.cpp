@@ -11,6 +11,23 @@ namespace {
 /// exp(-60 / 2) beside the best: no integral over a part makes up for that.
 constexpr double kNegligible = 60.0;
 
+/// A sum of positive numbers by their logarithms: where a part does not fit, chi-square differs by
+/// more than exp() holds.
+class LogSum {
+ public:
+  void add(double log_term) {
+    if (log_term == -std::numeric_limits<double>::infinity()) {
+      return;
+    }
+    const double most = std::max(log_, log_term);
+    log_ = most + std::log(std::exp(log_ - most) + std::exp(log_term - most));
+  }
+  double log() const { return log_; }
+
+ private:
+  double log_ = -std::numeric_limits<double>::infinity();
+};
+
 /// The best fit with the reference held at t.
 struct Slide {
   double t = 0.0;
@@ -42,6 +59,12 @@ class Scan {
     const Vec2 place = surface_ - start.rotate(d.position);
     start.x = place.x();
     start.y = place.y();
+    return from(t, start);
+  }
+
+  /// With the optimum over height and turn that is reached from a pose.
+  Slide from(double t, const Pose2& start) const {
+    const CurveDerivatives d = part_.spline().derivatives(t);
     // Where the part fits it converges in a few steps; where it does not, nobody waits for it.
     constexpr int kMostIterations = 10;
     const PartFit fit = fit_part(part_, points_, start, motions_, kMostIterations);
@@ -49,10 +72,12 @@ class Scan {
     slide.t = t;
     slide.data_T_part = fit.data_T_part;
     const double across = cross(fit.data_T_part.rotate(d.first), left_);
+    const double determinant = fit.information.determinant();
     // Nor has a part that turned round to the other direction of travel anything to say on this
-    // one.
-    slide.chi2 = across > 0.0 ? fit.chi2 : std::numeric_limits<double>::infinity();
-    slide.log_volume = std::log(std::abs(across)) - 0.5 * std::log(fit.information.determinant());
+    // one, or one whose height and turn the points do not hold.
+    const bool tells = across > 0.0 && determinant > 0.0 && std::isfinite(fit.chi2);
+    slide.chi2 = tells ? fit.chi2 : std::numeric_limits<double>::infinity();
+    slide.log_volume = tells ? std::log(across) - 0.5 * std::log(determinant) : 0.0;
     return slide;
   }
 
@@ -69,32 +94,41 @@ class Scan {
 /// Adds the mass between two slides to a candidate and to the segment that they bound.
 class Integral {
  public:
+  /// `best_chi2`: the least that is known so far.
   Integral(const Scan& scan, const ScaledPart& part, double best_chi2)
       : scan_(scan), part_(part), best_chi2_(best_chi2) {}
 
-  double between(const Slide& a, const Slide& b, std::vector<double>* by_segment) const {
-    const double mass = halve(a, b, 0);
-    (*by_segment)[part_.spline().segment_at(0.5 * (a.t + b.t))] += mass;
-    return mass;
+  void between(const Slide& a, const Slide& b, LogSum* mass, std::vector<LogSum>* by_segment) {
+    LogSum piece;
+    halve(a, b, 0, &piece);
+    mass->add(piece.log());
+    (*by_segment)[part_.spline().segment_at(0.5 * (a.t + b.t))].add(piece.log());
   }
 
  private:
-  double density(const Slide& slide) const {
-    return std::exp(-0.5 * (slide.chi2 - best_chi2_) + slide.log_volume);
-  }
+  static double log_density(const Slide& slide) { return -0.5 * slide.chi2 + slide.log_volume; }
 
-  double halve(const Slide& a, const Slide& b, int depth) const {
+  void halve(const Slide& a, const Slide& b, int depth, LogSum* mass) {
     // Where the density changes by a factor of exp(1/2) only, the trapezoid is right to 2 %.
     constexpr double kStep = 1.0;  // of chi-square
     constexpr int kDeepest = 40;   // halvings: to rounding
-    if (!(std::min(a.chi2, b.chi2) < best_chi2_ + kNegligible)) {
-      return 0.0;
+    const double least = std::min(a.chi2, b.chi2);
+    if (!(least < best_chi2_ + kNegligible)) {
+      return;
     }
+    // Where the part does not fit, the valley may be deeper between two places of the grid: what
+    // was thought the best is then nothing beside it, and nobody halves down to it.
+    best_chi2_ = std::min(best_chi2_, least);
     if (std::abs(a.chi2 - b.chi2) < kStep || depth == kDeepest) {
-      return 0.5 * (density(a) + density(b)) * (b.t - a.t);
+      const double log_half_step = std::log(0.5 * (b.t - a.t));
+      mass->add(log_half_step + log_density(a));
+      mass->add(log_half_step + log_density(b));
+      return;
     }
     const Slide middle = scan_.at(0.5 * (a.t + b.t));
-    return halve(a, middle, depth + 1) + halve(middle, b, depth + 1);
+    best_chi2_ = std::min(best_chi2_, middle.chi2);
+    halve(a, middle, depth + 1, mass);
+    halve(middle, b, depth + 1, mass);
   }
 
   const Scan& scan_;
@@ -159,13 +193,14 @@ void add_candidates(const ScaledPart& part, std::span<const FitPoint> points,
 
 /// The masses of one direction's candidates.
 void integrate(const ScaledPart& part, Circle circle, double best_chi2,
-               std::vector<PartCandidate>* candidates, std::vector<double>* by_segment) {
+               std::span<const PartCandidate> candidates, std::vector<LogSum>* masses,
+               std::vector<LogSum>* by_segment) {
   std::vector<Slide>& slides = circle.slides;
   bool any = false;
-  for (std::size_t c = 0; c < candidates->size(); ++c) {
-    const PartCandidate& candidate = (*candidates)[c];
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const PartCandidate& candidate = candidates[c];
     if (candidate.direction == circle.scan.direction()) {
-      slides.push_back(circle.scan.at(candidate.t));
+      slides.push_back(circle.scan.from(candidate.t, candidate.fit.data_T_part));
       slides.back().candidate = static_cast<int>(c);
       any = true;
     }
@@ -185,7 +220,7 @@ void integrate(const ScaledPart& part, Circle circle, double best_chi2,
   slides.push_back(slides.front());
   slides.back().t += period;
 
-  const Integral integral(circle.scan, part, best_chi2);
+  Integral integral(circle.scan, part, best_chi2);
   for (std::size_t begin = 0; begin + 1 < slides.size();) {
     std::size_t end = begin + 1;
     std::size_t barrier = begin;
@@ -195,8 +230,8 @@ void integrate(const ScaledPart& part, Circle circle, double best_chi2,
     }
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t owner = i < barrier ? begin : end;
-      (*candidates)[static_cast<std::size_t>(slides[owner].candidate)].probability +=
-          integral.between(slides[i], slides[i + 1], by_segment);
+      integral.between(slides[i], slides[i + 1],
+                       &(*masses)[static_cast<std::size_t>(slides[owner].candidate)], by_segment);
     }
     begin = end;
   }
@@ -223,18 +258,35 @@ SlidePosterior slide_posterior(const ScaledPart& part, std::span<const FitPoint>
     return !(candidate.fit.chi2 < best + kNegligible);
   });
   posterior.segment_probability.assign(part.spline().size(), 0.0);
+  std::vector<LogSum> masses(candidates.size());
+  std::vector<LogSum> by_segment(part.spline().size());
+  for (const Circle& circle : circles) {
+    for (const Slide& slide : circle.slides) {
+      best = std::min(best, slide.chi2);
+    }
+  }
   for (Circle& circle : circles) {
-    integrate(part, std::move(circle), best, &candidates, &posterior.segment_probability);
+    integrate(part, std::move(circle), best, candidates, &masses, &by_segment);
   }
-  double sum = 0.0;
-  for (const PartCandidate& candidate : candidates) {
-    sum += candidate.probability;
+  LogSum whole;
+  for (const LogSum& mass : masses) {
+    whole.add(mass.log());
   }
-  for (PartCandidate& candidate : candidates) {
-    candidate.probability /= sum;
+  if (!std::isfinite(whole.log())) {
+    candidates.clear();  // the points hold no pose of the part
+    return posterior;
   }
-  for (double& probability : posterior.segment_probability) {
-    probability /= sum;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    candidates[c].probability = std::exp(masses[c].log() - whole.log());
+  }
+  // Of their own sum: logarithms of a million million keep few digits.
+  LogSum of_segments;
+  for (const LogSum& mass : by_segment) {
+    of_segments.add(mass.log());
+  }
+  for (std::size_t segment = 0; segment < by_segment.size(); ++segment) {
+    posterior.segment_probability[segment] =
+        std::exp(by_segment[segment].log() - of_segments.log());
   }
   std::stable_sort(
       candidates.begin(), candidates.end(),

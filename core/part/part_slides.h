@@ -18,7 +18,7 @@ struct PartCandidate {
 
 struct SlidePosterior {
   std::vector<PartCandidate> candidates;  ///< most probable first
-  /// Probability that the reference lies on each segment.
+  /// Probability that the reference lies on each segment; zeros where there is no candidate.
   std::vector<double> segment_probability;
 };
 

@@ -55,12 +55,15 @@ KnottedCubicFit with_knot(const Run& run, const KnottedCubicFit& start, double k
 /// The knot of the least chi-square between two others, by golden section.
 KnottedCubicFit best_between(const Run& run, KnottedCubicFit best, double low, double high) {
   const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
-  constexpr double kNarrow = 1e-7;  // of the run
+  constexpr double kNarrow = 1e-7;  // of the run, whose parameter goes from -1 to 1
+  // To there from the whole run. Where no cubic fits, feet may be so far out that no two numbers
+  // are that near.
+  constexpr int kMostSteps = 35;
   double a = high - ratio * (high - low);
   double b = low + ratio * (high - low);
   KnottedCubicFit at_a = with_knot(run, best, a);
   KnottedCubicFit at_b = with_knot(run, best, b);
-  while (high - low > kNarrow) {
+  for (int step = 0; step < kMostSteps && high - low > kNarrow; ++step) {
     if (at_a.chi2 < at_b.chi2) {
       high = b;
       b = a;
@@ -122,6 +125,11 @@ class JointTest {
     best = best_between(*run, best, knot_t(best_knot > 0 ? best_knot - 1 : 0),
                         knot_t(best_knot < last ? best_knot + 1 : last));
     SegmentJoint joint = located(*run, best);
+    // Where the fit does not follow the samples in their order, the knot may come out before or
+    // behind all of them: then it parts nothing, and neither side could be tested again.
+    if (joint.index < kCubicDegrees || joint.index + kCubicDegrees > end - begin) {
+      return std::nullopt;
+    }
     joint.chi2_drop = single - best.chi2;
     joint.index += begin;
     joint.earliest += begin;
@@ -140,6 +148,30 @@ class JointTest {
     return indices;
   }
 
+  /// Where the knot is, in the run's units: the curve's place between the samples on either side.
+  /// Where the patch is no two smooth cubics, as at a corner, the curve may swing far out between
+  /// them; nothing was touched there, and the place is on the straight line between the two.
+  static Vec2 place_of(const Run& run, const KnottedCubicFit& best, std::size_t index) {
+    const std::size_t after = std::clamp<std::size_t>(index, 1, best.t.size() - 1);
+    const auto touched = [&](std::size_t i) -> Vec2 {
+      const FitPoint& point = run.data.points[i];
+      return point.position - best.side * point.offset * best.curve.left(best.t[i]);
+    };
+    const Vec2 from = touched(after - 1);
+    const Vec2 to = touched(after);
+    const Vec2 place = best.curve.position(best.curve.knot);
+    // An arc that turns by less than half a circle stays within the circle over its chord; and
+    // noise within five deviations.
+    constexpr double kFarSigmas = 5.0;
+    const double within = 0.5 * (to - from).norm() + kFarSigmas * rms_sigma(run.data);
+    if ((place - 0.5 * (from + to)).norm() <= within) {
+      return place;
+    }
+    const double step = best.t[after] - best.t[after - 1];
+    const double part = (best.curve.knot - best.t[after - 1]) / step;
+    return from + (part >= 0.0 && part <= 1.0 ? part : 0.5) * (to - from);
+  }
+
   /// The joint among the run's samples, and how far it may lie to either side.
   SegmentJoint located(const Run& run, const KnottedCubicFit& best) const {
     const std::size_t n = best.t.size();
@@ -147,7 +179,7 @@ class JointTest {
     const auto beyond =
         std::find_if(best.t.begin(), best.t.end(), [&](double t) { return t > best.curve.knot; });
     joint.index = static_cast<std::size_t>(beyond - best.t.begin());
-    joint.position_m = run.data.frame * (run.data.scale * best.curve.position(best.curve.knot));
+    joint.position_m = run.data.frame * (run.data.scale * place_of(run, best, joint.index));
     constexpr double kOutside = 0.05;
     const double limit = chi_square_threshold(kOutside, 1);
     // All along the run: where the bend is weak, what is possible may have gaps.

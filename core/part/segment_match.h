@@ -90,7 +90,7 @@ struct SegmentMatch {
   /// Most probable first; without a match, how the best ones fit.
   std::vector<PartPlacement> placements;
   /// Probability, given that it is this part, that the middle of the longest patch is on each
-  /// segment.
+  /// segment; zeros where there is no placement.
   std::vector<double> segment_probability;
   std::size_t longest_patch = 0;
   double sigma_m = 0.0;  ///< noise used, root mean square [m]

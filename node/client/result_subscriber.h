@@ -3,22 +3,17 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
-#include <map>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 #include <zmq.hpp>
 
-#include "node/intake/sequence_tracker.h"
+#include "node/client/result_decoder.h"
 #include "node/wire/endpoint.h"
 #include "node/wire/handshake_watch.h"
 #include "node/wire/socket.h"
-#include "palpate/v1/contact.pb.h"
-#include "palpate/v1/local_estimate.pb.h"
-#include "palpate/v1/node_status.pb.h"
-#include "palpate/v1/recognition.pb.h"
 
 namespace palpate::client {
 
@@ -36,27 +31,6 @@ struct ResultSubscriberOptions {
   /// Topics remembered; messages of further ones are malformed. A recognizer has at most its groups
   /// and twice its probes.
   std::size_t most_topics = 4096;
-};
-
-/// What one receive brought: at most one of them, valid until the next call; none = timeout.
-struct ReceivedResult {
-  const v1::Recognition* recognition = nullptr;
-  const v1::LocalEstimate* estimate = nullptr;
-  const v1::NodeStatus* status = nullptr;
-  const v1::ContactBatch* contact = nullptr;
-
-  explicit operator bool() const {
-    return recognition != nullptr || estimate != nullptr || status != nullptr || contact != nullptr;
-  }
-};
-
-struct SubscriberCounters {
-  std::uint64_t received = 0;    ///< messages given out
-  std::uint64_t duplicates = 0;  ///< dropped: repeated last values, or from before a restart
-  std::uint64_t gaps = 0;        ///< holes in seq
-  std::uint64_t missing = 0;     ///< messages in the holes
-  std::uint64_t restarts = 0;    ///< of the recognizer, counted on each topic
-  std::uint64_t malformed = 0;   ///< not of this contract
 };
 
 /// Connects, and reconnects, by itself; on connecting, the latest recognition of every group comes
@@ -77,12 +51,12 @@ class ResultSubscriber {
 
   /// The latest recognition of that group, nullptr where none has come; valid until the next
   /// receive() or update().
-  const v1::Recognition* latest(std::string_view group) const;
+  const v1::Recognition* latest(std::string_view group) const { return decoder_.latest(group); }
 
   /// Groups that have been heard of.
-  std::vector<std::string> groups() const;
+  std::vector<std::string> groups() const { return decoder_.groups(); }
 
-  const SubscriberCounters& counters() const { return counters_; }
+  const SubscriberCounters& counters() const { return decoder_.counters(); }
 
   /// Why the recognizer refuses this client, to be read after its name: "refuses our key: ...".
   /// Empty where it does not. libzmq does not try again: only a new subscriber can.
@@ -92,27 +66,10 @@ class ResultSubscriber {
   zmq::socket_t& socket() { return socket_; }
 
  private:
-  // One topic each. Recognitions are kept so that latest() can give them.
-  struct Feed {
-    SequenceTracker sequence;
-    v1::Recognition recognition;
-  };
-
-  bool has_room_for(std::string_view topic) const;
-  bool take(TwoFrames& message, ReceivedResult& result);
-  template <typename Message>
-  bool is_fresh(const Message& message, std::string_view topic);
-
   zmq::context_t context_;
   zmq::socket_t socket_;
   HandshakeWatch handshakes_;
-  std::size_t most_topics_;
-  std::map<std::string, Feed, std::less<>> feeds_;
-  v1::Recognition recognition_;
-  v1::LocalEstimate estimate_;
-  v1::NodeStatus status_;
-  v1::ContactBatch contact_;
-  SubscriberCounters counters_;
+  ResultDecoder decoder_;
 };
 
 }  // namespace palpate::client

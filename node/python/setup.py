@@ -1,7 +1,6 @@
 """Builds the extension by CMake. PALPATE_BUILD=FOLDER takes what is built there already."""
 import os
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -32,8 +31,13 @@ class ForOnePython(Distribution):
         return True
 
 
+def version() -> str:
+    said = subprocess.run(["cmake", "-P", str(ROOT / "core/package/version.cmake")], check=True, capture_output=True, text=True)
+    return said.stderr.strip()
+
+
 (ROOT / "build").mkdir(exist_ok=True)
-setup(version=re.search(r"project\(palpate VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())[1],
+setup(version=version(),
       packages=["palpate"], cmdclass={"build_py": ByCMake}, distclass=ForOnePython,
       # Nothing of it beside the sources.
       options={"build": {"build_base": str(ROOT / "build/wheel-parts")}, "egg_info": {"egg_base": str(ROOT / "build")}})

@@ -104,13 +104,14 @@ void to_wire(const SegmentBelonging& belonging, v1::PatchJoints& message) {
 }  // namespace
 
 Result<ClosedSpline> read_part(const std::string& path) {
-  using Loaded = Result<ClosedSpline>;
   const Result<std::string> text = read_file(path);
-  if (!text) {
-    return Loaded::fail(text.error);
-  }
+  return text ? parse_part(*text.value, path) : Result<ClosedSpline>::fail(text.error);
+}
+
+Result<ClosedSpline> parse_part(const std::string& text, const std::string& path) {
+  using Loaded = Result<ClosedSpline>;
   v1::Scene scene;
-  if (std::string error = parse_text(*text.value, path, scene); !error.empty()) {
+  if (std::string error = parse_text(text, path, scene); !error.empty()) {
     return Loaded::fail(std::move(error));
   }
   if (!scene.has_closed_spline()) {

@@ -14,6 +14,8 @@ namespace palpate {
 /// The closed spline of a file in the scenes' schema (palpate/v1/scene.proto); its pose and probes
 /// are not looked at. An error reads "FILE[:LINE:COLUMN]: what is wrong".
 Result<ClosedSpline> read_part(const std::string& path);
+/// The same of a text; `path` is what errors name.
+Result<ClosedSpline> parse_part(const std::string& text, const std::string& path);
 
 /// Sample numbers count the samples of a patch in the order of the file.
 v1::PartMatch match_part(const ContactGroup& group, const ClosedSpline& part,

@@ -18,7 +18,7 @@ class Install(unittest.TestCase):
         cls.prefix = cls.folder / "prefix"
         call("cmake", "--install", BUILD, "--prefix", cls.prefix)
         cls.project = write_project(cls.folder / "stranger")
-        cls.version = re.search(r"project\(palpate VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
+        cls.version = re.search(r"CMAKE_PROJECT_VERSION:STATIC=(\S+)", (BUILD / "CMakeCache.txt").read_text())[1]
         cls.libraries = next(cls.prefix.glob("lib/**/libpalpate_core.a")).parent
 
     def build(self, name, *arguments):

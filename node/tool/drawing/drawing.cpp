@@ -104,13 +104,15 @@ double probability_of(const v1::Recognition& answer) {
   return 0.0;
 }
 
-/// Arc length from the first place, interpolated.
-double arc_at(const DrawnCurve& curve, double t) {
+/// Arc length from the first place, interpolated; nullopt where t is no place of it: answers come
+/// from the bus.
+std::optional<double> arc_at(const DrawnCurve& curve, double t) {
   const CurvePlace& first = curve.places.front();
   const CurvePlace& last = curve.places.back();
   if (curve.closed) t = first.t + std::remainder(t - first.t - kPi, 2.0 * kPi) + kPi;
   const double pieces = static_cast<double>(curve.places.size() - 1);
   const double place = std::clamp((t - first.t) / (last.t - first.t), 0.0, 1.0) * pieces;
+  if (!std::isfinite(place)) return std::nullopt;
   const auto before = static_cast<std::size_t>(std::min(std::floor(place), pieces - 1.0));
   const double part = place - static_cast<double>(before);
   return (1.0 - part) * curve.places[before].arc_m + part * curve.places[before + 1].arc_m;
@@ -125,7 +127,9 @@ std::vector<DrawnContact> draw_contacts(const v1::Recognition& answer,
   for (const v1::LocalizedContact& contact : answer.contacts()) {
     DrawnContact place{&contact, 0.0, contact.kappa_per_m()};
     if (curve) {
-      place.arc_m = arc_at(*curve, contact.t());
+      const std::optional<double> arc_m = arc_at(*curve, contact.t());
+      if (!arc_m) continue;
+      place.arc_m = *arc_m;
       const double tangent =
           geometry(model->curve, contact.t()).tangent_angle + model->world_T_curve.theta;
       if (std::cos(contact.tangent_rad() - tangent) < 0.0) place.kappa = -place.kappa;

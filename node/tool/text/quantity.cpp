@@ -21,8 +21,8 @@ std::string with_sigma(double value, double sigma) {
   if (!(sigma > 0.0)) {
     return number(value);
   }
-  if (!std::isfinite(sigma)) {
-    return number(value) + " +- inf";
+  if (!std::isfinite(sigma) || !std::isfinite(value)) {
+    return number(value) + " +- " + number(sigma);
   }
   constexpr int kSigmaDigits = 2;
   constexpr int kMostDecimals = 9;  // beyond, or left of the point: powers of ten

@@ -189,7 +189,7 @@ tcp::endpoint endpoint_of(const HostPort& listen) {
 }  // namespace
 
 WebServer::WebServer(asio::io_context& io, const HostPort& listen, LiveState& state)
-    : io_(io), acceptor_(io), timer_(io), state_(state), feed_(state) {
+    : acceptor_(io), timer_(io), state_(state), feed_(state) {
   const tcp::endpoint endpoint = endpoint_of(listen);
   acceptor_.open(endpoint.protocol());
   acceptor_.set_option(asio::socket_base::reuse_address(true));

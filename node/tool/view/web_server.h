@@ -35,7 +35,6 @@ class WebServer {
   void accept();
   void tick();
 
-  boost::asio::io_context& io_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer timer_;
   std::uint16_t port_ = 0;

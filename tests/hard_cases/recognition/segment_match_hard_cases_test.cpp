@@ -2,8 +2,11 @@
 // model.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "core/part/segment_belonging.h"
 #include "core/part/segment_match.h"
 #include "tests/support/closed_spline_part.h"
 #include "tests/support/test_rng.h"
@@ -132,6 +135,64 @@ TEST(SegmentMatchHardCases, TheMirroredPartIsNoMatch) {
         test::touch(mirrored, test::random_pose(rng), {{segment + 0.1, 0.04}}, 1e-6, 1e-6, rng);
     EXPECT_EQ(match_segment(part, touched.patches).status, SegmentMatchStatus::NoMatch) << segment;
   }
+}
+
+/// Points of no part at all, beside which the noise they claim is nothing: scattered, a corner, a
+/// wave, of a thousandth to ten times the part's size.
+StoredPatch nonsense(std::mt19937_64& rng, int kind) {
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const double size_m = 0.05 * std::pow(10.0, 2.0 * uniform(rng));
+  const double shape = uniform(rng);
+  const int count = 15 + static_cast<int>(20.0 * (1.0 + uniform(rng)));
+  StoredPatch patch;
+  for (int i = 0; i < count; ++i) {
+    const double t = 2.0 * i / (count - 1) - 1.0;
+    const double height = kind == 0   ? uniform(rng)
+                          : kind == 1 ? shape * std::abs(t - 0.3 * shape)
+                                      : 0.2 * std::sin(6.0 * t + shape);
+    const double along = kind == 0 ? uniform(rng) : t;
+    patch.samples.push_back({Vec2(size_m * along, size_m * height), 1e-5 * size_m, 1.0});
+  }
+  return patch;
+}
+
+TEST(SegmentMatchHardCases, WhatFitsNowhereStillHasProbabilitiesThatAreNumbers) {
+  const ClosedSpline part = test::paper_part();
+  auto rng = test::test_rng();
+  for (int i = 0; i < test::stress_count(60); ++i) {
+    const StoredPatch patch = nonsense(rng, i % 3);
+    const SegmentMatch match = match_segment(part, std::span(&patch, 1));
+    ASSERT_EQ(match.status, SegmentMatchStatus::NoMatch) << i;
+    double placements = 0.0;
+    for (const PartPlacement& placement : match.placements) placements += placement.probability;
+    EXPECT_NEAR(placements, match.placements.empty() ? 0.0 : 1.0, 1e-9) << i;
+    double segments = 0.0;
+    for (const double probability : match.segment_probability) segments += probability;
+    EXPECT_NEAR(segments, match.placements.empty() ? 0.0 : 1.0, 1e-9) << i;
+  }
+}
+
+TEST(SegmentMatchHardCases, AJointLiesAmongTheSamplesThatItParts) {
+  auto rng = test::test_rng();
+  int joints = 0;
+  for (int i = 0; i < test::stress_count(60); ++i) {
+    const StoredPatch patch = nonsense(rng, i % 3);
+    for (const SegmentJoint& joint : longest_segment(patch).joints) {
+      ++joints;
+      double nearest = std::numeric_limits<double>::infinity();
+      double longest_step = 0.0;
+      for (std::size_t k = 0; k < patch.samples.size(); ++k) {
+        const Vec2& here = patch.samples[k].position_m;
+        nearest = std::min(nearest, (joint.position_m - here).norm());
+        // What lies between were samples that are set aside: a step may pass over some.
+        for (std::size_t other = 0; other < k; ++other) {
+          longest_step = std::max(longest_step, (here - patch.samples[other].position_m).norm());
+        }
+      }
+      EXPECT_LE(nearest, 0.5 * longest_step) << i;
+    }
+  }
+  EXPECT_GT(joints, 0);
 }
 
 TEST(SegmentMatchHardCases, AnEllipseAndAStraightEdgeAreNoMatch) {

@@ -1,0 +1,76 @@
+// What a recognizer says, as messages: needs no network.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "node/intake/sequence_tracker.h"
+#include "palpate/v1/contact.pb.h"
+#include "palpate/v1/local_estimate.pb.h"
+#include "palpate/v1/node_status.pb.h"
+#include "palpate/v1/recognition.pb.h"
+
+namespace palpate::client {
+
+/// What one receive brought: at most one of them, valid until the next call; none = timeout.
+struct ReceivedResult {
+  const v1::Recognition* recognition = nullptr;
+  const v1::LocalEstimate* estimate = nullptr;
+  const v1::NodeStatus* status = nullptr;
+  const v1::ContactBatch* contact = nullptr;
+
+  explicit operator bool() const {
+    return recognition != nullptr || estimate != nullptr || status != nullptr || contact != nullptr;
+  }
+};
+
+struct SubscriberCounters {
+  std::uint64_t received = 0;    ///< messages given out
+  std::uint64_t duplicates = 0;  ///< dropped: repeated last values, or from before a restart
+  std::uint64_t gaps = 0;        ///< holes in seq
+  std::uint64_t missing = 0;     ///< messages in the holes
+  std::uint64_t restarts = 0;    ///< of the recognizer, counted on each topic
+  std::uint64_t malformed = 0;   ///< not of this contract
+};
+
+/// Gives each message out once, in order; remembers the latest recognition of every group. Whatever
+/// the bytes are, they are decoded or counted.
+class ResultDecoder {
+ public:
+  explicit ResultDecoder(std::size_t most_topics) : most_topics_(most_topics) {}
+
+  /// The message if it is news, else nothing.
+  ReceivedResult take(std::string_view topic, std::string_view payload);
+  /// One that has another number of frames than two.
+  void count_malformed() { ++counters_.malformed; }
+
+  /// nullptr where none has come.
+  const v1::Recognition* latest(std::string_view group) const;
+  std::vector<std::string> groups() const;
+  const SubscriberCounters& counters() const { return counters_; }
+
+ private:
+  // One topic each. Recognitions are kept so that latest() can give them.
+  struct Feed {
+    SequenceTracker sequence;
+    v1::Recognition recognition;
+  };
+
+  bool has_room_for(std::string_view topic) const;
+  template <typename Message>
+  bool is_fresh(const Message& message, std::string_view topic);
+
+  std::size_t most_topics_;
+  std::map<std::string, Feed, std::less<>> feeds_;
+  v1::Recognition recognition_;
+  v1::LocalEstimate estimate_;
+  v1::NodeStatus status_;
+  v1::ContactBatch contact_;
+  SubscriberCounters counters_;
+};
+
+}  // namespace palpate::client

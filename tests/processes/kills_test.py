@@ -1,0 +1,162 @@
+"""kill -9 in random order of node, probe, planner and recorder, each a process of its own: the system finds itself
+again within a second, and of the recordings every whole record can be read.
+
+PALPATE_KILLS: how many (CTest: 24; `PALPATE_KILLS=1000 ctest --verbose -R kills`)."""
+import json
+import os
+import random
+import select
+import signal
+import statistics
+import struct
+import subprocess
+import time
+import unittest
+import zlib
+
+from bus import Bus
+from programs import SIM, SOURCE, TOOL, run
+
+KILLS = int(os.environ.get("PALPATE_KILLS", "24"))
+SCENE = SOURCE / "sim/scenes/circle.textproto"
+RECOVERY_S = 1.0
+
+
+class Lines:
+    """Lines of a process as they come."""
+
+    def __init__(self, process):
+        self.file = process.stdout.fileno()
+        os.set_blocking(self.file, False)
+        self.rest = b""
+
+    def next(self, timeout_s):
+        deadline = time.monotonic() + timeout_s
+        while b"\n" not in self.rest:
+            left = deadline - time.monotonic()
+            if left <= 0 or not select.select([self.file], [], [], left)[0]:
+                return None
+            piece = os.read(self.file, 1 << 20)
+            if not piece:
+                return None
+            self.rest += piece
+        line, self.rest = self.rest.split(b"\n", 1)
+        return json.loads(line)
+
+
+class Kills(unittest.TestCase):
+    def start(self, bus, who):
+        if who == "node":
+            self.running[who] = bus.start_node()
+        elif who == "probe":
+            # For ever, each time a new object; in a tenth of a second.
+            self.running[who] = bus.start(SIM, SCENE, "--contacts", bus.contacts, "--repeat", "0", "--speed", "10",
+                                          "--pause", "0", "--wait", "60", "--quiet")
+        elif who == "planner":
+            planner = bus.start(TOOL, "watch", "--results", bus.results, "--format", "json", stdout=subprocess.PIPE)
+            if who in self.running:
+                self.running[who].stdout.close()
+            self.running[who] = planner
+            self.lines = Lines(planner)
+        else:
+            self.recordings.append(bus.folder / f"{len(self.recordings)}.rec")
+            self.running[who] = bus.start(TOOL, "record", self.recordings[-1], "--results", bus.results,
+                                          stderr=subprocess.DEVNULL)
+
+    def whole_answer(self, timeout_s, after_object=None):
+        """The first answer of an object that no answer before was of, of all of its samples."""
+        deadline = time.monotonic() + timeout_s
+        begun = after_object
+        while (left := deadline - time.monotonic()) > 0:
+            message = self.lines.next(left)
+            if message is None or "curve_class" not in message:
+                continue
+            if message["object"] not in self.seen:
+                self.seen.add(message["object"])
+                begun = message["object"]
+            if message["object"] == begun and int(message["sample_count"]) >= self.enough:
+                return message
+        return None
+
+    def test_everybody_is_found_again(self):
+        rng = random.Random(1)
+        self.running, self.recordings, self.seen = {}, [], set()
+        self.enough = 100  # of a scene's 222 samples: a whole curve has been stroked, whoever came in between
+        times = {who: [] for who in ("node", "probe", "planner", "recorder")}
+        with Bus() as bus:
+            for who in times:
+                self.start(bus, who)
+            self.assertIsNotNone(self.whole_answer(10), "no answer before the first kill")
+            for _ in range(KILLS):
+                who = rng.choice(list(times))
+                # Anywhere in what it does.
+                time.sleep(rng.uniform(0.0, 0.02))
+                victim = self.running[who]
+                victim.send_signal(signal.SIGKILL)
+                victim.wait()
+                bus.processes.remove(victim)
+                begin = time.monotonic()
+                self.start(bus, who)
+                if who == "recorder":
+                    path = self.recordings[-1]
+                    while not path.exists() or path.stat().st_size < 1000:
+                        self.assertLess(time.monotonic() - begin, RECOVERY_S, "nothing is recorded")
+                        time.sleep(0.002)
+                else:
+                    answer = self.whole_answer(5)
+                    self.assertIsNotNone(answer, f"after the {who}'s kill")
+                    self.assertEqual(answer["curve_class"], "CURVE_CLASS_CIRCLE")
+                times[who].append(time.monotonic() - begin)
+            for process in self.running.values():
+                process.kill()
+                process.wait()
+            self.running["planner"].stdout.close()
+            broken = self.read_recordings(bus)
+        for who, taken in times.items():
+            if taken:
+                print(f"{len(taken):4d} kills of the {who}: median {1e3 * statistics.median(taken):.0f} ms, worst "
+                      f"{1e3 * max(taken):.0f} ms")
+        print(f"{len(self.recordings)} recordings, each read to its last whole record; {broken} ended within one")
+        self.assertLess(max(max(taken) for taken in times.values() if taken), RECOVERY_S)
+
+    def read_recordings(self, bus):
+        """Each is records whose checksums are right, and at most the beginning of one more; `palpate replay` plays all
+        contacts of them. Gives how many were broken off."""
+        bus.start_node()
+        broken = replayed = 0
+        for path in self.recordings:
+            contacts, is_whole = self.records_of(path.read_bytes())
+            broken += not is_whole
+            if contacts == 0:
+                continue
+            code, _, err = run(TOOL, "replay", path, "--contacts", bus.contacts, "--fast")
+            self.assertEqual(code, 0 if is_whole else 1, err)
+            self.assertNotIn("damaged", err)
+            self.assertIn(f"{contacts} messages", err)
+            replayed += contacts
+        self.assertGreater(replayed, 0)
+        return broken
+
+    def records_of(self, recording):
+        """How many messages of contacts it has, and whether it ends with a whole record. Reads the format anew, from
+        node/tool/recording.h."""
+        if len(recording) < 8:
+            return 0, not recording
+        self.assertEqual(recording[:8], b"palpate2")
+        head = struct.Struct("<4sqIIII")
+        at, contacts = 8, 0
+        while len(recording) >= at + head.size:
+            mark, _, _, topic, payload, checksum = head.unpack_from(recording, at)
+            self.assertEqual(mark, b"\xa7rec")
+            end = at + head.size + topic + payload
+            if len(recording) < end:
+                break
+            body = recording[at + head.size:end]
+            self.assertEqual(zlib.crc32(body, zlib.crc32(recording[at + 4:at + head.size - 4])), checksum)
+            contacts += body.startswith(b"contact/")
+            at = end
+        return contacts, at == len(recording)
+
+
+if __name__ == "__main__":
+    unittest.main()
