@@ -14,6 +14,7 @@
 #include "node/tool/commands/fit_input.h"
 #include "node/tool/contact_groups.h"
 #include "node/tool/drawing/curve_export.h"
+#include "node/tool/drawing/invariant_plot.h"
 #include "node/tool/drawing/svg_plot.h"
 #include "node/tool/given_class_answer.h"
 #include "node/tool/part_match.h"
@@ -29,6 +30,7 @@ struct FitCommand {
   std::vector<std::string> files;
   std::string format;
   std::string plot;
+  std::string invariants_plot;
   std::string curve_file;
   std::string part;
   std::string given_class;
@@ -92,23 +94,27 @@ bool noise_is_known(const FitInput& input, const RecognizerOptions& options) {
   return input.noise_is_known || options.sigma_m > 0.0;
 }
 
+struct Answered {
+  Recognition recognition;
+  v1::Recognition wire;
+};
+
 /// `notes` receives what is to be said beside the answer.
-v1::Recognition recognise(const FitInput& input, const RecognizerOptions& options,
-                          std::vector<std::string>& notes) {
+Answered recognise(const FitInput& input, const RecognizerOptions& options,
+                   std::vector<std::string>& notes) {
   const ContactGroup& group = input.group;
   Recognizer recognizer(options);
   const AddResult added = add_group(group, recognizer);
   const auto start = std::chrono::steady_clock::now();
-  const Recognition recognition = recognizer.recognize();
+  Answered answer{recognizer.recognize(), {}};
   const auto taken = std::chrono::steady_clock::now() - start;
-  v1::Recognition answer;
   to_wire(
-      recognition,
+      answer.recognition,
       [&](std::uint32_t probe, std::uint32_t patch) {
         return ContactSource{group.probes[probe], patch};
       },
-      answer);
-  fill_origin(group, taken, answer);
+      answer.wire);
+  fill_origin(group, taken, answer.wire);
   notes = notes_for(input, options.memory, added);
   return answer;
 }
@@ -130,6 +136,12 @@ std::string plot_path(const std::string& path, std::size_t number) {
   const std::string stem = path.substr(0, dot);
   const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
   return stem + "-" + std::to_string(number) + ending;
+}
+
+/// What is wrong with writing it, or nothing.
+std::string written(const std::string& path, const std::string& document) {
+  std::ofstream file(path, std::ios::trunc);
+  return file << document << std::flush ? "" : path + ": cannot be written";
 }
 
 /// Places a known part instead of recognising one.
@@ -224,7 +236,17 @@ int run(FitCommand& fit) {
     if (fit.given_class.empty()) {
       RecognizerOptions options = fit.recognizer;
       options.memory = memory_for(group, options.memory, fit.patches_are_bounded);
-      answer = recognise(input, options, notes);
+      Answered answered = recognise(input, options, notes);
+      if (!fit.invariants_plot.empty()) {
+        const std::string picture =
+            invariant_plot(answered.recognition, group.file + ", " + group.name + ", object " +
+                                                     std::to_string(group.object));
+        const std::string path = plot_path(fit.invariants_plot, number + 1);
+        if (const std::string why = written(path, picture); !why.empty()) {
+          return complain(why, kFailed);
+        }
+      }
+      answer = std::move(answered.wire);
       text = json ? json_line(answer) : report_text(answer, noise_is_known(input, options));
     } else {
       const v1::GivenClassAnswer given = fit_given(group, fit);
@@ -241,9 +263,8 @@ int run(FitCommand& fit) {
     ++number;
     if (!fit.plot.empty()) {
       const std::string path = plot_path(fit.plot, number);
-      std::ofstream plot(path, std::ios::trunc);
-      if (!(plot << svg_plot(group, answer) << std::flush)) {
-        return complain(path + ": cannot be written", kFailed);
+      if (const std::string why = written(path, svg_plot(group, answer)); !why.empty()) {
+        return complain(why, kFailed);
       }
     }
     if (!fit.curve_file.empty()) {
@@ -296,6 +317,14 @@ void add_fit_command(CLI::App& app, int& exit_code) {
               "Draw samples, curve, 95 % band, rivals, enlarged residuals and frame as SVG; "
               "further groups go to FILE-2.svg, ...")
           ->type_name("FILE");
+  CLI::Option* invariants_plot =
+      command
+          ->add_option("--plot-invariants", fit->invariants_plot,
+                       "Draw the recognition tree's invariants as SVG, for every class that it "
+                       "asked about: what each contact says, and the value of all with its band; "
+                       "conics as the line Ip = Ic2 - Ic1 |kappa|^(-2/3); further groups go to "
+                       "FILE-2.svg, ...")
+          ->type_name("FILE");
   CLI::Option* given =
       command
           ->add_option(
@@ -304,6 +333,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
               "least squares of the orthogonal distances, with form (rms, peak to valley) and "
               "residuals. Of the options below --sigma and --determined-fraction count; json is "
               "one GivenClassAnswer (palpate/v1/given_class.proto) a line")
+          ->excludes(invariants_plot)
           ->type_name("CLASS");
   command
       ->add_option(
@@ -320,6 +350,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
           "--sigma, --recognized-probability and --false-outlier-probability; json is one "
           "PartMatch (palpate/v1/part_match.proto) a line")
       ->excludes(plot)
+      ->excludes(invariants_plot)
       ->excludes(given)
       ->type_name("FILE");
   add_file_flags(*command, fit->file);
