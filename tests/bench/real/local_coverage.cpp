@@ -24,15 +24,15 @@ double turned_area(const std::vector<Vec2>& points) {
   return area;
 }
 
-struct Laid {
+struct LaidPart {
   Pose2 world_T_part;
   double residual_rms_m = 0.0;
 };
 
 /// Least squares of the distances of the tip's centres less its radius, over the pose alone.
 /// Contacts beyond four robust deviations, which are no touches of the part, do not count.
-Laid lay_part(const Curve& part, double tip_radius_m, const std::vector<Vec2>& centres,
-              double start_angle) {
+LaidPart lay_part(const Curve& part, double tip_radius_m, const std::vector<Vec2>& centres,
+                  double start_angle) {
   constexpr int kIterations = 100;
   constexpr double kConverged_m = 1e-12;
   constexpr double kOutlier = 4.0;
@@ -41,7 +41,7 @@ Laid lay_part(const Curve& part, double tip_radius_m, const std::vector<Vec2>& c
   for (const Vec2& c : centres) {
     mean += c / static_cast<double>(centres.size());
   }
-  Laid laid{{mean.x(), mean.y(), start_angle}};
+  LaidPart laid{{mean.x(), mean.y(), start_angle}};
   const auto count = static_cast<Eigen::Index>(centres.size());
   const double size = (centres.front() - mean).norm();
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -73,7 +73,9 @@ Laid lay_part(const Curve& part, double tip_radius_m, const std::vector<Vec2>& c
       }
     }
     laid.residual_rms_m = std::sqrt(squares / used);
-    // A round part leaves the angle open: the shortest step.
+    if (class_of(part) == CurveClass::Circle) {
+      jacobian.col(2).setZero();  // its angle is open, and stays
+    }
     const Eigen::Vector3d step = jacobian.completeOrthogonalDecomposition().solve(residuals);
     if (!step.allFinite()) {
       break;
@@ -88,11 +90,11 @@ Laid lay_part(const Curve& part, double tip_radius_m, const std::vector<Vec2>& c
   throw std::runtime_error("the part cannot be laid on the recording");
 }
 
-Laid best_laid(const Curve& part, double tip_radius_m, const std::vector<Vec2>& centres) {
+LaidPart best_laid(const Curve& part, double tip_radius_m, const std::vector<Vec2>& centres) {
   constexpr int kStarts = 4;  // over half a turn: the part's symmetry
-  Laid best;
+  LaidPart best;
   for (int i = 0; i < kStarts; ++i) {
-    const Laid laid = lay_part(part, tip_radius_m, centres, i * kPi / kStarts);
+    const LaidPart laid = lay_part(part, tip_radius_m, centres, i * kPi / kStarts);
     if (i == 0 || laid.residual_rms_m < best.residual_rms_m) {
       best = laid;
     }
@@ -107,7 +109,7 @@ struct Tally {
 };
 
 /// One turn from contact `first` on: every estimate beside the truth.
-void walk(const EllipsePart& part, const Curve& curve, const Laid& laid, std::size_t first,
+void walk(const EllipsePart& part, const Curve& curve, const LaidPart& laid, std::size_t first,
           double form_deviation_m, bool leftwards, Tally* tally) {
   constexpr double kDeviations = 2.0;
   RecognizerOptions options;
@@ -145,7 +147,7 @@ void print_local_coverage(const EllipsePart& part, std::ostream& out) {
                           ? Curve(Ellipse{part.semi_major_m, part.semi_minor_m})
                           : Curve(Circle{part.semi_major_m});
   const std::vector<Vec2>& points = part.recording.points;
-  const Laid laid = best_laid(curve, part.recording.context.tip_radius_m, points);
+  const LaidPart laid = best_laid(curve, part.recording.context.tip_radius_m, points);
   const bool leftwards = turned_area(points) > 0.0;
   out << "\nThe sliding window along " << kTurns
       << " turns from as many places: kappa and kappa_s beside the part's where each estimate "
