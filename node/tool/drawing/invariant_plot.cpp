@@ -17,7 +17,7 @@ namespace palpate {
 namespace {
 
 constexpr double kWidth = 1024.0;  // of the document, all in pixels
-constexpr double kHeader = 76.0;
+constexpr double kHeader = 92.0;
 constexpr double kPanelHeight = 344.0;
 constexpr std::size_t kColumns = 2;
 constexpr double kPanelWidth = kWidth / kColumns;
@@ -91,7 +91,7 @@ Range range_of_places(const InvariantPanel& panel) {
   }
   Range range = range_of(values);
   if (panel.x_is_contact) {
-    range = {0.5, static_cast<double>(std::max<std::size_t>(panel.points.size(), 1)) + 0.5};
+    range = {0.5, static_cast<double>(std::max<std::size_t>(panel.contacts, 1)) + 0.5};
   }
   return range;
 }
@@ -235,6 +235,11 @@ class PanelDrawing {
       svg += "\"" + clipped() + "/>\n" +
              formatted("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3.2\" fill=\"%s\"/>\n", x, y, colour);
     }
+    if (panel_.points.empty()) {
+      svg += formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" fill=\"%s\">",
+                       0.5 * (left_ + right_), bottom_ - 8.0, kMutedColour) +
+             "no canonical frame suits the contacts one by one</text>\n";
+    }
     if (beyond > 0) {
       svg += formatted(
           "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\" fill=\"%s\">%zu beyond the "
@@ -266,13 +271,19 @@ std::string header(const Recognition& answer, const std::string& title, bool has
       answer.tree_class == CurveClass::Unclassified
           ? "The tree ends in no class."
           : "The tree ends at: " + spoken_name(to_wire(answer.tree_class)) + ".";
-  const std::string key =
+  const std::string lines[] = {
+      tree,
       has_panels
-          ? " Dots: what each contact alone says, bars one deviation, a colour a patch. Lines: "
-            "all contacts together, bands two deviations; p: least of the class's tests."
-          : " It asked about no class: there are too few contacts.";
-  return svg + formatted("<text x=\"20\" y=\"52\" fill=\"%s\">", kMutedColour) +
-         escaped(tree + key) + "</text>\n";
+          ? "Dots: what each contact alone says, bars one deviation, a colour a patch. Lines: all "
+            "contacts together, bands two deviations. p: least of the class's tests."
+          : "It asked about no class: there are too few contacts."};
+  double y = 52.0;
+  for (const std::string& line : lines) {
+    svg += formatted("<text x=\"20\" y=\"%.0f\" fill=\"%s\">", y, kMutedColour) + escaped(line) +
+           "</text>\n";
+    y += 16.0;
+  }
+  return svg;
 }
 
 }  // namespace

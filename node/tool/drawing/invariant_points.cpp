@@ -1,6 +1,7 @@
 #include "node/tool/drawing/invariant_points.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,7 +12,9 @@
 #include "core/invariants/cubical_parabola_invariants.h"
 #include "core/invariants/parabola_invariant.h"
 #include "core/invariants/semi_cubical_parabola_invariants.h"
+#include "core/invariants/signature_fit/parabola_fits.h"
 #include "core/invariants/signature_fit/semi_signature_fit.h"
+#include "core/invariants/signature_fit/spline_least_squares.h"
 #include "core/recognition/tree_answer.h"
 #include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
@@ -21,7 +24,14 @@ namespace palpate {
 namespace {
 
 using Geometry = Eigen::Vector3d;  ///< tangent angle, kappa, kappa_s
-using Function = std::function<double(const Geometry&)>;
+/// The canonical frame of a cubic: its first two parameters and its turn.
+using Frame = Eigen::Vector3d;
+using Function = std::function<double(const Geometry&, const Frame&)>;
+
+struct PooledFrame {
+  Frame value = Frame::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
 
 struct Value {
   double value = 0.0;
@@ -29,18 +39,29 @@ struct Value {
 };
 
 /// First-order propagation; differences over a thousandth of a deviation see no curvature.
-Value propagated(const MeasuredGeometry& point, const Function& function) {
+template <typename Of>
+double variance_of(const Eigen::Vector3d& at, const Eigen::Matrix3d& covariance, const Of& of) {
   constexpr double kStep = 1e-3;
-  const Geometry at(point.tangent_angle, point.kappa, point.kappa_s);
-  Geometry gradient = Geometry::Zero();
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const double step = kStep * std::sqrt(point.covariance(i, i));
+    const double step = kStep * std::sqrt(covariance(i, i));
     if (step > 0.0) {
-      const Geometry aside = step * Geometry::Unit(i);
-      gradient[i] = (function(at + aside) - function(at - aside)) / (2.0 * step);
+      const Eigen::Vector3d aside = step * Eigen::Vector3d::Unit(i);
+      gradient[i] = (of(at + aside) - of(at - aside)) / (2.0 * step);
     }
   }
-  return {function(at), std::sqrt(std::max(gradient.dot(point.covariance * gradient), 0.0))};
+  return std::max(gradient.dot(covariance * gradient), 0.0);
+}
+
+/// With the frame's uncertainty too: a contact far out on a cubic sees a small turn of it enlarged.
+Value propagated(const MeasuredGeometry& point, const Function& function,
+                 const PooledFrame& frame = {}) {
+  const Geometry at(point.tangent_angle, point.kappa, point.kappa_s);
+  const double own = variance_of(at, point.covariance,
+                                 [&](const Geometry& g) { return function(g, frame.value); });
+  const double of_frame =
+      variance_of(frame.value, frame.covariance, [&](const Frame& f) { return function(at, f); });
+  return {function(at, frame.value), std::sqrt(own + of_frame)};
 }
 
 class Panels {
@@ -72,9 +93,10 @@ class Panels {
  private:
   static std::string spoken(CurveClass curve_class) { return spoken_name(to_wire(curve_class)); }
 
-  std::string test_of(CurveClass curve_class) const {
+  std::string test_of(CurveClass curve_class, bool named) const {
     const double p = answer_.tree_p_values[static_cast<std::size_t>(curve_class)];
-    return std::isnan(p) ? "" : spoken(curve_class) + ": p = " + short_number(p);
+    return std::isnan(p) ? ""
+                         : (named ? spoken(curve_class) + ": " : "") + "p = " + short_number(p);
   }
 
   static std::string short_number(double value) {
@@ -91,12 +113,13 @@ class Panels {
 
   /// A level line through what each contact says.
   InvariantPanel over_contacts(const NamedInvariant& invariant, const char* unit,
-                               const Function& function) const {
+                               const Function& function, const PooledFrame& frame = {}) const {
     InvariantPanel panel;
     const std::string name(invariant.name);
     panel.title = name + " of the " + spoken(invariant.curve_class);
-    panel.test = test_of(invariant.curve_class);
+    panel.test = test_of(invariant.curve_class, false);
     panel.x_label = "contact";
+    panel.contacts = points_.size();
     panel.y_label = name + (*unit != '\0' ? " [" + std::string(unit) + "]" : "");
     PooledLine line;
     line.label = value_text(invariant);
@@ -104,7 +127,7 @@ class Panels {
     line.covariance(0, 0) = invariant.sigma * invariant.sigma;
     panel.lines.push_back(line);
     for (std::size_t i = 0; function && i < points_.size(); ++i) {
-      const Value value = propagated(points_[i], function);
+      const Value value = propagated(points_[i], function, frame);
       panel.points.push_back(
           {points_[i].patch, static_cast<double>(i + 1), 0.0, value.value, value.sigma});
     }
@@ -112,8 +135,8 @@ class Panels {
   }
 
   void add_curvature(const NamedInvariant& invariant) {
-    panels_.push_back(
-        over_contacts(invariant, "1/m", [](const Geometry& g) { return std::abs(g[1]); }));
+    panels_.push_back(over_contacts(
+        invariant, "1/m", [](const Geometry& g, const Frame&) { return std::abs(g[1]); }));
   }
 
   const NamedInvariant* invariant_called(std::string_view name) const {
@@ -153,7 +176,7 @@ class Panels {
       line.covariance(0, 0) = invariant.sigma * invariant.sigma;
     }
     panel.lines.push_back(line);
-    const std::string test = test_of(invariant.curve_class);
+    const std::string test = test_of(invariant.curve_class, true);
     panel.test += (panel.test.empty() || test.empty() ? "" : "; ") + test;
   }
 
@@ -164,18 +187,18 @@ class Panels {
     panel.y_label = "Ip [m^(-2/3)]";
     panel.x_is_contact = false;
     for (const MeasuredGeometry& point : points_) {
-      const Value u =
-          propagated(point, [](const Geometry& g) { return 1.0 / curvature_two_thirds(g[1]); });
-      const Value v =
-          propagated(point, [](const Geometry& g) { return parabola_invariant(g[1], g[2]); });
+      const Value u = propagated(
+          point, [](const Geometry& g, const Frame&) { return 1.0 / curvature_two_thirds(g[1]); });
+      const Value v = propagated(
+          point, [](const Geometry& g, const Frame&) { return parabola_invariant(g[1], g[2]); });
       panel.points.push_back({point.patch, u.value, u.sigma, v.value, v.sigma});
     }
     return panel;
   }
 
-  /// Turn of the canonical frame of the class with these parameters, where it suits all contacts.
-  std::optional<double> orientation_of(CurveClass curve_class,
-                                       const Eigen::Vector3d& parameters) const {
+  /// The canonical frame of the class with about these parameters, as all contacts give it.
+  std::optional<PooledFrame> frame_of(CurveClass curve_class,
+                                      const Eigen::Vector3d& parameters) const {
     constexpr int kStarts = 24;  // 15 degrees apart
     std::optional<SemiSignatureFit> best;
     SemiSignatureOptions options;
@@ -187,7 +210,19 @@ class Panels {
         best = fit;
       }
     }
-    return best ? std::optional(best->orientation) : std::nullopt;
+    if (!best) {
+      best = curve_class == CurveClass::CubicalParabola ? fit_cubical_parabola(points_, options)
+             : curve_class == CurveClass::SemiCubicalParabola
+                 ? fit_semi_cubical_parabola(points_, options)
+                 : fit_cubic_spline(points_, {.refinement = options});
+    }
+    if (best->status != InvariantStatus::Ok) {
+      return std::nullopt;
+    }
+    const auto turn = static_cast<int>(parameter_letters(curve_class).size());
+    const std::array rows = {0, 1, turn};
+    return PooledFrame{{best->parameters[0], best->parameters[1], best->orientation},
+                       best->covariance(rows, rows)};
   }
 
   double value_of(std::string_view name) const {
@@ -205,38 +240,45 @@ class Panels {
         cubical ? Eigen::Vector3d(value_of("Icp1"), value_of("Icp2"), 0.0)
         : semi  ? Eigen::Vector3d(std::sqrt(value_of("Iscp1")), value_of("Iscp2"), 0.0)
                 : Eigen::Vector3d(value_of("a"), value_of("b"), value_of("c"));
-    if (oriented_ != invariant.curve_class) {
-      oriented_ = invariant.curve_class;
-      orientation_ = orientation_of(invariant.curve_class, parameters);
+    if (framed_ != invariant.curve_class) {
+      framed_ = invariant.curve_class;
+      frame_ = frame_of(invariant.curve_class, parameters);
     }
-    const auto canonical = [orientation = orientation_.value_or(0.0)](const Geometry& g) {
-      return canonical_point(g[0] - orientation, g[1], g[2]);
+    const auto canonical = [](const Geometry& g, const Frame& f) {
+      return canonical_point(g[0] - f[2], g[1], g[2]);
     };
     Function function;
     const char* unit = "";
     if (invariant.name == "Icp1") {
       unit = "1/m^2";
-      function = [=](const Geometry& g) { return cubical_parabola_a(canonical(g)); };
+      function = [=](const Geometry& g, const Frame& f) {
+        return cubical_parabola_a(canonical(g, f));
+      };
     } else if (invariant.name == "Icp2") {
-      function = [=](const Geometry& g) { return cubical_parabola_c(canonical(g)); };
+      function = [=](const Geometry& g, const Frame& f) {
+        return cubical_parabola_c(canonical(g, f));
+      };
     } else if (invariant.name == "Iscp1") {
       unit = "1/m";
-      function = [=](const Geometry& g) { return semi_cubical_parabola_a_squared(canonical(g)); };
+      function = [=](const Geometry& g, const Frame& f) {
+        return semi_cubical_parabola_a_squared(canonical(g, f));
+      };
     } else if (invariant.name == "Iscp2") {
-      function = [=](const Geometry& g) { return semi_cubical_parabola_b(canonical(g)); };
+      function = [=](const Geometry& g, const Frame& f) {
+        return semi_cubical_parabola_b(canonical(g, f));
+      };
     } else {
       unit = "m^(1/2)";
       // Two of the three parameters as all contacts give them leave c to each.
-      function = [=](const Geometry& g) {
-        const SplineC c =
-            spline_c(spline_point(canonical(g), parameters[0], parameters[1]), parameters[0]);
+      function = [=](const Geometry& g, const Frame& f) {
+        const SplineC c = spline_c(spline_point(canonical(g, f), f[0], f[1]), f[0]);
         return c.numerator / c.denominator;
       };
     }
-    if (!orientation_) {
+    if (!frame_) {
       function = nullptr;
     }
-    InvariantPanel panel = over_contacts(invariant, unit, function);
+    InvariantPanel panel = over_contacts(invariant, unit, function, frame_.value_or(PooledFrame()));
     if (!cubical && !semi) {
       panel.lines.front().label = value_text(*invariant_called("a")) + ", " +
                                   value_text(*invariant_called("b")) + ", " + value_text(invariant);
@@ -248,8 +290,8 @@ class Panels {
   std::vector<MeasuredGeometry> points_;
   std::vector<InvariantPanel> panels_;
   std::optional<std::size_t> conics_;
-  CurveClass oriented_ = CurveClass::Unclassified;  ///< whose frame `orientation_` is
-  std::optional<double> orientation_;
+  CurveClass framed_ = CurveClass::Unclassified;  ///< whose frame `frame_` is
+  std::optional<PooledFrame> frame_;
 };
 
 }  // namespace

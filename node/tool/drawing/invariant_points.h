@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,8 @@
 
 namespace palpate {
 
-/// What one contact says, with one standard deviation from its own estimate.
+/// What one contact says, with one standard deviation: its own estimate's, and for a cubic the
+/// frame's that all of them give.
 struct InvariantPoint {
   int patch = 0;  ///< number of the patch among those of the contacts
   double x = 0.0;
@@ -36,6 +38,7 @@ struct InvariantPanel {
   std::string x_label;
   std::string y_label;
   bool x_is_contact = true;  ///< x counts contacts from 1
+  std::size_t contacts = 0;
   std::vector<InvariantPoint> points;
   std::vector<PooledLine> lines;
 };

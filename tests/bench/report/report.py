@@ -237,6 +237,11 @@ By class at noise / size 1e-3. {OVER_THE_RIGHT}
 {by_class(pareto)}
 ![Local estimators](local_estimators.svg)
 
+The sliding window's rms error of kappa, kappa_s over that of the best jet of one degree and length, both chosen in hindsight for each
+cell and for kappa and kappa_s apart; columns: noise over the part's size; 0.00: no such window has an estimate, or it is exact.
+
+{(folder / "hindsight.md").read_text()}
+
 ## The paper side by side
 
 Printed values, the paper's method in our hands, and the defaults.
