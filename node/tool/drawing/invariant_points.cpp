@@ -7,8 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "core/invariants/canonical_point.h"
 #include "core/invariants/conic_line.h"
-#include "core/invariants/cubic_spline_equations.h"
 #include "core/invariants/cubical_parabola_invariants.h"
 #include "core/invariants/parabola_invariant.h"
 #include "core/invariants/semi_cubical_parabola_invariants.h"
@@ -62,6 +62,20 @@ Value propagated(const MeasuredGeometry& point, const Function& function,
   const double of_frame =
       variance_of(frame.value, frame.covariance, [&](const Frame& f) { return function(at, f); });
   return {function(at, frame.value), std::sqrt(own + of_frame)};
+}
+
+/// c of a point of (t^2, a t^3 + b t^2 + c t) by its tangent and curvature, which are measured
+/// better than the curvature's derivative: the slope gives c = 2 t (slope - b) - 3 a t^2, and then
+/// the second derivative (3 a t^2 - c) / (4 t^3) is a quadratic equation for t. Of its two roots
+/// that of the c that lies nearer to `pooled_c`; NaN where there is none.
+double spline_c_of(const CanonicalPoint<double>& p, double a, double b, double pooled_c) {
+  const double rise = p.sine / p.cosine - b;
+  const double second = p.kappa / (p.cosine * p.cosine * p.cosine);
+  const double q = 0.5 * (3.0 * a + std::sqrt(9.0 * a * a - 8.0 * second * rise));
+  const auto c_at = [&](double t) { return 2.0 * t * rise - 3.0 * a * t * t; };
+  const double first = c_at(0.5 * q / second);
+  const double other = c_at(rise / q);
+  return std::abs(first - pooled_c) < std::abs(other - pooled_c) ? first : other;
 }
 
 class Panels {
@@ -270,9 +284,8 @@ class Panels {
     } else {
       unit = "m^(1/2)";
       // Two of the three parameters as all contacts give them leave c to each.
-      function = [=](const Geometry& g, const Frame& f) {
-        const SplineC c = spline_c(spline_point(canonical(g, f), f[0], f[1]), f[0]);
-        return c.numerator / c.denominator;
+      function = [canonical, pooled_c = invariant.value](const Geometry& g, const Frame& f) {
+        return spline_c_of(canonical(g, f), f[0], f[1], pooled_c);
       };
     }
     if (!frame_) {
