@@ -75,21 +75,4 @@ std::vector<WindowResult> estimate_all(std::span<const Vec2> samples,
   return results;
 }
 
-StreamingEstimator::StreamingEstimator(const EstimatorOptions& options)
-    : options_(options), samples_(samples_per_estimate(options)) {}
-
-std::optional<WindowResult> StreamingEstimator::add(const Vec2& sample_m) {
-  samples_.push(sample_m);
-  ++count_;
-  if (!samples_.full() || (count_ - samples_.capacity()) % shift_of(options_) != 0) {
-    return std::nullopt;
-  }
-  return WindowResult{count_ - samples_.capacity(), estimate_window(samples_.values(), options_)};
-}
-
-void StreamingEstimator::reset() {
-  samples_.clear();
-  count_ = 0;
-}
-
 }  // namespace palpate

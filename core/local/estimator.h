@@ -1,4 +1,4 @@
-// All local estimators behind one interface: over a window, over a whole patch, over a stream.
+// All local estimators behind one interface: over a window and over a whole patch.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/local/local_status.h"
-#include "core/local/ring_buffer.h"
 #include "core/local/two_round_estimator.h"
 
 namespace palpate {
@@ -46,25 +45,5 @@ struct WindowResult {
 /// Estimates along a patch, `shift` samples apart; empty if the patch is shorter than a window.
 std::vector<WindowResult> estimate_all(std::span<const Vec2> samples,
                                        const EstimatorOptions& options);
-
-/// Estimates along a stream, as soon as their last sample is in. The same estimates as
-/// estimate_all. A sample costs O(1), every `shift`-th one O(window) more (two-round:
-/// O(window * fits)), whatever has come before; nothing is allocated after construction. Each
-/// window's sums are formed afresh: running sums of powers would gather rounding errors.
-class StreamingEstimator {
- public:
-  explicit StreamingEstimator(const EstimatorOptions& options);
-
-  /// The window that this sample completes, if any.
-  std::optional<WindowResult> add(const Vec2& sample_m);
-
-  /// Forgets the samples: a new patch.
-  void reset();
-
- private:
-  EstimatorOptions options_;
-  RingBuffer<Vec2> samples_;
-  std::size_t count_ = 0;  ///< samples since the start of the patch
-};
 
 }  // namespace palpate

@@ -53,9 +53,9 @@ rm -rf "$out"
 mkdir -p "$out"
 
 if [ $scale = quick ]; then
-  pareto=6 sweeps=10 calibration=4 rounds=1000 load=1 least_time=0.05 peers=4 posterior=150 worst=20 view=4
+  pareto=6 sweeps=10 calibration=4 rounds=1000 load=1 least_time=0.05 peers=4 strokes=3 posterior=150 worst=20 view=4
 else
-  pareto=40 sweeps=100 calibration=40 rounds=10000 load=5 least_time=0.5 peers=40 posterior=600 worst=120 view=20
+  pareto=40 sweeps=100 calibration=40 rounds=10000 load=5 least_time=0.5 peers=40 strokes=10 posterior=600 worst=120 view=20
 fi
 measure() {  # title, file, command...
   local title=$1 file=$2
@@ -84,6 +84,8 @@ measure "what makes a recognition dearer" factors.txt "$bench/worst_case/bench_f
 measure "inputs found to cost the most" hostile.txt "$bench/worst_case/bench_worst_case" tests/data/hostile/*.csv
 measure "search for the worst case" worst_case.txt "$bench/worst_case/bench_worst_case" --seconds $worst \
   --save "$out/worst_case.csv"
+measure "the sliding window beside the best window in hindsight" hindsight.md "$bench/accuracy/bench_hindsight" \
+  --strokes $strokes
 measure "the paper's tables" paper.md build/strict/tests/paper/paper_tables
 measure "signature curves" signatures.csv "$bench/accuracy/bench_signatures"
 measure "real recordings" real.md "$bench/real/bench_real"

@@ -84,7 +84,7 @@ printf '%s\\n' "${{COMPREPLY[@]}}"
             for option, values in re.findall(r"^  (--[\w-]+) [A-Z]+:\{([\w,]+)\}", text, re.MULTILINE):
                 self.assertEqual(self.complete(program, *before, option, ""), set(values.split(",")))
         self.assertEqual(self.complete(TOOL, ""), {command for program, command, _ in calls() if command})
-        self.assertEqual(self.complete(TOOL, "fit", "--plo"), {"--plot"})
+        self.assertEqual(self.complete(TOOL, "fit", "--plo"), {"--plot", "--plot-invariants"})
         # A file's name is bash's own matter.
         self.assertEqual(self.complete(TOOL, "fit", "--plot", "--"), set())
 

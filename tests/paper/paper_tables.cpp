@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/paper/default_experiments.h"
+#include "tests/paper/figure_invariants.h"
 #include "tests/paper/paper_experiments.h"
 #include "tests/paper/sensor_experiments.h"
 
@@ -46,6 +47,21 @@ void print_table3() {
     std::printf("| %s | %d | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.1e |\n", c.name.data(),
                 c.curves, c.ours.min, c.ours.max, c.ours.mean, c.paper.min, c.paper.max,
                 c.paper.mean, exact[i++].ours.mean);
+  }
+}
+
+void print_figures4_and5() {
+  std::printf("\n## Figure 4: parabolas y^2 = 4 a x, Ip at t = 0.7\n\n");
+  std::printf("| a | Ip | (2 a)^(-2/3) |\n|---|---|---|\n");
+  for (const FigureCurve& c : figure4()) {
+    std::printf("| %g | %.6f | %.6f |\n", c.parameters[0], c.measured[0], c.expected[0]);
+  }
+  std::printf("\n## Figure 5: ellipses and a circle, Ic1 and Ic2 from t = 0.4 and 1.3\n\n");
+  std::printf("| a | b | Ic1 | (a b)^(-2/3) | Ic2 | (a^2 + b^2) (a b)^(-4/3) |\n");
+  std::printf("|---|---|---|---|---|---|\n");
+  for (const FigureCurve& c : figure5()) {
+    std::printf("| %g | %g | %.6f | %.6f | %.6f | %.6f |\n", c.parameters[0], c.parameters[1],
+                c.measured[0], c.expected[0], c.measured[1], c.expected[1]);
   }
 }
 
@@ -131,6 +147,7 @@ int main() {
   print_table1("exact kappa and kappa_s", Measurement::Exact);
   print_table2();
   print_table3();
+  print_figures4_and5();
   print_figure7();
   print_defaults();
   print_sensor_tables();

@@ -5,11 +5,23 @@
 #include <cmath>
 
 #include "tests/paper/default_experiments.h"
+#include "tests/paper/figure_invariants.h"
 #include "tests/paper/paper_experiments.h"
 #include "tests/paper/sensor_experiments.h"
 
 namespace palpate::paper {
 namespace {
+
+TEST(PaperFigures4And5, InvariantsAreThoseOfTheShapes) {
+  for (const auto& figure : {figure4(), figure5()}) {
+    ASSERT_EQ(figure.size(), 3U);
+    for (const FigureCurve& curve : figure) {
+      for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_NEAR(curve.measured[i], curve.expected[i], 1e-12);
+      }
+    }
+  }
+}
 
 TEST(PaperTable1, OurMeansLieWithinThePrintedRanges) {
   for (const InvariantColumn& column : table1()) {

@@ -120,6 +120,11 @@ TrueStroke random_stroke(std::size_t shape, double length_m, std::mt19937_64& rn
   return stroke;
 }
 
+std::size_t usual_stride(const TrueStroke& stroke) {
+  const auto steps = static_cast<double>(stroke.truth.size() - 1);
+  return static_cast<std::size_t>(std::clamp(steps / 60.0, 1.0, 2e-4 / stroke.step_m));
+}
+
 std::vector<Vec2> TrueStroke::samples(std::size_t stride) const {
   std::vector<Vec2> points;
   for (std::size_t i = 0; i < truth.size(); i += stride) {

@@ -29,4 +29,7 @@ struct TrueStroke {
 TrueStroke random_stroke(std::size_t shape, double length_m, std::mt19937_64& rng);
 inline constexpr std::size_t kStrokeShapes = 10;
 
+/// For samples 0.2 mm apart, closer where those would be fewer than 60.
+std::size_t usual_stride(const TrueStroke& stroke);
+
 }  // namespace palpate::test

@@ -16,6 +16,7 @@
 #include "node/tool/commands/fit_input.h"
 #include "node/tool/contact_groups.h"
 #include "node/tool/drawing/curve_export.h"
+#include "node/tool/drawing/invariant_plot.h"
 #include "node/tool/drawing/svg_plot.h"
 #include "node/tool/given_class_answer.h"
 #include "node/tool/part_match.h"
@@ -31,6 +32,7 @@ struct FitCommand {
   std::vector<std::string> files;
   std::string format;
   std::string plot;
+  std::string invariants_plot;
   std::string curve_file;
   std::string part;
   std::string given_class;
@@ -141,12 +143,16 @@ std::vector<ProbedPatch> probed_patches(const ContactGroup& group,
   return patches;
 }
 
-/// `notes` receives what is to be said beside the answer.
-v1::Recognition recognise(const FitInput& input, const RecognizerOptions& options,
-                          const std::vector<QualifiedProbe>& probes,
-                          std::vector<std::string>& notes) {
-  const ContactGroup& group = input.group;
+struct Answered {
   Recognition recognition;
+  v1::Recognition wire;
+};
+
+/// `notes` receives what is to be said beside the answer.
+Answered recognise(const FitInput& input, const RecognizerOptions& options,
+                   const std::vector<QualifiedProbe>& probes, std::vector<std::string>& notes) {
+  const ContactGroup& group = input.group;
+  Answered answer;
   AddResult added;
   std::chrono::steady_clock::duration taken{};
   v1::Recognition probed;
@@ -155,14 +161,14 @@ v1::Recognition recognise(const FitInput& input, const RecognizerOptions& option
     Recognizer recognizer(options);
     added = add_group(group, recognizer);
     const auto start = std::chrono::steady_clock::now();
-    recognition = recognizer.recognize();
+    answer.recognition = recognizer.recognize();
     taken = std::chrono::steady_clock::now() - start;
   } else {
     const std::vector<ProbedPatch> patches = probed_patches(group, probes, probed, probe_notes);
     const auto start = std::chrono::steady_clock::now();
     ProbedRecognition result = recognise_probed(patches, options);
     taken = std::chrono::steady_clock::now() - start;
-    recognition = std::move(result.recognition);
+    answer.recognition = std::move(result.recognition);
     added = result.added;
     if (!result.corrected && probed.probe_files_size() > 0) {
       probed.clear_probe_files();
@@ -170,15 +176,14 @@ v1::Recognition recognise(const FitInput& input, const RecognizerOptions& option
           "WARNING: no curve was found to take normals from: the probe's offset is not taken off");
     }
   }
-  v1::Recognition answer;
   to_wire(
-      recognition,
+      answer.recognition,
       [&](std::uint32_t probe, std::uint32_t patch) {
         return ContactSource{group.probes[probe], patch};
       },
-      answer);
-  fill_origin(group, taken, answer);
-  answer.mutable_probe_files()->Swap(probed.mutable_probe_files());
+      answer.wire);
+  fill_origin(group, taken, answer.wire);
+  answer.wire.mutable_probe_files()->Swap(probed.mutable_probe_files());
   notes = notes_for(input, options.memory, added);
   notes.insert(notes.end(), probe_notes.begin(), probe_notes.end());
   return answer;
@@ -201,6 +206,12 @@ std::string plot_path(const std::string& path, std::size_t number) {
   const std::string stem = path.substr(0, dot);
   const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
   return stem + "-" + std::to_string(number) + ending;
+}
+
+/// What is wrong with writing it, or nothing.
+std::string written(const std::string& path, const std::string& document) {
+  std::ofstream file(path, std::ios::trunc);
+  return file << document << std::flush ? "" : path + ": cannot be written";
 }
 
 /// Places a known part instead of recognising one.
@@ -301,7 +312,17 @@ int run(FitCommand& fit) {
     if (fit.given_class.empty()) {
       RecognizerOptions options = fit.recognizer;
       options.memory = memory_for(group, options.memory, fit.patches_are_bounded);
-      answer = recognise(input, options, probes, notes);
+      Answered answered = recognise(input, options, probes, notes);
+      if (!fit.invariants_plot.empty()) {
+        const std::string picture =
+            invariant_plot(answered.recognition, group.file + ", " + group.name + ", object " +
+                                                     std::to_string(group.object));
+        const std::string path = plot_path(fit.invariants_plot, number + 1);
+        if (const std::string why = written(path, picture); !why.empty()) {
+          return complain(why, kFailed);
+        }
+      }
+      answer = std::move(answered.wire);
       const bool known = noise_is_known(input, options) || answer.probe_files_size() > 0;
       text = json ? json_line(answer) : report_text(answer, known);
     } else {
@@ -319,9 +340,8 @@ int run(FitCommand& fit) {
     ++number;
     if (!fit.plot.empty()) {
       const std::string path = plot_path(fit.plot, number);
-      std::ofstream plot(path, std::ios::trunc);
-      if (!(plot << svg_plot(group, answer) << std::flush)) {
-        return complain(path + ": cannot be written", kFailed);
+      if (const std::string why = written(path, svg_plot(group, answer)); !why.empty()) {
+        return complain(why, kFailed);
       }
     }
     if (!fit.curve_file.empty()) {
@@ -374,6 +394,14 @@ void add_fit_command(CLI::App& app, int& exit_code) {
               "Draw samples, curve, 95 % band, rivals, enlarged residuals and frame as SVG; "
               "further groups go to FILE-2.svg, ...")
           ->type_name("FILE");
+  CLI::Option* invariants_plot =
+      command
+          ->add_option("--plot-invariants", fit->invariants_plot,
+                       "Draw the recognition tree's invariants as SVG, for every class that it "
+                       "asked about: what each contact says, and the value of all with its band; "
+                       "conics as the line Ip = Ic2 - Ic1 |kappa|^(-2/3); further groups go to "
+                       "FILE-2.svg, ...")
+          ->type_name("FILE");
   CLI::Option* given =
       command
           ->add_option(
@@ -382,6 +410,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
               "least squares of the orthogonal distances, with form (rms, peak to valley) and "
               "residuals. Of the options below --sigma and --determined-fraction count; json is "
               "one GivenClassAnswer (palpate/v1/given_class.proto) a line")
+          ->excludes(invariants_plot)
           ->type_name("CLASS");
   command
       ->add_option(
@@ -398,6 +427,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
           "--sigma, --recognized-probability and --false-outlier-probability; json is one "
           "PartMatch (palpate/v1/part_match.proto) a line")
       ->excludes(plot)
+      ->excludes(invariants_plot)
       ->excludes(given)
       ->type_name("FILE");
   command

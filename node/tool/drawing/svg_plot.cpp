@@ -5,11 +5,13 @@
 #include <iterator>
 #include <optional>
 
+#include "node/tool/drawing/colours.h"
 #include "node/tool/drawing/drawing.h"
 #include "node/tool/drawing/enlarged_residuals.h"
 #include "node/tool/drawing/pose_ellipse.h"
 #include "node/tool/drawing/shown_extent.h"
 #include "node/tool/drawing/svg_table.h"
+#include "node/tool/drawing/ticks.h"
 #include "node/tool/drawing/visible_samples.h"
 #include "node/tool/text/advice.h"
 #include "node/tool/text/quantity.h"
@@ -25,10 +27,6 @@ constexpr double kTop = 24.0;
 constexpr double kRight = 324.0;  // the table's place
 constexpr double kBottom = 60.0;
 
-constexpr const char* kPatchColours[] = {"#0072b2", "#b85000", "#00805f", "#a64d8b",
-                                         "#8a6600", "#35758f", "#7a4b2b", "#5b5b5b"};
-constexpr const char* kCurveColour = "#1b1f24";
-constexpr const char* kBandColour = "#2f7fd6";
 constexpr const char* kRivalColour = "#8a5cc2";
 constexpr const char* kResidualColour = "#c2185b";
 constexpr const char* kContactColour = "#b36b00";
@@ -62,18 +60,6 @@ class View {
   Vec2 half_;
   double pixels_per_m_ = 1.0;
 };
-
-/// 1, 2 or 5 times a power of ten, for about `count` ticks over the length.
-double tick_step(double length, double count) {
-  const double rough = length / count;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= rough) {
-      return factor * power;
-    }
-  }
-  return 10.0 * power;
-}
 
 View view_of(const ContactGroup& group, const v1::Recognition& answer, const Drawing& drawing) {
   const Extent extent =

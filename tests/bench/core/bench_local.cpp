@@ -1,17 +1,18 @@
-// Cost of the local estimators: per estimate over 111 samples, and per sample of a stream.
+// Cost of the local estimators: per estimate over 111 samples, and per sample along a stroke.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "core/local/adaptive_jet.h"
 #include "core/local/estimator.h"
 #include "core/local/noise.h"
 #include "core/local/spikes/spikes.h"
 #include "core/local/stream/sliding_window.h"
+#include "core/local/stream/window_fit.h"
 
 namespace palpate {
 namespace {
@@ -50,22 +51,22 @@ void per_estimate(benchmark::State& state) {
 BENCHMARK(per_estimate)->DenseRange(0, 3)->Unit(benchmark::kMicrosecond);
 
 /// Over the window. Shift 4, as in the paper: a quarter of the samples brings an estimate.
-void stream_per_sample(benchmark::State& state) {
+void fixed_window_per_sample(benchmark::State& state) {
   const std::vector<Vec2> samples = arc(4000);
   EstimatorOptions options = options_for(state);
   options.window = static_cast<int>(state.range(1));
   state.SetLabel(std::string(name_of(options.kind)));
-  StreamingEstimator stream(options);
-  std::size_t i = 0;
+  const std::size_t held = samples_per_estimate(options);
+  std::size_t end = held;
   for (auto _ : state) {
-    if (i == samples.size()) {
-      i = 0;
-      stream.reset();
+    if (end % static_cast<std::size_t>(options.shift) == 0) {
+      const auto window = std::span(samples).subspan(end - held, held);
+      benchmark::DoNotOptimize(estimate_window(window, options));
     }
-    benchmark::DoNotOptimize(stream.add(samples[i++]));
+    end = end == samples.size() ? held : end + 1;
   }
 }
-BENCHMARK(stream_per_sample)->ArgsProduct({{0, 1, 2, 3}, {15, 31, 51, 75, 111, 151}});
+BENCHMARK(fixed_window_per_sample)->ArgsProduct({{0, 1, 2, 3}, {15, 31, 51, 75, 111, 151}});
 
 /// The window that the data choose, along circles on which it holds more and more samples: the
 /// label is their mean number. Shift 4: a quarter of the samples brings an estimate.
@@ -108,13 +109,19 @@ void jet_degree(benchmark::State& state) {
 }
 BENCHMARK(jet_degree)->DenseRange(3, 5)->Unit(benchmark::kMicrosecond);
 
-void adaptive_jet_at_the_centre(benchmark::State& state) {
-  const std::vector<Vec2> samples = arc(111);
+/// One window of the sliding window, of as many nodes as its pyramid makes of 111 samples.
+void window_fit(benchmark::State& state) {
+  NodePyramid pyramid;
+  for (const Vec2& p : arc(111)) {
+    pyramid.add(p, 1.0);
+  }
+  std::vector<PathNode> nodes;
+  pyramid.window(0, &nodes);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(adaptive_jet(samples, PatchPlace::Centre, kSigma));
+    benchmark::DoNotOptimize(fit_window(nodes, kSigma, 0.0));
   }
 }
-BENCHMARK(adaptive_jet_at_the_centre)->Unit(benchmark::kMicrosecond);
+BENCHMARK(window_fit)->Unit(benchmark::kMicrosecond);
 
 void noise_of_a_patch(benchmark::State& state) {
   const std::vector<Vec2> samples = arc(static_cast<int>(state.range(0)));

@@ -26,13 +26,13 @@
 #include "core/invariants/signature_fit/parabola_fits.h"
 #include "core/invariants/signature_fit/spline_least_squares.h"
 #include "core/invariants/spline_pair.h"
-#include "core/local/adaptive_jet.h"
 #include "core/local/estimator.h"
 #include "core/local/noise.h"
 #include "core/local/spikes/spikes.h"
 #include "core/local/tip_radius.h"
 #include "core/recognition/fit/implicit_fit.h"
 #include "tests/support/canonical_points.h"
+#include "tests/support/fit_samples.h"
 #include "tests/support/scene_data.h"
 
 /// The function whose instructions are counted (compare.sh names it): call number i of a kernel.
@@ -138,7 +138,19 @@ void add_local(std::vector<Kernel>* kernels) {
     add("jet-" + std::to_string(degree),
         [=](const auto& w) { return estimate_window(w, options); });
   }
-  add("adaptive-jet", [](const auto& w) { return adaptive_jet(w, PatchPlace::Centre, kSigma); });
+  const auto window_nodes = [] {
+    std::vector<std::vector<PathNode>> all;
+    for (const auto& window : windows()) {
+      NodePyramid pyramid;
+      for (const Vec2& p : window) {
+        pyramid.add(p, 1.0);
+      }
+      pyramid.window(0, &all.emplace_back());
+    }
+    return all;
+  };
+  kernels->push_back(over("local/window-fit", kWindows, window_nodes,
+                          [](const auto& nodes) { return fit_window(nodes, kSigma, 0.0); }));
   add("noise", [](const auto& w) { return estimate_noise(w); });
   add("spikes", [](const auto& w) { return find_spikes(w, {.sigma_m = kSigma}); });
   add("spikes-noise-unknown", [](const auto& w) { return find_spikes(w); });
@@ -147,7 +159,7 @@ void add_local(std::vector<Kernel>* kernels) {
   const auto estimates = [] {
     std::vector<LocalEstimate> all;
     for (const auto& window : windows()) {
-      all.push_back(adaptive_jet(window, PatchPlace::Centre, kSigma).result.estimate);
+      all.push_back(test::fit_samples(window, kSigma).estimate);
     }
     return all;
   };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/bench/real/ellipse_part.h"
+#include "tests/bench/real/local_coverage.h"
 #include "tests/bench/real/mirrors.h"
 #include "tests/bench/real/qualified_part.h"
 
@@ -19,7 +20,7 @@ constexpr const char* kAbout =
   bench_real
       the X-ray mirrors of tests/data/real/dabam beside their design
   bench_real --ellipse-part FILE --semi-axes 0.065445,0.0525 --tip-radius 0.00475
-      arcs of a closed elliptic part; FILE is in palpate's CSV format: a header line
+      the sliding window along a closed elliptic part, and arcs of it; FILE is in palpate's CSV format: a header line
       "probe,patch,x_m,y_m", then one patch of contacts all around the part, in order.
       The axes and radius above are those of part "ellip2" and its pusher in the public data set
       "More than a Million Ways to Be Pushed" (K.-T. Yu, M. Bauza, N. Fazeli, A. Rodriguez, IROS 2016;
@@ -60,6 +61,9 @@ int main(int argc, char** argv) {
   bool side_known = false;
   app.add_flag("--side-known", side_known, "Tell palpate that the material lies inside")
       ->needs(part);
+  bool local_only = false;
+  app.add_flag("--local-only", local_only, "The sliding window's estimates along the part, no arcs")
+      ->needs(part);
   double form_deviation_m = kFormDeviation_m;
   app.add_option("--form-deviation", form_deviation_m,
                  "What palpate is told of the part's making, beside being told nothing: standard "
@@ -93,7 +97,10 @@ int main(int argc, char** argv) {
       palpate::bench::print_qualified_part(artefact, ellipse, std::cout);
       return 0;
     }
-    palpate::bench::print_ellipse_part(ellipse, arcs, std::cout);
+    palpate::bench::print_local_coverage(ellipse, std::cout);
+    if (!local_only) {
+      palpate::bench::print_ellipse_part(ellipse, arcs, std::cout);
+    }
   } catch (const std::runtime_error& error) {
     std::cerr << "bench_real: " << error.what() << '\n';
     return 1;

@@ -7,14 +7,15 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/local/adaptive_jet.h"
 #include "core/local/estimator.h"
+#include "core/local/stream/sliding_window.h"
 #include "tests/bench/real/design_on_profile.h"
 #include "tests/bench/real/recording.h"
 #include "tests/support/scene_data.h"
@@ -95,6 +96,21 @@ std::string ellipse_cells(const Recognition& answer) {
          with_deviation(ellipse->shape.values[1], ellipse->covariance(1, 1));
 }
 
+/// Of the estimates along the profile the one that lies the nearest to `place`.
+std::optional<LocalEstimate> sliding_window_at(const std::vector<Vec2>& points, const Vec2& place) {
+  SlidingWindow window;
+  std::optional<LocalEstimate> nearest;
+  for (const Vec2& point : points) {
+    const auto found = window.add(point);
+    if (found && found->result &&
+        (!nearest ||
+         (found->result.estimate.position - place).norm() < (nearest->position - place).norm())) {
+      nearest = found->result.estimate;
+    }
+  }
+  return nearest;
+}
+
 using NamedEstimate = std::pair<std::string, LocalEstimate>;
 
 std::vector<NamedEstimate> middle_estimates(const Recording& recording, const Recognition& answer) {
@@ -102,9 +118,11 @@ std::vector<NamedEstimate> middle_estimates(const Recording& recording, const Re
   whole.window = static_cast<int>(recording.points.size());
   whole.jet_degree = 5;
   std::vector<NamedEstimate> estimates = {
-      {"jet, degree 5, whole profile", estimate_window(recording.points, whole).estimate},
-      {"adaptive jet", adaptive_jet(recording.points, PatchPlace::Centre).result.estimate}};
+      {"jet, degree 5, whole profile", estimate_window(recording.points, whole).estimate}};
   const Vec2 middle = recording.points[recording.points.size() / 2];
+  if (const auto sliding = sliding_window_at(recording.points, middle)) {
+    estimates.emplace_back("sliding window", *sliding);
+  }
   const auto nearest = std::min_element(answer.contacts.begin(), answer.contacts.end(),
                                         [&](const LocalizedContact& a, const LocalizedContact& b) {
                                           return (a.estimate.position - middle).norm() <

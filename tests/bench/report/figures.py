@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import matplotlib.ticker  # noqa: E402
 
 COLOURS = {"finite-difference": "tab:red", "circle": "tab:orange", "two-round": "tab:purple", "jet": "tab:blue",
-           "adaptive jet": "tab:blue", "tree on default contacts": "tab:brown", "refined": "tab:green", "refined (class known)": "tab:olive"}
+           "sliding window": "tab:blue", "tree on default contacts": "tab:brown", "refined": "tab:green", "refined (class known)": "tab:olive"}
 
 
 def rows_of(path):
@@ -165,13 +165,15 @@ def calibration(rows, folder):
 
 
 def signatures(rows, folder):
+    """Of figure 10's kind: estimates beside the signature curve, a panel a class."""
     figure, axes = plt.subplots(2, 3, figsize=(12, 7))
-    for axis, ((name,), group) in zip(axes.flat, group_by(rows, "class").items()):
+    own_rows = [r for r in rows if r["figure"] == 10.0]
+    for axis, ((name,), group) in zip(axes.flat, group_by(own_rows, "label").items()):
         kinds = group_by(group, "kind")
         curve = kinds[("curve",)]
         kappas = [r["kappa"] for r in curve]
         slopes = [r["kappa_s"] for r in curve]
-        for kind, marker in (("circle", "x"), ("two-round", "+"), ("adaptive jet", "o")):
+        for kind, marker in (("circle", "x"), ("two-round", "+"), ("sliding window", "o")):
             own = kinds.get((kind,), [])
             axis.plot([r["kappa"] for r in own], [r["kappa_s"] for r in own], marker, color=COLOURS[kind], label=kind,
                       markersize=4)
@@ -183,6 +185,42 @@ def signatures(rows, folder):
         axis.grid(alpha=0.3)
     axes.flat[0].legend(fontsize=8)
     save(figure, folder, "signatures")
+
+
+def semi_signature(rows, folder):
+    """Figures 2 and 3: a cubical parabola, its signature and its semi-signature curve."""
+    own = [r for r in rows if r["figure"] == 3.0]
+    figure = plt.figure(figsize=(13, 4.2))
+    for place, (x, y) in enumerate((("x", "y"), ("kappa", "kappa_s")), start=1):
+        axis = figure.add_subplot(1, 3, place)
+        axis.plot([r[x] for r in own], [r[y] for r in own], "k-", linewidth=1.2)
+        axis.set(xlabel=x, ylabel=y, title=own[0]["label"] if place == 1 else "signature curve")
+        axis.grid(alpha=0.3)
+    axis = figure.add_subplot(1, 3, 3, projection="3d")
+    axis.plot([r["lambda"] for r in own], [r["kappa"] for r in own], [r["kappa_s"] for r in own], "k-", linewidth=1.2)
+    axis.set(xlabel="lambda", ylabel="kappa", title="semi-signature curve")
+    axis.set_zlabel("kappa_s")
+    axis.set_box_aspect(None, zoom=0.85)  # the labels are part of the picture
+    save(figure, folder, "semi_signature")
+
+
+def conic_figures(rows, folder):
+    """Figures 4 and 5: curves, their signature curves, the invariants' values."""
+    figure, axes = plt.subplots(2, 2, figsize=(11, 8))
+    for line, number in enumerate((4.0, 5.0)):
+        own = [r for r in rows if r["figure"] == number]
+        for place, ((label,), group) in enumerate(group_by(own, "label").items()):
+            axes[line][0].plot([r["x"] for r in group], [r["y"] for r in group], color=f"C{place}",
+                               label=label.replace(";", ","))
+            marker = "o" if group[0]["kappa"] == group[-1]["kappa"] == group[len(group) // 3]["kappa"] else ""
+            axes[line][1].plot([r["kappa"] for r in group], [r["kappa_s"] for r in group], marker=marker, linestyle="-",
+                               color=f"C{place}")
+        axes[line][0].set(xlabel="x", ylabel="y", aspect="equal", title="parabolas" if number == 4.0 else "ellipses")
+        axes[line][0].legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.15))
+        axes[line][1].set(xlabel="kappa", ylabel="kappa_s", title="signature curves")
+        for axis in axes[line]:
+            axis.grid(alpha=0.3)
+    save(figure, folder, "conic_signatures")
 
 
 def processes(latency, load, folder):
@@ -218,10 +256,13 @@ def cost(recognition, local, folder):
     left.loglog(samples, times, "o-", label="cold recognition, all classes")
     left.loglog(samples, [times[-1] * n / samples[-1] for n in samples], "k--", linewidth=1, label="linear")
     left.set(xlabel="samples", ylabel="us")
-    streams = [r for r in local if str(r["name"]).startswith("stream_per_sample/")]
+    streams = [r for r in local if str(r["name"]).startswith("fixed_window_per_sample/")]
     for (pipeline,), group in group_by(streams, "label").items():
         windows = [int(r["name"].split("/")[2]) for r in group]
         right.semilogy(windows, [r["cpu_time"] / 1e3 for r in group], "o-", color=COLOURS[pipeline], label=pipeline)
+    sliding = [r for r in local if str(r["name"]).startswith("sliding_window_per_sample/")]
+    right.semilogy([int(r["label"].split()[0]) for r in sliding], [r["cpu_time"] / 1e3 for r in sliding], "s--",
+                   color="black", label="sliding window")
     right.set(xlabel="window [samples]", ylabel="us per sample, an estimate every fourth")
     for axis in (left, right):
         axis.grid(alpha=0.3, which="both")

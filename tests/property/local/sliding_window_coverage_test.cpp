@@ -72,13 +72,10 @@ Tallies walk(bool stated) {
             continue;
           }
           const test::TrueStroke stroke = test::random_stroke(shape, length, rng);
-          // 0.2 mm apart, closer where that would be fewer than 60 samples.
-          const auto stride = static_cast<std::size_t>(
-              std::clamp(length / 60.0 / stroke.step_m, 1.0, 2e-4 / stroke.step_m));
           const double sigma = noise * kSize_m;
           SlidingWindow window({.sigma_m = stated ? std::max(sigma, kRounding_m) : 0.0});
           std::vector<LocalEstimate> estimates;
-          for (const Vec2& exact : stroke.samples(stride)) {
+          for (const Vec2& exact : stroke.samples(test::usual_stride(stroke))) {
             const double x = normal(rng);
             const double y = normal(rng);
             const auto estimate = window.add(exact + sigma * Vec2(x, y));

@@ -145,8 +145,8 @@ class Fit(unittest.TestCase):
 
     def test_plots_are_svg_one_a_group(self):
         path = self.write("part.csv", HEADER + ellipse() + ellipse(object_number=2))
-        self.answers("--plot", self.folder / "plot.svg", path)
-        for name in ("plot.svg", "plot-2.svg"):
+        self.answers("--plot", self.folder / "plot.svg", "--plot-invariants", self.folder / "invariants.svg", path)
+        for name in ("plot.svg", "plot-2.svg", "invariants.svg", "invariants-2.svg"):
             root = xml.etree.ElementTree.parse(self.folder / name).getroot()
             self.assertTrue(root.tag.endswith("svg"))
 
@@ -168,9 +168,10 @@ class Fit(unittest.TestCase):
 
     def test_a_plot_that_cannot_be_written_fails(self):
         path = self.write("part.csv", HEADER + ellipse())
-        code, _, err = run(TOOL, "fit", path, "--plot", self.folder / "absent" / "plot.svg")
-        self.assertEqual(code, 1)
-        self.assertIn("cannot be written", err)
+        for option in ("--plot", "--plot-invariants"):
+            code, _, err = run(TOOL, "fit", path, option, self.folder / "absent" / "plot.svg")
+            self.assertEqual(code, 1)
+            self.assertIn("cannot be written", err)
 
     def test_too_few_samples_collect(self):
         answers, _ = self.answers("-", text_in="probe,patch,x_m,y_m\na,0,0,0\na,0,1,0\n")

@@ -1,0 +1,20 @@
+// Where a chart's axis has its marks.
+#pragma once
+
+#include <cmath>
+
+namespace palpate {
+
+/// 1, 2 or 5 times a power of ten, for about `count` ticks over the length.
+inline double tick_step(double length, double count) {
+  const double rough = length / count;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= rough) {
+      return factor * power;
+    }
+  }
+  return 10.0 * power;
+}
+
+}  // namespace palpate
