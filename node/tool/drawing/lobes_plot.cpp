@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "node/tool/drawing/colours.h"
 #include "node/tool/drawing/svg_table.h"
 #include "node/tool/text/quantity.h"
 
@@ -13,10 +14,7 @@ constexpr double kRound = 480.0;   // side of the polar picture's square [px]
 constexpr double kCircle = 130.0;  // radius of offset 0 in it [px]
 constexpr double kReach = 85.0;    // of the largest offset beyond it [px]
 constexpr double kStrip = 500.0;   // width of the residuals' strip [px]
-constexpr const char* kSampleColour = "#0072b2";
 constexpr const char* kSpikeColour = "#c2185b";
-constexpr const char* kOffsetColour = "#1b1f24";
-constexpr const char* kBandColour = "#2f7fd6";
 
 /// Place in the polar picture.
 std::string polar(double angle, double offset_px) {
@@ -75,9 +73,9 @@ std::string lobes_plot(const Qualification& qualification, const std::string& ti
     const std::size_t comma = place.find(',');
     svg += "<circle cx=\"" + place.substr(0, comma) + "\" cy=\"" +
            place.substr(comma + 1, place.size() - comma - 2) + "\" r=\"1.5\" fill=\"" +
-           (sample.spike ? kSpikeColour : kSampleColour) + "\"/>\n";
+           (sample.spike ? kSpikeColour : kPatchColours[0]) + "\"/>\n";
   }
-  svg += "<polygon fill=\"none\" stroke=\"" + std::string(kOffsetColour) +
+  svg += "<polygon fill=\"none\" stroke=\"" + std::string(kCurveColour) +
          "\" stroke-width=\"1.5\" points=\"" + ring(offset, 0.0, px_per_m) + "\"/>\n";
   const LengthUnit unit = length_unit_for(reach_m);
   const std::string name(unit.name);
@@ -107,7 +105,7 @@ std::string lobes_plot(const Qualification& qualification, const std::string& ti
     const double x = left + kStrip * (wrap_angle(sample.normal_angle) + kPi) / (2.0 * kPi);
     const double y = middle - half * std::clamp(sample.residual_m / most_m, -1.0, 1.0);
     svg += formatted("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"1.5\" fill=\"%s\"/>\n", x, y,
-                     sample.spike ? kSpikeColour : kSampleColour);
+                     sample.spike ? kSpikeColour : kPatchColours[0]);
   }
   svg += formatted(
       "<text x=\"%.0f\" y=\"%.1f\">residuals within %s %s, over the normal's direction "
