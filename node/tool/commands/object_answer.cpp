@@ -1,0 +1,120 @@
+#include "node/tool/commands/object_answer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/qualification/probe_correction.h"
+#include "node/files/printable.h"
+#include "node/wire/convert.h"
+
+namespace palpate {
+namespace {
+
+std::int64_t newest_stamp_ns(const ContactGroup& group) {
+  std::int64_t newest = 0;
+  for (const ContactRun& run : group.runs) {
+    for (const ContactSample& sample : run.samples) {
+      newest = std::max(newest, sample.stamp_ns);
+    }
+  }
+  return newest;
+}
+
+/// The qualified probe of that name, or the only one there is.
+const QualifiedProbe* probe_called(const std::string& name,
+                                   const std::vector<QualifiedProbe>& probes) {
+  if (probes.size() == 1) return &probes.front();
+  const auto found = std::find_if(probes.begin(), probes.end(), [&](const QualifiedProbe& probe) {
+    return probe.described.name() == name;
+  });
+  return found == probes.end() ? nullptr : &*found;
+}
+
+/// An object as qualified probes have touched it; `answer` and `notes` receive which files it rests
+/// on.
+std::vector<ProbedPatch> probed_patches(const ContactGroup& group,
+                                        const std::vector<QualifiedProbe>& probes,
+                                        v1::Recognition& answer, std::vector<std::string>& notes) {
+  std::vector<ProbedPatch> patches;
+  std::vector<bool> told(group.probes.size(), false);
+  for (const ContactRun& run : group.runs) {
+    const std::string& name = group.probes[run.context.probe];
+    const QualifiedProbe* probe = probe_called(name, probes);
+    patches.push_back({run.context, run.samples, probe == nullptr ? nullptr : &probe->character});
+    if (told[run.context.probe]) continue;
+    told[run.context.probe] = true;
+    if (probe == nullptr) {
+      notes.push_back("WARNING: no probe file is of probe " + printable(name));
+      continue;
+    }
+    const auto& files = answer.probe_files();
+    if (std::find(files.begin(), files.end(), probe->file) == files.end()) {
+      answer.add_probe_files(probe->file);
+    }
+    if (!probe->described.name().empty() && probe->described.name() != name) {
+      notes.push_back("probe " + printable(name) + " is taken for " +
+                      printable(probe->described.name()) + " of " + probe->file);
+    }
+    if (probe->described.verdict() == v1::QUALIFICATION_VERDICT_INSUFFICIENT) {
+      notes.push_back("WARNING: " + probe->file + ": its qualification was insufficient");
+    }
+    const double radius = probe->character.tip_radius_m;
+    if (radius > 0.0 && run.context.tip_radius_m > 0.0 && run.context.tip_radius_m != radius) {
+      notes.push_back("the tip radius of " + probe->file + " counts, not that of the samples");
+    }
+  }
+  return patches;
+}
+
+}  // namespace
+
+void fill_origin(const ContactGroup& group, std::chrono::steady_clock::duration taken,
+                 v1::Recognition& answer) {
+  answer.mutable_header()->set_source(group.file);
+  answer.set_group(group.name);
+  answer.set_object(group.object);
+  answer.set_newest_sample_stamp_ns(newest_stamp_ns(group));
+  answer.set_compute_ns(std::chrono::duration_cast<std::chrono::nanoseconds>(taken).count());
+}
+
+Answered recognise(const FitInput& input, const RecognizerOptions& options,
+                   const std::vector<QualifiedProbe>& probes, std::vector<std::string>& notes) {
+  const ContactGroup& group = input.group;
+  Answered answer;
+  AddResult added;
+  std::chrono::steady_clock::duration taken{};
+  v1::Recognition probed;
+  std::vector<std::string> probe_notes;
+  if (probes.empty()) {
+    Recognizer recognizer(options);
+    added = add_group(group, recognizer);
+    const auto start = std::chrono::steady_clock::now();
+    answer.recognition = recognizer.recognize();
+    taken = std::chrono::steady_clock::now() - start;
+  } else {
+    const std::vector<ProbedPatch> patches = probed_patches(group, probes, probed, probe_notes);
+    const auto start = std::chrono::steady_clock::now();
+    ProbedRecognition result = recognise_probed(patches, options);
+    taken = std::chrono::steady_clock::now() - start;
+    answer.recognition = std::move(result.recognition);
+    added = result.added;
+    if (!result.corrected && probed.probe_files_size() > 0) {
+      probed.clear_probe_files();
+      probe_notes.push_back(
+          "WARNING: no curve was found to take normals from: the probe's offset is not taken off");
+    }
+  }
+  to_wire(
+      answer.recognition,
+      [&](std::uint32_t probe, std::uint32_t patch) {
+        return ContactSource{group.probes[probe], patch};
+      },
+      answer.wire);
+  fill_origin(group, taken, answer.wire);
+  answer.wire.mutable_probe_files()->Swap(probed.mutable_probe_files());
+  notes = notes_for(input, options.memory, added);
+  notes.insert(notes.end(), probe_notes.begin(), probe_notes.end());
+  return answer;
+}
+
+}  // namespace palpate

@@ -1,0 +1,29 @@
+// The recogniser's answer for one object of a file.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "core/recognition/recognizer.h"
+#include "node/files/probe_file.h"
+#include "node/tool/commands/fit_input.h"
+#include "palpate/v1/recognition.pb.h"
+
+namespace palpate {
+
+struct Answered {
+  Recognition recognition;
+  v1::Recognition wire;
+};
+
+/// What the object alone says: file, group, number, newest stamp, and how long it took.
+void fill_origin(const ContactGroup& group, std::chrono::steady_clock::duration taken,
+                 v1::Recognition& answer);
+
+/// By qualified probes where there are any (core/qualification/probe_correction.h). `notes`
+/// receives what is to be said beside the answer.
+Answered recognise(const FitInput& input, const RecognizerOptions& options,
+                   const std::vector<QualifiedProbe>& probes, std::vector<std::string>& notes);
+
+}  // namespace palpate
