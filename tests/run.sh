@@ -98,7 +98,7 @@ if [ "$sanitize" = yes ]; then
 fi
 
 if [ "$fuzz" != 0 ]; then
-  targets=(answers config contact_csv http_border ingest keys part recording scene)
+  targets=(answers config contact_csv http_border ingest keys part probe recording scene)
   # Some inputs a second under sanitizers: it tells something in minutes only.
   if [ "$fuzz" -ge 120 ]; then targets+=(recognizer); fi
   begin_part "building (fuzz)" 300
