@@ -81,8 +81,8 @@ std::string lobes_plot(const Qualification& qualification, const std::string& ti
   const std::string name(unit.name);
   svg += formatted(
       "<text x=\"12\" y=\"%.0f\">offset by the normal's direction; circle: 0, "
-      "outermost sample: %s %s</text>\n",
-      kRound - 4.0, number(reach_m * unit.per_m).c_str(), name.c_str());
+      "outermost sample: %.3g %s</text>\n",
+      kRound - 4.0, reach_m * unit.per_m, name.c_str());
   svg += "</g>\n";
 
   // Residuals over the direction.
@@ -108,10 +108,10 @@ std::string lobes_plot(const Qualification& qualification, const std::string& ti
                      sample.spike ? kSpikeColour : kPatchColours[0]);
   }
   svg += formatted(
-      "<text x=\"%.0f\" y=\"%.1f\">residuals within %s %s, over the normal's direction "
+      "<text x=\"%.0f\" y=\"%.1f\">residuals within %.3g %s, over the normal's direction "
       "[deg]; red: spikes%s</text>\n",
-      left, middle + half + 36.0, number(most_m * small.per_m).c_str(),
-      std::string(small.name).c_str(), step > 1 ? "; not all samples are drawn" : "");
+      left, middle + half + 36.0, most_m * small.per_m, std::string(small.name).c_str(),
+      step > 1 ? "; not all samples are drawn" : "");
   return svg + "</svg>\n";
 }
 
