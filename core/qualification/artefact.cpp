@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -43,6 +43,16 @@ Run run_of(const Curve& artefact, const ArtefactStroke& stroke, const Pose2& pos
   return run;
 }
 
+/// Appends samples in the order of their places, as one stroke.
+void add_stroke(std::vector<ArtefactSample> samples, PlacedSamples& placed) {
+  std::stable_sort(
+      samples.begin(), samples.end(),
+      [](const ArtefactSample& a, const ArtefactSample& b) { return a.arc_m < b.arc_m; });
+  const auto begin = static_cast<Eigen::Index>(placed.samples.size());
+  placed.samples.insert(placed.samples.end(), samples.begin(), samples.end());
+  placed.strokes.push_back({begin, static_cast<Eigen::Index>(placed.samples.size())});
+}
+
 }  // namespace
 
 SampleOnArtefact beside(const Curve& artefact, MaterialSign material, const Pose2& world_T_artefact,
@@ -69,32 +79,20 @@ PlacedSamples place_samples(const Curve& artefact, const ArtefactRecording& reco
   for (std::size_t s = 0; s < recording.strokes.size(); ++s) {
     const ArtefactStroke& stroke = recording.strokes[s];
     const Run run = run_of(artefact, stroke, pose, around);
-    std::vector<ArtefactSample> sorted;
+    std::vector<ArtefactSample> samples;
     for (std::size_t i = 0; i < stroke.samples.size(); ++i) {
       double arc = run.arc_m[i];
       if (run.travel == 0 && around > 0.0) arc = std::remainder(arc, around);
-      sorted.push_back(
+      samples.push_back(
           {stroke.samples[i].position_m, stroke.tip_radius_m, arc, run.travel, number, s, i});
     }
-    if (sorted.size() == 1) {
-      alone.push_back(sorted.front());
-      continue;
+    if (samples.size() == 1) {
+      alone.push_back(samples.front());
+    } else {
+      add_stroke(std::move(samples), placed);
     }
-    std::stable_sort(
-        sorted.begin(), sorted.end(),
-        [](const ArtefactSample& a, const ArtefactSample& b) { return a.arc_m < b.arc_m; });
-    const auto begin = static_cast<Eigen::Index>(placed.samples.size());
-    placed.samples.insert(placed.samples.end(), sorted.begin(), sorted.end());
-    placed.strokes.push_back({begin, static_cast<Eigen::Index>(placed.samples.size())});
   }
-  if (!alone.empty()) {
-    std::stable_sort(
-        alone.begin(), alone.end(),
-        [](const ArtefactSample& a, const ArtefactSample& b) { return a.arc_m < b.arc_m; });
-    const auto begin = static_cast<Eigen::Index>(placed.samples.size());
-    placed.samples.insert(placed.samples.end(), alone.begin(), alone.end());
-    placed.strokes.push_back({begin, static_cast<Eigen::Index>(placed.samples.size())});
-  }
+  if (!alone.empty()) add_stroke(std::move(alone), placed);
   return placed;
 }
 

@@ -46,6 +46,7 @@ struct Row {
   Eigen::RowVectorXd by_coefficients;
   double by_lag = 0.0;
   double normal_angle = 0.0;
+  double offset_angle = 0.0;  ///< direction that the offset belongs to: with the lag
 };
 
 Row row_of(const Curve& artefact, MaterialSign material, const ArtefactSample& sample,
@@ -59,6 +60,7 @@ Row row_of(const Curve& artefact, MaterialSign material, const ArtefactSample& s
   row.by_angle = at.by_angle;
   row.by_lag = -at.turn_per_m * offset_basis_slope(phi, order).dot(coefficients);
   row.normal_angle = at.normal_angle;
+  row.offset_angle = phi;
   return row;
 }
 
@@ -243,13 +245,12 @@ OffsetResiduals residuals_about(const Curve& artefact, MaterialSign material,
     const Pose2& pose = unknowns.poses[sample.recording];
     const Row row = row_of(artefact, material, sample, pose, unknowns.offset.coefficients_m,
                            unknowns.offset.order, lag);
-    const SampleOnArtefact at = beside(artefact, material, pose, sample);
     const Eigen::Index first = pose_columns * static_cast<Eigen::Index>(sample.recording);
     about.residual_m[i] = row.residual;
     about.flat.block(i, first, 1, 2) = -row.by_translation;
     if (pose_columns == 3) about.flat(i, first + 2) = -row.by_angle;
     if (unknowns.lag_m) about.flat(i, about.flat.cols() - 1) = -row.by_lag;
-    about.basis.row(i) = offset_basis(at.normal_angle + at.turn_per_m * lag, order);
+    about.basis.row(i) = offset_basis(row.offset_angle, order);
     about.normal_angle.push_back(row.normal_angle);
   }
   return about;

@@ -40,21 +40,25 @@ double mean_square(const Estimate& estimate) {
   return estimate.value * estimate.value + estimate.deviation * estimate.deviation;
 }
 
-/// Where a sample touches, and how the normal out of the material lies there.
+/// Where a sample touches, and how the normal out of the material lies there (to the right of
+/// increasing parameter where the side is not known).
 struct Touch {
   FootPoint foot;
   Vec2 normal;
   double offset_angle = 0.0;  ///< direction that the offset belongs to [rad]
 };
 
+bool has_lag(const ProbedPatch& patch) { return patch.probe != nullptr && patch.probe->lag_m; }
+
 Touch touch_of(const ProbedPatch& patch, const Curve& curve, const Pose2& pose, int material,
                int travel, const ContactSample& sample) {
   Touch touch;
   touch.foot = foot_point(curve, pose.to_local(sample.position_m));
   const LocalGeometry local = geometry(curve, touch.foot.t);
-  const double angle = local.tangent_angle + pose.theta - material * 0.5 * kPi;
+  const double angle =
+      local.tangent_angle + pose.theta - (material == 0 ? 1 : material) * 0.5 * kPi;
   touch.normal = {std::cos(angle), std::sin(angle)};
-  const double lag = patch.probe->lag_m ? patch.probe->lag_m->value : 0.0;
+  const double lag = has_lag(patch) ? patch.probe->lag_m->value : 0.0;
   touch.offset_angle = angle + lag * travel * local.kappa /
                                    (1.0 + material * patch.context.tip_radius_m * local.kappa);
   return touch;
@@ -63,12 +67,7 @@ Touch touch_of(const ProbedPatch& patch, const Curve& curve, const Pose2& pose, 
 AddResult add_all(std::span<const ProbedPatch> patches, Recognizer& recognizer) {
   AddResult sum;
   for (const ProbedPatch& patch : patches) {
-    const AddResult added = recognizer.add(patch.context, patch.samples);
-    sum.accepted += added.accepted;
-    sum.rejected_not_finite += added.rejected_not_finite;
-    sum.rejected_negative_sigma += added.rejected_negative_sigma;
-    sum.forgotten += added.forgotten;
-    sum.repeated += added.repeated;
+    sum += recognizer.add(patch.context, patch.samples);
   }
   return sum;
 }
@@ -104,7 +103,7 @@ std::vector<ContactSample> without_offset(const ProbedPatch& patch, const Curve&
   std::vector<ContactSample> samples(patch.samples);
   const int material = patch.probe == nullptr ? 0 : material_sign(curve, pose, patch);
   if (material == 0) return samples;
-  const int travel = patch.probe->lag_m ? travel_of(curve, pose, patch.samples) : 0;
+  const int travel = has_lag(patch) ? travel_of(curve, pose, patch.samples) : 0;
   for (ContactSample& sample : samples) {
     const Touch touch = touch_of(patch, curve, pose, material, travel, sample);
     sample.position_m -= offset_at(patch.probe->offset, touch.offset_angle) * touch.normal;
@@ -129,21 +128,17 @@ ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& pose,
   Eigen::MatrixXd coherent = Eigen::MatrixXd::Zero(size, size);  // J^T W D W J
   for (const ProbedPatch& patch : patches) {
     const int material = material_sign(curve, pose, patch);
-    const int travel =
-        patch.probe != nullptr && patch.probe->lag_m ? travel_of(curve, pose, patch.samples) : 0;
+    const int travel = has_lag(patch) ? travel_of(curve, pose, patch.samples) : 0;
     // With D_ij = d^2 exp(-|s_i - s_j| / length) the sum over all pairs runs along the patch.
     Eigen::VectorXd before = Eigen::VectorXd::Zero(size);
     Vec2 last = Vec2::Zero();
     for (const ContactSample& sample : patch.samples) {
       const double weight = sample.sigma_m > 0.0 ? 1.0 / (sample.sigma_m * sample.sigma_m) : 1.0;
-      const FootPoint foot = foot_point(curve, pose.to_local(sample.position_m));
-      const double angle = geometry(curve, foot.t).tangent_angle + pose.theta -
-                           (material == 0 ? 1 : material) * 0.5 * kPi;
-      const Vec2 normal(std::cos(angle), std::sin(angle));
-      const Eigen::RowVectorXd slope = distance_slope(curve, pose, normal, foot);
+      const Touch touch = touch_of(patch, curve, pose, material, travel, sample);
+      const Eigen::RowVectorXd slope = distance_slope(curve, pose, touch.normal, touch.foot);
       information += weight * slope.transpose() * slope;
       if (patch.probe == nullptr) continue;
-      const Vec2 at = pose * foot.position;
+      const Vec2 at = pose * touch.foot.position;
       before *= std::exp(-(at - last).norm() / patch.probe->deviation_length_m.value);
       last = at;
       const Eigen::VectorXd here = weight * slope.transpose();
@@ -152,7 +147,6 @@ ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& pose,
                   (here * here.transpose() + here * before.transpose() + before * here.transpose());
       before += here;
       if (material == 0) continue;
-      const Touch touch = touch_of(patch, curve, pose, material, travel, sample);
       const Eigen::RowVectorXd basis = offset_basis(touch.offset_angle, patch.probe->offset.order);
       Eigen::MatrixXd& sum =
           by_probe.try_emplace(patch.probe, Eigen::MatrixXd::Zero(size, basis.size()))

@@ -36,12 +36,7 @@ std::vector<ContactGroup> contact_groups(const std::string& file, const ContactT
 AddResult add_group(const ContactGroup& group, Recognizer& recognizer) {
   AddResult sum;
   for (const ContactRun& run : group.runs) {
-    const AddResult added = recognizer.add(run.context, run.samples);
-    sum.accepted += added.accepted;
-    sum.rejected_not_finite += added.rejected_not_finite;
-    sum.rejected_negative_sigma += added.rejected_negative_sigma;
-    sum.repeated += added.repeated;
-    sum.forgotten += added.forgotten;
+    sum += recognizer.add(run.context, run.samples);
   }
   return sum;
 }

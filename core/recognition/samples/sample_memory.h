@@ -63,6 +63,15 @@ struct AddResult {
   std::size_t rejected_negative_sigma = 0;
   std::size_t forgotten = 0;  ///< contacts taken before, of patches that had to make room
   std::size_t repeated = 0;   ///< at exactly the place of the sample before: they say nothing new
+
+  AddResult& operator+=(const AddResult& other) {
+    accepted += other.accepted;
+    rejected_not_finite += other.rejected_not_finite;
+    rejected_negative_sigma += other.rejected_negative_sigma;
+    forgotten += other.forgotten;
+    repeated += other.repeated;
+    return *this;
+  }
 };
 
 class SampleMemory {

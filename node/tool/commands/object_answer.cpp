@@ -30,11 +30,12 @@ const QualifiedProbe* probe_called(const std::string& name,
   return found == probes.end() ? nullptr : &*found;
 }
 
-/// An object as qualified probes have touched it; `answer` and `notes` receive which files it rests
+/// An object as qualified probes have touched it; `files` and `notes` receive which files it rests
 /// on.
 std::vector<ProbedPatch> probed_patches(const ContactGroup& group,
                                         const std::vector<QualifiedProbe>& probes,
-                                        v1::Recognition& answer, std::vector<std::string>& notes) {
+                                        std::vector<std::string>& files,
+                                        std::vector<std::string>& notes) {
   std::vector<ProbedPatch> patches;
   std::vector<bool> told(group.probes.size(), false);
   for (const ContactRun& run : group.runs) {
@@ -47,9 +48,8 @@ std::vector<ProbedPatch> probed_patches(const ContactGroup& group,
       notes.push_back("WARNING: no probe file is of probe " + printable(name));
       continue;
     }
-    const auto& files = answer.probe_files();
     if (std::find(files.begin(), files.end(), probe->file) == files.end()) {
-      answer.add_probe_files(probe->file);
+      files.push_back(probe->file);
     }
     if (!probe->described.name().empty() && probe->described.name() != name) {
       notes.push_back("probe " + printable(name) + " is taken for " +
@@ -83,7 +83,7 @@ Answered recognise(const FitInput& input, const RecognizerOptions& options,
   Answered answer;
   AddResult added;
   std::chrono::steady_clock::duration taken{};
-  v1::Recognition probed;
+  std::vector<std::string> probe_files;
   std::vector<std::string> probe_notes;
   if (probes.empty()) {
     Recognizer recognizer(options);
@@ -92,14 +92,15 @@ Answered recognise(const FitInput& input, const RecognizerOptions& options,
     answer.recognition = recognizer.recognize();
     taken = std::chrono::steady_clock::now() - start;
   } else {
-    const std::vector<ProbedPatch> patches = probed_patches(group, probes, probed, probe_notes);
+    const std::vector<ProbedPatch> patches =
+        probed_patches(group, probes, probe_files, probe_notes);
     const auto start = std::chrono::steady_clock::now();
     ProbedRecognition result = recognise_probed(patches, options);
     taken = std::chrono::steady_clock::now() - start;
     answer.recognition = std::move(result.recognition);
     added = result.added;
-    if (!result.corrected && probed.probe_files_size() > 0) {
-      probed.clear_probe_files();
+    if (!result.corrected && !probe_files.empty()) {
+      probe_files.clear();
       probe_notes.push_back(
           "WARNING: no curve was found to take normals from: the probe's offset is not taken off");
     }
@@ -111,7 +112,7 @@ Answered recognise(const FitInput& input, const RecognizerOptions& options,
       },
       answer.wire);
   fill_origin(group, taken, answer.wire);
-  answer.wire.mutable_probe_files()->Swap(probed.mutable_probe_files());
+  answer.wire.mutable_probe_files()->Assign(probe_files.begin(), probe_files.end());
   notes = notes_for(input, options.memory, added);
   notes.insert(notes.end(), probe_notes.begin(), probe_notes.end());
   return answer;
