@@ -115,6 +115,22 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigm
   return result;
 }
 
+/// Median over at most eight blocks of how far their nearer halves lie from a parabola, as a
+/// standard deviation; 0 where there is none. [m]
+double parabola_scale_m(std::span<const Vec2> samples, std::size_t length,
+                        std::vector<double>& sizes) {
+  constexpr std::size_t kMostBlocks = 8;
+  LeastMedianParabola parabola;
+  sizes.clear();
+  for_each_block(samples.size(), length, std::max(length, samples.size() / kMostBlocks),
+                 [&](std::size_t start) {
+                   if (parabola.fit(samples.subspan(start, length))) {
+                     sizes.push_back(parabola.scale_m());
+                   }
+                 });
+  return sizes.empty() ? 0.0 : quantile(sizes, 0.5);
+}
+
 /// Whether spikes pass for noise: then half of each block lies much nearer to a parabola. That is
 /// looked for only where a residual is larger than noise leaves any in 19 of 20 patches, or
 /// where the noise is above that of the third differences.
@@ -122,24 +138,24 @@ void look_for_spiked_noise(std::span<const Vec2> samples, double largest, BlockS
   constexpr double kAlarms = 0.05;           // of patches
   constexpr double kAboveDifferences = 1.7;  // two to three standard deviations of their quantile
   constexpr double kAboveScale = 1.5;        // over four of the median of seven blocks' scales
-  constexpr std::size_t kMostBlocks = 8;
   std::vector<double> sizes;
   const double quiet = two_sided_normal_quantile(kAlarms / static_cast<double>(samples.size()));
   if (largest <= quiet && survey->sigma_m <= kAboveDifferences * low_noise_of(samples, sizes)) {
     return;
   }
-  LeastMedianParabola parabola;
-  sizes.clear();
-  for_each_block(samples.size(), survey->length,
-                 std::max(survey->length, samples.size() / kMostBlocks), [&](std::size_t start) {
-                   if (parabola.fit(samples.subspan(start, survey->length))) {
-                     sizes.push_back(parabola.scale_m());
-                   }
-                 });
-  if (sizes.empty()) {
+  // Spikes lengthen the chords and what is taken for noise: the shortest blocks that resolve their
+  // own scale.
+  double scale_m = 0.0;
+  for (std::size_t length = std::min(kBlock, survey->length);; length *= 2) {
+    length = std::min(length, survey->length);
+    scale_m = parabola_scale_m(samples, length, sizes);
+    if (length == survey->length || (scale_m > 0.0 && block_length(samples, scale_m) <= length)) {
+      break;
+    }
+  }
+  if (!(scale_m > 0.0)) {
     return;
   }
-  const double scale_m = quantile(sizes, 0.5);
   survey->is_noise_spiked = survey->sigma_m > kAboveScale * scale_m;
   if (survey->is_noise_spiked) {
     // A start so tight that the spikes next to the noise stay outside; the search widens it.

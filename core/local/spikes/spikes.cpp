@@ -32,6 +32,18 @@ struct Kept {
   }
 };
 
+/// Longer runs are form: no short block would have condemned so many neighbours.
+void spare_runs(std::size_t longest, std::vector<std::uint8_t>* is_spike) {
+  for (auto begin = is_spike->begin(); begin != is_spike->end();) {
+    const auto end =
+        std::find_if(begin, is_spike->end(), [&](auto flag) { return flag != *begin; });
+    if (end - begin >= static_cast<std::ptrdiff_t>(longest)) {
+      std::fill(begin, end, std::uint8_t{0});
+    }
+    begin = end;
+  }
+}
+
 }  // namespace
 
 Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
@@ -53,10 +65,13 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
   }
   result.threshold = two_sided_normal_quantile(options.false_alarms_per_patch /
                                                static_cast<double>(kept.samples.size()));
-  // Each pass without the spikes found before, which take places in the blocks.
-  constexpr int kMostPasses = 6;
+  // Each pass without the spikes found before, which take places in the blocks; where none is found
+  // and samples are off all the same, in longer blocks: spikes may be most of a short one.
+  constexpr int kMostPasses = 8;
+  constexpr int kMostDoublings = 2;
+  int doublings = 0;
   for (int pass = 0; pass < kMostPasses && kept.samples.size() >= kFewestSamples; ++pass) {
-    const BlockSurvey survey = survey_blocks(kept.samples, options.sigma_m, result.threshold);
+    BlockSurvey survey = survey_blocks(kept.samples, options.sigma_m, result.threshold);
     if (pass == 0) {
       result.status = survey.status;
     }
@@ -67,12 +82,21 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
     if (!survey.is_any_off && !survey.is_noise_spiked) {
       break;
     }
-    const SpikeSearch found =
-        search_spikes(kept.samples, survey, options.sigma_m, result.threshold);
+    const std::size_t longest_run = survey.length / 2;
+    survey.length = std::min(survey.length << doublings, kept.samples.size());
+    SpikeSearch found = search_spikes(kept.samples, survey, options.sigma_m, result.threshold);
+    if (doublings > 0) {
+      spare_runs(longest_run, &found.is_spike);
+    }
     result.sigma_m = found.sigma_m;
     const std::size_t before = kept.samples.size();
     kept.drop(found.is_spike, &result.indices);
-    if (kept.samples.size() == before) {
+    if (kept.samples.size() < before) {
+      doublings = 0;
+    } else if (survey.is_any_off && doublings < kMostDoublings &&
+               survey.length < kept.samples.size()) {
+      ++doublings;
+    } else {
       break;
     }
   }

@@ -1,9 +1,54 @@
 #include "core/recognition/samples/explained_spikes.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace palpate {
+namespace {
+
+/// Signed length of the curve from one parameter to another, the short way round. [m]
+double arc_between(const Curve& curve, double from, double to) {
+  const double period = domain(curve).period;
+  return arc_length(curve, from, period > 0.0 ? from + std::remainder(to - from, period) : to);
+}
+
+/// Where on the curve a stroke was before and after samples that it lost.
+struct Gap {
+  double before = 0.0;
+  double length_m = 0.0;  ///< to the place after; negative against the parameter
+};
+
+/// What was lost before sample `next` of those kept. Beyond the first and the last of them the
+/// stroke may have gone on as far as between any two.
+Gap gap_before(std::size_t next, std::span<const StoredSample> kept, const Curve& curve,
+               const Pose2& world_T_curve) {
+  const auto parameter_of = [&](std::size_t i) {
+    return foot_point(curve, world_T_curve.to_local(kept[i].position_m)).t;
+  };
+  if (next > 0 && next < kept.size()) {
+    const double before = parameter_of(next - 1);
+    return {before, arc_between(curve, before, parameter_of(next))};
+  }
+  double longest_m = 0.0;
+  for (std::size_t i = 1; i < kept.size(); ++i) {
+    longest_m = std::max(longest_m, (kept[i].position_m - kept[i - 1].position_m).norm());
+  }
+  const std::size_t end = next == 0 ? 0 : kept.size() - 1;
+  const std::size_t inner = next == 0 ? 1 : kept.size() - 2;
+  const double from = parameter_of(end);
+  return {from, std::copysign(longest_m, arc_between(curve, parameter_of(inner), from))};
+}
+
+/// Whether the stroke passed the place on its way over the gap, but for noise along the curve.
+bool passes(const Gap& gap, const Curve& curve, double t, double noise_m) {
+  const double on_m = arc_between(curve, gap.before, t);
+  return on_m >= std::min(0.0, gap.length_m) - noise_m &&
+         on_m <= std::max(0.0, gap.length_m) + noise_m;
+}
+
+}  // namespace
 
 std::optional<std::vector<StoredPatch>> with_explained_spikes(std::span<const StoredPatch> all,
                                                               std::span<const StoredPatch> clean,
@@ -15,22 +60,32 @@ std::optional<std::vector<StoredPatch>> with_explained_spikes(std::span<const St
   bool any = false;
   for (std::size_t p = 0; p < all.size(); ++p) {
     const std::vector<StoredSample>& kept = clean[p].samples;
-    if (kept.size() == all[p].samples.size()) {
+    if (kept.size() == all[p].samples.size() || kept.size() < 2) {
       continue;
     }
     std::vector<StoredSample>& samples = result[p].samples;
     samples.clear();
     std::size_t next = 0;
+    Gap gap;
+    bool is_gap_known = false;
     for (const StoredSample& sample : all[p].samples) {
       if (next < kept.size() && kept[next].position_m == sample.position_m) {
         samples.push_back(sample);
         ++next;
+        is_gap_known = false;
         continue;
       }
       const FootPoint foot = foot_point(curve, world_T_curve.to_local(sample.position_m));
       const double sigma =
           (sample.sigma_m > 0.0 ? sample.sigma_m : noise_m) / std::sqrt(sample.weight);
-      if (std::abs(std::abs(foot.distance) - all[p].context.tip_radius_m) <= limit * sigma) {
+      if (std::abs(std::abs(foot.distance) - all[p].context.tip_radius_m) > limit * sigma) {
+        continue;
+      }
+      if (!is_gap_known) {
+        gap = gap_before(next, kept, curve, world_T_curve);
+        is_gap_known = true;
+      }
+      if (passes(gap, curve, foot.t, std::numbers::sqrt2 * limit * sigma)) {
         samples.push_back(sample);
         any = true;
       }

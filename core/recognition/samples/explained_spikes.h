@@ -12,9 +12,10 @@
 namespace palpate {
 
 /// The patches of `clean` with those of `all` taken back that lie on the curve within `limit`
-/// standard deviations (a tip's centre: within them of its radius away): a bend sharper than the
-/// spacing looks like a spike, and neighbours of spikes are suspected with them. `noise_m` is that
-/// of samples which bring none. nullopt where there are none to take back. Each patch of `clean` is
+/// standard deviations (a tip's centre: within them of its radius away), at a place that the stroke
+/// passed between the samples before and after: a bend sharper than the spacing looks like a spike,
+/// and neighbours of spikes are suspected with them. `noise_m` is that of samples which bring none.
+/// nullopt where there are none to take back. Each patch of `clean` is
 /// a subsequence of its patch in `all`.
 std::optional<std::vector<StoredPatch>> with_explained_spikes(std::span<const StoredPatch> all,
                                                               std::span<const StoredPatch> clean,

@@ -166,6 +166,28 @@ TEST(RecognitionHardCases, SpikesCostNoMoreThanThemselves) {
   EXPECT_GE(set_aside, 8 * spikes / 10);  // those that slide along the arc do no harm
 }
 
+// Some lie near the curve, but not where the stroke was then: taken back, they led every class
+// astray.
+TEST(RecognitionHardCases, SpikesAlongTheCurve) {
+  std::mt19937_64 rng = test::test_rng();
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 50; ++i) {
+    std::vector<Patch> patches = {elliptic_arc(0.3, rng), elliptic_arc(2.5, rng)};
+    for (Patch& patch : patches) {
+      const Vec2 chord = patch.back().position_m - patch.front().position_m;
+      for (ContactSample& sample : patch) {
+        if (uniform(rng) < 0.3) {
+          sample.position_m += 2.0 * (uniform(rng) - 0.5) * chord;
+          sample.position_m += 0.1 * (uniform(rng) - 0.5) * left_of(chord);
+        }
+      }
+    }
+    const Recognition answer = recognise(patches);
+    EXPECT_EQ(answer.status, RecognitionStatus::Recognized) << name_of(answer.doubt);
+    EXPECT_EQ(answer.shape.curve_class, CurveClass::Ellipse);
+  }
+}
+
 TEST(RecognitionHardCases, SpikesInAFifthOfTheSamples) {
   std::mt19937_64 rng = test::test_rng();
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
