@@ -83,18 +83,19 @@ double chi_square_threshold(double significance, int dof) {
   double low = 0.0;
   double high = k + 2.0 * std::sqrt(-k * log_significance) - 2.0 * log_significance;
   double x = high;
+  // The error of a step is about its square: one this small leaves rounding.
+  constexpr double kRelativeStep = 1e-8;
+  constexpr double kRounding = 1e-14;
   constexpr int kMostIterations = 200;
-  constexpr double kRelativeStep = 1e-14;
-  for (int i = 0; i < kMostIterations && high - low > kRelativeStep * high; ++i) {
+  for (int i = 0; i < kMostIterations && high - low > kRounding * high; ++i) {
     const double survival = chi_square_survival(x, dof);
     (survival > significance ? low : high) = x;
     const double density = std::exp((0.5 * k - 1.0) * std::log(0.5 * x) - 0.5 * x - log_norm);
     const double next = x + (std::log(survival) - log_significance) * survival / density;
-    const double before = x;
-    x = next > low && next < high ? next : 0.5 * (low + high);
-    if (std::abs(x - before) <= kRelativeStep * x) {
-      break;
+    if (std::abs(next - x) <= kRelativeStep * x) {
+      return next;
     }
+    x = next > low && next < high ? next : 0.5 * (low + high);
   }
   return x;
 }

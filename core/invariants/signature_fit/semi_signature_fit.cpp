@@ -150,8 +150,8 @@ std::vector<detail::WhitePoint> whitened(std::span<const MeasuredGeometry> measu
 }
 
 template <typename Model>
-void fit_model(const std::vector<detail::WhitePoint>& points, double unit, int max_iterations,
-               SemiSignatureFit& fit) {
+void fit_model(const std::vector<detail::WhitePoint>& points, double unit,
+               const SemiSignatureOptions& options, SemiSignatureFit& fit) {
   using ModelFitter = detail::SemiSignatureFitter<Model>;
   constexpr int kShape = ModelFitter::kShape;
   const Eigen::Vector3d to_normal = to_units_of(fit.curve_class, unit);
@@ -163,8 +163,8 @@ void fit_model(const std::vector<detail::WhitePoint>& points, double unit, int m
   for (const detail::WhitePoint& point : points) {
     fit.places.push_back(best_place<Model>(fit.curve_class, point, normal, fit.orientation).place);
   }
-  ModelFitter fitter(points, start, fit.places);
-  fit.status = fitter.solve(max_iterations);
+  ModelFitter fitter(points, start, options.relative_decrease, fit.places);
+  fit.status = fitter.solve(options.max_iterations);
   if (fit.status == InvariantStatus::NotFinite) {
     return;
   }
@@ -237,9 +237,8 @@ SemiSignatureFit fit_semi_signature(CurveClass curve_class,
     fit.status = InvariantStatus::NotFinite;
     return fit;
   }
-  with_model(curve_class, [&](auto model) {
-    fit_model<decltype(model)>(points, unit, options.max_iterations, fit);
-  });
+  with_model(curve_class,
+             [&](auto model) { fit_model<decltype(model)>(points, unit, options, fit); });
   return fit;
 }
 

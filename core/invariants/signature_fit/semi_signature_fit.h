@@ -19,6 +19,9 @@ struct SemiSignatureOptions {
   /// default is what exact values in doubles carry; estimates with a known bias ask for more.
   double relative_floor = 1e-12;
   int max_iterations = 60;
+  /// A fit ends where the next step would take less than this part of chi-square off it. The
+  /// default is what doubles resolve.
+  double relative_decrease = 1e-13;
 };
 
 /// Where a fit begins.

@@ -27,9 +27,6 @@ namespace palpate::detail {
 inline constexpr double kInitialDamping = 1e-3;
 inline constexpr double kLargestDamping =
     1e12;  ///< a step this short that still does not help: stop
-/// Converged where the predicted relative decrease of chi-square is below this, or the decrease is
-/// below what rounding makes of chi-square.
-inline constexpr double kRelativeDecrease = 1e-13;
 /// Roundings in a difference between a measurement and the model.
 inline constexpr double kResidualRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
@@ -80,8 +77,9 @@ class SemiSignatureFitter {
   using Hessian = Eigen::Matrix<double, kGlobal, kGlobal>;
 
   SemiSignatureFitter(const std::vector<WhitePoint>& points, const Global& start,
-                      std::vector<LocalParameter>& places)
+                      double relative_decrease, std::vector<LocalParameter>& places)
       : points_(points),
+        relative_decrease_(relative_decrease),
         global_(start),
         places_(places),
         differences_(points.size()),
@@ -169,9 +167,10 @@ class SemiSignatureFitter {
     double t_residual;  ///< by_t^T residual
   };
 
-  /// Errors r of the residuals change chi-square by r^2 and by twice their product with it.
+  /// What was asked for, or below what rounding makes of chi-square: errors r of the residuals
+  /// change it by r^2 and by twice their product with it.
   double negligible_decrease() const {
-    return kRelativeDecrease * chi2_ + rounding_ + std::sqrt(rounding_ * chi2_);
+    return relative_decrease_ * chi2_ + rounding_ + std::sqrt(rounding_ * chi2_);
   }
 
   /// Chi-square, and the differences between measurements and model that it is made of.
@@ -275,6 +274,7 @@ class SemiSignatureFitter {
   }
 
   const std::vector<WhitePoint>& points_;
+  double relative_decrease_;
   Global global_;
   std::vector<LocalParameter>& places_;
   std::vector<Eigen::Vector3d> differences_;  ///< of measurements and model, at places_

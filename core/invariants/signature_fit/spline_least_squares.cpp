@@ -27,6 +27,8 @@ constexpr int kMaxIterations = 30;
 /// A fit whose chi-square exceeds its mean by more than this many standard deviations is suspected
 /// of a wrong minimum: more starts are tried.
 constexpr double kPlausibleSigmas = 3.0;
+/// Starts from pairs of points, refined one after the other while no fit explains the points.
+constexpr int kFallbackStarts = 16;
 
 /// The points of (50), at most kLargestPointCount, in normalised lengths.
 struct SplineData {
@@ -208,8 +210,7 @@ SemiSignatureFit fit_cubic_spline(std::span<const MeasuredGeometry> points,
   const double scale = curvature_scale(points);
   if (!explained() && scale > 0.0) {
     const double unit = 1.0 / scale;
-    for (const SplineSeed& seed :
-         spline_seeds(selected_points(points, unit), options.fallback_starts)) {
+    for (const SplineSeed& seed : spline_seeds(selected_points(points, unit), kFallbackStarts)) {
       refine({seed.parameters[0] / std::sqrt(unit), seed.parameters[1],
               seed.parameters[2] * std::sqrt(unit)},
              seed.orientation);

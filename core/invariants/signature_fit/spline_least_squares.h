@@ -16,8 +16,6 @@ struct SplineOptions {
   /// Best starts handed to the solver, and solutions handed to the refinement.
   int starts = 6;
   int refined = 3;
-  /// Starts from pairs of points, refined one after the other while no fit explains the points.
-  int fallback_starts = 16;
 };
 
 /// One minimum of (50) with its closed-form c.

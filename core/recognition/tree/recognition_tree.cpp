@@ -24,8 +24,8 @@ namespace {
 class SignificanceTree {
  public:
   SignificanceTree(std::span<const TreePoint> points, const RecognitionTreeOptions& options,
-                   const KnownCurves& known, const SplineOptions& spline)
-      : points_(points), options_(options), known_(known), spline_(spline) {
+                   const TreeEffort& effort)
+      : points_(points), options_(options), effort_(effort) {
     for (const TreePoint& point : points) {
       MeasuredGeometry measured = measured_geometry(point.estimate, point.patch);
       const double size = curvature_scale({&measured, 1});
@@ -260,8 +260,8 @@ class SignificanceTree {
                  SemiSignatureFit best;
                  best.curve_class = curve_class;
                  for (const CurveStart& start : conic_starts(curve_class, shapes, measured_)) {
-                   SemiSignatureFit fit = fit_semi_signature(curve_class, measured_,
-                                                             start.parameters, start.orientation);
+                   SemiSignatureFit fit = fit_semi_signature(
+                       curve_class, measured_, start.parameters, start.orientation, effort_.fit);
                    if (is_better(fit, best)) {
                      best = std::move(fit);
                    }
@@ -284,28 +284,38 @@ class SignificanceTree {
     return fit.status == InvariantStatus::Ok ? !best_ok || fit.chi2 < best.chi2 : !best_ok;
   }
 
-  /// From where the curve is known to lie, else by `search`.
+  /// From where the curve is known to lie, or by `search`.
   template <typename Search>
   SemiSignatureFit fit_of(CurveClass curve_class, const Search& search) {
-    const auto& known = known_[static_cast<std::size_t>(curve_class)];
-    return known ? fit_semi_signature(curve_class, measured_, known->parameters, known->orientation)
-                 : search();
+    if (!effort_.known) {
+      return search();
+    }
+    const auto known = effort_.known(curve_class);
+    return known ? fit_semi_signature(curve_class, measured_, known->parameters, known->orientation,
+                                      effort_.fit)
+                 : SemiSignatureFit{};
   }
 
   bool cubic(CurveClass curve_class) {
     if (curve_class == CurveClass::CubicalParabola) {
       return measured_.size() >= 2 &&
-             cubic_leaf(fit_of(curve_class, [&] { return fit_cubical_parabola(measured_); }),
-                        "cubical parabola");
+             cubic_leaf(
+                 fit_of(curve_class, [&] { return fit_cubical_parabola(measured_, effort_.fit); }),
+                 "cubical parabola");
     }
     if (curve_class == CurveClass::SemiCubicalParabola) {
       return measured_.size() >= 2 &&
-             cubic_leaf(fit_of(curve_class, [&] { return fit_semi_cubical_parabola(measured_); }),
+             cubic_leaf(fit_of(curve_class,
+                               [&] { return fit_semi_cubical_parabola(measured_, effort_.fit); }),
                         "semi-cubical parabola");
     }
-    return measured_.size() >= 4 &&
-           cubic_leaf(fit_of(curve_class, [&] { return fit_cubic_spline(measured_, spline_); }),
-                      "cubic spline");
+    return measured_.size() >= 4 && cubic_leaf(fit_of(curve_class,
+                                                      [&] {
+                                                        SplineOptions options;
+                                                        options.refinement = effort_.fit;
+                                                        return fit_cubic_spline(measured_, options);
+                                                      }),
+                                               "cubic spline");
   }
 
   bool cubic_leaf(const SemiSignatureFit& fit, std::string_view name) {
@@ -336,6 +346,9 @@ class SignificanceTree {
   }
 
   bool leaf(const SemiSignatureFit& fit, std::string_view name) {
+    if (fit.status == InvariantStatus::NotConverged && fit.chi2 <= threshold_of(fit.dof)) {
+      return runs_away(fit, name);
+    }
     if (fit.status != InvariantStatus::Ok) {
       return refused(name, std::max(fit.dof, 1));
     }
@@ -343,6 +356,15 @@ class SignificanceTree {
       return false;
     }
     reach_fit(fit);
+    return true;
+  }
+
+  /// A class that explains the points on its way to a neighbour, where there is no optimum.
+  bool runs_away(const SemiSignatureFit& fit, std::string_view name) {
+    passes(name, fit.chi2, fit.dof, {fit.curve_class});
+    reach(fit.curve_class, fit.parameters, fit.chi2, fit.dof);
+    result_.covariance.setZero();
+    result_.covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
     return true;
   }
 
@@ -355,8 +377,7 @@ class SignificanceTree {
 
   std::span<const TreePoint> points_;
   const RecognitionTreeOptions& options_;
-  const KnownCurves& known_;
-  const SplineOptions& spline_;
+  const TreeEffort& effort_;
   std::vector<MeasuredGeometry> measured_;
   std::vector<std::pair<int, double>> thresholds_;  ///< by degrees of freedom
   TreeResult result_;
@@ -365,8 +386,7 @@ class SignificanceTree {
 }  // namespace
 
 TreeResult recognise_by_tree(std::span<const TreePoint> points,
-                             const RecognitionTreeOptions& options, const KnownCurves& known,
-                             const SplineOptions& spline) {
+                             const RecognitionTreeOptions& options, const TreeEffort& effort) {
   TreeResult result;
   if (points.size() < 2) {
     return result;
@@ -379,12 +399,12 @@ TreeResult recognise_by_tree(std::span<const TreePoint> points,
     }
   }
   return options.relative_tolerance > 0.0 ? recognise_by_tolerance(points, options)
-                                          : SignificanceTree(points, options, known, spline).run();
+                                          : SignificanceTree(points, options, effort).run();
 }
 
 TreeResult solve_leaf(std::span<const TreePoint> points, const TreeResult& answer,
                       const RecognitionTreeOptions& options) {
-  return SignificanceTree(points, options, {}, {}).leaf_again(answer);
+  return SignificanceTree(points, options, {}).leaf_again(answer);
 }
 
 }  // namespace palpate

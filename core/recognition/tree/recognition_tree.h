@@ -2,7 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,6 +12,7 @@
 #include "core/invariants/invariant_status.h"
 #include "core/invariants/named_invariant.h"
 #include "core/invariants/signature_fit/local_parameter.h"
+#include "core/invariants/signature_fit/semi_signature_fit.h"
 #include "core/invariants/signature_fit/spline_least_squares.h"
 #include "core/local/local_estimate.h"
 #include "core/recognition/tree/decision.h"
@@ -55,18 +56,25 @@ struct TreeResult {
   std::vector<LocalParameter> places;  ///< one per point, where world_T_curve is given
 };
 
-/// Where the curves of the classes lie as far as it is known from elsewhere: a test's fit begins
-/// there, and that class is not searched for.
-using KnownCurves = std::array<std::optional<CurveStart>, kCurveClasses.size() + 1>;
+/// How far the leaves' fits are taken.
+struct TreeEffort {
+  /// Where the curve of a class lies, as far as it is known from elsewhere. Asked once a class that
+  /// the path comes to: its fit begins there, and a class of which nothing is known is refused.
+  /// Without it, curves are searched for.
+  std::function<std::optional<CurveStart>(CurveClass)> known;
+  SemiSignatureOptions fit;
+};
 
 /// Tests, in order: line, circle (both beyond the paper); conic line, sign of Ic1 (parabola: Ip),
 /// tangent rotation of the conic; cubical parabola; semi-cubical parabola; cubic spline. A conic
-/// needs three points, the spline four (three and one that verifies), the other two. Points are
+/// needs three points, the spline four (three and one that verifies), the other two. A class whose
+/// best fit runs away to a neighbour passes where it explains the points on the way, and has no
+/// place. Points are
 /// taken as independent: neighbouring windows that share samples are not, and make the tests
 /// stricter than their significance says.
 TreeResult recognise_by_tree(std::span<const TreePoint> points,
                              const RecognitionTreeOptions& options = {},
-                             const KnownCurves& known = {}, const SplineOptions& spline = {});
+                             const TreeEffort& effort = {});
 
 /// The leaf that `answer` reached once more, for points near those that it is of: no test on the
 /// way there and no search.

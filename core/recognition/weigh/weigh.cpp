@@ -139,6 +139,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   w.fits = std::move(contenders.fits);
   w.coarse = std::move(contenders.coarse);
   w.sides = std::move(sided.sides);
+  w.reduced = std::move(sided.reduced);
   // Of evidence with the noise integrated out, where it is not known; what was seen to be more than
   // that tempers it.
   w.sides_margin = sided.margin / (seen.likelihood ? seen.noise_inflation : 1.0);

@@ -25,7 +25,8 @@ struct WeighOptions {
 struct Weighing {
   FitData data;  ///< noise set, tangents set
   SmoothModel smooth;
-  ClassFits coarse;  ///< on the smooth model's reduced points
+  FitData reduced;   ///< the smooth model's reduced points, taken to the surface
+  ClassFits coarse;  ///< on them
   ClassFits fits;    ///< plausible ones weighed on all points, the best refined there
   /// Of what is not negligible; the points are those of `data` where fits[i]->on_all, otherwise the
   /// reduced ones.
