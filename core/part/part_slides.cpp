@@ -72,7 +72,7 @@ class Scan {
     slide.t = t;
     slide.data_T_part = fit.data_T_part;
     const double across = cross(fit.data_T_part.rotate(d.first), left_);
-    const double determinant = fit.information.determinant();
+    const double determinant = Eigen::Matrix2d(fit.information).determinant();
     // Nor has a part that turned round to the other direction of travel anything to say on this
     // one, or one whose height and turn the points do not hold.
     const bool tells = across > 0.0 && determinant > 0.0 && std::isfinite(fit.chi2);

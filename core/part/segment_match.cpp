@@ -166,7 +166,7 @@ class Match {
     Eigen::Matrix3d by_motion = Eigen::Matrix3d::Identity();
     by_motion.col(2).head<2>() = left_of(pose.translation());
     const Eigen::Matrix3d covariance =
-        by_motion * fit.information.inverse() * by_motion.transpose();
+        by_motion * Eigen::Matrix3d(fit.information).inverse() * by_motion.transpose();
     Eigen::Matrix3d to_world = Eigen::Matrix3d::Identity();
     to_world.col(0).head<2>() = data_.scale * data_.frame.rotate(Vec2(1.0, 0.0));
     to_world.col(1).head<2>() = data_.scale * data_.frame.rotate(Vec2(0.0, 1.0));

@@ -1,12 +1,16 @@
 #include "core/qualification/probe_correction.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "core/numerics/symmetric_eigen.h"
+
 namespace palpate {
 namespace {
+
+/// Derivative by shape and pose.
+using Slope = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kLargestSymmetric>;
 
 /// +1: the patch runs along increasing parameter, -1: against it, 0: neither.
 int travel_of(const Curve& curve, const Pose2& pose, std::span<const ContactSample> samples) {
@@ -23,10 +27,10 @@ int travel_of(const Curve& curve, const Pose2& pose, std::span<const ContactSamp
 int majority(int votes) { return votes > 0 ? 1 : (votes < 0 ? -1 : 0); }
 
 /// Columns of the orthogonal distance's derivative, out of the material, by shape, x, y and theta.
-Eigen::RowVectorXd distance_slope(const Curve& curve, const Pose2& pose, const Vec2& normal,
-                                  const FootPoint& foot) {
+Slope distance_slope(const Curve& curve, const Pose2& pose, const Vec2& normal,
+                     const FootPoint& foot) {
   const auto shape = static_cast<Eigen::Index>(parameter_letters(class_of(curve)).size());
-  Eigen::RowVectorXd slope(shape + 3);
+  Slope slope(shape + 3);
   const Eigen::Matrix<double, 2, 3> by_shape = position_by_parameters(curve, foot.t);
   for (Eigen::Index i = 0; i < shape; ++i) slope[i] = -normal.dot(pose.rotate(by_shape.col(i)));
   slope[shape] = -normal.x();
@@ -123,25 +127,25 @@ ProbedPatch as_qualified(ProbedPatch patch) {
 ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& pose,
                                          std::span<const ProbedPatch> patches) {
   const auto size = static_cast<Eigen::Index>(parameter_letters(class_of(curve)).size()) + 3;
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(size, size);
-  std::map<const ProbeCharacter*, Eigen::MatrixXd> by_probe;     // J^T W B
-  Eigen::MatrixXd coherent = Eigen::MatrixXd::Zero(size, size);  // J^T W D W J
+  SmallSymmetric information = SmallSymmetric::Zero(size, size);
+  std::map<const ProbeCharacter*, Eigen::MatrixXd> by_probe;   // J^T W B
+  SmallSymmetric coherent = SmallSymmetric::Zero(size, size);  // J^T W D W J
   for (const ProbedPatch& patch : patches) {
     const int material = material_sign(curve, pose, patch);
     const int travel = has_lag(patch) ? travel_of(curve, pose, patch.samples) : 0;
     // With D_ij = d^2 exp(-|s_i - s_j| / length) the sum over all pairs runs along the patch.
-    Eigen::VectorXd before = Eigen::VectorXd::Zero(size);
+    SmallVector before = SmallVector::Zero(size);
     Vec2 last = Vec2::Zero();
     for (const ContactSample& sample : patch.samples) {
       const double weight = sample.sigma_m > 0.0 ? 1.0 / (sample.sigma_m * sample.sigma_m) : 1.0;
       const Touch touch = touch_of(patch, curve, pose, material, travel, sample);
-      const Eigen::RowVectorXd slope = distance_slope(curve, pose, touch.normal, touch.foot);
+      const Slope slope = distance_slope(curve, pose, touch.normal, touch.foot);
       information += weight * slope.transpose() * slope;
       if (patch.probe == nullptr) continue;
       const Vec2 at = pose * touch.foot.position;
       before *= std::exp(-(at - last).norm() / patch.probe->deviation_length_m.value);
       last = at;
-      const Eigen::VectorXd here = weight * slope.transpose();
+      const SmallVector here = weight * slope.transpose();
       const double variance = mean_square(patch.probe->deviation_m);
       coherent += variance *
                   (here * here.transpose() + here * before.transpose() + before * here.transpose());
@@ -155,21 +159,22 @@ ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& pose,
     }
   }
   // In units of what each unknown moves the samples by; what its symmetry leaves free stays out.
-  const Eigen::VectorXd moves =
+  const SmallVector moves =
       information.diagonal().cwiseSqrt().unaryExpr([](double v) { return v > 0.0 ? v : 1.0; });
-  const Eigen::MatrixXd scaled =
+  const SmallSymmetric scaled =
       moves.cwiseInverse().asDiagonal() * information * moves.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  const SymmetricEigen eigen = symmetric_eigen(scaled);
   constexpr double kFree = 1e-12;  // rounding of a matrix of unit diagonal, and some digits
-  const Eigen::VectorXd inverse =
-      eigen.eigenvalues().unaryExpr([](double v) { return v > kFree ? 1.0 / v : 0.0; });
-  const Eigen::MatrixXd solve = moves.cwiseInverse().asDiagonal() * eigen.eigenvectors() *
-                                inverse.asDiagonal() * eigen.eigenvectors().transpose() *
-                                moves.cwiseInverse().asDiagonal();
-  Eigen::MatrixXd covariance = solve * coherent * solve;
+  const SmallVector inverse =
+      eigen.values.unaryExpr([](double v) { return v > kFree ? 1.0 / v : 0.0; });
+  const SmallSymmetric solve = moves.cwiseInverse().asDiagonal() * eigen.vectors *
+                               inverse.asDiagonal() * eigen.vectors.transpose() *
+                               moves.cwiseInverse().asDiagonal();
+  SmallSymmetric covariance = solve * coherent * solve;
   for (const auto& [probe, sum] : by_probe) {
-    const Eigen::MatrixXd influence = solve * sum;
-    covariance += influence * probe->offset.covariance_m2 * influence.transpose();
+    const Eigen::MatrixXd influence = solve.lazyProduct(sum);
+    covariance +=
+        influence.lazyProduct(probe->offset.covariance_m2).lazyProduct(influence.transpose());
   }
   return covariance;
 }

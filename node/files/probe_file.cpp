@@ -1,6 +1,6 @@
 #include "node/files/probe_file.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -138,8 +138,8 @@ class ProbeCheck {
     const Eigen::MatrixXd& matrix = offset.covariance_m2;
     const bool symmetric =
         (matrix - matrix.transpose()).cwiseAbs().maxCoeff() <= kRounding * largest;
-    if (!symmetric || Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues()[0] <
-                          -kRounding * largest) {
+    const Eigen::MatrixXd ridge = kRounding * largest * Eigen::MatrixXd::Identity(size, size);
+    if (!symmetric || (largest > 0.0 && (matrix + ridge).llt().info() != Eigen::Success)) {
       fail("offset_covariance_m2", "is no covariance: symmetric, no variance negative", 0);
       return false;
     }

@@ -1,11 +1,13 @@
 #include "core/recognition/given/given_starts.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "core/curves/algebraic/canonical_conic.h"
 #include "core/curves/algebraic/canonical_cubic.h"
+#include "core/numerics/small_cholesky.h"
+#include "core/numerics/small_ldlt.h"
+#include "core/numerics/symmetric_eigen.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/implicit_fit.h"
 #include "core/recognition/fit/polynomial_search.h"
@@ -57,14 +59,23 @@ std::vector<ConicCoefficients> conics_of_class(CurveClass curve_class,
     mixed += q * l.transpose();
     linear += l * l.transpose();
   }
-  const Eigen::Matrix3d to_linear = -linear.ldlt().solve(mixed.transpose());
+  const Eigen::Matrix3d to_linear = -SmallLdlt<3>(linear).inverse() * mixed.transpose();
   const Eigen::Matrix3d scatter = quadratic + mixed * to_linear;
-  Eigen::Matrix3d inverse_discriminant;
-  inverse_discriminant << 0.0, 0.0, 0.5, 0.0, -1.0, 0.0, 0.5, 0.0, 0.0;
-  const Eigen::EigenSolver<Eigen::Matrix3d> eigen(inverse_discriminant * scatter);
+  // scatter v = lambda discriminant v, the other way round: the scatter is positive, but for points
+  // that lie on a conic exactly, whose rounding the ridge stands for.
+  constexpr double kRidge = 1e-13;
+  Eigen::Matrix3d discriminant;
+  discriminant << 0.0, 0.0, 2.0, 0.0, -1.0, 0.0, 2.0, 0.0, 0.0;
+  Eigen::Matrix3d factor;
+  if (!cholesky(Eigen::Matrix3d(scatter + kRidge * quadratic.trace() * Eigen::Matrix3d::Identity()),
+                &factor)) {
+    return {};
+  }
+  const Eigen::Matrix3d whitening = inverse_lower(factor);
+  const SymmetricEigen eigen = symmetric_eigen(whitening * discriminant * whitening.transpose());
   std::vector<ConicCoefficients> conics;
   for (Eigen::Index k = 0; k < 3; ++k) {
-    const Eigen::Vector3d v = eigen.eigenvectors().col(k).real();
+    const Eigen::Vector3d v = whitening.transpose() * eigen.vectors.col(k);
     const double sign = 4.0 * v[0] * v[2] - v[1] * v[1];
     if (v.allFinite() && (sign > 0.0) == (curve_class == CurveClass::Ellipse)) {
       ConicCoefficients q;

@@ -1,8 +1,9 @@
 #include "node/tool/drawing/curve_band.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "core/numerics/symmetric_eigen.h"
 
 namespace palpate {
 namespace {
@@ -54,11 +55,10 @@ std::optional<BandWidth> band_at(const CurveModel& model, double t) {
 
 CurvatureDeviation::CurvatureDeviation(const CurveModel& model) : model_(model) {
   if (model.covariance.size() == 0) return;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(Eigen::MatrixXd(model.covariance));
-  if (axes.info() != Eigen::Success) return;
+  if (!model.covariance.allFinite()) return;
+  const SymmetricEigen axes = symmetric_eigen(model.covariance);
   for (Eigen::Index i = 0; i < model.covariance.rows(); ++i) {
-    const Eigen::VectorXd step =
-        std::sqrt(std::max(axes.eigenvalues()[i], 0.0)) * axes.eigenvectors().col(i);
+    const Eigen::VectorXd step = std::sqrt(std::max(axes.values[i], 0.0)) * axes.vectors.col(i);
     const auto minus = moved(model, -step);
     const auto plus = moved(model, step);
     const double apart = (minus ? 1.0 : 0.0) + (plus ? 1.0 : 0.0);

@@ -32,7 +32,7 @@ class LiveSession : public std::enable_shared_from_this<LiveSession> {
   void read();
   void on_read(boost::beast::error_code error);
 
-  boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+  boost::beast::websocket::stream<boost::beast::tcp_stream, false> socket_;  // never deflates
   LiveFeed& feed_;
   std::shared_ptr<void> count_;
   boost::beast::flat_buffer incoming_;
