@@ -33,8 +33,8 @@ constexpr int kSubscriptionsWaiting = 4;
 // Subscriptions are a topic and a byte; libzmq's own commands fit too.
 constexpr std::int64_t kMaxSubscriptionBytes = 1024;
 // What has been received is finished within this, or given up: with the sockets' linger the
-// process ends within half a second.
-constexpr milliseconds kFinishTime{300};
+// process ends within half a second, also where others keep the cores busy.
+constexpr milliseconds kFinishTime{200};
 constexpr milliseconds kFinishDrainTime{100};
 
 SteadyTime now_steady() { return std::chrono::steady_clock::now(); }
@@ -77,7 +77,7 @@ Node::Node(const NodeOptions& options, const NodeKeys& keys)
       intake_(options.intake),
       publisher_(results_, options.name),
       at_a_time_(recognitions_at_a_time(options)),
-      workers_(2 * at_a_time_ + kSpareWorkers),
+      workers_(2 * at_a_time_ + kSpareWorkers, at_a_time_),
       in_work_(workers_.size()),
       started_(now_steady()),
       next_tick_(started_),
@@ -208,14 +208,16 @@ std::size_t Node::slow_count(SteadyTime now) const {
 // As many at a time as there are cores to compute them, and one more for each that is slow: the
 // quick ones go on beside them, and share the cores.
 void Node::give_out_work(SteadyTime now) {
-  while (workers_.idle_count() > 0) {
+  while (workers_.has_idle(Workers::Pace::Quick)) {
     const std::size_t slow = slow_count(now);
     if (workers_.busy_count() >= at_a_time_ + slow) return;
     Group* group = intake_.groups().next_waiting(/*only_quick=*/slow >= at_a_time_);
     if (group == nullptr) return;
+    const auto pace = group->is_quick() ? Workers::Pace::Quick : Workers::Pace::Slow;
     std::shared_ptr<GroupRecognizer> recognizer = intake_.groups().begin_work(*group);
     recognizer->wants_estimates = options_.publish_estimates && publisher_.estimates_are_wanted();
-    in_work_[workers_.start(std::move(recognizer))] = {group, !group->is_quick(), now};
+    in_work_[workers_.start(std::move(recognizer), pace)] = {group, pace == Workers::Pace::Slow,
+                                                             now};
   }
 }
 

@@ -36,7 +36,7 @@ class Node {
   Node(const NodeOptions& options, const NodeKeys& keys);
 
   /// Serves until `stop_fd` is readable; then takes what has been received, recognises and
-  /// publishes it, as far as that is done within 0.3 s, and returns.
+  /// publishes it, as far as that is done within 0.2 s, and returns.
   /// Where `reload_fd` (take_reload_signal) says so, the list of allowed clients is read again.
   void run(int stop_fd, int reload_fd = -1);
 

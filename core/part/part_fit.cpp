@@ -1,9 +1,8 @@
 #include "core/part/part_fit.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 #include "core/curves/foot_point.h"
 #include "core/numerics/least_squares.h"
@@ -84,54 +83,26 @@ PartFit fit(const ScaledPart& part, std::span<const FitPoint> points, const Pose
   return result;
 }
 
+std::vector<Vec2> nodes_of(const ClosedSpline& part) {
+  const int count = ScaledPart::kNodesPerSegment * static_cast<int>(part.size());
+  std::vector<Vec2> nodes;
+  nodes.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    nodes.push_back(part.position(ScaledPart::node_t(i)));
+  }
+  return nodes;
+}
+
 }  // namespace
 
 ScaledPart::ScaledPart(const ClosedSpline& part, double scale_m)
-    : spline_(part.scaled(1.0 / scale_m)), outside_(part.signed_area() > 0.0 ? -1.0 : 1.0) {
-  const int count = kNodesPerSegment * static_cast<int>(part.size());
-  nodes_.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) {
-    nodes_.push_back(spline_.position(node_t(i)));
-  }
-  for (std::size_t segment = 0; segment < part.size(); ++segment) {
-    const std::span<const Vec2> nodes =
-        std::span(nodes_).subspan(segment * kNodesPerSegment, kNodesPerSegment);
-    Bound bound;
-    for (const Vec2& node : nodes) {
-      bound.centre += node / kNodesPerSegment;
-    }
-    for (const Vec2& node : nodes) {
-      bound.radius = std::max(bound.radius, (node - bound.centre).norm());
-    }
-    bounds_.push_back(bound);
-  }
-}
+    : spline_(part.scaled(1.0 / scale_m)),
+      nodes_(nodes_of(spline_)),
+      outside_(part.signed_area() > 0.0 ? -1.0 : 1.0) {}
 
 double ScaledPart::foot_of(const Vec2& part_point) const {
-  const auto to_bound = [&](std::size_t segment) {
-    return (bounds_[segment].centre - part_point).norm() - bounds_[segment].radius;
-  };
-  std::size_t first = 0;
-  for (std::size_t segment = 1; segment < bounds_.size(); ++segment) {
-    first = to_bound(segment) < to_bound(first) ? segment : first;
-  }
-  std::size_t nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < bounds_.size(); ++k) {
-    const std::size_t segment = (first + k) % bounds_.size();
-    const double bound = to_bound(segment);
-    if (bound > 0.0 && bound * bound >= least) {
-      continue;
-    }
-    for (std::size_t i = segment * kNodesPerSegment; i < (segment + 1) * kNodesPerSegment; ++i) {
-      const double distance2 = (nodes_[i] - part_point).squaredNorm();
-      if (distance2 < least) {
-        least = distance2;
-        nearest = i;
-      }
-    }
-  }
-  const double t = foot_point_near(spline_, part_point, node_t(static_cast<int>(nearest))).t;
+  const auto nearest = static_cast<int>(nodes_.to(part_point));
+  const double t = foot_point_near(spline_, part_point, node_t(nearest)).t;
   const ClosedSpline::Place place = spline_.place_at(t);
   return static_cast<double>(place.segment) + place.u;
 }

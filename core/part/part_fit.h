@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 #include <span>
-#include <vector>
 
 #include "core/part/closed_spline.h"
+#include "core/part/nearest_node.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {
@@ -21,7 +21,7 @@ class ScaledPart {
   ScaledPart(const ClosedSpline& part, double scale_m);
 
   const ClosedSpline& spline() const { return spline_; }
-  int node_count() const { return static_cast<int>(nodes_.size()); }
+  int node_count() const { return static_cast<int>(nodes_.count()); }
   /// The curve parameter of a node (any integer; cyclic).
   static double node_t(int node) { return static_cast<double>(node) / kNodesPerSegment; }
 
@@ -33,13 +33,7 @@ class ScaledPart {
 
  private:
   ClosedSpline spline_;
-  std::vector<Vec2> nodes_;
-  /// Circles around the nodes of each segment: most need not be looked at.
-  struct Bound {
-    Vec2 centre = Vec2::Zero();
-    double radius = 0.0;
-  };
-  std::vector<Bound> bounds_;
+  NearestNode nodes_;
   double outside_;
 };
 

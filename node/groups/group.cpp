@@ -69,7 +69,7 @@ GroupRecognizer::Answer& Group::end_work() {
   assert(in_work_);
   in_work_ = false;
   in_work_bytes_ = 0;
-  last_compute_ns_ = recognizer_->answer.compute_ns;
+  last_processor_ns_ = recognizer_->answer.processor_ns;
   return recognizer_->answer;
 }
 

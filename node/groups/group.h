@@ -52,9 +52,10 @@ class Group {
 
   bool is_in_work() const { return in_work_; }
 
-  /// Its last answer took no longer than kQuickCompute, or it has had none yet.
+  /// Its last answer took no longer than kQuickCompute of a core, or it has had none yet. Of a
+  /// core: who is kept waiting by others is not slow.
   bool is_quick() const {
-    return last_compute_ns_ <= std::chrono::nanoseconds(kQuickCompute).count();
+    return last_processor_ns_ <= std::chrono::nanoseconds(kQuickCompute).count();
   }
 
   /// An answer that a planner of 50 Hz has in its next period.
@@ -84,7 +85,7 @@ class Group {
   ContactQueue waiting_;
   bool in_work_ = false;
   std::size_t in_work_bytes_ = 0;
-  std::int64_t last_compute_ns_ = 0;
+  std::int64_t last_processor_ns_ = 0;
   std::string frame_;
   std::uint64_t object_ = 0;
   std::vector<Member> members_;  ///< empty = no object yet

@@ -1,9 +1,20 @@
 #include "node/groups/group_recognizer.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <chrono>
 
 namespace palpate {
+namespace {
+
+std::int64_t thread_processor_ns() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return std::chrono::nanoseconds(std::chrono::seconds(now.tv_sec)).count() + now.tv_nsec;
+}
+
+}  // namespace
 
 std::size_t GroupRecognizer::take(const QueuedContacts& message,
                                   std::span<const ContactSample> samples) {
@@ -48,8 +59,10 @@ void GroupRecognizer::run() {
 
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
+  const std::int64_t processor_start_ns = thread_processor_ns();
   const Recognition recognition = recognizer_.recognize();
   answer.compute_ns = std::chrono::nanoseconds(Clock::now() - start).count();
+  answer.processor_ns = thread_processor_ns() - processor_start_ns;
 
   v1::Recognition& message = answer.recognition;
   to_wire(

@@ -25,7 +25,8 @@ class GroupRecognizer : public Work {
     v1::Recognition recognition;               ///< of the header, the frame only
     std::vector<v1::LocalEstimate> estimates;  ///< new ones, in order for each probe; the same
     std::size_t samples_refused = 0;           ///< by the recognizer
-    std::int64_t compute_ns = 0;
+    std::int64_t compute_ns = 0;               ///< as a planner waits for it
+    std::int64_t processor_ns = 0;  ///< of that on a core: on a busy machine it waits for one too
   };
 
   /// `gap_break_spacings`: see GroupOptions.

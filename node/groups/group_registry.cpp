@@ -91,7 +91,7 @@ GroupRecognizer::Answer& GroupRegistry::end_work(Group& group) {
   queued_bytes_ += group.queued_bytes();
   Entry& entry = groups_.find(group.name())->second;
   served_floor_ns_ = std::max(served_floor_ns_, entry.served_ns);
-  entry.served_ns += answer.compute_ns;
+  entry.served_ns += answer.processor_ns;
   return answer;
 }
 

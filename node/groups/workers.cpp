@@ -13,6 +13,17 @@
 #include <utility>
 
 namespace palpate {
+namespace {
+
+// Above what the process has: beside a quick thread on the same core, a slow one has a tenth of it.
+constexpr int kSlowNice = 10;
+
+// A thread cannot take this back without privileges: what is slow has threads of its own.
+void give_way() {
+  [[maybe_unused]] const int niceness = ::nice(kSlowNice);  // of this thread alone, on Linux
+}
+
+}  // namespace
 
 /// An eventfd: rung by one thread, heard by another.
 struct Workers::Bell {
@@ -60,16 +71,20 @@ struct Workers::Worker {
   std::thread thread;  // of the node's side
 };
 
-Workers::Workers(std::size_t count) : finished_(std::make_shared<Bell>(EFD_NONBLOCK)) {
-  for (std::size_t i = 0; i < count; ++i) {
+Workers::Workers(std::size_t quick_count, std::size_t slow_count)
+    : finished_(std::make_shared<Bell>(EFD_NONBLOCK)), quick_count_(quick_count) {
+  for (std::size_t i = 0; i < quick_count + slow_count; ++i) {
+    const bool is_slow = i >= quick_count;
     auto worker = std::make_shared<Worker>(finished_);
-    worker->thread = std::thread([worker] { worker->serve(); });
+    worker->thread = std::thread([worker, is_slow] {
+      if (is_slow) give_way();
+      worker->serve();
+    });
     // Fifteen letters at most, for top and debuggers.
     pthread_setname_np(worker->thread.native_handle(),
-                       ("recognize" + std::to_string(i % 10000)).c_str());
+                       ((is_slow ? "slow" : "recognize") + std::to_string(i % 10000)).c_str());
     workers_.push_back(std::move(worker));
   }
-  idle_count_ = count;
 }
 
 Workers::~Workers() {
@@ -84,16 +99,24 @@ Workers::~Workers() {
   }
 }
 
-std::size_t Workers::start(std::shared_ptr<Work> work) {
-  const auto idle = std::find_if(workers_.begin(), workers_.end(), [](const auto& worker) {
-    return worker->state.load(std::memory_order_relaxed) == Worker::State::Idle;
-  });
-  assert(idle != workers_.end());
-  (*idle)->work = std::move(work);
-  (*idle)->state.store(Worker::State::Ordered, std::memory_order_release);
-  (*idle)->ordered.ring();
-  --idle_count_;
-  return static_cast<std::size_t>(idle - workers_.begin());
+std::optional<std::size_t> Workers::idle(Pace pace) const {
+  const std::size_t begin = pace == Pace::Quick ? 0 : quick_count_;
+  const std::size_t end = pace == Pace::Quick ? quick_count_ : workers_.size();
+  for (std::size_t i = begin; i < end; ++i) {
+    if (workers_[i]->state.load(std::memory_order_relaxed) == Worker::State::Idle) return i;
+  }
+  return std::nullopt;
+}
+
+std::size_t Workers::start(std::shared_ptr<Work> work, Pace pace) {
+  const std::optional<std::size_t> number = idle(pace);
+  assert(number);
+  Worker& worker = *workers_[*number];
+  worker.work = std::move(work);
+  worker.state.store(Worker::State::Ordered, std::memory_order_release);
+  worker.ordered.ring();
+  ++busy_count_;
+  return *number;
 }
 
 std::optional<std::size_t> Workers::take_finished() {
@@ -102,7 +125,7 @@ std::optional<std::size_t> Workers::take_finished() {
       if (workers_[i]->state.load(std::memory_order_acquire) != Worker::State::Finished) continue;
       workers_[i]->work.reset();
       workers_[i]->state.store(Worker::State::Idle, std::memory_order_relaxed);
-      ++idle_count_;
+      --busy_count_;
       return i;
     }
     // Who finishes after this rings again: looked for once more, nobody is missed. Heard twice, the

@@ -15,8 +15,12 @@ namespace palpate {
 /// All members belong to one thread, that of the node.
 class Workers {
  public:
-  /// Throws std::runtime_error where the system gives no descriptors or threads.
-  explicit Workers(std::size_t count);
+  enum class Pace { Quick, Slow };
+
+  /// `quick_count` for works that somebody waits for, `slow_count` for those that take long, which
+  /// give way to the others on a core. Throws std::runtime_error where the system gives no
+  /// descriptors or threads.
+  explicit Workers(std::size_t quick_count, std::size_t slow_count = 0);
 
   /// A worker that still computes cannot be interrupted and is not waited for: it ends by itself,
   /// and its work with it.
@@ -26,11 +30,11 @@ class Workers {
   Workers& operator=(const Workers&) = delete;
 
   std::size_t size() const { return workers_.size(); }
-  std::size_t idle_count() const { return idle_count_; }
-  std::size_t busy_count() const { return workers_.size() - idle_count_; }
+  std::size_t busy_count() const { return busy_count_; }
+  bool has_idle(Pace pace) const { return idle(pace).has_value(); }
 
-  /// Gives the work to an idle worker and returns its number; needs idle_count() > 0.
-  std::size_t start(std::shared_ptr<Work> work);
+  /// Gives the work to an idle worker of that pace and returns its number; needs has_idle(pace).
+  std::size_t start(std::shared_ptr<Work> work, Pace pace = Pace::Quick);
 
   /// A worker that has finished its work; it is idle from now on. nullopt where none has.
   std::optional<std::size_t> take_finished();
@@ -42,9 +46,12 @@ class Workers {
   struct Bell;
   struct Worker;
 
+  std::optional<std::size_t> idle(Pace pace) const;
+
   std::shared_ptr<Bell> finished_;
-  std::vector<std::shared_ptr<Worker>> workers_;
-  std::size_t idle_count_ = 0;
+  std::vector<std::shared_ptr<Worker>> workers_;  // the quick ones first
+  std::size_t quick_count_;
+  std::size_t busy_count_ = 0;
 };
 
 }  // namespace palpate

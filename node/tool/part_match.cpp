@@ -11,6 +11,13 @@
 namespace palpate {
 namespace {
 
+/// Placements are sought all along the part, which takes some ten milliseconds a segment; a part of
+/// a metre so has one each 4 mm.
+constexpr std::size_t kMostControlPoints = 256;
+
+/// Rounding of coordinates there is 2 nm, what the finest probes tell apart.
+constexpr double kFarthest_m = 1e7;
+
 /// One for each probe and patch number, in the order in which they begin.
 std::vector<StoredPatch> patches_of(const ContactGroup& group) {
   std::vector<StoredPatch> patches;
@@ -120,13 +127,19 @@ Result<ClosedSpline> parse_part(const std::string& text, const std::string& path
   std::vector<Vec2> points;
   for (const v1::ScenePoint& point : scene.closed_spline().control_points()) {
     points.emplace_back(point.x_m(), point.y_m());
-    if (!points.back().allFinite()) {
+    const double farthest = points.back().cwiseAbs().maxCoeff();
+    if (!points.back().allFinite() || farthest > kFarthest_m) {
       return Loaded::fail(path + ": closed_spline.control_points[" +
-                          std::to_string(points.size() - 1) + "]: a coordinate is not finite");
+                          std::to_string(points.size() - 1) + "]: a coordinate is " +
+                          (points.back().allFinite() ? "beyond 10,000 km" : "not finite"));
     }
   }
   if (points.size() < ClosedSpline::kFewestPoints) {
     return Loaded::fail(path + ": closed_spline.control_points: there must be at least four");
+  }
+  if (points.size() > kMostControlPoints) {
+    return Loaded::fail(path + ": closed_spline.control_points: there may be at most " +
+                        std::to_string(kMostControlPoints));
   }
   return Loaded::ok(ClosedSpline(std::move(points)));
 }

@@ -50,6 +50,12 @@ std::string at_line(const std::string& path, std::size_t number, std::string_vie
   return (path + ":" + std::to_string(number) + ": ").append(what);
 }
 
+// A line that is a key and what the client may do. No key begins with '#': in Z85 its first five
+// characters would be a number beyond 32 bits.
+bool is_bare_key(std::string_view line) {
+  return is_z85_key(std::string(line.substr(0, line.find_first_of(kBlanks))));
+}
+
 // What a line gives, "NAME = VALUE" or "NAME VALUE", the value perhaps in quotes, and what follows.
 struct Setting {
   std::string_view name;
@@ -61,19 +67,15 @@ Setting setting_of(std::string_view line) {
   const std::size_t end = line.find_first_of(" \t=");
   if (end == std::string_view::npos) return {line, {}, {}};
   std::string_view value = trimmed(line.substr(end));
-  if (value.starts_with('=')) value = trimmed(value.substr(1));
+  // A key may begin with '=' itself.
+  const bool is_assigned = value.starts_with('=') && (line[end] == '=' || !is_bare_key(value));
+  if (is_assigned) value = trimmed(value.substr(1));
   const bool is_quoted = value.starts_with('"') || value.starts_with('\'');
   const std::size_t closing =
       is_quoted ? value.find(value.front(), 1) : value.find_first_of(kBlanks);
   if (closing == std::string_view::npos) return {line.substr(0, end), value, {}};
   return {line.substr(0, end), value.substr(is_quoted ? 1 : 0, closing - (is_quoted ? 1 : 0)),
           trimmed(value.substr(closing + (is_quoted ? 1 : 0)))};
-}
-
-// A line that is a key and what the client may do. No key begins with '#': in Z85 its first five
-// characters would be a number beyond 32 bits.
-bool is_bare_key(std::string_view line) {
-  return is_z85_key(std::string(line.substr(0, line.find_first_of(kBlanks))));
 }
 
 // "probes=a,b": an empty string, or what is wrong.

@@ -114,7 +114,10 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   }
   constexpr auto kSpline = static_cast<std::size_t>(CurveClass::CubicSpline);
   const auto best = std::max_element(log_of.begin(), log_of.end());
-  const auto matters = [&](double log_evidence) { return log_evidence >= *best - kMatters; };
+  // Where nothing has evidence, as where noise is so small that rounding hides it, nothing matters.
+  const auto matters = [&](double log_evidence) {
+    return log_evidence > kNone && log_evidence >= *best - kMatters;
+  };
   const bool spline_is_best = best == log_of.begin() + kSpline && on_reduced[kSpline]->rival;
   if (std::count_if(log_of.begin(), log_of.end(), matters) < 2 && !spline_is_best) {
     return evidences;  // however wide, one class has all of the mass
@@ -179,6 +182,10 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
   }
   const double best = *std::max_element(log_of.begin(), log_of.end());
   ClassProbabilities result{};
+  if (!(best > kNone)) {
+    result[0] = 1.0;  // no class is told
+    return result;
+  }
   double sum = 0.0;
   for (std::size_t i = 0; i < log_of.size(); ++i) {
     result[i] = std::exp(log_of[i] - best);

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <random>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/recognition/recognizer.h"
 #include "tests/support/answer_invariants.h"
+#include "tests/support/test_rng.h"
 
 namespace palpate {
 namespace {
@@ -201,6 +203,26 @@ TEST(DegenerateInput, WhatIsNotFiniteIsRefusedAndSaid) {
   const Recognition answer = recognizer.recognize();
   EXPECT_EQ(answer.status, RecognitionStatus::Collecting);
   EXPECT_EQ(answer.sample_count, 0U);
+}
+
+// A probe at rest far from the origin: samples scatter by more than the tip, no class has evidence,
+// and neither has a free form.
+TEST(DegenerateInput, ARestingProbeFarAwayIsNoCurve) {
+  auto rng = test::test_rng();
+  std::normal_distribution<double> scatter_m(0.0, 4.5e-6);
+  for (int run = 0; run < 8; ++run) {
+    std::vector<Vec2> positions;
+    std::vector<ContactSample> samples;
+    for (int i = 0; i < 1582; ++i) {
+      positions.push_back(Vec2(2567500.0, -770250.0) + Vec2(scatter_m(rng), scatter_m(rng)));
+      samples.push_back({positions.back(), 2.1e-8, 0});
+    }
+    Recognizer recognizer;
+    PatchContext context;
+    context.tip_radius_m = 5.4e-6;
+    recognizer.add(context, samples);
+    expect_certain_of_nothing(recognizer.recognize(), positions);
+  }
 }
 
 }  // namespace

@@ -101,6 +101,19 @@ TEST_F(CurveKeysTest, BadFilesAreRefused) {
   EXPECT_THAT(read_public_keys(path("x")).error, HasSubstr(":2:"));
 }
 
+TEST_F(CurveKeysTest, AKeyMayBeginWithAnEqualsSign) {
+  const std::string key = "=" + std::string(39, '0');
+  for (const std::string& line : {"public-key " + key, "public-key = " + key, "public-key=" + key,
+                                  "public-key = \"" + key + "\"", key}) {
+    std::ofstream(path("x")) << line << '\n';
+    const Result<std::vector<std::string>> read = read_public_keys(path("x"));
+    ASSERT_TRUE(read) << line << ": " << read.error;
+    EXPECT_EQ(*read.value, std::vector<std::string>{key}) << line;
+  }
+  std::ofstream(path("x")) << "public-key=" << std::string(39, '0');  // one too short
+  EXPECT_FALSE(read_public_keys(path("x")));
+}
+
 TEST_F(CurveKeysTest, AClientsProbesStandBehindItsKey) {
   const std::string left = generate_curve_keys().value->public_key;
   const std::string right = generate_curve_keys().value->public_key;

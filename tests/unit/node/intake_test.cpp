@@ -54,7 +54,7 @@ class IntakeTest : public ::testing::Test {
   void serve(Group& group, std::int64_t cost_ns) {
     const std::shared_ptr<GroupRecognizer> recognizer = intake_.groups().begin_work(group);
     recognizer->contacts.clear();
-    recognizer->answer.compute_ns = cost_ns;
+    recognizer->answer.processor_ns = cost_ns;
     intake_.groups().end_work(group);
   }
 

@@ -38,7 +38,7 @@ TEST(Workers, WhatTheyDoIsSeenByWhoGaveIt) {
     EXPECT_EQ(next_finished(workers), worker);
   }
   EXPECT_EQ(sum, 500500);
-  EXPECT_EQ(workers.idle_count(), 2U);
+  EXPECT_EQ(workers.busy_count(), 0U);
 }
 
 TEST(Workers, NoFinishIsMissedHoweverTheyCome) {
@@ -48,7 +48,7 @@ TEST(Workers, NoFinishIsMissedHoweverTheyCome) {
   int given = 0;
   int taken = 0;
   while (taken < kWorks) {
-    while (given < kWorks && workers.idle_count() > 0) {
+    while (given < kWorks && workers.has_idle(Workers::Pace::Quick)) {
       workers.start(std::make_shared<Task>([&done] { ++done; }));
       ++given;
     }

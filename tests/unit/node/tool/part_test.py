@@ -101,6 +101,8 @@ class Part(unittest.TestCase):
             "  control_points { x_m: 0.012 y_m: 0.034 }\n", "")
         for text, why in (("curve { curve_class: CURVE_CLASS_LINE }", "has no closed_spline"),
                           ("closed_spline { control_points { x_m: nan } }", "is not finite"),
+                          ("closed_spline { control_points { x_m: 1e8 } }", "beyond 10,000 km"),
+                          (f"closed_spline {{ {257 * 'control_points { x_m: 1 } '} }}", "at most 256"),
                           (few, "at least four"), ("closed_spine {}", "1:")):
             model = self.write("bad.textproto", text)
             code, out, err = run(TOOL, "fit", "--part", model, samples)

@@ -1,0 +1,192 @@
+#!/usr/bin/python3
+"""A good probe beside groups whose recognition takes long: does it wait for them?
+
+    PALPATE_SOURCE=$PWD PALPATE_BUILD=$PWD/build/strict PYTHONPATH=$PWD/tests/support:$PWD/build/strict/proto/python \\
+      /usr/bin/python3 tests/bench/processes/beside_slow.py [--rounds N] [--answers N] [FILE.csv[.gz] ...]
+
+Each file (those of tests/data/hostile unless others are named) is played as a group of its own; when it has been answered, it is
+played again as the next object. A round is a new node: the good probe alone, then beside the slow groups, then SIGTERM. Latency is
+from publishing a batch to receiving the answer that contains it. What else runs on the machine can spoil a round (others_cores: what
+it took while the good probe was alone): the medians over the rounds count. Prints a line a round, the medians, and how they
+stand to what is asked.
+"""
+import argparse
+import csv
+import gzip
+import io
+import multiprocessing
+import os
+import signal
+import statistics
+import sys
+import time
+
+import zmq
+from bus import Bus, Probe, receive, stop, wait_for
+from palpate.v1 import contact_pb2, recognition_pb2
+from programs import SOURCE
+
+MOST_ADDED_MS = 2.0   # the good probe's p99 beside slow groups, above that without
+MOST_LATE_STATUS_S = 0.01  # what the node's thread may keep anybody waiting for
+MOST_STOP_S = 0.5
+STATUS_PERIOD_S = 0.1
+BATCHES_PER_OBJECT = 20
+PAUSE_S = 0.002  # a probe of some 300 batches a second
+
+
+def batches_of(path, group):
+    """The file's samples as the messages of a group, object not set."""
+    data = path.read_bytes()
+    if path.suffix == ".gz":
+        data = gzip.decompress(data)
+    batches = []
+    for row in csv.DictReader(io.StringIO(data.decode())):
+        patch = int(row.get("patch") or 0)
+        probe = f"{group}-{row.get('probe') or 'probe'}"
+        last = batches[-1] if batches else None
+        if last is None or last.header.source != probe or last.patch != patch or len(last.samples) >= 500:
+            last = contact_pb2.ContactBatch(group=group, patch=patch, tip_radius_m=float(row.get("tip_radius_m") or 0))
+            last.header.source = probe
+            side = row.get("material_side") or ""
+            if side in ("left", "right"):
+                last.material_side = contact_pb2.MaterialSide.Value(f"MATERIAL_SIDE_{side.upper()}")
+            batches.append(last)
+        last.samples.add(x_m=float(row["x_m"]), y_m=float(row["y_m"]), sigma_m=float(row.get("sigma_m") or 0),
+                         stamp_ns=1)
+    return batches
+
+
+def play(contacts, results, groups, answered):
+    """Plays every group again and again, each as soon as its last object has been answered in full."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    context = zmq.Context()
+    out = context.socket(zmq.XPUB)
+    out.setsockopt(zmq.SNDHWM, 0)
+    out.connect(contacts)
+    out.recv()
+    answers = context.socket(zmq.SUB)
+    answers.setsockopt(zmq.SUBSCRIBE, b"recognition/slow")
+    answers.connect(results)
+    seq = {}
+
+    def send(group, number):
+        for batch in groups[group]:
+            name = batch.header.source
+            batch.object = number
+            batch.header.epoch = 1
+            batch.header.seq = seq[name] = seq.get(name, -1) + 1
+            out.send_multipart([f"contact/{name}/".encode(), batch.SerializeToString()])
+
+    for group in groups:
+        send(group, 1)
+    while True:
+        answer = recognition_pb2.Recognition()
+        answer.ParseFromString(answers.recv_multipart()[1])
+        with answered.get_lock():
+            answered[list(groups).index(answer.group)] += answer.compute_ns * 1e-9
+        send(answer.group, answer.object + 1)
+
+
+def good_latencies(probe, planner, answers, first_object):
+    latencies_ms = []
+    for number in range(answers):
+        at = number % BATCHES_PER_OBJECT
+        batch = probe.batch(10 * at, object_number=first_object + number // BATCHES_PER_OBJECT)
+        time.sleep(PAUSE_S)
+        start = time.monotonic()
+        probe.send(batch)
+        wait_for(planner, lambda m: m.object == batch.object and m.sample_count == 10 * (at + 1), 60)
+        latencies_ms.append(1e3 * (time.monotonic() - start))
+    return latencies_ms
+
+
+def quantile(values, fraction):
+    return sorted(values)[int(fraction * (len(values) - 1))]
+
+
+def latest_status_s(socket, seconds):
+    """How much later than its period a status came, at most."""
+    latest, last, end = 0.0, None, time.monotonic() + seconds
+    while time.monotonic() < end:
+        if receive(socket, 60) is None:
+            raise SystemExit("no status within a minute")
+        now = time.monotonic()
+        if last is not None:
+            latest = max(latest, now - last - STATUS_PERIOD_S)
+        last = now
+    return latest
+
+
+def machine_busy_s():
+    """Processor time of everything on this machine so far."""
+    with open("/proc/stat") as file:
+        user, nice, system, _, _, irq, softirq, *_ = map(int, file.readline().split()[1:])
+    return (user + nice + system + irq + softirq) / os.sysconf("SC_CLK_TCK")
+
+
+def play_round(files, answers):
+    with Bus() as bus:
+        node = bus.start_node("--status-period-s", STATUS_PERIOD_S)
+        good = Probe(bus.publisher(), "good")
+        planner = bus.subscriber("recognition/good/")
+        good_latencies(good, planner, 100, 1)
+        quiet_from = machine_busy_s() - cpu_s("self") - cpu_s(node.pid), time.monotonic()
+        quiet = good_latencies(good, planner, answers, 1000)
+        neighbours = ((machine_busy_s() - cpu_s("self") - cpu_s(node.pid) - quiet_from[0])
+                      / (time.monotonic() - quiet_from[1]))
+        groups = {f"slow{number}": batches_of(path, f"slow{number}") for number, path in enumerate(files)}
+        computed = multiprocessing.Array("d", len(groups))
+        player = multiprocessing.Process(target=play, args=(bus.contacts, bus.results, groups, computed), daemon=True)
+        player.start()
+        try:
+            time.sleep(2.0)
+            busy_before, start = cpu_s(node.pid), time.monotonic()
+            beside = good_latencies(good, planner, answers, 2000)
+            cores = (cpu_s(node.pid) - busy_before) / (time.monotonic() - start)
+            late_s = latest_status_s(bus.subscriber("status/"), 2.0)
+            code, stop_s = stop(node, timeout=60)
+        finally:
+            player.terminate()
+            player.join()
+        if code != 0:
+            raise SystemExit(f"the node ended with {code}")
+        return quiet, beside, cores, neighbours, late_s, stop_s
+
+
+def cpu_s(pid):
+    with open(f"/proc/{pid}/stat") as file:
+        fields = file.read().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--answers", type=int, default=500, help="of the good probe, alone and beside")
+    parser.add_argument("files", nargs="*", help="CSV, gzipped or not")
+    options = parser.parse_args()
+    hostile = SOURCE / "tests/data/hostile"
+    files = [type(hostile)(name) for name in options.files] or sorted(hostile.glob("slow_*.csv*"))
+    print("slow groups: " + ", ".join(path.name for path in files))
+    print("round,quiet_p50_ms,quiet_p99_ms,beside_p50_ms,beside_p99_ms,node_cores,others_cores,status_late_ms,stop_s")
+    rows = []
+    for number in range(options.rounds):
+        quiet, beside, cores, neighbours, late_s, stop_s = play_round(files, options.answers)
+        rows.append((quantile(quiet, 0.5), quantile(quiet, 0.99), quantile(beside, 0.5), quantile(beside, 0.99), cores,
+                     neighbours, 1e3 * late_s, stop_s))
+        print(f"{number + 1}," + ",".join(f"{value:.2f}" for value in rows[-1]), flush=True)
+    medians = [statistics.median(column) for column in zip(*rows)]
+    print("median," + ",".join(f"{value:.2f}" for value in medians))
+    added = statistics.median(row[3] - row[1] for row in rows)
+    checks = [(f"p99 beside is {added:.2f} ms above quiet, at most {MOST_ADDED_MS} asked", added <= MOST_ADDED_MS),
+              (f"status late by {medians[6]:.1f} ms, at most {1e3 * MOST_LATE_STATUS_S:.0f} asked",
+               medians[6] <= 1e3 * MOST_LATE_STATUS_S),
+              (f"stop in {max(row[7] for row in rows):.2f} s at most, {MOST_STOP_S} asked",
+               max(row[7] for row in rows) < MOST_STOP_S)]
+    for text, holds in checks:
+        print(("holds: " if holds else "MISSED: ") + text)
+    return 0 if all(holds for _, holds in checks) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
