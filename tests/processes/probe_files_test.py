@@ -81,6 +81,35 @@ class ProbeFiles(unittest.TestCase):
             self.assertGreater(errors[False], 20e-6)
             self.assertLess(errors[True], 5e-6)
 
+    def test_a_given_class_is_measured_by_the_file_too(self):
+        with Bus() as bus:
+            file, part, truth = self.qualified(bus.folder)
+
+            def fit(*options):
+                out = self.done(TOOL, "fit", part, "--class", "ellipse", "--format", "json", *options)
+                return json.loads(out)
+
+            def error(answer):
+                found = answer["recognition"]["parameters"]
+                return max(abs(found[name] - truth["parameters"][name]) for name in "ab")
+
+            # Least squares take spikes as they are: who gives the class says which those are.
+            spikes = [str(i + 1) for i, r in enumerate(fit()["residual_m"]) if abs(r) > 3e-4]
+            self.assertGreater(len(spikes), 0)
+            left_out = ("--leave-out", ",".join(spikes))
+            plain, measured = fit(*left_out), fit(*left_out, "--probe", file)
+            print(f"given ellipse, largest error of an axis: {1e6 * error(plain):.1f} um without the probe file, "
+                  f"{1e6 * error(measured):.1f} um with it")
+            self.assertGreater(error(plain), 20e-6)
+            self.assertLess(error(measured), 5e-6)
+            self.assertEqual(measured["recognition"]["probe_files"], [str(file)])
+            self.assertEqual(plain["recognition"]["probe_files"], [])
+            covariance = measured["recognition"]["covariance"]
+            for i, name in enumerate("ab"):
+                off = measured["recognition"]["parameters"][name] - truth["parameters"][name]
+                self.assertLess(abs(off), 4 * math.sqrt(covariance[6 * i]), name)
+            self.assertTrue(any("white noise alone" in note for note in measured["notes"]))
+
     def test_a_probe_of_another_name_is_taken_as_it_is(self):
         with Bus() as bus:
             file, part, _ = self.qualified(bus.folder)
