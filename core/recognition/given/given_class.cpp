@@ -577,27 +577,49 @@ void report_noise(std::span<const GivenPoint> points, const LocalPoints& local, 
 }
 
 /// Weighs the points of stated covariance by their variance along the curve's normals at their
-/// feet. Returns by what part the weight that changed most did.
-double weigh_along_normals(const PlacedCurve<Exact>& placed, const LocalPoints& local,
-                           std::span<const GivenPoint> points,
-                           std::vector<WeighedPoint<Exact>>* exact) {
+/// feet, and measured normals by their own variance and that of the foot's place: noise along the
+/// curve puts the foot beside the touch, where the curve has turned on. Returns by what part the
+/// weight that changed most did.
+double weigh_at_feet(const PlacedCurve<Exact>& placed, const LocalPoints& local,
+                     std::span<const GivenPoint> points, double default_sigma_m,
+                     std::vector<WeighedPoint<Exact>>* exact) {
   double change = 0.0;
+  const auto set = [&](const Exact& variance, Exact* weight) {
+    const Exact now = Exact(1.0) / sqrt(variance);
+    change = std::max(change, std::abs(to_double((now - *weight) / now)));
+    *weight = now;
+  };
   for (std::size_t k = 0; k < exact->size(); ++k) {
-    const Eigen::Vector3d& c = points[local.index[k]].covariance_m2;
-    if (!(c.x() > 0.0)) {
+    const GivenPoint& point = points[local.index[k]];
+    const Eigen::Vector3d& c = point.covariance_m2;
+    if (!(c.x() > 0.0) && !has_normal(point)) {
       continue;
     }
     PlaneVector<Exact> foot = placed.feet[k];
     const auto there = place(placed, placed.to_curve((*exact)[k].position), &foot);
-    if (!(to_double(there.speed) > 0.0)) {
+    if (!(to_double(there.speed) > 0.0) || !(to_double(there.slope) > 0.0)) {
       continue;
     }
     const PlaneVector<Exact> n = there.normal.x * placed.axis + there.normal.y * left(placed.axis);
-    const Exact variance =
-        Exact(c.x()) * n.x * n.x + Exact(2.0 * c.y()) * n.x * n.y + Exact(c.z()) * n.y * n.y;
-    const Exact weight = Exact(local.unit_m) / sqrt(variance);
-    change = std::max(change, std::abs(to_double((weight - (*exact)[k].weight) / weight)));
-    (*exact)[k].weight = weight;
+    const auto variance_along = [&](const PlaneVector<Exact>& v) {
+      const Exact unit2(local.unit_m * local.unit_m);  // a power of 2
+      if (!(c.x() > 0.0)) {
+        const Exact sigma_m(noise_of(point, default_sigma_m));
+        return sigma_m * sigma_m / unit2;
+      }
+      return (Exact(c.x()) * v.x * v.x + Exact(2.0 * c.y()) * v.x * v.y +
+              Exact(c.z()) * v.y * v.y) /
+             unit2;
+    };
+    if (c.x() > 0.0) {
+      set(variance_along(n), &(*exact)[k].weight);
+    }
+    if (has_normal(point)) {
+      const Exact own(point.normal_sigma_rad);
+      const Exact turn =
+          inner(left(there.foot.first), there.foot.second) / (there.speed * there.slope);
+      set(own * own + turn * turn * variance_along(left(n)), &(*exact)[k].normal_weight);
+    }
   }
   return change;
 }
@@ -671,7 +693,7 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
     constexpr int kMostRounds = 40;
     constexpr double kSame = 1e-14;
     for (int round = 0; round < kMostRounds; ++round) {
-      if (weigh_along_normals(placed, *local, points, &exact) <= kSame) {
+      if (weigh_at_feet(placed, *local, points, options.sigma_m, &exact) <= kSame) {
         break;
       }
       descent = descend(&placed, std::span<const WeighedPoint<Exact>>(exact), kToRounding, seat);

@@ -78,9 +78,10 @@ struct GivenFit {
 
 /// Least squares of the signed orthogonal distances over all curves of the class, to rounding of
 /// the answer. A measured normal adds the square of its angle to the curve's normal over its
-/// deviation; a covariance C weighs its point by 1 / (n . C n), n the curve's normal at its foot
-/// point, as found, not as sought: then the estimate has no bias by the weights' own slope. Of
-/// several minima the lowest that the starts of every class's own search lead to.
+/// deviation, which holds that of the foot's place too (noise along the curve puts the foot where
+/// the curve has turned on); a covariance C weighs its point by 1 / (n . C n), n the curve's normal
+/// at its foot point, as found, not as sought: then the estimate has no bias by the weights' own
+/// slope. Of several minima the lowest that the starts of every class's own search lead to.
 GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> points,
                          const GivenOptions& options = {});
 
