@@ -41,16 +41,26 @@ Vec2 into_material(const ProbedPatch& run, std::size_t i) {
   return run.context.material_side == MaterialSide::Left ? left_of(travel) : -left_of(travel);
 }
 
-std::vector<GivenPoint> points_of(std::span<const ProbedPatch> runs,
+/// `runs`: those of the group, corrected.
+std::vector<GivenPoint> points_of(const ContactGroup& group, std::span<const ProbedPatch> runs,
                                   std::span<const std::size_t> left_out) {
   std::vector<GivenPoint> points;
-  for (const ProbedPatch& run : runs) {
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const ProbedPatch& run = runs[r];
+    const std::vector<SampleDetail>& details = group.runs[r].details;
     for (std::size_t i = 0; i < run.samples.size(); ++i) {
       GivenPoint point;
       point.position_m = run.samples[i].position_m;
       point.sigma_m = run.samples[i].sigma_m;
       point.tip_radius_m = run.context.tip_radius_m;
       point.into_material = into_material(run, i);
+      if (!details.empty()) {
+        point.normal = details[i].normal;
+        point.normal_sigma_rad = details[i].normal_sigma_rad;
+        point.covariance_m2 = details[i].covariance_m2;
+        // A measured normal knows better.
+        if (details[i].normal_sigma_rad > 0.0) point.into_material = -details[i].normal;
+      }
       points.push_back(point);
     }
   }
@@ -84,7 +94,7 @@ PointsFitted fit_runs(CurveClass curve_class, const ContactGroup& group,
   PointsFitted fitted;
   constexpr int kRounds = 2;  // as of recognise_probed
   for (int round = 0;; ++round) {
-    fitted.points = points_of(corrected, left_out);
+    fitted.points = points_of(group, corrected, left_out);
     fitted.fit = fit_given_class(curve_class, fitted.points, {sigma_m});
     if (!probed || !is_told(fitted.fit)) {
       return fitted;
@@ -169,6 +179,13 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, const ContactGro
   given.set_peak_to_valley_m(fit.peak_to_valley_m);
   for (const GivenResidual& residual : fit.residuals) {
     given.add_residual_m(residual.distance_m);
+  }
+  given.set_normal_count(fit.normals);
+  if (std::any_of(points.begin(), points.end(),
+                  [](const GivenPoint& point) { return point.normal_sigma_rad > 0.0; })) {
+    for (const GivenResidual& residual : fit.residuals) {
+      given.add_residual_normal_rad(residual.normal_rad);
+    }
   }
   return given;
 }

@@ -89,6 +89,18 @@ v1::GivenClassAnswer fit_given(const ContactGroup& group, const FitCommand& fit,
   } else if (!files.empty()) {
     notes.emplace_back("WARNING: without a curve the probe's offset is not taken off");
   }
+  bool normals = false;
+  bool known = true;
+  for (const ContactRun& run : group.runs) {
+    for (const SampleDetail& detail : run.details) normals |= detail.normal_sigma_rad > 0.0;
+    for (const ContactSample& sample : run.samples) {
+      known &= sample.sigma_m > 0.0 || fit.recognizer.sigma_m > 0.0;
+    }
+  }
+  if (normals && !known && !answer.sigma_stated()) {
+    notes.emplace_back(
+        "WARNING: the measured normals do not count: not every sample's noise is known (--sigma)");
+  }
   if (!files.empty() && answer.sigma_stated()) {
     notes.emplace_back("chi-square counts the probe's white noise alone, not its drift");
   }
@@ -127,6 +139,9 @@ int place(const FitCommand& fit, const std::vector<FitInput>& inputs, bool json)
   for (const FitInput& input : inputs) {
     const ContactGroup& group = input.group;
     for (const std::string& note : input.notes) complain(group.file + ": " + note, kDone);
+    if (const std::string note = note_of_unused_detail(group); !note.empty()) {
+      complain(group.file + ": " + note, kDone);
+    }
     const v1::PartMatch match = match_part(group, *part.value, options);
     if (json) {
       std::cout << json_line(match);
