@@ -11,8 +11,11 @@
 #include <exception>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "node/config.h"
+#include "node/files/printable.h"
+#include "node/files/probe_files.h"
 #include "node/node.h"
 #include "node/process/log_sink.h"
 #include "node/process/quiet_protobuf.h"
@@ -97,7 +100,19 @@ Result<NodeOptions> all_options(const CommandLine& command_line) {
   return palpate::make_options(config);
 }
 
-int serve(const NodeOptions& options, const palpate::NodeKeys& keys) {
+void tell_of(const palpate::ProbeFiles& files) {
+  for (const palpate::QualifiedProbe& probe : files.all()) {
+    const std::string& name = probe.described.name();
+    spdlog::info("probe {}: {}", name.empty() ? "of any other name" : palpate::printable(name),
+                 probe.file);
+    if (probe.described.verdict() == palpate::v1::QUALIFICATION_VERDICT_INSUFFICIENT) {
+      spdlog::warn("{}: its qualification was insufficient", probe.file);
+    }
+  }
+}
+
+int serve(const NodeOptions& options, const palpate::NodeKeys& keys,
+          palpate::ProbeFiles probe_files) {
   const int stop_fd = palpate::take_stop_signals();
   if (stop_fd < 0) {
     spdlog::error("no signalfd");
@@ -106,7 +121,8 @@ int serve(const NodeOptions& options, const palpate::NodeKeys& keys) {
   const int reload_fd = palpate::take_reload_signal();
   bool unfinished = false;
   try {
-    palpate::Node node(options, keys);
+    tell_of(probe_files);
+    palpate::Node node(options, keys, std::move(probe_files));
     spdlog::info("contacts on {}, results on {}{}", node.contacts_address(), node.results_address(),
                  keys.own ? ", CURVE" : "");
     node.run(stop_fd, reload_fd);
@@ -161,6 +177,11 @@ int main(int argc, char** argv) {
     spdlog::error("{}", keys.error);
     return kBadConfiguration;
   }
+  Result<palpate::ProbeFiles> probe_files = palpate::ProbeFiles::read(options.value->probe_files);
+  if (!probe_files) {
+    spdlog::error("{}", probe_files.error);
+    return kBadConfiguration;
+  }
   if (command_line.print_config) {
     std::fputs(palpate::to_text(palpate::to_config(*options.value)).c_str(), stdout);
     if (std::fflush(stdout) != 0) {
@@ -169,5 +190,5 @@ int main(int argc, char** argv) {
     }
   }
   if (command_line.print_config || command_line.check_config) return kStopped;
-  return serve(*options.value, *keys.value);
+  return serve(*options.value, *keys.value, *std::move(probe_files.value));
 }

@@ -68,12 +68,15 @@ std::size_t recognitions_at_a_time(const NodeOptions& options) {
 
 }  // namespace
 
-Node::Node(const NodeOptions& options, const NodeKeys& keys)
+Node::Node(const NodeOptions& options, const NodeKeys& keys, ProbeFiles probe_files)
     : options_(options),
       context_(1),
       zap_(make_zap_handler(context_, keys)),
       contacts_(open(zmq::socket_type::sub, options.contacts, contacts_settings(options, keys))),
       results_(open(zmq::socket_type::xpub, options.results, results_settings(options, keys))),
+      probe_files_(probe_files.all().empty()
+                       ? nullptr
+                       : std::make_shared<const ProbeFiles>(std::move(probe_files))),
       intake_(options.intake),
       publisher_(results_, options.name),
       at_a_time_(recognitions_at_a_time(options)),
@@ -167,7 +170,10 @@ void Node::run(int stop_fd, int reload_fd) {
     if (now >= next_tick_) {
       tick(now);
       // Nobody waits for this: a tick's time is soon enough.
-      if (reload_fd >= 0 && reload_requested(reload_fd)) reload_clients();
+      if (reload_fd >= 0 && reload_requested(reload_fd)) {
+        reload_clients();
+        reload_probe_files();
+      }
     }
   }
   finish();
@@ -215,6 +221,7 @@ void Node::give_out_work(SteadyTime now) {
     if (group == nullptr) return;
     const auto pace = group->is_quick() ? Workers::Pace::Quick : Workers::Pace::Slow;
     std::shared_ptr<GroupRecognizer> recognizer = intake_.groups().begin_work(*group);
+    recognizer->probe_files = probe_files_;
     recognizer->wants_estimates = options_.publish_estimates && publisher_.estimates_are_wanted();
     in_work_[workers_.start(std::move(recognizer), pace)] = {group, pace == Workers::Pace::Slow,
                                                              now};
@@ -314,6 +321,18 @@ void Node::reload_clients() {
   for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
     if (somebody_left && peers != nullptr) peers->cut_all("keys have been taken off the list");
   }
+}
+
+// What is being computed ends with the files that it began with.
+void Node::reload_probe_files() {
+  if (!probe_files_) return;
+  Result<ProbeFiles> files = ProbeFiles::read(options_.probe_files);
+  if (!files) {
+    spdlog::error("probe files stay as they were: {}", files.error);
+    return;
+  }
+  probe_files_ = std::make_shared<const ProbeFiles>(*std::move(files.value));
+  spdlog::info("{} probe files reread", probe_files_->all().size());
 }
 
 void Node::finish() {

@@ -11,6 +11,7 @@
 #include <vector>
 #include <zmq.hpp>
 
+#include "node/files/probe_files.h"
 #include "node/files/result.h"
 #include "node/groups/compute_times.h"
 #include "node/groups/intake.h"
@@ -31,13 +32,14 @@ namespace palpate {
 
 class Node {
  public:
-  /// Opens all sockets. `options` as make_options() has checked them. Throws std::runtime_error
-  /// where an endpoint cannot be had.
-  Node(const NodeOptions& options, const NodeKeys& keys);
+  /// Opens all sockets. `options` as make_options() has checked them, `probe_files` those that they
+  /// name. Throws std::runtime_error where an endpoint cannot be had.
+  Node(const NodeOptions& options, const NodeKeys& keys, ProbeFiles probe_files = {});
 
   /// Serves until `stop_fd` is readable; then takes what has been received, recognises and
   /// publishes it, as far as that is done within 0.2 s, and returns.
-  /// Where `reload_fd` (take_reload_signal) says so, the list of allowed clients is read again.
+  /// Where `reload_fd` (take_reload_signal) says so, the list of allowed clients and the probe
+  /// files are read again.
   void run(int stop_fd, int reload_fd = -1);
 
   /// The same, until a stop is requested.
@@ -74,6 +76,7 @@ class Node {
   std::uint64_t connections_cut() const;
   void give_memory_back();
   void reload_clients();
+  void reload_probe_files();
   void finish();
 
   NodeOptions options_;
@@ -85,6 +88,7 @@ class Node {
   std::vector<std::unique_ptr<ReconnectGuard>> guards_;
   std::unique_ptr<PeerGuard> contact_peers_;  // nullptr where the socket connects
   std::unique_ptr<PeerGuard> result_peers_;
+  std::shared_ptr<const ProbeFiles> probe_files_;  // nullptr where the options name none
   Intake intake_;
   ResultPublisher publisher_;
   ComputeTimes compute_times_;

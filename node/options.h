@@ -20,6 +20,7 @@ struct NodeOptions {
   /// Probes to listen to, by the beginning of their names; none = all. Several nodes can so share
   /// the probes of one endpoint.
   std::vector<std::string> probe_prefixes;
+  std::vector<std::string> probe_files;  ///< read by ProbeFiles
   std::string curve_secret_key;
   std::string allow_clients;
   bool insecure = false;
@@ -53,6 +54,10 @@ void for_each_option(Options& options, Visit&& visit) {
   visit({"probe_prefixes",
          "Beginning of the names of probes to listen to; may be repeated; none = all"},
         options.probe_prefixes);
+  visit({"probe_files",
+         "Probe file of palpate calibrate, for the probe that it names (all others, where it names "
+         "none); may be repeated"},
+        options.probe_files);
   visit({"curve_secret_key", "CURVE: this node's secret key file"}, options.curve_secret_key);
   visit({"allow_clients", "CURVE: file of the public keys that may connect"},
         options.allow_clients);

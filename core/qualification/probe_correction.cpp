@@ -227,4 +227,31 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
   return result;
 }
 
+ProbedRecognition recognise_probed(const SampleMemory& memory,
+                                   std::span<const ProbeCharacter* const> probes,
+                                   RecognizerOptions options) {
+  std::vector<ProbedPatch> patches;
+  double merge_bias_m = 0.0;
+  for (const StoredPatch& stored : memory.patches()) {
+    ProbedPatch& patch = patches.emplace_back();
+    patch.context = stored.context;
+    patch.probe = probes[stored.context.probe];
+    merge_bias_m = std::max(merge_bias_m, stored.merge_bias_m);
+    for (const StoredSample& sample : stored.samples) {
+      // Before its weight counts: what the probe says is the noise of one contact.
+      const double sigma_m = sample.sigma_m > 0.0     ? sample.sigma_m
+                             : patch.probe != nullptr ? patch.probe->sigma_m.value
+                                                      : 0.0;
+      patch.samples.push_back({sample.position_m, sigma_m / std::sqrt(sample.weight)});
+    }
+  }
+  options.form_deviation_m = std::hypot(options.form_deviation_m, merge_bias_m);
+  // As many as are there: what had to make room has done so.
+  options.memory.most_patches = std::max<std::size_t>(patches.size(), 1);
+  options.memory.most_lone_touches = std::max<std::size_t>(patches.size(), 1);
+  ProbedRecognition result = recognise_probed(patches, options);
+  result.recognition.sample_count = memory.sample_count();
+  return result;
+}
+
 }  // namespace palpate

@@ -8,6 +8,7 @@
 #include "core/curves/curve.h"
 #include "core/qualification/probe_character.h"
 #include "core/recognition/recognizer.h"
+#include "core/recognition/samples/sample_memory.h"
 
 namespace palpate {
 
@@ -56,5 +57,12 @@ struct ProbedRecognition {
 /// covariance_of_probes. Four recognitions.
 ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
                                    const RecognizerOptions& options);
+
+/// The same of an object whose samples are in memory. `probes`: by the patches' number of their
+/// probe. A mean of neighbours is corrected as one sample of so much less noise; without any noise
+/// stated it counts as one.
+ProbedRecognition recognise_probed(const SampleMemory& memory,
+                                   std::span<const ProbeCharacter* const> probes,
+                                   RecognizerOptions options);
 
 }  // namespace palpate

@@ -1,9 +1,10 @@
 // The offline door: contact samples in CSV files.
 //
 // A header line names the columns, in any order: probe, patch, x_m, y_m, and optionally sigma_m,
-// stamp_ns, object, group, tip_radius_m, material_side (left, right or unspecified). '#' starts a
-// comment; empty lines are skipped; lines end in LF or CRLF. An empty field of an optional column
-// means "not given". Nothing is quoted: no field may hold a comma.
+// stamp_ns, object, group, tip_radius_m, material_side (left, right or unspecified), normal_x,
+// normal_y, normal_sigma_rad, cov_xx_m2, cov_xy_m2, cov_yy_m2. '#' starts a comment; empty lines
+// are skipped; lines end in LF or CRLF. An empty field of an optional column means "not given".
+// Nothing is quoted: no field may hold a comma.
 #pragma once
 
 #include <cstdio>
@@ -44,6 +45,8 @@ class ContactCsvWriter {
   bool with_group_ = false;
   bool with_tip_radius_ = false;
   bool with_side_ = false;
+  bool with_normal_ = false;
+  bool with_covariance_ = false;
 };
 
 /// The whole table.

@@ -38,11 +38,25 @@ ContactCsvWriter::ContactCsvWriter(const ContactTable& table, std::string& text)
     with_group_ |= row.group != row.probe;
     with_tip_radius_ |= row.context.tip_radius_m != 0.0;
     with_side_ |= row.context.material_side != MaterialSide::Unspecified;
+    with_normal_ |= row.detail.normal_sigma_rad > 0.0;
+    with_covariance_ |= row.detail.covariance_m2.x() > 0.0;
   }
-  const std::array<bool, csv::kColumnCount> used = {true,         true,        true,
-                                                    true,         with_sigma_, with_stamp_,
-                                                    with_object_, with_group_, with_tip_radius_,
-                                                    with_side_};
+  const std::array<bool, csv::kColumnCount> used = {true,
+                                                    true,
+                                                    true,
+                                                    true,
+                                                    with_sigma_,
+                                                    with_stamp_,
+                                                    with_object_,
+                                                    with_group_,
+                                                    with_tip_radius_,
+                                                    with_side_,
+                                                    with_normal_,
+                                                    with_normal_,
+                                                    with_normal_,
+                                                    with_covariance_,
+                                                    with_covariance_,
+                                                    with_covariance_};
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
     if (i > 0) text_ += ',';
@@ -66,6 +80,14 @@ void ContactCsvWriter::write(const ContactRow& row) {
   if (with_group_) (text_ += ',') += table_.names[row.group];
   if (with_tip_radius_) field(row.context.tip_radius_m);
   if (with_side_) (text_ += ',') += name_of(row.context.material_side);
+  if (with_normal_) {
+    field(row.detail.normal.x());
+    field(row.detail.normal.y());
+    field(row.detail.normal_sigma_rad);
+  }
+  if (with_covariance_) {
+    for (const double entry : row.detail.covariance_m2) field(entry);
+  }
   text_ += '\n';
 }
 

@@ -53,6 +53,7 @@ Result<csv::PointTable> read_own(std::string_view text, std::string_view name,
     if (options.unit_m) {
       row.sample.position_m *= *options.unit_m;
       row.sample.sigma_m *= *options.unit_m;
+      row.detail.covariance_m2 *= *options.unit_m * *options.unit_m;
       row.context.tip_radius_m *= *options.unit_m;
     }
     if (row.context.tip_radius_m == 0.0) row.context.tip_radius_m = options.tip_radius_m;

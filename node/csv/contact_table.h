@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/recognition/samples/contact_sample.h"
+#include "node/csv/sample_detail.h"
 
 namespace palpate {
 
@@ -17,6 +18,7 @@ struct ContactRow {
   std::uint64_t object = 0;
   PatchContext context;  ///< context.probe is not used
   ContactSample sample;
+  SampleDetail detail = {};
 };
 
 struct ContactTable {

@@ -18,12 +18,31 @@ enum class Column {
   Group,
   TipRadius,
   MaterialSide,
+  NormalX,
+  NormalY,
+  NormalSigma,
+  CovarianceXx,
+  CovarianceXy,
+  CovarianceYy,
 };
 
 /// In the order of Column. The first kRequiredColumns must be there.
-inline constexpr std::array<std::string_view, 10> kColumnNames = {
-    "probe",    "patch",  "x_m",   "y_m",          "sigma_m",
-    "stamp_ns", "object", "group", "tip_radius_m", "material_side"};
+inline constexpr std::array<std::string_view, 16> kColumnNames = {"probe",
+                                                                  "patch",
+                                                                  "x_m",
+                                                                  "y_m",
+                                                                  "sigma_m",
+                                                                  "stamp_ns",
+                                                                  "object",
+                                                                  "group",
+                                                                  "tip_radius_m",
+                                                                  "material_side",
+                                                                  "normal_x",
+                                                                  "normal_y",
+                                                                  "normal_sigma_rad",
+                                                                  "cov_xx_m2",
+                                                                  "cov_xy_m2",
+                                                                  "cov_yy_m2"};
 inline constexpr std::size_t kColumnCount = kColumnNames.size();
 inline constexpr std::size_t kRequiredColumns = 4;
 

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
+
+#include "core/qualification/probe_correction.h"
 
 namespace palpate {
 namespace {
@@ -20,6 +23,8 @@ std::size_t GroupRecognizer::take(const QueuedContacts& message,
                                   std::span<const ContactSample> samples) {
   if (message.begins_object) {
     recognizer_.reset();
+    touched_.clear();
+    forgotten_ = 0;
     members_.clear();
     frame_ = message.frame;
     object_ = message.object;
@@ -40,6 +45,7 @@ std::size_t GroupRecognizer::take(const QueuedContacts& message,
   context.tip_radius_m = message.tip_radius_m;
   context.material_side = message.material_side;
   const AddResult added = recognizer_.add(context, samples);
+  if (probe_files) forgotten_ += touched_.add(context, samples).forgotten;
 
   newest_.source = message.probe;
   newest_.epoch = message.epoch;
@@ -47,6 +53,26 @@ std::size_t GroupRecognizer::take(const QueuedContacts& message,
   newest_.sample_stamp_ns =
       message.newest_sample_stamp_ns;  // of this alone: a wild one does not stay
   return samples.size() - added.accepted;
+}
+
+/// As `palpate fit --probe` does; `files_used`: those that the answer rests on.
+Recognition GroupRecognizer::recognise(std::vector<std::string>& files_used) {
+  std::vector<const ProbeCharacter*> probes;
+  for (const Member& member : members_) {
+    const QualifiedProbe* probe = probe_files ? probe_files->of(member.probe) : nullptr;
+    probes.push_back(probe == nullptr ? nullptr : &probe->character);
+    if (probe != nullptr &&
+        std::find(files_used.begin(), files_used.end(), probe->file) == files_used.end()) {
+      files_used.push_back(probe->file);
+    }
+  }
+  if (files_used.empty()) return recognizer_.recognize();
+  // The estimates of a round tip wait for an answer that tells its side.
+  if (wants_estimates) (void)recognizer_.recognize();
+  ProbedRecognition found = recognise_probed(touched_, probes, options_);
+  found.recognition.forgotten_count = forgotten_;
+  if (!found.corrected) files_used.clear();
+  return std::move(found.recognition);
 }
 
 void GroupRecognizer::run() {
@@ -60,7 +86,8 @@ void GroupRecognizer::run() {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   const std::int64_t processor_start_ns = thread_processor_ns();
-  const Recognition recognition = recognizer_.recognize();
+  std::vector<std::string> files_used;
+  const Recognition recognition = recognise(files_used);
   answer.compute_ns = std::chrono::nanoseconds(Clock::now() - start).count();
   answer.processor_ns = thread_processor_ns() - processor_start_ns;
 
@@ -76,6 +103,7 @@ void GroupRecognizer::run() {
   message.set_newest_batch_epoch(newest_.epoch);
   message.set_newest_batch_source(newest_.source);
   message.set_compute_ns(answer.compute_ns);
+  message.mutable_probe_files()->Assign(files_used.begin(), files_used.end());
   answer.estimates.clear();
   take_estimates();
 }

@@ -3,11 +3,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/recognition/recognizer.h"
+#include "core/recognition/samples/sample_memory.h"
+#include "node/files/probe_files.h"
 #include "node/groups/work.h"
 #include "node/intake/contact_queue.h"
 #include "node/intake/patch_numbering.h"
@@ -32,10 +36,16 @@ class GroupRecognizer : public Work {
   /// `gap_break_spacings`: see GroupOptions.
   GroupRecognizer(std::string_view name, const RecognizerOptions& recognizer,
                   double gap_break_spacings)
-      : name_(name), gap_break_spacings_(gap_break_spacings), recognizer_(recognizer) {}
+      : name_(name),
+        gap_break_spacings_(gap_break_spacings),
+        options_(recognizer),
+        recognizer_(recognizer),
+        touched_(recognizer.memory) {}
 
   ContactQueue contacts;
   bool wants_estimates = false;
+  /// Which probes are qualified; always or never nullptr. Another where the files are read again.
+  std::shared_ptr<const ProbeFiles> probe_files;
   Answer answer;
 
   /// Takes `contacts` in, and answers for all samples of the object.
@@ -61,11 +71,17 @@ class GroupRecognizer : public Work {
   };
 
   std::size_t take(const QueuedContacts& message, std::span<const ContactSample> samples);
+  Recognition recognise(std::vector<std::string>& files_used);
   void take_estimates();
 
   std::string name_;
   double gap_break_spacings_;
+  RecognizerOptions options_;
   Recognizer recognizer_;
+  /// Where there are probe files: the samples as they came, from which each answer takes the
+  /// offsets off anew, by the normals of the curve that it finds.
+  SampleMemory touched_;
+  std::size_t forgotten_ = 0;  ///< samples of touched_, since the object began
   std::string frame_;
   std::uint64_t object_ = 0;
   std::vector<Member> members_;

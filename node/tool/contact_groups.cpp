@@ -8,6 +8,8 @@ namespace palpate {
 
 std::vector<ContactGroup> contact_groups(const std::string& file, const ContactTable& table) {
   std::vector<ContactGroup> groups;
+  const bool detailed = std::any_of(table.rows.begin(), table.rows.end(),
+                                    [](const ContactRow& row) { return says_more(row.detail); });
   std::map<std::pair<std::size_t, std::uint64_t>, std::size_t> index_of;
   for (const ContactRow& row : table.rows) {
     const auto [found, is_new] = index_of.try_emplace({row.group, row.object}, groups.size());
@@ -26,11 +28,24 @@ std::vector<ContactGroup> contact_groups(const std::string& file, const ContactT
                            group.runs.back().context.probe == context.probe &&
                            group.runs.back().context.patch == context.patch;
     if (!continues) {
-      group.runs.push_back({context, {}});
+      group.runs.push_back({context, {}, {}});
     }
     group.runs.back().samples.push_back(row.sample);
+    if (detailed) group.runs.back().details.push_back(row.detail);
   }
   return groups;
+}
+
+std::string note_of_unused_detail(const ContactGroup& group) {
+  std::size_t count = 0;
+  for (const ContactRun& run : group.runs) {
+    count +=
+        static_cast<std::size_t>(std::count_if(run.details.begin(), run.details.end(), says_more));
+  }
+  if (count == 0) return {};
+  return "of " + std::to_string(count) +
+         " samples with a measured normal or covariance the position and mean noise count alone "
+         "(palpate fit --class uses all of it)";
 }
 
 AddResult add_group(const ContactGroup& group, Recognizer& recognizer) {

@@ -15,6 +15,7 @@ namespace palpate {
 struct ContactRun {
   PatchContext context;
   std::vector<ContactSample> samples;
+  std::vector<SampleDetail> details = {};  ///< of the samples; empty where the file has none
 };
 
 /// What is recognised together: one object under one group of one file.
@@ -28,6 +29,9 @@ struct ContactGroup {
 
 /// Groups in the order in which the file begins them.
 std::vector<ContactGroup> contact_groups(const std::string& file, const ContactTable& table);
+
+/// That measured normals and covariances do not count, where there are any; else nothing.
+std::string note_of_unused_detail(const ContactGroup& group);
 
 /// Feeds them all to a recogniser.
 AddResult add_group(const ContactGroup& group, Recognizer& recognizer);

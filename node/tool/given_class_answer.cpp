@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/curves/curve.h"
+#include "core/qualification/probe_correction.h"
 #include "core/recognition/given/given_class.h"
 #include "core/recognition/verdict/determined.h"
 #include "node/wire/convert.h"
@@ -30,7 +32,7 @@ v1::GivenClassStatus to_wire(GivenStatus status) {
 }
 
 /// From where travel goes at a sample to where the material lies; zero where either is not known.
-Vec2 into_material(const ContactRun& run, std::size_t i) {
+Vec2 into_material(const ProbedPatch& run, std::size_t i) {
   if (run.context.material_side == MaterialSide::Unspecified) {
     return Vec2::Zero();
   }
@@ -39,16 +41,26 @@ Vec2 into_material(const ContactRun& run, std::size_t i) {
   return run.context.material_side == MaterialSide::Left ? left_of(travel) : -left_of(travel);
 }
 
-std::vector<GivenPoint> points_of(const ContactGroup& group,
+/// `runs`: those of the group, corrected.
+std::vector<GivenPoint> points_of(const ContactGroup& group, std::span<const ProbedPatch> runs,
                                   std::span<const std::size_t> left_out) {
   std::vector<GivenPoint> points;
-  for (const ContactRun& run : group.runs) {
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const ProbedPatch& run = runs[r];
+    const std::vector<SampleDetail>& details = group.runs[r].details;
     for (std::size_t i = 0; i < run.samples.size(); ++i) {
       GivenPoint point;
       point.position_m = run.samples[i].position_m;
       point.sigma_m = run.samples[i].sigma_m;
       point.tip_radius_m = run.context.tip_radius_m;
       point.into_material = into_material(run, i);
+      if (!details.empty()) {
+        point.normal = details[i].normal;
+        point.normal_sigma_rad = details[i].normal_sigma_rad;
+        point.covariance_m2 = details[i].covariance_m2;
+        // A measured normal knows better.
+        if (details[i].normal_sigma_rad > 0.0) point.into_material = -details[i].normal;
+      }
       points.push_back(point);
     }
   }
@@ -56,6 +68,49 @@ std::vector<GivenPoint> points_of(const ContactGroup& group,
     points.at(number - 1).set_aside = true;
   }
   return points;
+}
+
+bool is_told(const GivenFit& fit) {
+  return fit.status == GivenStatus::Fitted || fit.status == GivenStatus::NotDetermined;
+}
+
+/// A fit, and the points that it is of.
+struct PointsFitted {
+  std::vector<GivenPoint> points;
+  GivenFit fit;
+};
+
+PointsFitted fit_runs(CurveClass curve_class, const ContactGroup& group,
+                      std::span<const ProbeCharacter* const> probes,
+                      std::span<const std::size_t> left_out, double sigma_m) {
+  std::vector<ProbedPatch> raw;
+  for (const ContactRun& run : group.runs) {
+    const ProbeCharacter* probe = probes.empty() ? nullptr : probes[run.context.probe];
+    raw.push_back(as_qualified({run.context, run.samples, probe}));
+  }
+  const bool probed = std::any_of(raw.begin(), raw.end(),
+                                  [](const ProbedPatch& run) { return run.probe != nullptr; });
+  std::vector<ProbedPatch> corrected = raw;
+  PointsFitted fitted;
+  constexpr int kRounds = 2;  // as of recognise_probed
+  for (int round = 0;; ++round) {
+    fitted.points = points_of(group, corrected, left_out);
+    fitted.fit = fit_given_class(curve_class, fitted.points, {sigma_m});
+    if (!probed || !is_told(fitted.fit)) {
+      return fitted;
+    }
+    const auto curve = make_curve(curve_class, fitted.fit.shape.values);
+    if (!curve) {
+      return fitted;
+    }
+    if (round == kRounds) {
+      fitted.fit.covariance += covariance_of_probes(*curve, fitted.fit.world_T_curve, corrected);
+      return fitted;
+    }
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      corrected[i].samples = without_offset(raw[i], *curve, fitted.fit.world_T_curve);
+    }
+  }
 }
 
 double half_extent_m(std::span<const GivenPoint> points) {
@@ -71,12 +126,12 @@ double half_extent_m(std::span<const GivenPoint> points) {
 }  // namespace
 
 v1::GivenClassAnswer given_class_answer(CurveClass curve_class, const ContactGroup& group,
+                                        std::span<const ProbeCharacter* const> probes,
                                         std::span<const std::size_t> left_out,
                                         const RecognizerOptions& options) {
-  const std::vector<GivenPoint> points = points_of(group, left_out);
-  const GivenFit fit = fit_given_class(curve_class, points, {options.sigma_m});
+  const auto [points, fit] = fit_runs(curve_class, group, probes, left_out, options.sigma_m);
   const bool fitted = fit.status == GivenStatus::Fitted;
-  const bool told = fitted || fit.status == GivenStatus::NotDetermined;
+  const bool told = is_told(fit);
   v1::GivenClassAnswer given;
   v1::Recognition& answer = *given.mutable_recognition();
   given.set_status(to_wire(fit.status));
@@ -124,6 +179,13 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, const ContactGro
   given.set_peak_to_valley_m(fit.peak_to_valley_m);
   for (const GivenResidual& residual : fit.residuals) {
     given.add_residual_m(residual.distance_m);
+  }
+  given.set_normal_count(fit.normals);
+  if (std::any_of(points.begin(), points.end(),
+                  [](const GivenPoint& point) { return point.normal_sigma_rad > 0.0; })) {
+    for (const GivenResidual& residual : fit.residuals) {
+      given.add_residual_normal_rad(residual.normal_rad);
+    }
   }
   return given;
 }

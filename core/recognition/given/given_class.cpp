@@ -25,9 +25,34 @@ struct LocalPoints {
   std::vector<std::size_t> index;  ///< of every point in use
   std::vector<WeighedPoint<Exact>> exact;
   std::vector<Vec2> rough;
+  std::size_t normals = 0;  ///< that count
   /// Rounding of the coordinates: no point is known better.
   double rounding = 0.0;
 };
+
+/// Noise of a point, the same in all directions; 0 where it is not known. [m]
+double noise_of(const GivenPoint& point, double default_sigma_m) {
+  const Eigen::Vector3d& c = point.covariance_m2;
+  if (c.x() > 0.0) {
+    return std::sqrt(0.5 * (c.x() + c.z()));
+  }
+  return point.sigma_m > 0.0 ? point.sigma_m : default_sigma_m;
+}
+
+bool has_normal(const GivenPoint& point) { return point.normal_sigma_rad > 0.0; }
+
+/// Every number finite, every noise a noise.
+bool is_sound(const GivenPoint& point) {
+  const Eigen::Vector3d& c = point.covariance_m2;
+  const bool covariance = c.isZero(0.0) || (c.x() > 0.0 && c.x() * c.z() > c.y() * c.y());
+  const bool normal = point.normal_sigma_rad == 0.0 ||
+                      (point.normal_sigma_rad > 0.0 && point.normal.squaredNorm() > 0.0);
+  return point.position_m.allFinite() && point.into_material.allFinite() &&
+         point.normal.allFinite() && c.allFinite() && point.sigma_m >= 0.0 &&
+         std::isfinite(point.sigma_m) && point.tip_radius_m >= 0.0 &&
+         std::isfinite(point.tip_radius_m) && std::isfinite(point.normal_sigma_rad) && covariance &&
+         normal;
+}
 
 std::optional<LocalPoints> local_points(std::span<const GivenPoint> points, double sigma_m,
                                         bool weighted) {
@@ -56,9 +81,14 @@ std::optional<LocalPoints> local_points(std::span<const GivenPoint> points, doub
     WeighedPoint<Exact> exact;
     exact.position.x = inverse_unit * (Exact(point.position_m.x()) - Exact(local.middle_m.x()));
     exact.position.y = inverse_unit * (Exact(point.position_m.y()) - Exact(local.middle_m.y()));
-    const double own_m = point.sigma_m > 0.0 ? point.sigma_m : sigma_m;
-    exact.weight = weighted ? Exact(local.unit_m) / Exact(own_m) : Exact(1.0);
+    exact.weight = weighted ? Exact(local.unit_m) / Exact(noise_of(point, sigma_m)) : Exact(1.0);
     exact.offset = inverse_unit * Exact(point.tip_radius_m);
+    if (weighted && has_normal(point)) {
+      const Vec2 normal = point.normal.normalized();
+      exact.normal = {Exact(normal.x()), Exact(normal.y())};
+      exact.normal_weight = Exact(1.0) / Exact(point.normal_sigma_rad);
+      ++local.normals;
+    }
     local.exact.push_back(exact);
     local.rough.emplace_back(to_double(exact.position.x), to_double(exact.position.y));
   }
@@ -185,10 +215,34 @@ std::vector<WeighedPoint<double>> on_side(std::span<const WeighedPoint<Exact>> e
   std::vector<WeighedPoint<double>> points;
   points.reserve(exact.size());
   for (const WeighedPoint<Exact>& point : exact) {
-    points.push_back(
-        {as_double(point.position), to_double(point.weight), side * to_double(point.offset)});
+    points.push_back({as_double(point.position), to_double(point.weight),
+                      side * to_double(point.offset), as_double(point.normal),
+                      to_double(point.normal_weight)});
   }
   return points;
+}
+
+/// Starts through the points; where normals are measured, through a place on either side of each
+/// along its tangent too, so that fewer points than a class has unknowns have starts.
+std::vector<GivenStart> starts_of(CurveClass curve_class, const LocalPoints& local) {
+  std::vector<GivenStart> starts = given_starts(curve_class, local.rough);
+  if (local.normals == 0) {
+    return starts;
+  }
+  // Of the points' extent, which is about 1: there a curve has left its tangent by little.
+  constexpr double kAside = 0.1;
+  std::vector<Vec2> more = local.rough;
+  for (const WeighedPoint<Exact>& point : local.exact) {
+    if (to_double(point.normal_weight) > 0.0) {
+      const PlaneVector<double> n = as_double(point.normal);
+      const PlaneVector<double> p = as_double(point.position);
+      more.emplace_back(p.x - kAside * n.y, p.y + kAside * n.x);
+      more.emplace_back(p.x + kAside * n.y, p.y - kAside * n.x);
+    }
+  }
+  const std::vector<GivenStart> by_normals = given_starts(curve_class, more);
+  starts.insert(starts.end(), by_normals.begin(), by_normals.end());
+  return starts;
 }
 
 /// The lowest minimum that any start leads to; its feet are those of all points.
@@ -199,7 +253,7 @@ Candidate search(CurveClass curve_class, const LocalPoints& local, std::span<con
   constexpr DescentEffort kOnSome{60, 1e-6, 0.0};
   constexpr DescentEffort kOnAll{200, 1e-8, 0.0};
   std::vector<Candidate> found;
-  const std::vector<GivenStart> starts = given_starts(curve_class, local.rough);
+  const std::vector<GivenStart> starts = starts_of(curve_class, local);
   for (const int side : sides) {
     const auto all = on_side(local.exact, side);
     const auto few = some(all, kMostSeedPoints);
@@ -296,7 +350,8 @@ int votes_against(const Candidate& candidate, const LocalPoints& local,
                   std::span<const GivenPoint> points) {
   int votes = 0;
   for (std::size_t k = 0; k < local.index.size(); ++k) {
-    const Vec2& into = points[local.index[k]].into_material;
+    const GivenPoint& point = points[local.index[k]];
+    const Vec2 into = point.into_material.isZero() ? Vec2(-point.normal) : point.into_material;
     if (into.isZero()) {
       continue;
     }
@@ -451,6 +506,11 @@ void report_residuals(PlacedCurve<Exact>* placed, const LocalPoints& local,
     const Vec2 local_foot = axis * at.x() + left_of(axis) * at.y() +
                             Vec2(to_double(placed->origin.x), to_double(placed->origin.y));
     residual.foot_m = local.middle_m + local.unit_m * local_foot;
+    if (has_normal(points[i]) && to_double(there.speed) > 0.0) {
+      const Vec2 normal = points[i].normal.normalized();
+      const Exact miss = normal_miss(*placed, there, {Exact(normal.x()), Exact(normal.y())});
+      residual.normal_rad = 2.0 * std::atan(0.5 * to_double(miss));
+    }
     if (!points[i].set_aside) {
       ++used;
       squares = squares + distance * distance;
@@ -492,12 +552,14 @@ void settle_pose(std::span<const GivenPoint> points, const LocalPoints& local, G
 void report_noise(std::span<const GivenPoint> points, const LocalPoints& local, bool stated,
                   double default_sigma_m, double squares, GivenFit* fit) {
   fit->sigma_stated = stated;
-  fit->dof = static_cast<int>(local.index.size()) - degrees_of_freedom(fit->shape.curve_class);
+  fit->normals = local.normals;
+  fit->dof = static_cast<int>(local.index.size() + local.normals) -
+             degrees_of_freedom(fit->shape.curve_class);
   if (stated) {
     fit->chi2 = squares;
     double sum = 0.0;
     for (const std::size_t i : local.index) {
-      const double own_m = points[i].sigma_m > 0.0 ? points[i].sigma_m : default_sigma_m;
+      const double own_m = noise_of(points[i], default_sigma_m);
       sum += own_m * own_m;
     }
     fit->sigma_m = std::sqrt(sum / static_cast<double>(local.index.size()));
@@ -512,6 +574,54 @@ void report_noise(std::span<const GivenPoint> points, const LocalPoints& local, 
   fit->chi2 = static_cast<double>(fit->dof);
   fit->sigma_m = local.unit_m * std::sqrt(variance);
   fit->covariance *= variance;
+}
+
+/// Weighs the points of stated covariance by their variance along the curve's normals at their
+/// feet, and measured normals by their own variance and that of the foot's place: noise along the
+/// curve puts the foot beside the touch, where the curve has turned on. Returns by what part the
+/// weight that changed most did.
+double weigh_at_feet(const PlacedCurve<Exact>& placed, const LocalPoints& local,
+                     std::span<const GivenPoint> points, double default_sigma_m,
+                     std::vector<WeighedPoint<Exact>>* exact) {
+  double change = 0.0;
+  const auto set = [&](const Exact& variance, Exact* weight) {
+    const Exact now = Exact(1.0) / sqrt(variance);
+    change = std::max(change, std::abs(to_double((now - *weight) / now)));
+    *weight = now;
+  };
+  for (std::size_t k = 0; k < exact->size(); ++k) {
+    const GivenPoint& point = points[local.index[k]];
+    const Eigen::Vector3d& c = point.covariance_m2;
+    if (!(c.x() > 0.0) && !has_normal(point)) {
+      continue;
+    }
+    PlaneVector<Exact> foot = placed.feet[k];
+    const auto there = place(placed, placed.to_curve((*exact)[k].position), &foot);
+    if (!(to_double(there.speed) > 0.0) || !(to_double(there.slope) > 0.0)) {
+      continue;
+    }
+    const PlaneVector<Exact> n = there.normal.x * placed.axis + there.normal.y * left(placed.axis);
+    const auto variance_along = [&](const PlaneVector<Exact>& v) {
+      const Exact unit2(local.unit_m * local.unit_m);  // a power of 2
+      if (!(c.x() > 0.0)) {
+        const Exact sigma_m(noise_of(point, default_sigma_m));
+        return sigma_m * sigma_m / unit2;
+      }
+      return (Exact(c.x()) * v.x * v.x + Exact(2.0 * c.y()) * v.x * v.y +
+              Exact(c.z()) * v.y * v.y) /
+             unit2;
+    };
+    if (c.x() > 0.0) {
+      set(variance_along(n), &(*exact)[k].weight);
+    }
+    if (has_normal(point)) {
+      const Exact own(point.normal_sigma_rad);
+      const Exact turn =
+          inner(left(there.foot.first), there.foot.second) / (there.speed * there.slope);
+      set(own * own + turn * turn * variance_along(left(n)), &(*exact)[k].normal_weight);
+    }
+  }
+  return change;
 }
 
 }  // namespace
@@ -540,12 +650,10 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   fit.shape.curve_class = curve_class;
   bool stated = true;
   for (const GivenPoint& point : points) {
-    if (!point.position_m.allFinite() || !(point.sigma_m >= 0.0) || !(point.tip_radius_m >= 0.0) ||
-        !std::isfinite(point.sigma_m) || !std::isfinite(point.tip_radius_m) ||
-        !point.into_material.allFinite()) {
+    if (!is_sound(point)) {
       return fit;
     }
-    stated = stated && (point.set_aside || point.sigma_m > 0.0 || options.sigma_m > 0.0);
+    stated = stated && (point.set_aside || noise_of(point, options.sigma_m) > 0.0);
   }
   fit.status = GivenStatus::TooFewPoints;
   // Stated and unstated noise do not mix: the data decide for all.
@@ -554,10 +662,12 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
     return fit;
   }
   fit.used = local->index.size();
-  if (different(local->rough) < static_cast<std::size_t>(degrees_of_freedom(curve_class))) {
+  if (different(local->rough) + local->normals <
+      static_cast<std::size_t>(degrees_of_freedom(curve_class))) {
     return fit;
   }
-  if (curve_class != CurveClass::Line && on_one_line(*local)) {
+  // Two touches with normals lie on one line and determine a circle.
+  if (curve_class != CurveClass::Line && local->normals == 0 && on_one_line(*local)) {
     fit.status = GivenStatus::Collinear;
     return fit;
   }
@@ -577,8 +687,18 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   // Quadratic: what moves residuals by 1e-17 is followed by nothing that a double can hold.
   constexpr DescentEffort kToRounding{40, 1e-17, 1e-6};
   const auto seat = [](PlacedCurve<Exact>* trial) { return curve_of(*trial).has_value(); };
-  const auto descent =
-      descend(&placed, std::span<const WeighedPoint<Exact>>(exact), kToRounding, seat);
+  auto descent = descend(&placed, std::span<const WeighedPoint<Exact>>(exact), kToRounding, seat);
+  if (stated) {
+    // Each round leaves of the weights' error about the noise over the radius of curvature.
+    constexpr int kMostRounds = 40;
+    constexpr double kSame = 1e-14;
+    for (int round = 0; round < kMostRounds; ++round) {
+      if (weigh_at_feet(placed, *local, points, options.sigma_m, &exact) <= kSame) {
+        break;
+      }
+      descent = descend(&placed, std::span<const WeighedPoint<Exact>>(exact), kToRounding, seat);
+    }
+  }
   if (!descent.settled && !found.settled) {
     return fit;
   }

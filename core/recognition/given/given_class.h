@@ -1,7 +1,9 @@
 // A class that is given: its least orthogonal distances to all points, whatever their order.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -14,10 +16,16 @@ namespace palpate {
 /// One contact point; its neighbours do not matter.
 struct GivenPoint {
   Vec2 position_m = Vec2::Zero();
-  double sigma_m = 0.0;       ///< 1-sigma noise; 0 = not known [m]
+  double sigma_m = 0.0;       ///< 1-sigma noise, alike in all directions; 0 = not known [m]
   double tip_radius_m = 0.0;  ///< the point is the centre of a round tip; 0 = surface [m]
   /// Roughly into the material, of any length; zero where it is not known. Only tips need it.
   Vec2 into_material = Vec2::Zero();
+  /// Measured normal of the surface, of any length: out of the material, if the material matters;
+  /// zero = not measured. Its direction counts where every point's noise is known.
+  Vec2 normal = Vec2::Zero();
+  double normal_sigma_rad = 0.0;  ///< standard deviation of that direction
+  /// [xx, xy, yy] of the position's noise, in place of sigma_m; zeros = not known [m^2]
+  Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();
   bool set_aside = false;  ///< an outlier by the caller's word: its residual is told, no more
 };
 
@@ -27,8 +35,8 @@ struct GivenOptions {
 
 enum class GivenStatus {
   Fitted,
-  NotFinite,      ///< a position, noise or tip radius is not finite, or negative
-  TooFewPoints,   ///< fewer different points than the class has unknowns
+  NotFinite,      ///< a position, noise, normal or tip radius is not finite, or negative
+  TooFewPoints,   ///< fewer different points, and normals in use, than the class has unknowns
   Collinear,      ///< all on one straight line: no curve is determined
   AtLimit,        ///< the squares fall all the way to where the class ends: it has no best curve
   NotDetermined,  ///< a best curve, but others fit alike: what is told of it is one of many
@@ -41,6 +49,9 @@ struct GivenResidual {
   double t = 0.0;           ///< canonical parameter of the foot point
   double distance_m = 0.0;  ///< signed, positive left of increasing t; less the tip radius
   Vec2 foot_m = Vec2::Zero();
+  /// The measured normal's direction less the curve's, either way round, in (-pi/2, pi/2]; NaN
+  /// where none is measured, or the curve has none there. [rad]
+  double normal_rad = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct GivenFit {
@@ -56,8 +67,9 @@ struct GivenFit {
   double chi2 = 0.0;          ///< sum of squares over stated variances; over the estimated one: dof
   bool sigma_stated = false;  ///< for every point: only then chi2 says whether the class is right
   double sigma_m = 0.0;       ///< root mean square of the noise stated, or the estimated one
-  int dof = 0;                ///< points in use less unknowns
-  std::size_t used = 0;
+  int dof = 0;                ///< points and normals in use less unknowns
+  std::size_t used = 0;       ///< points
+  std::size_t normals = 0;    ///< in use; 0 where a point's noise is not known
   int side = 0;  ///< tip centres lie left (+1) or right (-1) of increasing t; 0 without tips
   /// Largest element of J^T r beside the norms of its column of J and of r: 0 at a stationary
   /// point.
@@ -65,7 +77,11 @@ struct GivenFit {
 };
 
 /// Least squares of the signed orthogonal distances over all curves of the class, to rounding of
-/// the answer. Of several minima the lowest that the starts of every class's own search lead to.
+/// the answer. A measured normal adds the square of its angle to the curve's normal over its
+/// deviation, which holds that of the foot's place too (noise along the curve puts the foot where
+/// the curve has turned on); a covariance C weighs its point by 1 / (n . C n), n the curve's normal
+/// at its foot point, as found, not as sought: then the estimate has no bias by the weights' own
+/// slope. Of several minima the lowest that the starts of every class's own search lead to.
 GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> points,
                          const GivenOptions& options = {});
 

@@ -15,8 +15,10 @@ namespace palpate {
 template <typename T>
 struct WeighedPoint {
   PlaneVector<T> position;
-  T weight{};  ///< of the residual: inverse of its standard deviation
-  T offset{};  ///< signed distance that the point should have: side times tip radius
+  T weight{};               ///< of the residual: inverse of its standard deviation
+  T offset{};               ///< signed distance that the point should have: side times tip radius
+  PlaneVector<T> normal{};  ///< measured, unit, either way round
+  T normal_weight{};        ///< inverse standard deviation of its direction; 0 = none
 };
 
 template <typename T>
@@ -93,6 +95,26 @@ Placement<T> place(const PlacedCurve<T>& curve, const PlaneVector<T>& point,
   return placed;
 }
 
+/// The angle from the curve's normal to the measured one, either way round, as h = 2 tan(angle /
+/// 2): that is the angle but for a twelfth of its cube, and takes no transcendental function. It
+/// falls by 1 + h^2 / 4 times what the curve's normal turns by.
+template <typename T>
+T normal_miss(const PlacedCurve<T>& curve, const Placement<T>& placed,
+              const PlaneVector<T>& measured) {
+  const PlaneVector<T> m{inner(curve.axis, measured), inner(left(curve.axis), measured)};
+  const T along = inner(placed.normal, m);
+  const T across = inner(left(placed.normal), m);
+  return to_double(along) >= 0.0 ? (across + across) / (T(1.0) + along)
+                                 : (across + across) / (along - T(1.0));
+}
+
+/// Whether the point has a normal to be compared, and the curve one there.
+template <typename T>
+bool compares_normals(const Placement<T>& placed, const WeighedPoint<T>& point) {
+  return to_double(point.normal_weight) > 0.0 && to_double(placed.speed) > 0.0 &&
+         to_double(placed.slope) > 0.0;
+}
+
 /// Half the sum of squares; the feet follow.
 template <typename T>
 T half_squares(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> points) {
@@ -101,6 +123,10 @@ T half_squares(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> points) {
     const Placement<T> placed = place(*curve, curve->to_curve(points[i].position), &curve->feet[i]);
     const T residual = points[i].weight * (placed.distance - points[i].offset);
     cost = cost + residual * residual;
+    if (compares_normals(placed, points[i])) {
+      const T miss = points[i].normal_weight * normal_miss(*curve, placed, points[i].normal);
+      cost = cost + miss * miss;
+    }
   }
   return T(0.5) * cost;
 }
@@ -108,7 +134,9 @@ T half_squares(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> points) {
 /// With n the unit normal at the foot point, the distance's derivative by the unknowns q is
 /// -n . C_q (envelope theorem), and its second derivative
 /// T . C_q (n . dC'/dq) / |C'| - n . C_tq dt/dq - n . C_qq, where dt/dq is how the foot moves and
-/// dC'/dq = C_tq + C'' dt/dq.
+/// dC'/dq = C_tq + C'' dt/dq. The normals' residuals enter the Hessian by their first derivatives
+/// alone: the third derivatives of the curve, which the second take, are times residuals that are
+/// as likely of either sign.
 template <typename T>
 Squares<T> squares_about(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> points) {
   const Unknowns unknowns(curve->curve_class);
@@ -152,6 +180,20 @@ Squares<T> squares_about(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>>
       }
     }
     sum.cost = sum.cost + residual * residual;
+    if (compares_normals(placed, points[point])) {
+      const T by_normal = points[point].normal_weight;
+      const T h = normal_miss(*curve, placed, points[point].normal);
+      const T falls = by_normal * (T(1.0) + T(0.25) * h * h);
+      sum.cost = sum.cost + by_normal * by_normal * h * h;
+      for (std::size_t i = 0; i < n; ++i) {
+        sum.gradient[i] = sum.gradient[i] - by_normal * h * falls * turn[i];
+        for (std::size_t j = 0; j <= i; ++j) {
+          const T square = falls * falls * turn[i] * turn[j];
+          sum.information[i][j] = sum.information[i][j] + square;
+          sum.hessian[i][j] = sum.hessian[i][j] + square;
+        }
+      }
+    }
     for (std::size_t i = 0; i < n; ++i) {
       sum.gradient[i] = sum.gradient[i] + residual * weight * rate[i];
       for (std::size_t j = 0; j <= i; ++j) {

@@ -76,10 +76,34 @@ bool noise_is_known(const FitInput& input, const RecognizerOptions& options) {
   return input.noise_is_known || options.sigma_m > 0.0;
 }
 
-v1::GivenClassAnswer fit_given(const ContactGroup& group, const FitCommand& fit) {
+v1::GivenClassAnswer fit_given(const ContactGroup& group, const FitCommand& fit,
+                               const std::vector<QualifiedProbe>& probes,
+                               std::vector<std::string>& notes) {
+  std::vector<std::string> files;
+  const std::vector<const ProbeCharacter*> characters = characters_of(group, probes, files, notes);
   const auto start = std::chrono::steady_clock::now();
   v1::GivenClassAnswer answer = given_class_answer(*curve_class_from_name(fit.given_class), group,
-                                                   fit.left_out, fit.recognizer);
+                                                   characters, fit.left_out, fit.recognizer);
+  if (answer.recognition().has_parameters()) {
+    answer.mutable_recognition()->mutable_probe_files()->Assign(files.begin(), files.end());
+  } else if (!files.empty()) {
+    notes.emplace_back("WARNING: without a curve the probe's offset is not taken off");
+  }
+  bool normals = false;
+  bool known = true;
+  for (const ContactRun& run : group.runs) {
+    for (const SampleDetail& detail : run.details) normals |= detail.normal_sigma_rad > 0.0;
+    for (const ContactSample& sample : run.samples) {
+      known &= sample.sigma_m > 0.0 || fit.recognizer.sigma_m > 0.0;
+    }
+  }
+  if (normals && !known && !answer.sigma_stated()) {
+    notes.emplace_back(
+        "WARNING: the measured normals do not count: not every sample's noise is known (--sigma)");
+  }
+  if (!files.empty() && answer.sigma_stated()) {
+    notes.emplace_back("chi-square counts the probe's white noise alone, not its drift");
+  }
   fill_origin(group, std::chrono::steady_clock::now() - start, *answer.mutable_recognition());
   return answer;
 }
@@ -115,6 +139,9 @@ int place(const FitCommand& fit, const std::vector<FitInput>& inputs, bool json)
   for (const FitInput& input : inputs) {
     const ContactGroup& group = input.group;
     for (const std::string& note : input.notes) complain(group.file + ": " + note, kDone);
+    if (const std::string note = note_of_unused_detail(group); !note.empty()) {
+      complain(group.file + ": " + note, kDone);
+    }
     const v1::PartMatch match = match_part(group, *part.value, options);
     if (json) {
       std::cout << json_line(match);
@@ -213,8 +240,8 @@ int run(FitCommand& fit) {
       const bool known = noise_is_known(input, options) || answer.probe_files_size() > 0;
       text = json ? json_line(answer) : report_text(answer, known);
     } else {
-      const v1::GivenClassAnswer given = fit_given(group, fit);
       notes = input.notes;
+      const v1::GivenClassAnswer given = fit_given(group, fit, probes, notes);
       text = json ? json_line(given) : given_class_text(given);
       answer = given.recognition();
     }
@@ -322,7 +349,6 @@ void add_fit_command(CLI::App& app, int& exit_code) {
                    "Probe file of palpate calibrate: its offsets are taken off by the normals "
                    "found, its noise, drift and tip radius count, and the answer names it. May be "
                    "repeated: of several files each is for the probe that it names")
-      ->excludes(given)
       ->excludes("--part")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)

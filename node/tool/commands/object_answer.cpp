@@ -30,24 +30,25 @@ const QualifiedProbe* probe_called(const std::string& name,
   return found == probes.end() ? nullptr : &*found;
 }
 
-/// An object as qualified probes have touched it; `files` and `notes` receive which files it rests
-/// on.
-std::vector<ProbedPatch> probed_patches(const ContactGroup& group,
-                                        const std::vector<QualifiedProbe>& probes,
-                                        std::vector<std::string>& files,
-                                        std::vector<std::string>& notes) {
-  std::vector<ProbedPatch> patches;
+}  // namespace
+
+std::vector<const ProbeCharacter*> characters_of(const ContactGroup& group,
+                                                 const std::vector<QualifiedProbe>& probes,
+                                                 std::vector<std::string>& files,
+                                                 std::vector<std::string>& notes) {
+  if (probes.empty()) return {};
+  std::vector<const ProbeCharacter*> characters(group.probes.size(), nullptr);
   std::vector<bool> told(group.probes.size(), false);
   for (const ContactRun& run : group.runs) {
-    const std::string& name = group.probes[run.context.probe];
-    const QualifiedProbe* probe = probe_called(name, probes);
-    patches.push_back({run.context, run.samples, probe == nullptr ? nullptr : &probe->character});
     if (told[run.context.probe]) continue;
     told[run.context.probe] = true;
+    const std::string& name = group.probes[run.context.probe];
+    const QualifiedProbe* probe = probe_called(name, probes);
     if (probe == nullptr) {
       notes.push_back("WARNING: no probe file is of probe " + printable(name));
       continue;
     }
+    characters[run.context.probe] = &probe->character;
     if (std::find(files.begin(), files.end(), probe->file) == files.end()) {
       files.push_back(probe->file);
     }
@@ -63,10 +64,8 @@ std::vector<ProbedPatch> probed_patches(const ContactGroup& group,
       notes.push_back("the tip radius of " + probe->file + " counts, not that of the samples");
     }
   }
-  return patches;
+  return characters;
 }
-
-}  // namespace
 
 void fill_origin(const ContactGroup& group, std::chrono::steady_clock::duration taken,
                  v1::Recognition& answer) {
@@ -92,13 +91,15 @@ Answered recognise(const FitInput& input, const RecognizerOptions& options,
     answer.recognition = recognizer.recognize();
     taken = std::chrono::steady_clock::now() - start;
   } else {
-    const std::vector<ProbedPatch> patches =
-        probed_patches(group, probes, probe_files, probe_notes);
+    const std::vector<const ProbeCharacter*> characters =
+        characters_of(group, probes, probe_files, probe_notes);
+    SampleMemory memory(options.memory);
+    for (const ContactRun& run : group.runs) added += memory.add(run.context, run.samples);
     const auto start = std::chrono::steady_clock::now();
-    ProbedRecognition result = recognise_probed(patches, options);
+    ProbedRecognition result = recognise_probed(memory, characters, options);
     taken = std::chrono::steady_clock::now() - start;
     answer.recognition = std::move(result.recognition);
-    added = result.added;
+    answer.recognition.forgotten_count = added.forgotten;
     if (!result.corrected && !probe_files.empty()) {
       probe_files.clear();
       probe_notes.push_back(

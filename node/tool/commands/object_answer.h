@@ -21,6 +21,13 @@ struct Answered {
 void fill_origin(const ContactGroup& group, std::chrono::steady_clock::duration taken,
                  v1::Recognition& answer);
 
+/// What the probes of an object are, by their number; none where `probes` is empty. `files`
+/// receives those that count, `notes` what is to be said of them.
+std::vector<const ProbeCharacter*> characters_of(const ContactGroup& group,
+                                                 const std::vector<QualifiedProbe>& probes,
+                                                 std::vector<std::string>& files,
+                                                 std::vector<std::string>& notes);
+
 /// By qualified probes where there are any (core/qualification/probe_correction.h). `notes`
 /// receives what is to be said beside the answer.
 Answered recognise(const FitInput& input, const RecognizerOptions& options,

@@ -137,6 +137,9 @@ Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
   std::vector<TimedMessage> messages;
   std::map<std::string, std::int64_t> taken;  // samples, by probe
   for (const ContactGroup& group : contact_groups(command.file, *table)) {
+    if (const std::string note = note_of_unused_detail(group); !note.empty()) {
+      complain(command.file + ": " + note, kDone);
+    }
     for (const ContactRun& run : group.runs) {
       const std::string& probe = group.probes[run.context.probe];
       for (std::size_t i = 0; i < run.samples.size(); ++i) {

@@ -1,6 +1,8 @@
+#include <cmath>
 #include <string>
 #include <string_view>
 
+#include "core/curves/pose2.h"
 #include "node/tool/given_class_answer.h"
 #include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
@@ -40,6 +42,15 @@ std::string given_class_text(const v1::GivenClassAnswer& answer) {
             (answer.sigma_stated() ? "of the stated noise"
                                    : "is dof: the noise is estimated from the residuals") +
             "\n";
+  }
+  if (answer.normal_count() > 0) {
+    double squares = 0.0;
+    for (const double miss : answer.residual_normal_rad()) {
+      squares += std::isfinite(miss) ? miss * miss : 0.0;
+    }
+    const double rms = std::sqrt(squares / static_cast<double>(answer.normal_count()));
+    text += "  normals      " + std::to_string(answer.normal_count()) + " measured, rms " +
+            number(rms * 180.0 / kPi) + " degrees off the curve's\n";
   }
   if (answer.left_out_size() > 0) {
     text += "  left out     " + std::to_string(answer.left_out_size()) + " samples\n";

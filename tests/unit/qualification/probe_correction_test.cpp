@@ -81,6 +81,42 @@ TEST(ProbeCorrection, WithTheFileTheEllipseIsAtTheBoundAndHeld) {
   EXPECT_LT(held_without, band(0.95).least);  // what the file is for
 }
 
+TEST(ProbeCorrection, FromMemoryTheSameAndFromMeansOfNeighboursNearly) {
+  auto rng = test::test_rng();
+  test::ProbeScene part;
+  part.curve = Ellipse{0.03, 0.022};
+  part.start_t = 0.4;
+  part.arc_t = 1.2 * kPi;
+  part.samples = 1000;  // four of them bend by less than their noise
+  part.probe = test::lobed_probe();
+  part.probe.spike_probability.value = 0.0;  // a mean hides them
+  part.probe.deviation_m.value = 0.0;        // and makes drift stand out of the noise
+  const Eigen::Index terms = part.probe.offset.coefficients_m.size();
+  part.probe.offset.covariance_m2 = Eigen::MatrixXd::Zero(terms, terms);
+  const std::vector<ProbedPatch> patches = patches_of(simulate(part, rng), &part.probe);
+  const Recognition direct = recognise_probed(patches, {}).recognition;
+  const ProbeCharacter* const probes[] = {&part.probe};
+  for (const std::size_t most : {std::size_t{1024}, patches.front().samples.size() / 3}) {
+    RecognizerOptions options;
+    options.memory.most_samples_per_patch = most;
+    SampleMemory memory(options.memory);
+    std::size_t count = 0;
+    for (const ProbedPatch& patch : patches) {
+      count += memory.add(patch.context, patch.samples).accepted;
+    }
+    const ProbedRecognition answer = recognise_probed(memory, probes, options);
+    EXPECT_TRUE(answer.corrected);
+    EXPECT_EQ(answer.recognition.sample_count, count);
+    ASSERT_EQ(answer.recognition.shape.curve_class, CurveClass::Ellipse);
+    // Every sample alone is what it was; means of four hold the same information.
+    const double tolerance = most == 1024 ? 1e-9 : 0.5;
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_NEAR(answer.recognition.shape.values[k], direct.shape.values[k],
+                  tolerance * std::sqrt(direct.covariance(k, k)));
+    }
+  }
+}
+
 TEST(ProbeCorrection, TakesOffWhatTheProbePutOn) {
   auto rng = test::test_rng();
   test::ProbeScene part;

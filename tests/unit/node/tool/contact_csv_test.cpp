@@ -67,6 +67,12 @@ TEST(ContactCsv, AnErrorNamesFileLineColumnAndReason) {
   EXPECT_THAT(error_of("probe,patch,x_m,y_m,sigma_m\na,0,1,2,-1\n"), StartsWith("part.csv:2:9:"));
   EXPECT_THAT(error_of("probe,patch,x_m,y_m,material_side\na,0,1,2,up\n"),
               StartsWith("part.csv:2:9:"));
+  const std::string normals = "probe,patch,x_m,y_m,normal_x,normal_y,normal_sigma_rad\n";
+  EXPECT_THAT(error_of(normals + "a,0,1,2,0.7,0.7,0.1\n"), StartsWith("part.csv:2:9: normal_x"));
+  EXPECT_THAT(error_of(normals + "a,0,1,2,0.6,0.8,\n"), HasSubstr("a normal needs its deviation"));
+  EXPECT_THAT(error_of(normals + "a,0,1,2,0.6,0.8,4\n"), StartsWith("part.csv:2:17: normal_sigma"));
+  EXPECT_THAT(error_of("probe,patch,x_m,y_m,cov_xx_m2,cov_xy_m2,cov_yy_m2\na,0,1,2,1,2,1\n"),
+              StartsWith("part.csv:2:9: cov_xx_m2"));
   EXPECT_THAT(error_of("probe,patch,x_m,y_m,tip_radius_m\na,0,1,2,0.1\na,0,1,3,0.2\n"),
               HasSubstr("changes within a patch"));
 }
@@ -88,6 +94,15 @@ TEST(ContactCsv, WhatIsWrittenReadsTheSameToTheLastBit) {
     row.sample.position_m = Vec2(std::pow(10.0, exponent(rng)), -std::pow(10.0, exponent(rng)));
     row.sample.sigma_m = i % 3 == 0 ? 0.0 : std::pow(10.0, exponent(rng));
     row.sample.stamp_ns = static_cast<std::int64_t>(rng() >> 2);
+    if (i % 5 == 0) {
+      const double angle = exponent(rng);
+      row.detail.normal = {std::cos(angle), std::sin(angle)};
+      row.detail.normal_sigma_rad = 0.02;
+    }
+    if (i % 7 == 0) {
+      row.detail.covariance_m2 = {3e-8 * (1.0 + std::pow(10.0, exponent(rng))), -1e-8, 1e-8};
+      row.sample.sigma_m = mean_sigma_m(row.detail.covariance_m2);
+    }
     table.rows.push_back(row);
   }
   const auto again = parse_contact_csv(to_csv(table), "again.csv");
@@ -105,6 +120,9 @@ TEST(ContactCsv, WhatIsWrittenReadsTheSameToTheLastBit) {
     EXPECT_EQ(is.sample.position_m, was.sample.position_m);
     EXPECT_EQ(is.sample.sigma_m, was.sample.sigma_m);
     EXPECT_EQ(is.sample.stamp_ns, was.sample.stamp_ns);
+    EXPECT_EQ(is.detail.normal, was.detail.normal);
+    EXPECT_EQ(is.detail.normal_sigma_rad, was.detail.normal_sigma_rad);
+    EXPECT_EQ(is.detail.covariance_m2, was.detail.covariance_m2);
   }
 }
 

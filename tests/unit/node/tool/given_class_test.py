@@ -1,4 +1,5 @@
 """palpate fit --class, called as a user calls it."""
+import json
 import math
 import unittest
 
@@ -50,6 +51,40 @@ class GivenClass(unittest.TestCase):
         code, text, _ = run(TOOL, "fit", "--format", "text", "--class", "circle", "-", text_in=touches(points))
         self.assertEqual(code, 0)
         self.assertIn("peak to valley", text)
+
+    def test_measured_normals_count_where_the_noise_is_known(self):
+        rows = [(0.02 * math.cos(t) + 0.1, 0.02 * math.sin(t), math.cos(t), math.sin(t)) for t in (0.3, 1.5)]
+        text = ("probe,patch,x_m,y_m,normal_x,normal_y,normal_sigma_rad\n" +
+                "".join(f"p,{i},{x!r},{y!r},{u!r},{v!r},0.01\n" for i, (x, y, u, v) in enumerate(rows)))
+        # Two touches with normals are a circle.
+        code, (answer,), _ = fit(text, "--class", "circle", "--sigma", "1e-5")
+        self.assertEqual(code, 0)
+        self.assertEqual(answer.status, given_class_pb2.GIVEN_CLASS_STATUS_FITTED)
+        self.assertAlmostEqual(answer.recognition.parameters.a, 0.02, delta=1e-9)
+        self.assertEqual(answer.normal_count, 2)
+        self.assertEqual(answer.recognition.hypotheses[0].dof, 1)
+        self.assertEqual(len(answer.residual_normal_rad), 2)
+        self.assertLess(max(map(abs, answer.residual_normal_rad)), 1e-6)
+        # Without known noise they weigh nothing beside a distance, and that is said.
+        _, out, _ = run(TOOL, "fit", "--format", "json", "--class", "circle", "-", text_in=text)
+        self.assertIn("the measured normals do not count", out)
+        self.assertEqual(json.loads(out)["status"], "GIVEN_CLASS_STATUS_TOO_FEW_POINTS")
+        # Where the class is sought they do not count, and that is said too.
+        many = text.splitlines()[0] + "\n" + "".join(
+            f"p,0,{0.02 * math.cos(0.05 * i)!r},{0.02 * math.sin(0.05 * i)!r},1,0,0.01\n" for i in range(40))
+        _, out, _ = run(TOOL, "fit", "--format", "json", "--sigma", "1e-6", "-", text_in=many)
+        answer = json.loads(out)
+        self.assertTrue(any("40 samples with a measured normal" in note for note in answer["notes"]))
+
+    def test_a_covariance_weighs_along_the_normal(self):
+        # Sure along x, unsure along y: the touches of the sides say how wide it is, whatever the others do.
+        text = "probe,patch,x_m,y_m,cov_xx_m2,cov_xy_m2,cov_yy_m2\n" + "".join(
+            f"p,{i},{x!r},{y!r},1e-12,0,1e-6\n"
+            for i, (x, y) in enumerate([(0.5, 0.002), (0.5, -0.002), (0.54, 0.002), (0.54, -0.002), (0.52, 0.021)]))
+        code, (answer,), _ = fit(text, "--class", "circle")
+        self.assertEqual(code, 0)
+        self.assertTrue(answer.sigma_stated)
+        self.assertAlmostEqual(answer.recognition.parameters.a, math.hypot(0.02, 0.002), delta=1e-6)
 
     def test_an_outlier_is_left_out_by_its_number(self):
         points = SQUARE[:2] + [(0.7, 0.7)] + SQUARE[2:]

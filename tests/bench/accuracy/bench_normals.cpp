@@ -1,0 +1,105 @@
+// How many touches of an ellipse a measured normal saves: the fewest after which both axes are
+// known to a part of themselves in 95 % of scenes. Touches lie anywhere on the ellipse, in no
+// order, and the class is given. Beside each number, the mean square of the axes' errors over their
+// published deviations (law: 1). Prints a table.
+//   bench_normals [--scenes N] [--accuracy PART] [--most N] [--seed S]
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <vector>
+
+#include "core/curves/curve.h"
+#include "core/recognition/given/given_class.h"
+#include "tests/bench/options/bench_options.h"
+
+namespace {
+
+using namespace palpate;
+
+constexpr double kDegree = kPi / 180.0;
+const Ellipse kPart{0.03, 0.022};
+constexpr double kNoNormals = 0.0;
+
+std::vector<GivenPoint> touch(int count, double sigma_m, double normal_sigma_rad,
+                              std::mt19937_64& rng) {
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> anywhere(0.0, 2.0 * kPi);
+  const Pose2 pose{0.1, -0.2, anywhere(rng)};
+  std::vector<GivenPoint> points;
+  for (int i = 0; i < count; ++i) {
+    const double t = anywhere(rng);
+    const double outward = geometry(Curve(kPart), t).tangent_angle + pose.theta - 0.5 * kPi;
+    GivenPoint& point = points.emplace_back();
+    point.position_m = pose * position(Curve(kPart), t) + sigma_m * Vec2(normal(rng), normal(rng));
+    point.sigma_m = sigma_m;
+    const double measured = outward + normal_sigma_rad * normal(rng);
+    point.normal = {std::cos(measured), std::sin(measured)};
+    point.normal_sigma_rad = normal_sigma_rad;
+  }
+  return points;
+}
+
+struct Outcome {
+  int known = 0;         ///< scenes in which both axes are
+  double squares = 0.0;  ///< of errors over deviations, of the scenes that were
+};
+
+Outcome outcome_of(int count, double sigma_m, double normal_sigma_rad, double accuracy, int scenes,
+                   std::uint64_t seed) {
+  Outcome outcome;
+  for (int scene = 0; scene < scenes; ++scene) {
+    std::seed_seq seeds{seed, static_cast<std::uint64_t>(count), static_cast<std::uint64_t>(scene)};
+    std::mt19937_64 rng(seeds);
+    const GivenFit fit =
+        fit_given_class(CurveClass::Ellipse, touch(count, sigma_m, normal_sigma_rad, rng));
+    if (fit.status != GivenStatus::Fitted) continue;
+    const double a_sd = std::sqrt(fit.covariance(0, 0));
+    const double b_sd = std::sqrt(fit.covariance(1, 1));
+    if (a_sd > accuracy * kPart.a || b_sd > accuracy * kPart.b) continue;
+    ++outcome.known;
+    outcome.squares += 0.5 * (std::pow((fit.shape.values[0] - kPart.a) / a_sd, 2) +
+                              std::pow((fit.shape.values[1] - kPart.b) / b_sd, 2));
+  }
+  return outcome;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int scenes = 400;
+  int most = 200;
+  double accuracy = 0.01;
+  std::uint64_t seed = 2026;
+  if (const auto end = bench::BenchOptions("Touches that a measured normal saves on an ellipse")
+                           .number("--scenes", scenes, "Scenes of each number of touches")
+                           .number("--accuracy", accuracy, "Deviation of each axis over the axis")
+                           .number("--most", most, "Touches after which it is given up")
+                           .seed(seed)
+                           .parse(argc, argv)) {
+    return *end;
+  }
+  constexpr double kOften = 0.95;
+  std::printf("ellipse %g x %g m, both axes to %g %% in %g %% of %d scenes\n", kPart.a, kPart.b,
+              100.0 * accuracy, 100.0 * kOften, scenes);
+  std::printf("%12s %12s | %8s %8s\n", "noise/a [%]", "normals", "touches", "err^2");
+  for (const double noise : {0.001, 0.003, 0.01, 0.02}) {
+    for (const double normals : {kNoNormals, 3.0 * kDegree, kDegree, kDegree / 3.0}) {
+      char name[32] = "none";
+      if (normals > 0.0) std::snprintf(name, sizeof name, "%.2f deg", normals / kDegree);
+      int count = 3;
+      Outcome outcome;
+      for (; count <= most; count += 1 + count / 20) {
+        outcome = outcome_of(count, noise * kPart.a, normals, accuracy, scenes, seed);
+        if (outcome.known >= kOften * scenes) break;
+      }
+      if (count > most) {
+        std::printf("%12.1f %12s | %8s\n", 100.0 * noise, name, "more");
+      } else {
+        std::printf("%12.1f %12s | %8d %8.2f\n", 100.0 * noise, name, count,
+                    outcome.squares / outcome.known);
+      }
+    }
+  }
+  return 0;
+}
