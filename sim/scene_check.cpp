@@ -92,7 +92,7 @@ std::optional<Shape> SceneCheck::check() {
     fail(scene, "frame", "must be 1 to 64 of A-Z a-z 0-9 _ . -");
     return std::nullopt;
   }
-  const std::optional<Shape> shape = check_shape(scene);
+  std::optional<Shape> shape = check_shape(scene);
   if (!shape || !check_pose(scene)) {
     return std::nullopt;
   }

@@ -3,17 +3,20 @@
 #
 #   tests/run.sh                  warnings as errors, all tests
 #   tests/run.sh --sanitize       besides: under the address, undefined and thread sanitizers (needs clang)
+#   tests/run.sh --tidy           besides: clang-tidy over the sources, before all else
 #   tests/run.sh --fuzz SECONDS   besides: each fuzz target for so long (needs clang)
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/.."
 
 sanitize=no
+tidy=no
 fuzz=0
 while [ $# -gt 0 ]; do
   case "$1" in
     --sanitize) sanitize=yes ;;
+    --tidy) tidy=yes ;;
     --fuzz) fuzz=${2:?"tests/run.sh: --fuzz needs a number of seconds"}; shift ;;
-    -h|--help) sed -n '2,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h|--help) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) echo "tests/run.sh: unknown argument '$1' (try --help)" >&2; exit 2 ;;
   esac
   shift
@@ -44,6 +47,7 @@ packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-d
           python3-ezdxf python3-numpy git pybind11-dev python3-dev clang-format chromium chromium-driver
           doxygen dpkg-dev file iproute2 lintian make man-db python3-pip python3-setuptools python3-wheel strace systemd zsh)
 if [ "$sanitize" = yes ] || [ "$fuzz" != 0 ]; then packages+=(clang); fi
+if [ "$tidy" = yes ]; then packages+=(clang clang-tidy); fi
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' ||
@@ -70,9 +74,15 @@ source tests/support/how_long.sh
 calibrate
 cost=$((strict_build_cost + strict_test_cost))
 if [ "$sanitize" = yes ]; then cost=$((cost + sanitize_cost)); fi
+if [ "$tidy" = yes ]; then cost=$((cost + tidy_cost)); fi
 if [ "$fuzz" != 0 ]; then cost=$((cost + fuzz_cost)); fi
 step "about $(how_long $cost) on this machine, $(nproc) cores$(
   command -v ccache >/dev/null && echo '; less where ccache has the objects')"
+
+if [ "$tidy" = yes ]; then
+  begin_part "clang-tidy" 300
+  tests/support/tidy.py
+fi
 
 begin_part "building (strict)" 420
 build strict

@@ -58,7 +58,7 @@ LocalResult five_point_estimate(std::span<const Vec2> samples, double sigma_m,
     const std::size_t last = samples.size() - 1;
     return i <= 2 ? samples[i * last / 4] : samples[last - (4 - i) * last / 4];
   };
-  const Vec2 middle = sample(2);
+  const Vec2& middle = sample(2);
   double unit = 0.0;
   double shortest = std::numeric_limits<double>::infinity();
   bool forwards = true;

@@ -15,8 +15,8 @@ constexpr double kMinFreedom = 1e-9;
 /// rounding decides.
 constexpr double kMinPivot = 1e4 * std::numeric_limits<double>::epsilon();
 
-/// extent > kExtentRounding * rounding: below, rounding alone decides the axis.
-constexpr double kExtentRounding = 16.0;
+/// length > kLengthRounding * rounding: below, rounding alone decides the axis.
+constexpr double kLengthRounding = 16.0;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ LocalStatus ResidualBlock::place(std::span<const Vec2> samples, std::span<const 
     return LocalStatus::TooFewSamples;
   }
   // Differences to one sample are exact to a rounding of the coordinates.
-  const Vec2 reference = samples[size_ / 2];
+  const Vec2& reference = samples[size_ / 2];
   const std::size_t half = used / 2;
   Vec2 first = Vec2::Zero();
   Vec2 all = Vec2::Zero();
@@ -58,7 +58,7 @@ LocalStatus ResidualBlock::place(std::span<const Vec2> samples, std::span<const 
   }
   const double rounding_m = std::numeric_limits<double>::epsilon() *
                             std::max(reference.cwiseAbs().maxCoeff(), largest.maxCoeff());
-  if (!(length > kExtentRounding * rounding_m)) {
+  if (!(length > kLengthRounding * rounding_m)) {
     return LocalStatus::NoExtent;
   }
   const Vec2 axis = chord / length;

@@ -86,7 +86,7 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
       summary.converged = damping <= options.first_damping;
       break;
     }
-    Vector step = velocity;
+    Vector step = velocity;  // NOLINT(performance-unnecessary-copy-initialization): bent below
     if constexpr (requires { problem->bend(velocity); }) {
       const Vector acceleration = -solve_cholesky(factor, problem->bend(velocity));
       const auto length2 = [&](const Vector& v) { return v.cwiseAbs2().dot(diagonal); };

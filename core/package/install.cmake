@@ -1,24 +1,15 @@
 # What `cmake --install` puts where, for find_package(palpate), for pkg-config and for cpack.
 #
-# Headers keep their rooms, under include/palpate/; <palpate/recognizer.h>, <palpate/curve.h>, <palpate/part.h>,
-# <palpate/given_class.h> and <palpate/client.h> are the doors, and only what lies behind them is installed.
+# Headers keep their rooms, under include/palpate/, beside their doors (doors.cmake).
 include(CMakePackageConfigHelpers)
 include(${CMAKE_CURRENT_LIST_DIR}/libraries.cmake)
 
 set(PALPATE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
 # From a .pc file to the prefix, wherever that is moved.
 file(RELATIVE_PATH palpate_pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-set(palpate_doors ${PROJECT_BINARY_DIR}/include/palpate)
 
-# palpate_door(NAME <name> INCLUDES <header>...)
-function(palpate_door)
-  cmake_parse_arguments(ARG "" "NAME" "INCLUDES" ${ARGN})
-  set(text "#pragma once\n\n")
-  foreach(header IN LISTS ARG_INCLUDES)
-    string(APPEND text "#include \"${header}\"\n")
-  endforeach()
-  file(CONFIGURE OUTPUT ${palpate_doors}/${ARG_NAME}.h CONTENT "${text}")
-  install(FILES ${palpate_doors}/${ARG_NAME}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate COMPONENT dev)
+function(palpate_install_door name)
+  install(FILES ${palpate_doors_dir}/palpate/${name}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate COMPONENT dev)
 endfunction()
 
 # palpate_install_headers(<header>...): each in its room.
@@ -36,35 +27,30 @@ function(palpate_install_pc set)
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 endfunction()
 
-set(recognizer core/recognition/recognizer.h)
-set(curve core/curves/curve.h)
-set(part core/part/closed_spline.h core/part/segment_match.h)
-set(given_class core/recognition/given/given_class.h)
-set(client node/client/connection.h node/client/contact_publisher.h node/client/result_subscriber.h
-    node/wire/topics.h)
-
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 palpate_library(SET core OBJECTS palpate_core LINKS Eigen3::Eigen NAMESPACES palpate
-                DOORS ${recognizer} ${curve} ${part} ${given_class})
+                DOORS ${palpate_recognizer_door} ${palpate_curve_door} ${palpate_part_door} ${palpate_given_class_door})
 palpate_install_headers(${palpate_core_headers})
 palpate_install_pc(core)
-foreach(door recognizer curve part given_class)
-  palpate_door(NAME ${door} INCLUDES ${${door}})
+foreach(door IN LISTS palpate_core_doors)
+  palpate_install_door(${door})
 endforeach()
 
 if(TARGET palpate_client)
   find_package(Protobuf 3.21 REQUIRED)
   find_package(cppzmq REQUIRED)
   palpate_library(SET client OBJECTS palpate_client palpate_topics palpate_proto LINKS protobuf::libprotobuf cppzmq
-                  NAMESPACES palpate palpate::client DOORS ${client}
+                  NAMESPACES palpate palpate::client DOORS ${palpate_client_door}
                   ALSO palpate::v1::* "* for palpate::v1::*")
   palpate_install_headers(${palpate_client_headers})
   palpate_install_pc(client)
-  palpate_door(NAME client INCLUDES ${client})
+  palpate_install_door(client)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/proto/cpp/palpate/v1 DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate
           COMPONENT dev FILES_MATCHING PATTERN "*.h")
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/proto/palpate/v1 DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/proto/palpate
           COMPONENT dev FILES_MATCHING PATTERN "*.proto")
+endif()
+if(TARGET palpate-node)
   install(TARGETS palpate palpate-node RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
 endif()
 if(TARGET palpate-sim)

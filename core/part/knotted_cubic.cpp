@@ -192,7 +192,7 @@ KnottedCubicFit fit_single_cubic(const FitData& data) {
   return best;
 }
 
-KnottedCubicFit refine_knotted(std::span<const FitPoint> points, KnottedCubicFit start,
+KnottedCubicFit refine_knotted(std::span<const FitPoint> points, const KnottedCubicFit& start,
                                bool bends) {
   return bends ? refine<10>(points, start) : refine<8>(points, start);
 }

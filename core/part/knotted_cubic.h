@@ -34,6 +34,7 @@ struct KnottedCubicFit {
 KnottedCubicFit fit_single_cubic(const FitData& data);
 
 /// From a start, with the knot held: the coefficients, and the bend too where `bends`. O(points).
-KnottedCubicFit refine_knotted(std::span<const FitPoint> points, KnottedCubicFit start, bool bends);
+KnottedCubicFit refine_knotted(std::span<const FitPoint> points, const KnottedCubicFit& start,
+                               bool bends);
 
 }  // namespace palpate

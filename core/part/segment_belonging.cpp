@@ -49,11 +49,11 @@ std::optional<Run> fit_run(std::span<const StoredSample> samples, const PatchCon
 KnottedCubicFit with_knot(const Run& run, const KnottedCubicFit& start, double knot) {
   KnottedCubicFit trial = start;
   trial.curve.knot = knot;
-  return refine_knotted(run.data.points, std::move(trial), true);
+  return refine_knotted(run.data.points, trial, true);
 }
 
 /// The knot of the least chi-square between two others, by golden section.
-KnottedCubicFit best_between(const Run& run, KnottedCubicFit best, double low, double high) {
+KnottedCubicFit best_between(const Run& run, const KnottedCubicFit& best, double low, double high) {
   const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
   constexpr double kNarrow = 1e-7;  // of the run, whose parameter goes from -1 to 1
   // To there from the whole run. Where no cubic fits, feet may be so far out that no two numbers
@@ -115,7 +115,7 @@ class JointTest {
     // What the bend gained may be a better optimum of the single cubic instead.
     KnottedCubicFit unbent = best;
     unbent.curve.bend = Vec2::Zero();
-    unbent = refine_knotted(run->data.points, std::move(unbent), false);
+    unbent = refine_knotted(run->data.points, unbent, false);
     const double single = std::min(run->single.chi2, unbent.chi2);
     if (!(single - best.chi2 > limit)) {
       return std::nullopt;
@@ -159,7 +159,7 @@ class JointTest {
     };
     const Vec2 from = touched(after - 1);
     const Vec2 to = touched(after);
-    const Vec2 place = best.curve.position(best.curve.knot);
+    Vec2 place = best.curve.position(best.curve.knot);
     // An arc that turns by less than half a circle stays within the circle over its chord; and
     // noise within five deviations.
     constexpr double kFarSigmas = 5.0;
@@ -295,6 +295,7 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, doubl
   }
   const std::vector<std::size_t> tested = tested_of(kept.samples.size());
   std::vector<StoredSample> tested_samples;
+  tested_samples.reserve(tested.size());
   for (const std::size_t i : tested) {
     tested_samples.push_back(kept.samples[i]);
   }

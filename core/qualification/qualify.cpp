@@ -64,6 +64,7 @@ std::vector<ArtefactSample> thinned(const ArtefactRecording& recording, std::siz
 double scatter(const Curve& artefact, MaterialSign material, const Pose2& pose,
                const std::vector<ArtefactSample>& samples) {
   std::vector<double> distances;
+  distances.reserve(samples.size());
   for (const ArtefactSample& sample : samples) {
     distances.push_back(beside(artefact, material, pose, sample).distance_m);
   }

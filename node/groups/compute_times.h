@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -21,8 +22,7 @@ class ComputeTimes {
   /// The value that the fraction `q` in [0, 1] of the times do not exceed; 0 where there are none.
   std::int64_t quantile(double q) {
     if (times_.empty()) return 0;
-    const auto index = static_cast<std::size_t>(q * static_cast<double>(times_.size() - 1) + 0.5);
-    const auto nth = times_.begin() + static_cast<std::ptrdiff_t>(index);
+    const auto nth = times_.begin() + std::lround(q * static_cast<double>(times_.size() - 1));
     std::nth_element(times_.begin(), nth, times_.end());
     return *nth;
   }

@@ -44,8 +44,7 @@ std::string name_of_peer(int descriptor) {
 
 PeerGuard::PeerGuard(zmq::context_t& context, zmq::socket_t& socket, const PeerBounds& bounds,
                      std::string what)
-    : socket_(socket),
-      bounds_(bounds),
+    : bounds_(bounds),
       what_(std::move(what)),
       monitor_(context, socket, ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_DISCONNECTED) {}
 

@@ -68,7 +68,6 @@ class PeerGuard {
   void cut(Peers::iterator peer, const std::string& why);
   void forget(Peers::iterator peer);
 
-  zmq::socket_t& socket_;
   PeerBounds bounds_;
   std::string what_;
   SocketMonitor monitor_;

@@ -143,7 +143,6 @@ bool RecordingReader::next_checked(RecordedMessage& message) {
       skip(std::min(mark, start.size()));
       continue;
     }
-    bool whole = whole_header;
     if (whole_header) {
       const std::size_t topic_size = get(start, kTopicAt, 4);
       const std::size_t payload_size = get(start, kPayloadAt, 4);
@@ -151,8 +150,7 @@ bool RecordingReader::next_checked(RecordedMessage& message) {
         skip(1);
         continue;
       }
-      whole = fill(kHeaderBytes + topic_size + payload_size);
-      if (whole) {
+      if (fill(kHeaderBytes + topic_size + payload_size)) {
         const std::string_view header = rest().substr(0, kHeaderBytes);
         const std::string_view body = rest().substr(kHeaderBytes, topic_size + payload_size);
         if (checksum(header, body) != get(header, kChecksumAt, 4)) {

@@ -38,9 +38,9 @@ PathLock::~PathLock() {
 }
 
 std::string ipc_path(const std::string& address) {
-  constexpr std::string_view kIpc = "ipc://";
-  if (!address.starts_with(kIpc)) return {};
-  std::string path = address.substr(kIpc.size());
+  constexpr std::string_view kIpcScheme = "ipc://";
+  if (!address.starts_with(kIpcScheme)) return {};
+  std::string path = address.substr(kIpcScheme.size());
   // "ipc://*" makes a path of its own; "@name" is not in the file system.
   if (path.empty() || path.front() == '@' || path == "*") return {};
   return path;

@@ -105,6 +105,9 @@ class Progress(unittest.TestCase):
             Terminal(bus, TOOL, "record", bus.folder / "a.rec", "--contacts", bus.contacts).wait_for("a.rec: waiting for messages")
             Terminal(bus, TOOL, "replay", scene, "--contacts", f"ipc://{bus.folder}/nobody").wait_for("waiting for a recognizer at ipc:")
             Terminal(bus, TOOL, "watch", "--results", f"ipc://{bus.folder}/nobody", stream="stdout").wait_for("no recognizer heard yet")
+            # Into a pipe too, which has no panel.
+            code, out, _ = run(TOOL, "watch", "--results", f"ipc://{bus.folder}/nobody", "--timeout", 4)
+            self.assertEqual((code, out), (1, "no recognizer heard yet\n"))
 
     def test_record_and_replay_say_how_far_they_are(self):
         with Bus() as bus:

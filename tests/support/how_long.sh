@@ -11,6 +11,7 @@ demo_build_cost=320
 strict_build_cost=800
 strict_test_cost=340
 sanitize_cost=2570
+tidy_cost=450
 fuzz_cost=500
 
 calibrate() {  # sets calibration_s, the seconds that it takes here and now

@@ -268,6 +268,7 @@ std::vector<CurveStart> best_starts(CurveClass curve_class,
   std::sort(order.begin(), order.end());
   order.resize(std::min(order.size(), keep));
   std::vector<CurveStart> best;
+  best.reserve(order.size());
   for (const auto& [left, i] : order) {
     best.push_back(starts[i]);
   }

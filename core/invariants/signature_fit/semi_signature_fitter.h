@@ -139,7 +139,7 @@ class SemiSignatureFitter {
     const Global scale = reduced.diagonal().cwiseMax(0.0).cwiseSqrt();
     const Hessian unit_diagonal = reduced.cwiseQuotient(scale * scale.transpose());
     const SmallLdlt<kGlobal> factor(unit_diagonal);
-    const Hessian inverse = factor.inverse().cwiseQuotient(scale * scale.transpose());
+    Hessian inverse = factor.inverse().cwiseQuotient(scale * scale.transpose());
     const bool regular = unit_diagonal.allFinite() &&
                          factor.pivots().minCoeff() > kGlobal * kEpsilon && inverse.allFinite();
     if (regular) {
@@ -237,7 +237,7 @@ class SemiSignatureFitter {
 
   Global reduced_step(double damping) {
     const auto [hessian, gradient] = reduced_hessian(damping);
-    const Global step = -SmallLdlt<kGlobal>(hessian).solve(gradient);
+    Global step = -SmallLdlt<kGlobal>(hessian).solve(gradient);
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       const Block& block = blocks_[i];
       const double own = block.t_squared * (1.0 + damping);

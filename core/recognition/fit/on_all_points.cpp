@@ -131,7 +131,8 @@ ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const Refi
                       RivalOf rival = RivalOf::Best) {
   if (fit.polynomial) {
     const auto refine = [&](PolynomialFit& part) {
-      part = refine_polynomial(polynomial_model(fit), points, std::move(part), part.side, effort);
+      const int side = part.side;
+      part = refine_polynomial(polynomial_model(fit), points, std::move(part), side, effort);
     };
     refine(*fit.polynomial);
     if (fit.rival &&

@@ -19,7 +19,7 @@ std::size_t reference_point(const FitData& data) {
 
 /// The foot of `point` (curve's frame) near t: Newton's method on (C - p) . C' = 0.
 double follow_foot(const Curve& curve, const Vec2& point, double t, CurveDerivatives* at) {
-  constexpr int kMostSteps = 6;
+  constexpr int kMostFootSteps = 6;
   // In half extents: an error along the curve is its square across, a millionth of a millionth,
   // where the finest noise is a hundred millionth.
   constexpr double kLastStep = 1e-6;
@@ -31,7 +31,7 @@ double follow_foot(const Curve& curve, const Vec2& point, double t, CurveDerivat
     const double slope = speed2 + away.dot(at->second);
     // At the centre of curvature the slope is 0; a Gauss-Newton step is safe.
     const double step = -along / (slope > 0.1 * speed2 ? slope : speed2);
-    if (i == kMostSteps || !(std::abs(step) * std::sqrt(speed2) > kLastStep)) {
+    if (i == kMostFootSteps || !(std::abs(step) * std::sqrt(speed2) > kLastStep)) {
       return t;
     }
     t += step;

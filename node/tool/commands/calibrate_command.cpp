@@ -50,7 +50,7 @@ Result<Curve> artefact_of(const CalibrateCommand& calibrate, std::string& name) 
           name +
           ": out of the range of its class (core/README.md, \"Curves\": an ellipse has a >= b)");
     }
-    return Result<Curve>::ok(*std::move(curve));
+    return Result<Curve>::ok(*curve);
   }
   return Result<Curve>::fail("the artefact's class and parameters are needed: --circle A, ...");
 }

@@ -18,7 +18,8 @@ std::string extent_text(double metres) {
 }
 
 /// The patches of each probe, runs of one patch joined.
-std::map<std::string, std::vector<CheckedPatch>> checked_patches(const ContactGroup& group) {
+std::map<std::string, std::vector<CheckedPatch>> checked_patches(const ContactGroup& group,
+                                                                 double sigma_m) {
   std::map<std::string, std::vector<CheckedPatch>> probes;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> place_of;
   for (const ContactRun& run : group.runs) {
@@ -31,8 +32,9 @@ std::map<std::string, std::vector<CheckedPatch>> checked_patches(const ContactGr
     CheckedPatch& patch = patches[place->second];
     for (const ContactSample& sample : run.samples) {
       patch.positions.push_back(sample.position_m);
-      patch.sigma_squares += sample.sigma_m * sample.sigma_m;
-      patch.with_sigma += sample.sigma_m > 0.0 ? 1 : 0;
+      const double stated = sample.sigma_m > 0.0 ? sample.sigma_m : sigma_m;
+      patch.sigma_squares += stated * stated;
+      patch.with_sigma += stated > 0.0 ? 1 : 0;
     }
   }
   return probes;
@@ -79,12 +81,12 @@ void judge_stamps(const ContactGroup& group, std::vector<Finding>* findings) {
 
 }  // namespace
 
-std::vector<Finding> check_group(const ContactGroup& group) {
+std::vector<Finding> check_group(const ContactGroup& group, double sigma_m) {
   std::vector<Finding> findings;
   judge_extent(group, &findings);
   judge_stamps(group, &findings);
   const bool extent_is_told = !findings.empty() && findings.front().probe.empty();
-  for (const auto& [probe, patches] : checked_patches(group)) {
+  for (const auto& [probe, patches] : checked_patches(group, sigma_m)) {
     std::vector<Finding> of_probe;
     judge_patches(probe, patches, CheckedSource::File, &of_probe);
     for (Finding& finding : of_probe) {

@@ -9,8 +9,9 @@
 
 namespace palpate {
 
-/// Units, order, jumps, spacing, noise and stamps of one object's samples. Worst first.
-std::vector<Finding> check_group(const ContactGroup& group);
+/// Units, order, jumps, spacing, noise and stamps of one object's samples, those without a sigma
+/// taken to have this one (0 = unknown). Worst first.
+std::vector<Finding> check_group(const ContactGroup& group, double sigma_m = 0.0);
 
 /// A finding as a sentence: what, and the cure.
 std::string sentence_of(const Finding& finding);

@@ -194,7 +194,8 @@ int run(FitCommand& fit) {
   std::vector<FitInput> inputs;
   bool bad = false;
   for (const std::string& file : fit.files) {
-    Result<std::vector<FitInput>> read = read_fit_input(file, options_of(fit.file));
+    Result<std::vector<FitInput>> read =
+        read_fit_input(file, options_of(fit.file), fit.recognizer.sigma_m);
     if (!read) {
       complain(read.error, kUsage);
       bad = true;

@@ -30,7 +30,7 @@ bool all_have_sigma(const ContactGroup& group) {
 }  // namespace
 
 Result<std::vector<FitInput>> read_fit_input(const std::string& file,
-                                             const ContactFileOptions& options) {
+                                             const ContactFileOptions& options, double sigma_m) {
   using Read = Result<std::vector<FitInput>>;
   const Result<ContactFile> read = read_contact_file(file, options);
   if (!read) return Read::fail(read.error);
@@ -38,7 +38,7 @@ Result<std::vector<FitInput>> read_fit_input(const std::string& file,
   for (ContactGroup& group : contact_groups(file, read.value->table)) {
     FitInput input{std::move(group), read.value->notes, {}, false};
     input.noise_is_known = all_have_sigma(input.group);
-    for (const Finding& finding : check_group(input.group)) {
+    for (const Finding& finding : check_group(input.group, sigma_m)) {
       if (finding.spoils_answer) input.warnings.push_back(sentence_of(finding));
     }
     inputs.push_back(std::move(input));

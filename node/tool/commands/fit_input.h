@@ -16,9 +16,9 @@ struct FitInput {
   bool noise_is_known = false;        ///< every sample brings its sigma
 };
 
-/// The objects of a file, in its order.
+/// The objects of a file, in its order, judged with this noise of samples that bring none [m].
 Result<std::vector<FitInput>> read_fit_input(const std::string& file,
-                                             const ContactFileOptions& options);
+                                             const ContactFileOptions& options, double sigma_m);
 
 /// Memory that holds the whole object. A file is there at once: nothing of it is forgotten, unless
 /// the bound on patches was asked for.

@@ -31,6 +31,13 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// Mean square root of the standard deviations that its samples state, 0 where none does. [m]
+double stated_sigma(const CheckedPatch& patch) {
+  return patch.with_sigma > 0
+             ? std::sqrt(patch.sigma_squares / static_cast<double>(patch.with_sigma))
+             : 0.0;
+}
+
 std::vector<double> spacings(const std::vector<Vec2>& positions) {
   std::vector<double> result;
   for (std::size_t i = 1; i < positions.size(); ++i) {
@@ -147,10 +154,12 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
   double noise_ratio = 0.0;  // largest of estimated over stated, or of stated over estimated
   double estimated_noise = 0.0;
   double stated_noise = 0.0;
+  double largest_stated = 0.0;
   double coarsest = 0.0;
   for (const CheckedPatch& patch : patches) {
     longest = std::max(longest, patch.positions.size());
     samples += patch.positions.size();
+    largest_stated = std::max(largest_stated, stated_sigma(patch));
     if (patch.positions.size() < 2) {
       continue;
     }
@@ -191,7 +200,7 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
     }
     coarsest = std::max(coarsest, typical / std::max((high - low).norm(), typical));
     if (noise.status == LocalStatus::Ok && noise.dof > 20 && patch.with_sigma > 0) {
-      const double stated = std::sqrt(patch.sigma_squares / static_cast<double>(patch.with_sigma));
+      const double stated = stated_sigma(patch);
       const double ratio = std::max(noise.sigma_m / stated, stated / noise.sigma_m);
       if (ratio > noise_ratio) {
         noise_ratio = ratio;
@@ -208,11 +217,12 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
                          : "coordinates are metres: were these millimetres?");
   }
   constexpr double kLargestNoise = 1e-3;  // of a touch probe [m]
-  if (estimated_noise > kLargestNoise || stated_noise > kLargestNoise) {
+  if (estimated_noise > kLargestNoise || largest_stated > kLargestNoise) {
     add_spoiling(
         Severity::Error,
-        "noise of " + length_text(std::max(estimated_noise, stated_noise)) + " is no touch probe's",
-        is_file ? "were these millimetres? Then say --unit mm"
+        "noise of " + length_text(std::max(estimated_noise, largest_stated)) +
+            " is no touch probe's",
+        is_file ? "were these millimetres? Then say --unit mm; --sigma is metres whatever the unit"
                 : "coordinates and sigma_m are metres: were these millimetres?");
   }
   if (extent > 0.0 && extent < kSmallestPart) {
@@ -264,7 +274,7 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
             length_text(estimated_noise),
         "as it should be");
   }
-  if (samples > 0 && noise_ratio == 0.0) {
+  if (samples > 0 && largest_stated == 0.0) {
     add(Severity::Note, "sigma_m is 0: the noise is estimated",
         "state it where it is known: fewer samples then suffice");
   }

@@ -88,6 +88,7 @@ class TextLines : public WatchOutput {
   explicit TextLines(double interval_s) : interval_(interval_s) {}
 
   void take(const v1::Recognition& answer) override {
+    was_heard_ = true;
     Shown& shown = groups_[answer.group()];
     shown.held = answer;
     shown.latency_ms = latency_ms_of(answer);
@@ -95,6 +96,7 @@ class TextLines : public WatchOutput {
   }
 
   void take(const v1::NodeStatus& status) override {
+    was_heard_ = true;
     for (const v1::ProbeStatus& probe : status.probes()) {
       Probe& known = probes_[probe.probe()];
       const bool news = !known.seen || known.alive != probe.alive() || known.gaps != probe.gaps() ||
@@ -119,7 +121,9 @@ class TextLines : public WatchOutput {
       shown.is_held = false;
     }
     const bool is_silent = silent_s > kRecognizerSilence.count();
-    if (is_silent && !was_silent_) std::cout << silence_text(silent_s) << std::endl;
+    if (is_silent && !was_silent_) {
+      std::cout << (was_heard_ ? silence_text(silent_s) : "no recognizer heard yet") << std::endl;
+    }
     if (!is_silent && was_silent_) std::cout << "recognizer heard again" << std::endl;
     was_silent_ = is_silent;
   }
@@ -159,6 +163,7 @@ class TextLines : public WatchOutput {
   std::map<std::string, Shown> groups_;
   std::map<std::string, Probe> probes_;
   bool was_silent_ = false;
+  bool was_heard_ = false;
 };
 
 /// For a terminal: one table, drawn again in its place; with a picture of the group touched last

@@ -20,8 +20,8 @@ Eigen::Vector3d values_of(CurveClass curve_class, const v1::Parameters& paramete
   return values;
 }
 
-std::optional<CurveModel> model_of(v1::CurveClass wire_class, const v1::Parameters& parameters,
-                                   const v1::Pose2& pose) {
+std::optional<CurveModel> model_placed(v1::CurveClass wire_class, const v1::Parameters& parameters,
+                                       const v1::Pose2& pose) {
   const CurveClass curve_class = from_wire(wire_class);
   const std::optional<Curve> curve = make_curve(curve_class, values_of(curve_class, parameters));
   const bool is_finite =
@@ -60,7 +60,7 @@ Vec2 CurveModel::world_left(double t) const {
 std::optional<CurveModel> model_of(const v1::Recognition& answer) {
   if (!answer.has_pose()) return std::nullopt;
   std::optional<CurveModel> model =
-      model_of(answer.curve_class(), answer.parameters(), answer.pose());
+      model_placed(answer.curve_class(), answer.parameters(), answer.pose());
   if (!model) return std::nullopt;
   const auto letters = static_cast<Eigen::Index>(parameter_letters(class_of(model->curve)).size());
   const Eigen::Index size = letters + 3;
@@ -77,7 +77,7 @@ std::optional<CurveModel> model_of(const v1::Recognition& answer) {
 
 std::optional<CurveModel> model_of(const v1::Hypothesis& hypothesis) {
   if (!hypothesis.has_pose()) return std::nullopt;
-  return model_of(hypothesis.curve_class(), hypothesis.parameters(), hypothesis.pose());
+  return model_placed(hypothesis.curve_class(), hypothesis.parameters(), hypothesis.pose());
 }
 
 std::optional<CurveModel> moved(const CurveModel& model, const Eigen::VectorXd& step) {

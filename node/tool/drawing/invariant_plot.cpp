@@ -16,15 +16,15 @@
 namespace palpate {
 namespace {
 
-constexpr double kWidth = 1024.0;  // of the document, all in pixels
+constexpr double kSheetWidth = 1024.0;  // of the document, all in pixels
 constexpr double kHeader = 92.0;
 constexpr double kPanelHeight = 344.0;
 constexpr std::size_t kColumns = 2;
-constexpr double kPanelWidth = kWidth / kColumns;
-constexpr double kLeft = 84.0;  // of a panel
-constexpr double kRight = 20.0;
-constexpr double kTop = 62.0;
-constexpr double kBottom = 56.0;
+constexpr double kPanelWidth = kSheetWidth / kColumns;
+constexpr double kPanelLeft = 84.0;  // of a panel
+constexpr double kPanelRight = 20.0;
+constexpr double kPanelTop = 62.0;
+constexpr double kPanelBottom = 56.0;
 /// The pooled value's band.
 constexpr double kBandSigmas = 2.0;
 constexpr const char* kMutedColour = "#5b6470";
@@ -101,10 +101,10 @@ class PanelDrawing {
  public:
   PanelDrawing(const InvariantPanel& panel, double left, double top, std::size_t number)
       : panel_(panel),
-        left_(left + kLeft),
-        top_(top + kTop),
-        right_(left + kPanelWidth - kRight),
-        bottom_(top + kPanelHeight - kBottom),
+        left_(left + kPanelLeft),
+        top_(top + kPanelTop),
+        right_(left + kPanelWidth - kPanelRight),
+        bottom_(top + kPanelHeight - kPanelBottom),
         number_(number),
         x_(range_of_places(panel)),
         y_(range_of_values(panel, x_)) {}
@@ -295,13 +295,14 @@ std::string invariant_plot(const Recognition& answer, const std::string& title) 
   std::string svg = formatted(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f "
       "%.0f\" font-family=\"sans-serif\" font-size=\"12\">\n",
-      kWidth, height, kWidth, height);
+      kSheetWidth, height, kSheetWidth, height);
   svg += "<style>.grid{stroke:#e4e4e4}</style>\n";
   svg += "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
   svg += header(answer, title, !panels.empty());
   for (std::size_t i = 0; i < panels.size(); ++i) {
+    const std::size_t row = i / kColumns;
     svg += PanelDrawing(panels[i], kPanelWidth * static_cast<double>(i % kColumns),
-                        kHeader + kPanelHeight * static_cast<double>(i / kColumns), i + 1)
+                        kHeader + kPanelHeight * static_cast<double>(row), i + 1)
                .svg();
   }
   return svg + "</svg>\n";

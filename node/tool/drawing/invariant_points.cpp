@@ -41,10 +41,10 @@ struct Value {
 /// First-order propagation; differences over a thousandth of a deviation see no curvature.
 template <typename Of>
 double variance_of(const Eigen::Vector3d& at, const Eigen::Matrix3d& covariance, const Of& of) {
-  constexpr double kStep = 1e-3;
+  constexpr double kDifference = 1e-3;
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const double step = kStep * std::sqrt(covariance(i, i));
+    const double step = kDifference * std::sqrt(covariance(i, i));
     if (step > 0.0) {
       const Eigen::Vector3d aside = step * Eigen::Vector3d::Unit(i);
       gradient[i] = (of(at + aside) - of(at - aside)) / (2.0 * step);

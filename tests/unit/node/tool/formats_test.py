@@ -157,6 +157,15 @@ class Formats(unittest.TestCase):
         self.assertIn("not from the columns' names", self.notes)
         self.assertEqual(self.err, "")
 
+    def test_a_noise_in_millimetres_where_metres_are_asked_is_told(self):
+        millimetres = "x_mm,y_mm\n" + "".join(f"{1e3 * x:.4f},{1e3 * y:.4f}\n" for x, y in WHOLE)
+        for touches in ((), ("--touches",)):
+            self.fit(millimetres, "--sigma", 0.02, *touches)
+            self.assertIn("noise of 20 mm is no touch probe's", self.err)
+            self.assertIn("--sigma is metres", self.notes)
+            self.fit(millimetres, "--sigma", 2e-5, *touches)
+            self.assertNotIn("no touch probe's", self.err)
+
     def test_strokes_without_patch_numbers_are_told(self):
         self.fit("x_m,y_m\n" + "".join(f"{x},{y}\n" for stroke in ellipse() for x, y in stroke))
         self.assertIn("jumps", self.err)
