@@ -74,4 +74,8 @@ bool ContactPublisher::publish(std::string_view probe, v1::ContactBatch& batch) 
   return send_now(socket_, state.topic, buffer_);
 }
 
+void ContactPublisher::finish_within(std::chrono::milliseconds longest) {
+  socket_.set(zmq::sockopt::linger, static_cast<int>(longest.count()));
+}
+
 }  // namespace palpate::client

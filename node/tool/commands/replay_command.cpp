@@ -24,6 +24,9 @@
 namespace palpate {
 namespace {
 
+// A recognizer that is behind gets the rest; one that has gone is not waited for longer.
+constexpr std::chrono::seconds kLongestEnd{5};
+
 struct ReplayCommand {
   std::string file;
   Connection connection{std::string(kDefaultContactsEndpoint), "", ""};
@@ -280,9 +283,11 @@ int run(const ReplayCommand& command) {
   std::uint64_t messages = 0;
   std::uint64_t refused = 0;
   std::uint64_t samples = 0;
+  bool is_stopped = false;
   for (TimedMessage message; next(message);) {
     if (!pace) pace.emplace(message.due_ns, command.fast ? 0.0 : 1.0 / command.speed);
-    if (sleep_until(pace->due(message.due_ns), stop_fd)) {
+    is_stopped = sleep_until(pace->due(message.due_ns), stop_fd);
+    if (is_stopped) {
       break;
     }
     for (v1::ContactSample& sample : *message.batch.mutable_samples()) {
@@ -302,6 +307,7 @@ int run(const ReplayCommand& command) {
     });
   }
   progress.end();
+  if (!is_stopped) publisher.finish_within(kLongestEnd);
   std::cerr << command.file << ": " << messages << " messages, " << samples << " samples";
   std::cerr << (refused > 0 ? ", " + std::to_string(refused) + " not taken\n" : "\n");
   const bool is_whole = !recording || recording->report();

@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-class PausedReader : public testing::TestWithParam<const char*> {};
+class PausedReader : public ::testing::TestWithParam<const char*> {};
 
 // libzmq (4.3.4) aborts the process ("_input_stopped") where a heartbeat of the reading side
 // expires while its queue is full, and the queue is emptied after the reconnection.
@@ -57,7 +57,8 @@ TEST_P(PausedReader, ReadsOnWhenItComesBack) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Transports, PausedReader, testing::Values("tcp://127.0.0.1:*", "ipc://*"));
+INSTANTIATE_TEST_SUITE_P(Transports, PausedReader,
+                         ::testing::Values("tcp://127.0.0.1:*", "ipc://*"));
 
 }  // namespace
 }  // namespace palpate
