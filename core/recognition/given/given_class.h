@@ -10,24 +10,9 @@
 
 #include "core/curves/pose2.h"
 #include "core/curves/shape_parameters.h"
+#include "core/recognition/given/given_point.h"
 
 namespace palpate {
-
-/// One contact point; its neighbours do not matter.
-struct GivenPoint {
-  Vec2 position_m = Vec2::Zero();
-  double sigma_m = 0.0;       ///< 1-sigma noise, alike in all directions; 0 = not known [m]
-  double tip_radius_m = 0.0;  ///< the point is the centre of a round tip; 0 = surface [m]
-  /// Roughly into the material, of any length; zero where it is not known. Only tips need it.
-  Vec2 into_material = Vec2::Zero();
-  /// Measured normal of the surface, of any length: out of the material, if the material matters;
-  /// zero = not measured. Its direction counts where every point's noise is known.
-  Vec2 normal = Vec2::Zero();
-  double normal_sigma_rad = 0.0;  ///< standard deviation of that direction
-  /// [xx, xy, yy] of the position's noise, in place of sigma_m; zeros = not known [m^2]
-  Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();
-  bool set_aside = false;  ///< an outlier by the caller's word: its residual is told, no more
-};
 
 struct GivenOptions {
   double sigma_m = 0.0;  ///< noise of points that bring none; 0 = estimate it [m]

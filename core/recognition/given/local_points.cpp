@@ -1,0 +1,73 @@
+#include "core/recognition/given/local_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+
+std::optional<LocalPoints> local_points(std::span<const GivenPoint> points, double sigma_m,
+                                        bool weighted) {
+  using Exact = DoubleDouble;
+  LocalPoints local;
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
+  Vec2 high = -low;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].set_aside) {
+      local.index.push_back(i);
+      low = low.cwiseMin(points[i].position_m);
+      high = high.cwiseMax(points[i].position_m);
+    }
+  }
+  const double half_extent = 0.5 * (high - low).maxCoeff();
+  if (local.index.empty() || !(half_extent > 0.0)) {
+    return std::nullopt;
+  }
+  local.middle_m = low + 0.5 * (high - low);
+  local.unit_m = std::ldexp(1.0, 2 * static_cast<int>(std::lround(0.5 * std::log2(half_extent))));
+  constexpr double kRoundings = 4.0;  // a few half units in the last place meet in a residual
+  local.rounding = kRoundings * std::numeric_limits<double>::epsilon() *
+                   low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() / local.unit_m;
+  const Exact inverse_unit(1.0 / local.unit_m);
+  for (const std::size_t i : local.index) {
+    const GivenPoint& point = points[i];
+    WeighedPoint<Exact> exact;
+    exact.position.x = inverse_unit * (Exact(point.position_m.x()) - Exact(local.middle_m.x()));
+    exact.position.y = inverse_unit * (Exact(point.position_m.y()) - Exact(local.middle_m.y()));
+    exact.weight = weighted ? Exact(local.unit_m) / Exact(noise_of(point, sigma_m)) : Exact(1.0);
+    exact.offset = inverse_unit * Exact(point.tip_radius_m);
+    if (weighted && has_normal(point)) {
+      const Vec2 normal = point.normal.normalized();
+      exact.normal = {Exact(normal.x()), Exact(normal.y())};
+      exact.normal_weight = Exact(1.0) / Exact(point.normal_sigma_rad);
+      ++local.normals;
+    }
+    local.exact.push_back(exact);
+    local.rough.emplace_back(to_double(exact.position.x), to_double(exact.position.y));
+  }
+  return local;
+}
+
+std::size_t different(std::vector<Vec2> points) {
+  const auto less = [](const Vec2& u, const Vec2& v) {
+    return u.x() < v.x() || (u.x() == v.x() && u.y() < v.y());
+  };
+  std::sort(points.begin(), points.end(), less);
+  return static_cast<std::size_t>(std::unique(points.begin(), points.end()) - points.begin());
+}
+
+bool on_one_line(const LocalPoints& local) {
+  const auto farthest = [&](const Vec2& from) {
+    return *std::max_element(local.rough.begin(), local.rough.end(),
+                             [&](const Vec2& u, const Vec2& v) {
+                               return (u - from).squaredNorm() < (v - from).squaredNorm();
+                             });
+  };
+  const Vec2 one_end = farthest(local.rough.front());
+  const Vec2 along = (farthest(one_end) - one_end).normalized();
+  return std::all_of(local.rough.begin(), local.rough.end(), [&](const Vec2& p) {
+    return std::abs(cross(along, p - one_end)) <= local.rounding;
+  });
+}
+
+}  // namespace palpate
