@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian), builds everything and runs every test.
+# Installs what is missing (Debian), builds all but the benchmarks and runs every test.
 #
 #   tests/run.sh                  warnings as errors, all tests
 #   tests/run.sh --sanitize       besides: under the address, undefined and thread sanitizers (needs clang)
@@ -66,7 +66,8 @@ jobs=$(nproc)
 build() {  # preset, targets...
   local preset=$1
   shift
-  cmake --preset "$preset" >/dev/null
+  # Benchmarks are no tests: tests/bench/run.sh builds them.
+  cmake --preset "$preset" -DPALPATE_BUILD_BENCHMARKS=OFF >/dev/null
   cmake --build --preset "$preset" -j "$jobs" ${1:+--target "$@"}
 }
 

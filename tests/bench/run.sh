@@ -45,7 +45,7 @@ for peer in python3-opencv python3-scipy; do
 done
 
 step "building (strict: Release)"
-cmake --preset strict >/dev/null
+cmake --preset strict -DPALPATE_BUILD_BENCHMARKS=ON >/dev/null
 cmake --build --preset strict -j "$(nproc)"
 bench=build/strict/tests/bench
 out=build/report

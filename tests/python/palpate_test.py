@@ -266,7 +266,7 @@ with palpate.Planner({bus.results!r}, **keys) as planner, palpate.Probe("finger"
     probe.send(15 * np.column_stack([np.cos(t), np.sin(t)]))
     print(round(1e3 * planner.receive(timeout=20).parameters.a, 2))
 try:
-    palpate.Probe("finger", {bus.contacts!r}, timeout=0.5)
+    palpate.Probe("finger", {bus.contacts!r}, timeout=20)
 except ConnectionRefusedError as error:
     print(str(error).split(" ", 4)[4])
 try:
