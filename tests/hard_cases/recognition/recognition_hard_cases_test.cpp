@@ -171,7 +171,7 @@ TEST(RecognitionHardCases, SpikesCostNoMoreThanThemselves) {
 TEST(RecognitionHardCases, SpikesAlongTheCurve) {
   std::mt19937_64 rng = test::test_rng();
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  for (int i = 0; i < 50; ++i) {
+  for (int i = 0; i < test::stress_count(50); ++i) {
     std::vector<Patch> patches = {elliptic_arc(0.3, rng), elliptic_arc(2.5, rng)};
     for (Patch& patch : patches) {
       const Vec2 chord = patch.back().position_m - patch.front().position_m;
