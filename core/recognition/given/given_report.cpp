@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/recognition/given/descent.h"
 #include "core/recognition/given/foot_parameter.h"
 
 namespace palpate {
