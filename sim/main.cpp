@@ -207,8 +207,7 @@ struct Player {
         if (counts.stopped) return kPlayed;
       }
     }
-    // A recognizer that is behind gets the rest; one that has gone is not waited for longer.
-    publisher.finish_within(std::chrono::seconds(5));
+    publisher.finish_within();
     return kPlayed;
   }
 

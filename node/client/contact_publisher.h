@@ -45,8 +45,9 @@ class ContactPublisher {
   bool publish(std::string_view probe, v1::ContactBatch& batch);
 
   /// Lets the destructor wait so long at most for what has been published and is not sent yet;
-  /// without it a tenth of a second.
-  void finish_within(std::chrono::milliseconds longest);
+  /// without it a tenth of a second. A recognizer that is behind gets the rest; one that has gone
+  /// is not waited for longer.
+  void finish_within(std::chrono::milliseconds longest = std::chrono::seconds(5));
 
   /// Random number of this publisher, in every header.
   std::uint64_t epoch() const { return epoch_; }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/curves/length_powers.h"
 #include "core/curves/pose2.h"
 #include "core/invariants/signature_fit/canonical_models.h"
 #include "core/invariants/signature_fit/semi_signature_fitter.h"
@@ -12,20 +13,6 @@
 
 namespace palpate {
 namespace {
-
-/// Powers of the length unit by which each parameter of a class scales.
-Eigen::Vector3d unit_powers(CurveClass curve_class) {
-  switch (curve_class) {
-    case CurveClass::CubicalParabola:
-      return {-2.0, 0.0, 0.0};
-    case CurveClass::SemiCubicalParabola:
-      return {-0.5, 0.0, 0.0};
-    case CurveClass::CubicSpline:
-      return {-0.5, 0.0, 0.5};
-    default:
-      return {1.0, 1.0, 0.0};
-  }
-}
 
 /// Power of the length unit by which the curve parameter scales.
 double parameter_power(CurveClass curve_class) {
@@ -123,7 +110,7 @@ PlacedPoint best_place(CurveClass curve_class, const detail::WhitePoint& point,
 
 /// Factors from a class's parameters to those in lengths of `unit`.
 Eigen::Vector3d to_units_of(CurveClass curve_class, double unit) {
-  const Eigen::Vector3d powers = unit_powers(curve_class);
+  const Eigen::Vector3d powers = length_powers(curve_class);
   return {std::pow(unit, -powers[0]), std::pow(unit, -powers[1]), std::pow(unit, -powers[2])};
 }
 

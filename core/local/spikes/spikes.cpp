@@ -32,12 +32,12 @@ struct Kept {
   }
 };
 
-/// Longer runs are form: no short block would have condemned so many neighbours.
-void spare_runs(std::size_t longest, std::vector<std::uint8_t>* is_spike) {
+/// So many neighbours and more are form: no short block would have condemned them.
+void spare_runs(std::size_t shortest, std::vector<std::uint8_t>* is_spike) {
   for (auto begin = is_spike->begin(); begin != is_spike->end();) {
     const auto end =
         std::find_if(begin, is_spike->end(), [&](auto flag) { return flag != *begin; });
-    if (end - begin >= static_cast<std::ptrdiff_t>(longest)) {
+    if (end - begin >= static_cast<std::ptrdiff_t>(shortest)) {
       std::fill(begin, end, std::uint8_t{0});
     }
     begin = end;
@@ -70,8 +70,11 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
   constexpr int kMostPasses = 8;
   constexpr int kMostDoublings = 2;
   int doublings = 0;
+  BlockSurvey survey;
   for (int pass = 0; pass < kMostPasses && kept.samples.size() >= kFewestSamples; ++pass) {
-    BlockSurvey survey = survey_blocks(kept.samples, options.sigma_m, result.threshold);
+    if (doublings == 0) {
+      survey = survey_blocks(kept.samples, options.sigma_m, result.threshold);
+    }
     if (pass == 0) {
       result.status = survey.status;
     }
@@ -82,11 +85,11 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
     if (!survey.is_any_off && !survey.is_noise_spiked) {
       break;
     }
-    const std::size_t longest_run = survey.length / 2;
-    survey.length = std::min(survey.length << doublings, kept.samples.size());
-    SpikeSearch found = search_spikes(kept.samples, survey, options.sigma_m, result.threshold);
+    BlockSurvey longer = survey;
+    longer.length = std::min(survey.length << doublings, kept.samples.size());
+    SpikeSearch found = search_spikes(kept.samples, longer, options.sigma_m, result.threshold);
     if (doublings > 0) {
-      spare_runs(longest_run, &found.is_spike);
+      spare_runs(survey.length / 2, &found.is_spike);
     }
     result.sigma_m = found.sigma_m;
     const std::size_t before = kept.samples.size();
@@ -94,7 +97,7 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
     if (kept.samples.size() < before) {
       doublings = 0;
     } else if (survey.is_any_off && doublings < kMostDoublings &&
-               survey.length < kept.samples.size()) {
+               longer.length < kept.samples.size()) {
       ++doublings;
     } else {
       break;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/curves/length_powers.h"
 #include "core/recognition/given/descent.h"
 #include "core/recognition/given/foot_parameter.h"
 
@@ -12,20 +13,6 @@ namespace palpate {
 namespace {
 
 using Exact = DoubleDouble;
-
-/// Power of the unit of length in every shape parameter's unit.
-std::array<double, 3> length_powers(CurveClass curve_class) {
-  switch (curve_class) {
-    case CurveClass::CubicalParabola:
-      return {-2.0, 0.0, 0.0};
-    case CurveClass::SemiCubicalParabola:
-      return {-0.5, 0.0, 0.0};
-    case CurveClass::CubicSpline:
-      return {-0.5, 0.0, 0.5};
-    default:
-      return {1.0, 1.0, 1.0};
-  }
-}
 
 /// (information)^-1 of the unknowns, in their units; a direction that is not determined at all
 /// gets a variance as large as doubles can tell.
@@ -55,12 +42,13 @@ void report_curve(const PlacedCurve<Exact>& placed, const Squares<Exact>& square
                   const LocalPoints& local, GivenFit* fit) {
   const Unknowns unknowns(placed.curve_class);
   const auto n = static_cast<std::size_t>(unknowns.count);
-  const std::array<double, 3> powers = length_powers(placed.curve_class);
+  const Eigen::Vector3d powers = length_powers(placed.curve_class);
   std::array<double, 3> units{};
   fit->shape.curve_class = placed.curve_class;
   for (std::size_t i = 0; i < 3; ++i) {
-    units[i] = std::pow(local.unit_m, powers[i]);  // a power of 2: exact
-    fit->shape.values[static_cast<Eigen::Index>(i)] = to_double(Exact(units[i]) * placed.shape[i]);
+    const auto k = static_cast<Eigen::Index>(i);
+    units[i] = std::pow(local.unit_m, powers[k]);  // a power of 2: exact
+    fit->shape.values[k] = to_double(Exact(units[i]) * placed.shape[i]);
   }
   const auto in_world = [&](double middle_m, const Exact& v) {
     return to_double(Exact(middle_m) + Exact(local.unit_m) * v);
@@ -95,7 +83,9 @@ void report_curve(const PlacedCurve<Exact>& placed, const Squares<Exact>& square
           to_double(inverse[i][j]);
     }
     // Where the rounding of the coordinates alone leaves a shape parameter open by all of itself.
-    const double size = i < 3 && powers[i] == 0.0 ? 1.0 : std::abs(to_double(placed.shape[i % 3]));
+    const double size = i < 3 && powers[static_cast<Eigen::Index>(i)] == 0.0
+                            ? 1.0
+                            : std::abs(to_double(placed.shape[i % 3]));
     const double weight = to_double(local.exact.front().weight);
     open = open || (i < static_cast<std::size_t>(unknowns.shape) &&
                     weight * local.rounding * std::sqrt(to_double(inverse[i][i])) > size);

@@ -8,7 +8,6 @@ namespace palpate {
 
 std::optional<LocalPoints> local_points(std::span<const GivenPoint> points, double sigma_m,
                                         bool weighted) {
-  using Exact = DoubleDouble;
   LocalPoints local;
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
   Vec2 high = -low;
@@ -28,18 +27,21 @@ std::optional<LocalPoints> local_points(std::span<const GivenPoint> points, doub
   constexpr double kRoundings = 4.0;  // a few half units in the last place meet in a residual
   local.rounding = kRoundings * std::numeric_limits<double>::epsilon() *
                    low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() / local.unit_m;
-  const Exact inverse_unit(1.0 / local.unit_m);
+  const DoubleDouble inverse_unit(1.0 / local.unit_m);
   for (const std::size_t i : local.index) {
     const GivenPoint& point = points[i];
-    WeighedPoint<Exact> exact;
-    exact.position.x = inverse_unit * (Exact(point.position_m.x()) - Exact(local.middle_m.x()));
-    exact.position.y = inverse_unit * (Exact(point.position_m.y()) - Exact(local.middle_m.y()));
-    exact.weight = weighted ? Exact(local.unit_m) / Exact(noise_of(point, sigma_m)) : Exact(1.0);
-    exact.offset = inverse_unit * Exact(point.tip_radius_m);
+    WeighedPoint<DoubleDouble> exact;
+    exact.position.x =
+        inverse_unit * (DoubleDouble(point.position_m.x()) - DoubleDouble(local.middle_m.x()));
+    exact.position.y =
+        inverse_unit * (DoubleDouble(point.position_m.y()) - DoubleDouble(local.middle_m.y()));
+    exact.weight = weighted ? DoubleDouble(local.unit_m) / DoubleDouble(noise_of(point, sigma_m))
+                            : DoubleDouble(1.0);
+    exact.offset = inverse_unit * DoubleDouble(point.tip_radius_m);
     if (weighted && has_normal(point)) {
       const Vec2 normal = point.normal.normalized();
-      exact.normal = {Exact(normal.x()), Exact(normal.y())};
-      exact.normal_weight = Exact(1.0) / Exact(point.normal_sigma_rad);
+      exact.normal = {DoubleDouble(normal.x()), DoubleDouble(normal.y())};
+      exact.normal_weight = DoubleDouble(1.0) / DoubleDouble(point.normal_sigma_rad);
       ++local.normals;
     }
     local.exact.push_back(exact);

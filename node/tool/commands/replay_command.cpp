@@ -24,9 +24,6 @@
 namespace palpate {
 namespace {
 
-// A recognizer that is behind gets the rest; one that has gone is not waited for longer.
-constexpr std::chrono::seconds kLongestEnd{5};
-
 struct ReplayCommand {
   std::string file;
   Connection connection{std::string(kDefaultContactsEndpoint), "", ""};
@@ -307,7 +304,7 @@ int run(const ReplayCommand& command) {
     });
   }
   progress.end();
-  if (!is_stopped) publisher.finish_within(kLongestEnd);
+  if (!is_stopped) publisher.finish_within();
   std::cerr << command.file << ": " << messages << " messages, " << samples << " samples";
   std::cerr << (refused > 0 ? ", " + std::to_string(refused) + " not taken\n" : "\n");
   const bool is_whole = !recording || recording->report();
