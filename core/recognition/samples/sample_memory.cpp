@@ -27,14 +27,21 @@ Eigen::Vector3d covariance_of(const StoredSample& sample, const SampleDetail& de
                                         : Eigen::Vector3d(variance, 0.0, variance);
 }
 
+/// Inverse variance of a measured normal; none is better known than a unit vector is rounded.
+double normal_weight(const SampleDetail& detail) {
+  constexpr double kRounding = 1e-16;  // [rad]
+  const double sigma = std::max(detail.normal_sigma_rad, kRounding);
+  return 1.0 / (sigma * sigma);
+}
+
 /// What is known of the mean of two stored samples. A normal that was measured at one of them alone
 /// is not one at their mean, and is lost.
 SampleDetail merged(const StoredSample& a, const SampleDetail& of_a, const StoredSample& b,
                     const SampleDetail& of_b) {
   SampleDetail mean;
   if (of_a.normal_sigma_rad > 0.0 && of_b.normal_sigma_rad > 0.0) {
-    const double weight_a = 1.0 / (of_a.normal_sigma_rad * of_a.normal_sigma_rad);
-    const double weight_b = 1.0 / (of_b.normal_sigma_rad * of_b.normal_sigma_rad);
+    const double weight_a = normal_weight(of_a);
+    const double weight_b = normal_weight(of_b);
     const Vec2 sum = weight_a * of_a.normal + weight_b * of_b.normal;
     // Of normals that contradict each other there is no mean.
     constexpr double kLeastAgreement = 0.1;

@@ -32,13 +32,15 @@ double turn_of(std::span<const FitPoint> patch) {
 /// leave no doubt: that is where the tip's centres are. 0 where they do not tell.
 int measured_side(const StoredPatch& patch, const FitData& reduced,
                   std::span<const FitPoint> path) {
-  // A round tip's centre is off the path's normal by no more than the travel's own error, which is
-  // one for the whole patch. A patch whose directions are known worse bends by more than its
-  // reduced points can follow. [rad]
+  // Of the direction of travel, one error for the whole patch. Reduced points show theirs to a few
+  // hundredths, touches have it from a curve that may not be the right one yet: a normal within 51
+  // degrees of the path's own is believed, one that lies further aside tells nothing. [rad]
   constexpr double kTravelSigma = 0.3;
-  // Log odds of one in a million: nobody asks the evidence any more.
+  // Log odds of a million to one: the evidence is not asked any more.
   constexpr double kNoDoubt = 13.8;
-  if (patch.details.empty()) {
+  // What is known better says no more beside the travel's error. [rad]
+  constexpr double kLeastSigma = 1e-3;
+  if (patch.details.empty() || path.empty()) {
     return 0;
   }
   const ToLocal to_frame(reduced.frame);
@@ -54,14 +56,15 @@ int measured_side(const StoredPatch& patch, const FitData& reduced,
         std::min_element(path.begin(), path.end(), [&](const FitPoint& a, const FitPoint& b) {
           return (a.position - place).squaredNorm() < (b.position - place).squaredNorm();
         });
-    const double weight = 1.0 / (detail.normal_sigma_rad * detail.normal_sigma_rad);
+    const double sigma = std::max(detail.normal_sigma_rad, kLeastSigma);
+    const double weight = 1.0 / (sigma * sigma);
     information += weight;
     to_the_left += weight * left_of(nearest->tangent).dot(reduced.frame.rotate_back(detail.normal));
   }
   if (!(information > 0.0)) {
     return 0;
   }
-  // Of directions by von Mises' law of this concentration, that of the left over the right.
+  // Of the left over the right, by von Mises' law of this concentration about either.
   const double concentration = 1.0 / (1.0 / information + kTravelSigma * kTravelSigma);
   const double log_odds = 2.0 * concentration * to_the_left / information;
   return std::abs(log_odds) < kNoDoubt ? 0 : (log_odds > 0.0 ? 1 : -1);

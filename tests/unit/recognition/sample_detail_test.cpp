@@ -133,6 +133,15 @@ TEST(MeasuredNormals, OfNoPrecisionTellNothing) {
   EXPECT_EQ(with.status, without.status);
 }
 
+TEST(MeasuredNormals, OfAnyPrecisionTellTheSide) {
+  for (const double sigma_rad : {1e-300, 1e-12, 1e-3, 0.3}) {
+    Bore bore;
+    bore.normal_sigma_rad = sigma_rad;
+    EXPECT_NEAR(recognise_strokes(bore, true).shape.values[0], bore.surface_radius_m, 1e-4)
+        << sigma_rad;
+  }
+}
+
 TEST(MeasuredNormals, AnAnswerMovesWithThem) {
   Bore bore;
   const Recognition answer = recognise_strokes(bore, true);
