@@ -126,6 +126,17 @@ class Writer {
   v1::NodeConfig& config_;
 };
 
+std::string resolve_given_class(NodeOptions& options) {
+  options.intake.group.given_class = {};
+  if (options.given_class.empty()) return {};
+  const std::optional<CurveClass> given = curve_class_from_name(options.given_class);
+  if (!given || *given == CurveClass::Unclassified) {
+    return "given_class: \"" + options.given_class + "\" is no curve class";
+  }
+  options.intake.group.given_class = given;
+  return {};
+}
+
 // What only all options together can say.
 std::string check_together(const NodeOptions& options) {
   if (!is_valid_name(options.name)) return "name: expected 1 to 64 of [A-Za-z0-9_.-]";
@@ -243,6 +254,7 @@ Result<NodeOptions> make_options(const v1::NodeConfig& config) {
   for_each_option(options, reader);
   if (!reader.error().empty()) return Result<NodeOptions>::fail(reader.error());
   std::string error = resolve(options.words, options.intake.recognizer);
+  if (error.empty()) error = resolve_given_class(options);
   if (error.empty()) error = check_together(options);
   if (!error.empty()) return Result<NodeOptions>::fail(std::move(error));
   return Result<NodeOptions>::ok(std::move(options));

@@ -30,6 +30,7 @@ struct NodeOptions {
   double status_period_s = 1.0;
   std::uint32_t workers = 0;  ///< 0 = as many as there are cores
   bool publish_estimates = true;
+  std::string given_class;  ///< resolved into intake.group.given_class
   std::string log_level = "info";
   RecognizerWords words;
   PeerBounds peers;
@@ -111,6 +112,11 @@ void for_each_option(Options& options, Visit&& visit) {
   visit({"publish_estimates",
          "Publish local estimates on estimate/<probe>/ while a planner subscribes to any"},
         options.publish_estimates);
+  visit(
+      {"given_class",
+       "Class that all parts are of, e.g. circle: its least squares on all samples, with measured "
+       "normals and covariances, in place of a search; empty = the class is sought"},
+      options.given_class);
   visit({"log_level", "trace, debug, info, warning, error or off"}, options.log_level);
   for_each_recognizer_option(options.words, recognizer, visit);
 }

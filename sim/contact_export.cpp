@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "node/wire/convert.h"
+
 namespace palpate::sim {
 namespace {
 
@@ -50,6 +52,7 @@ void append_rows(const Scene& scene, std::span<const SimulatedProbe> probes, std
       row.context.material_side = reported_side(patch);
       for (const SimulatedSample& sample : patch.samples) {
         row.sample = {sample.position_m, sample.sigma_m, nanoseconds(sample.time_s)};
+        row.detail = sample.detail;
         table.rows.push_back(row);
       }
     }
@@ -70,6 +73,7 @@ std::vector<TimedBatch> make_batches(const Scene& scene, std::span<const Simulat
         sample.set_x_m(from.position_m.x());
         sample.set_y_m(from.position_m.y());
         sample.set_sigma_m(from.sigma_m);
+        to_wire(from.detail, sample);
         const bool is_last = k + 1 == patch.samples.size();
         if (!is_last && timed.batch.samples_size() < static_cast<int>(probes[i].batch_samples)) {
           continue;

@@ -1,5 +1,6 @@
 #include "sim/contacts.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdio>
 
@@ -55,6 +56,16 @@ const v1::SceneNoise& noise_of(const v1::Scene& scene, const v1::SceneProbe& pro
   return probe.has_noise() ? probe.noise() : scene.noise();
 }
 
+bool has_covariance(const v1::SceneNoise& noise) { return noise.cov_xx_m2() > 0.0; }
+
+/// Noise of a standard normal pair: the pair times sigma, or times the factor of the covariance.
+Vec2 coloured(const Vec2& normal, const v1::SceneNoise& noise) {
+  if (!has_covariance(noise)) return noise.sigma_m() * normal;
+  const double xx = std::sqrt(noise.cov_xx_m2());
+  const double yx = noise.cov_xy_m2() / xx;
+  return {xx * normal.x(), yx * normal.x() + std::sqrt(noise.cov_yy_m2() - yx * yx) * normal.y()};
+}
+
 /// What the sensor makes of a position. Every sample draws the same numbers whatever the noise, so
 /// that changing one kind of noise leaves the others as they were.
 struct Sensed {
@@ -67,7 +78,7 @@ Sensed sense(const Vec2& true_position, const v1::SceneNoise& noise, Random& ran
   const double spike_draw = random.uniform();
   const double direction = 2.0 * kPi * random.uniform();
   const double dropout_draw = random.uniform();
-  Sensed sensed{true_position + noise.sigma_m() * normal};
+  Sensed sensed{true_position + coloured(normal, noise)};
   if (spike_draw < noise.spike_probability()) {
     sensed.position += noise.spike_m() * Vec2(std::cos(direction), std::sin(direction));
   }
@@ -127,8 +138,22 @@ TipPlace tip_at(const Shape& shape, double t, double side, double radius) {
   return {place.position + radius * outward, outward, 1.0 + side * radius * curvature(place)};
 }
 
+/// What the sensor says beside the position.
+SampleDetail measured(const Vec2& outward, const v1::SceneNoise& noise, Random& random) {
+  SampleDetail detail;
+  if (noise.normal_sigma_rad() > 0.0) {
+    const double off = noise.normal_sigma_rad() * random.normal_pair().x();
+    detail.normal = as_unit(Eigen::Rotation2Dd(off) * outward);
+    detail.normal_sigma_rad = noise.normal_sigma_rad();
+  }
+  if (has_covariance(noise) && !noise.hide_sigma()) {
+    detail.covariance_m2 = {noise.cov_xx_m2(), noise.cov_xy_m2(), noise.cov_yy_m2()};
+  }
+  return detail;
+}
+
 SimulatedPatch touch(const Scene& scene, const v1::SceneProbe& probe, const v1::ScenePatch& patch,
-                     double start_s, Random& random, Random& drift_random) {
+                     double start_s, Random& random, Random& drift_random, Random& normal_random) {
   const v1::SceneNoise& noise = noise_of(scene.description, probe);
   const double side = material_sign(scene.description);
   PatchWalk walk(scene.shape, probe, patch);
@@ -155,9 +180,13 @@ SimulatedPatch touch(const Scene& scene, const v1::SceneProbe& probe, const v1::
     const double off = offset_of(probe, outward) + drift.at(here.centre);
     const Sensed sensed =
         sense(scene.world_T_shape * reported.centre + off * outward, noise, random);
+    const SampleDetail detail = measured(outward, noise, normal_random);
+    const bool coloured = detail.covariance_m2.x() > 0.0;
+    const double sigma_m = coloured ? mean_sigma_m(detail.covariance_m2) : noise.sigma_m();
     if (!sensed.lost) {
-      touched.samples.push_back({sensed.position, noise.hide_sigma() ? 0.0 : noise.sigma_m(),
-                                 start_s + static_cast<double>(i) * walk.interval_s(), walk.t()});
+      touched.samples.push_back({sensed.position, noise.hide_sigma() ? 0.0 : sigma_m,
+                                 start_s + static_cast<double>(i) * walk.interval_s(), walk.t(),
+                                 detail});
     }
   }
   return touched;
@@ -185,6 +214,9 @@ std::vector<SimulatedProbe> simulate_contacts(const Scene& scene, std::uint64_t 
     // Of its own, so that a scene without drift has the samples that it always had.
     constexpr std::uint64_t kDriftStream = std::uint64_t{1} << 63;
     Random drift_random(scene.description.seed(), stream | kDriftStream);
+    // Likewise of normals.
+    constexpr std::uint64_t kNormalStream = std::uint64_t{1} << 62;
+    Random normal_random(scene.description.seed(), stream | kNormalStream);
     SimulatedProbe probe;
     probe.name = described.name();
     probe.tip_radius_m = described.tip_radius_m();
@@ -192,7 +224,8 @@ std::vector<SimulatedProbe> simulate_contacts(const Scene& scene, std::uint64_t 
         described.batch_samples() > 0 ? described.batch_samples() : kDefaultBatchSamples;
     double start_s = described.start_s();
     for (const v1::ScenePatch& patch : described.patches()) {
-      SimulatedPatch touched = touch(scene, described, patch, start_s, random, drift_random);
+      SimulatedPatch touched =
+          touch(scene, described, patch, start_s, random, drift_random, normal_random);
       touched.number = static_cast<std::uint32_t>(probe.patches.size());
       start_s += duration_s(scene.shape, described, patch);
       probe.patches.push_back(std::move(touched));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/recognition/samples/contact_sample.h"
+#include "core/recognition/samples/sample_detail.h"
 #include "palpate/v1/scene.pb.h"
 #include "sim/scene_file.h"
 
@@ -17,6 +18,7 @@ struct SimulatedSample {
   double sigma_m = 0.0;            ///< as the sensor reports it; 0 = not known
   double time_s = 0.0;             ///< since the start of the scene
   double t = 0.0;                  ///< curve parameter of the touched point: the truth
+  SampleDetail detail = {};        ///< as the sensor reports it
 };
 
 /// One unbroken touch.

@@ -219,9 +219,27 @@ bool SceneCheck::check_pose(const Place& scene) {
 }
 
 bool SceneCheck::check_noise(const Place& noise) {
+  constexpr double kMostNormalSigma = kPi;  // of ContactSample.normal_sigma_rad
+  const double normal_sigma = number(noise.message, "normal_sigma_rad");
+  if (normal_sigma > kMostNormalSigma || (normal_sigma > 0.0 && normal_sigma < kMinNormalSigma)) {
+    return fail(noise, "normal_sigma_rad", "must be 0 or 1e-15 to pi");
+  }
   return not_negative(noise, "sigma_m") && probability(noise, "spike_probability") &&
          not_negative(noise, "spike_m") && not_negative(noise, "quantization_m") &&
-         probability(noise, "dropout_probability");
+         probability(noise, "dropout_probability") && not_negative(noise, "normal_sigma_rad") &&
+         check_covariance(noise);
+}
+
+bool SceneCheck::check_covariance(const Place& noise) {
+  const auto& described = static_cast<const v1::SceneNoise&>(noise.message);
+  const Eigen::Vector3d covariance(described.cov_xx_m2(), described.cov_xy_m2(),
+                                   described.cov_yy_m2());
+  if (covariance.isZero(0.0)) return true;
+  if (!covariance.allFinite() || !is_covariance(covariance)) {
+    return fail(noise, "cov_xx_m2", "cov_xx_m2, cov_xy_m2, cov_yy_m2 must be positive definite");
+  }
+  return described.sigma_m() == 0.0 ||
+         fail(noise, "sigma_m", "must be absent where there is a covariance, which says it");
 }
 
 bool SceneCheck::check_probe(const Place& probe, const Shape& shape) {

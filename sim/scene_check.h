@@ -32,6 +32,7 @@ class SceneCheck {
   std::optional<Shape> check_closed_spline(const Place& scene);
   bool check_pose(const Place& scene);
   bool check_noise(const Place& noise);
+  bool check_covariance(const Place& noise);
   bool check_probe(const Place& probe, const Shape& shape);
   bool check_patch(const Place& patch, const v1::SceneProbe& probe);
 

@@ -273,8 +273,7 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, doubl
   SegmentBelonging result;
   constexpr double kFalseSpikes = 0.01;  // probability that a patch without spikes loses a sample
   const std::vector<bool> is_spike = spikes_of(patch.samples, kFalseSpikes);
-  StoredPatch kept = patch;
-  kept.samples = without_spikes(patch.samples, is_spike);
+  StoredPatch kept = without_spikes(patch, is_spike);
   std::vector<std::size_t> numbers;  // of the samples kept
   for (std::size_t i = 0; i < is_spike.size(); ++i) {
     if (!is_spike[i]) {

@@ -29,9 +29,7 @@ CleanPatches clean_patches(std::span<const StoredPatch> patches, double false_al
   CleanPatches clean;
   for (const StoredPatch& patch : patches) {
     clean.is_spike.push_back(spikes_of(patch.samples, false_alarm));
-    StoredPatch kept = patch;
-    kept.samples = without_spikes(patch.samples, clean.is_spike.back());
-    clean.patches.push_back(std::move(kept));
+    clean.patches.push_back(without_spikes(patch, clean.is_spike.back()));
   }
   return clean;
 }

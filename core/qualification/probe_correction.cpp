@@ -71,7 +71,7 @@ Touch touch_of(const ProbedPatch& patch, const Curve& curve, const Pose2& pose, 
 AddResult add_all(std::span<const ProbedPatch> patches, Recognizer& recognizer) {
   AddResult sum;
   for (const ProbedPatch& patch : patches) {
-    sum += recognizer.add(patch.context, patch.samples);
+    sum += recognizer.add(patch.context, patch.samples, patch.details);
   }
   return sum;
 }
@@ -233,17 +233,17 @@ ProbedRecognition recognise_probed(const SampleMemory& memory,
   std::vector<ProbedPatch> patches;
   double merge_bias_m = 0.0;
   for (const StoredPatch& stored : memory.patches()) {
-    ProbedPatch& patch = patches.emplace_back();
-    patch.context = stored.context;
-    patch.probe = probes[stored.context.probe];
-    merge_bias_m = std::max(merge_bias_m, stored.merge_bias_m);
-    for (const StoredSample& sample : stored.samples) {
+    const ProbeCharacter* const probe = probes[stored.context.probe];
+    ContactRun run = as_contacts(stored);
+    for (std::size_t i = 0; probe != nullptr && i < run.samples.size(); ++i) {
       // Before its weight counts: what the probe says is the noise of one contact.
-      const double sigma_m = sample.sigma_m > 0.0     ? sample.sigma_m
-                             : patch.probe != nullptr ? patch.probe->sigma_m.value
-                                                      : 0.0;
-      patch.samples.push_back({sample.position_m, sigma_m / std::sqrt(sample.weight)});
+      ContactSample& sample = run.samples[i];
+      if (!(sample.sigma_m > 0.0)) {
+        sample.sigma_m = probe->sigma_m.value / std::sqrt(stored.samples[i].weight);
+      }
     }
+    patches.push_back({run.context, std::move(run.samples), probe, std::move(run.details)});
+    merge_bias_m = std::max(merge_bias_m, stored.merge_bias_m);
   }
   options.form_deviation_m = std::hypot(options.form_deviation_m, merge_bias_m);
   // As many as are there: what had to make room has done so.

@@ -17,6 +17,7 @@ struct ProbedPatch {
   PatchContext context;
   std::vector<ContactSample> samples;
   const ProbeCharacter* probe = nullptr;
+  std::vector<SampleDetail> details = {};  ///< of the samples; empty where none says more
 };
 
 /// On which side of increasing curve parameter the material of a patch lies: +1 left, -1 right.

@@ -46,8 +46,7 @@ std::vector<LocalizedContact> PatchContacts::of(std::span<const StoredPatch> pat
       if (now.outliers.empty()) {
         add_contacts(patch, windows, now.side, options, &now.contacts);
       } else {
-        StoredPatch rest = patch;
-        rest.samples = without_spikes(patch.samples, now.outliers);
+        const StoredPatch rest = without_spikes(patch, now.outliers);
         add_contacts(rest, windows, now.side, options, &now.contacts);
       }
       known_[p] = std::move(now);

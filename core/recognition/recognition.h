@@ -66,9 +66,12 @@ struct Recognition {
   /// What the tree asked about, pooled over the contacts `pooled_contacts` (indices).
   std::vector<NamedInvariant> invariants;
   std::vector<std::size_t> pooled_contacts;
-  std::size_t sample_count = 0;      ///< samples that the answer rests on
-  std::size_t outlier_count = 0;     ///< samples set aside as spikes
-  std::size_t forgotten_count = 0;   ///< samples of this object that had to make room for others
+  std::size_t sample_count = 0;     ///< samples that the answer rests on
+  std::size_t outlier_count = 0;    ///< samples set aside as spikes
+  std::size_t forgotten_count = 0;  ///< samples of this object that had to make room for others
+  /// Samples of this object with a normal or a covariance of which the answer does not use all: of
+  /// a covariance the mean noise counts, of a normal the side of a round tip that it shows.
+  std::size_t simplified_count = 0;
   double sigma_m = 0.0;              ///< noise used, given or estimated [m]
   double noise_correlation_m = 0.0;  ///< correlation length of the residuals; 0 = white [m]
 };

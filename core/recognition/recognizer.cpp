@@ -118,12 +118,14 @@ class Recognizer::Impl {
  public:
   explicit Impl(const RecognizerOptions& options) : options_(options), memory_(options.memory) {}
 
-  AddResult add(const PatchContext& context, std::span<const ContactSample> samples) {
+  AddResult add(const PatchContext& context, std::span<const ContactSample> samples,
+                std::span<const SampleDetail> details) {
     if (stream_) {
       stream_->add(context, samples);
     }
-    const AddResult result = memory_.add(context, samples);
+    const AddResult result = memory_.add(context, samples, details);
     forgotten_ += result.forgotten;
+    simplified_ += result.detailed;
     return result;
   }
 
@@ -149,6 +151,7 @@ class Recognizer::Impl {
   void reset() {
     memory_.clear();
     forgotten_ = 0;
+    simplified_ = 0;
     clean_.clear();
     contacts_.clear();
     last_.reset();
@@ -161,6 +164,7 @@ class Recognizer::Impl {
     Recognition answer = look();
     answer.sample_count = memory_.sample_count();
     answer.forgotten_count = forgotten_;
+    answer.simplified_count = simplified_;
     return answer;
   }
 
@@ -333,7 +337,8 @@ class Recognizer::Impl {
 
   RecognizerOptions options_;
   SampleMemory memory_;
-  std::size_t forgotten_ = 0;  ///< samples, since the object began
+  std::size_t forgotten_ = 0;   ///< samples, since the object began
+  std::size_t simplified_ = 0;  ///< likewise
   CleanPatches clean_;
   PatchContacts contacts_;
   std::optional<Last> last_;
@@ -345,8 +350,9 @@ Recognizer::~Recognizer() = default;
 Recognizer::Recognizer(Recognizer&&) noexcept = default;
 Recognizer& Recognizer::operator=(Recognizer&&) noexcept = default;
 
-AddResult Recognizer::add(const PatchContext& context, std::span<const ContactSample> samples) {
-  return impl_->add(context, samples);
+AddResult Recognizer::add(const PatchContext& context, std::span<const ContactSample> samples,
+                          std::span<const SampleDetail> details) {
+  return impl_->add(context, samples, details);
 }
 
 Recognition Recognizer::recognize() { return impl_->recognize(); }

@@ -52,8 +52,11 @@ class Recognizer {
   Recognizer(Recognizer&&) noexcept;
   Recognizer& operator=(Recognizer&&) noexcept;
 
-  /// Appends samples of one patch in their order along the arc.
-  AddResult add(const PatchContext& context, std::span<const ContactSample> samples);
+  /// Appends samples of one patch in their order along the arc. `details`: normals and covariances
+  /// of the samples, or nothing. A normal tells on which side of a round tip the surface lies; the
+  /// noise that counts is the samples' sigma_m, which is a covariance's mean (mean_sigma_m).
+  AddResult add(const PatchContext& context, std::span<const ContactSample> samples,
+                std::span<const SampleDetail> details = {});
 
   /// The answer for all samples in memory. Linear in the samples, beside a search of bounded cost.
   /// Touches alone in their patch need no order; where they lie densely they are taken together,

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/recognition/samples/contact_sample.h"
-#include "node/csv/sample_detail.h"
+#include "core/recognition/samples/sample_detail.h"
 
 namespace palpate {
 

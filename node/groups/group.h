@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,8 @@ struct GroupOptions {
   std::chrono::duration<double> object_takeover{1.0};
   /// After lost messages the arc is broken where the hole exceeds this many sample spacings.
   double gap_break_spacings = 10.0;
+  /// Class that all parts are of: fitted in place of a search. nullopt = it is sought.
+  std::optional<CurveClass> given_class = {};
 };
 
 /// Belongs to the node's thread. Its recognizer works on a worker's, on one answer at a time: what
@@ -32,8 +35,8 @@ class Group {
   Group(std::string_view name, const RecognizerOptions& recognizer, const GroupOptions& options)
       : name_(name),
         options_(options),
-        recognizer_(
-            std::make_shared<GroupRecognizer>(name, recognizer, options.gap_break_spacings)) {}
+        recognizer_(std::make_shared<GroupRecognizer>(name, recognizer, options.gap_break_spacings,
+                                                      options.given_class)) {}
 
   /// Whether the message may be taken; REJECT_REASON_UNSPECIFIED = yes. `probe` is its sender,
   /// nullptr where unknown so far. Changes nothing.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/qualification/probe_correction.h"
+#include "node/wire/given_class_answer.h"
 
 namespace palpate {
 namespace {
@@ -20,11 +21,13 @@ std::int64_t thread_processor_ns() {
 }  // namespace
 
 std::size_t GroupRecognizer::take(const QueuedContacts& message,
-                                  std::span<const ContactSample> samples) {
+                                  std::span<const ContactSample> samples,
+                                  std::span<const SampleDetail> details) {
   if (message.begins_object) {
     recognizer_.reset();
     touched_.clear();
     forgotten_ = 0;
+    simplified_ = 0;
     members_.clear();
     frame_ = message.frame;
     object_ = message.object;
@@ -44,8 +47,13 @@ std::size_t GroupRecognizer::take(const QueuedContacts& message,
                              gap_break_spacings_, samples);
   context.tip_radius_m = message.tip_radius_m;
   context.material_side = message.material_side;
-  const AddResult added = recognizer_.add(context, samples);
-  if (probe_files) forgotten_ += touched_.add(context, samples).forgotten;
+  AddResult added = recognizer_.add(context, samples, details);
+  if (probe_files || given_class_) {
+    const AddResult kept = touched_.add(context, samples, details);
+    forgotten_ += kept.forgotten;
+    simplified_ += kept.detailed;
+    if (given_class_) added = kept;
+  }
 
   newest_.source = message.probe;
   newest_.epoch = message.epoch;
@@ -55,46 +63,86 @@ std::size_t GroupRecognizer::take(const QueuedContacts& message,
   return samples.size() - added.accepted;
 }
 
-/// As `palpate fit --probe` does; `files_used`: those that the answer rests on.
-Recognition GroupRecognizer::recognise(std::vector<std::string>& files_used) {
+/// By the members' numbers; empty where none of them is qualified. `files`: those of these probes.
+std::vector<const ProbeCharacter*> GroupRecognizer::qualified_probes(
+    std::vector<std::string>& files) const {
   std::vector<const ProbeCharacter*> probes;
   for (const Member& member : members_) {
     const QualifiedProbe* probe = probe_files ? probe_files->of(member.probe) : nullptr;
     probes.push_back(probe == nullptr ? nullptr : &probe->character);
-    if (probe != nullptr &&
-        std::find(files_used.begin(), files_used.end(), probe->file) == files_used.end()) {
-      files_used.push_back(probe->file);
+    if (probe != nullptr && std::find(files.begin(), files.end(), probe->file) == files.end()) {
+      files.push_back(probe->file);
     }
   }
-  if (files_used.empty()) return recognizer_.recognize();
+  if (files.empty()) probes.clear();
+  return probes;
+}
+
+ContactSourceOf GroupRecognizer::sources() const {
+  return [this](std::uint32_t probe, std::uint32_t run) { return source_of(probe, run); };
+}
+
+/// As `palpate fit` and `palpate fit --probe` do.
+void GroupRecognizer::answer_by_search() {
+  std::vector<std::string> files;
+  const std::vector<const ProbeCharacter*> probes = qualified_probes(files);
+  if (probes.empty()) {
+    to_wire(recognizer_.recognize(), sources(), answer.recognition);
+    return;
+  }
   // The estimates of a round tip wait for an answer that tells its side.
   if (wants_estimates) (void)recognizer_.recognize();
   ProbedRecognition found = recognise_probed(touched_, probes, options_);
   found.recognition.forgotten_count = forgotten_;
-  if (!found.corrected) files_used.clear();
-  return std::move(found.recognition);
+  found.recognition.simplified_count = simplified_;
+  to_wire(found.recognition, sources(), answer.recognition);
+  if (found.corrected) {
+    answer.recognition.mutable_probe_files()->Assign(files.begin(), files.end());
+  }
+}
+
+/// As `palpate fit --class` does.
+void GroupRecognizer::answer_of_given_class() {
+  std::vector<std::string> files;
+  const std::vector<const ProbeCharacter*> probes = qualified_probes(files);
+  if (wants_estimates) (void)recognizer_.recognize();
+  std::vector<ContactRun> runs;
+  for (const StoredPatch& patch : touched_.patches()) runs.push_back(as_contacts(patch));
+  v1::GivenClassAnswer given = given_class_answer(*given_class_, runs, probes, {}, options_);
+  v1::Recognition& message = answer.recognition;
+  message = std::move(*given.mutable_recognition());
+  message.set_sample_count(touched_.sample_count());
+  message.set_forgotten_count(forgotten_);
+  if (message.has_parameters()) message.mutable_probe_files()->Assign(files.begin(), files.end());
+  v1::GivenFit& fit = *message.mutable_given();
+  fit.set_status(given.status());
+  fit.set_rms_m(given.rms_m());
+  fit.set_peak_to_valley_m(given.peak_to_valley_m());
+  fit.set_sigma_stated(given.sigma_stated());
+  fit.set_normal_count(given.normal_count());
 }
 
 void GroupRecognizer::run() {
   answer.samples_refused = 0;
   recognizer_.stream_estimates(wants_estimates);
-  contacts.for_each([&](const QueuedContacts& message, std::span<const ContactSample> samples) {
-    answer.samples_refused += take(message, samples);
+  contacts.for_each([&](const QueuedContacts& message, std::span<const ContactSample> samples,
+                        std::span<const SampleDetail> details) {
+    answer.samples_refused += take(message, samples, details);
   });
   contacts.clear();
 
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   const std::int64_t processor_start_ns = thread_processor_ns();
-  std::vector<std::string> files_used;
-  const Recognition recognition = recognise(files_used);
+  if (given_class_) {
+    answer_of_given_class();
+  } else {
+    answer_by_search();
+  }
   answer.compute_ns = std::chrono::nanoseconds(Clock::now() - start).count();
   answer.processor_ns = thread_processor_ns() - processor_start_ns;
 
   v1::Recognition& message = answer.recognition;
-  to_wire(
-      recognition, [&](std::uint32_t probe, std::uint32_t run) { return source_of(probe, run); },
-      message);
   message.mutable_header()->set_frame(frame_);
   message.set_group(name_);
   message.set_object(object_);
@@ -103,7 +151,6 @@ void GroupRecognizer::run() {
   message.set_newest_batch_epoch(newest_.epoch);
   message.set_newest_batch_source(newest_.source);
   message.set_compute_ns(answer.compute_ns);
-  message.mutable_probe_files()->Assign(files_used.begin(), files_used.end());
   answer.estimates.clear();
   take_estimates();
 }

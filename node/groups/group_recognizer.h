@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,14 +34,15 @@ class GroupRecognizer : public Work {
     std::int64_t processor_ns = 0;  ///< of that on a core: on a busy machine it waits for one too
   };
 
-  /// `gap_break_spacings`: see GroupOptions.
+  /// `gap_break_spacings`, `given_class`: see GroupOptions.
   GroupRecognizer(std::string_view name, const RecognizerOptions& recognizer,
-                  double gap_break_spacings)
+                  double gap_break_spacings, std::optional<CurveClass> given_class = {})
       : name_(name),
         gap_break_spacings_(gap_break_spacings),
+        given_class_(given_class),
         options_(recognizer),
         recognizer_(recognizer),
-        touched_(recognizer.memory) {}
+        touched_(memory_of(recognizer, given_class.has_value())) {}
 
   ContactQueue contacts;
   bool wants_estimates = false;
@@ -70,18 +72,30 @@ class GroupRecognizer : public Work {
     std::int64_t sample_stamp_ns = 0;
   };
 
-  std::size_t take(const QueuedContacts& message, std::span<const ContactSample> samples);
-  Recognition recognise(std::vector<std::string>& files_used);
+  static MemoryOptions memory_of(const RecognizerOptions& recognizer, bool is_class_given) {
+    MemoryOptions memory = recognizer.memory;
+    memory.takes_repeated = is_class_given;  // a distance measured twice counts twice
+    return memory;
+  }
+
+  std::size_t take(const QueuedContacts& message, std::span<const ContactSample> samples,
+                   std::span<const SampleDetail> details);
+  std::vector<const ProbeCharacter*> qualified_probes(std::vector<std::string>& files) const;
+  void answer_by_search();
+  void answer_of_given_class();
+  ContactSourceOf sources() const;
   void take_estimates();
 
   std::string name_;
   double gap_break_spacings_;
+  std::optional<CurveClass> given_class_;
   RecognizerOptions options_;
   Recognizer recognizer_;
-  /// Where there are probe files: the samples as they came, from which each answer takes the
-  /// offsets off anew, by the normals of the curve that it finds.
+  /// Where there are probe files or a class is given: the samples as they came. Each answer takes
+  /// the probes' offsets off anew, by the normals of the curve that it finds.
   SampleMemory touched_;
-  std::size_t forgotten_ = 0;  ///< samples of touched_, since the object began
+  std::size_t forgotten_ = 0;   ///< samples of touched_, since the object began
+  std::size_t simplified_ = 0;  ///< likewise, those that said more than a search uses
   std::string frame_;
   std::uint64_t object_ = 0;
   std::vector<Member> members_;

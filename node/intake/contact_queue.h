@@ -28,6 +28,7 @@ struct QueuedContacts {
   MaterialSide material_side = MaterialSide::Unspecified;
   std::int64_t newest_sample_stamp_ns = 0;
   std::size_t sample_count = 0;
+  std::size_t detail_count = 0;  ///< as many, or none
 };
 
 class ContactQueue {
@@ -35,7 +36,8 @@ class ContactQueue {
   /// Memory that a message takes while it waits. [bytes]
   static std::size_t bytes_of(const ContactMessage& message) {
     return sizeof(QueuedContacts) + message.probe.size() + message.frame.size() +
-           message.samples.size() * sizeof(ContactSample);
+           message.samples.size() * sizeof(ContactSample) +
+           message.details.size() * sizeof(SampleDetail);
   }
 
   void push(const ContactMessage& message, Continuity continuity, bool begins_object) {
@@ -43,18 +45,24 @@ class ContactQueue {
                          std::string(begins_object ? message.frame : std::string_view()),
                          begins_object, continuity, message.epoch, message.seq, message.object,
                          message.patch, message.tip_radius_m, message.material_side,
-                         message.newest_sample_stamp_ns, message.samples.size()});
+                         message.newest_sample_stamp_ns, message.samples.size(),
+                         message.details.size()});
     samples_.insert(samples_.end(), message.samples.begin(), message.samples.end());
+    details_.insert(details_.end(), message.details.begin(), message.details.end());
     bytes_ += bytes_of(message);
   }
 
-  /// Calls visit(const QueuedContacts&, std::span<const ContactSample>) in the order of arrival.
+  /// Calls visit(const QueuedContacts&, std::span<const ContactSample>, std::span<const
+  /// SampleDetail>) in the order of arrival.
   template <typename Visit>
   void for_each(Visit&& visit) const {
     std::size_t first = 0;
+    std::size_t first_detail = 0;
     for (const QueuedContacts& message : messages_) {
-      visit(message, std::span(samples_).subspan(first, message.sample_count));
+      visit(message, std::span(samples_).subspan(first, message.sample_count),
+            std::span(details_).subspan(first_detail, message.detail_count));
       first += message.sample_count;
+      first_detail += message.detail_count;
     }
   }
 
@@ -63,9 +71,11 @@ class ContactQueue {
     if (bytes_ > kOrdinaryBytes) {
       messages_ = {};
       samples_ = {};
+      details_ = {};
     }
     messages_.clear();
     samples_.clear();
+    details_.clear();
     bytes_ = 0;
   }
 
@@ -78,6 +88,7 @@ class ContactQueue {
 
   std::vector<QueuedContacts> messages_;
   std::vector<ContactSample> samples_;
+  std::vector<SampleDetail> details_;  ///< of the messages that have them
   std::size_t bytes_ = 0;
 };
 

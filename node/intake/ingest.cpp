@@ -16,6 +16,54 @@ bool all_finite(double x, double y, double sigma) {
   return std::isfinite(x) && std::isfinite(y) && std::isfinite(sigma);
 }
 
+/// Whether it says anything beside its position, stamp and sigma. What is set to 0 is said.
+bool has_detail(const v1::ContactSample& sample) {
+  return sample.has_normal_x() || sample.has_normal_y() || sample.has_normal_sigma_rad() ||
+         sample.has_cov_xx_m2() || sample.has_cov_xy_m2() || sample.has_cov_yy_m2();
+}
+
+RejectReason take_normal(const v1::ContactSample& sample, SampleDetail* detail) {
+  const Vec2 normal(sample.normal_x(), sample.normal_y());
+  const double sigma = sample.normal_sigma_rad();
+  if (!normal.allFinite() || !std::isfinite(sigma)) return v1::REJECT_REASON_NOT_FINITE;
+  const bool whole =
+      sample.has_normal_x() && sample.has_normal_y() && sample.has_normal_sigma_rad();
+  if (!whole || !is_unit(normal) || sigma < kMinNormalSigma || sigma > kPi) {
+    return v1::REJECT_REASON_NORMAL;
+  }
+  detail->normal = as_unit(normal);
+  detail->normal_sigma_rad = sigma;
+  return kPassed;
+}
+
+RejectReason take_covariance(const v1::ContactSample& sample, double max_sigma_m,
+                             SampleDetail* detail) {
+  const Eigen::Vector3d covariance(sample.cov_xx_m2(), sample.cov_xy_m2(), sample.cov_yy_m2());
+  if (!covariance.allFinite()) return v1::REJECT_REASON_NOT_FINITE;
+  const bool whole = sample.has_cov_xx_m2() && sample.has_cov_xy_m2() && sample.has_cov_yy_m2();
+  const double largest = std::max(covariance.x(), covariance.z());
+  const double least = std::min(covariance.x(), covariance.z());
+  if (!whole || !is_covariance(covariance) || largest > max_sigma_m * max_sigma_m ||
+      least < kMinSigma * kMinSigma) {
+    return v1::REJECT_REASON_COVARIANCE;
+  }
+  detail->covariance_m2 = covariance;
+  return kPassed;
+}
+
+RejectReason take_detail(const v1::ContactSample& sample, double max_sigma_m,
+                         SampleDetail* detail) {
+  RejectReason reason = kPassed;
+  if (sample.has_normal_x() || sample.has_normal_y() || sample.has_normal_sigma_rad()) {
+    reason = take_normal(sample, detail);
+  }
+  if (reason == kPassed &&
+      (sample.has_cov_xx_m2() || sample.has_cov_xy_m2() || sample.has_cov_yy_m2())) {
+    reason = take_covariance(sample, max_sigma_m, detail);
+  }
+  return reason;
+}
+
 }  // namespace
 
 RejectReason ContactDecoder::decode(std::size_t frame_count, std::string_view topic,
@@ -82,6 +130,7 @@ RejectReason ContactDecoder::take_samples() {
   if (count == 0) return v1::REJECT_REASON_EMPTY;
   if (count > limits_.max_samples_per_batch) return v1::REJECT_REASON_TOO_MANY_SAMPLES;
   message_.samples.clear();
+  message_.details.clear();
   message_.newest_sample_stamp_ns = batch_.samples(0).stamp_ns();
   for (const v1::ContactSample& sample : batch_.samples()) {
     const double x = sample.x_m();
@@ -95,6 +144,15 @@ RejectReason ContactDecoder::take_samples() {
       return v1::REJECT_REASON_SIGMA;
     }
     message_.samples.push_back({Vec2(x, y), sigma, sample.stamp_ns()});
+    if (has_detail(sample)) {
+      message_.details.resize(count);
+      SampleDetail& detail = message_.details[message_.samples.size() - 1];
+      const RejectReason reason = take_detail(sample, limits_.max_sigma_m, &detail);
+      if (reason != kPassed) return reason;
+      if (detail.covariance_m2.x() > 0.0) {
+        message_.samples.back().sigma_m = mean_sigma_m(detail.covariance_m2);
+      }
+    }
     message_.newest_sample_stamp_ns = std::max(message_.newest_sample_stamp_ns, sample.stamp_ns());
   }
   return kPassed;

@@ -15,8 +15,9 @@
 namespace palpate {
 
 struct IngestLimits {
-  std::size_t max_message_bytes = 65536;     ///< of the second frame
-  std::size_t max_samples_per_batch = 1024;  ///< about 40 kB on the wire
+  std::size_t max_message_bytes = 65536;  ///< of the second frame
+  /// About 40 kB on the wire; with normals and covariances 94 kB, which is too long a message.
+  std::size_t max_samples_per_batch = 1024;
   /// Largest |x|, |y|. Beyond it a double no longer resolves a nanometre. [m]
   double max_coordinate_m = 1e7;
   double max_sigma_m = 1e3;       ///< [m]
@@ -26,6 +27,9 @@ struct IngestLimits {
 /// Sigmas between 0 ("not known") and this are no real noise, and their squares would underflow.
 /// [m]
 inline constexpr double kMinSigma = 1e-15;
+
+/// The same of a normal's direction: a unit vector is rounded by a tenth of that. [rad]
+inline constexpr double kMinNormalSigma = 1e-15;
 
 /// A message that has passed; views point into the decoder's memory.
 struct ContactMessage {
@@ -40,6 +44,7 @@ struct ContactMessage {
   double tip_radius_m = 0.0;
   MaterialSide material_side = MaterialSide::Unspecified;
   std::vector<ContactSample> samples;  ///< at least one
+  std::vector<SampleDetail> details;   ///< of the samples; empty where none says more
   std::int64_t newest_sample_stamp_ns = 0;
 };
 

@@ -6,32 +6,31 @@
 #include <vector>
 
 #include "core/recognition/recognizer.h"
-#include "core/recognition/samples/contact_sample.h"
+#include "core/recognition/samples/contact_run.h"
 #include "node/csv/contact_table.h"
 
 namespace palpate {
-
-/// Samples that follow one another in one patch. context.probe counts the probes of its group.
-struct ContactRun {
-  PatchContext context;
-  std::vector<ContactSample> samples;
-  std::vector<SampleDetail> details = {};  ///< of the samples; empty where the file has none
-};
 
 /// What is recognised together: one object under one group of one file.
 struct ContactGroup {
   std::string file;
   std::string name;
   std::uint64_t object = 0;
-  std::vector<std::string> probes;  ///< names, by context.probe
+  std::vector<std::string> probes;  ///< names, by the runs' context.probe
   std::vector<ContactRun> runs;     ///< in the order of the file
 };
 
 /// Groups in the order in which the file begins them.
 std::vector<ContactGroup> contact_groups(const std::string& file, const ContactTable& table);
 
-/// That measured normals and covariances do not count, where there are any; else nothing.
-std::string note_of_unused_detail(const ContactGroup& group);
+/// What uses samples with measured normals and covariances.
+enum class DetailUse {
+  Recognition,    ///< the side of a round tip by the normal, the mean noise
+  PositionsOnly,  ///< the mean noise
+};
+
+/// What of measured normals and covariances does not count, where there are any; else nothing.
+std::string note_of_unused_detail(const ContactGroup& group, DetailUse use);
 
 /// Feeds them all to a recogniser.
 AddResult add_group(const ContactGroup& group, Recognizer& recognizer);

@@ -168,6 +168,7 @@ void to_wire(const Recognition& recognition, const ContactSourceOf& source_of,
   out.set_sample_count(recognition.sample_count);
   out.set_outlier_count(recognition.outlier_count);
   out.set_forgotten_count(recognition.forgotten_count);
+  out.set_simplified_count(recognition.simplified_count);
   out.set_sigma_m(recognition.sigma_m);
   out.set_noise_correlation_m(recognition.noise_correlation_m);
 }
@@ -177,6 +178,19 @@ void to_wire(const LocalEstimate& estimate, const ContactSource& source, v1::Loc
   fill_geometry(estimate, source, out);
   out.set_window_samples(static_cast<std::uint32_t>(std::max(estimate.window_samples, 0)));
   out.set_window_arc_m(estimate.window_arc_m);
+}
+
+void to_wire(const SampleDetail& detail, v1::ContactSample& out) {
+  if (detail.normal_sigma_rad > 0.0) {
+    out.set_normal_x(detail.normal.x());
+    out.set_normal_y(detail.normal.y());
+    out.set_normal_sigma_rad(detail.normal_sigma_rad);
+  }
+  if (detail.covariance_m2.x() > 0.0) {
+    out.set_cov_xx_m2(detail.covariance_m2.x());
+    out.set_cov_xy_m2(detail.covariance_m2.y());
+    out.set_cov_yy_m2(detail.covariance_m2.z());
+  }
 }
 
 }  // namespace palpate

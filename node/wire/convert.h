@@ -6,6 +6,8 @@
 #include <string_view>
 
 #include "core/recognition/recognition.h"
+#include "core/recognition/samples/sample_detail.h"
+#include "palpate/v1/contact.pb.h"
 #include "palpate/v1/curve.pb.h"
 #include "palpate/v1/local_estimate.pb.h"
 #include "palpate/v1/recognition.pb.h"
@@ -33,6 +35,9 @@ using ContactSourceOf = std::function<ContactSource(std::uint32_t probe, std::ui
 /// to the caller. Clears `out` first.
 void to_wire(const Recognition& recognition, const ContactSourceOf& source_of,
              v1::Recognition& out);
+
+/// Sets the fields of a normal or covariance that is there.
+void to_wire(const SampleDetail& detail, v1::ContactSample& out);
 
 /// All but the header.
 void to_wire(const LocalEstimate& estimate, const ContactSource& source, v1::LocalEstimate& out);

@@ -20,6 +20,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const palpate::ContactMessage& message = decoder.message();
     if (message.samples.empty() || message.samples.size() > limits.max_samples_per_batch)
       std::abort();
+    if (!message.details.empty() && message.details.size() != message.samples.size()) std::abort();
+    for (const palpate::SampleDetail& detail : message.details) {
+      if (!palpate::is_sound(detail)) std::abort();
+    }
     for (const palpate::ContactSample& sample : message.samples) {
       const bool good = sample.position_m.allFinite() &&
                         sample.position_m.cwiseAbs().maxCoeff() <= limits.max_coordinate_m &&

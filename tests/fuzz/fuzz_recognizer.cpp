@@ -97,6 +97,26 @@ std::vector<ContactSample> samples_from(ByteReader& bytes, double size_m, const 
   return samples;
 }
 
+/// Sound ones and others, of any size; a sample in four has none.
+std::vector<SampleDetail> details_from(ByteReader& bytes, std::size_t count, double size_m) {
+  std::vector<SampleDetail> details(count);
+  for (SampleDetail& detail : details) {
+    const int kind = bytes.below(4);
+    if ((kind & 1) != 0) {
+      const double angle = kPi * bytes.unit();
+      detail.normal =
+          bytes.below(8) == 7 ? Vec2(angle, angle) : as_unit({std::cos(angle), std::sin(angle)});
+      detail.normal_sigma_rad = bytes.power_of_ten(2.0, 300.0);
+    }
+    if ((kind & 2) != 0) {
+      const double xx = std::pow(size_m * bytes.power_of_ten(4.0, 100.0), 2.0);
+      const double yy = std::pow(size_m * bytes.power_of_ten(4.0, 100.0), 2.0);
+      detail.covariance_m2 = {xx, bytes.unit() * std::sqrt(xx * yy), yy};
+    }
+  }
+  return details;
+}
+
 void check(const Recognition& answer, const std::vector<Vec2>& positions) {
   const std::string broken = test::broken_invariant(answer, test::places_of(positions));
   if (!broken.empty()) {
@@ -128,7 +148,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       context.material_side = static_cast<MaterialSide>(bytes.below(3));
     }
     const std::vector<ContactSample> samples = samples_from(bytes, size_m, origin);
-    recognizer.add(context, samples);
+    const std::vector<SampleDetail> details = (choices & 0x48) == 0x48
+                                                  ? details_from(bytes, samples.size(), size_m)
+                                                  : std::vector<SampleDetail>();
+    recognizer.add(context, samples, details);
     for (const ContactSample& sample : samples) {
       if (sample.position_m.allFinite()) positions.push_back(sample.position_m);
     }

@@ -38,6 +38,12 @@ def hostile_messages(rng):
             batch.samples[0].sigma_m = value
         return change
 
+    def set_detail(names, values):
+        def change(batch):
+            for name, value in zip(names, values):
+                setattr(batch.samples[2], name, value)
+        return change
+
     whole = valid().SerializeToString()
     many = valid()
     for _ in range(1100):
@@ -52,6 +58,11 @@ def hostile_messages(rng):
         kinds.append(spoilt(set_x(value)))
         kinds.append(spoilt(set_sigma(value)))
     kinds.append(spoilt(set_sigma(-1.0)))
+    # Normals and covariances that are none, whole and in part.
+    for normal in ((0.0, 0.0, 0.1), (1.0, 0.0, 0.0), (1.0, 0.0, -1.0), (2.0, 0.0, 0.1), (math.nan, 0.0, 0.1), (1.0,)):
+        kinds.append(spoilt(set_detail(("normal_x", "normal_y", "normal_sigma_rad"), normal)))
+    for covariance in ((0.0, 0.0, 0.0), (1e-9, 1e-8, 1e-9), (-1e-9, 0.0, 1e-9), (math.inf, 0.0, 1e-9), (1e-9,)):
+        kinds.append(spoilt(set_detail(("cov_xx_m2", "cov_xy_m2", "cov_yy_m2"), covariance)))
     # Unknown enum value (field 6 of ContactBatch is guessed by trying all), absurd lengths.
     for field in range(1, 12):
         kinds.append([b"contact/bad/", whole + struct.pack("BB", field << 3, 99)])

@@ -12,8 +12,7 @@ const std::vector<StoredPatch>& CleanPatches::of(const std::vector<StoredPatch>&
     const StoredPatch& patch = patches[p];
     const PatchVersion version = version_of(patch);
     if (!(seen_[p] == version)) {
-      clean_[p] = patch;
-      clean_[p].samples = without_spikes(patch.samples, spikes_of(patch.samples, false_alarm));
+      clean_[p] = without_spikes(patch, spikes_of(patch.samples, false_alarm));
       seen_[p] = version;
     }
   }

@@ -63,14 +63,20 @@ std::optional<std::vector<StoredPatch>> with_explained_spikes(std::span<const St
     if (kept.size() == all[p].samples.size() || kept.size() < 2) {
       continue;
     }
-    std::vector<StoredSample>& samples = result[p].samples;
-    samples.clear();
+    StoredPatch& taken = result[p];
+    taken.samples.clear();
+    taken.details.clear();
+    const auto take = [&](std::size_t i) {
+      taken.samples.push_back(all[p].samples[i]);
+      if (!all[p].details.empty()) taken.details.push_back(all[p].details[i]);
+    };
     std::size_t next = 0;
     Gap gap;
     bool is_gap_known = false;
-    for (const StoredSample& sample : all[p].samples) {
+    for (std::size_t i = 0; i < all[p].samples.size(); ++i) {
+      const StoredSample& sample = all[p].samples[i];
       if (next < kept.size() && kept[next].position_m == sample.position_m) {
-        samples.push_back(sample);
+        take(i);
         ++next;
         is_gap_known = false;
         continue;
@@ -86,7 +92,7 @@ std::optional<std::vector<StoredPatch>> with_explained_spikes(std::span<const St
         is_gap_known = true;
       }
       if (passes(gap, curve, foot.t, std::numbers::sqrt2 * limit * sigma)) {
-        samples.push_back(sample);
+        take(i);
         any = true;
       }
     }

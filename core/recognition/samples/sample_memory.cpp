@@ -1,6 +1,7 @@
 #include "core/recognition/samples/sample_memory.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace palpate {
@@ -19,19 +20,74 @@ StoredSample merged(const StoredSample& a, const StoredSample& b) {
   return mean;
 }
 
+/// Of one contact; zeros where it is not known. [m^2]
+Eigen::Vector3d covariance_of(const StoredSample& sample, const SampleDetail& detail) {
+  const double variance = sample.sigma_m * sample.sigma_m;
+  return detail.covariance_m2.x() > 0.0 ? detail.covariance_m2
+                                        : Eigen::Vector3d(variance, 0.0, variance);
+}
+
+/// Inverse variance of a measured normal; none is better known than a unit vector is rounded.
+double normal_weight(const SampleDetail& detail) {
+  constexpr double kRounding = 1e-16;  // [rad]
+  const double sigma = std::max(detail.normal_sigma_rad, kRounding);
+  return 1.0 / (sigma * sigma);
+}
+
+/// What is known of the mean of two stored samples. A normal that was measured at one of them alone
+/// is not one at their mean, and is lost.
+SampleDetail merged(const StoredSample& a, const SampleDetail& of_a, const StoredSample& b,
+                    const SampleDetail& of_b) {
+  SampleDetail mean;
+  if (of_a.normal_sigma_rad > 0.0 && of_b.normal_sigma_rad > 0.0) {
+    const double weight_a = normal_weight(of_a);
+    const double weight_b = normal_weight(of_b);
+    const Vec2 sum = weight_a * of_a.normal + weight_b * of_b.normal;
+    // Of normals that contradict each other there is no mean.
+    constexpr double kLeastAgreement = 0.1;
+    if (sum.norm() > kLeastAgreement * (weight_a + weight_b)) {
+      mean.normal = sum.normalized();
+      mean.normal_sigma_rad = 1.0 / std::sqrt(weight_a + weight_b);
+    }
+  }
+  if (of_a.covariance_m2.x() > 0.0 || of_b.covariance_m2.x() > 0.0) {
+    const Eigen::Vector3d one = covariance_of(a, of_a);
+    const Eigen::Vector3d other = covariance_of(b, of_b);
+    if (one.x() > 0.0 && other.x() > 0.0) {
+      mean.covariance_m2 = (a.weight * one + b.weight * other) / (a.weight + b.weight);
+    }
+  }
+  return mean;
+}
+
+/// Puts the mean of `from` and the sample behind it at `to`, which is not behind `from`.
+void merge_into(StoredPatch* patch, std::size_t to, std::size_t from) {
+  std::vector<StoredSample>& samples = patch->samples;
+  const StoredSample mean = merged(samples[from], samples[from + 1]);
+  if (!patch->details.empty()) {
+    std::vector<SampleDetail>& details = patch->details;
+    details[to] = merged(samples[from], details[from], samples[from + 1], details[from + 1]);
+  }
+  samples[to] = mean;
+  if (!patch->details.empty() && patch->details[to].covariance_m2.x() > 0.0) {
+    samples[to].sigma_m = mean_sigma_m(patch->details[to].covariance_m2);
+  }
+}
+
 /// Merges neighbours pairwise; an odd last sample stays to be filled up.
 void merge_pairs(StoredPatch* patch) {
   std::vector<StoredSample>& samples = patch->samples;
   const std::size_t pairs = samples.size() / 2;
   for (std::size_t k = 0; k < pairs; ++k) {
-    samples[k] = merged(samples[2 * k], samples[2 * k + 1]);
+    merge_into(patch, k, 2 * k);
   }
-  if (samples.size() % 2 == 1) {
+  const std::size_t left = samples.size() - pairs;
+  if (left > pairs) {
     samples[pairs] = samples.back();
-    samples.resize(pairs + 1);
-  } else {
-    samples.resize(pairs);
+    if (!patch->details.empty()) patch->details[pairs] = patch->details.back();
   }
+  samples.resize(left);
+  if (!patch->details.empty()) patch->details.resize(left);
   patch->contacts_per_sample *= 2.0;
   // A turn d between chords of length w means kappa = d / w (noise included: rather too much).
   for (std::size_t k = 2; k < pairs; ++k) {
@@ -52,18 +108,25 @@ std::size_t contacts_of(const StoredPatch& patch) {
 
 }  // namespace
 
-AddResult SampleMemory::add(const PatchContext& context, std::span<const ContactSample> samples) {
+AddResult SampleMemory::add(const PatchContext& context, std::span<const ContactSample> samples,
+                            std::span<const SampleDetail> details) {
+  assert(details.empty() || details.size() == samples.size());
   AddResult result;
   auto place = std::find_if(patches_.begin(), patches_.end(), [&](const StoredPatch& patch) {
     return patch.context.probe == context.probe && patch.context.patch == context.patch;
   });
-  for (const ContactSample& sample : samples) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const ContactSample& sample = samples[i];
     if (!sample.position_m.allFinite() || !std::isfinite(sample.sigma_m)) {
       ++result.rejected_not_finite;
       continue;
     }
     if (sample.sigma_m < 0.0) {
       ++result.rejected_negative_sigma;
+      continue;
+    }
+    if (!details.empty() && !is_sound(details[i])) {
+      ++result.rejected_detail;
       continue;
     }
     if (place == patches_.end()) {
@@ -73,21 +136,29 @@ AddResult SampleMemory::add(const PatchContext& context, std::span<const Contact
       place = patches_.end() - 1;
     }
     std::vector<StoredSample>& stored = place->samples;
-    if (!stored.empty() && place->newest_m == sample.position_m) {
+    if (!stored.empty() && place->newest_m == sample.position_m && !options_.takes_repeated) {
       ++result.repeated;
       continue;
     }
     place->newest_m = sample.position_m;
     ++result.accepted;
-    const StoredSample contact{sample.position_m, sample.sigma_m, 1.0};
-    if (!stored.empty() && stored.back().weight < place->contacts_per_sample) {
-      stored.back() = merged(stored.back(), contact);
-      continue;
-    }
-    if (stored.size() >= options_.most_samples_per_patch) {
+    const bool detailed = !details.empty() && says_more(details[i]);
+    result.detailed += detailed ? 1 : 0;
+    const bool fills_up = !stored.empty() && stored.back().weight < place->contacts_per_sample;
+    if (!fills_up && stored.size() >= options_.most_samples_per_patch) {
       merge_pairs(&*place);
     }
-    stored.push_back(contact);
+    stored.push_back({sample.position_m, sample.sigma_m, 1.0});
+    if (detailed || !place->details.empty()) {
+      place->details.resize(stored.size());
+      if (detailed) place->details.back() = details[i];
+    }
+    if (fills_up) {
+      merge_into(&*place, stored.size() - 2, stored.size() - 2);
+      stored.pop_back();
+      if (!place->details.empty()) place->details.pop_back();
+      continue;
+    }
     if (stored.size() <= 2) {
       const bool lone = stored.size() == 1;
       result.forgotten +=
@@ -130,6 +201,21 @@ std::size_t SampleMemory::stored_count() const {
     count += patch.samples.size();
   }
   return count;
+}
+
+ContactRun as_contacts(const StoredPatch& patch) {
+  ContactRun run;
+  run.context = patch.context;
+  run.details = patch.details;
+  run.samples.reserve(patch.samples.size());
+  for (std::size_t i = 0; i < patch.samples.size(); ++i) {
+    const StoredSample& stored = patch.samples[i];
+    ContactSample& sample = run.samples.emplace_back();
+    sample.position_m = stored.position_m;
+    sample.sigma_m = stored.sigma_m / std::sqrt(stored.weight);
+    if (!run.details.empty()) run.details[i].covariance_m2 /= stored.weight;
+  }
+  return run;
 }
 
 }  // namespace palpate

@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "core/recognition/samples/contact_run.h"
 #include "core/recognition/samples/contact_sample.h"
+#include "core/recognition/samples/sample_detail.h"
 
 namespace palpate {
 
@@ -20,8 +22,11 @@ struct StoredSample {
 struct StoredPatch {
   PatchContext context;
   std::vector<StoredSample> samples;  ///< in their order along the arc
-  double contacts_per_sample = 1.0;   ///< that each stored sample is the mean of
-  Vec2 newest_m = Vec2::Zero();       ///< last contact taken
+  /// Of the samples; empty where none of them says more. Of a mean of several the covariance is
+  /// that of ONE of them, the normal and its deviation those of their mean.
+  std::vector<SampleDetail> details = {};
+  double contacts_per_sample = 1.0;  ///< that each stored sample is the mean of
+  Vec2 newest_m = Vec2::Zero();      ///< last contact taken
   /// How far a mean of contacts over an arc w lies off the curve: kappa w^2 / 24, the largest [m]
   double merge_bias_m = 0.0;
   /// Touches strung into a run (touches/strung_touches.h): it changes anywhere, not only at its
@@ -54,6 +59,9 @@ struct MemoryOptions {
   std::size_t most_patches = 64;
   /// Likewise of touches alone in their patch: together as much as one patch holds.
   std::size_t most_lone_touches = 1024;
+  /// Whether a sample at exactly the place of the one before is taken, as one of its own. It says
+  /// nothing new of the path, but counts where distances are summed.
+  bool takes_repeated = false;
 };
 
 /// Samples taken and samples refused, by reason.
@@ -61,13 +69,17 @@ struct AddResult {
   std::size_t accepted = 0;
   std::size_t rejected_not_finite = 0;
   std::size_t rejected_negative_sigma = 0;
-  std::size_t forgotten = 0;  ///< contacts taken before, of patches that had to make room
-  std::size_t repeated = 0;   ///< at exactly the place of the sample before: they say nothing new
+  std::size_t rejected_detail = 0;  ///< no sound normal or covariance (is_sound)
+  std::size_t detailed = 0;         ///< of those accepted: with a normal or a covariance
+  std::size_t forgotten = 0;        ///< contacts taken before, of patches that had to make room
+  std::size_t repeated = 0;  ///< at exactly the place of the sample before: they say nothing new
 
   AddResult& operator+=(const AddResult& other) {
     accepted += other.accepted;
     rejected_not_finite += other.rejected_not_finite;
     rejected_negative_sigma += other.rejected_negative_sigma;
+    rejected_detail += other.rejected_detail;
+    detailed += other.detailed;
     forgotten += other.forgotten;
     repeated += other.repeated;
     return *this;
@@ -78,9 +90,10 @@ class SampleMemory {
  public:
   explicit SampleMemory(const MemoryOptions& options = {}) : options_(options) {}
 
-  /// Appends to the patch of that probe and number, or begins it. Amortised
-  /// O(samples + patches).
-  AddResult add(const PatchContext& context, std::span<const ContactSample> samples);
+  /// Appends to the patch of that probe and number, or begins it. `details`: of the samples, or
+  /// none. Amortised O(samples + patches).
+  AddResult add(const PatchContext& context, std::span<const ContactSample> samples,
+                std::span<const SampleDetail> details = {});
 
   void clear() { patches_.clear(); }
 
@@ -103,5 +116,9 @@ class SampleMemory {
   MemoryOptions options_;
   std::vector<StoredPatch> patches_;
 };
+
+/// The samples of a patch as if each were one contact: a mean of several as one of so much less
+/// noise.
+ContactRun as_contacts(const StoredPatch& patch);
 
 }  // namespace palpate

@@ -30,4 +30,18 @@ std::vector<StoredSample> without_spikes(std::span<const StoredSample> samples,
   return kept;
 }
 
+StoredPatch without_spikes(const StoredPatch& patch, const std::vector<bool>& is_spike) {
+  StoredPatch kept = patch;
+  kept.samples = without_spikes(patch.samples, is_spike);
+  if (!patch.details.empty()) {
+    kept.details.clear();
+    for (std::size_t i = 0; i < patch.details.size(); ++i) {
+      if (!is_spike[i]) {
+        kept.details.push_back(patch.details[i]);
+      }
+    }
+  }
+  return kept;
+}
+
 }  // namespace palpate

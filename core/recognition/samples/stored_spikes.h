@@ -17,4 +17,7 @@ std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_
 std::vector<StoredSample> without_spikes(std::span<const StoredSample> samples,
                                          const std::vector<bool>& is_spike);
 
+/// The patch with these samples alone, and what is known of them.
+StoredPatch without_spikes(const StoredPatch& patch, const std::vector<bool>& is_spike);
+
 }  // namespace palpate

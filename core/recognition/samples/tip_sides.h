@@ -23,7 +23,8 @@ std::optional<double> certain_turn(std::span<const FitPoint> patch);
 std::vector<double> turns_of(const FitData& reduced);
 
 /// The ways in which the material may lie beside the patches: +1 where a tip centre lies to the
-/// left of travel, -1 to the right, per patch. One way where the probes say it; otherwise the part
+/// left of travel, -1 to the right, per patch. One way where measured normals show it beyond doubt
+/// (they know better than what is stated) or the probes say it; otherwise the part
 /// is taken to be convex everywhere or concave everywhere, or on the same side of every patch's
 /// travel. Surface contacts (no tip radius) have the single way of zeros.
 /// `bends`: the side to which each patch bends, > 0 for left. A touch alone in its patch has no

@@ -175,8 +175,14 @@ StoredPatch strung(std::span<const StoredPatch> patches, std::span<const Place> 
   StoredPatch run;
   run.context = patches[places.front().patch].context;
   run.context.material_side = MaterialSide::Unspecified;
+  bool detailed = false;
   for (const Place& place : places) {
     run.samples.push_back(patches[place.patch].samples.front());
+    detailed = detailed || !patches[place.patch].details.empty();
+  }
+  for (std::size_t i = 0; detailed && i < places.size(); ++i) {
+    const std::vector<SampleDetail>& of_touch = patches[places[i].patch].details;
+    run.details.push_back(of_touch.empty() ? SampleDetail{} : of_touch.front());
   }
   run.newest_m = run.samples.back().position_m;
   run.strung = true;

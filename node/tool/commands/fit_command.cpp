@@ -18,10 +18,11 @@
 #include "node/tool/drawing/curve_export.h"
 #include "node/tool/drawing/invariant_plot.h"
 #include "node/tool/drawing/svg_plot.h"
-#include "node/tool/given_class_answer.h"
 #include "node/tool/part_match.h"
+#include "node/tool/text/given_class_text.h"
 #include "node/tool/text/message_json.h"
 #include "node/tool/text/report.h"
+#include "node/wire/given_class_answer.h"
 #include "node/wire/recognizer_options.h"
 
 namespace palpate {
@@ -82,8 +83,9 @@ v1::GivenClassAnswer fit_given(const ContactGroup& group, const FitCommand& fit,
   std::vector<std::string> files;
   const std::vector<const ProbeCharacter*> characters = characters_of(group, probes, files, notes);
   const auto start = std::chrono::steady_clock::now();
-  v1::GivenClassAnswer answer = given_class_answer(*curve_class_from_name(fit.given_class), group,
-                                                   characters, fit.left_out, fit.recognizer);
+  v1::GivenClassAnswer answer =
+      given_class_answer(*curve_class_from_name(fit.given_class), group.runs, characters,
+                         fit.left_out, fit.recognizer);
   if (answer.recognition().has_parameters()) {
     answer.mutable_recognition()->mutable_probe_files()->Assign(files.begin(), files.end());
   } else if (!files.empty()) {
@@ -139,7 +141,8 @@ int place(const FitCommand& fit, const std::vector<FitInput>& inputs, bool json)
   for (const FitInput& input : inputs) {
     const ContactGroup& group = input.group;
     for (const std::string& note : input.notes) complain(group.file + ": " + note, kDone);
-    if (const std::string note = note_of_unused_detail(group); !note.empty()) {
+    if (const std::string note = note_of_unused_detail(group, DetailUse::PositionsOnly);
+        !note.empty()) {
       complain(group.file + ": " + note, kDone);
     }
     const v1::PartMatch match = match_part(group, *part.value, options);

@@ -94,12 +94,14 @@ Answered recognise(const FitInput& input, const RecognizerOptions& options,
     const std::vector<const ProbeCharacter*> characters =
         characters_of(group, probes, probe_files, probe_notes);
     SampleMemory memory(options.memory);
-    for (const ContactRun& run : group.runs) added += memory.add(run.context, run.samples);
+    for (const ContactRun& run : group.runs)
+      added += memory.add(run.context, run.samples, run.details);
     const auto start = std::chrono::steady_clock::now();
     ProbedRecognition result = recognise_probed(memory, characters, options);
     taken = std::chrono::steady_clock::now() - start;
     answer.recognition = std::move(result.recognition);
     answer.recognition.forgotten_count = added.forgotten;
+    answer.recognition.simplified_count = added.detailed;
     if (!result.corrected && !probe_files.empty()) {
       probe_files.clear();
       probe_notes.push_back(

@@ -19,6 +19,7 @@
 #include "node/tool/contact_groups.h"
 #include "node/tool/recording.h"
 #include "node/tool/text/progress.h"
+#include "node/wire/convert.h"
 #include "node/wire/topics.h"
 
 namespace palpate {
@@ -137,9 +138,6 @@ Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
   std::vector<TimedMessage> messages;
   std::map<std::string, std::int64_t> taken;  // samples, by probe
   for (const ContactGroup& group : contact_groups(command.file, *table)) {
-    if (const std::string note = note_of_unused_detail(group); !note.empty()) {
-      complain(command.file + ": " + note, kDone);
-    }
     for (const ContactRun& run : group.runs) {
       const std::string& probe = group.probes[run.context.probe];
       for (std::size_t i = 0; i < run.samples.size(); ++i) {
@@ -157,6 +155,7 @@ Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
         to.set_x_m(from.position_m.x());
         to.set_y_m(from.position_m.y());
         to.set_sigma_m(from.sigma_m > 0.0 ? from.sigma_m : command.sigma_m);
+        if (!run.details.empty()) to_wire(run.details[i], to);
         to.set_stamp_ns(stamped ? from.stamp_ns
                                 : std::llround(period_ns * static_cast<double>(++taken[probe])));
         messages.back().due_ns = to.stamp_ns();

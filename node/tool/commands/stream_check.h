@@ -33,6 +33,8 @@ struct CheckedPatch {
   std::vector<Vec2> positions;
   double sigma_squares = 0.0;
   std::size_t with_sigma = 0;
+  MaterialSide material_side = MaterialSide::Unspecified;
+  std::vector<Vec2> normals = {};  ///< by position, zero where none; empty where there are none
 };
 
 /// Where patches came from: the cures differ.

@@ -1,9 +1,10 @@
+#include "node/tool/text/given_class_text.h"
+
 #include <cmath>
 #include <string>
 #include <string_view>
 
 #include "core/curves/pose2.h"
-#include "node/tool/given_class_answer.h"
 #include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
 

@@ -275,6 +275,10 @@ std::string report_text(const v1::Recognition& answer, bool noise_is_known) {
   if (answer.forgotten_count() > 0) {
     samples += "; " + std::to_string(answer.forgotten_count()) + " older ones forgotten";
   }
+  if (answer.simplified_count() > 0) {
+    samples += "; " + std::to_string(answer.simplified_count()) +
+               " said more (normal, covariance) than a search uses";
+  }
   add_line(text, "samples", samples);
   for (const std::string& file : answer.probe_files())
     add_line(text, "probe file", printable(file));

@@ -174,5 +174,18 @@ TEST(Config, ClassesAreChosenByName) {
                 (1U << static_cast<unsigned>(CurveClass::CubicSpline)));
 }
 
+TEST(Config, AClassIsGivenByName) {
+  v1::NodeConfig config;
+  EXPECT_FALSE(make_options(config).value->intake.group.given_class);
+  config.set_given_class("circle");
+  const Result<NodeOptions> options = make_options(config);
+  ASSERT_TRUE(options) << options.error;
+  EXPECT_EQ(options.value->intake.group.given_class, CurveClass::Circle);
+  for (const char* none : {"square", "unclassified"}) {
+    config.set_given_class(none);
+    EXPECT_THAT(make_options(config).error, HasSubstr("given_class"));
+  }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contact_messages.h"
+#include "node/wire/convert.h"
 
 namespace palpate {
 namespace {
@@ -97,6 +98,49 @@ TEST(Ingest, FramesTopicAndBytes) {
             v1::REJECT_REASON_TOO_LARGE);
 }
 
+void set_normal(v1::ContactBatch& batch, double x, double y, double sigma) {
+  v1::ContactSample& sample = *batch.mutable_samples(3);
+  sample.set_normal_x(x);
+  sample.set_normal_y(y);
+  sample.set_normal_sigma_rad(sigma);
+}
+
+void set_covariance(v1::ContactBatch& batch, double xx, double xy, double yy) {
+  v1::ContactSample& sample = *batch.mutable_samples(3);
+  sample.set_cov_xx_m2(xx);
+  sample.set_cov_xy_m2(xy);
+  sample.set_cov_yy_m2(yy);
+}
+
+TEST(Ingest, NormalsAndCovariancesPass) {
+  v1::ContactBatch batch = line_batch("p", 0, 0);
+  set_normal(batch, -0.6, 0.8, 0.02);
+  set_covariance(batch, 3e-8, -1e-8, 1e-8);
+  ContactDecoder decoder;
+  ASSERT_EQ(decoder.decode(2, contact_topic("p"), batch.SerializeAsString()),
+            v1::REJECT_REASON_UNSPECIFIED);
+  ASSERT_EQ(decoder.message().details.size(), 10U);
+  const SampleDetail& detail = decoder.message().details[3];
+  EXPECT_EQ(detail.normal, Vec2(-0.6, 0.8));
+  EXPECT_EQ(detail.normal_sigma_rad, 0.02);
+  EXPECT_EQ(detail.covariance_m2, Eigen::Vector3d(3e-8, -1e-8, 1e-8));
+  EXPECT_DOUBLE_EQ(decoder.message().samples[3].sigma_m, std::sqrt(2e-8));
+  EXPECT_FALSE(says_more(decoder.message().details[2]));
+  EXPECT_EQ(decoder.message().samples[2].sigma_m, 1e-5);
+  // What it says goes out as it came in.
+  v1::ContactSample again;
+  to_wire(detail, again);
+  EXPECT_EQ(again.normal_y(), 0.8);
+  EXPECT_EQ(again.cov_xy_m2(), -1e-8);
+  again.Clear();
+  to_wire(SampleDetail{}, again);
+  EXPECT_EQ(again.ByteSizeLong(), 0U);
+  // The next message has none, and none is kept.
+  ASSERT_EQ(decoder.decode(2, contact_topic("p"), line_batch("p", 0, 1).SerializeAsString()),
+            v1::REJECT_REASON_UNSPECIFIED);
+  EXPECT_TRUE(decoder.message().details.empty());
+}
+
 TEST(Ingest, EachReasonOfContent) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -118,6 +162,25 @@ TEST(Ingest, EachReasonOfContent) {
       {v1::REJECT_REASON_SIGMA, [](auto& b) { b.mutable_samples(0)->set_sigma_m(-1e-6); }},
       {v1::REJECT_REASON_SIGMA, [](auto& b) { b.mutable_samples(0)->set_sigma_m(1e4); }},
       {v1::REJECT_REASON_SIGMA, [](auto& b) { b.mutable_samples(0)->set_sigma_m(5e-324); }},
+      {v1::REJECT_REASON_NOT_FINITE, [](auto& b) { set_normal(b, kNan, 0.0, 0.1); }},
+      {v1::REJECT_REASON_NOT_FINITE, [](auto& b) { set_normal(b, 1.0, 0.0, kInfinity); }},
+      {v1::REJECT_REASON_NOT_FINITE, [](auto& b) { set_covariance(b, 1e-8, kNan, 1e-8); }},
+      {v1::REJECT_REASON_NORMAL, [](auto& b) { set_normal(b, 1.0, 0.0, 0.0); }},
+      {v1::REJECT_REASON_NORMAL, [](auto& b) { set_normal(b, 1.0, 0.0, -0.1); }},
+      {v1::REJECT_REASON_NORMAL, [](auto& b) { set_normal(b, 1.0, 0.0, 3.2); }},
+      {v1::REJECT_REASON_NORMAL, [](auto& b) { set_normal(b, 0.7, 0.7, 0.1); }},
+      {v1::REJECT_REASON_NORMAL, [](auto& b) { set_normal(b, 0.0, 0.0, 0.1); }},
+      {v1::REJECT_REASON_NORMAL, [](auto& b) { set_normal(b, 0.0, 0.0, 0.0); }},
+      {v1::REJECT_REASON_NORMAL, [](auto& b) { b.mutable_samples(3)->set_normal_x(1.0); }},
+      {v1::REJECT_REASON_NORMAL, [](auto& b) { b.mutable_samples(3)->set_normal_sigma_rad(0.1); }},
+      {v1::REJECT_REASON_COVARIANCE, [](auto& b) { set_covariance(b, 1e-8, 2e-8, 1e-8); }},
+      {v1::REJECT_REASON_COVARIANCE, [](auto& b) { set_covariance(b, 1e-8, 1e-8, 1e-8); }},
+      {v1::REJECT_REASON_COVARIANCE, [](auto& b) { set_covariance(b, 0.0, 0.0, 0.0); }},
+      {v1::REJECT_REASON_COVARIANCE, [](auto& b) { set_covariance(b, 0.0, 0.0, 1e-8); }},
+      {v1::REJECT_REASON_COVARIANCE, [](auto& b) { set_covariance(b, -1e-8, 0.0, 1e-8); }},
+      {v1::REJECT_REASON_COVARIANCE, [](auto& b) { set_covariance(b, 1e8, 0.0, 1e-8); }},
+      {v1::REJECT_REASON_COVARIANCE, [](auto& b) { set_covariance(b, 1e-8, 0.0, 1e-40); }},
+      {v1::REJECT_REASON_COVARIANCE, [](auto& b) { b.mutable_samples(3)->set_cov_xx_m2(1e-8); }},
       {v1::REJECT_REASON_TIP_RADIUS, [](auto& b) { b.set_tip_radius_m(-1e-3); }},
       {v1::REJECT_REASON_TIP_RADIUS, [](auto& b) { b.set_tip_radius_m(1e4); }},
       {v1::REJECT_REASON_MATERIAL_SIDE,

@@ -101,5 +101,114 @@ TEST(SampleMemory, LongPatchesAreMergedWithoutLosingContactsAndWithTheBiasStated
   EXPECT_LE(farthest, 1.5 * patch.merge_bias_m);
 }
 
+SampleDetail normal_to(double angle, double sigma_rad) {
+  SampleDetail detail;
+  detail.normal = {std::cos(angle), std::sin(angle)};
+  detail.normal_sigma_rad = sigma_rad;
+  return detail;
+}
+
+SampleDetail noise_of(double xx, double xy, double yy) {
+  SampleDetail detail;
+  detail.covariance_m2 = {xx, xy, yy};
+  return detail;
+}
+
+TEST(SampleMemory, DetailsStayWithTheirSamples) {
+  SampleMemory memory;
+  const std::vector<ContactSample> samples = {at(0.0), at(0.0), at(1.0), at(2.0)};
+  const std::vector<SampleDetail> details = {{}, normal_to(0.1, 0.01), {}, noise_of(2.0, 0.5, 1.0)};
+  const AddResult result = memory.add({}, samples, details);
+  EXPECT_EQ(result.repeated, 1U);
+  EXPECT_EQ(result.detailed, 1U);
+  const std::vector<ContactSample> more = {at(3.0)};
+  EXPECT_EQ(memory.add({}, more).detailed, 0U);
+  const StoredPatch& patch = memory.patches().front();
+  ASSERT_EQ(patch.details.size(), 4U);
+  EXPECT_FALSE(says_more(patch.details[1]));
+  EXPECT_EQ(patch.details[2].covariance_m2, Eigen::Vector3d(2.0, 0.5, 1.0));
+  EXPECT_FALSE(says_more(patch.details[3]));
+  PatchContext other;
+  other.patch = 1;
+  memory.add(other, samples);
+  EXPECT_TRUE(memory.patches().back().details.empty());
+}
+
+TEST(SampleMemory, RefusesDetailsThatCannotBe) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  SampleDetail bare;
+  bare.normal_sigma_rad = 0.1;  // of no normal
+  SampleDetail without_sigma = normal_to(0.0, 0.0);
+  SampleDetail short_one = normal_to(0.0, 0.1);
+  short_one.normal *= 0.5;
+  const std::vector<SampleDetail> bad = {bare,
+                                         without_sigma,
+                                         short_one,
+                                         normal_to(nan, 0.1),
+                                         normal_to(0.0, nan),
+                                         normal_to(0.0, -0.1),
+                                         noise_of(1.0, 1.0, 1.0),
+                                         noise_of(-1.0, 0.0, 1.0),
+                                         noise_of(1.0, nan, 1.0),
+                                         noise_of(0.0, 0.0, 1.0)};
+  SampleMemory memory;
+  for (const SampleDetail& detail : bad) {
+    const std::vector<ContactSample> sample = {at(0.0)};
+    const AddResult result = memory.add({}, sample, std::vector{detail});
+    EXPECT_EQ(result.rejected_detail, 1U);
+    EXPECT_EQ(result.accepted, 0U);
+  }
+}
+
+TEST(SampleMemory, MeansOfNeighboursHaveTheMeanOfWhatIsKnownOfThem) {
+  MemoryOptions options;
+  options.most_samples_per_patch = 8;
+  SampleMemory memory(options);
+  std::vector<ContactSample> samples;
+  std::vector<SampleDetail> details;
+  for (int i = 0; i < 32; ++i) {
+    samples.push_back(at(i));
+    SampleDetail detail = normal_to(i % 2 == 0 ? 0.1 : 0.3, 0.02);
+    detail.covariance_m2 = i % 2 == 0 ? Eigen::Vector3d(3.0, 0.5, 1.0) : Eigen::Vector3d(1, 0.1, 2);
+    samples.back().sigma_m = mean_sigma_m(detail.covariance_m2);
+    details.push_back(detail);
+  }
+  memory.add({}, samples, details);
+  const StoredPatch& patch = memory.patches().front();
+  ASSERT_EQ(patch.details.size(), patch.samples.size());
+  const ContactRun run = as_contacts(patch);
+  double contacts = 0.0;
+  for (std::size_t i = 0; i < patch.samples.size(); ++i) {
+    const double weight = patch.samples[i].weight;
+    contacts += weight;
+    ASSERT_GE(weight, 2.0);
+    const SampleDetail& mean = patch.details[i];
+    // A mean of unit vectors is that of their angles but for the third power of what they are off.
+    EXPECT_NEAR(std::atan2(mean.normal.y(), mean.normal.x()), 0.2, 0.1 * 0.1 * 0.1 / 6.0);
+    EXPECT_NEAR(mean.normal_sigma_rad, 0.02 / std::sqrt(weight), 1e-15);
+    EXPECT_LT((mean.covariance_m2 - Eigen::Vector3d(2.0, 0.3, 1.5)).norm(), 1e-12);
+    EXPECT_LT((run.details[i].covariance_m2 - Eigen::Vector3d(2.0, 0.3, 1.5) / weight).norm(),
+              1e-12);
+    EXPECT_NEAR(run.samples[i].sigma_m, std::sqrt(1.75 / weight), 1e-12);
+  }
+  EXPECT_EQ(contacts, 32.0);
+}
+
+TEST(SampleMemory, ANormalOfOneOfTwoIsNoneOfTheirMean) {
+  MemoryOptions options;
+  options.most_samples_per_patch = 8;
+  SampleMemory memory(options);
+  std::vector<ContactSample> samples;
+  std::vector<SampleDetail> details;
+  for (int i = 0; i < 16; ++i) {
+    samples.push_back(at(i));
+    details.push_back(i % 2 == 0 ? normal_to(0.1, 0.02) : SampleDetail{});
+  }
+  memory.add({}, samples, details);
+  for (const SampleDetail& detail : memory.patches().front().details) {
+    EXPECT_FALSE(says_more(detail));
+  }
+}
+
 }  // namespace
 }  // namespace palpate

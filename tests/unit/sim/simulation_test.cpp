@@ -77,6 +77,61 @@ TEST(Simulation, NoiseHasTheStandardDeviationAsked) {
   EXPECT_EQ(samples.front().sigma_m, kSigma);
 }
 
+TEST(Simulation, NormalsGoOutWithTheDeviationAskedAndChangeNothingElse) {
+  const std::string patch = "start_t: 0 arc_m: 0.1 spacing_m: 1e-5";
+  const auto plain = sim::simulate_contacts(scene_of(probe("sigma_m: 1e-5", patch)), 0);
+  const auto told =
+      sim::simulate_contacts(scene_of(probe("sigma_m: 1e-5 normal_sigma_rad: 0.02", patch)), 0);
+  double squares = 0.0;
+  const auto& samples = told[0].patches[0].samples;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    EXPECT_EQ(samples[i].position_m, plain[0].patches[0].samples[i].position_m);
+    EXPECT_FALSE(says_more(plain[0].patches[0].samples[i].detail));
+    EXPECT_TRUE(is_sound(samples[i].detail));
+    EXPECT_EQ(samples[i].detail.normal_sigma_rad, 0.02);
+    const Vec2 normal = samples[i].detail.normal;
+    const Vec2 outward(std::cos(samples[i].t), std::sin(samples[i].t));
+    const double off = std::atan2(cross(outward, normal), outward.dot(normal));
+    squares += off * off;
+  }
+  const double n = static_cast<double>(samples.size());
+  EXPECT_NEAR(squares / (n * 0.02 * 0.02), 1.0, 4.0 * std::sqrt(2.0 / n));
+}
+
+TEST(Simulation, NoiseHasTheCovarianceAsked) {
+  const Eigen::Vector3d asked(9e-10, -4e-10, 4e-10);
+  const auto probes =
+      sim::simulate_contacts(scene_of(probe("cov_xx_m2: 9e-10 cov_xy_m2: -4e-10 cov_yy_m2: 4e-10",
+                                            "start_t: 0 arc_m: 0.1 spacing_m: 1e-5")),
+                             0);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const auto& samples = probes[0].patches[0].samples;
+  for (const auto& sample : samples) {
+    const Vec2 on_curve = Vec2(0.1, 0.2) + 0.02 * Vec2(std::cos(sample.t), std::sin(sample.t));
+    const Vec2 off = sample.position_m - on_curve;
+    sum += Eigen::Vector3d(off.x() * off.x(), off.x() * off.y(), off.y() * off.y());
+    EXPECT_EQ(sample.detail.covariance_m2, asked);
+    EXPECT_EQ(sample.sigma_m, mean_sigma_m(asked));
+  }
+  const double n = static_cast<double>(samples.size());
+  // Standard deviation of a mean product: sqrt((xx yy + xy^2) / n); four of them.
+  EXPECT_NEAR(sum[0] / n, asked[0], 4.0 * asked[0] * std::sqrt(2.0 / n));
+  EXPECT_NEAR(sum[1] / n, asked[1], 4.0 * std::sqrt((36e-20 + 16e-20) / n));
+  EXPECT_NEAR(sum[2] / n, asked[2], 4.0 * asked[2] * std::sqrt(2.0 / n));
+}
+
+TEST(Simulation, ACovarianceThatIsNoneIsNamed) {
+  for (const char* noise :
+       {"cov_xx_m2: 1e-10", "cov_xx_m2: 1e-10 cov_xy_m2: 2e-10 cov_yy_m2: 1e-10",
+        "sigma_m: 1e-5 cov_xx_m2: 1e-10 cov_yy_m2: 1e-10", "normal_sigma_rad: -0.1",
+        "normal_sigma_rad: 4"}) {
+    const auto scene =
+        sim::parse_scene(probe(noise, "start_t: 0 arc_m: 0.1 spacing_m: 1e-3"), "scene.textproto");
+    EXPECT_FALSE(scene.value.has_value()) << noise;
+    EXPECT_THAT(scene.error, HasSubstr("scene.textproto:4: noise."));
+  }
+}
+
 TEST(Simulation, SpikesAndDropoutsComeAtTheirRates) {
   const sim::Scene scene =
       scene_of(probe("sigma_m: 1e-7 spike_probability: 0.1 spike_m: 0.001 dropout_probability: 0.2 "

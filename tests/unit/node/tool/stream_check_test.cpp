@@ -80,6 +80,33 @@ TEST(StreamCheck, AGoodStreamHasNotesOnly) {
   }
 }
 
+/// Normals of the circle, turned by so much.
+std::function<void(std::size_t, v1::ContactBatch&)> with_normals(double turned) {
+  return [turned](std::size_t number, v1::ContactBatch& batch) {
+    for (int i = 0; i < batch.samples_size(); ++i) {
+      const double t = 0.01 * (10.0 * static_cast<double>(number) + i) + turned;
+      batch.mutable_samples(i)->set_normal_x(std::cos(t));
+      batch.mutable_samples(i)->set_normal_y(std::sin(t));
+      batch.mutable_samples(i)->set_normal_sigma_rad(0.01);
+    }
+    batch.set_material_side(v1::MATERIAL_SIDE_LEFT);
+  };
+}
+
+TEST(StreamCheck, NormalsAreSeenBesideTheTravel) {
+  EXPECT_TRUE(has(findings_of(with_normals(0.0)), Severity::Note, "200 measured normals"));
+  EXPECT_TRUE(has(findings_of(with_normals(0.5 * kPi)), Severity::Error, "along the travel"));
+  EXPECT_TRUE(has(findings_of(with_normals(kPi)), Severity::Error, "material_side"));
+  EXPECT_TRUE(has(findings_of([](std::size_t, v1::ContactBatch& batch) {
+                    batch.mutable_samples(0)->set_normal_x(2.0);
+                  }),
+                  Severity::Error, "REJECT_REASON_NORMAL"));
+  EXPECT_TRUE(has(findings_of([](std::size_t, v1::ContactBatch& batch) {
+                    batch.mutable_samples(0)->set_cov_xx_m2(-1.0);
+                  }),
+                  Severity::Error, "REJECT_REASON_COVARIANCE"));
+}
+
 TEST(StreamCheck, MillimetresAreSuspected) {
   const auto findings = findings_of([](std::size_t, v1::ContactBatch& batch) {
     for (v1::ContactSample& sample : *batch.mutable_samples()) {

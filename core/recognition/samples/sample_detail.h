@@ -1,4 +1,4 @@
-// What a file may say of a sample beside its position and a noise of one size.
+// What a probe may say of a sample beside its position and a noise of one size.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,6 +39,15 @@ inline Vec2 as_unit(const Vec2& normal) {
 inline bool is_covariance(const Eigen::Vector3d& c) {
   constexpr double kRounding = 1e-12;  // of a product, and some digits
   return c.x() > 0.0 && c.z() > 0.0 && c.x() * c.z() - c.y() * c.y() > kRounding * c.x() * c.z();
+}
+
+/// Whether all of it can be used: each part as described above, or absent.
+inline bool is_sound(const SampleDetail& detail) {
+  const bool no_normal = detail.normal.isZero(0.0) && detail.normal_sigma_rad == 0.0;
+  const bool normal = is_unit(detail.normal) && detail.normal_sigma_rad > 0.0 &&
+                      std::isfinite(detail.normal_sigma_rad);
+  const bool covariance = detail.covariance_m2.allFinite() && is_covariance(detail.covariance_m2);
+  return (no_normal || normal) && (detail.covariance_m2.isZero(0.0) || covariance);
 }
 
 /// For whoever knows noise of one size only. [m]

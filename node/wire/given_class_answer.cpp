@@ -1,4 +1,4 @@
-#include "node/tool/given_class_answer.h"
+#include "node/wire/given_class_answer.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -41,13 +41,12 @@ Vec2 into_material(const ProbedPatch& run, std::size_t i) {
   return run.context.material_side == MaterialSide::Left ? left_of(travel) : -left_of(travel);
 }
 
-/// `runs`: those of the group, corrected.
-std::vector<GivenPoint> points_of(const ContactGroup& group, std::span<const ProbedPatch> runs,
+/// `runs`: corrected.
+std::vector<GivenPoint> points_of(std::span<const ProbedPatch> runs,
                                   std::span<const std::size_t> left_out) {
   std::vector<GivenPoint> points;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    const ProbedPatch& run = runs[r];
-    const std::vector<SampleDetail>& details = group.runs[r].details;
+  for (const ProbedPatch& run : runs) {
+    const std::vector<SampleDetail>& details = run.details;
     for (std::size_t i = 0; i < run.samples.size(); ++i) {
       GivenPoint point;
       point.position_m = run.samples[i].position_m;
@@ -80,13 +79,13 @@ struct PointsFitted {
   GivenFit fit;
 };
 
-PointsFitted fit_runs(CurveClass curve_class, const ContactGroup& group,
+PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
                       std::span<const ProbeCharacter* const> probes,
                       std::span<const std::size_t> left_out, double sigma_m) {
   std::vector<ProbedPatch> raw;
-  for (const ContactRun& run : group.runs) {
+  for (const ContactRun& run : runs) {
     const ProbeCharacter* probe = probes.empty() ? nullptr : probes[run.context.probe];
-    raw.push_back(as_qualified({run.context, run.samples, probe}));
+    raw.push_back(as_qualified({run.context, run.samples, probe, run.details}));
   }
   const bool probed = std::any_of(raw.begin(), raw.end(),
                                   [](const ProbedPatch& run) { return run.probe != nullptr; });
@@ -94,7 +93,7 @@ PointsFitted fit_runs(CurveClass curve_class, const ContactGroup& group,
   PointsFitted fitted;
   constexpr int kRounds = 2;  // as of recognise_probed
   for (int round = 0;; ++round) {
-    fitted.points = points_of(group, corrected, left_out);
+    fitted.points = points_of(corrected, left_out);
     fitted.fit = fit_given_class(curve_class, fitted.points, {sigma_m});
     if (!probed || !is_told(fitted.fit)) {
       return fitted;
@@ -125,11 +124,11 @@ double half_extent_m(std::span<const GivenPoint> points) {
 
 }  // namespace
 
-v1::GivenClassAnswer given_class_answer(CurveClass curve_class, const ContactGroup& group,
+v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const ContactRun> runs,
                                         std::span<const ProbeCharacter* const> probes,
                                         std::span<const std::size_t> left_out,
                                         const RecognizerOptions& options) {
-  const auto [points, fit] = fit_runs(curve_class, group, probes, left_out, options.sigma_m);
+  const auto [points, fit] = fit_runs(curve_class, runs, probes, left_out, options.sigma_m);
   const bool fitted = fit.status == GivenStatus::Fitted;
   const bool told = is_told(fit);
   v1::GivenClassAnswer given;

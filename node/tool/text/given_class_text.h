@@ -1,0 +1,13 @@
+// A fit of a given class for a person to read.
+#pragma once
+
+#include <string>
+
+#include "palpate/v1/given_class.pb.h"
+
+namespace palpate {
+
+/// Several lines, each ended.
+std::string given_class_text(const v1::GivenClassAnswer& answer);
+
+}  // namespace palpate
