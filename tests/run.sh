@@ -97,8 +97,8 @@ if [ "$sanitize" = yes ]; then
   build asan tests_core tests_recognition
   begin_part "testing (address and undefined behaviour)" 420
   # The processes' own tests measure time; their twin in one process is among the others. The statistics were
-  # taken above: here a tenth of their scenes runs the same code.
-  PALPATE_TEST_STRESS=0.1 \
+  # taken above: here a thirtieth of their scenes runs the same code.
+  PALPATE_TEST_STRESS=0.03 \
     ctest --test-dir build/asan --output-on-failure -j "$jobs" -L 'core|recognition'
   begin_part "building (thread)" 300
   build tsan twin_test
@@ -114,13 +114,20 @@ if [ "$fuzz" != 0 ]; then
   if [ "$fuzz" -ge 120 ]; then targets+=(recognizer); fi
   begin_part "building (fuzz)" 300
   build fuzz "${targets[@]/#/fuzz_}"
-  begin_part "fuzzing" $((${#targets[@]} * (fuzz + 5)))
-  for target in "${targets[@]}"; do
-    step "fuzzing $target for $fuzz s"
-    mkdir -p "build/fuzz/corpus/$target"
-    "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="$fuzz" -max_len=4096 -print_final_stats=1 \
-      -artifact_prefix="build/fuzz/$target-" "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target"
-  done
+  begin_part "fuzzing" $(((${#targets[@]} + jobs - 1) / jobs * (fuzz + 10)))
+  fuzz_one() {  # target, seconds
+    mkdir -p "build/fuzz/corpus/$1"
+    if "build/fuzz/tests/fuzz/fuzz_$1" -max_total_time="$2" -max_len=4096 -print_final_stats=1 \
+      -artifact_prefix="build/fuzz/$1-" "build/fuzz/corpus/$1" "tests/fuzz/corpus/$1" >"build/fuzz/$1.log" 2>&1; then
+      printf 'fuzz_%s: %s\n' "$1" "$(grep 'number_of_executed_units' "build/fuzz/$1.log")"
+    else
+      tail -n 100 "build/fuzz/$1.log" >&2
+      printf 'tests/run.sh: fuzz_%s found something: build/fuzz/%s.log\n' "$1" "$1" >&2
+      return 1
+    fi
+  }
+  export -f fuzz_one
+  printf '%s\n' "${targets[@]}" | xargs -P "$jobs" -I {} bash -c "fuzz_one {} $fuzz"
 fi
 end_part
 step "all tests passed"

@@ -8,7 +8,7 @@
 
 namespace palpate::paper {
 
-std::vector<DefaultRecovery> default_table3() {
+std::vector<DefaultRecovery> default_table3(double share) {
   struct Class {
     CurveClass curve_class;
     int curves;  // as many as the paper's
@@ -22,9 +22,10 @@ std::vector<DefaultRecovery> default_table3() {
   std::mt19937_64 rng(3);
   std::vector<DefaultRecovery> table;
   for (const Class& row : kClasses) {
-    DefaultRecovery recovery{name_of(row.curve_class), row.curves};
+    const int curves = static_cast<int>(std::ceil(share * row.curves));
+    DefaultRecovery recovery{name_of(row.curve_class), curves};
     int values = 0;
-    for (int i = 0; i < row.curves; ++i) {
+    for (int i = 0; i < curves; ++i) {
       test::SceneOptions options;
       options.sigma_over_size = 0.0;
       const test::Scene scene = test::random_scene(row.curve_class, options, rng);

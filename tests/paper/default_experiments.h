@@ -16,6 +16,7 @@ struct DefaultRecovery {
   double mean_percent = 0.0;
   double worst_percent = 0.0;
 };
-std::vector<DefaultRecovery> default_table3();
+/// With a share of the paper's number of curves.
+std::vector<DefaultRecovery> default_table3(double share = 1.0);
 
 }  // namespace palpate::paper

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/invariants/signature_fit/canonical_models.h"
+#include "tests/support/test_rng.h"
 
 namespace palpate::test {
 namespace {
@@ -29,12 +30,6 @@ auto with_model(CurveClass curve_class, Function&& function) {
       throw std::logic_error("no canonical model");
   }
 }
-
-double uniform(std::mt19937_64& rng, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(rng);
-}
-
-double random_sign(std::mt19937_64& rng) { return uniform(rng, -1.0, 1.0) < 0.0 ? -1.0 : 1.0; }
 
 }  // namespace
 

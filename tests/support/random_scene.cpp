@@ -4,14 +4,10 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/support/test_rng.h"
+
 namespace palpate::test {
 namespace {
-
-double uniform(std::mt19937_64& rng, double least, double most) {
-  return std::uniform_real_distribution<double>(least, most)(rng);
-}
-
-double random_sign(std::mt19937_64& rng) { return uniform(rng, -1.0, 1.0) < 0.0 ? -1.0 : 1.0; }
 
 /// A curve piece: position over [t0, t1], parameters scale as a^power under lengths.
 struct Piece {

@@ -14,6 +14,14 @@ std::uint64_t test_seed();
 /// Generator seeded by test_seed(); `stream` separates independent sequences within one test.
 std::mt19937_64 test_rng(std::uint64_t stream = 0);
 
+inline double uniform(std::mt19937_64& rng, double least, double most) {
+  return std::uniform_real_distribution<double>(least, most)(rng);
+}
+
+inline double random_sign(std::mt19937_64& rng) {
+  return uniform(rng, -1.0, 1.0) < 0.0 ? -1.0 : 1.0;
+}
+
 /// Number of random cases: `base` times PALPATE_TEST_STRESS (default 1) from the environment, at
 /// least one. Under a sanitizer it is a fraction: the same code runs on fewer scenes.
 int stress_count(int base);

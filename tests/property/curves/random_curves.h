@@ -4,16 +4,12 @@
 #include <random>
 
 #include "core/curves/curve.h"
+#include "tests/support/test_rng.h"
 
 namespace palpate {
 
-inline double uniform(std::mt19937_64& rng, double least, double most) {
-  return std::uniform_real_distribution<double>(least, most)(rng);
-}
-
-inline double random_sign(std::mt19937_64& rng) {
-  return uniform(rng, -1.0, 1.0) < 0.0 ? -1.0 : 1.0;
-}
+using test::random_sign;
+using test::uniform;
 
 struct RandomCurve {
   Curve curve;

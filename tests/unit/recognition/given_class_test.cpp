@@ -277,7 +277,7 @@ TEST(GivenClass, EveryOneOfThirtyHardCirclesIsAnswered) {
 TEST(GivenClass, CovarianceIsThatOfTheErrors) {
   // 100 trials a class: the mean of the normalised squared errors of n unknowns is n, its
   // standard deviation sqrt(2 n / 100); 4.5 of these.
-  constexpr int kTrials = 100;
+  const int trials = test::stress_count(100);
   // So little that no valley bends within its own width: the covariance is to first order.
   constexpr double kNoise_m = 1e-7;
   const std::vector<std::pair<Curve, Vec2>> curves = {
@@ -295,7 +295,7 @@ TEST(GivenClass, CovarianceIsThatOfTheErrors) {
     const Pose2 pose{0.2, -0.1, 0.3};
     const double unknowns = degrees_of_freedom(class_of(curve));
     double sum = 0.0;
-    for (int trial = 0; trial < kTrials; ++trial) {
+    for (int trial = 0; trial < trials; ++trial) {
       auto points = on_curve(curve, pose, range[0], range[1], 40, kNoise_m,
                              static_cast<std::uint64_t>(100 + trial));
       for (GivenPoint& point : points) {
@@ -328,7 +328,7 @@ TEST(GivenClass, CovarianceIsThatOfTheErrors) {
       const Eigen::VectorXd scaled = scale.asDiagonal() * error.head(free);
       sum += scaled.dot(unit.ldlt().solve(scaled));
     }
-    EXPECT_NEAR(sum / kTrials, unknowns, 4.5 * std::sqrt(2.0 * unknowns / kTrials));
+    EXPECT_NEAR(sum / trials, unknowns, 4.5 * std::sqrt(2.0 * unknowns / trials));
   }
 }
 

@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kSigma = 1e-6;  // claimed; the samples themselves are exact
+constexpr double kStatedSigma = 1e-6;  // claimed; the samples themselves are exact
 
 /// The first sample beyond the only joint of a stroke.
 std::size_t joint_index(const std::vector<double>& t) {
@@ -31,7 +31,7 @@ TEST(LongestSegment, ExactSamplesOfOneSegmentAllBelong) {
   for (int segment = 0; segment < 5; ++segment) {
     const double length = part.arc_length(segment, segment + 1.0);
     const test::TouchedPart touched = test::touch(
-        part, test::random_pose(rng), {{segment + 0.02, 0.9 * length}}, 0.0, kSigma, rng);
+        part, test::random_pose(rng), {{segment + 0.02, 0.9 * length}}, 0.0, kStatedSigma, rng);
     const SegmentBelonging found = longest_segment(touched.patches[0]);
     EXPECT_TRUE(found.was_tested);
     EXPECT_TRUE(found.joints.empty());
@@ -51,7 +51,8 @@ TEST(LongestSegment, TheSamplesBeyondAJointAreNamedExactly) {
       const test::PartStroke stroke{along ? segment + 0.35 : segment + 1.65, along ? 0.035 : -0.035,
                                     161};
       const Pose2 world_T_part = test::random_pose(rng);
-      const test::TouchedPart touched = test::touch(part, world_T_part, {stroke}, 0.0, kSigma, rng);
+      const test::TouchedPart touched =
+          test::touch(part, world_T_part, {stroke}, 0.0, kStatedSigma, rng);
       const std::size_t truth = joint_index(touched.t[0]);
       ASSERT_LT(truth, 161U);
       const SegmentBelonging found = longest_segment(touched.patches[0]);
@@ -80,7 +81,7 @@ TEST(LongestSegment, TwoJointsAreFoundOneAfterTheOther) {
   // From the middle of the second segment to that of the fourth.
   const test::PartStroke stroke{1.5, part.arc_length(1.5, 3.5), 300};
   const test::TouchedPart touched =
-      test::touch(part, test::random_pose(rng), {stroke}, kSigma, kSigma, rng);
+      test::touch(part, test::random_pose(rng), {stroke}, kStatedSigma, kStatedSigma, rng);
   const SegmentBelonging found = longest_segment(touched.patches[0]);
   ASSERT_EQ(found.joints.size(), 2U);
   for (std::size_t j = 0; j < 2; ++j) {
@@ -100,8 +101,8 @@ TEST(LongestSegment, TwoJointsAreFoundOneAfterTheOther) {
 TEST(LongestSegment, ALongPatchHasItsJointAmongAllItsSamples) {
   const ClosedSpline part = test::paper_part();
   auto rng = test::test_rng();
-  const test::TouchedPart touched =
-      test::touch(part, test::random_pose(rng), {{1.35, 0.035, 20'011}}, kSigma, kSigma, rng);
+  const test::TouchedPart touched = test::touch(
+      part, test::random_pose(rng), {{1.35, 0.035, 20'011}}, kStatedSigma, kStatedSigma, rng);
   const std::size_t truth = joint_index(touched.t[0]);
   const SegmentBelonging found = longest_segment(touched.patches[0]);
   ASSERT_EQ(found.joints.size(), 1U);
@@ -123,21 +124,21 @@ TEST(LongestSegment, ALongPatchHasItsJointAmongAllItsSamples) {
 TEST(LongestSegment, RoundTipsAndUnknownNoise) {
   const ClosedSpline part = test::paper_part();
   auto rng = test::test_rng();
-  const test::TouchedPart touched =
-      test::touch(part, test::random_pose(rng), {{1.35, 0.035, 161}}, kSigma, 0.0, rng, 0.003);
+  const test::TouchedPart touched = test::touch(part, test::random_pose(rng), {{1.35, 0.035, 161}},
+                                                kStatedSigma, 0.0, rng, 0.003);
   const std::size_t truth = joint_index(touched.t[0]);
   const SegmentBelonging found = longest_segment(touched.patches[0]);
   ASSERT_EQ(found.joints.size(), 1U);
   EXPECT_LE(found.joints[0].earliest, truth);
   EXPECT_GE(found.joints[0].latest, truth);
-  EXPECT_NEAR(found.sigma_m / kSigma, 1.0, 4.0 / std::sqrt(2.0 * 150.0));
+  EXPECT_NEAR(found.sigma_m / kStatedSigma, 1.0, 4.0 / std::sqrt(2.0 * 150.0));
 }
 
 TEST(LongestSegment, ASpikeDoesNotBelong) {
   const ClosedSpline part = test::paper_part();
   auto rng = test::test_rng();
   test::TouchedPart touched =
-      test::touch(part, test::random_pose(rng), {{2.02, 0.025}}, kSigma, kSigma, rng);
+      test::touch(part, test::random_pose(rng), {{2.02, 0.025}}, kStatedSigma, kStatedSigma, rng);
   touched.patches[0].samples[30].position_m += Vec2(1e-3, 2e-3);
   const SegmentBelonging found = longest_segment(touched.patches[0]);
   EXPECT_TRUE(found.joints.empty());
@@ -150,7 +151,7 @@ TEST(LongestSegment, FewSamplesAreNotTested) {
   auto rng = test::test_rng();
   EXPECT_FALSE(longest_segment(StoredPatch{}).was_tested);
   const test::TouchedPart touched =
-      test::touch(part, test::random_pose(rng), {{0.9, 0.02, 20}}, kSigma, kSigma, rng);
+      test::touch(part, test::random_pose(rng), {{0.9, 0.02, 20}}, kStatedSigma, kStatedSigma, rng);
   const SegmentBelonging found = longest_segment(touched.patches[0]);
   EXPECT_FALSE(found.was_tested);
   EXPECT_TRUE(found.joints.empty());

@@ -12,23 +12,12 @@
 
 #include "node/tool/drawing/drawing.h"
 #include "node/tool/drawing/pose_ellipse.h"
-#include "node/wire/convert.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
+#include "tests/unit/node/tool/answered_scene.h"
 
 namespace palpate {
 namespace {
-
-v1::Recognition message_of(const Recognition& answer) {
-  v1::Recognition message;
-  to_wire(
-      answer,
-      [](std::uint32_t, std::uint32_t patch) {
-        return ContactSource{"probe", patch};
-      },
-      message);
-  return message;
-}
 
 /// A scene whose covariance is small enough to be the whole truth about the curve.
 CurveModel known_model(CurveClass curve_class, std::mt19937_64& rng, v1::Recognition& message) {
@@ -163,17 +152,6 @@ TEST(CurveModel, IsAbsentForMessagesThatNameNoCurve) {
   EXPECT_TRUE(model_of(message));
   message.mutable_pose()->set_x_m(std::numeric_limits<double>::infinity());
   EXPECT_FALSE(model_of(message));
-}
-
-ContactGroup group_of(const test::Scene& scene) {
-  ContactGroup group{"scene", "part", 1, {"probe"}, {}};
-  for (const auto& patch : scene.patches) {
-    ContactRun run;
-    run.context.patch = static_cast<std::uint32_t>(group.runs.size());
-    for (const Vec2& position : patch) run.samples.push_back({position, scene.sigma_m, 0});
-    group.runs.push_back(run);
-  }
-  return group;
 }
 
 TEST(Drawing, ShowsTheCurveBesideEveryTouchedPlace) {

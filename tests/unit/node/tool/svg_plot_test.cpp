@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "node/wire/convert.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
+#include "tests/unit/node/tool/answered_scene.h"
 
 namespace palpate {
 namespace {
@@ -29,30 +29,6 @@ std::size_t dots_and_left_out(const std::string& svg) {
   return at == std::string::npos ? drawn : drawn + std::stoul(svg.substr(at + said.size()));
 }
 
-v1::Recognition message_of(const Recognition& answer) {
-  v1::Recognition message;
-  to_wire(
-      answer,
-      [](std::uint32_t, std::uint32_t patch) {
-        return ContactSource{"probe", patch};
-      },
-      message);
-  return message;
-}
-
-ContactGroup group_of(const test::Scene& scene) {
-  ContactGroup group{"a<b>.csv", "part", 1, {"probe"}, {}};
-  for (const auto& patch : scene.patches) {
-    ContactRun run;
-    run.context.patch = static_cast<std::uint32_t>(group.runs.size());
-    for (const Vec2& position : patch) {
-      run.samples.push_back({position, scene.sigma_m, 0});
-    }
-    group.runs.push_back(run);
-  }
-  return group;
-}
-
 TEST(SvgPlot, ShowsEverySampleTheCurveTheFrameAndTheContactsOfEveryClass) {
   std::mt19937_64 rng = test::test_rng();
   for (const CurveClass curve_class : kCurveClasses) {
@@ -60,7 +36,7 @@ TEST(SvgPlot, ShowsEverySampleTheCurveTheFrameAndTheContactsOfEveryClass) {
     options.sigma_over_size = 1e-5;
     const test::Scene scene = test::random_scene(curve_class, options, rng);
     const Recognition answer = test::recognise(scene, scene.sigma_m);
-    const ContactGroup group = group_of(scene);
+    const ContactGroup group = group_of(scene, "a<b>.csv");
     const std::string svg = svg_plot(group, message_of(answer));
     EXPECT_THAT(svg, HasSubstr("a&lt;b&gt;.csv"));
     EXPECT_EQ(dots_and_left_out(svg), 222U) << name_of(curve_class);
@@ -76,7 +52,7 @@ TEST(SvgPlot, ShowsEverySampleTheCurveTheFrameAndTheContactsOfEveryClass) {
 TEST(SvgPlot, WithoutAnAnswerShowsTheSamplesAlone) {
   std::mt19937_64 rng = test::test_rng();
   const test::Scene scene = test::random_scene(CurveClass::Circle, {}, rng);
-  const std::string svg = svg_plot(group_of(scene), {});
+  const std::string svg = svg_plot(group_of(scene, "a<b>.csv"), {});
   EXPECT_EQ(dots_and_left_out(svg), 222U);
   EXPECT_EQ(count(svg, "<polyline"), 0U);
 }
@@ -93,7 +69,7 @@ TEST(SvgPlot, ShowsTheCurveOfTouchesThatAreTooFarApartForAContact) {
   const Recognition answer = test::recognise(scene, scene.sigma_m);
   ASSERT_EQ(answer.shape.curve_class, CurveClass::Ellipse);
   ASSERT_TRUE(answer.contacts.empty());
-  const std::string svg = svg_plot(group_of(scene), message_of(answer));
+  const std::string svg = svg_plot(group_of(scene, "a<b>.csv"), message_of(answer));
   EXPECT_EQ(count(svg, "class=\"curve\""), 1U);
   EXPECT_THAT(svg, HasSubstr("and 12 more patches"));
 }
@@ -120,7 +96,7 @@ TEST(SvgPlot, DrawsSpikesUnlikeSamples) {
   }
   const Recognition answer = test::recognise(scene, scene.sigma_m);
   ASSERT_GE(answer.outlier_count, 3U);  // a clean sample is lost with a probability of 1 %
-  const std::string svg = svg_plot(group_of(scene), message_of(answer));
+  const std::string svg = svg_plot(group_of(scene, "a<b>.csv"), message_of(answer));
   EXPECT_THAT(svg, HasSubstr("x: 3 beyond 5 sigma"));
   EXPECT_EQ(count(svg, "l8,8m0,-8l-8,8"), 3U);
 }
