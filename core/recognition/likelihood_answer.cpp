@@ -79,7 +79,7 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
 }  // namespace
 
 double residual_noise_m(const Weighing& w) {
-  return w.sigma * w.data.scale * (w.correlation_length > 0.0 ? 1.0 : std::sqrt(w.noise_inflation));
+  return w.sigma * w.data.scale * std::sqrt(w.white_variance);
 }
 
 Recognition answer_by_likelihood(const Weighing& w, const VerdictOptions& options,

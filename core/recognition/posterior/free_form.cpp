@@ -1,6 +1,7 @@
 #include "core/recognition/posterior/free_form.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +28,8 @@ constexpr std::size_t kMiddleSize = 3;  ///< a half extent
 /// Ordinate and its first two derivatives by the abscissa of a frame, and their covariance.
 struct Junction {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  /// A square root of their covariance, R R^T: rounding cannot make it less than nothing.
+  Eigen::Matrix3d root = Eigen::Matrix3d::Zero();
 };
 
 /// Nodes of one section in its chord frame, lengths in half extents.
@@ -68,7 +70,7 @@ Junction in_frame(const Junction& junction, double x, const ReducedSection& from
   *x_there = (point - to.middle).dot(to.axis);
   there.mean = {cross(to.axis, point - to.middle), cross(to.axis, tangent) / cosine_there,
                 kappa / (cosine_there * cosine_there * cosine_there)};
-  there.covariance = scale.asDiagonal() * junction.covariance * scale.asDiagonal();
+  there.root = scale.asDiagonal() * junction.root;
   return there;
 }
 
@@ -83,7 +85,7 @@ struct SectionEvidence {
 /// later, c_0 to c_2 continue what came before. The rest has the prior of features of `size`:
 /// c_k = size^(1-k) / (k (k - 1)), the series of a logarithm, which converges within `size`.
 SectionEvidence evidence_of(const SectionNodes& nodes, double origin, double end, double size,
-                            const std::optional<Junction>& before) {
+                            const std::optional<Junction>& before, bool goes_on) {
   const Eigen::Index n = nodes.x.size();
   const double width = std::sqrt(0.5 * std::numbers::pi);  // as offset and turn of a class
   Terms terms(n, kTerms);                                  // whitened powers
@@ -93,7 +95,7 @@ SectionEvidence evidence_of(const SectionNodes& nodes, double origin, double end
     column = column.cwiseProduct(nodes.x - Nodes::Constant(n, origin));
   }
   // The prior's covariance: a block of the first three terms, the rest independent.
-  Eigen::Matrix3d first = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d first = Eigen::Matrix3d::Zero();  // its square root
   Eigen::Matrix<double, kTerms, 1> variances;
   double power = 1.0 / size;
   for (int k = 2; k < kTerms; ++k) {
@@ -104,17 +106,17 @@ SectionEvidence evidence_of(const SectionNodes& nodes, double origin, double end
   Nodes residual = nodes.weight.cwiseProduct(nodes.y);
   if (before) {
     const Eigen::Vector3d half(1.0, 1.0, 0.5);  // c_2 is half the second derivative
-    first = half.asDiagonal() * before->covariance * half.asDiagonal();
+    first = half.asDiagonal() * before->root;
     residual.noalias() -= terms.leftCols<3>() * half.cwiseProduct(before->mean);
   } else {
-    first.diagonal() << width * width, width * width, variances[2];
+    first.diagonal() << width, width, std::sqrt(variances[2]);
   }
-  Terms by_prior(n, kTerms);
-  by_prior.leftCols<3>().noalias() = terms.leftCols<3>().lazyProduct(first);
+  Terms spread(n, kTerms);  // by the square root of the prior's covariance
+  spread.leftCols<3>().noalias() = terms.leftCols<3>().lazyProduct(first);
   for (int k = 3; k < kTerms; ++k) {
-    by_prior.col(k) = variances[k] * terms.col(k);
+    spread.col(k) = std::sqrt(variances[k]) * terms.col(k);
   }
-  Block covariance = by_prior.lazyProduct(terms.transpose());
+  Block covariance = spread.lazyProduct(spread.transpose());
   covariance.diagonal().array() += 1.0;
   const Eigen::LLT<Block> llt(covariance);
   const Nodes whitened = llt.matrixL().solve(residual);
@@ -122,6 +124,9 @@ SectionEvidence evidence_of(const SectionNodes& nodes, double origin, double end
   evidence.chi2 = whitened.squaredNorm();
   for (Eigen::Index i = 0; i < n; ++i) {
     evidence.log_determinant += 2.0 * std::log(llt.matrixLLT()(i, i));
+  }
+  if (!goes_on) {
+    return evidence;
   }
   // The path at the end, given the section's points.
   Eigen::Matrix<double, 3, kTerms> at = Eigen::Matrix<double, 3, kTerms>::Zero();
@@ -133,20 +138,27 @@ SectionEvidence evidence_of(const SectionNodes& nodes, double origin, double end
     if (k + 2 < kTerms) at(2, k + 2) = (k + 2) * (k + 1) * x_power;
     x_power *= x;
   }
+  const Eigen::Matrix3d free_at = at.leftCols<3>();
+  at.leftCols<3>() = free_at * first;  // (of the terms in units of the prior's)
+  for (int k = 3; k < kTerms; ++k) {
+    at.col(k) *= std::sqrt(variances[k]);
+  }
   const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMostNodes, 3> half_gain =
-      llt.matrixL().solve(by_prior.lazyProduct(at.transpose()));
+      llt.matrixL().solve(spread.lazyProduct(at.transpose()));
   evidence.end.mean = half_gain.transpose() * whitened;
   if (before) {
     evidence.end.mean +=
-        at.leftCols<3>() * Eigen::Vector3d(before->mean[0], before->mean[1], 0.5 * before->mean[2]);
+        free_at * Eigen::Vector3d(before->mean[0], before->mean[1], 0.5 * before->mean[2]);
   }
-  evidence.end.covariance = at.leftCols<3>() * first * at.leftCols<3>().transpose();
-  for (int k = 3; k < kTerms; ++k) {
-    evidence.end.covariance += variances[k] * at.col(k) * at.col(k).transpose();
-  }
-  evidence.end.covariance -= half_gain.transpose() * half_gain;
-  // (rounding must not make the junction more certain than the prior allows)
-  evidence.end.covariance.diagonal() = evidence.end.covariance.diagonal().cwiseMax(0.0);
+  // at (I + spread^T spread)^-1 at^T by its square root.
+  Eigen::Matrix<double, kTerms, kTerms> information;
+  information.triangularView<Eigen::Lower>() = spread.transpose().lazyProduct(spread);
+  information.diagonal().array() += 1.0;
+  const Eigen::LLT<Eigen::Matrix<double, kTerms, kTerms>> of_terms(information);
+  const Eigen::Matrix<double, kTerms, 3> half_of_end = of_terms.matrixL().solve(at.transpose());
+  const Eigen::HouseholderQR<Eigen::Matrix<double, kTerms, 3>> qr(half_of_end);
+  evidence.end.root =
+      qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>().toDenseMatrix().transpose();
   return evidence;
 }
 
@@ -167,7 +179,10 @@ FreeForm paths_of(const SmoothModel& smooth, double size, double weight) {
       // The section's chord ends with its last point; a section taken in parts, with the part's.
       const double end =
           begin + kMostNodes >= section.end ? section.half_length : nodes.x[nodes.x.size() - 1];
-      const SectionEvidence evidence = evidence_of(nodes, before ? origin : 0.0, end, size, before);
+      const bool goes_on = begin + kMostNodes < section.end ||
+                           (&section != &smooth.sections.back() && (&section + 1)->joined);
+      const SectionEvidence evidence =
+          evidence_of(nodes, before ? origin : 0.0, end, size, before, goes_on);
       paths.chi2 += evidence.chi2;
       paths.log_occam -= 0.5 * evidence.log_determinant;
       paths.determined += static_cast<double>(nodes.x.size());

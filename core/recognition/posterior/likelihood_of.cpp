@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/numerics/chi_square.h"
+#include "core/recognition/posterior/runs_along.h"
 #include "core/recognition/smooth/residual_correlation.h"
 #include "core/recognition/smooth/stated_form_error.h"
 
@@ -18,6 +19,28 @@ double variance_of_student(double dof) {
   constexpr double kOfOne = 42.03;  // (12.706 / 1.95996)^2
   constexpr double kOfTwo = 4.819;  // (4.3027 / 1.95996)^2
   return dof > 2.0 ? dof / (dof - 2.0) : dof > 1.0 ? kOfTwo : kOfOne;
+}
+
+/// Whether neighbours along the class's curve err together.
+ResidualCorrelation correlation_along(const CanonicalFit& placed, const FitData& data) {
+  std::vector<double> residuals;
+  residuals.reserve(placed.points.size());
+  const bool any_alone = std::any_of(data.patches.begin(), data.patches.end(),
+                                     [](const PatchSpan& patch) { return patch.size() == 1; });
+  if (!any_alone) {
+    for (const FittedPoint& point : placed.points) {
+      residuals.push_back(point.residual);
+    }
+    return correlation_of(data, residuals);
+  }
+  const Runs runs = runs_along(placed, data.patches);
+  FitData in_order;
+  in_order.patches = runs.spans;
+  for (const std::size_t i : runs.order) {
+    in_order.points.push_back(data.points[i]);
+    residuals.push_back(placed.points[i].residual);
+  }
+  return correlation_of(in_order, residuals);
 }
 
 }  // namespace
@@ -44,35 +67,35 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   const double variance = chi2 / dof;  // of the residuals, in units of sigma^2
   const double noise = smooth.dof() > 0 ? smooth.chi2 / smooth.dof() : 1.0;
   const double excess = arcs.sigma * std::sqrt(std::max(0.0, variance - noise));
+  const ResidualCorrelation correlation = correlation_along(placed, arcs.data);
   // What the smooth model explains and the class does not, beyond what noise gives the smooth
   // model's further coefficients; a false alarm costs an answer its certainty.
   constexpr double kFalseAlarm = 1e-6;
   const int more = smooth.parameters - parameters;
-  // (Touches that lie too far apart to show their noise leave the class alone to tell it.)
+  // Touches that lie too far apart to show their noise leave the class alone to tell it. Whether it
+  // misfits only neighbours on it show, which err together.
   const bool noise_is_told = likelihood.sigma_known || smooth.dof() >= kFewestDegreesOfNoise;
   const bool misfits =
-      (unclassified ||
-       (more > 0 &&
-        chi_square_survival((chi2 - smooth.chi2) / likelihood.inflation(), more) < kFalseAlarm)) &&
-      noise_is_told;
-  std::vector<double> residuals;
-  residuals.reserve(placed.points.size());
-  for (const FittedPoint& point : placed.points) {
-    residuals.push_back(point.residual);
-  }
-  const ResidualCorrelation correlation = correlation_of(arcs.data, residuals);
+      noise_is_told
+          ? unclassified ||
+                (more > 0 && chi_square_survival((chi2 - smooth.chi2) / likelihood.inflation(),
+                                                 more) < kFalseAlarm)
+          : correlation.time > 1.0;
   // White residuals much larger than the smooth model's are noise that it took for bends
   // (outliers, samples out of order); correlated ones are form error up to its limit, neighbours
   // erring together, so that only one in `time` counts.
   constexpr double kMuchLarger = 1.5;
-  constexpr double kLargestFormError = 1e-3;  // of the half extent: beyond it, it is another shape
+  // Of the half extent: beyond it, it is another shape, if free paths of the patches say so too.
+  // (Of touches that lie apart they say nothing.)
+  constexpr double kLargestFormError = 1e-3;
   const bool noisy =
       correlation.time == 1.0 && variance > kMuchLarger * noise && excess <= kLargestNoise;
-  const bool form_error = correlation.time > 1.0 && excess <= kLargestFormError;
+  const bool form_error = correlation.time > 1.0 && (excess <= kLargestFormError || !noise_is_told);
   SeenDeviation seen;
   if (misfits && (noisy || form_error)) {
     seen.noise_inflation = variance * correlation.time;
     seen.correlation_length = correlation.length;
+    seen.white_variance = noise_is_told && form_error ? 1.0 : variance;
     seen.likelihood = likelihood;
     seen.likelihood->sigma_known = true;
     seen.likelihood->samples = std::max(n / correlation.time, 1.0);
@@ -81,6 +104,7 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
     seen.likelihood->coherent_or_other = form_error;
   } else if (!likelihood.sigma_known) {
     seen.noise_inflation = misfit_of(chi2, likelihood) / dof;
+    seen.white_variance = seen.noise_inflation;
     seen.few_residuals = variance_of_student(dof);
   }
   return seen;

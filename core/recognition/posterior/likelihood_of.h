@@ -20,6 +20,7 @@ struct SeenDeviation {
   /// The law with it, where it is noise or form error rather than another class.
   std::optional<Likelihood> likelihood;
   double noise_inflation = 1.0;  ///< what variances of residuals count times
+  double white_variance = 1.0;   ///< of the noise among it, in units of the arcs' sigma^2
   /// What covariances are to be multiplied with beside that: a noise that few residuals tell may be
   /// larger than they say.
   double few_residuals = 1.0;

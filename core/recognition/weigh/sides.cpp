@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/posterior/coherent_evidence.h"
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/weigh/contenders.h"
 #include "core/recognition/weigh/tip_directions.h"
@@ -56,8 +57,7 @@ Way way_of(ClassFits fits, FitData reduced, const Arcs& arcs, const Likelihood& 
 /// what changes odds less than tenfold.
 bool agrees(const Way& way, const SmoothModel& smooth) {
   constexpr double kAgreement = 4.6;  // of chi-square: 2 ln 10
-  return !way.refined ||
-         std::abs(way.settled->chi2 + smooth.chi2 - way.refined->chi2) <= kAgreement;
+  return way.refined && std::abs(way.settled->chi2 + smooth.chi2 - way.refined->chi2) <= kAgreement;
 }
 
 /// Whether directions could be what keeps the curve found from the points: one that is wholly wrong
@@ -72,12 +72,56 @@ bool directions_may_explain(const ClassFit& settled, const FitData& touches) {
   return settled.chi2 <= most;
 }
 
+/// log of the evidence of a way's candidate, however free-form paths fare beside it: the ways are
+/// compared with one another. A part whose walls are two curves that differ by little more than
+/// coherent errors may is told no better than these are known.
+double log_evidence_of(const Way& way, const Arcs& arcs, const Likelihood& likelihood) {
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
+  const auto placed = way.refined ? to_canonical(*way.settled, way.reduced) : std::nullopt;
+  if (!placed) {
+    return kNone;
+  }
+  auto evidence = way.evidences.classes[static_cast<std::size_t>(way.candidate)];
+  if (!evidence) {
+    evidence = evidence_of(*placed, way.reduced, likelihood.inflation(), Integration::Laplace);
+  }
+  return evidence ? log_coherent_evidence(likelihood, *evidence, *placed, way.reduced, arcs.sigma,
+                                          static_cast<double>(arcs.data.points.size()),
+                                          way.refined->chi2)
+                  : kNone;
+}
+
+/// The curve that fits the tips' centres best, sought when it is asked for.
+class CurveOfCentres {
+ public:
+  CurveOfCentres(const Arcs& arcs, const Likelihood& likelihood, unsigned classes)
+      : arcs_(arcs), likelihood_(likelihood), classes_(classes) {}
+
+  /// Its points are the smooth model's reduced ones; nullopt where no class fits.
+  const std::optional<CanonicalFit>& get() {
+    if (!sought_) {
+      sought_ = true;
+      const FitData& centres = arcs_.smooth.reduced;
+      const Way way = way_of(fit_classes(centres, nullptr, classes_), centres, arcs_, likelihood_);
+      curve_ = way.settled ? to_canonical(*way.settled, centres) : std::nullopt;
+    }
+    return curve_;
+  }
+
+ private:
+  const Arcs& arcs_;
+  const Likelihood& likelihood_;
+  unsigned classes_;
+  bool sought_ = false;
+  std::optional<CanonicalFit> curve_;
+};
+
 /// Fits with the tips on these sides of `touches`. Where points show no direction of their own, or
 /// one so swayed by noise that tips taken off along it no longer lie as all points do, directions
 /// come from the curve found: one that is off by an angle puts the surface off by half its square
 /// times the tip's radius, so that each round squares the error.
-Way fit_way(FitData touches, std::span<const int> sides, const Arcs& arcs,
-            const Likelihood& likelihood, unsigned classes, std::span<const SidedStart> starts) {
+Way fit_along(FitData touches, std::span<const int> sides, const Arcs& arcs,
+              const Likelihood& likelihood, unsigned classes, std::span<const SidedStart> starts) {
   const SmoothModel& smooth = arcs.smooth;
   FitData reduced = on_surface(touches, sides);
   ClassFits fits = fit_classes_from(starts, sides, reduced, classes);
@@ -88,7 +132,8 @@ Way fit_way(FitData touches, std::span<const int> sides, const Arcs& arcs,
     if (!way.settled || !directions_may_explain(*way.settled, touches)) {
       break;
     }
-    const bool swayed = !agrees(way, smooth);
+    // (a candidate that is no such curve on all points says nothing about the directions of all)
+    const bool swayed = way.refined && !agrees(way, smooth);
     const auto curve =
         swayed || has_kept_tips(smooth) ? to_canonical(*way.settled, way.reduced) : std::nullopt;
     if (!curve) {
@@ -106,6 +151,23 @@ Way fit_way(FitData touches, std::span<const int> sides, const Arcs& arcs,
   return way;
 }
 
+/// The same; where directions led to no curve that all points have, once more along those of the
+/// curve of the centres, whose normals are nearly the surface's whichever side that is on.
+Way fit_way(const FitData& touches, std::span<const int> sides, const Arcs& arcs,
+            const Likelihood& likelihood, unsigned classes, std::span<const SidedStart> starts,
+            CurveOfCentres* centres) {
+  Way way = fit_along(touches, sides, arcs, likelihood, classes, starts);
+  if (agrees(way, arcs.smooth) || !way.settled || !directions_may_explain(*way.settled, touches) ||
+      !centres->get()) {
+    return way;
+  }
+  FitData turned = touches;
+  set_directions(DirectionsOf::AllPoints, *centres->get(), arcs.smooth, &turned);
+  Way again = fit_along(std::move(turned), sides, arcs, likelihood, classes, {});
+  const bool better = again.refined && (!way.refined || again.refined->chi2 < way.refined->chi2);
+  return better ? again : way;
+}
+
 /// The reduced points with directions for those that show none, and the sides to which the patches
 /// bend.
 struct Directed {
@@ -113,15 +175,11 @@ struct Directed {
   std::vector<double> bends;
 };
 
-/// What the tips do not show by themselves comes from the curve that fits their centres best.
-Directed directed(const Arcs& arcs, const Likelihood& likelihood, unsigned classes) {
-  const SmoothModel& smooth = arcs.smooth;
+/// What the tips do not show by themselves comes from the curve of their centres.
+Directed directed(const SmoothModel& smooth, CurveOfCentres* centres) {
   Directed result{smooth.reduced, {}};
   if (has_kept_tips(smooth) || has_uncertain_bends(smooth)) {
-    const Way centres =
-        way_of(fit_classes(result.touches, nullptr, classes), result.touches, arcs, likelihood);
-    if (const auto curve =
-            centres.settled ? to_canonical(*centres.settled, result.touches) : std::nullopt) {
+    if (const auto& curve = centres->get()) {
       set_directions(DirectionsOf::KeptPoints, *curve, smooth, &result.touches);
       result.bends = bends_of(*curve, result.touches);
       return result;
@@ -139,7 +197,8 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   // Tips that touch a part from within a bend are rare: probes come from outside.
   constexpr double kInsideProbability = 0.01;
-  const auto [touches, bends] = directed(arcs, likelihood, classes);
+  CurveOfCentres centres(arcs, likelihood, classes);
+  const auto [touches, bends] = directed(arcs.smooth, &centres);
   const auto ways = possible_sides(patches, touches, bends);
   if (!has_tips(touches.points)) {
     FitData reduced = on_surface(touches, ways.front());
@@ -147,7 +206,7 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
     return {std::move(fits), std::move(reduced), ways.front(), kInfinity, {}};
   }
   if (ways.size() == 1) {
-    Way way = fit_way(touches, ways.front(), arcs, likelihood, classes, starts);
+    Way way = fit_way(touches, ways.front(), arcs, likelihood, classes, starts, &centres);
     return {std::move(way.fits), std::move(way.reduced), ways.front(), kInfinity, {}};
   }
   const double log_price_of_inside = log_odds(1.0 - kInsideProbability);
@@ -156,14 +215,11 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
   double highest = -kInfinity;
   double second = -kInfinity;
   for (const std::vector<int>& sides : ways) {
-    Way way = fit_way(touches, sides, arcs, likelihood, classes, starts);
+    Way way = fit_way(touches, sides, arcs, likelihood, classes, starts, &centres);
     const bool first = &sides == &ways.front();
     // A line has no bend to be outside of.
     const double price = first || way.candidate == CurveClass::Line ? 0.0 : log_price_of_inside;
-    const double evidence =
-        way.refined
-            ? log_evidence(likelihood, way.evidences, way.candidate, way.refined->chi2) - price
-            : -kInfinity;
+    const double evidence = log_evidence_of(way, arcs, likelihood) - price;
     if (first || evidence > highest) {
       if (!first) {
         others.push_back({best.sides, warm_start_from(best.fits, best.reduced)});
@@ -179,6 +235,21 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
   best.others = std::move(others);
   best.margin = std::isfinite(second) ? highest - second : kInfinity;
   return best;
+}
+
+bool lie_otherwise(const Likelihood& likelihood, std::span<const StoredPatch> patches,
+                   const Arcs& arcs, unsigned classes, std::span<const SidedStart> starts,
+                   SidedFits* sided) {
+  if (!std::isfinite(sided->margin)) {
+    return false;
+  }
+  SidedFits again = fit_over_sides(patches, arcs, likelihood, classes, starts);
+  if (again.sides == sided->sides) {
+    sided->margin = again.margin;
+    return false;
+  }
+  *sided = std::move(again);
+  return true;
 }
 
 }  // namespace palpate

@@ -29,4 +29,11 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
                          const Likelihood& likelihood, unsigned classes,
                          std::span<const SidedStart> starts);
 
+/// The same once more, where sides are open, under a law that `sided` was not told by: what is seen
+/// to be more than noise tells sides no better than it tells classes. Returns whether the tips lie
+/// another way then; where they do not, the fits stay as they are. `starts`: of all ways.
+bool lie_otherwise(const Likelihood& likelihood, std::span<const StoredPatch> patches,
+                   const Arcs& arcs, unsigned classes, std::span<const SidedStart> starts,
+                   SidedFits* sided);
+
 }  // namespace palpate

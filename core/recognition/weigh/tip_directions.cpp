@@ -17,6 +17,25 @@ Vec2 direction_at(const Curve& curve, const CanonicalFit& fit, std::size_t i, co
                       : Vec2(0.0, 0.0);
 }
 
+/// Whether a patch was travelled as the curve's parameter rises (1) or falls (-1): as most of the
+/// samples that its points stand for have it. A patch runs along its curve one way, whatever the
+/// direction that noise gave to one of its points. 1 where no point has a direction.
+double sense_of(const Curve& curve, const CanonicalFit& fit, const FitData& touches,
+                const PatchSpan& patch) {
+  double sum = 0.0;
+  for (std::size_t i = patch.begin; i < patch.end; ++i) {
+    const FitPoint& point = touches.points[i];
+    sum += point.inverse_sigma * point.inverse_sigma *
+           direction_at(curve, fit, i, touches.frame).dot(point.tangent);
+  }
+  return sum < 0.0 ? -1.0 : 1.0;
+}
+
+/// The angle between two directions; pi where there was none. [rad]
+double turned_by(const Vec2& before, const Vec2& after) {
+  return before.isZero() ? kPi : std::abs(std::atan2(cross(before, after), before.dot(after)));
+}
+
 }  // namespace
 
 bool has_kept_tips(const SmoothModel& smooth) {
@@ -42,22 +61,20 @@ double set_directions(DirectionsOf which, const CanonicalFit& fit, const SmoothM
   if (!curve) {
     return largest;
   }
-  for (const ReducedSection& section : smooth.sections) {
-    if (which == DirectionsOf::KeptPoints && !section.kept) {
-      continue;
-    }
-    for (std::size_t i = section.begin; i < section.end; ++i) {
-      FitPoint& point = touches->points[i];
-      const Vec2 tangent = direction_at(*curve, fit, i, touches->frame);
-      if (tangent.isZero()) {
+  auto section = smooth.sections.begin();
+  for (const PatchSpan& patch : touches->patches) {
+    const double sense = sense_of(*curve, fit, *touches, patch);
+    for (; section != smooth.sections.end() && section->begin < patch.end; ++section) {
+      if (which == DirectionsOf::KeptPoints && !section->kept) {
         continue;
       }
-      const Vec2 turned = tangent.dot(point.tangent) < 0.0 ? Vec2(-tangent) : tangent;
-      largest = std::max(largest, point.tangent.isZero()
-                                      ? kPi
-                                      : std::abs(std::atan2(cross(point.tangent, turned),
-                                                            point.tangent.dot(turned))));
-      point.tangent = turned;
+      for (std::size_t i = section->begin; i < section->end; ++i) {
+        const Vec2 along = sense * direction_at(*curve, fit, i, touches->frame);
+        if (!along.isZero()) {
+          largest = std::max(largest, turned_by(touches->points[i].tangent, along));
+          touches->points[i].tangent = along;
+        }
+      }
     }
   }
   return largest;
@@ -75,11 +92,9 @@ std::vector<double> bends_of(const CanonicalFit& fit, const FitData& touches) {
     }
     double sum = 0.0;
     for (std::size_t i = touches.patches[p].begin; i < touches.patches[p].end; ++i) {
-      const double along =
-          direction_at(*curve, fit, i, touches.frame).dot(touches.points[i].tangent);
-      sum += (along < 0.0 ? -1.0 : 1.0) * geometry(*curve, fit.points[i].t).kappa;
+      sum += geometry(*curve, fit.points[i].t).kappa;
     }
-    bends[p] = sum;
+    bends[p] = sense_of(*curve, fit, touches, touches.patches[p]) * sum;
   }
   return bends;
 }

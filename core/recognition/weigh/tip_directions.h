@@ -17,9 +17,9 @@ bool has_uncertain_bends(const SmoothModel& smooth);
 enum class DirectionsOf { KeptPoints, AllPoints };
 
 /// Gives points of `touches` (the smooth model's reduced points) the tangents of a curve that was
-/// fitted to them, or to a curve parallel to theirs: parallel curves have the same normals. A point
-/// that had a direction keeps its sense; one that had none gets the curve's. Returns the largest
-/// angle by which one has turned. [rad]
+/// fitted to them, or to a curve parallel to theirs: parallel curves have the same normals. Their
+/// sense is that of the whole patch's travel along the curve; a patch that shows none gets the
+/// curve's. Returns the largest angle by which one has turned. [rad]
 double set_directions(DirectionsOf which, const CanonicalFit& curve, const SmoothModel& smooth,
                       FitData* touches);
 

@@ -13,6 +13,11 @@
 namespace palpate {
 namespace {
 
+/// log odds that keep a class from being RECOGNIZED.
+double margin_of(const WeighOptions& options) {
+  return std::max(log_odds(options.recognized_probability), 0.0);
+}
+
 /// Without the classes that nobody wants and those that leave nothing over to test them with.
 ClassFits testable(ClassFits fits, unsigned classes, std::size_t points) {
   for (const CurveClass curve_class : kCurveClasses) {
@@ -38,6 +43,19 @@ struct Placed {
   CanonicalFit canonical;
   double chi2 = 0.0;
 };
+
+/// Every class of one way in which the tips may lie, the plausible ones refined on all points.
+Contenders contending(ClassFits coarse, const Ground& ground, const WeighOptions& options) {
+  const Arcs& arcs = ground.arcs;
+  Contenders contenders;
+  contenders.coarse = testable(std::move(coarse), options.classes, arcs.data.points.size());
+  contenders.fits = as_told(contenders.coarse, arcs.smooth);
+  contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
+  if (!is_sure(probabilities_of(contenders, ground))) {
+    contenders = with_conic_mode(std::move(contenders), ground, options.classes);
+  }
+  return contenders;
+}
 
 /// The best class, if it was refined on all points.
 std::optional<Placed> best_on_all(const Contenders& contenders, const Ground& ground) {
@@ -88,6 +106,15 @@ std::optional<ShapePoseCovariance> covariance_of_valley(const CanonicalFit& on_r
                    second_moment(on_reduced, *valley, reduced));
 }
 
+/// Where all ways in which the tips may lie are to be followed from; the first is the one taken.
+std::vector<SidedStart> starts_of(const SidedFits& sided, const Contenders& contenders,
+                                  const Arcs& arcs) {
+  std::vector<SidedStart> starts = sided.others;
+  starts.insert(starts.begin(),
+                {sided.sides, warm_start_from(contenders.coarse, arcs.smooth.reduced)});
+  return starts;
+}
+
 }  // namespace
 
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
@@ -96,15 +123,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
   SidedFits sided = fit_over_sides(patches, arcs, stated, options.classes, starts);
   Ground ground{arcs, sided.reduced, stated};
-  Contenders contenders;
-  contenders.coarse = testable(std::move(sided.fits), options.classes, arcs.data.points.size());
-  contenders.fits = as_told(contenders.coarse, arcs.smooth);
-
-  const double margin = std::max(log_odds(options.recognized_probability), 0.0);
-  contenders = refine_plausible(std::move(contenders), ground, margin);
-  if (!is_sure(probabilities_of(contenders, ground))) {
-    contenders = with_conic_mode(std::move(contenders), ground, options.classes);
-  }
+  Contenders contenders = contending(std::move(sided.fits), ground, options);
   std::optional<Placed> best_placed = best_on_all(contenders, ground);
   const SeenDeviation seen =
       best_placed ? seen_deviation(arcs, stated, best_placed->chi2, best_placed->canonical,
@@ -113,7 +132,13 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
                   : SeenDeviation{};
   if (seen.likelihood) {
     ground.likelihood = *seen.likelihood;
-    contenders = refine_plausible(std::move(contenders), ground, margin);
+    if (lie_otherwise(ground.likelihood, patches, arcs, options.classes,
+                      starts_of(sided, contenders, arcs), &sided)) {
+      contenders = contending(std::move(sided.fits), ground, options);
+      best_placed.reset();
+    } else {
+      contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
+    }
   }
   contenders = decided(std::move(contenders), ground);
 
@@ -124,6 +149,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
                                                     ground.likelihood, contenders.evidences);
   w.rival_share = rival_share(contenders.fits, ground.likelihood, contenders.evidences);
   w.noise_inflation = seen.noise_inflation;
+  w.white_variance = seen.white_variance;
   w.correlation_length = seen.correlation_length;
   w.inflation = seen.noise_inflation * seen.few_residuals + stated.coherent_variance;
   const auto b = static_cast<std::size_t>(w.best);
@@ -133,16 +159,12 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   if (const auto& on_reduced = contenders.evidences.on_reduced[b]; on_reduced && w.canonical[b]) {
     w.moment = covariance_of_valley(*on_reduced, *w.canonical[b], ground.reduced, w.inflation);
   }
-  w.starts = std::move(sided.others);
-  w.starts.insert(w.starts.begin(),
-                  {sided.sides, warm_start_from(contenders.coarse, arcs.smooth.reduced)});
+  w.starts = starts_of(sided, contenders, arcs);
   w.fits = std::move(contenders.fits);
   w.coarse = std::move(contenders.coarse);
   w.sides = std::move(sided.sides);
   w.reduced = std::move(sided.reduced);
-  // Of evidence with the noise integrated out, where it is not known; what was seen to be more than
-  // that tempers it.
-  w.sides_margin = sided.margin / (seen.likelihood ? seen.noise_inflation : 1.0);
+  w.sides_margin = sided.margin;
   w.sigma = arcs.sigma;
   w.data = std::move(arcs.data);
   w.smooth = std::move(arcs.smooth);

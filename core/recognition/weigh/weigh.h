@@ -50,6 +50,7 @@ struct Weighing {
   /// What covariances are to be multiplied with: correlation, misfit and stated form error.
   double inflation = 1.0;
   double noise_inflation = 1.0;     ///< of it, without the stated form error
+  double white_variance = 1.0;      ///< of the noise, in units of sigma^2
   double counted_chi2 = 0.0;        ///< of `best`, with what may be stated form error tempered
   double correlation_length = 0.0;  ///< normalised; 0 = white
 };

@@ -227,6 +227,26 @@ TEST(FreeForm, PathsOfNoClassAreTakenAndRoughOnesCost) {
   EXPECT_LT(free_form(fitted.smooth, 0.01).log_occam, paths.log_occam);
 }
 
+/// A probe at rest: sections follow one another through a cloud, from each end predicted for the
+/// next one's beginning. Covariances that rounding made indefinite left no evidence.
+TEST(FreeForm, OfACloudHasEvidence) {
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> scatter(0.0, 0.25);
+  for (const double sigma : {1e-2, 1e-3, 1e-5, 1e-8}) {
+    for (int run = 0; run < 4; ++run) {
+      FitData data;
+      for (int i = 0; i < 1500; ++i) {
+        data.points.push_back({{scatter(rng), scatter(rng)}, {0.0, 0.0}, 1.0 / sigma, 0.0});
+      }
+      data.patches.push_back({0, data.points.size()});
+      const SmoothModel smooth = fit_smooth_model(&data, true);
+      const FreeForm paths = free_form(smooth, 1.0);
+      EXPECT_TRUE(std::isfinite(paths.log_occam)) << sigma;
+      EXPECT_TRUE(std::isfinite(paths.chi2) && paths.chi2 > 0.0) << sigma;
+    }
+  }
+}
+
 TEST(FreeForm, IsTheSameAlongAndAgainstTravel) {
   std::mt19937_64 rng = test::test_rng();
   int single = 0;
