@@ -64,7 +64,7 @@ Whitened whitened(const std::vector<Step>& steps, double variance, double length
 
 double log_coherent_evidence(const Likelihood& likelihood, const ClassEvidence& evidence,
                              const CanonicalFit& placed, const FitData& reduced, double sigma,
-                             double samples, double chi2) {
+                             double samples, double chi2, double scatter) {
   const std::vector<Step> steps = steps_of(placed, reduced, sigma);
   double white = 0.0;
   double whole = 0.0;
@@ -73,8 +73,8 @@ double log_coherent_evidence(const Likelihood& likelihood, const ClassEvidence& 
     whole += std::isfinite(step.from_last) ? step.from_last : 0.0;
   }
   const auto log_of = [&](const Whitened& residuals) {
-    return likelihood.log_evidence(std::max(chi2 - white, 0.0) + residuals.chi2, evidence.log_occam,
-                                   evidence.determined) -
+    return likelihood.log_evidence(std::max(chi2 - white, scatter) + residuals.chi2,
+                                   evidence.log_occam, evidence.determined) -
            0.5 * residuals.log_determinant;
   };
   // Variances, in units of the noise's, from where the mean of all samples hides the deviation to

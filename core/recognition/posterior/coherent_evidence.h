@@ -11,10 +11,11 @@ namespace palpate {
 /// Integral over amplitude and length of a deviation that is coherent along the curve (Markov's
 /// law), none being as probable beforehand as any: log of the evidence, as Likelihood::log_evidence
 /// has it without such. `placed`: the class on `reduced`; `chi2`: its chi-square on all `samples`
-/// points. `sigma`: of the typical point. What two curves differ by smoothly, such a deviation may
+/// points, `scatter` what these leave about the reduced ones whatever the class. `sigma`: of the
+/// typical point. What two curves differ by smoothly, such a deviation may
 /// be: data then tell them apart no better than they tell the deviation to be small. O(points).
 double log_coherent_evidence(const Likelihood& likelihood, const ClassEvidence& evidence,
                              const CanonicalFit& placed, const FitData& reduced, double sigma,
-                             double samples, double chi2);
+                             double samples, double chi2, double scatter);
 
 }  // namespace palpate

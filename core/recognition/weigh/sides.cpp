@@ -87,7 +87,7 @@ double log_evidence_of(const Way& way, const Arcs& arcs, const Likelihood& likel
   }
   return evidence ? log_coherent_evidence(likelihood, *evidence, *placed, way.reduced, arcs.sigma,
                                           static_cast<double>(arcs.data.points.size()),
-                                          way.refined->chi2)
+                                          way.refined->chi2, arcs.smooth.chi2)
                   : kNone;
 }
 

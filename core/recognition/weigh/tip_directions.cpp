@@ -18,17 +18,17 @@ Vec2 direction_at(const Curve& curve, const CanonicalFit& fit, std::size_t i, co
 }
 
 /// Whether a patch was travelled as the curve's parameter rises (1) or falls (-1): as most of the
-/// samples that its points stand for have it. A patch runs along its curve one way, whatever the
-/// direction that noise gave to one of its points. 1 where no point has a direction.
-double sense_of(const Curve& curve, const CanonicalFit& fit, const FitData& touches,
+/// samples that `path` stands for have it. A patch runs along its curve one way, whatever the
+/// direction that noise gave to one of its points. 0 where no point of `path` has a direction.
+double sense_of(const Curve& curve, const CanonicalFit& fit, const FitData& path,
                 const PatchSpan& patch) {
   double sum = 0.0;
   for (std::size_t i = patch.begin; i < patch.end; ++i) {
-    const FitPoint& point = touches.points[i];
+    const FitPoint& point = path.points[i];
     sum += point.inverse_sigma * point.inverse_sigma *
-           direction_at(curve, fit, i, touches.frame).dot(point.tangent);
+           direction_at(curve, fit, i, path.frame).dot(point.tangent);
   }
-  return sum < 0.0 ? -1.0 : 1.0;
+  return sum < 0.0 ? -1.0 : (sum > 0.0 ? 1.0 : 0.0);
 }
 
 /// The angle between two directions; pi where there was none. [rad]
@@ -63,7 +63,10 @@ double set_directions(DirectionsOf which, const CanonicalFit& fit, const SmoothM
   }
   auto section = smooth.sections.begin();
   for (const PatchSpan& patch : touches->patches) {
-    const double sense = sense_of(*curve, fit, *touches, patch);
+    // As the smooth model saw it travelled: sides are told by that, and a sense that followed each
+    // round's curve could turn about within some rounds.
+    double sense = sense_of(*curve, fit, smooth.reduced, patch);
+    if (sense == 0.0) sense = sense_of(*curve, fit, *touches, patch) < 0.0 ? -1.0 : 1.0;
     for (; section != smooth.sections.end() && section->begin < patch.end; ++section) {
       if (which == DirectionsOf::KeptPoints && !section->kept) {
         continue;
@@ -94,7 +97,7 @@ std::vector<double> bends_of(const CanonicalFit& fit, const FitData& touches) {
     for (std::size_t i = touches.patches[p].begin; i < touches.patches[p].end; ++i) {
       sum += geometry(*curve, fit.points[i].t).kappa;
     }
-    bends[p] = sense_of(*curve, fit, touches, touches.patches[p]) * sum;
+    bends[p] = sense_of(*curve, fit, touches, touches.patches[p]) < 0.0 ? -sum : sum;
   }
   return bends;
 }
