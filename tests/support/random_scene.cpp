@@ -170,7 +170,8 @@ void touch(const Piece& piece, const SceneOptions& options, double scale, std::m
       const double arc = begin + (end - begin) * i / (options.points_per_patch - 1);
       const double t = table.parameter_at(arc);
       Vec2 world = scene->world_T_curve * Vec2(scale * piece.position(t));
-      world += Vec2(noise(rng), noise(rng));
+      const double y = noise(rng);  // drawn one by one: compilers differ in the order of arguments
+      world += Vec2(noise(rng), y);
       samples.push_back(world);
       parameters.push_back(t);
     }
