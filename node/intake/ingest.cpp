@@ -16,10 +16,12 @@ bool all_finite(double x, double y, double sigma) {
   return std::isfinite(x) && std::isfinite(y) && std::isfinite(sigma);
 }
 
-/// Whether it says anything beside its position, stamp and sigma. What is set to 0 is said.
-bool has_detail(const v1::ContactSample& sample) {
-  return sample.has_normal_x() || sample.has_normal_y() || sample.has_normal_sigma_rad() ||
-         sample.has_cov_xx_m2() || sample.has_cov_xy_m2() || sample.has_cov_yy_m2();
+/// Whether any of it is said; what is set to 0 is said.
+bool has_normal(const v1::ContactSample& sample) {
+  return sample.has_normal_x() || sample.has_normal_y() || sample.has_normal_sigma_rad();
+}
+bool has_covariance(const v1::ContactSample& sample) {
+  return sample.has_cov_xx_m2() || sample.has_cov_xy_m2() || sample.has_cov_yy_m2();
 }
 
 RejectReason take_normal(const v1::ContactSample& sample, SampleDetail* detail) {
@@ -54,11 +56,8 @@ RejectReason take_covariance(const v1::ContactSample& sample, double max_sigma_m
 RejectReason take_detail(const v1::ContactSample& sample, double max_sigma_m,
                          SampleDetail* detail) {
   RejectReason reason = kPassed;
-  if (sample.has_normal_x() || sample.has_normal_y() || sample.has_normal_sigma_rad()) {
-    reason = take_normal(sample, detail);
-  }
-  if (reason == kPassed &&
-      (sample.has_cov_xx_m2() || sample.has_cov_xy_m2() || sample.has_cov_yy_m2())) {
+  if (has_normal(sample)) reason = take_normal(sample, detail);
+  if (reason == kPassed && has_covariance(sample)) {
     reason = take_covariance(sample, max_sigma_m, detail);
   }
   return reason;
@@ -144,7 +143,7 @@ RejectReason ContactDecoder::take_samples() {
       return v1::REJECT_REASON_SIGMA;
     }
     message_.samples.push_back({Vec2(x, y), sigma, sample.stamp_ns()});
-    if (has_detail(sample)) {
+    if (has_normal(sample) || has_covariance(sample)) {
       message_.details.resize(count);
       SampleDetail& detail = message_.details[message_.samples.size() - 1];
       const RejectReason reason = take_detail(sample, limits_.max_sigma_m, &detail);

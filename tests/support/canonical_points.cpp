@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/curves/length_powers.h"
 #include "core/invariants/signature_fit/canonical_models.h"
 #include "tests/support/test_rng.h"
 
@@ -124,18 +125,6 @@ std::vector<MeasuredGeometry> measured(std::span<const TreePoint> points) {
     result.push_back(measured_geometry(point.estimate, point.patch));
   }
   return result;
-}
-
-Eigen::Vector3d length_powers(CurveClass curve_class) {
-  switch (curve_class) {
-    case CurveClass::CubicalParabola:
-      return {-2.0, 0.0, 0.0};
-    case CurveClass::SemiCubicalParabola:
-    case CurveClass::CubicSpline:
-      return {-0.5, 0.0, 0.5};
-    default:
-      return {1.0, 1.0, 0.0};
-  }
 }
 
 PlacedCurve scaled(const PlacedCurve& curve, double factor) {

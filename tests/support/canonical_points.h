@@ -40,7 +40,4 @@ std::vector<MeasuredGeometry> measured(std::span<const TreePoint> points);
 /// The curve with all lengths multiplied by `factor`.
 PlacedCurve scaled(const PlacedCurve& curve, double factor);
 
-/// Powers of the length unit by which the shape parameters scale.
-Eigen::Vector3d length_powers(CurveClass curve_class);
-
 }  // namespace palpate::test

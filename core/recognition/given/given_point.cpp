@@ -2,12 +2,13 @@
 
 #include <cmath>
 
+#include "core/recognition/samples/sample_detail.h"
+
 namespace palpate {
 
 double noise_of(const GivenPoint& point, double default_sigma_m) {
-  const Eigen::Vector3d& c = point.covariance_m2;
-  if (c.x() > 0.0) {
-    return std::sqrt(0.5 * (c.x() + c.z()));
+  if (point.covariance_m2.x() > 0.0) {
+    return mean_sigma_m(point.covariance_m2);
   }
   return point.sigma_m > 0.0 ? point.sigma_m : default_sigma_m;
 }

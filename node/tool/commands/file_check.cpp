@@ -27,25 +27,14 @@ std::map<std::string, std::vector<CheckedPatch>> checked_patches(const ContactGr
     const auto [place, is_new] =
         place_of.try_emplace({run.context.probe, run.context.patch}, patches.size());
     if (is_new) {
-      patches.push_back({run.context.patch,
-                         group.object,
-                         run.context.tip_radius_m,
-                         {},
-                         0.0,
-                         0,
-                         run.context.material_side});
+      patches.push_back(
+          {run.context.patch, group.object, run.context.tip_radius_m, run.context.material_side});
     }
     CheckedPatch& patch = patches[place->second];
     for (std::size_t i = 0; i < run.samples.size(); ++i) {
       const ContactSample& sample = run.samples[i];
-      if (!run.details.empty()) {
-        patch.normals.resize(patch.positions.size(), Vec2::Zero());
-        patch.normals.push_back(run.details[i].normal);
-      }
-      patch.positions.push_back(sample.position_m);
-      const double stated = sample.sigma_m > 0.0 ? sample.sigma_m : sigma_m;
-      patch.sigma_squares += stated * stated;
-      patch.with_sigma += stated > 0.0 ? 1 : 0;
+      patch.take(sample.position_m, sample.sigma_m > 0.0 ? sample.sigma_m : sigma_m,
+                 run.details.empty() ? nullptr : &run.details[i]);
     }
   }
   return probes;

@@ -5,6 +5,7 @@
 
 #include "core/local/noise.h"
 #include "node/security/decode_from.h"
+#include "node/tool/commands/normal_check.h"
 #include "node/tool/text/quantity.h"
 
 namespace palpate {
@@ -90,59 +91,17 @@ std::string cure_of(v1::RejectReason reason) {
   }
 }
 
-/// Measured normals beside the direction of travel.
-struct NormalsSeen {
-  std::size_t judged = 0;
-  double along = 0.0;          ///< sum of |cosine| of the angle to the travel
-  double into_material = 0.0;  ///< sum of cosines of the angle to where the material is stated
-  std::size_t with_side = 0;   ///< judged where a side is stated
-};
-
-void look_at_normals(const CheckedPatch& patch, NormalsSeen* seen) {
-  const std::size_t n = patch.normals.size();
-  // A chord of a tenth of the patch: noise hardly turns it, and the curve is not yet far from it.
-  const std::size_t reach = std::max<std::size_t>(n / 20, 1);
-  for (std::size_t i = 0; n > 1 && i < n; ++i) {
-    const Vec2 travel =
-        patch.positions[std::min(i + reach, n - 1)] - patch.positions[i > reach ? i - reach : 0];
-    if (patch.normals[i].isZero(0.0) || travel.isZero(0.0)) continue;
-    const Vec2 along = travel.normalized();
-    ++seen->judged;
-    seen->along += std::abs(along.dot(patch.normals[i]));
-    if (patch.material_side == MaterialSide::Unspecified) continue;
-    const double side = patch.material_side == MaterialSide::Left ? 1.0 : -1.0;
-    ++seen->with_side;
-    seen->into_material += side * left_of(along).dot(patch.normals[i]);
-  }
-}
-
-void judge_normals(const std::string& probe, const std::vector<CheckedPatch>& patches,
-                   std::vector<Finding>* findings) {
-  NormalsSeen seen;
-  for (const CheckedPatch& patch : patches) look_at_normals(patch, &seen);
-  if (seen.judged == 0) return;
-  // Between across the travel, where this is 0 but for noise, and along it, where it is 1.
-  constexpr double kAlong = 0.7;
-  constexpr double kInto = 0.5;  // of -1 for all right and 1 for all wrong
-  if (seen.along > kAlong * static_cast<double>(seen.judged)) {
-    findings->push_back({Severity::Error, probe, "the measured normals lie along the travel",
-                         "normal_x and normal_y are the surface's normal in the frame of the "
-                         "positions: are these tangents, or in a frame of the probe's own?",
-                         true});
-  } else if (seen.into_material > kInto * static_cast<double>(seen.with_side)) {
-    findings->push_back({Severity::Error, probe,
-                         "the measured normals point to where material_side puts the material",
-                         "normals point out of the material; material_side is that of the "
-                         "direction of travel",
-                         true});
-  } else {
-    findings->push_back({Severity::Note, probe,
-                         count_text(seen.judged, "measured normals, across the travel"),
-                         "as it should be"});
-  }
-}
-
 }  // namespace
+
+void CheckedPatch::take(const Vec2& position_m, double sigma_m, const SampleDetail* detail) {
+  if (detail != nullptr) {
+    normals.resize(positions.size(), Vec2::Zero());
+    normals.push_back(detail->normal);
+  }
+  positions.push_back(position_m);
+  sigma_squares += sigma_m * sigma_m;
+  with_sigma += sigma_m > 0.0 ? 1 : 0;
+}
 
 void StreamCheck::take(std::size_t frame_count, std::string_view topic, std::string_view payload,
                        std::int64_t now_unix_ns, const Sender& sender) {
@@ -173,19 +132,14 @@ void StreamCheck::take(std::size_t frame_count, std::string_view topic, std::str
       probe.patches.erase(probe.patches.begin());
     }
     probe.patches.push_back(
-        {message.patch, message.object, message.tip_radius_m, {}, 0.0, 0, message.material_side});
+        {message.patch, message.object, message.tip_radius_m, message.material_side});
   }
   CheckedPatch& patch = probe.patches.back();
   for (std::size_t i = 0; i < message.samples.size(); ++i) {
     const ContactSample& sample = message.samples[i];
     if (patch.positions.size() < kMostKept) {
-      if (!message.details.empty()) {
-        patch.normals.resize(patch.positions.size(), Vec2::Zero());
-        patch.normals.push_back(message.details[i].normal);
-      }
-      patch.positions.push_back(sample.position_m);
-      patch.sigma_squares += sample.sigma_m * sample.sigma_m;
-      patch.with_sigma += sample.sigma_m > 0.0 ? 1 : 0;
+      patch.take(sample.position_m, sample.sigma_m,
+                 message.details.empty() ? nullptr : &message.details[i]);
     }
     if (sample.stamp_ns <= 0) {
       ++probe.stamps_missing;

@@ -30,11 +30,14 @@ struct CheckedPatch {
   std::uint32_t number = 0;
   std::uint64_t object = 0;
   double tip_radius_m = 0.0;
-  std::vector<Vec2> positions;
+  MaterialSide material_side = MaterialSide::Unspecified;
+  std::vector<Vec2> positions = {};
+  std::vector<Vec2> normals = {};  ///< by position, zero where none; empty where there are none
   double sigma_squares = 0.0;
   std::size_t with_sigma = 0;
-  MaterialSide material_side = MaterialSide::Unspecified;
-  std::vector<Vec2> normals = {};  ///< by position, zero where none; empty where there are none
+
+  /// `detail`: nullptr where the sample says no more.
+  void take(const Vec2& position_m, double sigma_m, const SampleDetail* detail);
 };
 
 /// Where patches came from: the cures differ.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/curves/curve.h"
+#include "core/curves/length_powers.h"
 #include "tests/support/canonical_points.h"
 #include "tests/support/joint_error.h"
 #include "tests/support/scene_data.h"
@@ -32,7 +33,7 @@ constexpr double kProbability = 0.03;
 test::Scene as_truth(const Recognition& answer, const Pose2& motion, double factor) {
   test::Scene truth;
   truth.curve_class = answer.shape.curve_class;
-  const Eigen::Vector3d powers = test::length_powers(truth.curve_class);
+  const Eigen::Vector3d powers = length_powers(truth.curve_class);
   for (Eigen::Index k = 0; k < 3; ++k) {
     truth.values[k] = answer.shape.values[k] * std::pow(factor, powers[k]);
   }
@@ -77,7 +78,7 @@ void expect_same(const Recognition& answer, const Recognition& other, const Pose
     // Shape parameters only: a motion mixes the variances of the pose.
     const auto letters =
         static_cast<Eigen::Index>(parameter_letters(answer.shape.curve_class).size());
-    const Eigen::Vector3d powers = test::length_powers(answer.shape.curve_class);
+    const Eigen::Vector3d powers = length_powers(answer.shape.curve_class);
     for (Eigen::Index k = 0; k < letters; ++k) {
       constexpr double kSameDeviation = 0.02;  // relative
       EXPECT_NEAR(

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <vector>
 
+#include "core/curves/length_powers.h"
 #include "core/recognition/recognizer.h"
 #include "core/recognition/tree/recognition_tree.h"
 #include "tests/support/calibration.h"
@@ -93,7 +94,7 @@ TEST_P(TreeOfEveryClass, ClassAndShapeDoNotDependOnUnitPlaceOrOrder) {
       }
       const TreeResult other = recognise_by_tree(changed);
       ASSERT_EQ(other.shape.curve_class, result.shape.curve_class) << factor;
-      const Eigen::Vector3d powers = test::length_powers(GetParam());
+      const Eigen::Vector3d powers = length_powers(GetParam());
       for (int k = 0; k < 3; ++k) {
         const double back = other.shape.values[k] * std::pow(factor, -powers[k]);
         // Both are the same minimum, each found to far less than its standard deviation.
