@@ -3,25 +3,39 @@
 namespace palpate {
 namespace {
 
+constexpr char kDisagreeOnCurve[] =
+    "and we do not agree on CURVE: one of us has keys, the other none";
+
 std::string text_of(const SocketEvent& told) {
   if (told.event == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH) {
     return "refuses our key: it is not on its list of clients (--allow-clients)";
   }
   if (told.value == ZMQ_PROTOCOL_ERROR_ZMTP_MECHANISM_MISMATCH) {
-    return "and we do not agree on CURVE: one of us has keys, the other none";
+    return kDisagreeOnCurve;
   }
   return "does not speak as a recognizer does (ZMTP)";
 }
 
 }  // namespace
 
-// Only what libzmq gives up after, once a connection: nothing piles up where nobody asks.
+// Few events a connection: nothing piles up where nobody asks.
 HandshakeWatch::HandshakeWatch(zmq::context_t& context, zmq::socket_t& socket)
     : monitor_(context, socket,
-               ZMQ_EVENT_HANDSHAKE_FAILED_AUTH | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL) {}
+               ZMQ_EVENT_HANDSHAKE_FAILED_AUTH | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
+                   ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_SUCCEEDED) {}
 
 const std::string& HandshakeWatch::refusal() {
-  while (const auto told = monitor_.next()) refusal_ = text_of(*told);
+  // Who starts or ends just then closes one or two.
+  constexpr int kClosedInARow = 8;
+  while (const auto told = monitor_.next()) {
+    if (told->event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED) {
+      closed_in_a_row_ = 0;
+    } else if (told->event != ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL) {
+      refusal_ = text_of(*told);
+    } else if (++closed_in_a_row_ == kClosedInARow) {
+      refusal_ = std::string(kDisagreeOnCurve) + "; or it takes no more peers";
+    }
+  }
   return refusal_;
 }
 

@@ -9,8 +9,9 @@
 namespace palpate {
 
 /// Who connects and is refused hears it once, and libzmq does not try again: without this it looks
-/// as if nobody were there. Belongs to the socket's thread, and must be destroyed before the
-/// socket.
+/// as if nobody were there. A listener that disagrees on CURVE may close the connection before it
+/// has said so, time after time: that counts as well. Belongs to the socket's thread, and must be
+/// destroyed before the socket.
 class HandshakeWatch {
  public:
   /// Make it before the socket connects. Throws zmq::error_t where the monitor cannot be made.
@@ -26,6 +27,7 @@ class HandshakeWatch {
  private:
   SocketMonitor monitor_;
   std::string refusal_;
+  int closed_in_a_row_ = 0;  ///< connections, before they were agreed on
 };
 
 }  // namespace palpate

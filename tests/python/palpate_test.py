@@ -268,7 +268,7 @@ with palpate.Planner({bus.results!r}, **keys) as planner, palpate.Probe("finger"
 try:
     palpate.Probe("finger", {bus.contacts!r}, timeout=20)
 except ConnectionRefusedError as error:
-    print(str(error).split(" ", 4)[4])
+    print(str(error).split(" ", 4)[4].split(";")[0])
 try:
     palpate.Planner({bus.results!r}, secret_key="{bus.folder}/finger.public", server_key="{bus.folder}/node.public")
 except ValueError as error:

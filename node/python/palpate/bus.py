@@ -40,9 +40,12 @@ class _Peer:
         self._socket.setsockopt(zmq.TCP_KEEPALIVE, 1)
         self._socket.setsockopt(zmq.TCP_KEEPALIVE_IDLE, 1)  # [s]
         _secure(self._socket, secret_key, server_key)
-        # A refusal is told once, and libzmq does not try again.
+        # A refusal is told once, and libzmq does not try again; who disagrees on CURVE may close before it has said so.
         self._refusals = self._socket.get_monitor_socket(zmq.EVENT_HANDSHAKE_FAILED_AUTH |
-                                                         zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL)
+                                                         zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL |
+                                                         zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL |
+                                                         zmq.EVENT_HANDSHAKE_SUCCEEDED)
+        self._closed_in_a_row = 0
         self.endpoint = endpoint
 
     def _wait(self, timeout: float) -> bool:
@@ -50,13 +53,27 @@ class _Peer:
         poller = zmq.Poller()
         poller.register(self._socket, zmq.POLLIN)
         poller.register(self._refusals, zmq.POLLIN)
-        ready = dict(poller.poll(max(0, int(1000 * timeout))))
-        if self._refusals not in ready:
-            return bool(ready)
-        is_key = recv_monitor_message(self._refusals)["event"] == zmq.EVENT_HANDSHAKE_FAILED_AUTH
-        raise ConnectionRefusedError(f"the recognizer at {self.endpoint} " + (
-            "refuses our key: it is not on its list of clients" if is_key else
-            "and we do not agree on CURVE: one of us has keys, the other none"))
+        end = time.monotonic() + timeout
+        while True:
+            ready = dict(poller.poll(max(0, int(1000 * (end - time.monotonic())))))
+            if self._refusals not in ready:
+                return bool(ready)
+            self._hear(recv_monitor_message(self._refusals)["event"])
+
+    def _hear(self, event: int) -> None:
+        closed_in_a_row = 8  # who starts or ends just then closes one or two
+        why = "and we do not agree on CURVE: one of us has keys, the other none"
+        if event == zmq.EVENT_HANDSHAKE_SUCCEEDED:
+            self._closed_in_a_row = 0
+            return
+        if event == zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL:
+            self._closed_in_a_row += 1
+            if self._closed_in_a_row < closed_in_a_row:
+                return
+            why += "; or it takes no more peers"
+        elif event == zmq.EVENT_HANDSHAKE_FAILED_AUTH:
+            why = "refuses our key: it is not on its list of clients"
+        raise ConnectionRefusedError(f"the recognizer at {self.endpoint} {why}")
 
     def close(self) -> None:
         self._socket.disable_monitor()
