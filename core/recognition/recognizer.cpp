@@ -287,8 +287,11 @@ class Recognizer::Impl {
     if (const auto kept =
             without_outliers(w, data, sigma_known, options_.false_outlier_probability)) {
       // A search is not followed: the outliers may have led it astray.
-      const std::vector<SidedStart> nearer =
+      std::vector<SidedStart> nearer =
           starts.empty() ? std::vector<SidedStart>{} : std::move(w.starts);
+      for (SidedStart& sided : nearer) {
+        sided.start.no_conic = false;  // among the outliers
+      }
       w = weigh(*kept, sigma_known, patches, weigh_options(), nearer);
       weighed.outliers = left_out(data, *kept);
     }

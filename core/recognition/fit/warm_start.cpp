@@ -72,6 +72,13 @@ std::optional<PolynomialFit> carried(const std::optional<PolynomialFit>& fit, co
 
 }  // namespace
 
+const WarmStart* start_for(std::span<const SidedStart> starts, std::span<const int> sides) {
+  const auto start = std::find_if(starts.begin(), starts.end(), [&](const SidedStart& s) {
+    return std::equal(s.sides.begin(), s.sides.end(), sides.begin(), sides.end());
+  });
+  return start == starts.end() ? nullptr : &start->start;
+}
+
 WarmStart warm_start_from(const ClassFits& fits, const FitData& reduced) {
   WarmStart warm;
   warm.frame = reduced.frame;

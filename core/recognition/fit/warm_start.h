@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/recognition/fit/class_fits.h"
@@ -13,6 +14,9 @@ struct WarmStart {
   PolynomialFits polynomials;
   Pose2 frame;         ///< FitData's, that they were fitted in
   double scale = 1.0;  ///< likewise
+  /// No conic has an optimum that was touched, and no ellipse was found that comes near all the
+  /// same (weigh/conic_mode.h): not to be looked for again.
+  bool no_conic = false;
 };
 
 /// One for each way in which the tips were taken to lie beside the patches (tip_sides.h).
@@ -20,6 +24,9 @@ struct SidedStart {
   std::vector<int> sides;
   WarmStart start;
 };
+
+/// The start for those sides; nullptr where there is none.
+const WarmStart* start_for(std::span<const SidedStart> starts, std::span<const int> sides);
 
 /// `fits` on reduced points. Where none of them fits, the next recognition does not search again
 /// either: the search has just been made.

@@ -1,6 +1,5 @@
 #include "core/recognition/posterior/class_evidence.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -8,14 +7,18 @@
 #include <numbers>
 #include <utility>
 
+#include "core/numerics/small_cholesky.h"
+#include "core/numerics/triangular_root.h"
+
 namespace palpate {
 namespace {
 
 /// -log of likelihood times prior.
 double potential(const TouchedCurve& curve) { return 0.5 * curve.chi2 - curve.log_prior; }
 
-double log_determinant(const Eigen::LLT<TouchedMatrix>& llt) {
-  return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
+/// Of what `root` is the root of.
+double log_determinant(const TouchedMatrix& root) {
+  return 2.0 * root.diagonal().array().log().sum();
 }
 
 /// By the coordinates in units of the widths.
@@ -34,12 +37,12 @@ TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve
   constexpr double kSettled = 2e-2;  // of the potential: odds right to a fiftieth
   double halving = 1.0;
   for (int i = 0; i < most_steps; ++i) {
-    const Eigen::LLT<TouchedMatrix> llt(hessian_of(curve, fixed));
+    const TouchedMatrix root = root_of(curve, fixed);
     TouchedVector slope = curve.gradient - prior_gradient(touch, curve);
     if (fixed >= 0) {
       slope[fixed] = 0.0;
     }
-    const TouchedVector step = llt.solve(slope);
+    const TouchedVector step = solve_cholesky(root, slope);
     if (!(0.5 * halving * slope.dot(step) > kSettled)) {
       break;
     }
@@ -59,10 +62,9 @@ std::optional<TouchedCurve> slice(const Touch& touch, const FitData& data, const
                                   int k, double value) {
   // The others follow as the linear model says.
   const double moved = (value - from.z[k]) / from.widths[k];
-  TouchedVector pull = from.information.col(k);
+  TouchedVector pull = from.root * from.root.row(k).transpose();
   pull[k] = 0.0;
-  const Eigen::LLT<TouchedMatrix> llt(hessian_of(from, k));
-  TouchedVector step = -moved * llt.solve(pull);
+  TouchedVector step = -moved * solve_cholesky(root_of(from, k), pull);
   step[k] = 0.0;
   for (const double part : {1.0, 0.0}) {
     TouchedVector z = from.z + part * step.cwiseProduct(from.widths);
@@ -77,8 +79,7 @@ std::optional<TouchedCurve> slice(const Touch& touch, const FitData& data, const
 /// log of the density at a slice: the others integrated by Laplace's formula, coordinate k in units
 /// of its width at the optimum.
 double log_density(const TouchedCurve& curve, int k) {
-  const Eigen::LLT<TouchedMatrix> llt(hessian_of(curve, k));
-  return -potential(curve) - 0.5 * log_determinant(llt) - std::log(curve.widths[k]);
+  return -potential(curve) - 0.5 * log_determinant(root_of(curve, k)) - std::log(curve.widths[k]);
 }
 
 struct Slice {
@@ -92,20 +93,27 @@ double longest_walk(CurveClass curve_class, int k) {
                                                       : std::numeric_limits<double>::infinity();
 }
 
-/// Slices from `start` (not included) in one direction, `step` at first, until the density has
-/// fallen to nothing or the class ends. The step is doubled where the log density changes by less
-/// than `smallest_change`.
+/// How slices are laid.
+struct Walk {
+  double step = 0.0;             ///< the first
+  double smallest_change = 0.0;  ///< of the log density: after a smaller one the step is doubled
+  double nothing = 0.0;          ///< of it: that far below the highest there is nothing left
+};
+
+/// Slices from `start` (not included) in one direction, until nothing of the `highest` log density
+/// seen is left or the class ends.
 std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& start, int k,
-                        double step, double smallest_change) {
+                        double direction, const Walk& how, double* highest) {
   constexpr std::size_t kMostSlices = 14;
   constexpr int kMostTries = 20;
-  constexpr double kNothing = 7.0;        // of the log density: a thousandth
-  constexpr double kLargestChange = 2.0;  // of it, from slice to slice
+  // From slice to slice: a normal law falls by 2.5 from two deviations to three.
+  constexpr double kLargestChange = 3.0;
   const double longest = longest_walk(touch.curve_class, k);
   std::vector<Slice> slices;
   slices.reserve(kMostSlices);
   const Slice* last = &start;
-  double top = start.log_density;
+  double& top = *highest;
+  double step = direction * how.step;
   for (int tried = 0; tried < kMostTries && slices.size() < kMostSlices; ++tried) {
     const double room = longest - std::abs(last->curve.z[k] - start.curve.z[k]);
     if (!(room > 0.0)) {
@@ -119,17 +127,17 @@ std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& st
     }
     const double density = log_density(*curve, k);
     const double change = std::abs(density - last->log_density);
-    if (change > kLargestChange && last->log_density > top - 0.5 * kNothing) {
+    if (change > kLargestChange && last->log_density > top - 0.5 * how.nothing) {
       step *= 0.5;
       continue;
     }
     slices.push_back({std::move(*curve), density});
     last = &slices.back();
     top = std::max(top, density);
-    if (density < top - kNothing) {
+    if (density < top - how.nothing) {
       break;
     }
-    if (change < smallest_change) {
+    if (change < how.smallest_change) {
       step *= 2.0;
     }
   }
@@ -139,7 +147,7 @@ std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& st
 /// The coordinate of the shape that the data leave the widest, where that is too wide for a normal
 /// law; -1 where none is.
 int widest_coordinate(const Touch& touch, const TouchedCurve& best, const TouchedMatrix& covariance,
-                      const FitData& data, Integration integration) {
+                      const FitData& data, Slices slices) {
   // Coordinates are logarithms, slopes and angles: over a tenth of their unit, the second-order
   // term of a residual is a twentieth of the first.
   constexpr double kLinear = 0.1;
@@ -167,7 +175,7 @@ int widest_coordinate(const Touch& touch, const TouchedCurve& best, const Touche
     if (ends_at_zero && std::abs(best.z[k]) < kFarFromEnd * deviation) {
       nonlinear = std::max(nonlinear, 1.0);
     }
-    if (integration == Integration::Valley) {
+    if (slices == Slices::ForMoment) {
       nonlinear = std::max(nonlinear, deviation * deviation * narrow / kLeastBend);
     }
     if (nonlinear >= most) {
@@ -178,24 +186,28 @@ int widest_coordinate(const Touch& touch, const TouchedCurve& best, const Touche
   return widest;
 }
 
-/// The integral over coordinate k by trapezoids between slices.
-void integrate(const FitData& data, TouchedCurve best, double first_step, double smallest_change,
-               ClassEvidence* evidence) {
+/// log of the integral by Laplace's formula, all coordinates in units of the widths.
+double log_mass(const TouchedCurve& mode) {
+  return -potential(mode) - 0.5 * log_determinant(mode.root);
+}
+
+/// log of the integral over the widest coordinate, by trapezoids between slices, which become the
+/// nodes. nullopt where the class is a single slice wide.
+std::optional<double> integrate(const FitData& data, const Walk& how, ClassEvidence* evidence) {
   const int k = evidence->widest;
-  const double density = log_density(best, k);
+  TouchedCurve mode = evidence->nodes[evidence->mode].curve;
+  const double density = log_density(mode, k);
   std::vector<Slice> slices;
-  slices.push_back({std::move(best), density});
+  slices.push_back({std::move(mode), density});
   const Slice start = slices.front();
-  std::vector<Slice> behind = walk(evidence->touch, data, start, k, -first_step, smallest_change);
-  std::vector<Slice> ahead = walk(evidence->touch, data, start, k, first_step, smallest_change);
+  double top = density;
+  std::vector<Slice> behind = walk(evidence->touch, data, start, k, -1.0, how, &top);
+  std::vector<Slice> ahead = walk(evidence->touch, data, start, k, 1.0, how, &top);
+  const std::size_t middle = behind.size();
   slices.insert(slices.begin(), std::make_move_iterator(behind.rbegin()),
                 std::make_move_iterator(behind.rend()));
   slices.insert(slices.end(), std::make_move_iterator(ahead.begin()),
                 std::make_move_iterator(ahead.end()));
-  double top = density;
-  for (const Slice& s : slices) {
-    top = std::max(top, s.log_density);
-  }
   const std::size_t n = slices.size();
   std::vector<double> shares(n);
   double sum = 0.0;
@@ -206,28 +218,30 @@ void integrate(const FitData& data, TouchedCurve best, double first_step, double
     sum += shares[i];
   }
   if (!(sum > 0.0)) {
-    return;  // the class is a single slice wide: Laplace's formula stands
+    return std::nullopt;
   }
   evidence->nodes.clear();
   for (std::size_t i = 0; i < n; ++i) {
-    if (shares[i] > 0.0) {
+    if (i == middle) {
+      evidence->mode = evidence->nodes.size();
+    }
+    if (shares[i] > 0.0 || i == middle) {
       evidence->nodes.push_back({std::move(slices[i].curve), shares[i] / sum});
     }
   }
-  evidence->log_occam = top + std::log(sum) - 0.5 * std::log(2.0 * std::numbers::pi);
+  return top + std::log(sum) - 0.5 * std::log(2.0 * std::numbers::pi);
+}
+
+/// A prior cannot leave more than all of the likelihood: with that, the fit was no optimum.
+bool is_of_optimum(const ClassEvidence& evidence) {
+  constexpr double kLeft = 1.0;
+  return evidence.log_occam <= kLeft;
 }
 
 }  // namespace
 
-TouchedMatrix hessian_of(const TouchedCurve& curve, int fixed) {
-  TouchedMatrix hessian = curve.information;
-  hessian.diagonal().array() += 1.0;
-  if (fixed >= 0) {
-    hessian.row(fixed).setZero();
-    hessian.col(fixed).setZero();
-    hessian(fixed, fixed) = 1.0;
-  }
-  return hessian;
+TouchedMatrix root_of(const TouchedCurve& curve, int fixed) {
+  return fixed < 0 ? curve.root : root_without(curve.root, fixed);
 }
 
 std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
@@ -270,7 +284,7 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
 }
 
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
-                                         double inflation, Integration integration) {
+                                         double inflation) {
   auto touch = touch_of(fit, data);
   if (!touch) {
     return std::nullopt;
@@ -289,38 +303,52 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
   if (!first || !(std::abs(first->chi2 - fitted_chi2) <= rounding)) {
     return std::nullopt;
   }
-  const double first_chi2 = first->chi2;
   ClassEvidence evidence;
   evidence.touch = *touch;
-  TouchedCurve best = descend(*touch, data, std::move(*first), -1, kMostSteps);
-  const Eigen::LLT<TouchedMatrix> llt(hessian_of(best, -1));
-  const TouchedMatrix covariance = llt.solve(TouchedMatrix::Identity());
-  evidence.determined = static_cast<double>(kMostCoordinates) - covariance.trace();
-  evidence.log_prior = best.log_prior;
-  evidence.log_occam = -potential(best) - 0.5 * log_determinant(llt);
+  evidence.fitted_chi2 = first->chi2;
+  TouchedCurve mode = descend(*touch, data, std::move(*first), -1, kMostSteps);
+  evidence.determined = static_cast<double>(kMostCoordinates) - inverse_cholesky(mode.root).trace();
+  evidence.log_prior = mode.log_prior;
+  evidence.log_occam =
+      -potential(mode) - 0.5 * log_determinant(mode.root) + 0.5 * evidence.fitted_chi2;
   const int own = shape_coordinates(touch->curve_class);
-  const Eigen::Matrix2d of_touch =
-      best.information.block<2, 2>(own, own) + Eigen::Matrix2d::Identity();
+  const Eigen::Matrix<double, 2, kMostCoordinates> touch_rows = mode.root.middleRows<2>(own);
+  const Eigen::Matrix2d of_touch = touch_rows * touch_rows.transpose();
   evidence.log_occam_of_touch =
-      0.5 * first_chi2 - 0.5 * best.chi2 - 0.5 * std::log(of_touch.determinant());
-  evidence.nodes.push_back({best, 1.0});
-  if (integration != Integration::Laplace) {
-    evidence.widest = widest_coordinate(*touch, best, covariance, data, integration);
-    if (const int k = evidence.widest; k >= 0) {
-      // A second moment needs finer slices than a mass.
-      const bool moment = integration == Integration::Valley;
-      const double deviation = std::sqrt(covariance(k, k)) * best.widths[k];
-      integrate(data, std::move(best), (moment ? 0.5 : 1.0) * deviation, moment ? 0.05 : 0.5,
-                &evidence);
+      0.5 * (evidence.fitted_chi2 - mode.chi2 - std::log(of_touch.determinant()));
+  evidence.nodes.push_back({std::move(mode), 1.0});
+  return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
+}
+
+std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& data,
+                                       double inflation, Slices slices) {
+  TouchedCurve mode = std::move(evidence.nodes[evidence.mode].curve);
+  const double weight = 1.0 / std::sqrt(inflation);
+  if (const double ratio = weight / evidence.touch.weight; ratio != 1.0) {
+    evidence.touch.weight = weight;
+    evidence.fitted_chi2 *= ratio * ratio;
+    auto counted = curve_at(evidence.touch, mode.z, mode, data);
+    if (!counted) {
+      return std::nullopt;
     }
+    mode = descend(evidence.touch, data, *std::move(counted), -1, kMostSteps);
   }
-  evidence.log_occam += 0.5 * first_chi2;
-  // A prior cannot leave more than all of the likelihood: with that, the fit was no optimum.
-  constexpr double kLeft = 1.0;
-  if (!(evidence.log_occam <= kLeft)) {
-    return std::nullopt;
+  const TouchedMatrix covariance = inverse_cholesky(mode.root);
+  const int k = widest_coordinate(evidence.touch, mode, covariance, data, slices);
+  double log_integral = log_mass(mode);
+  evidence.widest = k;
+  evidence.mode = 0;
+  evidence.nodes = {{mode, 1.0}};
+  if (k >= 0) {
+    // A second moment needs finer slices than a mass, and farther ones: a thousandth of the density
+    // there, a hundredth here.
+    const double deviation = std::sqrt(covariance(k, k)) * mode.widths[k];
+    const Walk how =
+        slices == Slices::ForMoment ? Walk{0.5 * deviation, 0.05, 7.0} : Walk{deviation, 0.5, 5.0};
+    log_integral = integrate(data, how, &evidence).value_or(log_integral);
   }
-  return evidence;
+  evidence.log_occam = log_integral + 0.5 * evidence.fitted_chi2;
+  return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
 }
 
 }  // namespace palpate

@@ -17,6 +17,7 @@ struct PosteriorNode {
 /// One mode of a class: an optimum and what lies around it.
 struct ClassEvidence {
   Touch touch;
+  double fitted_chi2 = 0.0;  ///< of the optimum of the likelihood
   /// log of the marginal likelihood over the likelihood at the optimum: what the prior leaves of
   /// it.
   double log_occam = 0.0;
@@ -30,19 +31,18 @@ struct ClassEvidence {
   /// Slices along the coordinate that the data leave the widest; one node where the model is linear
   /// over all that they leave.
   std::vector<PosteriorNode> nodes;
-  int widest = -1;  ///< that coordinate; -1 with one node
+  std::size_t mode = 0;  ///< of the nodes, the optimum of likelihood times prior
+  int widest = -1;       ///< that coordinate; -1 with one node
 };
 
-/// How the coordinate that is left the widest is integrated over.
-enum class Integration {
-  Laplace,     ///< like the others: a normal law about the optimum
-  Quadrature,  ///< by slices where the mass is not that of a normal law
-  Valley,      ///< by slices also where only the valley's bend shows, beside how narrow it is
+/// What slices are for.
+enum class Slices {
+  ForMass,    ///< where it is not that of a normal law
+  ForMoment,  ///< also where only the valley's bend shows, beside how narrow it is
 };
 
-/// J^T J and the prior's curvature, that of normal laws as high, in units of the widths; `fixed`
-/// (or -1) does not move.
-TouchedMatrix hessian_of(const TouchedCurve& curve, int fixed);
+/// The curve's root with coordinate `fixed` (or -1) not moving.
+TouchedMatrix root_of(const TouchedCurve& curve, int fixed);
 
 /// The mode of likelihood times prior that lies downhill from a curve; nullopt where none comes
 /// near the points, and where `start` is no curve of its class in double precision. Arguments as of
@@ -50,11 +50,17 @@ TouchedMatrix hessian_of(const TouchedCurve& curve, int fixed);
 std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
                                            double inflation);
 
-/// `fit` is at its optimum on `data`, the reduced points as surface points, and has a point for
-/// each. Noise variances count `inflation` times. nullopt where the fit is no curve of its class in
-/// canonical coordinates in double precision: a vertex so far away has no share in the prior.
-/// O(points) a slice; at most some forty slices.
+/// By Laplace's formula: a normal law about the optimum. `fit` is at its optimum on `data`, the
+/// reduced points as surface points, and has a point for each. Noise variances count `inflation`
+/// times. nullopt where the fit is no curve of its class in canonical coordinates in double
+/// precision: a vertex so far away has no share in the prior. O(points).
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
-                                         double inflation, Integration integration);
+                                         double inflation);
+
+/// The same, integrated by slices along the coordinate that is left the widest, where that takes
+/// any; by Laplace's formula where not. `evidence`: of the same data, at any inflation. nullopt
+/// where it turns out to be that of no optimum. At most some forty slices.
+std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& data,
+                                       double inflation, Slices slices);
 
 }  // namespace palpate

@@ -1,11 +1,11 @@
 #include "core/recognition/posterior/moments.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "core/curves/curve.h"
+#include "core/numerics/small_cholesky.h"
 
 namespace palpate {
 namespace {
@@ -91,7 +91,7 @@ ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvide
     if (!x) {
       continue;
     }
-    const Eigen::LLT<TouchedMatrix> llt(hessian_of(curve, evidence.widest));
+    const TouchedMatrix root = root_of(curve, evidence.widest);
     Eigen::Matrix<double, 6, 6> jacobian = Eigen::Matrix<double, 6, 6>::Zero();
     for (int k = 0; k < coordinates; ++k) {
       if (k == evidence.widest) {
@@ -108,8 +108,8 @@ ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvide
         jacobian.col(k) = curve.widths[k] / (2.0 * kStep) * difference(curve_class, *f, *g);
       }
     }
-    const Eigen::Matrix<double, 6, 6> half = llt.matrixL().solve(jacobian.transpose());
     const ShapePose away = difference(curve_class, *x, centre);
+    const Eigen::Matrix<double, 6, 6> half = inverse_lower(root) * jacobian.transpose();
     moment += shares[i] * (half.transpose() * half + away * away.transpose());
   }
   // To metres, and positions to the world.
@@ -140,7 +140,8 @@ ShapePoseCovariance with_bend(const ShapePoseCovariance& bound,
       scaled(i, j) = size > 0.0 ? sum(i, j) / size : i == j ? 1.0 : 0.0;
     }
   }
-  return Eigen::LLT<Eigen::Matrix<double, 6, 6>>(scaled).info() == Eigen::Success ? sum : moment;
+  Eigen::Matrix<double, 6, 6> root;
+  return cholesky(scaled, &root) ? sum : moment;
 }
 
 }  // namespace palpate

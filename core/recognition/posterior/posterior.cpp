@@ -30,7 +30,7 @@ double log_evidence_of_free_form(const Likelihood& likelihood, const Evidences& 
 
 /// The mode of the spline across c = 0, if there is one.
 std::optional<ClassEvidence> rival_of(const ClassFit& spline, const FitData& reduced,
-                                      double inflation, Integration integration) {
+                                      double inflation) {
   if (!spline.rival || is_same_curve(*spline.polynomial, *spline.rival)) {
     return std::nullopt;
   }
@@ -39,7 +39,7 @@ std::optional<ClassEvidence> rival_of(const ClassFit& spline, const FitData& red
   fit.chi2 = spline.rival->chi2;
   fit.polynomial = spline.rival;
   const auto canonical = to_canonical(fit, reduced);
-  return canonical ? evidence_of(*canonical, reduced, inflation, integration) : std::nullopt;
+  return canonical ? evidence_of(*canonical, reduced, inflation) : std::nullopt;
 }
 
 /// Whether the slices of one mode of the spline run through another.
@@ -91,8 +91,7 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
       evidences.on_reduced[i] = std::move(before.on_reduced[i]);
       evidences.classes[i] = std::move(before.classes[i]);
     } else if ((evidences.on_reduced[i] = to_canonical(*on_reduced[i], reduced))) {
-      evidences.classes[i] =
-          evidence_of(*evidences.on_reduced[i], reduced, inflation, Integration::Laplace);
+      evidences.classes[i] = evidence_of(*evidences.on_reduced[i], reduced, inflation);
     }
     best = std::max(best, log_evidence(likelihood, evidences, curve_class, fits[i]->chi2));
   }
@@ -127,8 +126,7 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
     if (!matters(log_of[i])) {
       continue;
     }
-    auto evidence = evidence_of(*evidences.on_reduced[i], reduced, evidences.inflation,
-                                Integration::Quadrature);
+    auto evidence = by_slices(*evidences.classes[i], reduced, evidences.inflation, Slices::ForMass);
     if (!evidence) {
       continue;
     }
@@ -138,13 +136,12 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   if (matters(log_of[kSpline])) {
     // Of a class that is only one of several, Laplace's formula tells the other mode's share well
     // enough.
-    evidences.rival =
-        rival_of(*on_reduced[kSpline], reduced, evidences.inflation, Integration::Laplace);
+    evidences.rival = rival_of(*on_reduced[kSpline], reduced, evidences.inflation);
     if (evidences.rival && holds(*evidences.classes[kSpline], *evidences.rival)) {
       evidences.rival.reset();
     } else if (evidences.rival && spline_is_best) {
       evidences.rival =
-          rival_of(*on_reduced[kSpline], reduced, evidences.inflation, Integration::Quadrature);
+          by_slices(*std::move(evidences.rival), reduced, evidences.inflation, Slices::ForMass);
     }
   }
   return evidences;

@@ -31,8 +31,9 @@ struct TouchedCurve {
   double chi2 = 0.0;
   double log_prior = 0.0;
   TouchedVector widths = TouchedVector::Zero();
-  /// By the coordinates in units of the widths: J^T J and J^T r of the residuals over their noise.
-  TouchedMatrix information = TouchedMatrix::Zero();
+  /// By the coordinates in units of the widths, of the residuals r over their noise: the lower
+  /// triangular root of J^T J and the prior's curvature, that of normal laws as high; J^T r.
+  TouchedMatrix root = TouchedMatrix::Identity();
   TouchedVector gradient = TouchedVector::Zero();
 };
 

@@ -57,8 +57,9 @@ Contenders with_conic_mode(Contenders contenders, const Ground& ground, unsigned
   const bool wanted =
       (classes & (1U << kEllipse)) != 0 &&
       static_cast<int>(ground.arcs.data.points.size()) > degrees_of_freedom(CurveClass::Ellipse);
-  if (!wanted || has_optimum(contenders.coarse[kEllipse]) ||
-      has_optimum(contenders.coarse[kHyperbola]) || !circle ||
+  const bool has_conic =
+      has_optimum(contenders.coarse[kEllipse]) || has_optimum(contenders.coarse[kHyperbola]);
+  if (!wanted || has_conic || contenders.no_conic || !circle ||
       (line && fits_well(line->chi2 / inflation, reduced.points.size()))) {
     return contenders;
   }
@@ -93,6 +94,7 @@ Contenders with_conic_mode(Contenders contenders, const Ground& ground, unsigned
         evidences_of(contenders.fits, contenders.coarse, ground.arcs.smooth, reduced,
                      ground.likelihood, std::move(contenders.evidences));
   }
+  contenders.no_conic = !contenders.evidences.classes[kEllipse];
   return contenders;
 }
 

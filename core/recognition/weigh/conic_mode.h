@@ -9,7 +9,8 @@ namespace palpate {
 /// needle, or bend the wrong way round, though a plain ellipse fits nearly as well. A class is not
 /// excluded by that: where neither ellipse nor hyperbola has an optimum, and it is not that the
 /// points are straight, the mode of the ellipse's posterior stands for it, sought from the circle
-/// in the directions that its axis may have. `classes`: wanted, by bit 1 << CurveClass.
+/// in the directions that its axis may have. Where none comes near, the contenders say so; those
+/// that have been told so already are left as they are. `classes`: wanted, by bit 1 << CurveClass.
 Contenders with_conic_mode(Contenders contenders, const Ground& ground, unsigned classes);
 
 }  // namespace palpate

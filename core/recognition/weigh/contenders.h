@@ -18,6 +18,7 @@ struct Contenders {
   ClassFits coarse;  ///< on the reduced points
   ClassFits fits;    ///< plausible ones weighed on all points, the best refined there
   Evidences evidences;
+  bool no_conic = false;  ///< as WarmStart's
 };
 
 /// Fits to the reduced points, as these tell their chi-squares of all points.

@@ -18,13 +18,11 @@ namespace {
 /// The classes followed from where they were with the tips on these sides, or sought.
 ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
                            const FitData& reduced, unsigned classes) {
-  const auto start = std::find_if(starts.begin(), starts.end(), [&](const SidedStart& s) {
-    return std::equal(s.sides.begin(), s.sides.end(), sides.begin(), sides.end());
-  });
-  if (start == starts.end()) {
+  const WarmStart* start = start_for(starts, sides);
+  if (start == nullptr) {
     return fit_classes(reduced, nullptr, classes);
   }
-  const PolynomialFits carried = carried_to(start->start, reduced);
+  const PolynomialFits carried = carried_to(*start, reduced);
   return fit_classes(reduced, &carried, classes);
 }
 
@@ -83,7 +81,7 @@ double log_evidence_of(const Way& way, const Arcs& arcs, const Likelihood& likel
   }
   auto evidence = way.evidences.classes[static_cast<std::size_t>(way.candidate)];
   if (!evidence) {
-    evidence = evidence_of(*placed, way.reduced, likelihood.inflation(), Integration::Laplace);
+    evidence = evidence_of(*placed, way.reduced, likelihood.inflation());
   }
   return evidence ? log_coherent_evidence(likelihood, *evidence, *placed, way.reduced, arcs.sigma,
                                           static_cast<double>(arcs.data.points.size()),

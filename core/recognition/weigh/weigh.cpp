@@ -45,9 +45,12 @@ struct Placed {
 };
 
 /// Every class of one way in which the tips may lie, the plausible ones refined on all points.
-Contenders contending(ClassFits coarse, const Ground& ground, const WeighOptions& options) {
+/// `no_conic`: as WarmStart's.
+Contenders contending(ClassFits coarse, bool no_conic, const Ground& ground,
+                      const WeighOptions& options) {
   const Arcs& arcs = ground.arcs;
   Contenders contenders;
+  contenders.no_conic = no_conic;
   contenders.coarse = testable(std::move(coarse), options.classes, arcs.data.points.size());
   contenders.fits = as_told(contenders.coarse, arcs.smooth);
   contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
@@ -95,10 +98,11 @@ std::array<std::optional<CanonicalFit>, 9> placed_canonically(
 }
 
 /// The covariance of a class where one that is linear about its estimate does not hold its valley.
-std::optional<ShapePoseCovariance> covariance_of_valley(const CanonicalFit& on_reduced,
+std::optional<ShapePoseCovariance> covariance_of_valley(const ClassEvidence& evidence,
+                                                        const CanonicalFit& on_reduced,
                                                         const CanonicalFit& best,
                                                         const FitData& reduced, double inflation) {
-  const auto valley = evidence_of(on_reduced, reduced, inflation, Integration::Valley);
+  const auto valley = by_slices(evidence, reduced, inflation, Slices::ForMoment);
   if (!valley || valley->widest < 0) {
     return std::nullopt;
   }
@@ -112,7 +116,14 @@ std::vector<SidedStart> starts_of(const SidedFits& sided, const Contenders& cont
   std::vector<SidedStart> starts = sided.others;
   starts.insert(starts.begin(),
                 {sided.sides, warm_start_from(contenders.coarse, arcs.smooth.reduced)});
+  starts.front().start.no_conic = contenders.no_conic;
   return starts;
+}
+
+/// Whether a conic has been looked for with the tips on these sides, and none was near.
+bool no_conic(std::span<const SidedStart> starts, const std::vector<int>& sides) {
+  const WarmStart* start = start_for(starts, sides);
+  return start != nullptr && start->no_conic;
 }
 
 }  // namespace
@@ -123,7 +134,8 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
   SidedFits sided = fit_over_sides(patches, arcs, stated, options.classes, starts);
   Ground ground{arcs, sided.reduced, stated};
-  Contenders contenders = contending(std::move(sided.fits), ground, options);
+  Contenders contenders =
+      contending(std::move(sided.fits), no_conic(starts, sided.sides), ground, options);
   std::optional<Placed> best_placed = best_on_all(contenders, ground);
   const SeenDeviation seen =
       best_placed ? seen_deviation(arcs, stated, best_placed->chi2, best_placed->canonical,
@@ -134,7 +146,8 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
     ground.likelihood = *seen.likelihood;
     if (lie_otherwise(ground.likelihood, patches, arcs, options.classes,
                       starts_of(sided, contenders, arcs), &sided)) {
-      contenders = contending(std::move(sided.fits), ground, options);
+      contenders =
+          contending(std::move(sided.fits), no_conic(starts, sided.sides), ground, options);
       best_placed.reset();
     } else {
       contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
@@ -156,8 +169,11 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   const auto& best = contenders.fits[b];
   w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, ground.likelihood);
   w.canonical = placed_canonically(contenders, w.probabilities, ground, std::move(best_placed));
-  if (const auto& on_reduced = contenders.evidences.on_reduced[b]; on_reduced && w.canonical[b]) {
-    w.moment = covariance_of_valley(*on_reduced, *w.canonical[b], ground.reduced, w.inflation);
+  const auto& evidence = contenders.evidences.classes[b];
+  if (const auto& on_reduced = contenders.evidences.on_reduced[b];
+      evidence && on_reduced && w.canonical[b]) {
+    w.moment =
+        covariance_of_valley(*evidence, *on_reduced, *w.canonical[b], ground.reduced, w.inflation);
   }
   w.starts = starts_of(sided, contenders, arcs);
   w.fits = std::move(contenders.fits);

@@ -4,7 +4,6 @@
 //   bench_posterior [--scenes N] [--seed S] [--noise stated|unknown] [--classes-only]
 //   [--other-prior] [--csv FILE]
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "tests/bench/options/bench_options.h"
+#include "tests/bench/options/thread_time.h"
 #include "tests/support/calibration.h"
 #include "tests/support/joint_error.h"
 #include "tests/support/rivals.h"
@@ -21,7 +21,6 @@
 namespace {
 
 using namespace palpate;
-using Clock = std::chrono::steady_clock;
 
 constexpr double kTold = 0.95;       // probability asked for
 constexpr double kCoverage = 0.999;  // of the binomial bands
@@ -65,10 +64,9 @@ Row run(const Options& options, const test::ScenePrior& prior, std::uint32_t num
   for (int i = 0; i < kRepetitions; ++i) {
     Recognizer recognizer;
     test::add_scene(row.prior_scene.scene, sigma, &recognizer);
-    const auto start = Clock::now();
+    const double start = bench::thread_us();
     row.answer = recognizer.recognize();
-    row.us =
-        std::min(row.us, std::chrono::duration<double, std::micro>(Clock::now() - start).count());
+    row.us = std::min(row.us, bench::thread_us() - start);
   }
   row.margin = test::margin_of(row.prior_scene);
   return row;

@@ -6,28 +6,23 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "tests/bench/options/bench_options.h"
+#include "tests/bench/options/thread_time.h"
 #include "tests/bench/worst_case/touched_input.h"
 
 namespace {
 
 using namespace palpate;
 using bench::InputRecipe;
+using bench::thread_us;
 using bench::TouchedInput;
 
 constexpr int kRepetitions = 3;
 constexpr std::size_t kSamplesPerUpdate = 10;
-
-double thread_us() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
 
 double recognize_us(Recognizer& recognizer) {
   const double start = thread_us();

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -21,12 +20,14 @@
 
 #include "node/csv/contact_csv.h"
 #include "tests/bench/options/bench_options.h"
+#include "tests/bench/options/thread_time.h"
 #include "tests/bench/worst_case/touched_input.h"
 
 namespace {
 
 using namespace palpate;
 using bench::InputRecipe;
+using bench::thread_us;
 using bench::TouchedInput;
 
 constexpr int kRepetitions = 3;
@@ -36,12 +37,6 @@ constexpr int kStarts = 12;
 constexpr int kPatience = 20;
 /// Share of new starts from the worst input found so far rather than from anywhere.
 constexpr double kFromWorst = 0.3;
-
-double thread_us() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
 
 double cost_once_us(const TouchedInput& input) {
   Recognizer recognizer;

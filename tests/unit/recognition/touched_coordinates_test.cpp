@@ -135,7 +135,7 @@ TEST_P(TouchedCoordinatesOf, DerivativesOfChiSquareAreThoseOfDifferences) {
       const double difference = (f->chi2 - g->chi2) / (2.0 * kStep) * curve->widths[k];
       // Third derivatives, and residuals that leave the curve's own bend out: relative to the
       // largest slope that a residual per point could have.
-      const double scale = std::sqrt(curve->information(k, k) * curve->chi2);
+      const double scale = curve->root.row(k).norm() * std::sqrt(curve->chi2);
       EXPECT_NEAR(2.0 * curve->gradient[k], difference, 1e-4 * scale) << k;
       ++compared;
     }
