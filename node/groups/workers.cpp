@@ -1,12 +1,16 @@
 #include "node/groups/workers.h"
 
 #include <pthread.h>
+#include <sched.h>
 #include <sys/eventfd.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -18,9 +22,31 @@ namespace {
 // Above what the process has: beside a quick thread on the same core, a slow one has a tenth of it.
 constexpr int kSlowNice = 10;
 
+// The longest that may be asked for. Since Linux 6.6 whoever is on a core keeps it until the end of
+// its slice, a scheduler's tick of up to 4 ms, whatever waits, unless that asks for a shorter one
+// (6.12): then a thread that wakes has the core at once.
+constexpr std::uint64_t kSlowSlice_ns = 100'000'000;
+
+// The system's sched_attr in its first form; glibc has none before 2.41, and Linux' own header does
+// not go with <sched.h>.
+struct SchedulingWanted {
+  std::uint32_t size = sizeof(SchedulingWanted);
+  std::uint32_t policy = SCHED_BATCH;  // nor does it take a core from others when it wakes
+  std::uint64_t flags = 0;
+  std::int32_t nice = 0;
+  std::uint32_t priority = 0;
+  std::uint64_t slice_ns = kSlowSlice_ns;  // what does not know it ignores it
+  std::uint64_t deadline_ns = 0;
+  std::uint64_t period_ns = 0;
+};
+static_assert(sizeof(SchedulingWanted) == 48);
+
 // A thread cannot take this back without privileges: what is slow has threads of its own.
 void give_way() {
-  [[maybe_unused]] const int niceness = ::nice(kSlowNice);  // of this thread alone, on Linux
+  SchedulingWanted wanted;
+  wanted.nice = ::getpriority(PRIO_PROCESS, 0) + kSlowNice;  // of this thread alone, on Linux
+  // Where a sandbox knows none of this, the older call does the first half.
+  if (::syscall(SYS_sched_setattr, 0, &wanted, 0U) != 0) (void)!::nice(kSlowNice);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "node/tool/drawing/drawing.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -80,11 +81,15 @@ std::vector<CurvePlace> sampled(const CurveModel& model, const CurveSpan& span, 
   std::vector<CurvePlace> places;
   places.reserve(static_cast<std::size_t>(pieces) + 1);
   double arc = 0.0;
+  const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(model.world_T_curve.theta).toRotationMatrix();
   for (int i = 0; i <= pieces; ++i) {
     const double t = span.from + (span.to - span.from) * i / pieces;
-    const Vec2 position = model.world_position(t);
+    const CurveDerivatives at = derivatives(model.curve, t);
+    const Vec2 position = rotation * at.position + model.world_T_curve.translation();
+    const double speed = at.first.norm();
+    const Vec2 left = speed > 0.0 ? Vec2(rotation * left_of(at.first / speed)) : Vec2(0.0, 0.0);
     if (!places.empty()) arc += (position - places.back().position).norm();
-    places.push_back({t, position, model.world_left(t), arc, std::nullopt, 0.0, 0.0, std::nullopt});
+    places.push_back({t, position, left, arc, std::nullopt, 0.0, 0.0, std::nullopt});
   }
   return places;
 }
@@ -145,6 +150,42 @@ std::vector<DrawnContact> draw_contacts(const v1::Recognition& answer,
   return drawn;
 }
 
+double noise_of(const ContactSample& sample, double sigma_m) {
+  return sample.sigma_m > 0.0 ? sample.sigma_m : sigma_m;
+}
+
+struct NearFoot {
+  double t = 0.0;
+  double distance = 0.0;  ///< signed: > 0 to the left
+};
+
+double curvature_of(const CurveDerivatives& d) {
+  const double speed = d.first.norm();
+  return std::abs(cross(d.first, d.second)) / (speed * speed * speed);
+}
+
+/// The foot by one step of Newton's method from a near one, half the work of going on to the last
+/// digit; nullopt where that leads away, or the distance may be wrong by more than `tolerance`. On
+/// the circle of curvature kappa, what is left `along` the tangent makes the distance wrong by
+/// kappa along^2 / (2 (1 - kappa distance)), which is below kappa along^2 for kappa distance < 1/2.
+std::optional<NearFoot> foot_by_one_step(const Curve& curve, const Vec2& point, double t,
+                                         double tolerance) {
+  const CurveDerivatives before = derivatives(curve, t);
+  const Vec2 away = before.position - point;
+  const double second = before.first.squaredNorm() + away.dot(before.second);
+  if (!(second > 0.0)) return std::nullopt;
+  t -= away.dot(before.first) / second;
+  const CurveDerivatives there = derivatives(curve, t);
+  const Vec2 beside = point - there.position;
+  const Vec2 tangent = there.first.normalized();
+  const double along = tangent.dot(beside);
+  const double distance = cross(tangent, beside);
+  const double kappa = curvature_of(before) + curvature_of(there);  // at least the larger
+  const bool is_near = beside.squaredNorm() <= away.squaredNorm() &&
+                       kappa * std::abs(distance) < 0.5 && kappa * along * along <= tolerance;
+  return is_near ? std::optional(NearFoot{t, distance}) : std::nullopt;
+}
+
 }  // namespace
 
 Drawing make_drawing(const ContactGroup& group, const v1::Recognition& answer,
@@ -177,23 +218,32 @@ std::vector<SampleResidual> residuals_of(const CurveModel& model, const ContactR
                                          double sigma_m) {
   std::vector<SampleResidual> residuals;
   residuals.reserve(run.samples.size());
+  // Of the noise: nothing that can be seen.
+  constexpr double kTolerance = 1e-3;
+  const ToLocal to_curve(model.world_T_curve);
   double sum = 0.0;
-  double t = 0.0;
   for (const ContactSample& sample : run.samples) {
-    const Vec2 local = model.world_T_curve.to_local(sample.position_m);
-    const FootPoint foot =
-        residuals.empty() ? foot_point(model.curve, local) : foot_point_near(model.curve, local, t);
-    t = foot.t;
-    sum += foot.distance;
-    residuals.push_back(
-        {model.world_T_curve * foot.position, model.world_left(t), foot.distance, false});
+    const Vec2 local = to_curve(sample.position_m);
+    std::optional<NearFoot> foot;
+    if (!residuals.empty()) {
+      foot = foot_by_one_step(model.curve, local, residuals.back().t,
+                              kTolerance * noise_of(sample, sigma_m));
+    }
+    if (!foot) {
+      const FootPoint exact = residuals.empty()
+                                  ? foot_point(model.curve, local)
+                                  : foot_point_near(model.curve, local, residuals.back().t);
+      foot = {exact.t, exact.distance};
+    }
+    sum += foot->distance;
+    residuals.push_back({foot->t, foot->distance, false});
   }
   // The centres of a tip lie on one side of the curve, a radius away.
   const double tip = std::copysign(run.context.tip_radius_m, sum);
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     residuals[i].residual_m -= tip;
-    const double sigma = run.samples[i].sigma_m > 0.0 ? run.samples[i].sigma_m : sigma_m;
-    residuals[i].is_far = std::abs(residuals[i].residual_m) > kFarSigmas * sigma;
+    residuals[i].is_far =
+        std::abs(residuals[i].residual_m) > kFarSigmas * noise_of(run.samples[i], sigma_m);
   }
   return residuals;
 }

@@ -58,9 +58,8 @@ Drawing make_drawing(const ContactGroup& group, const v1::Recognition& answer, C
 
 /// What a sample leaves beside the curve.
 struct SampleResidual {
-  Vec2 foot;                ///< on the curve
-  Vec2 left;                ///< unit normal of the curve there
-  double residual_m = 0.0;  ///< to the left; for a tip's centre, beyond its radius
+  double t = 0.0;           ///< of its foot
+  double residual_m = 0.0;  ///< to the curve's left; for a tip's centre, beyond its radius
   bool is_far = false;      ///< beyond kFarSigmas
 };
 

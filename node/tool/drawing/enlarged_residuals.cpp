@@ -54,8 +54,9 @@ EnlargedResiduals enlarged_residuals(const CurveModel& model, const ContactGroup
   const double typical = std::sqrt(squares / static_cast<double>(kept.size()));
   result.gain = std::max(round_gain(kShownFraction * size_m / typical), 1.0);
   for (const SampleResidual& residual : kept) {
+    const Vec2 foot = model.world_position(residual.t);
     result.lines.push_back(
-        {residual.foot, residual.foot + result.gain * residual.residual_m * residual.left});
+        {foot, foot + result.gain * residual.residual_m * model.world_left(residual.t)});
   }
   return result;
 }

@@ -1,20 +1,26 @@
 #include "node/tool/view/details_json.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
 
-#include "node/tool/drawing/drawing.h"
 #include "node/tool/drawing/enlarged_residuals.h"
 #include "node/tool/text/advice.h"
 #include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
-#include "node/tool/view/json_numbers.h"
 #include "node/tool/view/picture_json.h"
 
 namespace palpate {
 namespace {
 
-using nlohmann::json;
+/// To so many significant digits.
+double rounded(double value, int digits) {
+  if (value == 0.0 || !std::isfinite(value)) return value;
+  const double power = std::pow(10.0, digits - 1 - std::floor(std::log10(std::abs(value))));
+  return std::isfinite(power) && power > 0.0 ? std::round(value * power) / power : value;
+}
 
 /// Where the band is widest.
 std::string band_width_text(const DrawnCurve& curve) {
@@ -23,89 +29,121 @@ std::string band_width_text(const DrawnCurve& curve) {
     if (place.band) widest_m = std::max({widest_m, place.band->left_m, -place.band->right_m});
   }
   const LengthUnit unit = length_unit_for(widest_m);
-  return number(significant(widest_m * unit.per_m, 2)) + " " + std::string(unit.name);
+  return number(rounded(widest_m * unit.per_m, 2)) + " " + std::string(unit.name);
+}
+
+template <typename ValueAt>
+void write_along(const char* name, const DrawnCurve& curve, const ValueAt& value_at,
+                 JsonText& json) {
+  json.key(name).begin_array();
+  for (const CurvePlace& at : curve.places) json.value(value_at(at), kChartDigits);
+  json.end_array();
 }
 
 /// Curvature along the curve, its derivative, and their deviations.
-json curve_chart_json(const DrawnCurve& curve) {
-  json::array_t arc, kappa, kappa_s, kappa_sigma;
-  for (const CurvePlace& at : curve.places) {
-    arc.emplace_back(significant(at.arc_m, kChartDigits));
-    kappa.emplace_back(significant(at.kappa, kChartDigits));
-    kappa_s.emplace_back(significant(at.kappa_s, kChartDigits));
-    if (at.kappa_sigma) kappa_sigma.emplace_back(significant(*at.kappa_sigma, kChartDigits));
+void write_curve_chart(const DrawnCurve& curve, JsonText& json) {
+  json.begin_object();
+  write_along(
+      "arc", curve, [](const CurvePlace& at) { return at.arc_m; }, json);
+  write_along(
+      "kappa", curve, [](const CurvePlace& at) { return at.kappa; }, json);
+  write_along(
+      "kappaS", curve, [](const CurvePlace& at) { return at.kappa_s; }, json);
+  const bool is_known =
+      std::all_of(curve.places.begin(), curve.places.end(),
+                  [](const CurvePlace& at) { return at.kappa_sigma.has_value(); });
+  if (is_known) {
+    write_along(
+        "kappaSigma", curve, [](const CurvePlace& at) { return *at.kappa_sigma; }, json);
   }
-  json chart{{"arc", std::move(arc)}, {"kappa", std::move(kappa)}, {"kappaS", std::move(kappa_s)}};
-  if (kappa_sigma.size() == curve.places.size()) chart["kappaSigma"] = std::move(kappa_sigma);
-  return chart;
+  json.end_object();
 }
 
-json contact_charts_json(const Drawing& drawing) {
-  json contacts = json::array();
+void write_contact_charts(const Drawing& drawing, JsonText& json) {
+  json.begin_array();
   for (const DrawnContact& drawn : drawing.contacts) {
     const v1::LocalizedContact& contact = *drawn.contact;
-    contacts.push_back(
-        {{"probe", contact.probe()},
-         {"arc", significant(drawn.arc_m, kChartDigits)},
-         {"kappa", significant(drawn.kappa, kChartDigits)},
-         {"kappaSigma", significant(contact.kappa_sigma_per_m(), kChartDigits)},
-         {"kappaS", significant(contact.kappa_s_per_m2(), kChartDigits)},
-         {"kappaSSigma", significant(contact.kappa_s_sigma_per_m2(), kChartDigits)}});
+    json.begin_object();
+    json.member("probe", contact.probe());
+    json.member("arc", drawn.arc_m, kChartDigits);
+    json.member("kappa", drawn.kappa, kChartDigits);
+    json.member("kappaSigma", contact.kappa_sigma_per_m(), kChartDigits);
+    json.member("kappaS", contact.kappa_s_per_m2(), kChartDigits);
+    json.member("kappaSSigma", contact.kappa_s_sigma_per_m2(), kChartDigits);
+    json.end_object();
   }
-  return contacts;
+  json.end_array();
 }
 
-json charts_json(const Drawing& drawing) {
-  json rivals = json::array();
-  for (const DrawnCurve& rival : drawing.rivals) rivals.push_back(curve_chart_json(rival));
-  json charts{{"contacts", contact_charts_json(drawing)}, {"rivals", std::move(rivals)}};
-  if (drawing.curve) charts["curve"] = curve_chart_json(*drawing.curve);
-  return charts;
+void write_charts(const Drawing& drawing, JsonText& json) {
+  json.begin_object();
+  json.key("contacts");
+  write_contact_charts(drawing, json);
+  json.key("rivals").begin_array();
+  for (const DrawnCurve& rival : drawing.rivals) write_curve_chart(rival, json);
+  json.end_array();
+  if (drawing.curve) {
+    json.key("curve");
+    write_curve_chart(*drawing.curve, json);
+  }
+  json.end_object();
 }
 
-json hypotheses_json(const v1::Recognition& answer) {
-  json hypotheses = json::array();
+void write_hypotheses(const v1::Recognition& answer, JsonText& json) {
+  json.begin_array();
   for (const v1::Hypothesis& hypothesis : answer.hypotheses()) {
-    hypotheses.push_back({{"class", spoken_name(hypothesis.curve_class())},
-                          {"probability", hypothesis.probability()},
-                          {"chi2", hypothesis.chi2()},
-                          {"dof", hypothesis.dof()},
-                          {"atLimit", hypothesis.at_limit()}});
+    json.begin_object();
+    json.member("class", spoken_name(hypothesis.curve_class()));
+    json.member("probability", hypothesis.probability());
+    json.member("chi2", hypothesis.chi2());
+    json.member("dof", hypothesis.dof());
+    json.member("atLimit", hypothesis.at_limit());
+    json.end_object();
   }
-  return hypotheses;
+  json.end_array();
 }
 
-json decisions_json(const v1::Recognition& answer) {
-  json decisions = json::array();
+void write_decisions(const v1::Recognition& answer, JsonText& json) {
+  json.begin_array();
   for (const v1::Decision& decision : answer.decisions()) {
-    decisions.push_back({{"test", decision.test()},
-                         {"value", decision.value()},
-                         {"threshold", decision.threshold()},
-                         {"passed", decision.passed()},
-                         {"pValue", decision.has_p_value() ? json(decision.p_value()) : json()}});
+    json.begin_object();
+    json.member("test", decision.test());
+    json.member("value", decision.value());
+    json.member("threshold", decision.threshold());
+    json.member("passed", decision.passed());
+    if (decision.has_p_value()) {
+      json.member("pValue", decision.p_value());
+    } else {
+      json.key("pValue").null();
+    }
+    json.end_object();
   }
-  return decisions;
+  json.end_array();
 }
 
-json invariants_json(const v1::Recognition& answer) {
-  json invariants = json::array();
+void write_invariants(const v1::Recognition& answer, JsonText& json) {
+  json.begin_array();
   for (const v1::Invariant& invariant : answer.invariants()) {
-    invariants.push_back({{"name", invariant.name()},
-                          {"class", spoken_name(invariant.curve_class())},
-                          {"text", with_sigma(invariant.value(), invariant.sigma())}});
+    json.begin_object();
+    json.member("name", invariant.name());
+    json.member("class", spoken_name(invariant.curve_class()));
+    json.member("text", with_sigma(invariant.value(), invariant.sigma()));
+    json.end_object();
   }
-  return invariants;
+  json.end_array();
 }
 
-json quantities_json(const v1::Recognition& answer) {
-  json quantities = json::array();
+void write_quantities(const v1::Recognition& answer, JsonText& json) {
+  json.begin_array();
   for (const Quantity& quantity : quantities_of(answer)) {
-    quantities.push_back({{"name", quantity.name},
-                          {"value", quantity.value},
-                          {"sigma", quantity.sigma},
-                          {"text", quantity.text}});
+    json.begin_object();
+    json.member("name", quantity.name);
+    json.member("value", quantity.value);
+    json.member("sigma", quantity.sigma);
+    json.member("text", quantity.text);
+    json.end_object();
   }
-  return quantities;
+  json.end_array();
 }
 
 /// Of what was touched; an arc not yet determined makes the drawn curve far larger.
@@ -123,7 +161,7 @@ double touched_size_of(const LiveGroup& group, double drawn_size_m) {
 }
 
 /// Lines from the curve to the samples, enlarged; and the samples that are far from it.
-void add_residuals(const LiveGroup& group, const Drawing& drawing, json& details) {
+void write_residuals(const LiveGroup& group, const Drawing& drawing, JsonText& json) {
   const std::optional<CurveModel> model =
       drawing.curve ? model_of(group.answer) : std::optional<CurveModel>();
   if (!model) return;
@@ -132,18 +170,22 @@ void add_residuals(const LiveGroup& group, const Drawing& drawing, json& details
   const EnlargedResiduals residuals =
       enlarged_residuals(*model, group.touched, group.answer.sigma_m(), size_m, kMostLines);
   const StepCoordinates place = coordinates_of(drawing, group);
-  json::array_t lines;
+  json.member("step", place.step_m());
+  json.key("residuals").begin_object();
+  json.member("gain", residuals.gain);
+  json.key("lines").begin_array();
   for (const EnlargedResiduals::Line& line : residuals.lines) {
-    json::array_t ends;
-    if (place.add(ends, line.foot) && place.add(ends, line.end)) {
-      lines.insert(lines.end(), ends.begin(), ends.end());
-    }
+    const auto foot = place.steps_to(line.foot);
+    const auto end = place.steps_to(line.end);
+    if (!foot || !end) continue;
+    StepCoordinates::write(*foot, json);
+    StepCoordinates::write(*end, json);
   }
-  json::array_t far;
-  for (const Vec2& point : residuals.far) place.add(far, point);
-  details["step"] = place.step_m();
-  details["residuals"] = {{"gain", residuals.gain}, {"lines", std::move(lines)}};
-  details["far"] = std::move(far);
+  json.end_array();
+  json.end_object();
+  json.key("far").begin_array();
+  for (const Vec2& point : residuals.far) place.write(point, json);
+  json.end_array();
 }
 
 }  // namespace
@@ -159,37 +201,42 @@ const char* status_word(const v1::Recognition& answer) {
   }
 }
 
-json details_json(LiveGroup& group, SteadyTime now) {
+void write_details(LiveGroup& group, const Drawing& drawing, SteadyTime now, JsonText& json) {
   const v1::Recognition& answer = group.answer;
-  const Drawing drawing = make_drawing(group.touched, answer, Curvature::Along);
   const LengthUnit noise_unit = length_unit_for(answer.sigma_m());
-  json details{
-      {"group", group.touched.name},
-      {"object", std::to_string(group.touched.object)},
-      {"hasAnswer", group.has_answer},
-      {"status", status_word(answer)},
-      {"statusText", group.has_answer ? status_text(answer) : "nothing yet"},
-      {"advice", advice_text(answer)},
-      {"class", spoken_name(answer.curve_class())},
-      {"frame", answer.header().frame().empty() ? "world" : answer.header().frame()},
-      {"quantities", quantities_json(answer)},
-      {"hypotheses", hypotheses_json(answer)},
-      {"decisions", decisions_json(answer)},
-      {"invariants", invariants_json(answer)},
-      {"charts", charts_json(drawing)},
-      {"sampleCount", answer.sample_count()},
-      {"outlierCount", answer.outlier_count()},
-      {"noise", number(answer.sigma_m() * noise_unit.per_m) + " " + std::string(noise_unit.name)},
-      {"noiseCorrelationMm", significant(1e3 * answer.noise_correlation_m(), 4)},
-      {"computeMs", significant(1e-6 * static_cast<double>(answer.compute_ns()), 4)},
-      {"answersPerS", significant(group.answer_rate.per_second(now), 3)},
-      {"touchMs", 1e-6 * static_cast<double>(answer.newest_sample_stamp_ns())},
-      {"answerMs", 1e-6 * static_cast<double>(group.answer_received_ns)}};
+  json.begin_object();
+  json.member("group", group.touched.name);
+  json.member("object", std::to_string(group.touched.object));
+  json.member("hasAnswer", group.has_answer);
+  json.member("status", status_word(answer));
+  json.member("statusText", group.has_answer ? status_text(answer) : "nothing yet");
+  json.member("advice", advice_text(answer));
+  json.member("class", spoken_name(answer.curve_class()));
+  json.member("frame", answer.header().frame().empty() ? "world" : answer.header().frame());
+  json.key("quantities");
+  write_quantities(answer, json);
+  json.key("hypotheses");
+  write_hypotheses(answer, json);
+  json.key("decisions");
+  write_decisions(answer, json);
+  json.key("invariants");
+  write_invariants(answer, json);
+  json.key("charts");
+  write_charts(drawing, json);
+  json.member("sampleCount", answer.sample_count());
+  json.member("outlierCount", answer.outlier_count());
+  json.member("noise",
+              number(answer.sigma_m() * noise_unit.per_m) + " " + std::string(noise_unit.name));
+  json.member("noiseCorrelationMm", 1e3 * answer.noise_correlation_m(), 4);
+  json.member("computeMs", 1e-6 * static_cast<double>(answer.compute_ns()), 4);
+  json.member("answersPerS", group.answer_rate.per_second(now), 3);
+  json.member("touchMs", 1e-6 * static_cast<double>(answer.newest_sample_stamp_ns()));
+  json.member("answerMs", 1e-6 * static_cast<double>(group.answer_received_ns));
   if (drawing.curve && drawing.curve->places.front().band) {
-    details["bandWidth"] = band_width_text(*drawing.curve);
+    json.member("bandWidth", band_width_text(*drawing.curve));
   }
-  add_residuals(group, drawing, details);
-  return details;
+  write_residuals(group, drawing, json);
+  json.end_object();
 }
 
 }  // namespace palpate

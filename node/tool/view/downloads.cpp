@@ -28,7 +28,13 @@ std::string samples_csv(const LiveGroup& group) {
 std::string answer_json(const LiveGroup& group) { return json_line(group.answer); }
 
 std::string moments_json(LiveState& state, std::string_view group) {
-  return to_text({{"times", state.moments_of(group)}});
+  JsonText json;
+  json.begin_object();
+  json.key("times").begin_array();
+  for (const std::int64_t time_ms : state.moments_of(group)) json.value(time_ms);
+  json.end_array();
+  json.end_object();
+  return json.take();
 }
 
 std::string moment_json(const LiveState& state, std::string_view group, std::int64_t time_ms,
@@ -36,14 +42,22 @@ std::string moment_json(const LiveState& state, std::string_view group, std::int
   const Moment* const moment = state.history().nearest(group, time_ms);
   if (moment == nullptr) return {};
   LiveGroup then = state.group_at(*moment);
+  const Drawing drawing = make_drawing(then.touched, then.answer, Curvature::Along);
   SentSamples none;
   // As to a browser that has another generation: all of them, even if there is none.
   none.generation = then.generation + 1;
-  return to_text({{"group", then.touched.name},
-                  {"timeMs", moment->time_ms},
-                  {"picture", picture_json(then)},
-                  {"details", details_json(then, now)},
-                  {"samples", samples_json(then, none)}});
+  JsonText json;
+  json.begin_object();
+  json.member("group", then.touched.name);
+  json.member("timeMs", moment->time_ms);
+  json.key("picture");
+  write_picture(then, drawing, json);
+  json.key("details");
+  write_details(then, drawing, now, json);
+  json.key("samples");
+  write_samples(then, none, json);
+  json.end_object();
+  return json.take();
 }
 
 }  // namespace palpate

@@ -13,9 +13,11 @@ constexpr milliseconds kOverviewPeriod{200};
 // These take a foot point of every sample besides: a third of the server's work at five a second.
 constexpr milliseconds kDetailsPeriod{250};
 
-/// A member of the message's object.
-void add_part(const char* name, const std::string& value, std::string& parts) {
-  parts += (parts.empty() ? "{\"" : ",\"") + std::string(name) + "\":" + value;
+template <typename Write>
+std::string text_of(const Write& write) {
+  JsonText json;
+  write(json);
+  return json.take();
 }
 
 }  // namespace
@@ -24,38 +26,60 @@ std::string LiveFeed::group_for(const Viewer& viewer, SteadyTime now) {
   return viewer.wanted.empty() ? state_.followed_group(viewer.shown, now) : viewer.wanted;
 }
 
-LiveFeed::Drawn& LiveFeed::drawn_of(const LiveGroup& group) {
-  std::erase_if(drawn_, [this](const auto& entry) { return state_.find(entry.first) == nullptr; });
-  return drawn_[group.touched.name];
-}
-
-void LiveFeed::add_group(LiveGroup& group, Viewer& viewer, SteadyTime now, std::string& parts) {
-  Drawn& drawn = drawn_of(group);
-  if (viewer.sent_version != group.version) {
-    if (drawn.version != group.version) {
-      drawn.picture = to_text(picture_json(group));
-      drawn.version = group.version;
-    }
-    viewer.sent_version = group.version;
-    add_part("picture", drawn.picture, parts);
+const LiveFeed::Drawn& LiveFeed::drawn_now(LiveGroup& group, SteadyTime now) {
+  // Groups are as many as there may be: only where one has gone are there more drawn than known.
+  if (drawn_.size() > state_.groups().size()) {
+    std::erase_if(drawn_,
+                  [this](const auto& entry) { return state_.find(entry.first) == nullptr; });
   }
-  const bool is_due = now - drawn.details_drawn >= kDetailsPeriod;
-  if (drawn.details_version != group.version && is_due) {
-    drawn.details = to_text(details_json(group, now));
+  Drawn& drawn = drawn_[group.touched.name];
+  const bool is_picture_new = drawn.version != group.version;
+  const bool are_details_new =
+      drawn.details_version != group.version && now - drawn.details_drawn >= kDetailsPeriod;
+  if (!is_picture_new && !are_details_new) return drawn;
+  const Drawing drawing = make_drawing(group.touched, group.answer,
+                                       are_details_new ? Curvature::Along : Curvature::None);
+  if (is_picture_new) {
+    drawn.picture = text_of([&](JsonText& json) { write_picture(group, drawing, json); });
+    drawn.version = group.version;
+  }
+  if (are_details_new) {
+    drawn.details = text_of([&](JsonText& json) { write_details(group, drawing, now, json); });
     drawn.details_version = group.version;
     drawn.details_drawn = now;
   }
+  return drawn;
+}
+
+const LiveFeed::Overview& LiveFeed::overview_now(SteadyTime now) {
+  const bool is_due = now - overview_.drawn >= kOverviewPeriod ||
+                      overview_.status_version != state_.status_version();
+  if (overview_.number == 0 || is_due) {
+    ++overview_.number;
+    overview_.status_version = state_.status_version();
+    overview_.drawn = now;
+    overview_.text = text_of([&](JsonText& json) { write_overview(state_, now, json); });
+  }
+  return overview_;
+}
+
+void LiveFeed::add_group(LiveGroup& group, Viewer& viewer, SteadyTime now, JsonText& message) {
+  const Drawn& drawn = drawn_now(group, now);
+  if (viewer.sent_version != drawn.version) {
+    viewer.sent_version = drawn.version;
+    message.key("picture").raw(drawn.picture);
+  }
   if (viewer.sent_details_version != drawn.details_version) {
     viewer.sent_details_version = drawn.details_version;
-    add_part("details", drawn.details, parts);
+    message.key("details").raw(drawn.details);
   }
-  if (const nlohmann::json samples = samples_json(group, viewer.sent_samples); !samples.is_null()) {
-    add_part("samples", to_text(samples), parts);
+  if (has_news(group, viewer.sent_samples)) {
+    message.key("samples");
+    write_samples(group, viewer.sent_samples, message);
   }
 }
 
 std::string LiveFeed::next_message(Viewer& viewer, SteadyTime now) {
-  std::string parts;
   const std::string group_name = group_for(viewer, now);
   if (group_name != viewer.shown) {
     viewer.shown = group_name;
@@ -63,18 +87,20 @@ std::string LiveFeed::next_message(Viewer& viewer, SteadyTime now) {
     viewer.sent_details_version = 0;
     viewer.sent_samples = {};
   }
+  JsonText message;
+  message.begin_object();
+  const std::size_t nothing = message.text().size();
   if (LiveGroup* const group = state_.find(group_name); group != nullptr) {
-    add_group(*group, viewer, now, parts);
+    add_group(*group, viewer, now, message);
   }
-  const bool is_due = now - viewer.sent_overview >= kOverviewPeriod;
-  if (is_due || viewer.sent_status_version != state_.status_version()) {
-    viewer.sent_overview = now;
-    viewer.sent_status_version = state_.status_version();
-    add_part("overview", to_text(overview_json(state_, now)), parts);
+  if (const Overview& overview = overview_now(now); viewer.sent_overview != overview.number) {
+    viewer.sent_overview = overview.number;
+    message.key("overview").raw(overview.text);
   }
-  if (parts.empty()) return parts;
-  add_part("group", to_text(group_name), parts);
-  return parts + "}";
+  if (message.text().size() == nothing) return {};
+  message.member("group", group_name);
+  message.end_object();
+  return message.take();
 }
 
 }  // namespace palpate

@@ -17,12 +17,11 @@ struct Viewer {
   std::uint64_t sent_version = 0;
   std::uint64_t sent_details_version = 0;
   SentSamples sent_samples;
-  std::uint64_t sent_status_version = 0;
-  SteadyTime sent_overview;
+  std::uint64_t sent_overview = 0;  ///< its number
 };
 
-/// Pictures are drawn when a viewer is due for them, once however many viewers there are; what is
-/// read beside them a few times a second only.
+/// Everything is drawn when a viewer is due for it, once however many viewers there are; what is
+/// read beside the pictures a few times a second only.
 class LiveFeed {
  public:
   explicit LiveFeed(LiveState& state) : state_(state) {}
@@ -31,6 +30,7 @@ class LiveFeed {
   std::string next_message(Viewer& viewer, SteadyTime now);
 
  private:
+  // Of a group, as JSON.
   struct Drawn {
     std::uint64_t version = 0;
     std::string picture;
@@ -39,12 +39,21 @@ class LiveFeed {
     std::string details;
   };
 
+  struct Overview {
+    std::uint64_t number = 0;
+    std::uint64_t status_version = 0;
+    SteadyTime drawn;
+    std::string text;
+  };
+
   std::string group_for(const Viewer& viewer, SteadyTime now);
-  Drawn& drawn_of(const LiveGroup& group);
-  void add_group(LiveGroup& group, Viewer& viewer, SteadyTime now, std::string& parts);
+  const Drawn& drawn_now(LiveGroup& group, SteadyTime now);
+  const Overview& overview_now(SteadyTime now);
+  void add_group(LiveGroup& group, Viewer& viewer, SteadyTime now, JsonText& message);
 
   LiveState& state_;
   std::map<std::string, Drawn, std::less<>> drawn_;
+  Overview overview_;
 };
 
 }  // namespace palpate

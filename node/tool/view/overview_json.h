@@ -1,13 +1,12 @@
 // What a browser is told of everything there is, a few times a second.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
+#include "node/tool/view/json_text.h"
 #include "node/tool/view/live_state.h"
 
 namespace palpate {
 
 /// Lists all groups, probes and recognizers, with their ages.
-nlohmann::json overview_json(const LiveState& state, SteadyTime now);
+void write_overview(const LiveState& state, SteadyTime now, JsonText& json);
 
 }  // namespace palpate

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "node/tool/drawing/pose_ellipse.h"
 #include "node/tool/text/recognition_text.h"
@@ -10,51 +13,79 @@
 namespace palpate {
 namespace {
 
-using nlohmann::json;
+/// [x, y]
+void write_place(const char* name, const StepCoordinates::Steps& steps, JsonText& json) {
+  json.key(name).begin_array();
+  StepCoordinates::write(steps, json);
+  json.end_array();
+}
 
-json curve_json(const DrawnCurve& curve, const StepCoordinates& place) {
-  json::array_t points, left, right;
-  bool has_band = !curve.places.empty();
+void write_border(const char* name, const DrawnCurve& curve, double BandWidth::*border_m,
+                  const StepCoordinates& place, JsonText& json) {
+  json.key(name).begin_array();
   for (const CurvePlace& at : curve.places) {
-    place.add(points, at.position);
-    has_band = has_band && at.band.has_value();
-    if (!has_band) continue;
-    place.add(left, at.position + at.band->left_m * at.left);
-    place.add(right, at.position + at.band->right_m * at.left);
+    place.write(at.position + (*at.band).*border_m * at.left, json);
   }
-  json result{{"class", spoken_name(curve.curve_class)},
-              {"probability", curve.probability},
-              {"closed", curve.closed},
-              {"points", std::move(points)}};
+  json.end_array();
+}
+
+void write_curve(const DrawnCurve& curve, const StepCoordinates& place, JsonText& json) {
+  json.begin_object();
+  json.member("class", spoken_name(curve.curve_class));
+  json.member("probability", curve.probability);
+  json.member("closed", curve.closed);
+  json.key("points").begin_array();
+  for (const CurvePlace& at : curve.places) place.write(at.position, json);
+  json.end_array();
+  const bool has_band = !curve.places.empty() &&
+                        std::all_of(curve.places.begin(), curve.places.end(),
+                                    [](const CurvePlace& at) { return at.band.has_value(); });
   if (has_band) {
-    result["left"] = std::move(left);
-    result["right"] = std::move(right);
+    write_border("left", curve, &BandWidth::left_m, place, json);
+    write_border("right", curve, &BandWidth::right_m, place, json);
   }
-  return result;
+  json.end_object();
 }
 
-json contacts_json(const v1::Recognition& answer, const StepCoordinates& place) {
-  json contacts = json::array();
+void write_contacts(const v1::Recognition& answer, const StepCoordinates& place, JsonText& json) {
+  json.begin_array();
   for (const v1::LocalizedContact& contact : answer.contacts()) {
-    json::array_t at;
-    if (!place.add(at, {contact.x_m(), contact.y_m()})) continue;
-    contacts.push_back(
-        {{"at", std::move(at)}, {"tangent", significant(contact.tangent_rad(), kChartDigits)}});
+    const auto at = place.steps_to({contact.x_m(), contact.y_m()});
+    if (!at) continue;
+    json.begin_object();
+    write_place("at", *at, json);
+    json.member("tangent", contact.tangent_rad(), kChartDigits);
+    json.end_object();
   }
-  return contacts;
+  json.end_array();
 }
 
-json pose_json(const v1::Recognition& answer, const StepCoordinates& place) {
-  json::array_t at;
-  if (!place.add(at, {answer.pose().x_m(), answer.pose().y_m()})) return nullptr;
-  json pose{{"at", std::move(at)}, {"theta", answer.pose().theta_rad()}};
+void write_pose(const v1::Recognition& answer, const StepCoordinates& place, JsonText& json) {
+  const auto at = place.steps_to({answer.pose().x_m(), answer.pose().y_m()});
+  if (!at) return;
+  json.key("pose").begin_object();
+  write_place("at", *at, json);
+  json.member("theta", answer.pose().theta_rad());
   const std::optional<CurveModel> model = model_of(answer);
   if (const auto ellipse = model ? pose_ellipse(*model) : std::optional<PoseEllipse>()) {
-    pose["ellipse"] = {{"long", significant(ellipse->long_m, kChartDigits)},
-                       {"short", significant(ellipse->short_m, kChartDigits)},
-                       {"angle", significant(ellipse->angle_rad, kChartDigits)}};
+    json.key("ellipse").begin_object();
+    json.member("long", ellipse->long_m, kChartDigits);
+    json.member("short", ellipse->short_m, kChartDigits);
+    json.member("angle", ellipse->angle_rad, kChartDigits);
+    json.end_object();
   }
-  return pose;
+  json.end_object();
+}
+
+/// What both messages begin with.
+void write_origin(const LiveGroup& group, const StepCoordinates& place, JsonText& json) {
+  json.member("group", group.touched.name);
+  json.member("object", std::to_string(group.touched.object));
+  json.member("step", place.step_m());
+  json.key("origin").begin_array();
+  json.value(group.origin_m.x());
+  json.value(group.origin_m.y());
+  json.end_array();
 }
 
 }  // namespace
@@ -84,67 +115,70 @@ StepCoordinates coordinates_of(const Drawing& drawing, const LiveGroup& group) {
           std::pow(10.0, std::floor(std::log10(kFraction * drawn_size_m(drawing, group))))};
 }
 
-json picture_json(const LiveGroup& group) {
+void write_picture(const LiveGroup& group, const Drawing& drawing, JsonText& json) {
   const v1::Recognition& answer = group.answer;
-  const Drawing drawing = make_drawing(group.touched, answer, Curvature::None);
   const StepCoordinates place = coordinates_of(drawing, group);
-  json rivals = json::array();
-  for (const DrawnCurve& rival : drawing.rivals) rivals.push_back(curve_json(rival, place));
-  json picture{{"group", group.touched.name},
-               {"object", std::to_string(group.touched.object)},
-               {"version", group.version},
-               {"origin", {group.origin_m.x(), group.origin_m.y()}},
-               {"step", place.step_m()},
-               {"class", spoken_name(answer.curve_class())},
-               {"contacts", contacts_json(answer, place)},
-               {"rivals", std::move(rivals)},
-               {"sampleCount", answer.sample_count()},
-               {"touchMs", 1e-6 * static_cast<double>(answer.newest_sample_stamp_ns())},
-               {"answerMs", 1e-6 * static_cast<double>(group.answer_received_ns)}};
+  json.begin_object();
+  write_origin(group, place, json);
+  json.member("version", group.version);
+  json.member("class", spoken_name(answer.curve_class()));
+  json.key("contacts");
+  write_contacts(answer, place, json);
+  json.key("rivals").begin_array();
+  for (const DrawnCurve& rival : drawing.rivals) write_curve(rival, place, json);
+  json.end_array();
   if (drawing.curve) {
-    picture["curve"] = curve_json(*drawing.curve, place);
-    if (json pose = pose_json(answer, place); !pose.is_null()) picture["pose"] = std::move(pose);
+    json.key("curve");
+    write_curve(*drawing.curve, place, json);
+    write_pose(answer, place, json);
   }
-  return picture;
+  json.member("sampleCount", answer.sample_count());
+  json.member("touchMs", 1e-6 * static_cast<double>(answer.newest_sample_stamp_ns()));
+  json.member("answerMs", 1e-6 * static_cast<double>(group.answer_received_ns));
+  json.end_object();
 }
 
-json samples_json(const LiveGroup& group, SentSamples& sent) {
+bool has_news(const LiveGroup& group, const SentSamples& sent) {
+  if (sent.generation != group.generation) return true;
+  const auto& runs = group.touched.runs;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if ((i < sent.of_run.size() ? sent.of_run[i] : 0) < runs[i].samples.size()) return true;
+  }
+  return false;
+}
+
+void write_samples(const LiveGroup& group, SentSamples& sent, JsonText& json) {
   const bool anew = sent.generation != group.generation;
   if (anew) sent = {group.generation, {}};
   const auto& runs = group.touched.runs;
   sent.of_run.resize(runs.size(), 0);
   constexpr double kStep_m = 1e-9;  // finer than any probe
   const StepCoordinates place(group.origin_m, kStep_m);
-  json news = json::array();
+  json.begin_object();
+  write_origin(group, place, json);
+  json.member("generation", group.generation);
+  json.member("anew", anew);
+  json.member("received", group.samples_received);
+  json.member("kept", group.samples_kept);
+  json.key("runs").begin_array();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const ContactRun& run = runs[i];
-    std::size_t& count = sent.of_run[i];
-    if (count >= run.samples.size()) continue;
-    json::array_t points;
-    for (std::size_t k = count; k < run.samples.size(); ++k) {
-      place.add(points, run.samples[k].position_m);
+    const std::size_t known = std::exchange(sent.of_run[i], run.samples.size());
+    if (known >= run.samples.size()) continue;
+    json.begin_object();
+    json.member("run", i);
+    json.member("probe", group.touched.probes[run.context.probe]);
+    json.member("patch", run.context.patch);
+    json.member("tipRadius", run.context.tip_radius_m);
+    json.key("points").begin_array();
+    for (std::size_t k = known; k < run.samples.size(); ++k) {
+      place.write(run.samples[k].position_m, json);
     }
-    count = run.samples.size();
-    news.push_back({{"run", i},
-                    {"probe", group.touched.probes[run.context.probe]},
-                    {"patch", run.context.patch},
-                    {"tipRadius", run.context.tip_radius_m},
-                    {"points", std::move(points)}});
+    json.end_array();
+    json.end_object();
   }
-  if (news.empty() && !anew) return nullptr;
-  return {{"group", group.touched.name},
-          {"object", std::to_string(group.touched.object)},
-          {"generation", group.generation},
-          {"anew", anew},
-          {"received", group.samples_received},
-          {"kept", group.samples_kept},
-          {"step", place.step_m()},
-          {"origin", {group.origin_m.x(), group.origin_m.y()}},
-          {"runs", std::move(news)}};
-}
-
-std::string to_text(const json& message) {
-  return message.dump(-1, ' ', false, json::error_handler_t::replace);
+  json.end_array();
+  json.end_object();
 }
 
 }  // namespace palpate

@@ -3,13 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
 #include "node/tool/drawing/drawing.h"
-#include "node/tool/view/json_numbers.h"
+#include "node/tool/view/json_text.h"
 #include "node/tool/view/live_state.h"
+#include "node/tool/view/step_coordinates.h"
 
 namespace palpate {
 
@@ -20,8 +19,8 @@ double drawn_size_m(const Drawing& drawing, const LiveGroup& group);
 StepCoordinates coordinates_of(const Drawing& drawing, const LiveGroup& group);
 
 /// Curve, band, rivals, contacts and frame of a group's answer; coordinates in steps from its
-/// origin.
-nlohmann::json picture_json(const LiveGroup& group);
+/// origin. `drawing` is that of the group.
+void write_picture(const LiveGroup& group, const Drawing& drawing, JsonText& json);
 
 /// Which of a group's samples a browser has.
 struct SentSamples {
@@ -29,11 +28,10 @@ struct SentSamples {
   std::vector<std::size_t> of_run;
 };
 
-/// The samples that it has not, runs continued where they ended; null where it has them all. Brings
-/// `sent` up to date.
-nlohmann::json samples_json(const LiveGroup& group, SentSamples& sent);
+/// Whether there are samples that it has not, or another generation of them.
+bool has_news(const LiveGroup& group, const SentSamples& sent);
 
-/// As text; what is not UTF-8 is replaced.
-std::string to_text(const nlohmann::json& message);
+/// The samples that it has not, runs continued where they ended. Brings `sent` up to date.
+void write_samples(const LiveGroup& group, SentSamples& sent, JsonText& json);
 
 }  // namespace palpate

@@ -183,6 +183,27 @@ TEST(Drawing, ShowsTheCurveBesideEveryTouchedPlace) {
   }
 }
 
+TEST(Residuals, AreTrueToAThousandthOfTheNoiseHoweverFarApartSamplesAre) {
+  constexpr double kSigma = 1e-6;
+  const Curve curves[] = {Ellipse{0.05, 0.01}, Parabola{0.01}, CubicalParabola{400.0, 1.0}};
+  for (const Curve& curve : curves) {
+    const CurveModel model{curve, {0.3, 0.1, 0.4}, {}};
+    for (const double step : {1e-4, 1e-2, 0.3}) {
+      ContactRun run;
+      for (int i = 0; i < 100; ++i) {
+        const double t = step * (i - 50) * (domain(curve).period > 0.0 ? 1.0 : 0.01);
+        const double beside = (i % 7 - 3) * kSigma;
+        run.samples.push_back({model.world_position(t) + beside * model.world_left(t), 0.0, 0});
+      }
+      const auto residuals = residuals_of(model, run, kSigma);
+      for (std::size_t i = 0; i < residuals.size(); ++i) {
+        const double expected = (static_cast<int>(i) % 7 - 3) * kSigma;
+        EXPECT_NEAR(residuals[i].residual_m, expected, 1e-3 * kSigma) << i;
+      }
+    }
+  }
+}
+
 TEST(Residuals, AreTheDistancesBeyondTheTipAndTellSpikes) {
   const CurveModel model{Circle{0.02}, {0.3, 0.1, 0.0}, {}};
   ContactRun run;
@@ -202,7 +223,7 @@ TEST(Residuals, AreTheDistancesBeyondTheTipAndTellSpikes) {
     const double expected = i == 50 ? -1e-3 : i % 2 == 0 ? -2e-5 : 2e-5;
     EXPECT_NEAR(residuals[i].residual_m, expected, 1e-12);
     EXPECT_EQ(residuals[i].is_far, i == 50);
-    EXPECT_NEAR((residuals[i].foot - Vec2(0.3, 0.1)).norm(), 0.02, 1e-12);
+    EXPECT_NEAR((model.world_position(residuals[i].t) - Vec2(0.3, 0.1)).norm(), 0.02, 1e-12);
   }
 }
 
