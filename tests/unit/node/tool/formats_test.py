@@ -84,6 +84,31 @@ class Formats(unittest.TestCase):
         self.check("x_mm;y_mm;\n" + self.rows(1e3, ";").replace("\n", ";\n").replace(".", ","))
         self.assertIn("commas are read as decimal points", self.notes)
 
+    def test_what_spreadsheets_write(self):
+        names = '"Messpunkt";"X-Wert [mm]";"Y-Wert [mm]";"Bemerkung"\r\n'
+        rows = "".join(f"{k};{1e3 * x:.5f};{1e3 * y:.5f};ok\r\n".replace(".", ",") for k, (x, y) in enumerate(WHOLE))
+        for encoding in ("utf-8-sig", "utf-16-le", "utf-16-be", "latin-1"):
+            mark = "\ufeff" if encoding.startswith("utf-16") else ""
+            self.check(mark + names + rows, encoding=encoding)
+            self.assertIn("columns ignored: Messpunkt, Bemerkung", self.notes)
+        # Its own mark of the separator; a micro sign of Latin-1; rows of nothing; an old Mac's line ends; bars.
+        self.check("sep=;\r\n" + names + rows)
+        self.check("X [\u00b5m];Y [\u00b5m]\r\n" + self.rows(1e6, ";"), encoding="latin-1")
+        answer = self.check(names + rows + ";;;\r\n;;;\r\n")
+        self.assertEqual({c["patch"] for c in answer["contacts"]}, {0})
+        self.check((names + rows).replace("\r\n", "\r"))
+        self.check("x_mm|y_mm\n" + self.rows(1e3, "|"))
+        self.assertIn("FILE:3:3: y '#N/A': not a number", self.refused("x_mm,y_mm\n1,2\n3,#N/A\n"))
+
+    def test_titles_above_the_names_and_units_below_them(self):
+        self.check("Part: bracket 12\nDate: 2026-11-22, 10:15\n\nx_mm,y_mm\n" + self.rows(1e3))
+        self.assertIn("lines ignored before the names of the columns: 2, the first 'Part: bracket 12'", self.notes)
+        self.check("X,Y\nmm,mm\n" + self.rows(1e3))
+        self.assertNotIn("unit", self.notes)
+        self.check("X;Y;Force\n[um];[um];[N]\n" + self.rows(1e6, ";").replace("\n", ";1\n"))
+        # Numbers after a title have no names: nothing is guessed of them.
+        self.assertIn("FILE:1:1: no columns of two coordinates: 'Part 12'", self.refused("Part 12\n1,2\n3,4\n"))
+
     def test_what_numpy_writes(self):
         savetxt = self.rows(separator=" ", digits="{:.18e}")
         self.check(savetxt)
