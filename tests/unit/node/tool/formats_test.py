@@ -196,6 +196,46 @@ class Formats(unittest.TestCase):
         self.assertIn("jumps", self.err)
         self.assertIn("column patch", self.err)
 
+    def test_rows_in_no_order_are_told(self):
+        rows = WHOLE[:]
+        random.Random(2).shuffle(rows)
+        shuffled = "x_m,y_m\n" + "".join(f"{x},{y}\n" for x, y in rows)
+        answer = self.fit(shuffled)
+        self.assertIn("1 patches go to and fro over their whole extent", self.err)
+        self.assertIn("in no order are --touches", "".join(answer["notes"]))
+        self.check(shuffled, "--touches")
+        self.assertEqual(self.err, "")
+        path = self.folder / "shuffled.csv"
+        path.write_text(shuffled)
+        self.assertEqual(run(TOOL, "check", path)[0], 1)
+        # Once round the part, densely sampled with much noise between: that is an order.
+        dense = "x_m,y_m\n" + "".join(f"{A * math.cos(t)},{B * math.sin(t)}\n" for t in
+                                      (2 * math.pi * i / 40 for i in range(40)))
+        self.fit(dense)
+        self.assertEqual(self.err, "")
+
+    def test_the_noise_of_many_samples_is_that_of_one(self):
+        # More than 1024 of a patch are used as means: what is said of the noise is of the samples.
+        rng = random.Random(4)
+        text = "x_m,y_m\n" + "".join(f"{A * math.cos(t) + rng.gauss(0, SIGMA)},{B * math.sin(t) + rng.gauss(0, SIGMA)}\n"
+                                     for t in (5.5 * i / 20000 for i in range(20000)))
+        for arguments in ((), ("--sigma", SIGMA)):
+            picture = self.folder / "picture.svg"
+            answer = self.fit(text, "--plot", picture, *arguments)
+            # The means are some 625 at least: their own noise is known to 5 / sqrt(2 * 625) of itself.
+            self.assertLess(abs(answer["sigma_m"] / SIGMA - 1), 5 / math.sqrt(2 * 625), arguments)
+            # Of 20,000 gaussian errors one in a hundred times one is beyond 5 sigma.
+            self.assertNotIn("beyond", picture.read_text())
+
+    def test_a_class_at_its_limit_to_another_shows_no_shape(self):
+        text = "x_mm,y_mm\n" + "".join(f"{int(25 * math.cos(t) + 10)},{int(17.5 * math.sin(t) - 3)}\n"
+                                       for t in (0.2 + 1.2 * i / 99 for i in range(100)))
+        answer = self.fit(text)
+        best = answer["hypotheses"][0]
+        self.assertTrue(best["at_limit"], answer)
+        self.assertNotIn("parameters", answer)
+        self.assertNotIn("pose", answer)
+
     def test_no_patch_of_a_file_is_dropped(self):
         # Of 90 patches the first 26 held the part's far end.
         strokes = ellipse(patches=[(0.065 * k, 0.065 * k + 0.05) for k in range(90)], count=9)
