@@ -72,7 +72,7 @@ struct Recognition {
   /// Samples of this object with a normal or a covariance of which the answer does not use all: of
   /// a covariance the mean noise counts, of a normal the side of a round tip that it shows.
   std::size_t simplified_count = 0;
-  double sigma_m = 0.0;              ///< noise used, given or estimated [m]
+  double sigma_m = 0.0;              ///< noise of a sample, given or estimated [m]
   double noise_correlation_m = 0.0;  ///< correlation length of the residuals; 0 = white [m]
 };
 

@@ -198,6 +198,8 @@ class Recognizer::Impl {
     if (places < kFewestPlaces) {
       doubt(&answer, Doubt::FewPlaces);
     }
+    // Told of the samples as they came, not of the means that stand for them.
+    answer.sigma_m *= noise_over_means(clean, options_.sigma_m);
     return answer;
   }
 

@@ -11,6 +11,7 @@
 #include "node/csv/csv_columns.h"
 #include "node/csv/point_plane.h"
 #include "node/csv/point_reader.h"
+#include "node/csv/text_encoding.h"
 #include "node/csv/text_lines.h"
 #include "node/files/bounded_file.h"
 
@@ -107,6 +108,7 @@ std::optional<PointPlane> point_plane_from_name(std::string_view name) {
 
 Read parse_contact_file(std::string_view text, std::string_view name,
                         const ContactFileOptions& options) {
+  if (const auto utf8 = csv::utf8_of_utf16(text)) return parse_contact_file(*utf8, name, options);
   Result<csv::PointTable> read = is_own_format(text)      ? read_own(text, name, options)
                                  : csv::is_grbl_log(text) ? csv::read_grbl_log(text, name, options)
                                                           : csv::read_points(text, name, options);

@@ -1,10 +1,11 @@
 // The offline door for files that were made for others: what people have, read as contacts.
 //
 // Beside the columns of node/csv/contact_csv.h: columns by common names and units (x_mm, "X [um]",
-// pos_y), in any order; two or three columns without names; comma, semicolon, tab or blanks between
-// them; '#' and '%' comments; decimal commas where the separator is none; the probe logs of
-// LinuxCNC and grbl. Nothing is guessed in silence: every assumption, and whatever is left out, is
-// a note.
+// pos_y), in any order; two or three columns without names; comma, semicolon, tab, bar or blanks
+// between them; '#' and '%' comments; decimal commas where the separator is none; what spreadsheets
+// write (UTF-16, "sep=;", titles above the names, a row of units below them, empty rows); the probe
+// logs of LinuxCNC and grbl. Nothing is guessed in silence: every assumption, and whatever is left
+// out, is a note.
 #pragma once
 
 #include <optional>

@@ -9,18 +9,20 @@
 namespace palpate {
 
 std::optional<double> length_unit_m(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, double>, 12> kUnits = {{{"m", 1.0},
-                                                                           {"mm", 1e-3},
-                                                                           {"cm", 1e-2},
-                                                                           {"um", 1e-6},
-                                                                           {"\xC2\xB5m", 1e-6},
-                                                                           {"\xCE\xBCm", 1e-6},
-                                                                           {"micron", 1e-6},
-                                                                           {"microns", 1e-6},
-                                                                           {"nm", 1e-9},
-                                                                           {"in", 0.0254},
-                                                                           {"inch", 0.0254},
-                                                                           {"inches", 0.0254}}};
+  constexpr std::array<std::pair<std::string_view, double>, 13> kUnits = {
+      {{"m", 1.0},
+       {"mm", 1e-3},
+       {"cm", 1e-2},
+       {"um", 1e-6},
+       {"\xC2\xB5m", 1e-6},
+       {"\xCE\xBCm", 1e-6},
+       {"\xB5m", 1e-6},  // Latin-1
+       {"micron", 1e-6},
+       {"microns", 1e-6},
+       {"nm", 1e-9},
+       {"in", 0.0254},
+       {"inch", 0.0254},
+       {"inches", 0.0254}}};
   for (const auto& [unit, metres] : kUnits) {
     if (unit == name) return metres;
   }
@@ -46,6 +48,12 @@ constexpr std::array kAliases = {
     Alias{"point_x", PointColumn::X},
     Alias{"contact_x", PointColumn::X},
     Alias{"tip_x", PointColumn::X},
+    Alias{"x_value", PointColumn::X},
+    Alias{"x_actual", PointColumn::X},
+    Alias{"x_measured", PointColumn::X},
+    Alias{"x_wert", PointColumn::X},
+    Alias{"x_ist", PointColumn::X},
+    Alias{"x_koordinate", PointColumn::X},
     Alias{"px", PointColumn::X},
     Alias{"sigma", PointColumn::Sigma},
     Alias{"std", PointColumn::Sigma},
@@ -145,6 +153,10 @@ std::optional<NamedColumn> column_of(std::string_view name) {
   const auto unit =
       column ? unit_for(*column, std::string_view(words).substr(last + 1)) : std::nullopt;
   return unit ? std::optional(NamedColumn{*column, unit}) : std::nullopt;
+}
+
+std::optional<double> unit_in_brackets(PointColumn column, std::string_view text) {
+  return unit_for(column, plain(text));
 }
 
 std::string known_columns() {

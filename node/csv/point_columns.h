@@ -25,6 +25,9 @@ struct NamedColumn {
 /// an underscore or in brackets ("x", "X [mm]", "pos_y_um", "time_s"). nullopt for others.
 std::optional<NamedColumn> column_of(std::string_view name);
 
+/// The unit that stands alone, "mm" or "[mm]", in SI units; nullopt for others.
+std::optional<double> unit_in_brackets(PointColumn column, std::string_view text);
+
 /// For messages: the names in their plainest form.
 std::string known_columns();
 

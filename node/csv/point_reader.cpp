@@ -3,16 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "node/csv/point_columns.h"
+#include "node/csv/text_fields.h"
 #include "node/csv/text_lines.h"
 #include "node/wire/topics.h"
 
 namespace palpate::csv {
 namespace {
 
-// The bounds of node/intake/ingest.h: what the node would refuse is not used offline either.
-constexpr double kMaxCoordinateM = 1e7;
+// As node/intake/ingest.h has them too.
 constexpr double kMinSigmaM = 1e-15;
 constexpr double kMaxLengthM = 1e3;  // of sigma and of tip radii
 
@@ -27,7 +28,7 @@ class PointReader {
   Result<PointTable> read() {
     while (error_.empty() && lines_.next()) {
       std::string_view line = lines_.line();
-      const std::size_t mark = line.find_first_of("#%");
+      const std::size_t mark = comment_mark(line);
       const std::string_view comment =
           mark == std::string_view::npos ? std::string_view() : line.substr(mark + 1);
       line = line.substr(0, mark);
@@ -36,14 +37,32 @@ class PointReader {
         if (mark == std::string_view::npos) gap_ = true;
         continue;
       }
-      if (!is_known_) {
-        is_known_ = true;
-        gap_ = false;
-        if (know_columns(line)) continue;
-        if (!error_.empty()) break;
+      if (is_known_) {
+        read_row(line);
+        continue;
       }
-      read_row(line);
+      if (const char told = told_separator(line); told != '\0' && preface_.empty()) {
+        told_separator_ = told;
+        continue;
+      }
+      const First first = know_columns(line);
+      if (first == First::Neither) {
+        // A title, a date: the names of the columns may follow.
+        if (preface_.empty()) {
+          preface_ = trim(line);
+          without_names_ =
+              lines_.error(line.data(), "no columns of two coordinates: " + shown(preface_) +
+                                            "; known are " + known_columns());
+        }
+        ++preface_lines_;
+        continue;
+      }
+      gap_ = false;
+      is_known_ = true;
+      units_may_follow_ = first == First::Names;
+      if (first == First::Numbers) read_row(line);
     }
+    if (error_.empty() && !is_known_) error_ = without_names_;
     if (error_.empty() && result_.table.rows.empty()) {
       fail(lines_.line().data(),
            is_known_ ? "no samples after the header line" : "no samples: the file is empty");
@@ -59,36 +78,13 @@ class PointReader {
     return false;
   }
 
-  void split(std::string_view line) {
-    fields_.clear();
-    if (separator_ == ' ') {
-      for (std::size_t from = 0;;) {
-        while (from < line.size() && is_blank(line[from])) ++from;
-        if (from == line.size()) return;
-        std::size_t end = from;
-        while (end < line.size() && !is_blank(line[end])) ++end;
-        fields_.push_back(line.substr(from, end - from));
-        from = end;
-      }
-    }
-    for (std::size_t from = 0;;) {
-      const std::size_t end = std::min(line.find(separator_, from), line.size());
-      std::string_view field = trim(line.substr(from, end - from));
-      if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
-        field = field.substr(1, field.size() - 2);
-      }
-      fields_.push_back(field);
-      if (end == line.size()) return;
-      from = end + 1;
-    }
-  }
+  void split(std::string_view line) { split_fields(line, separator_, fields_); }
 
-  /// Of the first line that holds anything; true where that line is a header.
-  bool know_columns(std::string_view line) {
-    separator_ = line.find('\t') != std::string_view::npos  ? '\t'
-                 : line.find(';') != std::string_view::npos ? ';'
-                 : line.find(',') != std::string_view::npos ? ','
-                                                            : ' ';
+  enum class First { Names, Numbers, Neither };
+
+  /// Of a line before the data: the columns' names, the first of the data, or neither.
+  First know_columns(std::string_view line) {
+    separator_ = told_separator_ != '\0' ? told_separator_ : separator_of(line);
     split(line);
     const bool decimal_comma = separator_ != ',';
     const bool is_data = std::all_of(fields_.begin(), fields_.end(), [&](std::string_view field) {
@@ -96,19 +92,18 @@ class PointReader {
     });
     if (!is_data) {
       columns_ = columns_of(fields_);
+      if (!columns_.is_enough()) return First::Neither;
       width_ = fields_.size();
-      if (!columns_.twice.empty()) {
-        return fail(line.data(), "column " + columns_.twice + " comes twice");
-      }
-      if (!columns_.is_enough()) {
-        return fail(line.data(), "no columns of two coordinates: " + shown(trim(line)) +
-                                     "; known are " + known_columns());
-      }
-      return true;
+      if (!columns_.twice.empty()) fail(line.data(), "column " + columns_.twice + " comes twice");
+      return First::Names;
     }
     width_ = fields_.size();
-    if (!know_by_comment()) know_by_width(line);
-    return false;
+    if (!preface_.empty()) {
+      error_ = without_names_;
+    } else if (!know_by_comment()) {
+      know_by_width(line);
+    }
+    return First::Numbers;
   }
 
   /// numpy.savetxt writes its header as a comment.
@@ -239,7 +234,23 @@ class PointReader {
     return true;
   }
 
+  /// "mm;mm" under the names: the units of the columns.
+  bool know_units() {
+    PointColumns with_units = columns_;
+    for (std::size_t i = 0; i < kPointColumnCount; ++i) {
+      const auto column = static_cast<PointColumn>(i);
+      const auto unit = columns_.place(column) && is_length(column)
+                            ? unit_in_brackets(column, field(column))
+                            : std::nullopt;
+      if (unit && !columns_.units[i]) with_units.units[i] = unit;
+      if (!unit && column <= PointColumn::Z && columns_.place(column)) return false;
+    }
+    columns_ = with_units;
+    return true;
+  }
+
   void read_row(std::string_view line) {
+    if (!error_.empty()) return;
     split(line);
     // Spreadsheets end lines in a separator.
     if (fields_.size() == width_ + 1 && fields_.back().empty()) fields_.pop_back();
@@ -248,6 +259,12 @@ class PointReader {
            std::to_string(fields_.size()) + " fields instead of " + std::to_string(width_));
       return;
     }
+    // Spreadsheets write empty rows as separators alone.
+    if (std::all_of(fields_.begin(), fields_.end(), [](auto field) { return field.empty(); })) {
+      gap_ = true;
+      return;
+    }
+    if (std::exchange(units_may_follow_, false) && know_units()) return;
     ContactRow row;
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
     int axes = 0;
@@ -294,6 +311,10 @@ class PointReader {
   void tell() {
     result_.has_patches = columns_.place(PointColumn::Patch).has_value() || block_ > 0;
     std::vector<std::string>& notes = result_.notes;
+    if (preface_lines_ > 0) {
+      notes.push_back("lines ignored before the names of the columns: " +
+                      std::to_string(preface_lines_) + ", the first " + shown(preface_));
+    }
     if (!columns_.ignored.empty()) {
       std::string names;
       for (const std::string& name : columns_.ignored) {
@@ -325,11 +346,16 @@ class PointReader {
   ContactFileOptions options_;
   PointTable result_;
   std::string error_;
-  std::string_view comment_;  ///< the last one before the data
-  bool is_known_ = false;     ///< the columns
-  bool gap_ = false;          ///< an empty line came before
-  std::uint32_t block_ = 0;   ///< of rows between empty lines
-  char separator_ = ',';      ///< ' ' = any blanks
+  std::string_view comment_;   ///< the last one before the data
+  std::string_view preface_;   ///< the first line before the names that names nothing
+  std::string without_names_;  ///< the error where no names follow it
+  std::size_t preface_lines_ = 0;
+  char told_separator_ = '\0';     ///< by the file itself
+  bool units_may_follow_ = false;  ///< the names were the line before
+  bool is_known_ = false;          ///< the columns
+  bool gap_ = false;               ///< an empty line came before
+  std::uint32_t block_ = 0;        ///< of rows between empty lines
+  char separator_ = ',';           ///< ' ' = any blanks
   bool uses_decimal_comma_ = false;
   std::size_t width_ = 0;
   PointColumns columns_;
@@ -337,77 +363,11 @@ class PointReader {
   std::map<std::string, std::size_t> indices_;
 };
 
-constexpr std::string_view kGrblProbe = "[PRB:";
-
 }  // namespace
 
 Result<PointTable> read_points(std::string_view text, std::string_view name,
                                const ContactFileOptions& options) {
   return PointReader(text, name, options).read();
-}
-
-bool is_grbl_log(std::string_view text) { return text.find(kGrblProbe) != std::string_view::npos; }
-
-Result<PointTable> read_grbl_log(std::string_view text, std::string_view name,
-                                 const ContactFileOptions& options) {
-  using Read = Result<PointTable>;
-  PointTable result;
-  result.is_probe_log = true;
-  result.table.names = {"probe"};
-  constexpr double kMillimetre = 1e-3;
-  const double unit = options.unit_m.value_or(kMillimetre);
-  std::size_t other_lines = 0;
-  std::size_t missed = 0;
-  TextLines lines(text, name);
-  while (lines.next()) {
-    const std::size_t found = lines.line().find(kGrblProbe);
-    if (found == std::string_view::npos) {
-      other_lines += trim(lines.line()).empty() ? 0 : 1;
-      continue;
-    }
-    std::string_view rest = lines.line().substr(found + kGrblProbe.size());
-    Eigen::Vector3d point;
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const std::size_t end = rest.find_first_of(",:]");
-      const auto value = number_of(rest.substr(0, end), false);
-      if (end == std::string_view::npos || !value || !std::isfinite(*value) ||
-          std::abs(*value) * unit > kMaxCoordinateM) {
-        return Read::fail(lines.error(
-            rest.data(), "[PRB:x,y,z:1] expected, found " + shown(lines.line().substr(found))));
-      }
-      point[axis] = *value * unit;
-      if (axis < 2 && rest[end] != ',') {
-        return Read::fail(lines.error(rest.data() + end, "three coordinates expected"));
-      }
-      rest.remove_prefix(end + 1);
-    }
-    if (!lines.line().ends_with(":1]") &&
-        lines.line().find(":1]", found) == std::string_view::npos) {
-      ++missed;
-      continue;
-    }
-    ContactRow row;
-    row.context.tip_radius_m = options.tip_radius_m;
-    row.sample.position_m = point.head<2>();
-    result.table.rows.push_back(row);
-    result.points.push_back(point);
-  }
-  if (result.table.rows.empty()) {
-    return Read::fail(lines.error(nullptr, "no probing cycle of this grbl log touched anything"));
-  }
-  result.notes.push_back("a grbl log: its [PRB:x,y,z:1] lines are the touches" +
-                         (other_lines > 0
-                              ? ", " + std::to_string(other_lines) + " other lines are ignored"
-                              : std::string()));
-  if (missed > 0) {
-    result.notes.push_back(std::to_string(missed) +
-                           " probing cycles that touched nothing ([PRB:...:0]) are left out");
-  }
-  if (!options.unit_m) {
-    result.notes.emplace_back(
-        "grbl reports millimetres unless $13=1: taken as millimetres (else --unit in)");
-  }
-  return Read::ok(std::move(result));
 }
 
 }  // namespace palpate::csv

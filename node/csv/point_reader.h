@@ -10,6 +10,9 @@
 
 namespace palpate::csv {
 
+/// What the node would refuse (node/intake/ingest.h) is not used offline either.
+inline constexpr double kMaxCoordinateM = 1e7;
+
 /// Rows whose positions are still in space.
 struct PointTable {
   ContactTable table;                   ///< positions: x and y of `points` where there are just two

@@ -28,18 +28,19 @@ inline std::string shown(std::string_view text) {
   return quoted;
 }
 
-/// One line after the other, without their ends (LF or CRLF).
+/// One line after the other, without their ends (LF or CRLF; CR where the text has no LF).
 class TextLines {
  public:
   TextLines(std::string_view text, std::string_view name) : text_(text), name_(name) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
+    if (text_.find('\n') == std::string_view::npos) end_ = '\r';
   }
 
   bool next() {
     if (position_ >= text_.size()) return false;
     ++number_;
-    const std::size_t end = std::min(text_.find('\n', position_), text_.size());
+    const std::size_t end = std::min(text_.find(end_, position_), text_.size());
     line_ = text_.substr(position_, end - position_);
     position_ = end + 1;
     if (line_.ends_with('\r')) line_.remove_suffix(1);
@@ -59,6 +60,7 @@ class TextLines {
  private:
   std::string_view text_;
   std::string_view name_;
+  char end_ = '\n';
   std::size_t position_ = 0;
   std::size_t number_ = 0;
   std::string_view line_;

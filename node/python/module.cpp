@@ -146,6 +146,9 @@ class Recognizer {
                      [](double value) { return std::isfinite(value) && value >= 0.0; })) {
       throw std::invalid_argument("sigma: must be finite and not below 0");
     }
+    if (!(std::isfinite(tip_radius_m) && tip_radius_m >= 0.0)) {
+      throw std::invalid_argument("tip_radius: must be finite and not below 0");
+    }
     palpate::AddResult added;
     {
       const py::gil_scoped_release release;
@@ -178,6 +181,12 @@ class Recognizer {
                                                const std::vector<std::string>& classes,
                                                double form_deviation_m, std::size_t most_patches,
                                                std::size_t most_samples_per_patch) {
+    for (const auto& [name, value] :
+         {std::pair("sigma", sigma_m), std::pair("form_deviation", form_deviation_m)}) {
+      if (!(std::isfinite(value) && value >= 0.0)) {
+        throw std::invalid_argument(std::string(name) + ": must be finite and not below 0");
+      }
+    }
     palpate::RecognizerOptions options;
     options.sigma_m = sigma_m;
     options.form_deviation_m = form_deviation_m;
@@ -291,6 +300,10 @@ PYBIND11_MODULE(_core, module) {
   add_property(answer, "doubt", [](const auto& r) { return palpate::name_of(r.doubt); });
   add_property(answer, "curve_class",
                [](const auto& r) { return palpate::name_of(r.shape.curve_class); });
+  add_property(answer, "has_shape", [](const auto& r) {
+    return r.shape.curve_class != palpate::CurveClass::Unclassified &&
+           !(!r.hypotheses.empty() && r.hypotheses.front().at_limit);
+  });
   add_property(answer, "params", [](const auto& r) -> Eigen::Vector3d { return r.shape.values; });
   add_property(answer, "pose", [](const auto& r) { return pose_of(r.world_T_curve); });
   add_property(answer, "covariance", [](const auto& r) -> Eigen::MatrixXd { return r.covariance; });

@@ -129,7 +129,9 @@ void to_wire(const Recognition& recognition, const ContactSourceOf& source_of,
   // While nothing is known no class is named: "unclassified" would be an answer.
   const bool has_answer = recognition.status != RecognitionStatus::Collecting;
   out.set_curve_class(has_answer ? to_wire(curve_class) : v1::CURVE_CLASS_UNSPECIFIED);
-  if (has_answer && curve_class != CurveClass::Unclassified) {
+  // A class that is best where it turns into another one has no shape of its own.
+  const bool has_shape = recognition.hypotheses.empty() || !recognition.hypotheses.front().at_limit;
+  if (has_answer && has_shape && curve_class != CurveClass::Unclassified) {
     to_wire(recognition.shape, *out.mutable_parameters());
     to_wire(recognition.world_T_curve, *out.mutable_pose());
     out.set_pose_symmetry(static_cast<std::uint32_t>(pose_symmetry(curve_class)));

@@ -105,12 +105,26 @@ class Fit(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "no curve was found"):
             result.residuals([[0, 0]])
         for arguments in (dict(unit="furlong"), dict(sigma=-1), dict(sigma=[1, 2]), dict(classes=["sphere"]),
-                          dict(material_side="up"), dict(sigma=math.nan)):
+                          dict(material_side="up"), dict(sigma=math.nan), dict(tip_radius=-1), dict(tip_radius=math.inf),
+                          dict(form_deviation=-1)):
             with self.assertRaises(ValueError, msg=arguments):
                 palpate.fit(PATCHES, **arguments)
         for points in ([], [[1.0, math.nan]], [[1.0, 2.0, 3.0]], [1.0, 2.0]):
             with self.assertRaises(ValueError, msg=points):
                 palpate.fit(points)
+
+    def test_a_class_at_its_limit_to_another_has_no_shape(self):
+        t = np.linspace(0.2, 1.4, 100)
+        result = palpate.fit(np.column_stack([25 * np.cos(t) + 10, 17.5 * np.sin(t) - 3]).astype(int), unit="mm")
+        self.assertEqual(result.doubt, "several_classes")
+        self.assertEqual(result.params, {})
+        self.assertTrue(all(map(math.isnan, result.pose)))
+        self.assertNotIn("a =", repr(result))
+
+    def test_what_the_package_names(self):
+        self.assertRegex(palpate.__version__, r"^\d+\.\d+\.\d+")
+        self.assertEqual([name for name in dir(palpate) if not name.startswith("_")],
+                         ["Planner", "Probe", "Recognizer", "Result", "fit", "models"])
 
     def test_a_stream(self):
         recognizer = palpate.Recognizer(sigma=SIGMA, unit="mm")
@@ -238,6 +252,11 @@ try:
     palpate.Probe("finger", "ipc://" + CONTACTS[6:] + ".nobody", timeout=0.2)
 except TimeoutError as error:
     print("nobody:", error)
+for wrong in (dict(name="left finger"), dict(name="finger", group="a/b"), dict(name="finger", tip_radius=-1)):
+    try:
+        palpate.Probe(endpoint=CONTACTS, **wrong)
+    except ValueError as error:
+        print("wrong:", error)
 """
         from bus import Bus
         with Bus() as bus:
@@ -250,6 +269,7 @@ except TimeoutError as error:
         self.assertEqual(lines[0], "CURVE_CLASS_ELLIPSE 25")
         self.assertIn("no answer from", lines[1])
         self.assertIn("no recognizer listens at", lines[2])
+        self.assertEqual([line.partition("wrong: ")[2].split(":")[0] for line in lines[3:]], ["name", "group", "tip_radius"])
 
     def test_curve_with_the_keys_of_palpate_keygen(self):
         from bus import Bus

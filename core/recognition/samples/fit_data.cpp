@@ -68,6 +68,20 @@ double rms_sigma(const FitData& data) {
   return std::sqrt(sum / static_cast<double>(data.points.size()));
 }
 
+double noise_over_means(std::span<const StoredPatch> patches, double default_sigma_m) {
+  double of_contacts = 0.0;
+  double of_means = 0.0;
+  for (const StoredPatch& patch : patches) {
+    for (const StoredSample& sample : patch.samples) {
+      const double sigma_m = sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+      const double variance = sigma_m > 0.0 ? sigma_m * sigma_m : 1.0;
+      of_contacts += variance;
+      of_means += variance / sample.weight;
+    }
+  }
+  return of_means > 0.0 ? std::sqrt(of_contacts / of_means) : 1.0;
+}
+
 double least_sigma(std::span<const FitPoint> points) {
   double sharpest = 0.0;
   for (const FitPoint& point : points) {

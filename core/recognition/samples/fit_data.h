@@ -47,6 +47,10 @@ struct FitData {
 FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma_m,
                       bool* sigma_known);
 
+/// Noise of a contact over that of a stored sample, which is the mean of several in a long patch; 1
+/// where none are merged.
+double noise_over_means(std::span<const StoredPatch> patches, double default_sigma_m);
+
 /// Root mean square of the points' noise, in normalised units. At least one point.
 double rms_sigma(const FitData& data);
 

@@ -20,6 +20,7 @@ from .result import Result, units
 if TYPE_CHECKING:
     from .bus import Planner, Probe
 
+__version__ = "@PROJECT_VERSION@"
 __all__ = ["Planner", "Probe", "Recognizer", "Result", "fit", "models"]
 
 _NONE = np.empty(0)
@@ -97,6 +98,10 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
 def _is_one_patch(points) -> bool:
     first = points[0] if len(points) else ()
     return np.ndim(first) == 1
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__version__"])
 
 
 def __getattr__(name: str):

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import random
+import re
 import time
 from typing import Iterator
 
@@ -29,6 +30,13 @@ def _secure(socket: zmq.Socket, secret_key: str | None, server_key: str | None) 
         raise ValueError(f"{secret_key}: no secret key in it")
     socket.curve_publickey, socket.curve_secretkey = public, secret
     socket.curve_serverkey, _ = load_certificate(server_key)
+
+
+def _name(what: str, name: str) -> str:
+    """What the recognizer would reject is not sent."""
+    if not re.fullmatch(r"[A-Za-z0-9_.-]{1,64}", name):
+        raise ValueError(f"{what}: {name!r}: a name is 1 to 64 of A-Z a-z 0-9 _ . -")
+    return name
 
 
 class _Peer:
@@ -102,6 +110,12 @@ class Probe(_Peer):
         """Waits until a recognizer listens; raises TimeoutError after `timeout` seconds, and ConnectionRefusedError
         where it refuses our keys."""
         self._scale = units(unit)
+        _name("name", name)
+        if group:
+            _name("group", group)
+        for what, value in (("sigma", sigma), ("tip_radius", tip_radius)):
+            if not 0 <= value < float("inf"):
+                raise ValueError(f"{what}: must be finite and not below 0")
         super().__init__(zmq.XPUB, endpoint, secret_key, server_key)
         self._topic = f"contact/{name}/".encode()
         self._sigma = sigma
@@ -154,6 +168,8 @@ class Planner(_Peer):
 
     def __init__(self, endpoint: str = RESULTS, group: str | None = None, secret_key: str | None = None,
                  server_key: str | None = None) -> None:
+        if group is not None:
+            _name("group", group)
         super().__init__(zmq.SUB, endpoint, secret_key, server_key)
         self._newest: dict[str, tuple[int, int]] = {}
         self._socket.setsockopt(zmq.SUBSCRIBE, b"recognition/" + (f"{group}/".encode() if group is not None else b""))

@@ -24,7 +24,8 @@ def units(name: str) -> float:
 
 class Result:
     """status: "collecting", "ambiguous" or "recognized"; doubt: why it is ambiguous, else "none".
-    curve_class; params: {"a": ...}; pose: (x, y, theta); covariance: of [params; x; y; theta].
+    curve_class; params: {"a": ...}; pose: (x, y, theta); covariance: of [params; x; y; theta]. Where no curve was
+    found (unclassified, collecting, or a class at its limit to another), params is empty and the pose not a number.
     probabilities: {class: posterior}. contacts: local geometry of the touched places, in metres.
     sigma: the noise, given or estimated. sample_count, outlier_count, forgotten_count.
     compute_s: what the recognition took since the answer before, without the way from Python and back."""
@@ -35,12 +36,13 @@ class Result:
         self.status = core.status
         self.doubt = core.doubt
         self.curve_class = core.curve_class
-        letters = "" if self.curve_class == "unclassified" else _core.parameter_letters(self.curve_class)
+        # Best at the limit of another class, it has no shape of its own.
+        letters = _core.parameter_letters(self.curve_class) if core.has_shape else ""
         powers = _POWERS.get(self.curve_class, {})
         self._factors = [scale ** -powers.get(letter, 1.0) for letter in letters]
         self.params: dict[str, float] = {
             letter: factor * value for letter, factor, value in zip(letters, self._factors, core.params.tolist())}
-        x, y, theta = core.pose
+        x, y, theta = core.pose if core.has_shape else (float("nan"),) * 3
         self.pose = (x / scale, y / scale, theta)
         self.sigma = core.sigma_m / scale
         self.compute_s = core.compute_s
@@ -64,12 +66,9 @@ class Result:
 
     @cached_property
     def _curve(self) -> _core.PlacedCurve | None:
-        if not self.params and self.curve_class != "line":
+        if not self._core.has_shape:
             return None
-        try:
-            return _core.PlacedCurve(self.curve_class, self._core.params, *self._core.pose)
-        except ValueError:
-            return None  # it has no shape of its own: best at the limit of another class
+        return _core.PlacedCurve(self.curve_class, self._core.params, *self._core.pose)
 
     def _need_curve(self):
         if self._curve is None:

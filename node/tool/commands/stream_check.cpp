@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
 #include "core/local/noise.h"
 #include "node/security/decode_from.h"
@@ -45,6 +47,17 @@ std::vector<double> spacings(const std::vector<Vec2>& positions) {
     result.push_back((positions[i] - positions[i - 1]).norm());
   }
   return result;
+}
+
+/// Whether steps lead to and fro instead of along a part. A stroke that goes once round a convex
+/// part is at most pi of its extent long; twice that leaves room for bends. Noise lengthens the way
+/// of dense samples by steps as short as itself: those of samples in no order are as long as the
+/// part.
+bool has_no_order(const std::vector<double>& steps, double typical, double extent) {
+  constexpr double kLongestWay = 2.0 * std::numbers::pi;  // of a stroke, in extents
+  constexpr double kLongStep = 0.1;                       // in extents
+  return typical > kLongStep * extent &&
+         std::accumulate(steps.begin(), steps.end(), 0.0) > kLongestWay * extent;
 }
 
 std::string cure_of(v1::RejectReason reason) {
@@ -165,6 +178,7 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
   double extent = 0.0;
   std::size_t longest = 0;
   std::size_t jumps = 0;
+  std::size_t unordered = 0;
   std::size_t repeated = 0;
   std::size_t holes = 0;
   double widest = 0.0;  // hole, in typical spacings
@@ -196,6 +210,7 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
       continue;
     }
     const double typical = median(steps);
+    unordered += has_no_order(steps, typical, (high - low).norm()) ? 1 : 0;
     // A lift-off is many spacings and of the size of the part; a spike comes back at once.
     constexpr double kJumpSpacings = 20.0;
     for (std::size_t i = 0; i + 1 < patch.positions.size(); ++i) {
@@ -254,6 +269,13 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
                   "between strokes); rows in no order along the part are --touches"
                 : "count patch up by one at each lift-off");
   }
+  if (unordered > 0) {
+    add_spoiling(
+        Severity::Error, count_text(unordered, "patches go to and fro over their whole extent"),
+        is_file ? "sort the rows of a stroke along the part; rows in no order are --touches"
+                : "send the samples of a patch in their order along the part; single "
+                  "touches are patches of their own");
+  }
   constexpr std::size_t kShort = 20;
   const bool are_touches = is_file && longest <= 1;
   if (are_touches) {
@@ -265,7 +287,7 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
   constexpr double kCoarse = 1.0 / 15.0;
   if (longest >= kShort && coarsest > kCoarse) {
     add(Severity::Note,
-        "samples lie as coarse as a " + number(1.0 / coarsest) + "th of their patch",
+        "samples lie a " + number(std::round(1.0 / coarsest)) + "th of their patch apart",
         "sample more densely: noise averages out over the samples");
   }
   constexpr double kFewHoles = 0.01;  // of the samples: dropouts that do no harm

@@ -20,12 +20,15 @@
 namespace palpate {
 namespace {
 
-constexpr double kWidth = 1024.0;  // of the document, all in pixels
+constexpr double kWidth = 1064.0;  // of the document, all in pixels
 constexpr double kHeight = 680.0;
 constexpr double kLeft = 80.0;
 constexpr double kTop = 24.0;
-constexpr double kRight = 324.0;  // the table's place
+constexpr double kRight = 364.0;  // the table's place
 constexpr double kBottom = 60.0;
+
+constexpr double kDotPixels = 3.6;    // width of a stroke's sample
+constexpr double kTouchPixels = 7.0;  // of a touch that stands alone
 
 constexpr const char* kRivalColour = "#8a5cc2";
 constexpr const char* kResidualColour = "#c2185b";
@@ -184,16 +187,27 @@ std::string frame_svg(const View& view, const v1::Recognition& answer, const Dra
   return svg;
 }
 
+/// Whether every run is a touch of its own: they are shown by probe, a stroke by its patch.
+bool are_touches(const ContactGroup& group) {
+  return std::all_of(group.runs.begin(), group.runs.end(),
+                     [](const ContactRun& run) { return run.samples.size() == 1; });
+}
+
 /// Dots as the round ends of lines without length: a few bytes each.
 std::string samples_svg(const View& view, const ContactGroup& group,
                         const VisibleSamples& visible) {
+  // A touch stands alone; the samples of a stroke make a line.
+  const bool touches = are_touches(group);
+  const double width = touches ? kTouchPixels : kDotPixels;
   std::string svg;
   for (std::size_t number = 0; number < group.runs.size(); ++number) {
     if (visible.of_run[number].empty()) continue;
     svg += formatted(
-        "<path class=\"samples\" fill=\"none\" stroke=\"%s\" stroke-width=\"3.6\" "
+        "<path class=\"samples\" fill=\"none\" stroke=\"%s\" stroke-width=\"%.1f\" "
         "stroke-linecap=\"round\" d=\"",
-        kPatchColours[number % std::size(kPatchColours)]);
+        kPatchColours[(touches ? group.runs[number].context.probe : number) %
+                      std::size(kPatchColours)],
+        width);
     for (const std::size_t i : visible.of_run[number]) {
       const Vec2 at = view(group.runs[number].samples[i].position_m);
       svg += formatted("M%.1f,%.1fh0", at.x(), at.y());
@@ -279,14 +293,25 @@ std::string band_label(const DrawnCurve& curve) {
 
 void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSamples& visible,
               const EnlargedResiduals& residuals, SvgTable& table) {
+  const bool touches = are_touches(group);
+  if (touches) {
+    for (std::size_t probe = 0; probe < group.probes.size(); ++probe) {
+      const auto count =
+          std::count_if(group.runs.begin(), group.runs.end(),
+                        [&](const ContactRun& run) { return run.context.probe == probe; });
+      table.key(kPatchColours[probe % std::size(kPatchColours)],
+                group.probes[probe] + ", touches: " + std::to_string(count));
+    }
+  }
   constexpr std::size_t kMostListed = 8;
-  for (std::size_t i = 0; i < std::min(group.runs.size(), kMostListed); ++i) {
+  const std::size_t strokes = touches ? 0 : group.runs.size();
+  for (std::size_t i = 0; i < std::min(strokes, kMostListed); ++i) {
     const PatchContext& context = group.runs[i].context;
     table.key(kPatchColours[i % std::size(kPatchColours)],
               group.probes[context.probe] + ", patch " + std::to_string(context.patch));
   }
-  if (group.runs.size() > kMostListed) {
-    table.words("and " + std::to_string(group.runs.size() - kMostListed) + " more patches");
+  if (strokes > kMostListed) {
+    table.words("and " + std::to_string(strokes - kMostListed) + " more patches");
   }
   if (drawing.curve) {
     table.key(kCurveColour, "most probable curve");
@@ -332,7 +357,7 @@ EnlargedResiduals residuals_of_picture(const ContactGroup& group, const v1::Reco
 std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer) {
   const Drawing drawing = make_drawing(group, answer, Curvature::None);
   const View view = view_of(group, answer, drawing);
-  // Dots are 3.6 pixels wide: half a pixel beside another one, one is not seen.
+  // Of dots, half a pixel beside another one, one is not seen.
   constexpr double kCellPixels = 0.5;
   constexpr std::size_t kMostDots = 50000;
   const VisibleSamples visible =

@@ -12,7 +12,8 @@
 namespace palpate {
 namespace {
 
-constexpr int kNameWidth = 16;
+constexpr std::size_t kWidestName = 16;
+constexpr std::size_t kObjectWidth = 7;
 
 /// A name in a column: cut where it is longer.
 std::string column(const std::string& text, std::size_t width) {
@@ -25,6 +26,32 @@ std::string right_column(const std::string& text, std::size_t width) {
   return std::string(width > text.size() ? width - text.size() : 0, ' ') + text + " ";
 }
 
+/// An object's number; of a long one, as a clock gives, the end tells one from the next.
+std::string object_text(std::uint64_t object) {
+  const std::string digits = std::to_string(object);
+  return digits.size() <= kObjectWidth ? digits
+                                       : ".." + digits.substr(digits.size() - kObjectWidth + 2);
+}
+
+/// Columns as wide as the names in them.
+struct NameWidths {
+  std::size_t group = std::string_view("GROUP").size();
+  std::size_t probe = std::string_view("PROBE").size();
+};
+
+NameWidths widths_of(const WatchedState& state) {
+  NameWidths widths;
+  const auto widen = [](std::size_t& width, const std::string& name) {
+    width = std::max(width, std::min(printable(name).size(), kWidestName));
+  };
+  for (const auto& entry : state.groups) widen(widths.group, entry.first);
+  for (const v1::ProbeStatus& probe : state.status.probes()) {
+    widen(widths.probe, probe.probe());
+    widen(widths.group, probe.group());
+  }
+  return widths;
+}
+
 std::string status_word(const v1::Recognition& answer) {
   const std::string text = status_text(answer);
   return text.substr(0, text.find(':'));
@@ -34,28 +61,36 @@ std::string latency_text(double latency_ms) {
   return latency_ms > 0.0 ? number(std::round(10.0 * latency_ms) / 10.0) + " ms" : "-";
 }
 
-void add_group(const std::string& name, const WatchedGroup& group,
-               std::vector<std::string>& lines) {
+void add_group(const std::string& name, const WatchedGroup& group, const NameWidths& widths,
+               std::size_t columns, std::vector<std::string>& lines) {
   const v1::Recognition& answer = group.answer;
   std::string shape;
   for (const Quantity& quantity : quantities_of(answer)) {
     shape += (shape.empty() ? "" : ", ") + quantity.name + " " + quantity.text;
   }
-  lines.push_back(column(name, kNameWidth) + right_column(std::to_string(answer.object()), 7) +
-                  column(spoken_name(answer.curve_class()), 21) + column(status_word(answer), 10) +
-                  right_column(std::to_string(answer.sample_count()), 8) +
-                  right_column(latency_text(group.latency_ms), 9) + shape);
+  std::string line =
+      column(name, widths.group) + right_column(object_text(answer.object()), kObjectWidth) +
+      column(spoken_name(answer.curve_class()), 21) + column(status_word(answer), 10) +
+      right_column(std::to_string(answer.sample_count()), 8) +
+      right_column(latency_text(group.latency_ms), 9);
+  if (line.size() + shape.size() <= columns) {
+    lines.push_back(line + shape);
+  } else {
+    lines.push_back(std::move(line));
+    lines.push_back("  " + shape);
+  }
   if (answer.status() != v1::RECOGNITION_STATUS_RECOGNIZED) {
     lines.push_back("  " + advice_text(answer));
   }
 }
 
-void add_probe(const v1::ProbeStatus& probe, double status_age_s, std::vector<std::string>& lines) {
+void add_probe(const v1::ProbeStatus& probe, double status_age_s, const NameWidths& widths,
+               std::vector<std::string>& lines) {
   char age[32];
   std::snprintf(age, sizeof age, "SILENT for %.1f s", std::max(probe.age_s(), 0.0) + status_age_s);
   char rate[32];
   std::snprintf(rate, sizeof rate, "%.0f", probe.sample_rate_hz());
-  lines.push_back(column(probe.probe(), kNameWidth) + column(probe.group(), kNameWidth) +
+  lines.push_back(column(probe.probe(), widths.probe) + column(probe.group(), widths.group) +
                   column(probe.alive() ? "alive" : age, 18) + right_column(rate, 9) +
                   right_column(std::to_string(probe.gaps()), 6) +
                   right_column(std::to_string(probe.missing()), 6) +
@@ -91,19 +126,20 @@ std::string silence_text(double silent_s) {
 std::vector<std::string> watch_table(const WatchedState& state, std::size_t columns,
                                      std::size_t rows) {
   std::vector<std::string> lines{head_line(state)};
+  const NameWidths widths = widths_of(state);
   if (!state.groups.empty()) {
-    lines.push_back(column("GROUP", kNameWidth) + right_column("OBJECT", 7) + column("CLASS", 21) +
-                    column("STATUS", 10) + right_column("SAMPLES", 8) + right_column("LATENCY", 9) +
-                    "SHAPE AND POSE");
-    for (const auto& [name, group] : state.groups) add_group(name, group, lines);
+    lines.push_back(column("GROUP", widths.group) + right_column("OBJECT", kObjectWidth) +
+                    column("CLASS", 21) + column("STATUS", 10) + right_column("SAMPLES", 8) +
+                    right_column("LATENCY", 9) + "SHAPE AND POSE");
+    for (const auto& [name, group] : state.groups) add_group(name, group, widths, columns, lines);
   }
   if (!state.status.probes().empty()) {
-    lines.push_back(column("PROBE", kNameWidth) + column("GROUP", kNameWidth) +
+    lines.push_back(column("PROBE", widths.probe) + column("GROUP", widths.group) +
                     column("STATE", 18) + right_column("SAMPLES/S", 9) + right_column("GAPS", 6) +
                     right_column("LOST", 6) + right_column("REFUSED", 7) +
                     right_column("RESTARTS", 8));
     for (const v1::ProbeStatus& probe : state.status.probes()) {
-      add_probe(probe, state.silent_s, lines);
+      add_probe(probe, state.silent_s, widths, lines);
     }
   }
   if (rows > 0 && lines.size() > rows) {

@@ -84,6 +84,31 @@ class Formats(unittest.TestCase):
         self.check("x_mm;y_mm;\n" + self.rows(1e3, ";").replace("\n", ";\n").replace(".", ","))
         self.assertIn("commas are read as decimal points", self.notes)
 
+    def test_what_spreadsheets_write(self):
+        names = '"Messpunkt";"X-Wert [mm]";"Y-Wert [mm]";"Bemerkung"\r\n'
+        rows = "".join(f"{k};{1e3 * x:.5f};{1e3 * y:.5f};ok\r\n".replace(".", ",") for k, (x, y) in enumerate(WHOLE))
+        for encoding in ("utf-8-sig", "utf-16-le", "utf-16-be", "latin-1"):
+            mark = "\ufeff" if encoding.startswith("utf-16") else ""
+            self.check(mark + names + rows, encoding=encoding)
+            self.assertIn("columns ignored: Messpunkt, Bemerkung", self.notes)
+        # Its own mark of the separator; a micro sign of Latin-1; rows of nothing; an old Mac's line ends; bars.
+        self.check("sep=;\r\n" + names + rows)
+        self.check("X [\u00b5m];Y [\u00b5m]\r\n" + self.rows(1e6, ";"), encoding="latin-1")
+        answer = self.check(names + rows + ";;;\r\n;;;\r\n")
+        self.assertEqual({c["patch"] for c in answer["contacts"]}, {0})
+        self.check((names + rows).replace("\r\n", "\r"))
+        self.check("x_mm|y_mm\n" + self.rows(1e3, "|"))
+        self.assertIn("FILE:3:3: y '#N/A': not a number", self.refused("x_mm,y_mm\n1,2\n3,#N/A\n"))
+
+    def test_titles_above_the_names_and_units_below_them(self):
+        self.check("Part: bracket 12\nDate: 2026-11-22, 10:15\n\nx_mm,y_mm\n" + self.rows(1e3))
+        self.assertIn("lines ignored before the names of the columns: 2, the first 'Part: bracket 12'", self.notes)
+        self.check("X,Y\nmm,mm\n" + self.rows(1e3))
+        self.assertNotIn("unit", self.notes)
+        self.check("X;Y;Force\n[um];[um];[N]\n" + self.rows(1e6, ";").replace("\n", ";1\n"))
+        # Numbers after a title have no names: nothing is guessed of them.
+        self.assertIn("FILE:1:1: no columns of two coordinates: 'Part 12'", self.refused("Part 12\n1,2\n3,4\n"))
+
     def test_what_numpy_writes(self):
         savetxt = self.rows(separator=" ", digits="{:.18e}")
         self.check(savetxt)
@@ -170,6 +195,46 @@ class Formats(unittest.TestCase):
         self.fit("x_m,y_m\n" + "".join(f"{x},{y}\n" for stroke in ellipse() for x, y in stroke))
         self.assertIn("jumps", self.err)
         self.assertIn("column patch", self.err)
+
+    def test_rows_in_no_order_are_told(self):
+        rows = WHOLE[:]
+        random.Random(2).shuffle(rows)
+        shuffled = "x_m,y_m\n" + "".join(f"{x},{y}\n" for x, y in rows)
+        answer = self.fit(shuffled)
+        self.assertIn("1 patches go to and fro over their whole extent", self.err)
+        self.assertIn("in no order are --touches", "".join(answer["notes"]))
+        self.check(shuffled, "--touches")
+        self.assertEqual(self.err, "")
+        path = self.folder / "shuffled.csv"
+        path.write_text(shuffled)
+        self.assertEqual(run(TOOL, "check", path)[0], 1)
+        # Once round the part, densely sampled with much noise between: that is an order.
+        dense = "x_m,y_m\n" + "".join(f"{A * math.cos(t)},{B * math.sin(t)}\n" for t in
+                                      (2 * math.pi * i / 40 for i in range(40)))
+        self.fit(dense)
+        self.assertEqual(self.err, "")
+
+    def test_the_noise_of_many_samples_is_that_of_one(self):
+        # More than 1024 of a patch are used as means: what is said of the noise is of the samples.
+        rng = random.Random(4)
+        text = "x_m,y_m\n" + "".join(f"{A * math.cos(t) + rng.gauss(0, SIGMA)},{B * math.sin(t) + rng.gauss(0, SIGMA)}\n"
+                                     for t in (5.5 * i / 20000 for i in range(20000)))
+        for arguments in ((), ("--sigma", SIGMA)):
+            picture = self.folder / "picture.svg"
+            answer = self.fit(text, "--plot", picture, *arguments)
+            # The means are some 625 at least: their own noise is known to 5 / sqrt(2 * 625) of itself.
+            self.assertLess(abs(answer["sigma_m"] / SIGMA - 1), 5 / math.sqrt(2 * 625), arguments)
+            # Of 20,000 gaussian errors one in a hundred times one is beyond 5 sigma.
+            self.assertNotIn("beyond", picture.read_text())
+
+    def test_a_class_at_its_limit_to_another_shows_no_shape(self):
+        text = "x_mm,y_mm\n" + "".join(f"{int(25 * math.cos(t) + 10)},{int(17.5 * math.sin(t) - 3)}\n"
+                                       for t in (0.2 + 1.2 * i / 99 for i in range(100)))
+        answer = self.fit(text)
+        best = answer["hypotheses"][0]
+        self.assertTrue(best["at_limit"], answer)
+        self.assertNotIn("parameters", answer)
+        self.assertNotIn("pose", answer)
 
     def test_no_patch_of_a_file_is_dropped(self):
         # Of 90 patches the first 26 held the part's far end.

@@ -74,6 +74,17 @@ TEST(StreamCheck, InventedNamesAreCountedNotKept) {
   EXPECT_LT(findings.size(), 1000U);
 }
 
+TEST(StreamCheck, APatchInNoOrderIsNotFit) {
+  const auto findings = findings_of([](std::size_t number, v1::ContactBatch& batch) {
+    for (int i = 0; i < batch.samples_size(); ++i) {
+      const double t = 2.4 * static_cast<double>(10 * number + static_cast<std::size_t>(i));
+      batch.mutable_samples(i)->set_x_m(0.02 * std::cos(t));
+      batch.mutable_samples(i)->set_y_m(0.02 * std::sin(t));
+    }
+  });
+  EXPECT_TRUE(has(findings, Severity::Error, "to and fro"));
+}
+
 TEST(StreamCheck, AGoodStreamHasNotesOnly) {
   for (const Finding& finding : findings_of([](std::size_t, v1::ContactBatch&) {})) {
     EXPECT_EQ(finding.severity, Severity::Note) << finding.what;

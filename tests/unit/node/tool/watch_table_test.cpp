@@ -63,8 +63,29 @@ TEST(WatchTable, FitsTheTerminal) {
     const auto lines = watch_table(state_of(30, 30), columns, 10);
     ASSERT_THAT(lines, SizeIs(10));
     EXPECT_THAT(lines, Each(SizeIs(testing::Le(columns))));
-    EXPECT_EQ(lines.back(), "... 54 more lines");
+    // A shape that does not fit beside its group has a line of its own.
+    EXPECT_EQ(lines.back(), columns < 80 ? "... 84 more lines" : "... 54 more lines");
   }
+}
+
+TEST(WatchTable, ShowsTheWholeShapeAndEveryColumnIn80Columns) {
+  WatchedState state = state_of(1, 1);
+  v1::Recognition& answer = state.groups["group-0"].answer;
+  answer.set_curve_class(v1::CURVE_CLASS_ELLIPSE);
+  answer.mutable_parameters()->set_b(0.01);
+  answer.mutable_pose()->set_x_m(0.3);
+  for (int i = 0; i < 25; ++i) answer.add_covariance(i % 6 == 0 ? 1e-12 : 0.0);
+  const auto lines = watch_table(state, 80, 24);
+  EXPECT_THAT(lines[3], HasSubstr("a 20.0000 +- 0.0010 mm, b 10.0000 +- 0.0010 mm, x 300"));
+  EXPECT_THAT(lines[4], HasSubstr("RESTARTS"));
+}
+
+TEST(WatchTable, ColumnsStandBelowTheirNamesWhateverTheObjectIsNumbered) {
+  WatchedState state = state_of(1, 0);
+  state.groups["group-0"].answer.set_object(1795416244610);  // by a clock
+  const auto lines = watch_table(state, 200, 24);
+  EXPECT_THAT(lines[2], HasSubstr(" ..44610 circle"));
+  EXPECT_EQ(lines[2].find("circle"), lines[1].find("CLASS"));
 }
 
 TEST(WatchTable, ShowsNamesWithoutControlCharacters) {

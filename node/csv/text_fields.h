@@ -1,0 +1,67 @@
+// A line's fields, by whatever people put between them.
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "node/csv/text_lines.h"
+
+namespace palpate::csv {
+
+/// What parts the fields of a line, by rank: where there are tabs, commas are decimal points or
+/// text. ' ' stands for any blanks.
+inline char separator_of(std::string_view line) {
+  for (const char separator : {'\t', ';', '|', ','}) {
+    if (line.find(separator) != std::string_view::npos) return separator;
+  }
+  return ' ';
+}
+
+inline void split_fields(std::string_view line, char separator,
+                         std::vector<std::string_view>& fields) {
+  fields.clear();
+  if (separator == ' ') {
+    for (std::size_t from = 0;;) {
+      while (from < line.size() && is_blank(line[from])) ++from;
+      if (from == line.size()) return;
+      std::size_t end = from;
+      while (end < line.size() && !is_blank(line[end])) ++end;
+      fields.push_back(line.substr(from, end - from));
+      from = end;
+    }
+  }
+  for (std::size_t from = 0;;) {
+    const std::size_t end = std::min(line.find(separator, from), line.size());
+    std::string_view field = trim(line.substr(from, end - from));
+    if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
+      field = field.substr(1, field.size() - 2);
+    }
+    fields.push_back(field);
+    if (end == line.size()) return;
+    from = end + 1;
+  }
+}
+
+/// Where a comment begins: '#' or '%' at the line's beginning or after a blank. "#N/A" in a
+/// spreadsheet's cell is none, nor is "[%]" in a name.
+inline std::size_t comment_mark(std::string_view line) {
+  for (std::size_t at = line.find_first_of("#%"); at != std::string_view::npos;
+       at = line.find_first_of("#%", at + 1)) {
+    if (at == 0 || is_blank(line[at - 1])) return at;
+  }
+  return std::string_view::npos;
+}
+
+/// The separator of a spreadsheet's first line "sep=;"; 0 where the line is none.
+inline char told_separator(std::string_view line) {
+  constexpr std::string_view kMark = "sep=";
+  const std::string_view told = trim(line);
+  if (told.size() != kMark.size() + 1) return '\0';
+  for (std::size_t i = 0; i < kMark.size(); ++i) {
+    if (told[i] != kMark[i] && told[i] != kMark[i] - 'a' + 'A') return '\0';
+  }
+  return told.back();
+}
+
+}  // namespace palpate::csv
