@@ -187,6 +187,12 @@ int run(FitCommand& fit) {
           CurveClass::Unclassified) {
     return complain("--class: no class is called " + printable(fit.given_class), kUsage);
   }
+  if (!fit.part.empty() && !fit.probe_files.empty()) {
+    return complain(
+        "--probe: not with --part, which places the samples as they are: only the normals of a "
+        "curve that is recognised or given are used to take a probe's offsets off",
+        kUsage);
+  }
   // Nothing is answered before every file has been read: a bad one costs no half-done work.
   std::vector<QualifiedProbe> probes;
   for (const std::string& file : fit.probe_files) {
@@ -349,11 +355,11 @@ void add_fit_command(CLI::App& app, int& exit_code) {
       ->excludes(given)
       ->type_name("FILE");
   command
-      ->add_option("--probe", fit->probe_files,
-                   "Probe file of palpate calibrate: its offsets are taken off by the normals "
-                   "found, its noise, drift and tip radius count, and the answer names it. May be "
-                   "repeated: of several files each is for the probe that it names")
-      ->excludes("--part")
+      ->add_option(
+          "--probe", fit->probe_files,
+          "Probe file of palpate calibrate: its offsets are taken off by the normals "
+          "found, its noise, drift and tip radius count, and the answer names it. May be "
+          "repeated: of several files each is for the probe that it names. Not with --part")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("FILE");
