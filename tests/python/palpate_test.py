@@ -257,7 +257,7 @@ class Fit(unittest.TestCase):
                 recognizer.add(points, **said)
         self.assertEqual(recognizer.recognize().sample_count, 0)
         self.assertEqual(recognizer.add(points, normals=np.where(np.arange(5)[:, None] == 2, 0, normals), normal_sigma=0.01), 5)
-        self.assertEqual(recognizer.recognize().simplified_count, 4)  # of four touches no curve is sought: as collected
+        self.assertEqual(recognizer.recognize().simplified_count, 4)  # along a stroke positions tell the direction
 
     def test_stubs_name_what_there_is(self):
         import ast

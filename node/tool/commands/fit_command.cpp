@@ -141,8 +141,7 @@ int place(const FitCommand& fit, const std::vector<FitInput>& inputs, bool json)
   for (const FitInput& input : inputs) {
     const ContactGroup& group = input.group;
     for (const std::string& note : input.notes) complain(group.file + ": " + note, kDone);
-    if (const std::string note = note_of_unused_detail(group, DetailUse::PositionsOnly);
-        !note.empty()) {
+    if (const std::string note = note_of_unused_detail(group); !note.empty()) {
       complain(group.file + ": " + note, kDone);
     }
     const v1::PartMatch match = match_part(group, *part.value, options);
