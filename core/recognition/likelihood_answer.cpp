@@ -22,7 +22,7 @@ Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
     return hypothesis;
   }
   hypothesis.chi2 = w.fits[i]->chi2;
-  hypothesis.dof = static_cast<int>(w.data.points.size()) - degrees_of_freedom(curve_class);
+  hypothesis.dof = static_cast<int>(residual_count(w.data)) - degrees_of_freedom(curve_class);
   hypothesis.at_limit = w.fits[i]->at_limit;
   if (const auto& canonical = w.canonical[i]) {
     hypothesis.shape = canonical->shape;

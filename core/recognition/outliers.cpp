@@ -47,9 +47,19 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   const double dof = static_cast<double>(n) - degrees_of_freedom(fit->shape.curve_class);
   const double taken = std::sqrt(static_cast<double>(n) / std::max(dof, 1.0));
   const double scale = std::max(1.0, taken * sorted[n / 2] / kMedianOfNormal);
-  const double z = two_sided_normal_quantile(false_outlier_probability / static_cast<double>(n));
+  const std::size_t residuals = residual_count(data);
+  const double z =
+      two_sided_normal_quantile(false_outlier_probability / static_cast<double>(residuals));
   const double limit =
       scale * (sigma_known ? z : student_quantile(z, kEfficiencyOfMedian * std::max(dof, 1.0)));
+  if (residuals > n) {
+    for (std::size_t i = 0; i < n; ++i) {
+      magnitude[i] = std::max(magnitude[i], std::abs(fit->points[i].normal_residual));
+    }
+  }
+  if (std::none_of(magnitude.begin(), magnitude.end(), [&](double m) { return m > limit; })) {
+    return std::nullopt;
+  }
   constexpr std::size_t kLongestRun = 3;
   constexpr std::size_t kMost = 2;
   constexpr std::size_t kOneIn = 20;
@@ -73,7 +83,7 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
     }
     kept.patches.push_back({begin, kept.points.size()});
   }
-  if (dropped == 0 || dropped > kMost + n / kOneIn) {
+  if (dropped > kMost + n / kOneIn) {
     return std::nullopt;
   }
   return kept;

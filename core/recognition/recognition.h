@@ -70,7 +70,8 @@ struct Recognition {
   std::size_t outlier_count = 0;    ///< samples set aside as spikes
   std::size_t forgotten_count = 0;  ///< samples of this object that had to make room for others
   /// Samples of this object with a normal or a covariance of which the answer does not use all: of
-  /// a covariance the mean noise counts, of a normal the side of a round tip that it shows.
+  /// a covariance the mean noise counts; a normal counts in full at a touch by itself where every
+  /// noise is known, elsewhere the side of a round tip that it shows.
   std::size_t simplified_count = 0;
   double sigma_m = 0.0;              ///< noise of a sample, given or estimated [m]
   double noise_correlation_m = 0.0;  ///< correlation length of the residuals; 0 = white [m]

@@ -39,6 +39,15 @@ bool are_touches(std::span<const StoredPatch> patches) {
   return 2 * lone > static_cast<std::ptrdiff_t>(patches.size());
 }
 
+/// Samples that say more than a position and of which all of that counts: touches by themselves
+/// with a measured normal and noise alike in all directions.
+std::size_t counted_in_full(std::span<const StoredPatch> patches) {
+  return static_cast<std::size_t>(
+      std::count_if(patches.begin(), patches.end(), [](const StoredPatch& patch) {
+        return is_directed_touch(patch) && !(patch.details.front().covariance_m2.x() > 0.0);
+      }));
+}
+
 /// At how many different places the points lie, up to kFewestPlaces.
 std::size_t places_of(const FitData& data) {
   std::array<Vec2, kFewestPlaces> places;
@@ -161,10 +170,11 @@ class Recognizer::Impl {
   }
 
   Recognition recognize() {
+    in_full_ = 0;
     Recognition answer = look();
     answer.sample_count = memory_.sample_count();
     answer.forgotten_count = forgotten_;
-    answer.simplified_count = simplified_;
+    answer.simplified_count = simplified_ - in_full_;
     return answer;
   }
 
@@ -190,6 +200,9 @@ class Recognizer::Impl {
     answer = options_.method == RecognitionMethod::Tree
                  ? by_tree(data, sigma_known, patches)
                  : by_likelihood(data, sigma_known, patches, clean);
+    if (options_.method == RecognitionMethod::MaximumLikelihood && sigma_known) {
+      in_full_ = counted_in_full(patches);
+    }
     // Touches in no order whose noise nobody states lie about any curve, if the noise is large
     // enough.
     if (!sigma_known && are_touches(clean) && answer.sigma_m > kLargestNoise * data.scale) {
@@ -344,6 +357,7 @@ class Recognizer::Impl {
   SampleMemory memory_;
   std::size_t forgotten_ = 0;   ///< samples, since the object began
   std::size_t simplified_ = 0;  ///< likewise
+  std::size_t in_full_ = 0;     ///< of these, how many count in full in the answer
   CleanPatches clean_;
   PatchContacts contacts_;
   std::optional<Last> last_;

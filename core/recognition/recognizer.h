@@ -53,7 +53,8 @@ class Recognizer {
   Recognizer& operator=(Recognizer&&) noexcept;
 
   /// Appends samples of one patch in their order along the arc. `details`: normals and covariances
-  /// of the samples, or nothing. A normal tells on which side of a round tip the surface lies; the
+  /// of the samples, or nothing. A normal tells on which side of a round tip the surface lies, and
+  /// of a touch alone in its patch, where every noise is known, the curve's direction there; the
   /// noise that counts is the samples' sigma_m, which is a covariance's mean (mean_sigma_m).
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples,
                 std::span<const SampleDetail> details = {});

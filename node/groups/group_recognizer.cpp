@@ -94,7 +94,7 @@ void GroupRecognizer::answer_by_search() {
   if (wants_estimates) (void)recognizer_.recognize();
   ProbedRecognition found = recognise_probed(touched_, probes, options_);
   found.recognition.forgotten_count = forgotten_;
-  found.recognition.simplified_count = simplified_;
+  found.recognition.simplified_count += simplified_ - found.added.detailed;
   to_wire(found.recognition, sources(), answer.recognition);
   if (found.corrected) {
     answer.recognition.mutable_probe_files()->Assign(files.begin(), files.end());

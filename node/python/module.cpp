@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "core/curves/curve.h"
 #include "core/recognition/given/given_class.h"
 #include "core/recognition/recognizer.h"
+#include "core/recognition/samples/sample_detail.h"
 
 namespace py = pybind11;
 
@@ -35,6 +37,94 @@ palpate::MaterialSide side_called(const std::string& name) {
   throw std::invalid_argument("material_side: \"" + name +
                               "\" is none of left, right, unspecified");
 }
+
+std::size_t count_of_points(const Array& points) {
+  if (points.ndim() != 2 || points.shape(1) != 2) {
+    throw std::invalid_argument("points must be an array of shape (n, 2)");
+  }
+  return static_cast<std::size_t>(points.shape(0));
+}
+
+/// What is said of the points beside where they are, read where numpy has it.
+class PointDetails {
+ public:
+  /// Each empty where nothing is said. `normals`: (n, 2), of unit length, (0, 0) where none was
+  /// measured; `normal_sigmas`: 1 or n, radians; `covariances`: (2, 2) or (n, 2, 2).
+  PointDetails(const Array& normals, const Array& normal_sigmas, const Array& covariances,
+               std::size_t points)
+      : normals_(normals.size() > 0 ? normals.data() : nullptr),
+        normal_sigmas_(normal_sigmas.data()),
+        covariances_(covariances.size() > 0 ? covariances.data() : nullptr),
+        one_sigma_(normal_sigmas.size() == 1),
+        one_covariance_(covariances.ndim() == 2) {
+    const auto count = static_cast<py::ssize_t>(points);
+    if (normals_ != nullptr &&
+        (normals.ndim() != 2 || normals.shape(0) != count || normals.shape(1) != 2)) {
+      throw std::invalid_argument("normals must be an array of shape (n, 2), one for each point");
+    }
+    const py::ssize_t sigmas = normal_sigmas.size();
+    if ((normals_ != nullptr) != (sigmas > 0) || (sigmas > 1 && sigmas != count)) {
+      throw std::invalid_argument("normal_sigma must be one number, or one for each normal");
+    }
+    if (covariances_ != nullptr) {
+      const py::ssize_t dimensions = covariances.ndim();
+      if ((dimensions != 2 && dimensions != 3) || covariances.shape(dimensions - 1) != 2 ||
+          covariances.shape(dimensions - 2) != 2 ||
+          (dimensions == 3 && covariances.shape(0) != count)) {
+        throw std::invalid_argument("covariances must be an array of shape (2, 2) or (n, 2, 2)");
+      }
+    }
+    for (std::size_t i = 0; i < points; ++i) check(i);
+  }
+
+  bool say_anything() const { return normals_ != nullptr || covariances_ != nullptr; }
+
+  palpate::SampleDetail of(std::size_t i) const {
+    palpate::SampleDetail detail;
+    if (normals_ != nullptr) {
+      detail.normal = palpate::Vec2(normals_[2 * i], normals_[2 * i + 1]);
+      if (!detail.normal.isZero(0.0)) {
+        detail.normal = palpate::as_unit(detail.normal);
+        detail.normal_sigma_rad = normal_sigmas_[one_sigma_ ? 0 : i];
+      }
+    }
+    if (covariances_ != nullptr) {
+      const double* c = covariances_ + (one_covariance_ ? 0 : 4 * i);
+      detail.covariance_m2 = {c[0], c[1], c[3]};
+    }
+    return detail;
+  }
+
+ private:
+  void check(std::size_t i) const {
+    if (normals_ != nullptr) {
+      const palpate::Vec2 normal(normals_[2 * i], normals_[2 * i + 1]);
+      const double sigma = normal_sigmas_[one_sigma_ ? 0 : i];
+      if (!normal.isZero(0.0) && !palpate::is_unit(normal)) {
+        throw std::invalid_argument("normals: number " + std::to_string(i) +
+                                    " is neither of length 1 nor (0, 0)");
+      }
+      if (!(std::isfinite(sigma) && sigma >= 0.0) || (!normal.isZero(0.0) && sigma == 0.0)) {
+        throw std::invalid_argument("normal_sigma: must be finite and above 0");
+      }
+    }
+    if (covariances_ != nullptr) {
+      const double* c = covariances_ + (one_covariance_ ? 0 : 4 * i);
+      constexpr double kRounding = 1e-12;  // of the products that a covariance is made of
+      if (!palpate::is_covariance({c[0], c[1], c[3]}) ||
+          std::abs(c[1] - c[2]) > kRounding * std::sqrt(c[0] * c[3])) {
+        throw std::invalid_argument("covariances: number " + std::to_string(i) +
+                                    " is not symmetric and positive definite");
+      }
+    }
+  }
+
+  const double* normals_;
+  const double* normal_sigmas_;
+  const double* covariances_;
+  bool one_sigma_;
+  bool one_covariance_;
+};
 
 const char* name_of(palpate::RecognitionStatus status) {
   switch (status) {
@@ -120,13 +210,12 @@ class Recognizer {
       : recognizer_(
             options_of(sigma_m, classes, form_deviation_m, most_patches, most_samples_per_patch)) {}
 
-  /// `points` n x 2 in metres, `sigma_m` of length n, 1 or 0; returns how many were taken.
+  /// `points` n x 2 in metres, `sigma_m` of length n, 1 or 0, the others as PointDetails; returns
+  /// how many were taken.
   py::tuple add(const Array& points, const Array& sigma_m, std::uint32_t probe, std::uint32_t patch,
-                double tip_radius_m, const std::string& side) {
-    if (points.ndim() != 2 || points.shape(1) != 2) {
-      throw std::invalid_argument("points must be an array of shape (n, 2)");
-    }
-    const auto count = static_cast<std::size_t>(points.shape(0));
+                double tip_radius_m, const std::string& side, const Array& normals,
+                const Array& normal_sigmas, const Array& covariances_m2) {
+    const std::size_t count = count_of_points(points);
     const auto sigmas = static_cast<std::size_t>(sigma_m.size());
     if (sigmas > 1 && sigmas != count) {
       throw std::invalid_argument("sigma must be one number, or one a point");
@@ -149,6 +238,7 @@ class Recognizer {
     if (!(std::isfinite(tip_radius_m) && tip_radius_m >= 0.0)) {
       throw std::invalid_argument("tip_radius: must be finite and not below 0");
     }
+    const PointDetails details(normals, normal_sigmas, covariances_m2, count);
     palpate::AddResult added;
     {
       const py::gil_scoped_release release;
@@ -158,7 +248,14 @@ class Recognizer {
         samples_[i].position_m = palpate::Vec2(xy[2 * i], xy[2 * i + 1]);
         samples_[i].sigma_m = sigmas == 0 ? 0.0 : sigma[sigmas == 1 ? 0 : i];
       }
-      added = recognizer_.add(context, samples_);
+      details_.resize(details.say_anything() ? count : 0);
+      for (std::size_t i = 0; i < details_.size(); ++i) {
+        details_[i] = details.of(i);
+        if (details_[i].covariance_m2.x() > 0.0) {
+          samples_[i].sigma_m = palpate::mean_sigma_m(details_[i].covariance_m2);
+        }
+      }
+      added = recognizer_.add(context, samples_, details_);
     }
     return py::make_tuple(added.accepted, added.repeated);
   }
@@ -202,6 +299,7 @@ class Recognizer {
 
   palpate::Recognizer recognizer_;
   std::vector<palpate::ContactSample> samples_;
+  std::vector<palpate::SampleDetail> details_;
   double compute_s_ = 0.0;  // since the last answer
 };
 
@@ -232,10 +330,7 @@ class PlacedCurve {
   /// Parameters of the nearest points, and the signed distances to them: positive to the left of
   /// increasing t.
   py::tuple feet(const Array& xy) const {
-    if (xy.ndim() != 2 || xy.shape(1) != 2) {
-      throw std::invalid_argument("points must be an array of shape (n, 2)");
-    }
-    const py::ssize_t count = xy.shape(0);
+    const auto count = static_cast<py::ssize_t>(count_of_points(xy));
     Array t(count);
     Array distance(count);
     const double* from = xy.data();
@@ -259,19 +354,23 @@ class PlacedCurve {
   palpate::Pose2 world_T_curve_;
 };
 
-/// The least squares of a class that is given, on points n x 2 in any unit of length.
-py::dict fit_given(const std::string& name, const Array& points, double sigma) {
-  if (points.ndim() != 2 || points.shape(1) != 2) {
-    throw std::invalid_argument("points must be an array of shape (n, 2)");
-  }
+/// The least squares of a class that is given, on points n x 2 in any unit of length; the others as
+/// PointDetails.
+py::dict fit_given(const std::string& name, const Array& points, double sigma, const Array& normals,
+                   const Array& normal_sigmas, const Array& covariances) {
+  std::vector<palpate::GivenPoint> given(count_of_points(points));
+  const PointDetails details(normals, normal_sigmas, covariances, given.size());
   const palpate::CurveClass curve_class = class_called(name);
   const double* xy = points.data();
-  std::vector<palpate::GivenPoint> given(static_cast<std::size_t>(points.shape(0)));
   palpate::GivenFit fit;
   {
     const py::gil_scoped_release release;
     for (std::size_t i = 0; i < given.size(); ++i) {
+      const palpate::SampleDetail detail = details.of(i);
       given[i].position_m = palpate::Vec2(xy[2 * i], xy[2 * i + 1]);
+      given[i].normal = detail.normal;
+      given[i].normal_sigma_rad = detail.normal_sigma_rad;
+      given[i].covariance_m2 = detail.covariance_m2;
     }
     fit = palpate::fit_given_class(curve_class, given, {.sigma_m = sigma});
   }
@@ -310,6 +409,7 @@ PYBIND11_MODULE(_core, module) {
   add_property(answer, "sample_count", [](const auto& r) { return r.sample_count; });
   add_property(answer, "outlier_count", [](const auto& r) { return r.outlier_count; });
   add_property(answer, "forgotten_count", [](const auto& r) { return r.forgotten_count; });
+  add_property(answer, "simplified_count", [](const auto& r) { return r.simplified_count; });
   add_property(answer, "sigma_m", [](const auto& r) { return r.sigma_m; });
   add_property(answer, "noise_correlation_m", [](const auto& r) { return r.noise_correlation_m; });
   answer.def_readonly("compute_s", &Answer::compute_s)
@@ -321,6 +421,11 @@ PYBIND11_MODULE(_core, module) {
       .def("at", &PlacedCurve::at)
       .def("feet", &PlacedCurve::feet);
   module.def("fit_given", &fit_given);
+  // Throws where the details cannot be used: before they are sent, say.
+  module.def("check_details", [](std::size_t points, const Array& normals,
+                                 const Array& normal_sigmas, const Array& covariances) {
+    PointDetails(normals, normal_sigmas, covariances, points);
+  });
   module.def("degrees_of_freedom", [](const std::string& name) {
     return palpate::degrees_of_freedom(class_called(name));
   });

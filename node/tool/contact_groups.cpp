@@ -36,7 +36,7 @@ std::vector<ContactGroup> contact_groups(const std::string& file, const ContactT
   return groups;
 }
 
-std::string note_of_unused_detail(const ContactGroup& group, DetailUse use) {
+std::string note_of_unused_detail(const ContactGroup& group) {
   std::size_t count = 0;
   for (const ContactRun& run : group.runs) {
     count +=
@@ -44,11 +44,8 @@ std::string note_of_unused_detail(const ContactGroup& group, DetailUse use) {
   }
   if (count == 0) return {};
   return "of " + std::to_string(count) +
-         " samples with a measured normal or covariance the position" +
-         (use == DetailUse::Recognition
-              ? ", mean noise and the side of a round tip that the normal shows count alone"
-              : " and mean noise count alone") +
-         " (palpate fit --class uses all of it)";
+         " samples with a measured normal or covariance the position and mean noise count alone "
+         "(palpate fit --class uses all of it)";
 }
 
 AddResult add_group(const ContactGroup& group, Recognizer& recognizer) {

@@ -23,14 +23,9 @@ struct ContactGroup {
 /// Groups in the order in which the file begins them.
 std::vector<ContactGroup> contact_groups(const std::string& file, const ContactTable& table);
 
-/// What uses samples with measured normals and covariances.
-enum class DetailUse {
-  Recognition,    ///< the side of a round tip by the normal, the mean noise
-  PositionsOnly,  ///< the mean noise
-};
-
-/// What of measured normals and covariances does not count, where there are any; else nothing.
-std::string note_of_unused_detail(const ContactGroup& group, DetailUse use);
+/// That of measured normals nothing counts and of covariances the mean noise, where there are any;
+/// else nothing.
+std::string note_of_unused_detail(const ContactGroup& group);
 
 /// Feeds them all to a recogniser.
 AddResult add_group(const ContactGroup& group, Recognizer& recognizer);

@@ -110,6 +110,11 @@ class ProbeFiles(unittest.TestCase):
                 self.assertLess(abs(off), 4 * math.sqrt(covariance[6 * i]), name)
             self.assertTrue(any("white noise alone" in note for note in measured["notes"]))
 
+    def test_a_known_part_is_not_placed_with_a_probe_file(self):
+        code, out, err = run(TOOL, "fit", "none.csv", "--part", "none.textproto", "--probe", "none.probe")
+        self.assertEqual((code, out), (2, ""))
+        self.assertIn("--probe: not with --part", err)
+
     def test_a_probe_of_another_name_is_taken_as_it_is(self):
         with Bus() as bus:
             file, part, _ = self.qualified(bus.folder)

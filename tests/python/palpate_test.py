@@ -26,6 +26,17 @@ def ellipse(start, end, n=111, seed=1):
     return np.column_stack([POSE[0] + c * u - s * v, POSE[1] + s * u + c * v]) + rng.normal(0, SIGMA, (n, 2))
 
 
+def touches_with_normals(n, normal_sigma, seed):
+    """Points anywhere on the ellipse, and the normals out of it as a probe measures them."""
+    rng = np.random.default_rng(seed)
+    t = rng.uniform(0, 2 * math.pi, n)
+    c, s = math.cos(POSE[2]), math.sin(POSE[2])
+    turned = np.array([[c, s], [-s, c]])
+    points = POSE[:2] + np.column_stack([A * np.cos(t), B * np.sin(t)]) @ turned + rng.normal(0, SIGMA, (n, 2))
+    angle = np.arctan2(A * np.sin(t), B * np.cos(t)) + POSE[2] + normal_sigma * rng.normal(0, 1, n)
+    return points, np.column_stack([np.cos(angle), np.sin(angle)])
+
+
 PATCHES = [ellipse(0.3, 1.5), ellipse(2.3, 3.6, seed=2)]
 
 
@@ -211,6 +222,57 @@ class Fit(unittest.TestCase):
         with self.assertRaises(ValueError):
             palpate.models.model("sphere")
 
+    def test_normals_narrow_what_few_touches_tell_of_a_known_class(self):
+        points, normals = touches_with_normals(7, 0.002, seed=4)
+        truth = np.array([A, B, *POSE])
+        areas = []
+        for said in ({}, dict(normals=normals, normal_sigma=0.002), dict(normals=-normals, normal_sigma=np.full(7, 0.002))):
+            ellipse_model = palpate.models.model("ellipse")()
+            self.assertTrue(ellipse_model.estimate(points, SIGMA, **said), ellipse_model.status)
+            sigmas = np.sqrt(np.diag(ellipse_model.covariance))
+            self.assertTrue((abs(ellipse_model.params - truth) < 4 * sigmas).all(), ellipse_model.params)
+            areas.append(sigmas[0] * sigmas[1])
+        self.assertLess(areas[1], areas[0])
+        self.assertAlmostEqual(areas[2] / areas[1], 1, places=6)  # a given class has its normals either way round
+
+    def test_a_normal_tells_a_bore_from_a_boss(self):
+        t = np.linspace(0, 2 * math.pi, 13)[:-1]
+        outward = np.column_stack([np.cos(t), np.sin(t)])
+        points = 15 * outward + np.random.default_rng(6).normal(0, 0.002, (12, 2))
+        for sign, radius in ((1, 13), (-1, 17)):
+            result = palpate.fit(points, sigma=0.002, unit="mm", touches=True, tip_radius=2, classes=["circle"],
+                                 normals=sign * outward, normal_sigma=0.02)
+            self.assertAlmostEqual(result.params["a"], radius, places=2)
+
+    def test_a_covariance_counts_in_the_units_square(self):
+        points = 1e-3 * np.concatenate(PATCHES)
+        longer = np.array([[4.0, 1.0], [1.0, 2.0]]) * (1e-3 * SIGMA)**2
+        estimated = []
+        for unit, scale in (("m", 1.0), ("mm", 1e3)):
+            recognizer = palpate.Recognizer(unit=unit, classes=["ellipse"])
+            recognizer.add(scale * points[:111], patch=0, covariances=scale**2 * longer)
+            recognizer.add(scale * points[111:], patch=1, covariances=np.tile(scale**2 * longer, (111, 1, 1)))
+            result = recognizer.recognize()
+            self.assertEqual(result.simplified_count, 222)
+            self.assertAlmostEqual(result.sigma / scale / (1e-3 * SIGMA), math.sqrt(3.0))  # the mean of 4 and 2
+            estimated.append(result.params["a"] / scale)
+        self.assertAlmostEqual(estimated[0] / estimated[1], 1, places=9)
+
+    def test_details_that_cannot_be_used_are_refused_and_nothing_is_taken(self):
+        points, normals = touches_with_normals(5, 0.01, seed=5)
+        good = np.eye(2) * SIGMA**2
+        recognizer = palpate.Recognizer(sigma=SIGMA, unit="mm")
+        for said in (dict(normals=normals), dict(normal_sigma=0.01), dict(normals=normals[:4], normal_sigma=0.01),
+                     dict(normals=2 * normals, normal_sigma=0.01), dict(normals=normals, normal_sigma=0),
+                     dict(normals=normals, normal_sigma=[0.01, 0.01]), dict(normals=normals, normal_sigma=math.nan),
+                     dict(covariances=np.full(5, SIGMA**2)), dict(covariances=-good), dict(covariances=np.stack([good] * 4)),
+                     dict(covariances=good + [[0, SIGMA**2 / 2], [0, 0]]), dict(covariances=np.full((2, 2), math.nan))):
+            with self.assertRaises(ValueError, msg=said):
+                recognizer.add(points, **said)
+        self.assertEqual(recognizer.recognize().sample_count, 0)
+        self.assertEqual(recognizer.add(points, normals=np.where(np.arange(5)[:, None] == 2, 0, normals), normal_sigma=0.01), 5)
+        self.assertEqual(recognizer.recognize().simplified_count, 4)  # along a stroke positions tell the direction
+
     def test_stubs_name_what_there_is(self):
         import ast
         core = palpate._core
@@ -270,6 +332,38 @@ for wrong in (dict(name="left finger"), dict(name="finger", group="a/b"), dict(n
         self.assertIn("no answer from", lines[1])
         self.assertIn("no recognizer listens at", lines[2])
         self.assertEqual([line.partition("wrong: ")[2].split(":")[0] for line in lines[3:]], ["name", "group", "tip_radius"])
+
+    def test_a_probe_sends_normals_and_covariances(self):
+        # A bore: without its normals the touches of a round tip would be those of a boss.
+        script = f"""
+import palpate, numpy as np
+t = np.linspace(0, 6, 24)
+inward = -np.column_stack([np.cos(t), np.sin(t)])
+points = -15 * inward + np.random.default_rng(2).normal(0, 1e-3, (24, 2))
+with palpate.Planner(RESULTS) as planner, palpate.Probe("finger", CONTACTS, unit="mm", tip_radius=2) as probe:
+    for i in range(0, 24, 2):
+        probe.send(points[i:i + 1], inward[i:i + 1], 0.02, 1e-6 * np.eye(2))
+        probe.lift_off()
+        probe.send(points[i + 1:i + 2], inward[i + 1:i + 2], [0.02], [1e-6 * np.eye(2)])
+        probe.lift_off()
+    while True:
+        answer = planner.receive(timeout=20)
+        if answer.sample_count == 24:
+            break
+    print(round(1e3 * answer.parameters.a, 1), answer.simplified_count, round(1e6 * answer.sigma_m, 3))
+    try:
+        probe.send(points, 2 * inward, 0.02)
+    except ValueError as error:
+        print(error)
+"""
+        from bus import Bus
+        with Bus() as bus:
+            bus.start_node()
+            done = subprocess.run([sys.executable, "-c", f"RESULTS, CONTACTS = {bus.results!r}, {bus.contacts!r}\n" + script],
+                                  env=os.environ | {"PYTHONPATH": str(BUILD / "node/python")}, capture_output=True,
+                                  text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.splitlines(), ["17.0 24 1.0", "normals: number 0 is neither of length 1 nor (0, 0)"])
 
     def test_curve_with_the_keys_of_palpate_keygen(self):
         from bus import Bus

@@ -1,5 +1,6 @@
 #include "tests/support/lone_touches.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -40,7 +41,8 @@ LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_si
   order.resize(std::min(order.size(), static_cast<std::size_t>(count)));
   for (const std::size_t k : order) {
     const Vec2 normal = left_of(derivatives(*curve, t[k]).first.normalized());
-    const Vec2 lift = side * touches.tip_radius_m * touches.scene.world_T_curve.rotate(normal);
+    touches.normals.emplace_back(side * touches.scene.world_T_curve.rotate(normal));
+    const Vec2 lift = touches.tip_radius_m * touches.normals.back();
     touches.scene.patches.push_back({places[k] + lift});
     touches.scene.t.push_back({t[k]});
   }
@@ -53,6 +55,21 @@ void add_touches(const LoneTouches& touches, double sigma_m, Recognizer* recogni
   for (const auto& patch : touches.scene.patches) {
     const ContactSample sample{patch.front(), sigma_m, 0};
     recognizer->add(context, {&sample, 1});
+    ++context.patch;
+  }
+}
+
+void add_touches_with_normals(const LoneTouches& touches, double sigma_m, double normal_sigma_rad,
+                              std::mt19937_64& rng, Recognizer* recognizer) {
+  std::normal_distribution<double> law(0.0, normal_sigma_rad);
+  PatchContext context;
+  context.tip_radius_m = touches.tip_radius_m;
+  for (const auto& patch : touches.scene.patches) {
+    const ContactSample sample{patch.front(), sigma_m, 0};
+    SampleDetail detail;
+    detail.normal = Eigen::Rotation2Dd(law(rng)) * touches.normals[context.patch];
+    detail.normal_sigma_rad = normal_sigma_rad;
+    recognizer->add(context, {&sample, 1}, {&detail, 1});
     ++context.patch;
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <random>
+#include <vector>
 
 #include "core/recognition/recognizer.h"
 #include "tests/support/random_scene.h"
@@ -11,6 +12,7 @@ namespace palpate::test {
 struct LoneTouches {
   Scene scene;  ///< one patch a touch; with a tip, positions are its centres
   double tip_radius_m = 0.0;
+  std::vector<Vec2> normals;  ///< true ones, from the surface to the tip's side, world frame
 };
 
 /// `count` places drawn evenly along most of the curve piece. A tip lies on the outer side of the
@@ -20,5 +22,9 @@ LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_si
 
 /// Adds each touch as a patch of its own; `sigma_m` is what they claim (0 = not known).
 void add_touches(const LoneTouches& touches, double sigma_m, Recognizer* recognizer);
+
+/// The same with the normals measured to a deviation.
+void add_touches_with_normals(const LoneTouches& touches, double sigma_m, double normal_sigma_rad,
+                              std::mt19937_64& rng, Recognizer* recognizer);
 
 }  // namespace palpate::test

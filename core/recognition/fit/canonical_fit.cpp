@@ -9,6 +9,7 @@
 #include "core/curves/algebraic/canonical_cubic.h"
 #include "core/curves/curve.h"
 #include "core/numerics/symmetric_eigen.h"
+#include "core/recognition/fit/measured_normal.h"
 
 namespace palpate {
 namespace {
@@ -126,6 +127,69 @@ double parameter_of(const ShapeParameters& shape, const Vec2& local) {
   }
 }
 
+/// Near the foot of a point, all in the curve's frame.
+NormalAtFoot curve_at(const Curve& curve, double t, const Vec2& point) {
+  const CurveDerivatives at = derivatives(curve, t);
+  const double speed = at.first.norm();
+  const Vec2 normal = speed > 0.0 ? Vec2(left_of(at.first) / speed) : Vec2(0.0, 0.0);
+  return {normal, at.first, at.second, (point - at.position).dot(normal)};
+}
+
+/// By what angle the normal at the foot turns, by [x; y; theta; shape]. `step`: of t, for central
+/// differences.
+Eigen::Matrix<double, 6, 1> turn_by_pose_and_shape(const Curve& curve, double t,
+                                                   const NormalAtFoot& at,
+                                                   const Eigen::Matrix2d& world_R_curve,
+                                                   double step) {
+  const Eigen::Matrix<double, 2, 3> by_shape = position_by_parameters(curve, t);
+  const Eigen::Matrix<double, 2, 3> by_shape_and_t =
+      (position_by_parameters(curve, t + step) - position_by_parameters(curve, t - step)) /
+      (2.0 * step);
+  Eigen::Matrix<double, 6, 1> turn;
+  for (int k = 0; k < 2; ++k) {
+    turn[k] = at.turn_by(world_R_curve.transpose().col(k), Vec2::Zero());
+  }
+  turn[2] = class_of(curve) == CurveClass::Circle
+                ? 0.0
+                : at.turn_by(left_of(derivatives(curve, t).position), left_of(at.first));
+  for (int k = 0; k < 3; ++k) {
+    turn[3 + k] = at.turn_by(by_shape.col(k), by_shape_and_t.col(k));
+  }
+  return turn;
+}
+
+/// The measured normals' residuals and information, at the feet found. On its own, so that points
+/// without do not pay.
+[[gnu::noinline]] void add_normals(const Curve& curve, const Pose2& frame_T_curve,
+                                   const FitData& data, CanonicalFit* fit,
+                                   Eigen::Matrix<double, 6, 6>* pose_first) {
+  constexpr double kStep = 1e-5;  // of the extent: right to its square
+  const Eigen::Matrix2d curve_R_frame = Eigen::Rotation2Dd(-frame_T_curve.theta).toRotationMatrix();
+  const Eigen::Matrix2d world_R_curve =
+      Eigen::Rotation2Dd(data.frame.theta + frame_T_curve.theta).toRotationMatrix();
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const FitPoint& point = data.points[i];
+    if (!has_normal(point)) {
+      continue;
+    }
+    FittedPoint& fitted = fit->points[i];
+    const Vec2 local = curve_R_frame * (data.scale * point.position - frame_T_curve.translation());
+    const NormalAtFoot at = curve_at(curve, fitted.t, local);
+    if (!at.is_followed()) {
+      continue;
+    }
+    fitted.normal_weight = normal_weight(point, data.scale * at.turn_along());
+    fitted.normal_residual =
+        fitted.normal_weight * normal_miss(curve_R_frame * point.normal, at.normal);
+    const Eigen::Matrix<double, 6, 1> row =
+        fitted.normal_weight *
+        turn_by_pose_and_shape(curve, fitted.t, at, world_R_curve, kStep * data.scale / at.speed());
+    for (int k = 0; k < 6; ++k) {
+      pose_first->col(k) += row[k] * row;
+    }
+  }
+}
+
 /// Inverse of an information matrix of known rank; null directions get variance 0.
 ShapePoseCovariance invert(const ShapePoseCovariance& information, int rank) {
   const Eigen::Index n = information.rows();
@@ -212,8 +276,13 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
                                                                : local_normal.dot(left_of(local));
     row.tail<3>() = position_by_parameters(*curve, fitted.t).transpose() * local_normal;
     row *= point.inverse_sigma / data.scale;  // 1 / sigma in metres
-    pose_first.noalias() += row * row.transpose();
+    for (int k = 0; k < 6; ++k) {
+      pose_first.col(k) += row[k] * row;
+    }
     canonical.points.push_back(fitted);
+  }
+  if (residual_count(data) > data.points.size()) {
+    add_normals(*curve, frame_T_curve, data, &canonical, &pose_first);
   }
   ShapePoseCovariance information(n, n);
   information.topLeftCorner(letters, letters) = pose_first.block(3, 3, letters, letters);

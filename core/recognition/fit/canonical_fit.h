@@ -14,6 +14,10 @@ struct FittedPoint {
   double t = 0.0;              ///< canonical curve parameter
   double residual = 0.0;       ///< signed distance less tip radius, in units of sigma
   Vec2 normal = Vec2::Zero();  ///< unit normal at the foot point, world frame
+  /// Of a measured normal: how far the curve's is turned from it, in deviations, and the inverse of
+  /// that deviation, which holds that of the foot's place. 0 without. [1/rad]
+  double normal_residual = 0.0;
+  double normal_weight = 0.0;
 };
 
 struct CanonicalFit {

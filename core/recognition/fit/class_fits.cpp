@@ -88,14 +88,13 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsi
   // A parabola is the cubics' limit, and data that leave a conic possible tell no cubic from it.
   // Where none of these fits, one cubic that does says nothing of another: the best seed by the
   // walk need not be the best by distances.
-  const auto fits = [&](const auto& fit) {
-    return fit && fits_well(fit->chi2, reduced.points.size());
-  };
+  const std::size_t residuals = residual_count(reduced);
+  const auto fits = [&](const auto& fit) { return fit && fits_well(fit->chi2, residuals); };
   polynomials.lowest_chi2 = std::min(circle.chi2, usable ? conic.chi2 : circle.chi2);
   if (polynomials.parabola) {
     polynomials.lowest_chi2 = std::min(polynomials.lowest_chi2, polynomials.parabola->chi2);
   }
-  const bool conic_fits = fits_well(polynomials.lowest_chi2, reduced.points.size());
+  const bool conic_fits = fits_well(polynomials.lowest_chi2, residuals);
   const bool line_fits = fits(result[static_cast<std::size_t>(CurveClass::Line)]);
   if (starts == nullptr && !line_fits) {  // a line is the limit of all
     refine_every_seed(reduced, &polynomials);

@@ -38,9 +38,10 @@ using ClassFits = std::array<std::optional<ClassFit>, 9>;
 /// The implicit form of a parabola's polynomials, of unit norm.
 ConicCoefficients conic_of_parabola(const PolynomialFit& fit);
 
-/// Whether a fit to that many reduced points is as good as noise allows: five standard deviations.
-inline bool fits_well(double chi2, std::size_t reduced_points) {
-  const double n = static_cast<double>(reduced_points);
+/// Whether a fit to reduced points that leaves that many residuals is as good as noise allows: five
+/// standard deviations.
+inline bool fits_well(double chi2, std::size_t residuals) {
+  const double n = static_cast<double>(residuals);
   return chi2 < n + 5.0 * std::sqrt(2.0 * n);
 }
 

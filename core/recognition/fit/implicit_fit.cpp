@@ -7,6 +7,7 @@
 
 #include "core/numerics/least_squares.h"
 #include "core/numerics/symmetric_eigen.h"
+#include "core/recognition/fit/measured_normal.h"
 
 namespace palpate {
 namespace {
@@ -56,6 +57,41 @@ Eigen::Matrix<double, K, K - 1> tangent_space(const Eigen::Matrix<double, K, 1>&
   return tangent;
 }
 
+struct Foot {
+  Vec2 position = Vec2::Zero();
+  double distance = 0.0;  ///< positive where the polynomial is
+};
+
+/// The conic at a foot, by arc length with the gradient on the left.
+NormalAtFoot conic_at(const ConicCoefficients& q, const Foot& foot) {
+  const Vec2 g = conic_gradient(q, foot.position);
+  const double norm = g.norm();
+  const Vec2 normal = g / norm;
+  const Vec2 tangent = -left_of(normal);
+  const Vec2 pull(2.0 * q[0] * tangent.x() + q[1] * tangent.y(),
+                  q[1] * tangent.x() + 2.0 * q[2] * tangent.y());
+  return {normal, tangent, -tangent.dot(pull) / norm * normal, foot.distance};
+}
+
+/// By what angle the normal at the foot turns, per coefficient: the curve moves along its normal
+/// alone, by -(monomial) / |gradient|.
+Monomials turn_by_coefficients(const ConicCoefficients& q, const Foot& foot) {
+  const double norm = conic_gradient(q, foot.position).norm();
+  if (!(norm > 0.0)) {
+    return Monomials::Zero();
+  }
+  const NormalAtFoot at = conic_at(q, foot);
+  if (!at.is_followed()) {
+    return Monomials::Zero();
+  }
+  const Vec2& t = at.first;
+  const Vec2& p = foot.position;
+  const Vec2 pull(2.0 * q[0] * t.x() + q[1] * t.y(), q[1] * t.x() + 2.0 * q[2] * t.y());
+  const Monomials along(2.0 * p.x() * t.x(), p.y() * t.x() + p.x() * t.y(), 2.0 * p.y() * t.y(),
+                        t.x(), t.y(), 0.0);
+  return -(along - at.normal.dot(pull) / norm * monomials(p)) / (norm * at.slope());
+}
+
 /// Residuals over the tangent space of the unit sphere at `start`, for minimise_residuals.
 template <int K>
 class SphereResiduals {
@@ -73,9 +109,12 @@ class SphereResiduals {
         feet_(points.size()) {
     trial_.setConstant(std::numeric_limits<double>::quiet_NaN());
     tangent_ = tangent_space<K>(start_);
+    if (count_normals(points) > 0) {
+      weigh_normals();
+    }
   }
 
-  int NumResiduals() const { return static_cast<int>(points_.size()); }
+  int NumResiduals() const { return static_cast<int>(points_.size() + normals_.size()); }
 
   /// Columns: the directions of a step's elements.
   const Eigen::Matrix<double, K, K - 1>& tangent() const { return tangent_; }
@@ -93,12 +132,18 @@ class SphereResiduals {
     const Start u = moved / norm;
     const ConicCoefficients q = basis_ * u;
     const std::size_t n = points_.size();
+    const std::size_t rows = n + normals_.size();
     if (jacobian == nullptr || step != trial_) {
       place(q, step);
     }
     for (std::size_t i = 0; i < n; ++i) {
       const FitPoint& point = points_[i];
       residuals[i] = (feet_[i].distance - side_ * point.offset) * point.inverse_sigma;
+    }
+    for (std::size_t k = 0; k < normals_.size(); ++k) {
+      const FitPoint& point = points_[normals_[k].point];
+      const Vec2 normal = conic_gradient(q, feet_[normals_[k].point].position).normalized();
+      residuals[n + k] = normals_[k].weight * normal_miss(point.normal, normal);
     }
     if (jacobian == nullptr) {
       return true;
@@ -113,7 +158,15 @@ class SphereResiduals {
       const Eigen::Matrix<double, 1, K - 1> row =
           factor * (monomials(foot).transpose() * q_by_step);
       for (std::size_t k = 0; k < K - 1; ++k) {
-        jacobian[k * n + i] = row[static_cast<Eigen::Index>(k)];
+        jacobian[k * rows + i] = row[static_cast<Eigen::Index>(k)];
+      }
+    }
+    for (std::size_t j = 0; j < normals_.size(); ++j) {
+      const Eigen::Matrix<double, 1, K - 1> row =
+          normals_[j].weight *
+          (turn_by_coefficients(q, feet_[normals_[j].point]).transpose() * q_by_step);
+      for (std::size_t k = 0; k < K - 1; ++k) {
+        jacobian[k * rows + n + j] = row[static_cast<Eigen::Index>(k)];
       }
     }
     return true;
@@ -141,16 +194,28 @@ class SphereResiduals {
     trial_ = step;
   }
 
+  /// Weights of the normals by the curve at the start: as found, not as sought.
+  void weigh_normals() {
+    const ConicCoefficients q = basis_ * start_;
+    place(q, Step::Zero());
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (has_normal(points_[i])) {
+        normals_.push_back({i, weight_of_normal(q, feet_[i].position, points_[i])});
+      }
+    }
+  }
+
   std::span<const FitPoint> points_;
   ModelBasis<K> basis_;
   Start start_;
   Eigen::Matrix<double, K, K - 1> tangent_;
   int side_;
 
-  struct Foot {
-    Vec2 position = Vec2::Zero();
-    double distance = 0.0;
+  struct Normal {
+    std::size_t point = 0;
+    double weight = 0.0;
   };
+  std::vector<Normal> normals_;
   mutable std::vector<Foot> feet_;  ///< at trial_
   mutable Step trial_;
 };
@@ -168,6 +233,11 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
 }
 
 }  // namespace
+
+double weight_of_normal(const ConicCoefficients& q, const Vec2& foot, const FitPoint& point) {
+  const NormalAtFoot at = conic_at(q, {foot, signed_distance_from(foot, q, point.position)});
+  return at.normal.allFinite() && at.is_followed() ? normal_weight(point, at.turn_along()) : 0.0;
+}
 
 double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot) {
   // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}, whose first step from the point

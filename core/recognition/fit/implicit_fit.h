@@ -45,6 +45,11 @@ double signed_distance(const ConicCoefficients& coefficients, const Vec2& point,
 double signed_distance_from(const Vec2& foot, const ConicCoefficients& coefficients,
                             const Vec2& point);
 
+/// Weight of a point's measured normal where the conic is the curve; 0 where its foot cannot be
+/// followed.
+double weight_of_normal(const ConicCoefficients& coefficients, const Vec2& foot,
+                        const FitPoint& point);
+
 /// The gradient of the conic's polynomial.
 inline Vec2 conic_gradient(const ConicCoefficients& q, const Vec2& p) {
   return {2.0 * q[0] * p.x() + q[1] * p.y() + q[3], q[1] * p.x() + 2.0 * q[2] * p.y() + q[4]};

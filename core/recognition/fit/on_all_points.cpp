@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/recognition/fit/measured_normal.h"
 #include "core/recognition/fit/touchable.h"
 
 namespace palpate {
@@ -49,6 +50,33 @@ std::vector<double> distances_from(const ImplicitFit& curve, std::span<const Fit
     distances.push_back(signed_distance(curve.coefficients, point.position, &foot));
   }
   return distances;
+}
+
+/// What the measured normals leave of chi-square.
+double squares_of_normals(const ClassFit& fit, const SmoothModel& smooth,
+                          std::span<const FitPoint> points) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!has_normal(points[i])) {
+      continue;
+    }
+    Vec2 normal;
+    double weight = 0.0;
+    if (fit.polynomial) {
+      const PlacedPoint foot = place_on(
+          *fit.polynomial, fit.polynomial->t[smooth.nearest_reduced[i]], points[i].position);
+      normal = normal_at(fit.polynomial->coefficients, foot).normal;
+      weight = weight_of_normal(fit.polynomial->coefficients, foot, points[i]);
+    } else {
+      Vec2 foot;
+      signed_distance(fit.implicit->coefficients, points[i].position, &foot);
+      normal = conic_gradient(fit.implicit->coefficients, foot).normalized();
+      weight = weight_of_normal(fit.implicit->coefficients, foot, points[i]);
+    }
+    const double residual = weight * normal_miss(points[i].normal, normal);
+    squares += residual * residual;
+  }
+  return squares;
 }
 
 /// On which side of the curve the tip centres lie; 0 without tips.
@@ -187,7 +215,8 @@ double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData
     distances = distances_from(*fit.implicit, points);
   }
   const int side = side_of_tips(distances, points);
-  double chi2 = 0.0;
+  double chi2 =
+      residual_count(data) > points.size() ? squares_of_normals(fit, smooth, points) : 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double residual = (distances[i] - side * points[i].offset) * points[i].inverse_sigma;
     chi2 += residual * residual;
@@ -201,8 +230,9 @@ std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& sm
   ClassFit refined = refine_parts(start_on_all(fit, smooth, points), points, effort);
   // All points can leave no more than the reduced ones and the smooth model do: some feet are on
   // the wrong arm of a bend.
-  if (fit.polynomial && fits_well(fit.chi2, smooth.reduced.points.size()) &&
-      !fits_well(refined.chi2 - smooth.chi2, smooth.reduced.points.size())) {
+  const std::size_t reduced = residual_count(smooth.reduced);
+  if (fit.polynomial && fits_well(fit.chi2, reduced) &&
+      !fits_well(refined.chi2 - smooth.chi2, reduced)) {
     ClassFit again = refine_parts(start_on_all(fit, smooth, points, Feet::Sought), points, effort);
     if (again.chi2 < refined.chi2) {
       refined = std::move(again);

@@ -27,11 +27,15 @@ PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int 
   // all.
   constexpr double kExact = 1e-3;  // of the chi-square that noise would leave
   constexpr int kMoreStarts = 2;
-  const double n = static_cast<double>(points.size());
+  const std::size_t normals = count_normals(points);
+  const double n = static_cast<double>(points.size() + normals);
   const auto is_exact = [&] { return fit.chi2 < kExact * n; };
   for (int start_number = 0;
        start_number < effort.starts || (is_exact() && start_number < effort.starts + kMoreStarts);
        ++start_number) {
+    if (normals > 0) {
+      problem.weigh_normals(x);
+    }
     const double left = start_number > 0 && is_exact() ? fit.chi2 / n : 1.0;
     const MinimiseSummary summary =
         minimise(&problem, &x, {effort.iterations, left * effort.chi2_tolerance});

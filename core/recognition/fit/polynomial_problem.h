@@ -3,10 +3,12 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "core/recognition/fit/measured_normal.h"
 #include "core/recognition/fit/polynomial_foot.h"
 #include "core/recognition/samples/fit_data.h"
 
@@ -33,6 +35,25 @@ constexpr auto exponents_of_model() {
   } else {
     return std::array{0, 1, 2, 3};
   }
+}
+
+/// The curve at a foot found.
+inline NormalAtFoot normal_at(const PolynomialCoefficients& c, const PlacedPoint& foot) {
+  NormalAtFoot at;
+  at.first = first_derivative(c, foot.t);
+  at.second = second_derivative(c, foot.t);
+  const double speed = at.speed();
+  at.normal = speed > 0.0 ? Vec2(left_of(at.first) / speed) : Vec2::Zero();
+  at.distance = foot.signed_distance;
+  return at;
+}
+
+/// Weight of a point's measured normal where this is the curve; 0 where its foot cannot be
+/// followed.
+inline double weight_of_normal(const PolynomialCoefficients& c, const PlacedPoint& foot,
+                               const FitPoint& point) {
+  const NormalAtFoot at = normal_at(c, foot);
+  return at.is_followed() ? normal_weight(point, at.turn_along()) : 0.0;
 }
 
 /// Orthogonal distances over the model's coefficients, as `minimise` asks.
@@ -73,12 +94,30 @@ class PolynomialProblem {
     return x;
   }
 
+  /// Sets the weights of measured normals by this curve: as found, not as sought. Without, none
+  /// counts.
+  void weigh_normals(const Vector& x) {
+    normals_.clear();
+    const PolynomialCoefficients c = coefficients(x);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (has_normal(points_[i])) {
+        const PlacedPoint foot = follow_foot_point(c, points_[i].position, feet_[i].t, last_step_);
+        normals_.push_back({i, weight_of_normal(c, foot, points_[i])});
+      }
+    }
+  }
+
   double chi2_at(const Vector& x) {
     tried_ = coefficients(x);
     double chi2 = 0.0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       tried_feet_[i] = follow_foot_point(tried_, points_[i].position, feet_[i].t, last_step_);
       const double residual = residual_at(tried_feet_[i], i);
+      chi2 += residual * residual;
+    }
+    for (const WeighedNormal& of : normals_) {
+      const double residual =
+          miss_at(normal_at(tried_, tried_feet_[of.point]), of.point) * of.weight;
       chi2 += residual * residual;
     }
     return chi2;
@@ -118,6 +157,9 @@ class PolynomialProblem {
         const auto s = squares.col(exponent(j) + exponent(k));
         information->template block<2, 2>(2 * j, 2 * k) << s[0], s[1], s[1], s[2];
       }
+    }
+    if (!normals_.empty()) {
+      linearise_normals(information, gradient);
     }
   }
 
@@ -174,7 +216,39 @@ class PolynomialProblem {
     return (foot.signed_distance - side_ * points_[i].offset) * points_[i].inverse_sigma;
   }
 
+  [[gnu::noinline]] void linearise_normals(Matrix* information, Vector* gradient) const {
+    for (const WeighedNormal& of : normals_) {
+      const NormalAtFoot at = normal_at(coefficients_, feet_[of.point]);
+      if (!at.is_followed()) {
+        continue;
+      }
+      const double t = feet_[of.point].t;
+      const std::array<double, 4> powers{1.0, t, t * t, t * t * t};
+      Vector row;
+      for (int j = 0; j < kPowers; ++j) {
+        const auto k = static_cast<std::size_t>(exponent(j));
+        const double by_t = k > 0 ? static_cast<double>(k) * powers[k - 1] : 0.0;
+        for (int d = 0; d < 2; ++d) {
+          row[2 * j + d] = of.weight * at.turn_by(powers[k] * Vec2::Unit(d), by_t * Vec2::Unit(d));
+        }
+      }
+      information->noalias() += row.lazyProduct(row.transpose());
+      *gradient += of.weight * miss_at(at, of.point) * row;
+    }
+  }
+
+  /// 0 at a cusp, where the curve has no normal.
+  double miss_at(const NormalAtFoot& at, std::size_t i) const {
+    return at.normal.isZero(0.0) ? 0.0 : normal_miss(points_[i].normal, at.normal);
+  }
+
+  struct WeighedNormal {
+    std::size_t point = 0;
+    double weight = 0.0;
+  };
+
   std::span<const FitPoint> points_;
+  std::vector<WeighedNormal> normals_;
   int side_;
   PolynomialCoefficients coefficients_;  ///< where we are
   std::vector<PlacedPoint> feet_;

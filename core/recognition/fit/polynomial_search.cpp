@@ -194,7 +194,8 @@ void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
   constexpr std::size_t kMostSeeds = 4;
   constexpr RefineEffort kThorough{50, 1, 1e-4};
   // Data that leave a conic possible tell no cubic from it.
-  const bool conic_fits = fits_well(fits->lowest_chi2, reduced.points.size());
+  const std::size_t residuals = residual_count(reduced);
+  const bool conic_fits = fits_well(fits->lowest_chi2, residuals);
   fits->every_seed = true;
   const auto improve = [&](std::optional<PolynomialFit>* best, const std::vector<AxisFit>& seeds) {
     if (!*best || seeds.empty()) {
@@ -202,7 +203,7 @@ void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
     }
     bool touchable = is_touchable(**best, reduced);
     const auto arrived = [&] {
-      return touchable && (conic_fits || fits_well((*best)->chi2, reduced.points.size()));
+      return touchable && (conic_fits || fits_well((*best)->chi2, residuals));
     };
     // What can be touched so goes before what fits better.
     const auto keep = [&](PolynomialFit fit) {

@@ -87,7 +87,7 @@ WarmStart warm_start_from(const ClassFits& fits, const FitData& reduced) {
   for (const auto& fit : fits) {
     lowest = fit ? std::min(lowest, fit->chi2) : lowest;
   }
-  warm.polynomials.every_seed = !fits_well(lowest, reduced.points.size());
+  warm.polynomials.every_seed = !fits_well(lowest, residual_count(reduced));
   if (!warm.polynomials.every_seed) {  // where nothing fits, nothing is out for that
     warm.polynomials.lowest_chi2 = lowest;
   }

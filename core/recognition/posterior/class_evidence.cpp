@@ -262,7 +262,7 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
   // At the first level chi-square is the number of points, and where a valley leads to the noise it
   // stays about that. Three levels at which the curve did not come nearer: there is none.
   constexpr double kLost = 64.0;
-  const double n = static_cast<double>(data.points.size());
+  const double n = static_cast<double>(residual_count(data));
   const double full = touch->weight;
   double weight = full * std::min(1.0, std::sqrt(n / curve->chi2));
   while (weight < full) {
@@ -293,13 +293,13 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
   auto first = curve_at(*touch, fit, data);
   double fitted_chi2 = 0.0;
   for (const FittedPoint& point : fit.points) {
-    fitted_chi2 += point.residual * point.residual;
+    fitted_chi2 += point.residual * point.residual + point.normal_residual * point.normal_residual;
   }
   fitted_chi2 /= inflation;
   // Canonical coordinates of a vertex far away lose digits. What is left must still tell the points
   // apart as well as the noise does.
   constexpr double kPartRounding = 1e-3;  // of a chi-square that has no chance
-  const double rounding = static_cast<double>(data.points.size()) + kPartRounding * fitted_chi2;
+  const double rounding = static_cast<double>(residual_count(data)) + kPartRounding * fitted_chi2;
   if (!first || !(std::abs(first->chi2 - fitted_chi2) <= rounding)) {
     return std::nullopt;
   }

@@ -162,6 +162,16 @@ SectionEvidence evidence_of(const SectionNodes& nodes, double origin, double end
   return evidence;
 }
 
+/// A touch by itself is a path by itself, whose direction may be any: uniform over half a turn, as
+/// measured normals are compared either way round.
+void add_normal(const FitPoint& touch, double weight, FreeForm* paths) {
+  if (touch.inverse_normal_sigma > 0.0) {
+    const double sigma = 1.0 / (weight * touch.inverse_normal_sigma);
+    paths->log_occam += std::min(0.0, std::log(std::sqrt(2.0 / std::numbers::pi) * sigma));
+    paths->determined += 1.0;
+  }
+}
+
 FreeForm paths_of(const SmoothModel& smooth, double size, double weight) {
   FreeForm paths;
   std::optional<Junction> junction;
@@ -186,6 +196,9 @@ FreeForm paths_of(const SmoothModel& smooth, double size, double weight) {
       paths.chi2 += evidence.chi2;
       paths.log_occam -= 0.5 * evidence.log_determinant;
       paths.determined += static_cast<double>(nodes.x.size());
+      if (section.end - section.begin == 1) {
+        add_normal(smooth.reduced.points[begin], weight, &paths);
+      }
       junction = evidence.end;
       junction_x = end;
       last = &section;

@@ -61,7 +61,7 @@ Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m) {
 SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, double chi2,
                              const CanonicalFit& placed, bool unclassified) {
   const SmoothModel& smooth = arcs.smooth;
-  const double n = static_cast<double>(arcs.data.points.size());
+  const double n = static_cast<double>(residual_count(arcs.data));
   const int parameters = degrees_of_freedom(placed.shape.curve_class);
   const double dof = n - parameters;
   const double variance = chi2 / dof;  // of the residuals, in units of sigma^2

@@ -6,6 +6,7 @@
 
 #include "core/curves/curve.h"
 #include "core/numerics/triangular_root.h"
+#include "core/recognition/fit/measured_normal.h"
 
 namespace palpate {
 namespace {
@@ -104,6 +105,64 @@ std::optional<Motions> motions_at(const Touch& touch, const TouchedVector& z) {
   return motions;
 }
 
+/// How position_by_parameters changes along the curve, by central differences.
+Eigen::Matrix<double, 2, 3> shape_rate(const Curve& curve, double t) {
+  const double step = 1e-5 * std::max(1.0, std::abs(t));
+  return (position_by_parameters(curve, t + step) - position_by_parameters(curve, t - step)) /
+         (2.0 * step);
+}
+
+/// The curve and the place on it that was touched, in its own frame, and how they move.
+struct Moving {
+  const Curve& canonical;
+  const Motions& motions;
+  const CurveDerivatives& at;
+  const Eigen::Matrix<double, 2, 3>& by_shape_at;
+};
+
+/// The measured normals' part of chi-square and its derivatives, the feet found. On its own, so
+/// that points without do not pay.
+[[gnu::noinline]] void add_normals(const Touch& touch, const FitData& data, const Moving& moving,
+                                   TouchedCurve* curve) {
+  const auto& [canonical, motions, at, by_shape_at] = moving;
+  const int own = shape_coordinates(touch.curve_class);
+  const Pose2& pose = curve->frame_T_curve;
+  const Vec2 offset_direction = pose.rotate_back(left_of(touch.tangent));
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const double weight = touch.weight * touch.normal_weights[i];
+    const CurveDerivatives foot = derivatives(canonical, curve->t[i]);
+    const double speed = foot.first.norm();
+    if (!(weight > 0.0) || !(speed > 0.0)) {
+      continue;
+    }
+    const Vec2 normal = left_of(foot.first) / speed;
+    const Vec2 away = pose.to_local(data.points[i].position) - foot.position;
+    const NormalAtFoot there{normal, foot.first, foot.second, away.dot(normal)};
+    const double residual = weight * normal_miss(pose.rotate_back(data.points[i].normal), normal);
+    curve->chi2 += residual * residual;
+    if (!there.is_followed()) {
+      continue;
+    }
+    const Vec2 lever = left_of(foot.position - at.position);
+    const Eigen::Matrix<double, 2, 3> by_shape =
+        position_by_parameters(canonical, curve->t[i]) - by_shape_at;
+    const Eigen::Matrix<double, 2, 3> by_shape_and_t = shape_rate(canonical, curve->t[i]);
+    TouchedVector row = TouchedVector::Zero();
+    for (int k = 0; k < own; ++k) {
+      const auto j = static_cast<std::size_t>(k);
+      row[k] = there.turn_by(
+          by_shape * motions.shape[j] - motions.turn[j] * lever - motions.t[j] * at.first,
+          by_shape_and_t * motions.shape[j] - motions.turn[j] * left_of(foot.first));
+    }
+    row[own] = there.turn_by(offset_direction, Vec2::Zero());
+    row[own + 1] = there.turn_by(lever, left_of(foot.first));
+    row = weight * row.cwiseProduct(curve->widths);
+    Eigen::Matrix<double, 1, kMostCoordinates> one = row.transpose();
+    absorb_rows(&one, &curve->root);
+    curve->gradient += residual * row;
+  }
+}
+
 /// Feet, chi-square and derivatives of `curve`, whose z, shape and starting t are set.
 bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
   const auto canonical = make_curve(touch.curve_class, curve->shape.values);
@@ -168,6 +227,9 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
       rows.setZero();
     }
   }
+  if (!touch.normal_weights.empty()) {
+    add_normals(touch, data, {*canonical, *motions, at, at_touch}, curve);
+  }
   return std::isfinite(curve->chi2) && curve->root.allFinite();
 }
 
@@ -201,6 +263,11 @@ std::optional<Touch> touch_of(const CanonicalFit& fit, const FitData& data) {
   const Pose2 pose = data.frame.inverse() * fit.world_T_curve;
   touch.place = pose.rotate(at.position) + pose.translation() / data.scale;
   touch.tangent = pose.rotate(at.first / speed);
+  if (residual_count(data) > data.points.size()) {
+    for (const FittedPoint& point : fit.points) {
+      touch.normal_weights.push_back(point.normal_weight);
+    }
+  }
   return touch;
 }
 

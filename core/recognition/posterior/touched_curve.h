@@ -20,6 +20,9 @@ struct Touch {
   Vec2 place = Vec2::Zero();     ///< normalised frame
   Vec2 tangent = Vec2::UnitX();  ///< of increasing t
   double weight = 1.0;           ///< that residuals are multiplied with, beside their noise's
+  /// Of measured normals, by point; empty where there are none. As of the fit: a curve that is
+  /// tried is weighed with what was found.
+  std::vector<double> normal_weights = {};
 };
 
 /// A curve of the class near the touch, the points' feet on it, and the model linear about it.

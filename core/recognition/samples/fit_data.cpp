@@ -58,7 +58,45 @@ std::optional<Extents> extents_of(std::span<const StoredPatch> patches) {
   return Extents{{centre.x(), centre.y(), angle}, 0.5 * (high - low).maxCoeff()};
 }
 
+/// Of touches alone in their patch.
+void set_normals(std::span<const StoredPatch> patches, FitData* data) {
+  // A direction known to rounding would outweigh what a curve's own normal is computed to. [rad]
+  constexpr double kLeastSigma = 1e-7;
+  auto span = data->patches.begin();
+  for (const StoredPatch& patch : patches) {
+    if (patch.samples.empty()) {
+      continue;
+    }
+    if (is_directed_touch(patch)) {
+      const SampleDetail& detail = patch.details.front();
+      FitPoint& point = data->points[span->begin];
+      point.normal = data->frame.rotate_back(detail.normal);
+      point.inverse_normal_sigma = 1.0 / std::max(detail.normal_sigma_rad, kLeastSigma);
+    }
+    ++span;
+  }
+}
+
 }  // namespace
+
+bool is_directed_touch(const StoredPatch& patch) {
+  // Deviation of a direction that is anywhere in half a turn, pi / sqrt(12): it tells nothing.
+  // [rad]
+  constexpr double kAnywhere = 0.9069;
+  if (patch.samples.size() != 1 || patch.details.empty()) {
+    return false;
+  }
+  const double sigma = patch.details.front().normal_sigma_rad;
+  return sigma > 0.0 && sigma < kAnywhere;
+}
+
+std::size_t residual_count(const FitData& data) {
+  std::size_t count = data.points.size();
+  for (const PatchSpan& patch : data.patches) {
+    count += patch.size() == 1 && data.points[patch.begin].inverse_normal_sigma > 0.0 ? 1 : 0;
+  }
+  return count;
+}
 
 double rms_sigma(const FitData& data) {
   double sum = 0.0;
@@ -139,7 +177,9 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
         data.points[i++].inverse_sigma = std::sqrt(sample.weight);
       }
     }
+    return data;
   }
+  set_normals(patches, &data);
   return data;
 }
 

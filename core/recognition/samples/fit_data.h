@@ -17,6 +17,10 @@ struct FitPoint {
   Vec2 tangent = Vec2::Zero();   ///< direction of travel, unit; zero where it is not known
   double inverse_sigma = 1.0;    ///< 1 / (noise in normalised units)
   double offset = 0.0;           ///< tip radius in normalised units; 0 = surface point
+  /// Measured normal of the surface, unit, in the frame: of a touch alone in its patch whose noise
+  /// is known. (Along a stroke the positions tell the direction.)
+  Vec2 normal = Vec2::Zero();
+  double inverse_normal_sigma = 0.0;  ///< 1 / (deviation of its direction [rad]); 0 = none
 };
 
 /// The run of points of one patch, in their order along the arc: [begin, end).
@@ -43,13 +47,20 @@ struct FitData {
 /// The samples in memory as fit points. `default_sigma_m` is the noise of samples that bring none;
 /// `sigma_known` receives whether every point then has one (points without get 1, normalised: only
 /// their ratios count until the noise is estimated). A noise below the rounding of the coordinates
-/// is raised to it. Tip radii become offsets. Empty patches are left out.
+/// is raised to it. Tip radii become offsets. Empty patches are left out. Normals are those of
+/// patches of a single sample, where every point's noise is known.
 FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma_m,
                       bool* sigma_known);
 
 /// Noise of a contact over that of a stored sample, which is the mean of several in a long patch; 1
 /// where none are merged.
 double noise_over_means(std::span<const StoredPatch> patches, double default_sigma_m);
+
+/// Whether a patch is a touch by itself with a measured normal that tells a direction.
+bool is_directed_touch(const StoredPatch& patch);
+
+/// How many measurements a curve leaves residuals of: a place a point, and the normals. O(patches).
+std::size_t residual_count(const FitData& data);
 
 /// Root mean square of the points' noise, in normalised units. At least one point.
 double rms_sigma(const FitData& data);

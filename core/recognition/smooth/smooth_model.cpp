@@ -73,6 +73,10 @@ void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
     model->reduced.points.push_back(data->points[i]);
   }
   model->parameters += static_cast<int>(section.size());
+  if (section.size() == 1 && data->points[section.begin].inverse_normal_sigma > 0.0) {
+    ++model->points;  // a direction measured, and as many parameters to take it
+    ++model->parameters;
+  }
 }
 
 /// The chord frame of a section: abscissa in [-1, 1] from end to end.

@@ -26,7 +26,7 @@ struct ReducedSection {
 struct SmoothModel {
   double chi2 = 0.0;   ///< sum of squared normalised residuals
   int parameters = 0;  ///< polynomial coefficients used in all sections
-  int points = 0;
+  int points = 0;      ///< and measured normals
   /// The nodes of the discrete Gauss quadrature of each section, on the fitted polynomial, with the
   /// weights as inverse variances: for any curve that the section's polynomials can follow,
   ///   chi2(curve; points) = chi2(smooth model) + chi2(curve; reduced points)

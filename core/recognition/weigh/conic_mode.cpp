@@ -56,11 +56,11 @@ Contenders with_conic_mode(Contenders contenders, const Ground& ground, unsigned
   const auto& circle = contenders.coarse[static_cast<std::size_t>(CurveClass::Circle)];
   const bool wanted =
       (classes & (1U << kEllipse)) != 0 &&
-      static_cast<int>(ground.arcs.data.points.size()) > degrees_of_freedom(CurveClass::Ellipse);
+      static_cast<int>(residual_count(ground.arcs.data)) > degrees_of_freedom(CurveClass::Ellipse);
   const bool has_conic =
       has_optimum(contenders.coarse[kEllipse]) || has_optimum(contenders.coarse[kHyperbola]);
   if (!wanted || has_conic || contenders.no_conic || !circle ||
-      (line && fits_well(line->chi2 / inflation, reduced.points.size()))) {
+      (line && fits_well(line->chi2 / inflation, residual_count(reduced)))) {
     return contenders;
   }
   const auto start = to_canonical(*circle, reduced);

@@ -19,11 +19,11 @@ double margin_of(const WeighOptions& options) {
 }
 
 /// Without the classes that nobody wants and those that leave nothing over to test them with.
-ClassFits testable(ClassFits fits, unsigned classes, std::size_t points) {
+ClassFits testable(ClassFits fits, unsigned classes, std::size_t residuals) {
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     const bool wanted = (classes & (1U << i)) != 0;
-    if (!wanted || static_cast<int>(points) <= degrees_of_freedom(curve_class)) {
+    if (!wanted || static_cast<int>(residuals) <= degrees_of_freedom(curve_class)) {
       fits[i].reset();
     }
   }
@@ -51,7 +51,7 @@ Contenders contending(ClassFits coarse, bool no_conic, const Ground& ground,
   const Arcs& arcs = ground.arcs;
   Contenders contenders;
   contenders.no_conic = no_conic;
-  contenders.coarse = testable(std::move(coarse), options.classes, arcs.data.points.size());
+  contenders.coarse = testable(std::move(coarse), options.classes, residual_count(arcs.data));
   contenders.fits = as_told(contenders.coarse, arcs.smooth);
   contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
   if (!is_sure(probabilities_of(contenders, ground))) {

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Iterable, Sequence
 import numpy as np
 
 from . import _core, models
+from .details import details
 from .result import Result, units
 
 if TYPE_CHECKING:
@@ -43,13 +44,19 @@ class Recognizer:
         """Points that said nothing new: at exactly the place of the one before."""
 
     def add(self, points, patch: int = 0, probe: int = 0, sigma=None, tip_radius: float = 0.0,
-            material_side: str = "unspecified") -> int:
+            material_side: str = "unspecified", normals=None, normal_sigma=None, covariances=None) -> int:
         """Appends points of one patch, in their order. Gives how many were taken; raises ValueError on points
-        that are not finite."""
+        that are not finite.
+
+        normals: (n, 2), the surface's, of length 1, out of the material, (0, 0) where none was measured;
+        normal_sigma: standard deviation of their directions in radians, one number or one a normal.
+        covariances: of the positions in place of sigma, (2, 2) or (n, 2, 2), in the unit's square. Result.simplified_count
+        tells of how many points not all of that counts."""
         points = np.asarray(points, dtype=np.float64)
         in_metres = points if self._scale == 1.0 else self._scale * points
         sigmas = _NONE if sigma is None else self._scale * np.atleast_1d(np.asarray(sigma, dtype=np.float64))
-        accepted, repeated = self._core.add(in_metres, sigmas, probe, patch, self._scale * tip_radius, material_side)
+        accepted, repeated = self._core.add(in_metres, sigmas, probe, patch, self._scale * tip_radius, material_side,
+                                            *details(normals, normal_sigma, covariances, self._scale))
         self.dropped += repeated
         self._tip_radius = max(self._tip_radius, tip_radius)
         self._points.append(points.copy())
@@ -73,26 +80,35 @@ class Recognizer:
 
 def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_side: str = "unspecified",
         classes: Iterable[str] = (), form_deviation: float = 0.0, touches: bool = False,
-        most_samples_per_patch: int = 1024) -> Result:
+        most_samples_per_patch: int = 1024, normals=None, normal_sigma: float | None = None) -> Result:
     """Recognises one object: an array (n, 2) of one patch, or a list of them.
 
     sigma: standard deviation of a point, one number or (for one patch) one a point; None estimates it.
     tip_radius: the points are centres of a round tip. material_side: of the direction of travel.
     touches: every point is a touch of its own, in no order along the part.
     form_deviation: standard deviation of the part from its ideal curve, half of a +- tolerance.
+    normals: of the surface, measured, as the points: an array or a list of them, as Recognizer.add has it.
     """
-    patches: Sequence = [points] if getattr(points, "ndim", 0) == 2 or _is_one_patch(points) else points
-    if touches:
-        patches = [row[np.newaxis, :] for patch in patches for row in np.asarray(patch, dtype=np.float64)]
-        if np.size(sigma) > 1:
-            raise ValueError("sigma: one number for touches")
+    patches = _patches(points, touches)
+    of_patches: Sequence = [None] * len(patches) if normals is None else _patches(normals, touches)
+    if touches and np.size(sigma) > 1:
+        raise ValueError("sigma: one number for touches")
     if len(patches) == 0:
         raise ValueError("points: there are none")
+    if len(of_patches) != len(patches):
+        raise ValueError("normals: not as many as points")
     # A list is there at once: nothing of it is forgotten.
     recognizer = Recognizer(None, unit, classes, form_deviation, max(64, len(patches)), most_samples_per_patch)
     for number, patch in enumerate(patches):
-        recognizer.add(patch, number, 0, sigma, tip_radius, material_side)
+        recognizer.add(patch, number, 0, sigma, tip_radius, material_side, of_patches[number], normal_sigma)
     return recognizer.recognize()
+
+
+def _patches(points, touches: bool) -> Sequence:
+    patches: Sequence = [points] if getattr(points, "ndim", 0) == 2 or _is_one_patch(points) else points
+    if touches:
+        return [row[np.newaxis, :] for patch in patches for row in np.asarray(patch, dtype=np.float64)]
+    return patches
 
 
 def _is_one_patch(points) -> bool:

@@ -13,6 +13,8 @@ from zmq.utils.monitor import recv_monitor_message
 
 from palpate.v1 import contact_pb2, recognition_pb2
 
+from . import _core
+from .details import details
 from .result import units
 
 CONTACTS = "tcp://127.0.0.1:5581"
@@ -96,6 +98,25 @@ class _Peer:
         self.close()
 
 
+class _Details:
+    """Fields of messages for what is said of points; raises ValueError on what a recognizer would reject."""
+
+    def __init__(self, count: int, normals: np.ndarray, normal_sigma: np.ndarray, covariances: np.ndarray) -> None:
+        _core.check_details(count, normals, normal_sigma, covariances)
+        self._normals = normals
+        self._sigmas = np.broadcast_to(normal_sigma, count) if normal_sigma.size else normal_sigma
+        self._covariances = np.broadcast_to(covariances, (count, 2, 2)) if covariances.size else covariances
+
+    def of(self, i: int) -> dict[str, float]:
+        fields = {}
+        if self._normals.size and self._normals[i].any():
+            fields = {"normal_x": self._normals[i, 0], "normal_y": self._normals[i, 1], "normal_sigma_rad": self._sigmas[i]}
+        if self._covariances.size:
+            (xx, xy), (_, yy) = self._covariances[i]
+            fields |= {"cov_xx_m2": xx, "cov_xy_m2": xy, "cov_yy_m2": yy}
+        return fields
+
+
 class Probe(_Peer):
     """Publishes touched points.
 
@@ -134,17 +155,19 @@ class Probe(_Peer):
             raise
         self._socket.recv()
 
-    def send(self, points) -> None:
-        """Points (n, 2) of the patch, in their order along the part."""
+    def send(self, points, normals=None, normal_sigma=None, covariances=None) -> None:
+        """Points (n, 2) of the patch, in their order along the part; normals (n, 2), their deviation in radians, and
+        covariances in the unit's square as Recognizer.add has them."""
         points = np.atleast_2d(np.asarray(points, dtype=np.float64))
         if points.shape[1] != 2 or not np.isfinite(points).all():
             raise ValueError("points must be finite, of shape (n, 2)")
+        said = _Details(len(points), *details(normals, normal_sigma, covariances, self._scale))
         most = 1000  # samples of a message; the node takes 4096 at most
         for start in range(0, len(points), most):
             del self._batch.samples[:]
             now = time.time_ns()
-            for x, y in self._scale * points[start:start + most]:
-                self._batch.samples.add(stamp_ns=now, x_m=x, y_m=y, sigma_m=self._scale * self._sigma)
+            for i, (x, y) in enumerate(self._scale * points[start:start + most], start):
+                self._batch.samples.add(stamp_ns=now, x_m=x, y_m=y, sigma_m=self._scale * self._sigma, **said.of(i))
             self._batch.header.stamp_ns = now
             self._socket.send_multipart([self._topic, self._batch.SerializeToString()])
             self._batch.header.seq += 1

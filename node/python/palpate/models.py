@@ -14,6 +14,7 @@ from typing import ClassVar
 import numpy as np
 
 from . import _core
+from .details import details
 
 
 class CurveModel:
@@ -28,9 +29,11 @@ class CurveModel:
         self.covariance = np.empty((0, 0))
         self.rms = self.peak_to_valley = self.sigma = float("nan")
 
-    def estimate(self, data, sigma: float = 0.0) -> bool:
-        """Whether the points (n, 2) determine one curve of the class. sigma: of a point, where it is known."""
-        fit = _core.fit_given(self.curve_class, np.asarray(data, dtype=np.float64), sigma)
+    def estimate(self, data, sigma: float = 0.0, normals=None, normal_sigma=None, covariances=None) -> bool:
+        """Whether the points (n, 2) determine one curve of the class. sigma: of a point, where it is known. The others as
+        Recognizer.add has them; normals count where every point's noise is known."""
+        fit = _core.fit_given(self.curve_class, np.asarray(data, dtype=np.float64), sigma,
+                              *details(normals, normal_sigma, covariances, 1.0))
         self.status = fit["status"]
         letters = len(_core.parameter_letters(self.curve_class))
         success = self.status == "fitted"

@@ -66,8 +66,7 @@ Result<std::vector<ArtefactRecording>> read_recordings(const CalibrateCommand& c
     for (const std::string& note : read.value->notes) complain(file + ": " + note, kDone);
     for (const ContactGroup& group : contact_groups(file, read.value->table)) {
       probes.insert(group.probes.begin(), group.probes.end());
-      if (const std::string note = note_of_unused_detail(group, DetailUse::PositionsOnly);
-          !note.empty()) {
+      if (const std::string note = note_of_unused_detail(group); !note.empty()) {
         complain(file + ": " + note, kDone);
       }
       ArtefactRecording& recording = recordings.emplace_back();

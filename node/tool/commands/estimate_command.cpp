@@ -61,8 +61,7 @@ int run(EstimateCommand& command) {
       "tangent_sigma_rad,kappa_sigma_per_m,kappa_s_sigma_per_m2,window_samples,window_arc_m\n");
   std::size_t refused = 0;
   for (const ContactGroup& group : contact_groups(command.file, file.value->table)) {
-    if (const std::string note = note_of_unused_detail(group, DetailUse::PositionsOnly);
-        !note.empty()) {
+    if (const std::string note = note_of_unused_detail(group); !note.empty()) {
       complain(command.file + ": " + note, kDone);
     }
     for (const ContactRun& run : group.runs) {

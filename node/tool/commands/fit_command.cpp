@@ -141,8 +141,7 @@ int place(const FitCommand& fit, const std::vector<FitInput>& inputs, bool json)
   for (const FitInput& input : inputs) {
     const ContactGroup& group = input.group;
     for (const std::string& note : input.notes) complain(group.file + ": " + note, kDone);
-    if (const std::string note = note_of_unused_detail(group, DetailUse::PositionsOnly);
-        !note.empty()) {
+    if (const std::string note = note_of_unused_detail(group); !note.empty()) {
       complain(group.file + ": " + note, kDone);
     }
     const v1::PartMatch match = match_part(group, *part.value, options);
@@ -186,6 +185,12 @@ int run(FitCommand& fit) {
       curve_class_from_name(fit.given_class).value_or(CurveClass::Unclassified) ==
           CurveClass::Unclassified) {
     return complain("--class: no class is called " + printable(fit.given_class), kUsage);
+  }
+  if (!fit.part.empty() && !fit.probe_files.empty()) {
+    return complain(
+        "--probe: not with --part, which places the samples as they are: only the normals of a "
+        "curve that is recognised or given are used to take a probe's offsets off",
+        kUsage);
   }
   // Nothing is answered before every file has been read: a bad one costs no half-done work.
   std::vector<QualifiedProbe> probes;
@@ -349,11 +354,11 @@ void add_fit_command(CLI::App& app, int& exit_code) {
       ->excludes(given)
       ->type_name("FILE");
   command
-      ->add_option("--probe", fit->probe_files,
-                   "Probe file of palpate calibrate: its offsets are taken off by the normals "
-                   "found, its noise, drift and tip radius count, and the answer names it. May be "
-                   "repeated: of several files each is for the probe that it names")
-      ->excludes("--part")
+      ->add_option(
+          "--probe", fit->probe_files,
+          "Probe file of palpate calibrate: its offsets are taken off by the normals "
+          "found, its noise, drift and tip radius count, and the answer names it. May be "
+          "repeated: of several files each is for the probe that it names. Not with --part")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("FILE");

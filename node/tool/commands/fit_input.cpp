@@ -74,10 +74,6 @@ std::vector<std::string> notes_for(const FitInput& input, const MemoryOptions& m
                     std::to_string(memory.most_samples_per_patch) +
                     " samples are used as means of neighbours (--most-samples-per-patch)");
   }
-  if (std::string note = note_of_unused_detail(input.group, DetailUse::Recognition);
-      !note.empty()) {
-    notes.push_back(std::move(note));
-  }
   if (added.repeated > 0) {
     notes.push_back(std::to_string(added.repeated) +
                     " samples at exactly the place of the one before are dropped");

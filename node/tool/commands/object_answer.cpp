@@ -101,7 +101,7 @@ Answered recognise(const FitInput& input, const RecognizerOptions& options,
     taken = std::chrono::steady_clock::now() - start;
     answer.recognition = std::move(result.recognition);
     answer.recognition.forgotten_count = added.forgotten;
-    answer.recognition.simplified_count = added.detailed;
+    answer.recognition.simplified_count += added.detailed - result.added.detailed;
     if (!result.corrected && !probe_files.empty()) {
       probe_files.clear();
       probe_notes.push_back(
@@ -118,6 +118,13 @@ Answered recognise(const FitInput& input, const RecognizerOptions& options,
   answer.wire.mutable_probe_files()->Assign(probe_files.begin(), probe_files.end());
   notes = notes_for(input, options.memory, added);
   notes.insert(notes.end(), probe_notes.begin(), probe_notes.end());
+  if (const std::size_t count = answer.recognition.simplified_count; count > 0) {
+    notes.push_back(std::to_string(count) +
+                    " samples have a normal or a covariance that does not count in full: of a "
+                    "covariance the mean noise does, of a normal along a stroke, or where not "
+                    "every noise is known, the side of a round tip (palpate fit --class uses all "
+                    "of it)");
+  }
   return answer;
 }
 

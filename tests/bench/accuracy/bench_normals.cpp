@@ -1,8 +1,9 @@
 // How many touches of an ellipse a measured normal saves: the fewest after which both axes are
 // known to a part of themselves in 95 % of scenes. Touches lie anywhere on the ellipse, in no
-// order, and the class is given. Beside each number, the mean square of the axes' errors over their
-// published deviations (law: 1). Prints a table.
-//   bench_normals [--scenes N] [--accuracy PART] [--most N] [--seed S]
+// order, and the class is given; with --sought it is not, and the ellipse has to be recognised.
+// Beside each number, the mean square of the axes' errors over their published deviations (law: 1),
+// and how many scenes were recognised as something else. Prints a table.
+//   bench_normals [--sought] [--scenes N] [--accuracy PART] [--most N] [--seed S]
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +12,7 @@
 
 #include "core/curves/curve.h"
 #include "core/recognition/given/given_class.h"
+#include "core/recognition/recognizer.h"
 #include "tests/bench/options/bench_options.h"
 
 namespace {
@@ -43,17 +45,48 @@ std::vector<GivenPoint> touch(int count, double sigma_m, double normal_sigma_rad
 struct Outcome {
   int known = 0;         ///< scenes in which both axes are
   double squares = 0.0;  ///< of errors over deviations, of the scenes that were
+  int wrong = 0;         ///< recognised as something else
 };
 
+/// What is told of the curve; covariance of [shape; x; y; theta].
+struct Told {
+  bool is_ellipse = false;
+  bool is_other = false;
+  ShapeParameters shape;
+  ShapePoseCovariance covariance;
+};
+
+Told told_of_given(const std::vector<GivenPoint>& points) {
+  const GivenFit fit = fit_given_class(CurveClass::Ellipse, points);
+  return {fit.status == GivenStatus::Fitted, false, fit.shape, fit.covariance};
+}
+
+Told told_of_sought(const std::vector<GivenPoint>& points) {
+  Recognizer recognizer;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const ContactSample sample{points[i].position_m, points[i].sigma_m, 0};
+    SampleDetail detail;
+    if (points[i].normal_sigma_rad > 0.0) {
+      detail = {points[i].normal, points[i].normal_sigma_rad, Eigen::Vector3d::Zero()};
+    }
+    recognizer.add({0, i}, {&sample, 1}, {&detail, 1});
+  }
+  const Recognition answer = recognizer.recognize();
+  const bool recognized = answer.status == RecognitionStatus::Recognized;
+  const bool ellipse = answer.shape.curve_class == CurveClass::Ellipse;
+  return {recognized && ellipse, recognized && !ellipse, answer.shape, answer.covariance};
+}
+
 Outcome outcome_of(int count, double sigma_m, double normal_sigma_rad, double accuracy, int scenes,
-                   std::uint64_t seed) {
+                   std::uint64_t seed, bool sought) {
   Outcome outcome;
   for (int scene = 0; scene < scenes; ++scene) {
     std::seed_seq seeds{seed, static_cast<std::uint64_t>(count), static_cast<std::uint64_t>(scene)};
     std::mt19937_64 rng(seeds);
-    const GivenFit fit =
-        fit_given_class(CurveClass::Ellipse, touch(count, sigma_m, normal_sigma_rad, rng));
-    if (fit.status != GivenStatus::Fitted) continue;
+    const std::vector<GivenPoint> points = touch(count, sigma_m, normal_sigma_rad, rng);
+    const Told fit = sought ? told_of_sought(points) : told_of_given(points);
+    outcome.wrong += fit.is_other ? 1 : 0;
+    if (!fit.is_ellipse) continue;
     const double a_sd = std::sqrt(fit.covariance(0, 0));
     const double b_sd = std::sqrt(fit.covariance(1, 1));
     if (a_sd > accuracy * kPart.a || b_sd > accuracy * kPart.b) continue;
@@ -71,7 +104,9 @@ int main(int argc, char** argv) {
   int most = 200;
   double accuracy = 0.01;
   std::uint64_t seed = 2026;
+  bool sought = false;
   if (const auto end = bench::BenchOptions("Touches that a measured normal saves on an ellipse")
+                           .flag("--sought", sought, "The class is not given")
                            .number("--scenes", scenes, "Scenes of each number of touches")
                            .number("--accuracy", accuracy, "Deviation of each axis over the axis")
                            .number("--most", most, "Touches after which it is given up")
@@ -80,9 +115,9 @@ int main(int argc, char** argv) {
     return *end;
   }
   constexpr double kOften = 0.95;
-  std::printf("ellipse %g x %g m, both axes to %g %% in %g %% of %d scenes\n", kPart.a, kPart.b,
-              100.0 * accuracy, 100.0 * kOften, scenes);
-  std::printf("%12s %12s | %8s %8s\n", "noise/a [%]", "normals", "touches", "err^2");
+  std::printf("ellipse %g x %g m, %s, both axes to %g %% in %g %% of %d scenes\n", kPart.a, kPart.b,
+              sought ? "recognised" : "given", 100.0 * accuracy, 100.0 * kOften, scenes);
+  std::printf("%12s %12s | %8s %8s %6s\n", "noise/a [%]", "normals", "touches", "err^2", "wrong");
   for (const double noise : {0.001, 0.003, 0.01, 0.02}) {
     for (const double normals : {kNoNormals, 3.0 * kDegree, kDegree, kDegree / 3.0}) {
       char name[32] = "none";
@@ -90,14 +125,14 @@ int main(int argc, char** argv) {
       int count = 3;
       Outcome outcome;
       for (; count <= most; count += 1 + count / 20) {
-        outcome = outcome_of(count, noise * kPart.a, normals, accuracy, scenes, seed);
+        outcome = outcome_of(count, noise * kPart.a, normals, accuracy, scenes, seed, sought);
         if (outcome.known >= kOften * scenes) break;
       }
       if (count > most) {
         std::printf("%12.1f %12s | %8s\n", 100.0 * noise, name, "more");
       } else {
-        std::printf("%12.1f %12s | %8d %8.2f\n", 100.0 * noise, name, count,
-                    outcome.squares / outcome.known);
+        std::printf("%12.1f %12s | %8d %8.2f %6d\n", 100.0 * noise, name, count,
+                    outcome.squares / outcome.known, outcome.wrong);
       }
     }
   }

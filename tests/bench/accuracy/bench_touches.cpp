@@ -1,7 +1,9 @@
 // Touches one at a time, in no order, as a trigger probe delivers them: how often the class is
 // recognised, how often wrongly, the errors beside the published deviations, and the time. Prints
 // a table.
-//   bench_touches [--scenes N] [--count N] [--noise SIGMA_OVER_SIZE] [--unstated] [--seed S]
+//   bench_touches [--scenes N] [--count N] [--noise SIGMA_OVER_SIZE] [--normals DEGREES]
+//   [--unstated]
+//                 [--seed S]
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -35,13 +37,16 @@ int main(int argc, char** argv) {
   std::uint64_t seed = 2026;
   int count_only = 0;
   bool unstated = false;
-  if (const auto end = bench::BenchOptions("Touches one at a time")
-                           .number("--scenes", scenes, "Number of scenes a row")
-                           .number("--count", count_only, "Touches of a scene; 0 = 4 to 1000")
-                           .flag("--unstated", unstated, "The samples do not state their noise")
-                           .number("--noise", noise, "Noise over the size")
-                           .seed(seed)
-                           .parse(argc, argv)) {
+  double normals_deg = 0.0;
+  if (const auto end =
+          bench::BenchOptions("Touches one at a time")
+              .number("--scenes", scenes, "Number of scenes a row")
+              .number("--count", count_only, "Touches of a scene; 0 = 4 to 1000")
+              .flag("--unstated", unstated, "The samples do not state their noise")
+              .number("--noise", noise, "Noise over the size")
+              .number("--normals", normals_deg, "Deviation of measured normals [degrees]; 0 = none")
+              .seed(seed)
+              .parse(argc, argv)) {
     return *end;
   }
   std::printf("%-22s %5s %4s | %6s %5s %5s %5s | %9s | %7s %7s\n", "class", "count", "tip",
@@ -59,7 +64,13 @@ int main(int argc, char** argv) {
           std::mt19937_64 rng(seeds);
           const test::LoneTouches touches = test::lone_touches(curve_class, count, noise, tip, rng);
           Recognizer recognizer;
-          test::add_touches(touches, unstated ? 0.0 : touches.scene.sigma_m, &recognizer);
+          const double sigma_m = unstated ? 0.0 : touches.scene.sigma_m;
+          if (normals_deg > 0.0) {
+            test::add_touches_with_normals(touches, sigma_m, normals_deg * kPi / 180.0, rng,
+                                           &recognizer);
+          } else {
+            test::add_touches(touches, sigma_m, &recognizer);
+          }
           const auto begin = std::chrono::steady_clock::now();
           const Recognition answer = recognizer.recognize();
           const std::chrono::duration<double, std::milli> ms =

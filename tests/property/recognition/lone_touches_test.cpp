@@ -90,6 +90,41 @@ TEST(LoneTouches, AreRecognisedInNoOrderByPointsAndByTips) {
   }
 }
 
+TEST(LoneTouches, NormalsTellMoreAndNoMoreThanTheySay) {
+  constexpr double kNormalSigma = kPi / 180.0;  // rad
+  const int scenes = test::stress_count(15);
+  for (const double tip : {0.0, 0.05}) {
+    int recognized = 0;
+    int without = 0;
+    for (const int count : {8, 14, 30}) {
+      for (const CurveClass curve_class : kWithoutSharpBends) {
+        std::mt19937_64 rng = test::test_rng();
+        Tally tally;
+        Tally plain;
+        for (int i = 0; i < scenes; ++i) {
+          const test::LoneTouches touches = test::lone_touches(curve_class, count, 1e-3, tip, rng);
+          Recognizer recognizer;
+          test::add_touches_with_normals(touches, touches.scene.sigma_m, kNormalSigma, rng,
+                                         &recognizer);
+          tally.add(recognizer.recognize(), touches.scene);
+          plain.add(recognise(touches), touches.scene);
+        }
+        const std::string what = std::string(name_of(curve_class)) + ", " + std::to_string(count) +
+                                 (tip > 0.0 ? " by a tip" : " points");
+        tally.expect_honest(what);
+        std::printf("%-28s recognised of %d: %d with normals, %d without; wrong %d, %d\n",
+                    what.c_str(), scenes, tally.recognized, plain.recognized, tally.wrong,
+                    plain.wrong);
+        recognized += tally.recognized;
+        without += plain.recognized;
+      }
+    }
+    if (test::counts_tell()) {
+      EXPECT_GT(recognized, without) << "tip " << tip;
+    }
+  }
+}
+
 TEST(LoneTouches, NextToSharpBendsAreWrongNoMoreOftenThanTheySay) {
   const int scenes = test::stress_count(60);
   for (const double tip : {0.0, 0.02}) {

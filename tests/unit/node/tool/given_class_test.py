@@ -69,12 +69,17 @@ class GivenClass(unittest.TestCase):
         _, out, _ = run(TOOL, "fit", "--format", "json", "--class", "circle", "-", text_in=text)
         self.assertIn("the measured normals do not count", out)
         self.assertEqual(json.loads(out)["status"], "GIVEN_CLASS_STATUS_TOO_FEW_POINTS")
-        # Where the class is sought they do not count, and that is said too.
+        # Where the class is sought they do not count along a stroke, and that is said too.
         many = text.splitlines()[0] + "\n" + "".join(
             f"p,0,{0.02 * math.cos(0.05 * i)!r},{0.02 * math.sin(0.05 * i)!r},1,0,0.01\n" for i in range(40))
         _, out, _ = run(TOOL, "fit", "--format", "json", "--sigma", "1e-6", "-", text_in=many)
         answer = json.loads(out)
-        self.assertTrue(any("40 samples with a measured normal" in note for note in answer["notes"]))
+        self.assertTrue(any("40 samples have a normal" in note for note in answer["notes"]))
+        alone = text.splitlines()[0] + "\n" + "".join(
+            f"p,{i},{0.02 * math.cos(0.5 * i)!r},{0.02 * math.sin(0.5 * i)!r},{math.cos(0.5 * i)!r},{math.sin(0.5 * i)!r},0.01\n"
+            for i in range(12))
+        _, out, _ = run(TOOL, "fit", "--format", "json", "--sigma", "1e-6", "-", text_in=alone)
+        self.assertFalse(any("a normal" in note for note in json.loads(out).get("notes", [])))
 
     def test_a_covariance_weighs_along_the_normal(self):
         # Sure along x, unsure along y: the touches of the sides say how wide it is, whatever the others do.
