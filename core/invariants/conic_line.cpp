@@ -1,12 +1,10 @@
 #include "core/invariants/conic_line.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "core/invariants/jet_propagation.h"
 #include "core/invariants/parabola_invariant.h"
 
 namespace palpate {
@@ -38,27 +36,30 @@ struct LinePoint {
   Eigen::Matrix2d covariance;  ///< of (u, v)
 };
 
-/// u and v from kappa and m = kappa_s^2.
-Propagated<2, 2> line_coordinates(double kappa, double m) {
-  return propagate<2, 2>(Eigen::Vector2d(kappa, m), [](const auto& x) {
-    const auto two_thirds = curvature_two_thirds(x[0]);
-    const auto square = x[0] * x[0];
-    return std::array{1.0 / two_thirds, two_thirds * (1.0 + x[1] / (9.0 * square * square))};
-  });
+/// v = (1 + kappa_s^2 / (9 kappa^4)) / u: the square's factor in the bracket.
+double of_square(double kappa) {
+  const double square = kappa * kappa;
+  return 1.0 / (9.0 * square * square);
 }
 
 /// Covariance of (u, v) where the true kappa_s^2 is `m`. For a Gaussian kappa_s the moments of its
 /// square are exact: variance 4 m s^2 + 2 s^4, covariance with kappa 2 sqrt(m) cov.
 void set_covariance(LinePoint& point, double m) {
   const double variance = point.measured(1, 1);
-  const double signed_root = std::copysign(std::sqrt(m), point.kappa_s);
-  const double cross_covariance = 2.0 * signed_root * point.measured(0, 1);
-  Eigen::Matrix2d of_inputs;
-  of_inputs << point.measured(0, 0), cross_covariance, cross_covariance,
-      4.0 * m * variance + 2.0 * variance * variance;
-  point.covariance = line_coordinates(point.kappa, m).covariance(of_inputs);
-  point.covariance(0, 0) += std::pow(kPointRounding * point.u, 2);
-  point.covariance(1, 1) += std::pow(kPointRounding * point.v, 2);
+  const double m_variance = 4.0 * m * variance + 2.0 * variance * variance;
+  const double cross = 2.0 * std::copysign(std::sqrt(m), point.kappa_s) * point.measured(0, 1);
+  const double factor = of_square(point.kappa);
+  // u = |kappa|^(-2/3) and v by kappa and by m.
+  const double u_by_kappa = -2.0 / 3.0 * point.u / point.kappa;
+  const double v_by_kappa = (2.0 - 10.0 * factor * m) / (3.0 * point.u * point.kappa);
+  const double v_by_m = factor / point.u;
+  const double u_u = u_by_kappa * u_by_kappa * point.measured(0, 0);
+  const double u_v = u_by_kappa * (v_by_kappa * point.measured(0, 0) + v_by_m * cross);
+  const double v_v = v_by_kappa * v_by_kappa * point.measured(0, 0) +
+                     v_by_m * (2.0 * v_by_kappa * cross + v_by_m * m_variance);
+  const double u_rounding = kPointRounding * point.u;
+  const double v_rounding = kPointRounding * point.v;
+  point.covariance << u_u + u_rounding * u_rounding, u_v, u_v, v_v + v_rounding * v_rounding;
 }
 
 InvariantStatus read_points(std::span<const MeasuredGeometry> points,
@@ -73,15 +74,16 @@ InvariantStatus read_points(std::span<const MeasuredGeometry> points,
     }
     const double variance = point.covariance(2, 2);
     const double m = point.kappa_s * point.kappa_s - variance;
-    const auto uv = line_coordinates(point.kappa, m);
+    const double two_thirds = curvature_two_thirds(point.kappa);
     LinePoint line_point{point.kappa,
                          point.kappa_s,
-                         uv.value[0],
-                         uv.value[1],
+                         1.0 / two_thirds,
+                         two_thirds * (1.0 + m * of_square(point.kappa)),
                          point.covariance.bottomRightCorner<2, 2>(),
                          Eigen::Matrix2d::Zero()};
     set_covariance(line_point, std::max(m, 0.0));
-    if (!uv.value.allFinite() || !line_point.covariance.allFinite()) {
+    if (!std::isfinite(line_point.u) || !std::isfinite(line_point.v) ||
+        !line_point.covariance.allFinite()) {
       return InvariantStatus::NotFinite;
     }
     line_points.push_back(line_point);
@@ -104,11 +106,10 @@ bool sign_changes_within_a_patch(std::span<const MeasuredGeometry> points) {
   return false;
 }
 
-/// The model's kappa_s^2 at a point of the line, from v = |kappa|^(2/3) (1 + m / (9 kappa^4)).
+/// The model's kappa_s^2 at a point of the line.
 double model_kappa_s_squared(const LinePoint& point, double ic1, double ic2) {
-  const double square = point.kappa * point.kappa;
   const double v = ic2 - ic1 * point.u;
-  return std::max(0.0, 9.0 * square * square * (v * point.u - 1.0));
+  return std::max(0.0, (v * point.u - 1.0) / of_square(point.kappa));
 }
 
 /// Weighted mean of v: the line of slope zero. Weights come from the model, not from each point's

@@ -50,24 +50,56 @@ double poisson_term(double n, double h) {
   return std::exp(-log_deviance(n, h) - stirling_error(n)) / std::sqrt(2.0 * std::numbers::pi * n);
 }
 
+/// Q(x; dof), and -dQ/dx.
+struct Tail {
+  double survival = 0.0;
+  double density = 0.0;
+};
+
+/// For dof > 0 and a finite x > 0. Q(x; 1) = erfc(sqrt(h)) and Q(x; 2) = exp(-h), h = x / 2, and
+/// Q(x; k + 2) = Q(x; k) + h^n exp(-h) / Gamma(n + 1), n = k / 2, each term h / n times the one
+/// before.
+Tail tail_of(double x, int dof) {
+  constexpr int kRenewed = 32;       // products after which a term has lost a digit
+  constexpr double kLeast = 1e-290;  // a product of less may have lost all
+  const double half = 0.5 * x;
+  const bool odd = dof % 2 == 1;
+  double n = odd ? -0.5 : 0.0;
+  double term = std::exp(-half);
+  double survival = term;
+  if (odd) {
+    survival = std::erfc(std::sqrt(half));
+    term /= std::sqrt(std::numbers::pi * half);
+  }
+  for (int k = odd ? 1 : 2, products = 1; k < dof; k += 2, ++products) {
+    n += 1.0;
+    const bool renew = products % kRenewed == 0 || term < kLeast;
+    term = renew ? poisson_term(n, half) : term * (half / n);
+    survival += term;
+  }
+  return {std::min(survival, 1.0), 0.5 * term};
+}
+
+/// E. B. Wilson, M. M. Hilferty (1931): the cube root of a chi-square over its degrees of freedom
+/// is nearly normal. The normal quantile by C. Hastings' rational approximation (1955), to 5e-4.
+double approximate_threshold(double significance, int dof) {
+  const double upper = std::min(significance, 1.0 - significance);
+  const double t = std::sqrt(-2.0 * std::log(upper));
+  const double quantile = t - (2.515517 + t * (0.802853 + t * 0.010328)) /
+                                  (1.0 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
+  const double variance = 2.0 / (9.0 * dof);
+  const double root =
+      1.0 - variance + std::copysign(quantile, 0.5 - significance) * std::sqrt(variance);
+  return dof * root * root * root;
+}
+
 }  // namespace
 
 double chi_square_survival(double chi2, int dof) {
   if (dof <= 0 || !(chi2 > 0.0)) {
     return 1.0;
   }
-  if (std::isinf(chi2)) {
-    return 0.0;
-  }
-  // Q(x; 1) = erfc(sqrt(x / 2)), Q(x; 2) = exp(-x / 2) and
-  // Q(x; k + 2) = Q(x; k) + (x / 2)^(k / 2) exp(-x / 2) / Gamma(k / 2 + 1).
-  const double half = 0.5 * chi2;
-  const bool odd = dof % 2 == 1;
-  double survival = odd ? std::erfc(std::sqrt(half)) : std::exp(-half);
-  for (int k = odd ? 1 : 2; k < dof; k += 2) {
-    survival += poisson_term(0.5 * k, half);
-  }
-  return std::min(survival, 1.0);
+  return std::isinf(chi2) ? 0.0 : tail_of(chi2, dof).survival;
 }
 
 double chi_square_threshold(double significance, int dof) {
@@ -75,22 +107,21 @@ double chi_square_threshold(double significance, int dof) {
   if (dof <= 0) {
     return 0.0;
   }
-  // Newton's method for log Q(x) = log(significance), from above: P(chi2 > k + 2 sqrt(k u) + 2 u)
-  // <= exp(-u) (B. Laurent, P. Massart, 2000). -Q' is the density.
+  // Newton's method for log Q(x) = log(significance), below P(chi2 > k + 2 sqrt(k u) + 2 u) <=
+  // exp(-u) (B. Laurent, P. Massart, 2000).
   const double k = dof;
   const double log_significance = std::log(significance);
-  const double log_norm = log_gamma(0.5 * k) + std::log(2.0);
   double low = 0.0;
   double high = k + 2.0 * std::sqrt(-k * log_significance) - 2.0 * log_significance;
-  double x = high;
+  double x = approximate_threshold(significance, dof);
+  x = x > low && x < high ? x : high;
   // The error of a step is about its square: one this small leaves rounding.
   constexpr double kRelativeStep = 1e-8;
   constexpr double kRounding = 1e-14;
   constexpr int kMostIterations = 200;
   for (int i = 0; i < kMostIterations && high - low > kRounding * high; ++i) {
-    const double survival = chi_square_survival(x, dof);
+    const auto [survival, density] = tail_of(x, dof);
     (survival > significance ? low : high) = x;
-    const double density = std::exp((0.5 * k - 1.0) * std::log(0.5 * x) - 0.5 * x - log_norm);
     const double next = x + (std::log(survival) - log_significance) * survival / density;
     if (std::abs(next - x) <= kRelativeStep * x) {
       return next;

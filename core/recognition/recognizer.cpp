@@ -19,6 +19,7 @@
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/touches/strung_touches.h"
 #include "core/recognition/tree_answer.h"
+#include "core/recognition/tree_beside.h"
 #include "core/recognition/weigh/weigh.h"
 
 namespace palpate {
@@ -93,32 +94,6 @@ std::vector<bool> left_out(const FitData& all, const FitData& kept) {
     }
   }
   return flags;
-}
-
-/// Where a class's fit on the samples lies.
-std::optional<CurveStart> curve_of(const Weighing& w, CurveClass curve_class) {
-  const auto i = static_cast<std::size_t>(curve_class);
-  const auto start = [](const CanonicalFit& fit) {
-    return CurveStart{fit.shape.values, fit.world_T_curve.theta};
-  };
-  if (w.canonical[i]) {
-    return start(*w.canonical[i]);
-  }
-  const auto& coarse = w.coarse[i];
-  const auto canonical =
-      coarse && !coarse->at_limit ? to_canonical(*coarse, w.reduced) : std::nullopt;
-  return canonical ? std::optional(start(*canonical)) : std::nullopt;
-}
-
-/// The tree beside an answer is reported only: its fits begin where the samples lay the curves.
-TreeEffort effort_beside(const Weighing& w) {
-  TreeEffort effort;
-  effort.known = [&w](CurveClass curve_class) { return curve_of(w, curve_class); };
-  // Of a chi-square within its threshold a thousandth changes the p-value by a hundredth of its
-  // own.
-  effort.fit.relative_decrease = 1e-3;
-  effort.fit.max_iterations = 20;
-  return effort;
 }
 
 }  // namespace
@@ -239,8 +214,7 @@ class Recognizer::Impl {
     answer.outlier_count = stored - w.data.points.size();
     answer.contacts = contacts_.of(weighed.patches ? *weighed.patches : patches, w.sides,
                                    weighed.outliers, contact_options());
-    add_path(recognise_by_tree(tree_points(answer.contacts), options_.tree, effort_beside(w)),
-             &answer);
+    add_path(tree_beside(w, answer.contacts, options_.tree), &answer);
     const double p_value = answer.tree_p_values[static_cast<std::size_t>(answer.shape.curve_class)];
     if (p_value < options_.tree.significance) {
       doubt(&answer, Doubt::TreeRejects);

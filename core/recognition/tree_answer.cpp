@@ -24,7 +24,7 @@ double rms_sigma_m(std::span<const LocalizedContact> contacts) {
 
 }  // namespace
 
-std::vector<TreePoint> tree_points(const std::vector<LocalizedContact>& contacts) {
+std::vector<TreePoint> tree_points(std::span<const LocalizedContact> contacts) {
   std::vector<TreePoint> points;
   int patch = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {

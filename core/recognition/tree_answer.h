@@ -12,7 +12,7 @@
 namespace palpate {
 
 /// The contacts as the tree takes them: their windows share no sample.
-std::vector<TreePoint> tree_points(const std::vector<LocalizedContact>& contacts);
+std::vector<TreePoint> tree_points(std::span<const LocalizedContact> contacts);
 
 /// The path, the invariants and where the tree ended, in the answer.
 void add_path(TreeResult tree, Recognition* answer);

@@ -28,17 +28,22 @@ inline Recognition recognise(const Scene& scene, double sigma_m,
   return recognizer.recognize();
 }
 
-inline FitData fit_data(const Scene& scene, double sigma_m) {
+inline std::vector<StoredPatch> stored_patches(const Scene& scene, double sigma_m) {
   std::vector<StoredPatch> patches;
   for (const auto& samples : scene.patches) {
     StoredPatch patch;
+    patch.context.patch = static_cast<std::uint32_t>(patches.size());
     for (const Vec2& position : samples) {
       patch.samples.push_back({position, sigma_m, 1.0});
     }
     patches.push_back(patch);
   }
+  return patches;
+}
+
+inline FitData fit_data(const Scene& scene, double sigma_m) {
   bool sigma_known = false;
-  return make_fit_data(patches, 0.0, &sigma_known);
+  return make_fit_data(stored_patches(scene, sigma_m), 0.0, &sigma_known);
 }
 
 inline const Hypothesis* hypothesis_of(const Recognition& answer, CurveClass curve_class) {

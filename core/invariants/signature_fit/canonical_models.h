@@ -31,17 +31,29 @@ struct ModelGeometry {
   T kappa_s;        ///< (2)
 };
 
+template <typename T>
+struct ModelCurvatures {
+  T kappa;    ///< (1)
+  T kappa_s;  ///< (2)
+};
+
 /// (1) and (2). Regular wherever the first derivative is not zero.
 template <typename T>
-ModelGeometry<T> geometry_of(const ModelDerivatives<T>& d) {
-  using std::atan2;
+ModelCurvatures<T> curvatures_of(const ModelDerivatives<T>& d) {
   using std::sqrt;
   const T speed2 = d.first.x * d.first.x + d.first.y * d.first.y;
   const T turn = d.first.x * d.second.y - d.second.x * d.first.y;
   const T turn_by_t = d.first.x * d.third.y - d.third.x * d.first.y;
   const T stretch = d.first.x * d.second.x + d.first.y * d.second.y;
-  return {atan2(d.first.y, d.first.x), turn / (speed2 * sqrt(speed2)),
+  return {turn / (speed2 * sqrt(speed2)),
           (turn_by_t * speed2 - 3.0 * turn * stretch) / (speed2 * speed2 * speed2)};
+}
+
+template <typename T>
+ModelGeometry<T> geometry_of(const ModelDerivatives<T>& d) {
+  using std::atan2;
+  const ModelCurvatures<T> curvatures = curvatures_of(d);
+  return {atan2(d.first.y, d.first.x), curvatures.kappa, curvatures.kappa_s};
 }
 
 /// (a cos t, b sin t)

@@ -150,8 +150,8 @@ void fit_model(const std::vector<detail::WhitePoint>& points, double unit,
   for (const detail::WhitePoint& point : points) {
     fit.places.push_back(best_place<Model>(fit.curve_class, point, normal, fit.orientation).place);
   }
-  ModelFitter fitter(points, start, options.relative_decrease, fit.places);
-  fit.status = fitter.solve(options.max_iterations);
+  ModelFitter fitter(points, start, options, fit.places);
+  fit.status = fitter.solve();
   if (fit.status == InvariantStatus::NotFinite) {
     return;
   }

@@ -22,6 +22,7 @@ struct SemiSignatureOptions {
   /// A fit ends where the next step would take less than this part of chi-square off it. The
   /// default is what doubles resolve.
   double relative_decrease = 1e-13;
+  double absolute_decrease = 0.0;  ///< or less than this
 };
 
 /// Where a fit begins.

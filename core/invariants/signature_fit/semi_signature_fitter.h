@@ -20,6 +20,7 @@
 #include "core/invariants/measured_geometry.h"
 #include "core/invariants/signature_fit/canonical_models.h"
 #include "core/invariants/signature_fit/local_parameter.h"
+#include "core/invariants/signature_fit/semi_signature_fit.h"
 #include "core/numerics/small_ldlt.h"
 
 namespace palpate::detail {
@@ -35,6 +36,20 @@ struct WhitePoint {
   MeasuredGeometry measured;
   Eigen::Matrix3d whitening;  ///< inverse Cholesky factor of the covariance
 };
+
+/// The lower triangular `whitening` times columns of (angle, kappa, kappa_s).
+template <int N>
+Eigen::Matrix<double, 3, N> whitened_columns(const Eigen::Matrix3d& whitening,
+                                             const Eigen::Matrix<double, 3, N>& columns) {
+  Eigen::Matrix<double, 3, N> white;
+  for (int k = 0; k < N; ++k) {
+    white(0, k) = whitening(0, 0) * columns(0, k);
+    white(1, k) = whitening(1, 0) * columns(0, k) + whitening(1, 1) * columns(1, k);
+    white(2, k) = whitening(2, 0) * columns(0, k) + whitening(2, 1) * columns(1, k) +
+                  whitening(2, 2) * columns(2, k);
+  }
+  return white;
+}
 
 /// Rows: the derivatives of angle, kappa and kappa_s, (1) and (2), by what the jets count.
 template <int N>
@@ -77,29 +92,34 @@ class SemiSignatureFitter {
   using Hessian = Eigen::Matrix<double, kGlobal, kGlobal>;
 
   SemiSignatureFitter(const std::vector<WhitePoint>& points, const Global& start,
-                      double relative_decrease, std::vector<LocalParameter>& places)
+                      const SemiSignatureOptions& options, std::vector<LocalParameter>& places)
       : points_(points),
-        relative_decrease_(relative_decrease),
+        options_(options),
         global_(start),
         places_(places),
         differences_(points.size()),
         trial_differences_(points.size()),
-        steps_(points.size()) {
+        steps_(points.size()),
+        blocks_(points.size()),
+        trial_(places) {
+    tangents_.reserve(points.size());
     for (const WhitePoint& point : points) {
+      tangents_.push_back(
+          {std::cos(point.measured.tangent_angle), std::sin(point.measured.tangent_angle)});
       const Eigen::Vector3d size(kPi, std::abs(point.measured.kappa),
                                  std::abs(point.measured.kappa_s));
       rounding_ += (kResidualRounding * (point.whitening.cwiseAbs() * size)).squaredNorm();
     }
   }
 
-  InvariantStatus solve(int max_iterations) {
+  InvariantStatus solve() {
     double damping = kInitialDamping;
     double growth = 2.0;
     chi2_ = evaluate(global_, places_, &differences_);
     if (!std::isfinite(chi2_)) {
       return InvariantStatus::NotFinite;
     }
-    for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       linearise();
       for (;;) {
         const Global step = reduced_step(damping);
@@ -119,6 +139,7 @@ class SemiSignatureFitter {
           places_.swap(trial_);
           differences_.swap(trial_differences_);
           chi2_ = chi2;
+          is_linearised_ = false;
           break;
         }
         damping *= growth;
@@ -134,7 +155,9 @@ class SemiSignatureFitter {
 
   /// Inverse of the undamped reduced Hessian; infinite on the diagonal where it is singular.
   Hessian covariance() {
-    linearise();
+    if (!is_linearised_) {
+      linearise();
+    }
     const Hessian reduced = reduced_hessian(0.0).first;
     const Global scale = reduced.diagonal().cwiseMax(0.0).cwiseSqrt();
     const Hessian unit_diagonal = reduced.cwiseQuotient(scale * scale.transpose());
@@ -170,34 +193,41 @@ class SemiSignatureFitter {
   /// What was asked for, or below what rounding makes of chi-square: errors r of the residuals
   /// change it by r^2 and by twice their product with it.
   double negligible_decrease() const {
-    return relative_decrease_ * chi2_ + rounding_ + std::sqrt(rounding_ * chi2_);
+    return std::max(options_.absolute_decrease, options_.relative_decrease * chi2_) + rounding_ +
+           std::sqrt(rounding_ * chi2_);
   }
 
   /// Chi-square, and the differences between measurements and model that it is made of.
   double evaluate(const Global& global, const std::vector<LocalParameter>& places,
                   std::vector<Eigen::Vector3d>* differences) const {
+    const double axis_x = std::cos(global[kShape]);
+    const double axis_y = std::sin(global[kShape]);
     double chi2 = 0.0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      const MeasuredGeometry& measured = points_[i].measured;
-      const ModelGeometry<double> model =
-          geometry_of(Model::derivatives(global.data(), places[i].t));
-      const double half_turn = places[i].direction < 0 ? kPi : 0.0;
+      const auto& [measured, whitening] = points_[i];
+      const int direction = places[i].direction;
+      const ModelDerivatives<double> model = Model::derivatives(global.data(), places[i].t);
+      const ModelCurvatures<double> curvatures = curvatures_of(model);
+      // The angle from the model's tangent to the one touched, in the frame of the curve.
+      const double x = direction * (tangents_[i].x * axis_x + tangents_[i].y * axis_y);
+      const double y = direction * (tangents_[i].y * axis_x - tangents_[i].x * axis_y);
+      const double angle =
+          std::atan2(model.first.x * y - model.first.y * x, model.first.x * x + model.first.y * y);
       Eigen::Vector3d& difference = (*differences)[i];
-      difference << wrap_angle(measured.tangent_angle - half_turn - global[kShape] -
-                               model.tangent_angle),
-          measured.kappa - places[i].direction * model.kappa, measured.kappa_s - model.kappa_s;
-      chi2 += (points_[i].whitening * difference).squaredNorm();
+      difference = {angle, measured.kappa - direction * curvatures.kappa,
+                    measured.kappa_s - curvatures.kappa_s};
+      chi2 += whitened_columns<1>(whitening, difference).squaredNorm();
     }
     return std::isfinite(chi2) ? chi2 : std::numeric_limits<double>::infinity();
   }
 
   void linearise() {
     using Jet = ceres::Jet<double, kShape + 1>;  // by the shape and by t
-    blocks_.resize(points_.size());
     std::array<Jet, kShape> shape;
     for (int k = 0; k < kShape; ++k) {
       shape[static_cast<std::size_t>(k)] = Jet(global_[k], k);
     }
+    is_linearised_ = true;
     hessian_.setZero();
     gradient_.setZero();
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -205,9 +235,10 @@ class SemiSignatureFitter {
           geometry_jacobian(Model::derivatives(shape.data(), Jet(places_[i].t, kShape)));
       model.row(1) *= places_[i].direction;
       const Eigen::Matrix3d& whitening = points_[i].whitening;
-      const Eigen::Matrix<double, 3, kShape + 1> by_own = -(whitening * model);
+      const Eigen::Matrix<double, 3, kShape + 1> by_own =
+          -whitened_columns<kShape + 1>(whitening, model);
       Block& block = blocks_[i];
-      block.residual = whitening * differences_[i];
+      block.residual = whitened_columns<1>(whitening, differences_[i]);
       block.by_global.template leftCols<kShape>() = by_own.template leftCols<kShape>();
       block.by_global.col(kShape) = -whitening.col(0);
       block.by_t = by_own.col(kShape);
@@ -266,15 +297,15 @@ class SemiSignatureFitter {
   }
 
   const std::vector<LocalParameter>& trial_places() {
-    trial_ = places_;
     for (std::size_t i = 0; i < trial_.size(); ++i) {
-      trial_[i].t += steps_[i];
+      trial_[i] = {places_[i].t + steps_[i], places_[i].direction};
     }
     return trial_;
   }
 
   const std::vector<WhitePoint>& points_;
-  double relative_decrease_;
+  const SemiSignatureOptions& options_;
+  std::vector<PlanePoint<double>> tangents_;  ///< measured, of length one
   Global global_;
   std::vector<LocalParameter>& places_;
   std::vector<Eigen::Vector3d> differences_;  ///< of measurements and model, at places_
@@ -285,7 +316,8 @@ class SemiSignatureFitter {
   Global gradient_ = Global::Zero();   ///< likewise
   std::vector<LocalParameter> trial_;
   double chi2_ = 0.0;
-  double rounding_ = 0.0;  ///< chi-square of the residuals' rounding
+  bool is_linearised_ = false;  ///< at the globals and places as they are
+  double rounding_ = 0.0;       ///< chi-square of the residuals' rounding
 };
 
 }  // namespace palpate::detail

@@ -19,6 +19,7 @@ namespace {
 struct Placement {
   ShapeParameters shape;
   Pose2 frame_T_curve;
+  Pose2 world_T_curve = {};
   double t_scale = 1.0;
   double t_shift = 0.0;
 };
@@ -91,6 +92,7 @@ std::optional<Placement> place_polynomial(CurveClass curve_class, const Polynomi
   }
   return Placement{{curve_class, canonical.curve->values},
                    canonical.curve->world_T_curve,
+                   {},
                    canonical.curve->canonical_t.scale,
                    canonical.curve->canonical_t.shift};
 }
@@ -109,6 +111,26 @@ std::optional<Placement> place_of(const ClassFit& fit, const FitData& data) {
     default:
       return place_conic(fit.curve_class, q, data);
   }
+}
+
+/// Placed in the world too.
+std::optional<Placement> placed_in_world(const ClassFit& fit, const FitData& data) {
+  auto placement = place_of(fit, data);
+  if (!placement || !placement->shape.values.allFinite() ||
+      !make_curve(placement->shape.curve_class, placement->shape.values)) {
+    return std::nullopt;
+  }
+  Pose2& frame_T_curve = placement->frame_T_curve;
+  placement->world_T_curve = data.frame * frame_T_curve;
+  // Of two poses that are the same, the one nearer to the world's axes.
+  if (pose_symmetry(placement->shape.curve_class) == 2 &&
+      std::abs(placement->world_T_curve.theta) > 0.5 * kPi) {
+    frame_T_curve.theta += kPi;
+    placement->world_T_curve = data.frame * frame_T_curve;
+    placement->t_scale = -placement->t_scale;
+    placement->t_shift = -placement->t_shift;
+  }
+  return placement;
 }
 
 /// Canonical parameter of a point on an implicit curve.
@@ -212,29 +234,24 @@ ShapePoseCovariance invert(const ShapePoseCovariance& information, int rank) {
 
 }  // namespace
 
+std::optional<CanonicalPlace> canonical_place(const ClassFit& fit, const FitData& data) {
+  const auto placement = placed_in_world(fit, data);
+  return placement ? std::optional<CanonicalPlace>({placement->shape, placement->world_T_curve})
+                   : std::nullopt;
+}
+
 std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& data) {
   assert((fit.implicit ? fit.implicit->feet.size() : fit.polynomial->t.size()) ==
          data.points.size());
-  auto placement = place_of(fit, data);
-  if (!placement || !placement->shape.values.allFinite()) {
+  const auto placement = placed_in_world(fit, data);
+  if (!placement) {
     return std::nullopt;
   }
   CanonicalFit canonical;
   canonical.shape = placement->shape;
-  Pose2& frame_T_curve = placement->frame_T_curve;
-  canonical.world_T_curve = data.frame * frame_T_curve;
-  // Of two poses that are the same, the one nearer to the world's axes.
-  if (pose_symmetry(canonical.shape.curve_class) == 2 &&
-      std::abs(canonical.world_T_curve.theta) > 0.5 * kPi) {
-    frame_T_curve.theta += kPi;
-    canonical.world_T_curve = data.frame * frame_T_curve;
-    placement->t_scale = -placement->t_scale;
-    placement->t_shift = -placement->t_shift;
-  }
+  canonical.world_T_curve = placement->world_T_curve;
+  const Pose2& frame_T_curve = placement->frame_T_curve;
   const auto curve = make_curve(canonical.shape.curve_class, canonical.shape.values);
-  if (!curve) {
-    return std::nullopt;
-  }
   const auto letters =
       static_cast<Eigen::Index>(parameter_letters(canonical.shape.curve_class).size());
   const Eigen::Index n = letters + 3;

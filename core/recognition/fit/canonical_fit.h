@@ -30,6 +30,15 @@ struct CanonicalFit {
   std::vector<FittedPoint> points;
 };
 
+/// Shape and pose alone.
+struct CanonicalPlace {
+  ShapeParameters shape;
+  Pose2 world_T_curve;
+};
+
+/// Those of to_canonical(), where there is such a curve.
+std::optional<CanonicalPlace> canonical_place(const ClassFit& fit, const FitData& data);
+
 /// `data`: all points where `fit` is refined on all, otherwise the reduced ones, which carry the
 /// same information. nullopt where there is no such curve: a class at its limit, a circle as flat
 /// as a line, a parabola or cubic without extent across its axis.

@@ -2,6 +2,7 @@
 //   cold: a new recognizer for every scene. Over 64 random scenes of each class, two patches.
 //   warm: ten samples more for a recognizer that has answered before them.
 //   stream: whole scenes, ten samples at a time.
+//   live_tree: of an answer, the invariants and the tree. The label is the contacts' mean number.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -9,6 +10,8 @@
 
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/smooth/smooth_model.h"
+#include "core/recognition/tree_beside.h"
+#include "tests/support/answered_scene.h"
 #include "tests/support/scene_data.h"
 
 namespace palpate {
@@ -118,6 +121,25 @@ void stream(benchmark::State& state) {
   }
 }
 BENCHMARK(stream)->DenseRange(1, 8)->Unit(benchmark::kMicrosecond);
+
+/// What the tree adds to an answer for 222 samples.
+void live_tree(benchmark::State& state) {
+  const auto curve_class = static_cast<CurveClass>(state.range(0));
+  std::vector<test::AnsweredScene> scenes;
+  std::size_t contacts = 0;
+  for (const test::Scene& scene : scenes_of(curve_class, 111, 2)) {
+    scenes.push_back(test::answered(scene));
+    contacts += scenes.back().contacts.size();
+  }
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const test::AnsweredScene& scene = scenes[i++ % scenes.size()];
+    benchmark::DoNotOptimize(tree_beside(scene.weighing, scene.contacts, {}));
+  }
+  state.SetLabel(std::string(name_of(curve_class)) + ", " +
+                 std::to_string(contacts / scenes.size()) + " contacts");
+}
+BENCHMARK(live_tree)->DenseRange(1, 8)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace palpate

@@ -31,6 +31,8 @@
 #include "core/local/spikes/spikes.h"
 #include "core/local/tip_radius.h"
 #include "core/recognition/fit/implicit_fit.h"
+#include "core/recognition/tree_beside.h"
+#include "tests/support/answered_scene.h"
 #include "tests/support/canonical_points.h"
 #include "tests/support/fit_samples.h"
 #include "tests/support/scene_data.h"
@@ -361,6 +363,22 @@ void add_recognition(std::vector<Kernel>* kernels) {
   }
 }
 
+/// The tree beside an answer for 222 samples.
+void add_tree(std::vector<Kernel>* kernels) {
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto answered = [=] {
+      std::vector<test::AnsweredScene> all;
+      for (const test::Scene& scene : scenes(curve_class)) {
+        all.push_back(test::answered(scene));
+      }
+      return all;
+    };
+    kernels->push_back(
+        over("tree/live/" + std::string(name_of(curve_class)), kScenes, answered,
+             [](const test::AnsweredScene& s) { return tree_beside(s.weighing, s.contacts, {}); }));
+  }
+}
+
 std::vector<Kernel> all_kernels() {
   // First the cost of calling a kernel at all, which compare.sh takes off the others.
   std::vector<Kernel> kernels = {over(
@@ -369,6 +387,7 @@ std::vector<Kernel> all_kernels() {
   add_invariants(&kernels);
   add_curves(&kernels);
   add_recognition(&kernels);
+  add_tree(&kernels);
   return kernels;
 }
 

@@ -1,0 +1,31 @@
+// A scene as it stands when the recogniser's tree is asked.
+#pragma once
+
+#include <vector>
+
+#include "core/recognition/patch_contacts.h"
+#include "core/recognition/samples/fit_data.h"
+#include "core/recognition/weigh/weigh.h"
+#include "tests/support/random_scene.h"
+#include "tests/support/scene_data.h"
+
+namespace palpate::test {
+
+/// What tree_beside() is given.
+struct AnsweredScene {
+  Weighing weighing;
+  std::vector<LocalizedContact> contacts;
+};
+
+/// With the scene's noise stated, weighed once more from an earlier weighing.
+inline AnsweredScene answered(const Scene& scene) {
+  const std::vector<StoredPatch> patches = stored_patches(scene, scene.sigma_m);
+  bool sigma_known = false;
+  const FitData data = make_fit_data(patches, 0.0, &sigma_known);
+  const std::vector<SidedStart> starts = weigh(data, sigma_known, patches).starts;
+  AnsweredScene answered{weigh(data, sigma_known, patches, {}, starts), {}};
+  answered.contacts = PatchContacts().of(patches, answered.weighing.sides, {}, {});
+  return answered;
+}
+
+}  // namespace palpate::test
