@@ -97,7 +97,6 @@ double longest_walk(CurveClass curve_class, int k) {
 struct Walk {
   double step = 0.0;             ///< the first
   double smallest_change = 0.0;  ///< of the log density: after a smaller one the step is doubled
-  double nothing = 0.0;          ///< of it: that far below the highest there is nothing left
 };
 
 /// Slices from `start` (not included) in one direction, until nothing of the `highest` log density
@@ -106,8 +105,9 @@ std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& st
                         double direction, const Walk& how, double* highest) {
   constexpr std::size_t kMostSlices = 14;
   constexpr int kMostTries = 20;
-  // From slice to slice: a normal law falls by 2.5 from two deviations to three.
-  constexpr double kLargestChange = 3.0;
+  constexpr double kNothing = 7.0;  // of the log density: a thousandth
+  // Of it, from slice to slice: beyond it a shoulder of the density may lie between.
+  constexpr double kLargestChange = 2.0;
   const double longest = longest_walk(touch.curve_class, k);
   std::vector<Slice> slices;
   slices.reserve(kMostSlices);
@@ -127,14 +127,14 @@ std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& st
     }
     const double density = log_density(*curve, k);
     const double change = std::abs(density - last->log_density);
-    if (change > kLargestChange && last->log_density > top - 0.5 * how.nothing) {
+    if (change > kLargestChange && last->log_density > top - 0.5 * kNothing) {
       step *= 0.5;
       continue;
     }
     slices.push_back({std::move(*curve), density});
     last = &slices.back();
     top = std::max(top, density);
-    if (density < top - how.nothing) {
+    if (density < top - kNothing) {
       break;
     }
     if (change < how.smallest_change) {
@@ -340,11 +340,10 @@ std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& da
   evidence.mode = 0;
   evidence.nodes = {{mode, 1.0}};
   if (k >= 0) {
-    // A second moment needs finer slices than a mass, and farther ones: a thousandth of the density
-    // there, a hundredth here.
+    // A second moment needs finer slices than a mass.
     const double deviation = std::sqrt(covariance(k, k)) * mode.widths[k];
     const Walk how =
-        slices == Slices::ForMoment ? Walk{0.5 * deviation, 0.05, 7.0} : Walk{deviation, 0.5, 5.0};
+        slices == Slices::ForMoment ? Walk{0.5 * deviation, 0.05} : Walk{deviation, 0.5};
     log_integral = integrate(data, how, &evidence).value_or(log_integral);
   }
   evidence.log_occam = log_integral + 0.5 * evidence.fitted_chi2;

@@ -109,7 +109,7 @@ TEST(ClassEvidence, OfACircleIsTheIntegralOverItsPrior) {
     constexpr int kSteps = 60;
     const double by_grid =
         log_occam_by_grid(*evidence, centre, data, low, high, kSteps, fitted_chi2);
-    // Slices end where the density is a thousandth; trapezoids between changes of up to e^3.
+    // Slices end where the density is a thousandth; trapezoids between changes of up to e^2.
     EXPECT_NEAR(evidence->log_occam, by_grid, 0.15) << "arc " << arc;
   }
 }
