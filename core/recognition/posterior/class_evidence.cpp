@@ -309,8 +309,7 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
   TouchedCurve mode = descend(*touch, data, std::move(*first), -1, kMostSteps);
   evidence.determined = static_cast<double>(kMostCoordinates) - inverse_cholesky(mode.root).trace();
   evidence.log_prior = mode.log_prior;
-  evidence.log_occam =
-      -potential(mode) - 0.5 * log_determinant(mode.root) + 0.5 * evidence.fitted_chi2;
+  evidence.log_occam = log_mass(mode) + 0.5 * evidence.fitted_chi2;
   const int own = shape_coordinates(touch->curve_class);
   const Eigen::Matrix<double, 2, kMostCoordinates> touch_rows = mode.root.middleRows<2>(own);
   const Eigen::Matrix2d of_touch = touch_rows * touch_rows.transpose();
