@@ -203,7 +203,7 @@ void Node::forget_evicted() {
   for (const std::string& probe : forgotten.probes) publisher_.forget(TopicKind::Estimate, probe);
 }
 
-// Recognitions that take long, as their last one did or as they do already.
+// Recognitions that take long, as is expected of them or as they do already.
 std::size_t Node::slow_count(SteadyTime now) const {
   return static_cast<std::size_t>(
       std::count_if(in_work_.begin(), in_work_.end(), [&](const InWork& work) {
@@ -223,8 +223,9 @@ void Node::give_out_work(SteadyTime now) {
     std::shared_ptr<GroupRecognizer> recognizer = intake_.groups().begin_work(*group);
     recognizer->probe_files = probe_files_;
     recognizer->wants_estimates = options_.publish_estimates && publisher_.estimates_are_wanted();
-    in_work_[workers_.start(std::move(recognizer), pace)] = {group, pace == Workers::Pace::Slow,
-                                                             now};
+    const std::size_t worker =
+        workers_.start(std::move(recognizer), pace, group->expected_compute());
+    in_work_[worker] = {group, pace == Workers::Pace::Slow, now};
   }
 }
 

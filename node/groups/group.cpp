@@ -69,7 +69,8 @@ GroupRecognizer::Answer& Group::end_work() {
   assert(in_work_);
   in_work_ = false;
   in_work_bytes_ = 0;
-  last_processor_ns_ = recognizer_->answer.processor_ns;
+  expected_compute_ =
+      std::max(std::chrono::nanoseconds(recognizer_->answer.processor_ns), expected_compute_ / 2);
   return recognizer_->answer;
 }
 

@@ -55,11 +55,12 @@ class Group {
 
   bool is_in_work() const { return in_work_; }
 
-  /// Its last answer took no longer than kQuickCompute of a core, or it has had none yet. Of a
-  /// core: who is kept waiting by others is not slow.
-  bool is_quick() const {
-    return last_processor_ns_ <= std::chrono::nanoseconds(kQuickCompute).count();
-  }
+  /// What its next answer is taken to need of a core; 0 before the first. As much as the last one,
+  /// and half of what was expected of that: an object's first samples, quickly answered, do not
+  /// make a group quick whose answers take long. Of a core: who waits for others is not slow.
+  std::chrono::nanoseconds expected_compute() const { return expected_compute_; }
+
+  bool is_quick() const { return expected_compute_ <= kQuickCompute; }
 
   /// An answer that a planner of 50 Hz has in its next period.
   static constexpr std::chrono::milliseconds kQuickCompute{20};
@@ -88,7 +89,7 @@ class Group {
   ContactQueue waiting_;
   bool in_work_ = false;
   std::size_t in_work_bytes_ = 0;
-  std::int64_t last_processor_ns_ = 0;
+  std::chrono::nanoseconds expected_compute_{0};
   std::string frame_;
   std::uint64_t object_ = 0;
   std::vector<Member> members_;  ///< empty = no object yet

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <chrono>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -22,32 +23,51 @@ namespace {
 // Above what the process has: beside a quick thread on the same core, a slow one has a tenth of it.
 constexpr int kSlowNice = 10;
 
-// The longest that may be asked for. Since Linux 6.6 whoever is on a core keeps it until the end of
-// its slice, a scheduler's tick of up to 4 ms, whatever waits, unless that asks for a shorter one
-// (6.12): then a thread that wakes has the core at once.
-constexpr std::uint64_t kSlowSlice_ns = 100'000'000;
-
 // The system's sched_attr in its first form; glibc has none before 2.41, and Linux' own header does
 // not go with <sched.h>.
 struct SchedulingWanted {
   std::uint32_t size = sizeof(SchedulingWanted);
-  std::uint32_t policy = SCHED_BATCH;  // nor does it take a core from others when it wakes
+  std::uint32_t policy = SCHED_OTHER;
   std::uint64_t flags = 0;
   std::int32_t nice = 0;
   std::uint32_t priority = 0;
-  std::uint64_t slice_ns = kSlowSlice_ns;  // what does not know it ignores it
+  std::uint64_t slice_ns = 0;
   std::uint64_t deadline_ns = 0;
   std::uint64_t period_ns = 0;
 };
 static_assert(sizeof(SchedulingWanted) == 48);
 
-// A thread cannot take this back without privileges: what is slow has threads of its own.
-void give_way() {
-  SchedulingWanted wanted;
-  wanted.nice = ::getpriority(PRIO_PROCESS, 0) + kSlowNice;  // of this thread alone, on Linux
-  // Where a sandbox knows none of this, the older call does the first half.
-  if (::syscall(SYS_sched_setattr, 0, &wanted, 0U) != 0) (void)!::nice(kSlowNice);
-}
+/// What the calling thread asks of the system's scheduler. Since Linux 6.6 whoever is on a core
+/// keeps it until the end of its slice, found out at a tick of up to 4 ms, whatever waits, unless
+/// that asks for a shorter one (6.12): then it has the core at once. So each work asks for as long
+/// as it will take, and the shorter goes first.
+class Turn {
+ public:
+  explicit Turn(Workers::Pace pace) {
+    wanted_.nice = ::getpriority(PRIO_PROCESS, 0);  // of this thread alone, on Linux
+    if (pace == Workers::Pace::Quick) return;
+    // A thread cannot take this back without privileges: what is slow has threads of its own.
+    wanted_.nice += kSlowNice;
+    wanted_.policy = SCHED_BATCH;  // nor does it take a core from others when it wakes
+    // Where a sandbox knows nothing of slices, the older call does this half.
+    if (!ask()) (void)!::nice(kSlowNice);
+  }
+
+  /// 0 = not known, the system's own slice. Twice as much is asked for, within the system's bounds
+  /// of 0.1 and 100 ms: who has used up its slice falls behind who has given way to it.
+  void ask_for(std::chrono::nanoseconds expected) {
+    const auto slice_ns = static_cast<std::uint64_t>(2 * expected.count());
+    // Most answers take about as long as the one before, and need no call.
+    if (slice_ns <= 2 * wanted_.slice_ns && wanted_.slice_ns <= 2 * slice_ns) return;
+    wanted_.slice_ns = slice_ns;
+    (void)ask();  // a system that knows no slices has its own rule for all
+  }
+
+ private:
+  bool ask() { return ::syscall(SYS_sched_setattr, 0, &wanted_, 0U) == 0; }
+
+  SchedulingWanted wanted_;
+};
 
 }  // namespace
 
@@ -71,16 +91,18 @@ struct Workers::Bell {
 
 /// What the node's thread and the worker's share. Lives as long as either needs it.
 struct Workers::Worker {
-  // Who sets a state gives `work` to the side that waits for it.
+  // Who sets a state gives `work` and `expected` to the side that waits for it.
   enum class State { Idle, Ordered, Finished };
 
   explicit Worker(std::shared_ptr<Bell> finished_bell)
       : ordered(0), finished(std::move(finished_bell)) {}
 
-  void serve() {
+  void serve(Pace pace) {
+    Turn turn(pace);
     for (;;) {
       ordered.hear();
       if (state.load(std::memory_order_acquire) == State::Ordered) {
+        turn.ask_for(expected);
         work->run();
         state.store(State::Finished, std::memory_order_release);
         finished->ring();
@@ -90,6 +112,7 @@ struct Workers::Worker {
   }
 
   std::shared_ptr<Work> work;
+  std::chrono::nanoseconds expected{0};
   std::atomic<State> state{State::Idle};
   std::atomic<bool> end{false};
   Bell ordered;
@@ -100,15 +123,13 @@ struct Workers::Worker {
 Workers::Workers(std::size_t quick_count, std::size_t slow_count)
     : finished_(std::make_shared<Bell>(EFD_NONBLOCK)), quick_count_(quick_count) {
   for (std::size_t i = 0; i < quick_count + slow_count; ++i) {
-    const bool is_slow = i >= quick_count;
+    const Pace pace = i < quick_count ? Pace::Quick : Pace::Slow;
     auto worker = std::make_shared<Worker>(finished_);
-    worker->thread = std::thread([worker, is_slow] {
-      if (is_slow) give_way();
-      worker->serve();
-    });
+    worker->thread = std::thread([worker, pace] { worker->serve(pace); });
     // Fifteen letters at most, for top and debuggers.
-    pthread_setname_np(worker->thread.native_handle(),
-                       ((is_slow ? "slow" : "recognize") + std::to_string(i % 10000)).c_str());
+    pthread_setname_np(
+        worker->thread.native_handle(),
+        ((pace == Pace::Slow ? "slow" : "recognize") + std::to_string(i % 10000)).c_str());
     workers_.push_back(std::move(worker));
   }
 }
@@ -134,11 +155,13 @@ std::optional<std::size_t> Workers::idle(Pace pace) const {
   return std::nullopt;
 }
 
-std::size_t Workers::start(std::shared_ptr<Work> work, Pace pace) {
+std::size_t Workers::start(std::shared_ptr<Work> work, Pace pace,
+                           std::chrono::nanoseconds expected) {
   const std::optional<std::size_t> number = idle(pace);
   assert(number);
   Worker& worker = *workers_[*number];
   worker.work = std::move(work);
+  worker.expected = expected;
   worker.state.store(Worker::State::Ordered, std::memory_order_release);
   worker.ordered.ring();
   ++busy_count_;

@@ -1,6 +1,7 @@
 // Threads that compute, so that the one which serves the sockets never does.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -34,7 +35,9 @@ class Workers {
   bool has_idle(Pace pace) const { return idle(pace).has_value(); }
 
   /// Gives the work to an idle worker of that pace and returns its number; needs has_idle(pace).
-  std::size_t start(std::shared_ptr<Work> work, Pace pace = Pace::Quick);
+  /// `expected` of a core's time, 0 = not known: who needs less goes first where cores are short.
+  std::size_t start(std::shared_ptr<Work> work, Pace pace = Pace::Quick,
+                    std::chrono::nanoseconds expected = {});
 
   /// A worker that has finished its work; it is idle from now on. nullopt where none has.
   std::optional<std::size_t> take_finished();

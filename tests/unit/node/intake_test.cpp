@@ -379,16 +379,29 @@ TEST_F(IntakeTest, WhatWaitsIsBoundedAndNobodyTakesAllOfIt) {
   EXPECT_EQ(intake.probes().missing(), 1000 - first);
 }
 
-TEST_F(IntakeTest, SlowGroupsAreKnownByTheirLastAnswer) {
+TEST_F(IntakeTest, SlowGroupsAreKnownByTheirLastAnswers) {
+  const std::int64_t limit = std::chrono::nanoseconds(Group::kQuickCompute).count();
   give("slow", line_batch("slow", 1, 0));
-  serve(*intake_.groups().next_waiting(),
-        2 * std::chrono::nanoseconds(Group::kQuickCompute).count());
+  serve(*intake_.groups().next_waiting(), 4 * limit);
   give("slow", line_batch("slow", 1, 1));
   EXPECT_EQ(intake_.groups().next_waiting(/*only_quick=*/true), nullptr);
   give("quick", line_batch("quick", 1, 0));
   ASSERT_NE(intake_.groups().next_waiting(/*only_quick=*/true), nullptr);
   EXPECT_EQ(intake_.groups().next_waiting(/*only_quick=*/true)->name(), "quick");
   EXPECT_NE(intake_.groups().next_waiting(), nullptr);
+
+  // The first samples of its next object are answered at once: that does not make the group quick,
+  // several such do.
+  Group& slow = *intake_.groups().find("slow");
+  EXPECT_EQ(slow.expected_compute(), std::chrono::nanoseconds(4 * limit));
+  serve(slow, 1);
+  EXPECT_FALSE(slow.is_quick());
+  give("slow", line_batch("slow", 2, 2));
+  serve(slow, 1);
+  EXPECT_TRUE(slow.is_quick());
+  give("slow", line_batch("slow", 2, 3));
+  serve(slow, 2 * limit);
+  EXPECT_FALSE(slow.is_quick());
 }
 
 }  // namespace

@@ -3,8 +3,13 @@
 
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <cstdint>
 #include <functional>
 #include <future>
 #include <thread>
@@ -39,6 +44,47 @@ TEST(Workers, WhatTheyDoIsSeenByWhoGaveIt) {
   }
   EXPECT_EQ(sum, 500500);
   EXPECT_EQ(workers.busy_count(), 0U);
+}
+
+// What the calling thread has of the system's scheduler.
+struct Scheduled {
+  int nice;
+  std::chrono::nanoseconds slice;  // 0 before Linux 6.12
+};
+
+Scheduled scheduled_here() {
+  struct {
+    std::uint32_t size, policy;
+    std::uint64_t flags;
+    std::int32_t nice;
+    std::uint32_t priority;
+    std::uint64_t slice_ns, deadline_ns, period_ns;
+  } said{};
+  ::syscall(SYS_sched_getattr, 0, &said, sizeof(said), 0U);
+  return {said.nice, std::chrono::nanoseconds(said.slice_ns)};
+}
+
+TEST(Workers, AskForAsLongAsTheirWorkTakes) {
+  using std::chrono::milliseconds;
+  Workers workers(1, 1);
+  const auto scheduled_for = [&workers](Workers::Pace pace, milliseconds expected) {
+    Scheduled there{};
+    workers.start(std::make_shared<Task>([&there] { there = scheduled_here(); }), pace, expected);
+    next_finished(workers);
+    return there;
+  };
+  const Scheduled here = scheduled_here();
+  const Scheduled brief = scheduled_for(Workers::Pace::Quick, milliseconds(1));
+  const Scheduled longer = scheduled_for(Workers::Pace::Quick, milliseconds(15));
+  const Scheduled slow = scheduled_for(Workers::Pace::Slow, milliseconds(60));
+  EXPECT_EQ(brief.nice, here.nice);
+  EXPECT_EQ(longer.nice, here.nice);
+  EXPECT_EQ(slow.nice, std::min(here.nice + 10, 19));
+  if (brief.slice.count() == 0) GTEST_SKIP() << "this system's scheduler knows no slices";
+  EXPECT_EQ(brief.slice, milliseconds(2));
+  EXPECT_EQ(longer.slice, milliseconds(30));
+  EXPECT_EQ(slow.slice, milliseconds(100));  // the longest there is
+  EXPECT_EQ(scheduled_for(Workers::Pace::Quick, milliseconds(2)).slice, milliseconds(4));
 }
 
 TEST(Workers, NoFinishIsMissedHoweverTheyCome) {
