@@ -110,14 +110,20 @@ fi
 
 if [ "$fuzz" != 0 ]; then
   targets=(answers config contact_csv http_border ingest keys part probe recording scene)
+  begin_part "building (fuzz)" 120
+  build asan "${targets[@]/#/fuzz_}"
+  mkdir -p build/fuzz
   # Some inputs a second under sanitizers: it tells something in minutes only.
-  if [ "$fuzz" -ge 120 ]; then targets+=(recognizer); fi
-  begin_part "building (fuzz)" 300
-  build fuzz "${targets[@]/#/fuzz_}"
+  if [ "$fuzz" -ge 120 ]; then
+    build fuzz fuzz_recognizer
+    targets+=(recognizer)
+  fi
   begin_part "fuzzing" $(((${#targets[@]} + jobs - 1) / jobs * (fuzz + 10)))
   fuzz_one() {  # target, seconds
+    local program=build/asan/tests/fuzz/fuzz_$1
+    [ "$1" != recognizer ] || program=build/fuzz/tests/fuzz/fuzz_recognizer
     mkdir -p "build/fuzz/corpus/$1"
-    if "build/fuzz/tests/fuzz/fuzz_$1" -max_total_time="$2" -max_len=4096 -print_final_stats=1 \
+    if "$program" -max_total_time="$2" -max_len=4096 -print_final_stats=1 \
       -artifact_prefix="build/fuzz/$1-" "build/fuzz/corpus/$1" "tests/fuzz/corpus/$1" >"build/fuzz/$1.log" 2>&1; then
       printf 'fuzz_%s: %s\n' "$1" "$(grep 'number_of_executed_units' "build/fuzz/$1.log")"
     else

@@ -210,7 +210,8 @@ TEST(DegenerateInput, WhatIsNotFiniteIsRefusedAndSaid) {
 TEST(DegenerateInput, ARestingProbeFarAwayIsNoCurve) {
   auto rng = test::test_rng();
   std::normal_distribution<double> scatter_m(0.0, 4.5e-6);
-  for (int run = 0; run < 8; ++run) {
+  const int runs = test::stress_count(8);
+  for (int run = 0; run < runs; ++run) {
     std::vector<Vec2> positions;
     std::vector<ContactSample> samples;
     for (int i = 0; i < 1582; ++i) {

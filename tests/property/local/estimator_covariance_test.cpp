@@ -14,13 +14,13 @@
 namespace palpate {
 namespace {
 
-constexpr int kTrials = 2000;
+const int kTrials = test::stress_count(2000);
 constexpr int kSamples = 111;  // the paper's 75 + 9 * 4
 constexpr double kSigma = 5e-5;
 
 /// A standard deviation from n Gaussian trials has the relative standard deviation 1 / sqrt(2
-/// n), 1.6 % here. Over the 128 comparisons of every estimator, class and component, five of them
-/// are exceeded once in 14,000 runs by chance.
+/// n), 1.6 % for 2,000. Over the 128 comparisons of every estimator, class and component, five of
+/// them are exceeded once in 14,000 runs by chance.
 const double kTolerance = 5.0 / std::sqrt(2.0 * kTrials);
 
 struct Statistics {

@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-constexpr int kTrials = 2000;
+const int kTrials = test::stress_count(2000);
 constexpr double kSigma = 5e-5;
 
 /// The standard deviation of a standard deviation from 2,000 Gaussian trials is 1.6 %; the noise
@@ -64,6 +64,7 @@ TEST_P(JetCovariance, IsTrue) {
     sum += error;
     squares += error * error.transpose();
   }
+  if (!test::counts_tell()) return;
   const Eigen::Vector4d mean = sum / kTrials;
   const Eigen::Matrix4d measured = squares / kTrials - mean * mean.transpose();
   for (int i = 0; i < 4; ++i) {

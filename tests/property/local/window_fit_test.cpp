@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-constexpr int kTrials = 500;
+const int kTrials = test::stress_count(500);
 constexpr int kSamples = 111;
 constexpr std::array kSigmas_m = {1e-5, 5e-5, 2e-4};
 
@@ -90,6 +90,7 @@ TEST_P(WindowFitOf, CoversItsErrorsBiasIncluded) {
     const Accuracy a = of_window_fit(sigma);
     std::printf("%-22s sigma %.0e  error over deviation: %.2f %.2f %.2f %.2f\n", arc().name.c_str(),
                 sigma, a.normalised[0], a.normalised[1], a.normalised[2], a.normalised[3]);
+    if (!test::counts_tell()) continue;
     // The prior is one for all curves and all windows; of a single window of a single curve, which
     // is one draw from it, it may be off, by up to twice the noise-only ideal of 1.
     constexpr double kMost = 2.0;
@@ -109,6 +110,7 @@ TEST_P(WindowFitOf, KappaIsAboutAsAccurateAsTheTwoRoundFitsOrBetter) {
         "window %.2g, %.3g\n",
         arc().name.c_str(), sigma, two_round.rmse[2], two_round.rmse[3], jet.rmse[2], jet.rmse[3],
         window.rmse[2], window.rmse[3]);
+    if (!test::counts_tell()) continue;
     // What choosing by the data may cost against a choice that happens to suit.
     constexpr double kMost = 1.2;
     EXPECT_LT(window.rmse[2], kMost * two_round.rmse[2]) << sigma;

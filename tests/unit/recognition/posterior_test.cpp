@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
@@ -47,26 +49,28 @@ std::optional<ClassEvidence> sliced(const CanonicalFit& fit, const FitData& data
 /// turn: no gradient, no Gauss-Newton step.
 double log_occam_by_grid(const ClassEvidence& evidence, const TouchedCurve& centre,
                          const FitData& data, const TouchedVector& low, const TouchedVector& high,
-                         int steps, double fitted_chi2) {
+                         std::span<const int> steps, double fitted_chi2) {
   const Touch& touch = evidence.touch;
-  const int n = shape_coordinates(touch.curve_class) + 2;
-  std::vector<int> index(static_cast<std::size_t>(n), 0);
+  const auto n = static_cast<int>(steps.size());
+  std::vector<int> index(steps.size(), 0);
+  TouchedVector step = TouchedVector::Zero();
   double cell = 1.0;
   for (int k = 0; k < n; ++k) {
-    cell *= (high[k] - low[k]) / steps / std::sqrt(2.0 * kPi);
+    step[k] = (high[k] - low[k]) / steps[static_cast<std::size_t>(k)];
+    cell *= step[k] / std::sqrt(2.0 * kPi);
   }
   double sum = 0.0;
   while (true) {
     TouchedVector z = TouchedVector::Zero();
     for (int k = 0; k < n; ++k) {
-      z[k] = low[k] + (index[static_cast<std::size_t>(k)] + 0.5) * (high[k] - low[k]) / steps;
+      z[k] = low[k] + (index[static_cast<std::size_t>(k)] + 0.5) * step[k];
     }
     if (const auto curve = curve_at(touch, z, centre, data)) {
       sum += std::exp(-0.5 * (curve->chi2 - fitted_chi2) + curve->log_prior) /
              curve->widths.head(n).prod();
     }
     int k = 0;
-    while (k < n && ++index[static_cast<std::size_t>(k)] == steps) {
+    while (k < n && ++index[static_cast<std::size_t>(k)] == steps[static_cast<std::size_t>(k)]) {
       index[static_cast<std::size_t>(k++)] = 0;
     }
     if (k == n) {
@@ -105,8 +109,9 @@ TEST(ClassEvidence, OfACircleIsTheIntegralOverItsPrior) {
     for (const FittedPoint& point : canonical->points) {
       fitted_chi2 += point.residual * point.residual;
     }
-    // Cells of at most 1.4 deviations: of a normal law their sum is right to 1e-4.
-    constexpr int kSteps = 60;
+    // Cells of at most h = 1.4 deviations: the sum over a normal law is right to
+    // 2 exp(-2 pi^2 / h^2), 1e-4.
+    constexpr std::array kSteps = {60, 30, 30};
     const double by_grid =
         log_occam_by_grid(*evidence, centre, data, low, high, kSteps, fitted_chi2);
     // Slices end where the density is a thousandth; trapezoids between changes of up to e^2.

@@ -46,7 +46,8 @@ TEST(LongestSegment, ExactSamplesOfOneSegmentAllBelong) {
 TEST(LongestSegment, TheSamplesBeyondAJointAreNamedExactly) {
   const ClosedSpline part = test::paper_part();
   auto rng = test::test_rng();
-  for (int segment = 0; segment < 5; ++segment) {
+  const int segments = test::stress_count(5);
+  for (int segment = 0; segment < segments; ++segment) {
     for (const bool along : {true, false}) {
       const test::PartStroke stroke{along ? segment + 0.35 : segment + 1.65, along ? 0.035 : -0.035,
                                     161};
