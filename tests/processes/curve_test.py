@@ -157,7 +157,7 @@ class Curve(unittest.TestCase):
                     self.assertNotEqual(code, 0, program)
                     self.assertEqual(out, "", program)
                     self.assertIn(said, err, program)
-                    self.assertLess(took, 5.0, program)
+                    self.assertLess(took, 15.0, program)  # half of what it would wait for somebody to listen
 
     def test_sighup_rereads_who_may_connect(self):
         with Bus("tcp") as bus:
