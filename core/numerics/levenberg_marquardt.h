@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/numerics/small_cholesky.h"
 
@@ -19,6 +20,8 @@ struct MinimiseOptions {
   double chi2_tolerance = 1e-7;  ///< change of chi-square by a step at which to end
   /// Of the diagonal of J^T J. Little: the valleys of short arcs are long.
   double first_damping = 1e-8;
+  /// Ends where the linear model leaves more than this: so far off nothing is to be told.
+  double out_of_reach = std::numeric_limits<double>::infinity();
 };
 
 struct MinimiseSummary {
@@ -84,6 +87,9 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
     const double promised = velocity.dot(damping * diagonal.cwiseProduct(velocity) - gradient);
     if (!(promised > kNothing * options.chi2_tolerance)) {
       summary.converged = damping <= options.first_damping;
+      break;
+    }
+    if (damping <= options.first_damping && summary.chi2 - promised > options.out_of_reach) {
       break;
     }
     Vector step = velocity;  // NOLINT(performance-unnecessary-copy-initialization): bent below

@@ -180,7 +180,7 @@ class JointTest {
         std::find_if(best.t.begin(), best.t.end(), [&](double t) { return t > best.curve.knot; });
     joint.index = static_cast<std::size_t>(beyond - best.t.begin());
     joint.position_m = run.data.frame * (run.data.scale * place_of(run, best, joint.index));
-    constexpr double kOutside = 0.05;
+    constexpr double kOutside = 0.05;  // earliest to latest: a 95 % interval
     const double limit = chi_square_threshold(kOutside, 1);
     // All along the run: where the bend is weak, what is possible may have gaps.
     constexpr std::size_t kMostPlaces = 80;

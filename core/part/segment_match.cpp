@@ -188,7 +188,7 @@ class Match {
       return;
     }
     placement->slide_sd_m = data_.scale * std::sqrt(variance);
-    constexpr double kDeviations = 2.0;
+    constexpr double kDeviations = 2.0;  // where 95 % of placements end
     const Eigen::Vector3d step = kDeviations / std::sqrt(variance) * (covariance * slide);
     for (const double sign : {1.0, -1.0}) {
       const Eigen::Vector3d moved = Eigen::Vector3d(pose.x, pose.y, pose.theta) + sign * step;

@@ -60,9 +60,12 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   if (std::none_of(magnitude.begin(), magnitude.end(), [&](double m) { return m > limit; })) {
     return std::nullopt;
   }
-  constexpr std::size_t kLongestRun = 3;
-  constexpr std::size_t kMost = 2;
+  // What sets aside more, and two of any number, is another curve: the smooth model has taken out
+  // spikes that are more frequent. At that rate four in a row come once in 20^4 samples, more than
+  // the memory holds: those are a bend.
   constexpr std::size_t kOneIn = 20;
+  constexpr std::size_t kMost = 2;
+  constexpr std::size_t kLongestRun = 3;
   FitData kept = data;
   kept.points.clear();
   kept.patches.clear();

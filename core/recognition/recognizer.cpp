@@ -25,7 +25,8 @@
 namespace palpate {
 namespace {
 
-/// Fewer places than this fit almost anything: nothing is RECOGNIZED.
+/// Fewer places than this fit almost anything: nothing is RECOGNIZED. A spline takes six, and two
+/// speak for or against it.
 constexpr std::size_t kFewestPlaces = 8;
 
 /// From so many patches that lie apart there is an answer all the same, if an AMBIGUOUS one: what
@@ -249,8 +250,8 @@ class Recognizer::Impl {
   /// that was out.
   Weighed weigh_once_more(const FitData& data, bool sigma_known,
                           std::span<const StoredPatch> patches) {
-    constexpr double kGrowth = 1.25;
-    constexpr double kOut = 0.01;  // probability
+    constexpr double kGrowth = 1.25;  // ten searches while a patch grows tenfold
+    constexpr double kOut = 0.01;  // probability: of what had less, the search left the fit rough
     const std::size_t samples = memory_.sample_count();
     const bool warm = last_ && last_->patches == data.patches.size() &&
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);

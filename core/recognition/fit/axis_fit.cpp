@@ -244,6 +244,7 @@ AxisFit with_vertex_moved(const AxisFit& spline, std::span<const FitPoint> point
 }  // namespace
 
 double verticality(const FitPoint& point, const Vec2& axis) {
+  // 2 degrees: half a step of the axes tried (polynomial_seeds.cpp), so that none is told better.
   constexpr double kLeast = 0.03;
   constexpr double kUnknownDirection = 0.7;  // root mean square of the cosine
   if (point.tangent.isZero()) {

@@ -50,7 +50,8 @@ ConicCoefficients conic_of_parabola(const PolynomialFit& fit) {
   return q.normalized();
 }
 
-ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsigned classes) {
+ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsigned classes,
+                      double out_of_reach) {
   constexpr int side = 0;
   constexpr RefineEffort kNearEnough{100, 1, 1e-3};  // what is plausible is settled later
   const std::span<const FitPoint> points(reduced.points);
@@ -65,15 +66,17 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsi
   set(implicit_class(CurveClass::Circle, circle));
 
   PolynomialFits polynomials = starts != nullptr       ? follow_polynomials(reduced, *starts)
-                               : wants_cubics(classes) ? search_polynomials(reduced)
+                               : wants_cubics(classes) ? search_polynomials(reduced, out_of_reach)
                                                        : search_parabola(reduced);
   // The algebraic start serves unless it led to a conic that nothing touches, or one that a limit
   // betters; then the limits are the starts.
   ImplicitFit conic = refine_conic(points, algebraic_conic(points), side, kNearEnough);
   bool usable = is_touchable(conic, reduced);
+  double least_chi2 = conic.chi2;  // of any conic, touchable or not
   const auto also_from = [&](double chi2, const ConicCoefficients& start) {
     if (!usable || chi2 < conic.chi2) {
       const ImplicitFit other = refine_conic(points, start, side, kNearEnough);
+      least_chi2 = std::min(least_chi2, other.chi2);
       if (is_touchable(other, reduced) && (!usable || other.chi2 < conic.chi2)) {
         conic = other;
         usable = true;
@@ -97,11 +100,11 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsi
   const bool conic_fits = fits_well(polynomials.lowest_chi2, residuals);
   const bool line_fits = fits(result[static_cast<std::size_t>(CurveClass::Line)]);
   if (starts == nullptr && !line_fits) {  // a line is the limit of all
-    refine_every_seed(reduced, &polynomials);
+    refine_every_seed(reduced, out_of_reach, &polynomials);
   } else if (starts != nullptr && !starts->every_seed && !conic_fits &&
              !fits(polynomials.cubical_parabola) && !fits(polynomials.semi_cubical_parabola) &&
              !fits(polynomials.cubic_spline)) {
-    return fit_classes(reduced, nullptr, classes);
+    return fit_classes(reduced, nullptr, classes, out_of_reach);
   }
   const auto& parabola = polynomials.parabola;
   if (parabola) {
@@ -126,6 +129,7 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsi
     } else if (parabola) {
       ClassFit limit = polynomial_class(curve_class, *parabola);
       limit.at_limit = true;
+      limit.least_chi2 = least_chi2;
       set(std::move(limit));
     }
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "core/curves/curve_class.h"
@@ -26,6 +27,7 @@ struct ClassFit {
   /// The class has no interior optimum: chi2 is that of the neighbour it runs away to (an ellipse
   /// or hyperbola that wants to be a parabola), and there is no shape to report.
   bool at_limit = false;
+  double least_chi2 = 0.0;  ///< where it is known that no curve of a class at its limit leaves less
   std::optional<ImplicitFit> implicit;      ///< line, circle, ellipse, hyperbola
   std::optional<PolynomialFit> polynomial;  ///< parabola and the cubics
   /// A spline's optimum on the other side of c = 0: where it fits as well, the shape is not known.
@@ -51,8 +53,10 @@ inline constexpr unsigned kAllClasses = ~0U;
 /// Fits every class to the smooth model's reduced points, taken as surface points: seeds by
 /// exhaustive coarse search, or `starts` (for these points) where given and anything then fits;
 /// least orthogonal distances, as far as telling plausible classes from others takes. What
-/// `classes` leaves out may be missing.
+/// `classes` leaves out may be missing. `out_of_reach`: beyond this chi-square it is not
+/// asked how well a class fits.
 ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts = nullptr,
-                      unsigned classes = kAllClasses);
+                      unsigned classes = kAllClasses,
+                      double out_of_reach = std::numeric_limits<double>::infinity());
 
 }  // namespace palpate

@@ -62,34 +62,37 @@ struct Foot {
   double distance = 0.0;  ///< positive where the polynomial is
 };
 
-/// The conic at a foot, by arc length with the gradient on the left.
-NormalAtFoot conic_at(const ConicCoefficients& q, const Foot& foot) {
+/// The conic at a foot.
+struct ConicAtFoot {
+  NormalAtFoot at;     ///< by arc length with the gradient on the left
+  double slope = 0.0;  ///< of the polynomial: the length of its gradient
+  double slope_by_arc = 0.0;
+};
+
+ConicAtFoot conic_at(const ConicCoefficients& q, const Foot& foot) {
   const Vec2 g = conic_gradient(q, foot.position);
-  const double norm = g.norm();
-  const Vec2 normal = g / norm;
+  const double slope = g.norm();
+  const Vec2 normal = g / slope;
   const Vec2 tangent = -left_of(normal);
-  const Vec2 pull(2.0 * q[0] * tangent.x() + q[1] * tangent.y(),
-                  q[1] * tangent.x() + 2.0 * q[2] * tangent.y());
-  return {normal, tangent, -tangent.dot(pull) / norm * normal, foot.distance};
+  const Vec2 by_arc(2.0 * q[0] * tangent.x() + q[1] * tangent.y(),
+                    q[1] * tangent.x() + 2.0 * q[2] * tangent.y());
+  return {{normal, tangent, -tangent.dot(by_arc) / slope * normal, foot.distance},
+          slope,
+          normal.dot(by_arc)};
 }
 
 /// By what angle the normal at the foot turns, per coefficient: the curve moves along its normal
 /// alone, by -(monomial) / |gradient|.
 Monomials turn_by_coefficients(const ConicCoefficients& q, const Foot& foot) {
-  const double norm = conic_gradient(q, foot.position).norm();
-  if (!(norm > 0.0)) {
-    return Monomials::Zero();
-  }
-  const NormalAtFoot at = conic_at(q, foot);
-  if (!at.is_followed()) {
+  const auto [at, slope, slope_by_arc] = conic_at(q, foot);
+  if (!(slope > 0.0) || !at.is_followed()) {
     return Monomials::Zero();
   }
   const Vec2& t = at.first;
   const Vec2& p = foot.position;
-  const Vec2 pull(2.0 * q[0] * t.x() + q[1] * t.y(), q[1] * t.x() + 2.0 * q[2] * t.y());
-  const Monomials along(2.0 * p.x() * t.x(), p.y() * t.x() + p.x() * t.y(), 2.0 * p.y() * t.y(),
-                        t.x(), t.y(), 0.0);
-  return -(along - at.normal.dot(pull) / norm * monomials(p)) / (norm * at.slope());
+  const Monomials by_arc(2.0 * p.x() * t.x(), p.y() * t.x() + p.x() * t.y(), 2.0 * p.y() * t.y(),
+                         t.x(), t.y(), 0.0);
+  return -(by_arc - slope_by_arc / slope * monomials(p)) / (slope * at.slope());
 }
 
 /// Residuals over the tangent space of the unit sphere at `start`, for minimise_residuals.
@@ -210,12 +213,7 @@ class SphereResiduals {
   Start start_;
   Eigen::Matrix<double, K, K - 1> tangent_;
   int side_;
-
-  struct Normal {
-    std::size_t point = 0;
-    double weight = 0.0;
-  };
-  std::vector<Normal> normals_;
+  std::vector<WeighedNormal> normals_;
   mutable std::vector<Foot> feet_;  ///< at trial_
   mutable Step trial_;
 };
@@ -235,7 +233,7 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
 }  // namespace
 
 double weight_of_normal(const ConicCoefficients& q, const Vec2& foot, const FitPoint& point) {
-  const NormalAtFoot at = conic_at(q, {foot, signed_distance_from(foot, q, point.position)});
+  const NormalAtFoot at = conic_at(q, {foot, signed_distance_from(foot, q, point.position)}).at;
   return at.normal.allFinite() && at.is_followed() ? normal_weight(point, at.turn_along()) : 0.0;
 }
 

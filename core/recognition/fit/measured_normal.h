@@ -17,6 +17,12 @@ inline std::size_t count_normals(std::span<const FitPoint> points) {
       points.begin(), points.end(), [](const FitPoint& point) { return has_normal(point); }));
 }
 
+/// A point's measured normal as a residual: the weight by the curve found, not by each one sought.
+struct WeighedNormal {
+  std::size_t point = 0;
+  double weight = 0.0;
+};
+
 /// The angle from a measured normal to the curve's, left positive, either way round: in [-pi/2,
 /// pi/2]. Both of unit length. [rad]
 inline double normal_miss(const Vec2& measured, const Vec2& of_curve) {

@@ -37,8 +37,10 @@ PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int 
       problem.weigh_normals(x);
     }
     const double left = start_number > 0 && is_exact() ? fit.chi2 / n : 1.0;
-    const MinimiseSummary summary =
-        minimise(&problem, &x, {effort.iterations, left * effort.chi2_tolerance});
+    const MinimiseSummary summary = minimise(&problem, &x,
+                                             {.iterations = effort.iterations,
+                                              .chi2_tolerance = left * effort.chi2_tolerance,
+                                              .out_of_reach = effort.out_of_reach});
     if (start_number == 0) {
       fit.chi2 = summary.initial_chi2;
     }

@@ -242,11 +242,6 @@ class PolynomialProblem {
     return at.normal.isZero(0.0) ? 0.0 : normal_miss(points_[i].normal, at.normal);
   }
 
-  struct WeighedNormal {
-    std::size_t point = 0;
-    double weight = 0.0;
-  };
-
   std::span<const FitPoint> points_;
   std::vector<WeighedNormal> normals_;
   int side_;

@@ -12,7 +12,14 @@
 namespace palpate {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kSurfacePoints = 0;  // side: reduced points bear no tip radius
+
+RefineEffort coarse(double out_of_reach) {
+  RefineEffort effort = kCoarseEffort;
+  effort.out_of_reach = out_of_reach;
+  return effort;
+}
 
 /// refine_axis, the arms reassigned until they stay.
 AxisFit refine_axis_and_arms(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
@@ -43,23 +50,25 @@ std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& redu
   return walked;
 }
 
-PolynomialFit refined(const AxisFit& walked, const FitData& reduced) {
+PolynomialFit refined(const AxisFit& walked, const FitData& reduced, double out_of_reach) {
   return refine_polynomial(walked.model, reduced.points, to_polynomial(walked, reduced.points),
-                           kSurfacePoints, kCoarseEffort);
+                           kSurfacePoints, coarse(out_of_reach));
 }
 
 /// Walks the seeds; the best of them, refined on the reduced points.
-std::optional<PolynomialFit> best_of(std::vector<AxisFit>* seeds, const FitData& reduced) {
+std::optional<PolynomialFit> best_of(std::vector<AxisFit>* seeds, const FitData& reduced,
+                                     double out_of_reach) {
   *seeds = walk(*seeds, reduced);
-  return seeds->empty() ? std::nullopt : std::optional(refined(seeds->front(), reduced));
+  return seeds->empty() ? std::nullopt
+                        : std::optional(refined(seeds->front(), reduced, out_of_reach));
 }
 
 /// The spline on the other side of c = 0.
-PolynomialFit refined_twin(const AxisFit& walked, const FitData& reduced) {
+PolynomialFit refined_twin(const AxisFit& walked, const FitData& reduced, double out_of_reach) {
   constexpr int kMostIterations = 15;
   return refined(refine_axis_and_arms(reduced.points, reduced.patches,
                                       twin_of(walked, reduced.points), kMostIterations),
-                 reduced);
+                 reduced, out_of_reach);
 }
 
 /// Walks the splines' valleys, and lets the other models start beside the splines found: near c = 0
@@ -82,13 +91,14 @@ struct SplinePair {
   std::optional<PolynomialFit> rival;
 };
 
-SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced) {
+SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced,
+                      double out_of_reach) {
   SplinePair pair;
   if (walked.empty()) {
     return pair;
   }
-  pair.best = refined(walked.front(), reduced);
-  pair.rival = refined_twin(walked.front(), reduced);
+  pair.best = refined(walked.front(), reduced, out_of_reach);
+  pair.rival = refined_twin(walked.front(), reduced, out_of_reach);
   if (pair.rival->chi2 < pair.best->chi2) {
     std::swap(pair.best, pair.rival);
   }
@@ -115,7 +125,8 @@ void keep_better(std::optional<PolynomialFit>* best, PolynomialFit fit) {
 
 /// A class can be no worse than its limits: starts from them too where it is. Limits above
 /// `highest_chi2` do not matter.
-void start_from_limits(const FitData& reduced, double highest_chi2, PolynomialFits* fits) {
+void start_from_limits(const FitData& reduced, double highest_chi2, double out_of_reach,
+                       PolynomialFits* fits) {
   for (const auto* limit :
        {&fits->parabola, &fits->cubical_parabola, &fits->semi_cubical_parabola}) {
     if (*limit && (*limit)->chi2 <= highest_chi2 &&
@@ -124,32 +135,33 @@ void start_from_limits(const FitData& reduced, double highest_chi2, PolynomialFi
       normalise_parameter(PolynomialModel::CubicSpline, &start);
       keep_better(&fits->cubic_spline,
                   refine_polynomial(PolynomialModel::CubicSpline, reduced.points, std::move(start),
-                                    kSurfacePoints, kCoarseEffort));
+                                    kSurfacePoints, coarse(out_of_reach)));
     }
   }
 }
 
 }  // namespace
 
-PolynomialFits search_polynomials(const FitData& reduced) {
+PolynomialFits search_polynomials(const FitData& reduced, double out_of_reach) {
   PolynomialFits fits;
   add_graph_seeds(reduced.points, &fits.seeds);
   add_arm_seeds(reduced.points, reduced.patches, &fits.seeds);
   add_relatives(reduced, &fits.seeds);
-  fits.parabola = best_of(&fits.seeds.parabola, reduced);
-  fits.cubical_parabola = best_of(&fits.seeds.cubical_parabola, reduced);
-  fits.semi_cubical_parabola = best_of(&fits.seeds.semi_cubical_parabola, reduced);
-  SplinePair pair = fit_spline(fits.seeds.cubic_spline, reduced);
+  // Conics start from it too.
+  fits.parabola = best_of(&fits.seeds.parabola, reduced, kInfinity);
+  fits.cubical_parabola = best_of(&fits.seeds.cubical_parabola, reduced, out_of_reach);
+  fits.semi_cubical_parabola = best_of(&fits.seeds.semi_cubical_parabola, reduced, out_of_reach);
+  SplinePair pair = fit_spline(fits.seeds.cubic_spline, reduced, out_of_reach);
   fits.cubic_spline = std::move(pair.best);
   fits.rival = std::move(pair.rival);
-  start_from_limits(reduced, std::numeric_limits<double>::infinity(), &fits);
+  start_from_limits(reduced, kInfinity, out_of_reach, &fits);
   return fits;
 }
 
 PolynomialFits search_parabola(const FitData& reduced) {
   PolynomialFits fits;
   add_graph_seeds(reduced.points, &fits.seeds);
-  fits.parabola = best_of(&fits.seeds.parabola, reduced);
+  fits.parabola = best_of(&fits.seeds.parabola, reduced, kInfinity);
   return fits;
 }
 
@@ -185,14 +197,13 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
       std::swap(fits.rival, fits.cubic_spline);
     }
   }
-  start_from_limits(reduced, highest_chi2, &fits);
+  start_from_limits(reduced, highest_chi2, kInfinity, &fits);
   return fits;
 }
 
-void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
+void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFits* fits) {
   // As many as bound the time of what no class fits.
   constexpr std::size_t kMostSeeds = 4;
-  constexpr RefineEffort kThorough{50, 1, 1e-4};
   // Data that leave a conic possible tell no cubic from it.
   const std::size_t residuals = residual_count(reduced);
   const bool conic_fits = fits_well(fits->lowest_chi2, residuals);
@@ -218,20 +229,20 @@ void refine_every_seed(const FitData& reduced, PolynomialFits* fits) {
     };
     // The search has refined the first.
     for (std::size_t i = 1; i < std::min(seeds.size(), kMostSeeds) && !arrived(); ++i) {
-      keep(refined(seeds[i], reduced));
+      keep(refined(seeds[i], reduced, out_of_reach));
       if (seeds[i].model == PolynomialModel::CubicSpline) {
-        keep(refined_twin(seeds[i], reduced));
+        keep(refined_twin(seeds[i], reduced, out_of_reach));
       }
     }
     if (!arrived()) {
       keep(refine_polynomial(seeds.front().model, reduced.points, **best, kSurfacePoints,
-                             kThorough));
+                             {50, 1, 1e-4, out_of_reach}));
     }
   };
   improve(&fits->parabola, fits->seeds.parabola);
   improve(&fits->cubical_parabola, fits->seeds.cubical_parabola);
   improve(&fits->semi_cubical_parabola, fits->seeds.semi_cubical_parabola);
-  start_from_limits(reduced, std::numeric_limits<double>::infinity(), fits);
+  start_from_limits(reduced, kInfinity, out_of_reach, fits);
   improve(&fits->cubic_spline, fits->seeds.cubic_spline);
 }
 

@@ -24,8 +24,10 @@ struct PolynomialFits {
   double lowest_chi2 = std::numeric_limits<double>::infinity();
 };
 
-/// Exhaustive coarse search, valleys walked, the best of each refined with coarse effort.
-PolynomialFits search_polynomials(const FitData& reduced);
+/// Exhaustive coarse search, valleys walked, the best of each refined with coarse effort; of the
+/// cubics, unless it is `out_of_reach` (as fit_classes).
+PolynomialFits search_polynomials(const FitData& reduced,
+                                  double out_of_reach = std::numeric_limits<double>::infinity());
 
 /// The parabola alone, which the conics need at their limit.
 PolynomialFits search_parabola(const FitData& reduced);
@@ -36,6 +38,6 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
 
 /// The last resort where nothing fits: refines thoroughly every seed of the models with arms, whose
 /// sharp bends make narrow valleys, and the best of the others.
-void refine_every_seed(const FitData& reduced, PolynomialFits* fits);
+void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFits* fits);
 
 }  // namespace palpate

@@ -302,7 +302,8 @@ class ArmSearch {
       return {Moments(), patch.end};
     }
     // A patch that turns round its leftmost point near the vertex passes from arm to arm there.
-    constexpr double kNearVertex = 0.03;  // of the span of all points
+    // Of the span of all points: between the second and the third of the vertices tried.
+    constexpr double kNearVertex = 0.03;
     const auto [leftmost, depth] = turns_[p];
     const bool turns = x_[leftmost] - x0 < kNearVertex * span_ && depth > 0.0;
     const std::size_t change = turns ? leftmost + 1 : patch.end;

@@ -1,6 +1,8 @@
 // How far a refinement goes.
 #pragma once
 
+#include <limits>
+
 namespace palpate {
 
 struct RefineEffort {
@@ -10,6 +12,8 @@ struct RefineEffort {
   /// Change of chi-square at which a start ends: its root is the distance from the optimum, in
   /// standard deviations, that may be left.
   double chi2_tolerance = 1e-7;
+  /// Of chi-square: a start of which the linear model leaves more is given up (polynomial models).
+  double out_of_reach = std::numeric_limits<double>::infinity();
 };
 
 /// Tells classes that cannot be from those that may: a well determined shape has converged long

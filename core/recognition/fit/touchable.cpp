@@ -6,6 +6,10 @@
 namespace palpate {
 namespace {
 
+/// Of a patch's points, as many as a bend, or a spike along the arc with its neighbours, may turn
+/// round. What lets neighbours lie on opposite sides of a curve turns half of them.
+constexpr std::size_t kOneIn = 10;
+
 /// Whether all points lie on one branch of a hyperbola: on one side of its conjugate axis.
 bool on_one_branch(const ConicCoefficients& q, std::span<const FitPoint> points) {
   const double d = discriminant(q);
@@ -60,9 +64,6 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
   if (!(discriminant(q) > 0.0 || on_one_branch(q, data.points))) {
     return false;
   }
-  // Points that a spike along the arc may turn round with its neighbours; what lets neighbours lie
-  // on opposite sides turns half of them round.
-  constexpr std::size_t kOneIn = 10;
   for (std::size_t p = 0; p < data.patches.size(); ++p) {
     const std::span<const FitPoint> patch = data.patch(p);
     std::size_t left = 0;
@@ -82,7 +83,6 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
 }
 
 bool is_touchable(const PolynomialFit& fit, const FitData& data) {
-  constexpr std::size_t kOneIn = 10;  // that a bend may turn round, or noise all the same
   for (const PatchSpan& patch : data.patches) {
     const std::size_t lag = patch.size() / 2;
     std::size_t forward = 0;

@@ -103,6 +103,7 @@ struct Walk {
 /// seen is left or the class ends.
 std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& start, int k,
                         double direction, const Walk& how, double* highest) {
+  // A normal law ends after four steps of its deviation; a loose coordinate's are doubled.
   constexpr std::size_t kMostSlices = 14;
   constexpr int kMostTries = 20;
   constexpr double kNothing = 7.0;  // of the log density: a thousandth
@@ -245,7 +246,20 @@ TouchedMatrix root_of(const TouchedCurve& curve, int fixed) {
 }
 
 std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
-                                           double inflation) {
+                                           double inflation, double least_chi2) {
+  // The noise is lowered from what the start leaves to what it is: at each level the valley is wide
+  // enough to be walked along.
+  constexpr int kStepsPerLevel = 12;
+  constexpr double kLevel = 0.5;  // of the deviation
+  // At the first level chi-square is the number of points, and where a valley leads to the noise it
+  // stays about that. Three levels at which the curve did not come nearer: there is none.
+  constexpr double kLost = 64.0;
+  const double n = static_cast<double>(residual_count(data));
+  // The last level before all of the noise's weight has at least this much of it: what is lost
+  // there need not be walked to.
+  if (kLevel * kLevel * least_chi2 > kLost * n * inflation) {
+    return std::nullopt;
+  }
   auto touch = touch_of(start, data);
   if (!touch) {
     return std::nullopt;
@@ -255,14 +269,6 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
   if (!curve) {
     return std::nullopt;
   }
-  // The noise is lowered from what the start leaves to what it is: at each level the valley is wide
-  // enough to be walked along.
-  constexpr int kStepsPerLevel = 12;
-  constexpr double kLevel = 0.5;  // of the deviation
-  // At the first level chi-square is the number of points, and where a valley leads to the noise it
-  // stays about that. Three levels at which the curve did not come nearer: there is none.
-  constexpr double kLost = 64.0;
-  const double n = static_cast<double>(residual_count(data));
   const double full = touch->weight;
   double weight = full * std::min(1.0, std::sqrt(n / curve->chi2));
   while (weight < full) {

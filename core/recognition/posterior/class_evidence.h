@@ -46,9 +46,10 @@ TouchedMatrix root_of(const TouchedCurve& curve, int fixed);
 
 /// The mode of likelihood times prior that lies downhill from a curve; nullopt where none comes
 /// near the points, and where `start` is no curve of its class in double precision. Arguments as of
-/// evidence_of, but `start` need not be an optimum.
+/// evidence_of, but `start` need not be an optimum. `least_chi2`: no curve of the class leaves
+/// less.
 std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
-                                           double inflation);
+                                           double inflation, double least_chi2);
 
 /// By Laplace's formula: a normal law about the optimum. `fit` is at its optimum on `data`, the
 /// reduced points as surface points, and has a point for each. Noise variances count `inflation`

@@ -45,6 +45,11 @@ ResidualCorrelation correlation_along(const CanonicalFit& placed, const FitData&
 
 }  // namespace
 
+// Touches that lie too far apart to show their noise leave the class alone to tell it.
+bool tells_noise(const Arcs& arcs, const Likelihood& likelihood) {
+  return likelihood.sigma_known || arcs.smooth.dof() >= kFewestDegreesOfNoise;
+}
+
 Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m) {
   const double n = static_cast<double>(arcs.data.points.size());
   Likelihood likelihood;
@@ -72,9 +77,8 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   // model's further coefficients; a false alarm costs an answer its certainty.
   constexpr double kFalseAlarm = 1e-6;
   const int more = smooth.parameters - parameters;
-  // Touches that lie too far apart to show their noise leave the class alone to tell it. Whether it
-  // misfits only neighbours on it show, which err together.
-  const bool noise_is_told = likelihood.sigma_known || smooth.dof() >= kFewestDegreesOfNoise;
+  // Whether a class that tells the noise misfits only neighbours on it show, which err together.
+  const bool noise_is_told = tells_noise(arcs, likelihood);
   const bool misfits =
       noise_is_told
           ? unclassified ||
@@ -84,7 +88,7 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   // White residuals much larger than the smooth model's are noise that it took for bends
   // (outliers, samples out of order); correlated ones are form error up to its limit, neighbours
   // erring together, so that only one in `time` counts.
-  constexpr double kMuchLarger = 1.5;
+  constexpr double kMuchLarger = 1.5;  // five deviations of a variance that 200 residuals tell
   // Of the half extent: beyond it, it is another shape, if free paths of the patches say so too.
   // (Of touches that lie apart they say nothing.)
   constexpr double kLargestFormError = 1e-3;

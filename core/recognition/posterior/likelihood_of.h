@@ -12,6 +12,9 @@ namespace palpate {
 /// Of the half extent: beyond this noise nothing is measured.
 inline constexpr double kLargestNoise = 0.01;
 
+/// Whether the noise is known without any class.
+bool tells_noise(const Arcs& arcs, const Likelihood& likelihood);
+
 /// `form_deviation_m`: the stated standard deviation of parts from their class; 0 = none.
 Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m);
 

@@ -11,21 +11,11 @@ namespace {
 
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
-/// log of odds that no answer depends on: a millionth.
-constexpr double kNegligible = 14.0;
-
 /// log of the prior's density by m = e^2 - 1 next to the parabola, beyond it over on this side:
 /// ellipses have 1, hyperbolas Cauchy's law about 1 cut at 0 (touched_coordinates.cpp).
 double log_density_ratio_at_parabola(CurveClass beyond) {
   const double of_hyperbolas = std::log(0.5 / (0.75 * kPi));
   return beyond == CurveClass::Hyperbola ? of_hyperbolas : -of_hyperbolas;
-}
-
-double log_evidence_of_free_form(const Likelihood& likelihood, const Evidences& evidences,
-                                 double smooth_chi2) {
-  const FreeForm& paths = evidences.free_form;
-  return likelihood.log_evidence(smooth_chi2 + likelihood.inflation() * paths.chi2, paths.log_occam,
-                                 paths.determined);
 }
 
 /// The mode of the spline across c = 0, if there is one.
@@ -54,6 +44,20 @@ bool holds(const ClassEvidence& mode, const ClassEvidence& other) {
 
 }  // namespace
 
+Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood) {
+  Evidences evidences;
+  evidences.inflation = likelihood.inflation();
+  evidences.free_form = free_form(smooth, evidences.inflation);
+  return evidences;
+}
+
+double log_evidence_of_free_form(const Likelihood& likelihood, const Evidences& evidences,
+                                 double smooth_chi2) {
+  const FreeForm& paths = evidences.free_form;
+  return likelihood.log_evidence(smooth_chi2 + likelihood.inflation() * paths.chi2, paths.log_occam,
+                                 paths.determined);
+}
+
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
                     CurveClass curve_class, double chi2) {
   const auto& evidence = evidences.classes[static_cast<std::size_t>(curve_class)];
@@ -65,11 +69,15 @@ double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
 Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
                        const Likelihood& likelihood, Evidences before) {
-  Evidences evidences;
   const double inflation = likelihood.inflation();
   const bool same_noise = inflation == before.inflation;
-  evidences.inflation = inflation;
-  evidences.free_form = same_noise ? before.free_form : free_form(smooth, inflation);
+  Evidences evidences;
+  if (same_noise) {
+    evidences.inflation = inflation;
+    evidences.free_form = before.free_form;
+  } else {
+    evidences = evidences_of_paths(smooth, likelihood);
+  }
   double best = log_evidence_of_free_form(likelihood, evidences, smooth.chi2);
   // The best fits first: what the prior leaves is at most all, so that the rest can be told by
   // chi-square alone.

@@ -28,6 +28,16 @@ struct Evidences {
   std::array<double, 9> on_reduced_chi2{};
 };
 
+/// log of odds that no answer depends on: a millionth.
+inline constexpr double kNegligible = 14.0;
+
+/// Of no class yet, but of free-form paths.
+Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood);
+
+/// log of the evidence of free-form paths.
+double log_evidence_of_free_form(const Likelihood& likelihood, const Evidences& evidences,
+                                 double smooth_chi2);
+
 /// log of the evidence of a class that was fitted with `chi2`; -infinity where it has none.
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
                     CurveClass curve_class, double chi2);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics/normal_law.h"
+
 namespace palpate {
 namespace {
 
@@ -40,7 +42,8 @@ ResidualCorrelation correlation_of(const FitData& data, std::span<const double> 
   if (!(variance > 0.0)) {
     return result;
   }
-  constexpr double kOneInThousand = 3.1;  // standard normal quantile
+  // White residuals look correlated once in a thousand times: the sum is then normal.
+  static const double kOneInThousand = two_sided_normal_quantile(2.0 / 1000.0);
   const LagCorrelation first = at_lag(data, residuals, 1, variance);
   if (first.pairs == 0 ||
       first.value * std::sqrt(static_cast<double>(first.pairs)) < kOneInThousand) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <utility>
 
@@ -16,6 +15,7 @@
 #include "core/numerics/chi_square.h"
 #include "core/recognition/tree/recognition_tree_tolerance.h"
 #include "core/recognition/tree/tree_pose.h"
+#include "core/recognition/tree/tree_record.h"
 
 namespace palpate {
 namespace {
@@ -25,7 +25,7 @@ class SignificanceTree {
  public:
   SignificanceTree(std::span<const TreePoint> points, const RecognitionTreeOptions& options,
                    const TreeEffort& effort)
-      : points_(points), options_(options), effort_(effort) {
+      : points_(points), options_(options), effort_(effort), record_(options.significance) {
     for (const TreePoint& point : points) {
       MeasuredGeometry measured = measured_geometry(point.estimate, point.patch);
       const double size = curvature_scale({&measured, 1});
@@ -33,21 +33,21 @@ class SignificanceTree {
           options.relative_floor * Eigen::Vector3d(1.0, size, size * size);
       measured.covariance.diagonal() += floor.cwiseAbs2();
       measured_.push_back(measured);
-      result_.pooled.push_back(result_.pooled.size());
+      record_.result.pooled.push_back(record_.result.pooled.size());
     }
   }
 
   TreeResult run() {
-    result_.status = InvariantStatus::Ok;
+    record_.result.status = InvariantStatus::Ok;
     if (!constant_curvature() && !conic() && !cubic(CurveClass::CubicalParabola) &&
         !cubic(CurveClass::SemiCubicalParabola) && !cubic(CurveClass::CubicSpline)) {
-      result_.status = InvariantStatus::NotThisClass;
+      record_.result.status = InvariantStatus::NotThisClass;
     }
-    return std::move(result_);
+    return std::move(record_.result);
   }
 
   TreeResult leaf_again(const TreeResult& answer) {
-    result_.status = InvariantStatus::Ok;
+    record_.result.status = InvariantStatus::Ok;
     const CurveClass curve_class = answer.shape.curve_class;
     if (curve_class == CurveClass::Line || curve_class == CurveClass::Circle) {
       const ConstantCurvature fit = fit_constant_curvature(measured_);
@@ -56,78 +56,34 @@ class SignificanceTree {
       } else if (fit.kappa > 0.0) {
         reach_circle(fit, tangent_circle(points_, 1.0 / fit.kappa, options_.relative_floor));
       }
-      return std::move(result_);
+      return std::move(record_.result);
     }
     const SemiSignatureFit fit = fit_semi_signature(curve_class, measured_, answer.shape.values,
                                                     answer.world_T_curve->theta);
     if (fit.status == InvariantStatus::Ok) {
       reach_fit(fit);
     }
-    return std::move(result_);
+    return std::move(record_.result);
   }
 
  private:
-  /// Records one chi-square test, which each of `classes` must pass.
-  bool passes(std::string_view name, double chi2, int dof,
-              std::initializer_list<CurveClass> classes) {
-    const double p_value = chi_square_survival(chi2, dof);
-    const bool passed = p_value >= options_.significance;
-    result_.decisions.push_back({name, chi2, threshold_of(dof), passed, p_value});
-    for (const CurveClass curve_class : classes) {
-      says(curve_class, p_value);
-    }
-    return passed;
-  }
-
-  void says(CurveClass curve_class, double p_value) {
-    double& least = result_.p_values[static_cast<std::size_t>(curve_class)];
-    least = std::isnan(least) ? p_value : std::min(least, p_value);
-  }
-
-  /// The same few degrees of freedom are asked again and again.
-  double threshold_of(int dof) {
-    const auto known =
-        std::find_if(thresholds_.begin(), thresholds_.end(),
-                     [dof](const std::pair<int, double>& t) { return t.first == dof; });
-    return known != thresholds_.end()
-               ? known->second
-               : thresholds_.emplace_back(dof, chi_square_threshold(options_.significance, dof))
-                     .second;
-  }
-
-  void add_invariant(CurveClass curve_class, std::string_view name, double value, double variance) {
-    result_.invariants.push_back({curve_class, name, value, std::sqrt(variance)});
-  }
-
-  /// Records a test that could not be made: its chi-square is infinite, and it has no p-value.
-  bool refused(std::string_view name, int dof) {
-    result_.decisions.push_back(
-        {name, std::numeric_limits<double>::infinity(), threshold_of(dof), false});
-    return false;
-  }
-
-  void reach(CurveClass curve_class, const Eigen::Vector3d& parameters, double chi2, int dof) {
-    result_.shape = {curve_class, parameters};
-    result_.chi2 = chi2;
-    result_.dof = dof;
-  }
-
   bool constant_curvature() {
     const ConstantCurvature fit = fit_constant_curvature(measured_);
     if (fit.status != InvariantStatus::Ok) {
       return false;
     }
-    add_invariant(CurveClass::Circle, "kappa", fit.kappa, fit.variance);
-    if (passes("line", fit.line_chi2, fit.line_dof, {CurveClass::Line})) {
+    record_.add_invariant(CurveClass::Circle, "kappa", fit.kappa, fit.variance);
+    if (record_.passes("line", fit.line_chi2, fit.line_dof, {CurveClass::Line})) {
       reach_line(fit);
       return true;
     }
     if (fit.kappa > 0.0 &&
-        passes("circle", fit.circle_chi2, fit.circle_dof, {CurveClass::Circle})) {
+        record_.passes("circle", fit.circle_chi2, fit.circle_dof, {CurveClass::Circle})) {
       const double radius = 1.0 / fit.kappa;
       const TangentCircle circle = tangent_circle(points_, radius, options_.relative_floor);
       // Constant curvature within its errors: the places and tangents know better.
-      if (!passes("circle through tangents", circle.chi2, circle.dof, {CurveClass::Circle})) {
+      if (!record_.passes("circle through tangents", circle.chi2, circle.dof,
+                          {CurveClass::Circle})) {
         return false;
       }
       reach_circle(fit, circle);
@@ -137,15 +93,15 @@ class SignificanceTree {
   }
 
   void reach_line(const ConstantCurvature& fit) {
-    reach(CurveClass::Line, Eigen::Vector3d::Zero(), fit.line_chi2, fit.line_dof);
-    result_.world_T_curve = line_pose(points_);
+    record_.reach(CurveClass::Line, Eigen::Vector3d::Zero(), fit.line_chi2, fit.line_dof);
+    record_.result.world_T_curve = line_pose(points_);
   }
 
   void reach_circle(const ConstantCurvature& fit, const TangentCircle& circle) {
     const double radius = 1.0 / fit.kappa;
-    reach(CurveClass::Circle, {radius, 0.0, 0.0}, fit.circle_chi2, fit.circle_dof);
-    result_.covariance(0, 0) = std::pow(radius, 4) * fit.variance;
-    result_.world_T_curve = circle.pose;
+    record_.reach(CurveClass::Circle, {radius, 0.0, 0.0}, fit.circle_chi2, fit.circle_dof);
+    record_.result.covariance(0, 0) = std::pow(radius, 4) * fit.variance;
+    record_.result.world_T_curve = circle.pose;
   }
 
   /// The points whose errors go into the conic's invariants linearly as far as a test looks. Ip
@@ -172,17 +128,17 @@ class SignificanceTree {
     const ConicLine tested = linear.size() == measured_.size() ? all : fit_conic_line(linear);
     const ConicLine& line = is_line(all) ? all : tested;
     if (tested.status == InvariantStatus::SignChange || !is_line(line)) {
-      return refused("conic line", static_cast<int>(measured_.size()) - 2);
+      return record_.refused("conic line", static_cast<int>(measured_.size()) - 2);
     }
     if (line.status == InvariantStatus::Ok) {
       const CurveClass of_sign = line.ic1 < 0.0 ? CurveClass::Hyperbola : CurveClass::Ellipse;
-      add_invariant(of_sign, "Ic1", line.ic1, line.covariance(0, 0));
-      add_invariant(of_sign, "Ic2", line.ic2, line.covariance(1, 1));
+      record_.add_invariant(of_sign, "Ic1", line.ic1, line.covariance(0, 0));
+      record_.add_invariant(of_sign, "Ic2", line.ic2, line.covariance(1, 1));
     }
-    add_invariant(CurveClass::Parabola, "Ip", line.ip_mean, line.ip_variance);
+    record_.add_invariant(CurveClass::Parabola, "Ip", line.ip_mean, line.ip_variance);
     if (tested.status == InvariantStatus::Ok && tested.dof > 0 &&
-        !passes("conic line", tested.chi2, tested.dof,
-                {CurveClass::Ellipse, CurveClass::Parabola, CurveClass::Hyperbola})) {
+        !record_.passes("conic line", tested.chi2, tested.dof,
+                        {CurveClass::Ellipse, CurveClass::Parabola, CurveClass::Hyperbola})) {
       return false;
     }
     if (const int sign = sign_of_ic1(tested)) {
@@ -211,13 +167,14 @@ class SignificanceTree {
     if (tested.status != InvariantStatus::Ok) {
       return 0;
     }
-    const double threshold = std::sqrt(threshold_of(1));
+    const double threshold = std::sqrt(record_.threshold_of(1));
     const double sign = tested.ic1 / std::sqrt(tested.covariance(0, 0));
     const double p_value = chi_square_survival(sign * sign, 1);
     const bool is_signed = std::abs(sign) > threshold;
-    result_.decisions.push_back({"Ic1 not zero", std::abs(sign), threshold, is_signed, p_value});
-    says(CurveClass::Parabola, p_value);
-    says(sign > 0.0 ? CurveClass::Hyperbola : CurveClass::Ellipse, p_value);
+    record_.result.decisions.push_back(
+        {"Ic1 not zero", std::abs(sign), threshold, is_signed, p_value});
+    record_.says(CurveClass::Parabola, p_value);
+    record_.says(sign > 0.0 ? CurveClass::Hyperbola : CurveClass::Ellipse, p_value);
     return !is_signed ? 0 : sign > 0.0 ? 1 : -1;
   }
 
@@ -239,7 +196,7 @@ class SignificanceTree {
 
   bool parabola(const ConicLine& tested, const ConicLine& line) {
     if (is_line(tested) && tested.ip_dof > 0 &&
-        !passes("parabola Ip", tested.ip_chi2, tested.ip_dof, {CurveClass::Parabola})) {
+        !record_.passes("parabola Ip", tested.ip_chi2, tested.ip_dof, {CurveClass::Parabola})) {
       return false;
     }
     const ConicParameters parameters = parabola_parameters(line.ip_mean, line.ip_variance);
@@ -276,7 +233,7 @@ class SignificanceTree {
 
   /// Whether the leaf's test passes.
   bool explains(const SemiSignatureFit& fit) {
-    return fit.status == InvariantStatus::Ok && fit.chi2 <= threshold_of(fit.dof);
+    return fit.status == InvariantStatus::Ok && fit.chi2 <= record_.threshold_of(fit.dof);
   }
 
   static bool is_better(const SemiSignatureFit& fit, const SemiSignatureFit& best) {
@@ -329,14 +286,14 @@ class SignificanceTree {
   void add_cubic_invariants(const SemiSignatureFit& fit) {
     const Eigen::Matrix3d covariance = shape_covariance(fit);
     const auto add = [&](std::string_view name, Eigen::Index i) {
-      add_invariant(fit.curve_class, name, fit.parameters[i], covariance(i, i));
+      record_.add_invariant(fit.curve_class, name, fit.parameters[i], covariance(i, i));
     };
     if (fit.curve_class == CurveClass::CubicalParabola) {
       add("Icp1", 0);
       add("Icp2", 1);
     } else if (fit.curve_class == CurveClass::SemiCubicalParabola) {
       const double a = fit.parameters[0];
-      add_invariant(fit.curve_class, "Iscp1", a * a, 4.0 * a * a * covariance(0, 0));
+      record_.add_invariant(fit.curve_class, "Iscp1", a * a, 4.0 * a * a * covariance(0, 0));
       add("Iscp2", 1);
     } else {
       add("a", 0);
@@ -346,13 +303,13 @@ class SignificanceTree {
   }
 
   bool leaf(const SemiSignatureFit& fit, std::string_view name) {
-    if (fit.status == InvariantStatus::NotConverged && fit.chi2 <= threshold_of(fit.dof)) {
+    if (fit.status == InvariantStatus::NotConverged && fit.chi2 <= record_.threshold_of(fit.dof)) {
       return runs_away(fit, name);
     }
     if (fit.status != InvariantStatus::Ok) {
-      return refused(name, std::max(fit.dof, 1));
+      return record_.refused(name, std::max(fit.dof, 1));
     }
-    if (!passes(name, fit.chi2, fit.dof, {fit.curve_class})) {
+    if (!record_.passes(name, fit.chi2, fit.dof, {fit.curve_class})) {
       return false;
     }
     reach_fit(fit);
@@ -361,26 +318,25 @@ class SignificanceTree {
 
   /// A class that explains the points on its way to a neighbour, where there is no optimum.
   bool runs_away(const SemiSignatureFit& fit, std::string_view name) {
-    passes(name, fit.chi2, fit.dof, {fit.curve_class});
-    reach(fit.curve_class, fit.parameters, fit.chi2, fit.dof);
-    result_.covariance.setZero();
-    result_.covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
+    record_.passes(name, fit.chi2, fit.dof, {fit.curve_class});
+    record_.reach(fit.curve_class, fit.parameters, fit.chi2, fit.dof);
+    record_.result.covariance.setZero();
+    record_.result.covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
     return true;
   }
 
   void reach_fit(const SemiSignatureFit& fit) {
-    reach(fit.curve_class, fit.parameters, fit.chi2, fit.dof);
-    result_.covariance = shape_covariance(fit);
-    result_.world_T_curve = pose_of(points_, fit);
-    result_.places = fit.places;
+    record_.reach(fit.curve_class, fit.parameters, fit.chi2, fit.dof);
+    record_.result.covariance = shape_covariance(fit);
+    record_.result.world_T_curve = pose_of(points_, fit);
+    record_.result.places = fit.places;
   }
 
   std::span<const TreePoint> points_;
   const RecognitionTreeOptions& options_;
   const TreeEffort& effort_;
   std::vector<MeasuredGeometry> measured_;
-  std::vector<std::pair<int, double>> thresholds_;  ///< by degrees of freedom
-  TreeResult result_;
+  TreeRecord record_;
 };
 
 }  // namespace

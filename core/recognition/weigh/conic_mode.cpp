@@ -71,11 +71,14 @@ Contenders with_conic_mode(Contenders contenders, const Ground& ground, unsigned
   // None along the points' principal axes, where patches across from each other may have a ridge.
   constexpr int kDirections = 4;
   constexpr double kApart = kPi / kDirections;
+  const auto& ellipse = contenders.coarse[kEllipse];
+  const double least_chi2 = ellipse ? ellipse->least_chi2 : 0.0;
   const double first = reduced.frame.theta + 0.5 * kApart - start->world_T_curve.theta;
   std::optional<ClassFit> best;
   double least = 0.0;
   for (int i = 0; i < kDirections; ++i) {
-    const auto mode = posterior_mode(as_ellipse(*start, first + kApart * i), reduced, inflation);
+    const auto mode =
+        posterior_mode(as_ellipse(*start, first + kApart * i), reduced, inflation, least_chi2);
     const double potential = mode ? 0.5 * mode->chi2 - mode->log_prior : 0.0;
     if (!mode || (best && potential >= least)) {
       continue;

@@ -129,7 +129,7 @@ CurveClass most_probable(const ClassProbabilities& probabilities) {
 }
 
 Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
-  const auto& [arcs, reduced, likelihood] = ground;
+  const auto& [arcs, reduced, likelihood, out_of_reach] = ground;
   const auto& [data, smooth, sigma_known, sigma] = arcs;
   w.evidences = evidences_of(w.fits, w.coarse, smooth, reduced, likelihood, std::move(w.evidences));
   // Where the smooth model itself misfits, neither it nor the reduced points can be trusted that
@@ -138,14 +138,14 @@ Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
   margin *= misfit_ratio;
   // Sections that bend too much to be followed to the noise err by much the same for all classes:
   // twice as much as for the best, and some units of chi-square anyhow.
-  constexpr double kLeastError = 4.0;
+  constexpr double kLeastError = 4.0;  // odds of exp(2)
   double error = misfit_ratio * kLeastError;
   bool trusted = true;
   for (bool changed = true; changed;) {
     changed = false;
     const auto b = static_cast<std::size_t>(best_class(w.fits, likelihood, w.evidences));
     auto& best = w.fits[b];
-    if (best && !best->polished) {
+    if (best && !best->polished && w.coarse[b]->chi2 <= out_of_reach) {
       const double told = best->chi2;
       best = polished(settle(b, RivalOf::Best, reduced, &w), smooth, data);
       if (std::isfinite(best->chi2)) {
@@ -172,7 +172,9 @@ Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
 }
 
 Contenders decided(Contenders w, const Ground& ground) {
-  const auto& [arcs, reduced, likelihood] = ground;
+  const Arcs& arcs = ground.arcs;
+  const FitData& reduced = ground.reduced;
+  const Likelihood& likelihood = ground.likelihood;
   while (true) {
     w.evidences =
         evidences_of(w.fits, w.coarse, arcs.smooth, reduced, likelihood, std::move(w.evidences));

@@ -12,6 +12,7 @@ struct Ground {
   const Arcs& arcs;
   const FitData& reduced;  ///< the arcs' reduced points, as surface points
   Likelihood likelihood;
+  double out_of_reach;  ///< chi-square on the reduced points (posterior/out_of_reach.h)
 };
 
 struct Contenders {

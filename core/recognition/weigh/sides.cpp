@@ -17,13 +17,14 @@ namespace {
 
 /// The classes followed from where they were with the tips on these sides, or sought.
 ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
-                           const FitData& reduced, unsigned classes) {
+                           const FitData& reduced, unsigned classes,
+                           double out_of_reach = std::numeric_limits<double>::infinity()) {
   const WarmStart* start = start_for(starts, sides);
   if (start == nullptr) {
-    return fit_classes(reduced, nullptr, classes);
+    return fit_classes(reduced, nullptr, classes, out_of_reach);
   }
   const PolynomialFits carried = carried_to(*start, reduced);
-  return fit_classes(reduced, &carried, classes);
+  return fit_classes(reduced, &carried, classes, out_of_reach);
 }
 
 /// The classes fitted for one way in which the tips may lie.
@@ -191,7 +192,7 @@ Directed directed(const SmoothModel& smooth, CurveOfCentres* centres) {
 
 SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
                          const Likelihood& likelihood, unsigned classes,
-                         std::span<const SidedStart> starts) {
+                         std::span<const SidedStart> starts, double out_of_reach) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   // Tips that touch a part from within a bend are rare: probes come from outside.
   constexpr double kInsideProbability = 0.01;
@@ -200,7 +201,7 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
   const auto ways = possible_sides(patches, touches, bends);
   if (!has_tips(touches.points)) {
     FitData reduced = on_surface(touches, ways.front());
-    ClassFits fits = fit_classes_from(starts, ways.front(), reduced, classes);
+    ClassFits fits = fit_classes_from(starts, ways.front(), reduced, classes, out_of_reach);
     return {std::move(fits), std::move(reduced), ways.front(), kInfinity, {}};
   }
   if (ways.size() == 1) {
@@ -241,7 +242,8 @@ bool lie_otherwise(const Likelihood& likelihood, std::span<const StoredPatch> pa
   if (!std::isfinite(sided->margin)) {
     return false;
   }
-  SidedFits again = fit_over_sides(patches, arcs, likelihood, classes, starts);
+  SidedFits again = fit_over_sides(patches, arcs, likelihood, classes, starts,
+                                   std::numeric_limits<double>::infinity());
   if (again.sides == sided->sides) {
     sided->margin = again.margin;
     return false;

@@ -24,10 +24,11 @@ struct SidedFits {
 
 /// Fits to the reduced points for the way the material lies beside the patches: where the probes do
 /// not say it, the way of the highest evidence, the first (from outside the bends) at the odds of
-/// the prior. `classes`: by bit 1 << CurveClass; `starts`: as in weigh().
+/// the prior. `classes`: by bit 1 << CurveClass; `starts`: as in weigh(); `out_of_reach`: as in
+/// fit_classes().
 SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
                          const Likelihood& likelihood, unsigned classes,
-                         std::span<const SidedStart> starts);
+                         std::span<const SidedStart> starts, double out_of_reach);
 
 /// The same once more, where sides are open, under a law that `sided` was not told by: what is seen
 /// to be more than noise tells sides no better than it tells classes. Returns whether the tips lie

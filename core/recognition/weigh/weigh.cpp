@@ -6,6 +6,7 @@
 
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/moments.h"
+#include "core/recognition/posterior/out_of_reach.h"
 #include "core/recognition/weigh/conic_mode.h"
 #include "core/recognition/weigh/contenders.h"
 #include "core/recognition/weigh/sides.h"
@@ -47,12 +48,13 @@ struct Placed {
 /// Every class of one way in which the tips may lie, the plausible ones refined on all points.
 /// `no_conic`: as WarmStart's.
 Contenders contending(ClassFits coarse, bool no_conic, const Ground& ground,
-                      const WeighOptions& options) {
+                      const WeighOptions& options, const Evidences& of_paths = {}) {
   const Arcs& arcs = ground.arcs;
   Contenders contenders;
   contenders.no_conic = no_conic;
   contenders.coarse = testable(std::move(coarse), options.classes, residual_count(arcs.data));
   contenders.fits = as_told(contenders.coarse, arcs.smooth);
+  contenders.evidences = of_paths;
   contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
   if (!is_sure(probabilities_of(contenders, ground))) {
     contenders = with_conic_mode(std::move(contenders), ground, options.classes);
@@ -132,10 +134,12 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
                const WeighOptions& options, std::span<const SidedStart> starts) {
   Arcs arcs = smooth_arcs(std::move(data), sigma_known);
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
-  SidedFits sided = fit_over_sides(patches, arcs, stated, options.classes, starts);
-  Ground ground{arcs, sided.reduced, stated};
+  const Evidences of_paths = evidences_of_paths(arcs.smooth, stated);
+  const double hopeless = out_of_reach(arcs, stated, of_paths);
+  SidedFits sided = fit_over_sides(patches, arcs, stated, options.classes, starts, hopeless);
+  Ground ground{arcs, sided.reduced, stated, hopeless};
   Contenders contenders =
-      contending(std::move(sided.fits), no_conic(starts, sided.sides), ground, options);
+      contending(std::move(sided.fits), no_conic(starts, sided.sides), ground, options, of_paths);
   std::optional<Placed> best_placed = best_on_all(contenders, ground);
   const SeenDeviation seen =
       best_placed ? seen_deviation(arcs, stated, best_placed->chi2, best_placed->canonical,

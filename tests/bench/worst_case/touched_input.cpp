@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <functional>
 
+#include "tests/support/test_rng.h"
+
 namespace palpate::bench {
 namespace {
 
@@ -14,9 +16,7 @@ constexpr int kMostPatches = 64;
 constexpr int kFewestSamples = 8;
 constexpr int kMostSamples = 4096;
 
-double uniform(std::mt19937_64& rng, double least, double most) {
-  return std::uniform_real_distribution<double>(least, most)(rng);
-}
+using test::uniform;
 
 double log_uniform(std::mt19937_64& rng, double least, double most) {
   return std::exp(uniform(rng, std::log(least), std::log(most)));

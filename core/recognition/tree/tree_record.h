@@ -1,0 +1,75 @@
+// What a path through the recognition tree leaves: its tests, at one significance, and where it
+// ended.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/numerics/chi_square.h"
+#include "core/recognition/tree/recognition_tree.h"
+
+namespace palpate {
+
+class TreeRecord {
+ public:
+  explicit TreeRecord(double significance) : significance_(significance) {}
+
+  /// Records one chi-square test, which each of `classes` must pass.
+  bool passes(std::string_view name, double chi2, int dof,
+              std::initializer_list<CurveClass> classes) {
+    const double p_value = chi_square_survival(chi2, dof);
+    const bool passed = p_value >= significance_;
+    result.decisions.push_back({name, chi2, threshold_of(dof), passed, p_value});
+    for (const CurveClass curve_class : classes) {
+      says(curve_class, p_value);
+    }
+    return passed;
+  }
+
+  /// What a test that the class must pass says of it.
+  void says(CurveClass curve_class, double p_value) {
+    double& least = result.p_values[static_cast<std::size_t>(curve_class)];
+    least = std::isnan(least) ? p_value : std::min(least, p_value);
+  }
+
+  /// Of chi-square. The same few degrees of freedom are asked again and again.
+  double threshold_of(int dof) {
+    const auto known =
+        std::find_if(thresholds_.begin(), thresholds_.end(),
+                     [dof](const std::pair<int, double>& t) { return t.first == dof; });
+    return known != thresholds_.end()
+               ? known->second
+               : thresholds_.emplace_back(dof, chi_square_threshold(significance_, dof)).second;
+  }
+
+  void add_invariant(CurveClass curve_class, std::string_view name, double value, double variance) {
+    result.invariants.push_back({curve_class, name, value, std::sqrt(variance)});
+  }
+
+  /// Records a test that could not be made: its chi-square is infinite, and it has no p-value.
+  bool refused(std::string_view name, int dof) {
+    result.decisions.push_back(
+        {name, std::numeric_limits<double>::infinity(), threshold_of(dof), false});
+    return false;
+  }
+
+  /// Where the path ends.
+  void reach(CurveClass curve_class, const Eigen::Vector3d& parameters, double chi2, int dof) {
+    result.shape = {curve_class, parameters};
+    result.chi2 = chi2;
+    result.dof = dof;
+  }
+
+  TreeResult result;
+
+ private:
+  double significance_;
+  std::vector<std::pair<int, double>> thresholds_;  ///< by degrees of freedom
+};
+
+}  // namespace palpate
