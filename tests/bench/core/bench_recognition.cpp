@@ -29,7 +29,7 @@ std::vector<test::Scene> scenes_of(CurveClass curve_class, int points_per_patch,
   options.least_fraction = std::min(options.least_fraction, 0.5 / patches);
   options.most_fraction = std::min(options.most_fraction, 0.9 / patches);
   std::vector<test::Scene> scenes;
-  for (int i = 0; i < kScenes; ++i) {
+  for (int i = 0; i < std::max(8, 2 * kScenes / patches); ++i) {
     scenes.push_back(test::random_scene(curve_class, options, rng));
   }
   return scenes;
