@@ -84,11 +84,6 @@ std::vector<PathNode> reduced(std::span<const PathNode> window) {
   return nodes;
 }
 
-/// The smaller the more is known of angle, kappa and kappa_s together.
-double uncertainty(const LocalizedContact& contact) {
-  return contact.estimate.covariance.bottomRightCorner<3, 3>().determinant();
-}
-
 /// Leaves kMostContactsOfAPatch at most, of equally informative ones the first.
 void keep_most_informative(std::vector<LocalizedContact>* found) {
   if (found->size() <= kMostContactsOfAPatch) {
@@ -146,6 +141,10 @@ std::vector<LocalizedContact> fixed_windows(const StoredPatch& patch, EstimatorO
 }
 
 }  // namespace
+
+double uncertainty(const LocalizedContact& contact) {
+  return contact.estimate.covariance.bottomRightCorner<3, 3>().determinant();
+}
 
 std::size_t windows_of_a_patch(std::size_t patches, const ContactOptions& options) {
   const std::size_t count = std::max<std::size_t>(patches, 1);

@@ -34,6 +34,9 @@ struct ContactOptions {
 /// Contacts of a patch, at most: where its windows are more, the most informative ones.
 inline constexpr std::size_t kMostContactsOfAPatch = 12;
 
+/// The smaller the more is known of angle, kappa and kappa_s together.
+double uncertainty(const LocalizedContact& contact);
+
 /// Windows that each of so many patches is to have where its samples suffice.
 std::size_t windows_of_a_patch(std::size_t patches, const ContactOptions& options);
 

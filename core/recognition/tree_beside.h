@@ -9,8 +9,9 @@
 
 namespace palpate {
 
-/// The path on the contacts of a weighing. It is reported only: curves are not searched for, their
-/// fits begin where the samples laid them.
+/// The path on the contacts of a weighing, a few of them where they are many. It is reported only:
+/// curves are not searched for, their fits begin where the samples laid them. `places` are those of
+/// the contacts `pooled`.
 TreeResult tree_beside(const Weighing& w, std::span<const LocalizedContact> contacts,
                        const RecognitionTreeOptions& options);
 

@@ -24,70 +24,157 @@ constexpr int kAllTerms = kSize + kTail;
 using Fit = LegendreFit<kDegree>;
 using Vector = LegendreVector<kSize>;
 using Matrix = Eigen::Matrix<double, kSize, kSize>;
-using Deviations = std::array<double, kAllTerms>;
 
-/// Squares of the two highest orthonormal terms, chi-square of two degrees of freedom.
-constexpr double kAdequate = 9.21;  ///< its upper 1 %
+/// Squares of the two highest orthonormal terms, chi-square of two degrees of freedom: its upper
+/// 1e-4. A window is asked at every estimate, 400 times along a stroke of 1,600 samples, and what
+/// chance has cut it must grow again, kappa_s worse by the power 3.5 of its length meanwhile: one
+/// in 25 such strokes is cut. The upper 1 % would cut four times a stroke, and would make windows
+/// shorter by the sixteenth root of the two thresholds' ratio, 4 %, only.
+constexpr double kAdequate = 18.42;
 /// half extent > kMinHalfExtentSigmas * sigma: shorter, and noise along the axis is no small
 /// perturbation of the places of the samples.
 constexpr double kMinHalfExtentSigmas = 10.0;
 /// |slope| <= kMaxSlope over the window: 45 degrees.
 constexpr double kMaxSlope = 1.0;
 
-/// Grid of the prior: A in units of the size of c_2 and c_3, rho of the fall-off.
-constexpr std::array<double, 4> kAmplitudes = {0.125, 0.25, 0.5, 1.0};
+double squared(double x) { return x * x; }
+
+/// Grid of the prior: A in units of the size of c_2 and c_3, rho of the fall-off. Where noise makes
+/// up that size, the terms may be much smaller.
+constexpr std::array<double, 3> kAmplitudes = {0.0625, 0.25, 1.0};
 constexpr std::array<double, 10> kFallOffs = {0.012, 0.021, 0.036, 0.06, 0.1,
                                               0.15,  0.22,  0.3,   0.45, 0.65};
 /// What speaks for a fall-off before the window's terms do. Windows end where the highest terms are
 /// noise, so that slower ones than 0.3 are the exception: beside bends, about one window in a
 /// hundred.
 constexpr std::array<double, 10> kPriorOdds = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.01, 0.01};
+/// Odd terms over even ones, squared: anywhere on a curve, near a place where it is its own mirror
+/// image, and at one. A circle is everywhere, and its odd terms, which vanish, say nothing of its
+/// even ones.
+constexpr std::array<double, 3> kOdd2 = {1.0, 0.01, 0.0};
 
-/// Prior standard deviations of the terms from kFirstPrior on: mean squares over the grid, weighed
-/// by the evidence of the free fit's terms (their correlations left out).
-Deviations prior_deviations(const Vector& c, const Vector& variance) {
-  const double size = std::sqrt(c[2] * c[2] + c[3] * c[3] + variance[2] + variance[3]) +
-                      std::numeric_limits<double>::min();
-  Vector squares = c.cwiseAbs2();
-  std::array<double, kAmplitudes.size() * kFallOffs.size()> evidence{};
-  double best = -std::numeric_limits<double>::infinity();
-  std::size_t i = 0;
-  for (const double amplitude : kAmplitudes) {
-    for (std::size_t j = 0; j < kFallOffs.size(); ++j) {
-      const double fall_off = kFallOffs[j];
-      double sd2 = amplitude * size * amplitude * size;
-      double sum = 0.0;
-      double product = 1.0 / (kPriorOdds[j] * kPriorOdds[j]);
-      for (int k = kFirstEvidence; k < kSize; ++k) {
-        const double total = sd2 + variance[k];
-        // Relative to the first term's, so that the product stays a number.
-        product *= total / (size * size);
-        sum += squares[k] / total;
-        sd2 *= fall_off * fall_off;
-      }
-      evidence[i] = -0.5 * (std::log(product) + sum);
-      best = std::max(best, evidence[i]);
-      ++i;
+constexpr int kFallOffCount = static_cast<int>(kFallOffs.size());
+constexpr int kPairs = static_cast<int>(kAmplitudes.size()) * kFallOffCount;
+using Pairs = Eigen::Array<double, kPairs, 1>;
+
+/// A^2, rho^2 and the odds of each point of the grid.
+struct GridPoints {
+  Pairs amplitude2, fall_off2, odds;
+  GridPoints() {
+    for (int i = 0; i < kPairs; ++i) {
+      const auto fall_off = static_cast<std::size_t>(i % kFallOffCount);
+      amplitude2[i] = squared(kAmplitudes[static_cast<std::size_t>(i / kFallOffCount)]);
+      fall_off2[i] = squared(kFallOffs[fall_off]);
+      odds[i] = kPriorOdds[fall_off];
     }
   }
-  Deviations squares_of{};
+};
+
+/// The free fit's terms of one parity, at every point of the grid. A term of variance v and prior
+/// variance s2 is kept by the share s2 / (s2 + v).
+struct ParityTerms {
+  std::array<Pairs, kSize> kept;
+  std::array<Pairs, kSize> inverse;  ///< 1 / (s2 + v)
+  Pairs exponent = Pairs::Zero();    ///< of the evidence, and what stands before it, squared
+  Pairs factor2 = Pairs::Ones();
+
+  ParityTerms(int first, const Vector& c, const Vector& variance, double size2, Pairs s2,
+              const Pairs& fall_off4) {
+    for (int k = first; k < kSize; k += 2) {
+      const auto i = static_cast<std::size_t>(k);
+      inverse[i] = (s2 + variance[k]).inverse();
+      kept[i] = s2 * inverse[i];
+      exponent += squared(c[k]) * inverse[i];
+      factor2 *= size2 * inverse[i];  // relative to the size, so that the product stays a number
+      s2 *= fall_off4;
+    }
+  }
+};
+
+/// What the data say of the terms from kFirstPrior on.
+struct PriorMixture {
+  /// Of the one prior that keeps as much of each term as the grid's points do in the mean.
+  Eigen::Matrix<double, kAllTerms, 1> variances = Eigen::Matrix<double, kAllTerms, 1>::Zero();
+  /// Covariance, over the grid, of the shares that its points keep.
+  Matrix apart = Matrix::Zero();
+};
+
+/// The posterior over the grid by the evidence of the free fit's terms, their correlations left
+/// out.
+PriorMixture prior_mixture(const Vector& c, const Vector& variance) {
+  static const GridPoints points;
+  static const Pairs fall_off4 = points.fall_off2.square();
+  static const Pairs fall_off8 = fall_off4.square();
+  const double size2 =
+      c[2] * c[2] + c[3] * c[3] + variance[2] + variance[3] + std::numeric_limits<double>::min();
+  const Pairs second = size2 * points.amplitude2;
+  const Pairs third = second * points.fall_off2;
+  const ParityTerms even(kFirstEvidence, c, variance, size2, second, fall_off4);
+  const auto odd_terms = [&](double odd2) {
+    return ParityTerms(kFirstEvidence + 1, c, variance, size2, odd2 * third, fall_off4);
+  };
+  const std::array<ParityTerms, kOdd2.size()> odd = {odd_terms(kOdd2[0]), odd_terms(kOdd2[1]),
+                                                     odd_terms(kOdd2[2])};
+  double least = std::numeric_limits<double>::infinity();
+  for (const ParityTerms& terms : odd) {
+    least = std::min(least, (even.exponent + terms.exponent).minCoeff());
+  }
+  std::array<Pairs, kOdd2.size()> shares;
+  Pairs pairs = Pairs::Zero();
   double total = 0.0;
-  i = 0;
-  for (const double amplitude : kAmplitudes) {
-    for (const double fall_off : kFallOffs) {
-      const double share = std::exp(evidence[i++] - best);
-      total += share;
-      double sd2 = share * amplitude * amplitude * size * size;
-      for (int k = kFirstEvidence; k < kAllTerms; ++k) {
-        squares_of[static_cast<std::size_t>(k)] += sd2;
-        sd2 *= fall_off * fall_off;
+  for (std::size_t i = 0; i < odd.size(); ++i) {
+    shares[i] = points.odds * (even.factor2 * odd[i].factor2).sqrt() *
+                (0.5 * (least - even.exponent - odd[i].exponent)).exp();
+    pairs += shares[i];
+    total += shares[i].sum();
+  }
+  PriorMixture mixture;
+  Vector kept = Vector::Zero();
+  for (int k = kFirstPrior; k < kSize; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    double inverse = 0.0;
+    Pairs weighted = Pairs::Zero();  // what the points keep, times their shares
+    if (k % 2 == 0) {
+      weighted = pairs * even.kept[at];
+      inverse = (pairs * even.inverse[at]).sum();
+    }
+    for (std::size_t i = 0; k % 2 == 1 && i < odd.size(); ++i) {
+      weighted += shares[i] * odd[i].kept[at];
+      inverse += (shares[i] * odd[i].inverse[at]).sum();
+    }
+    const double sum = weighted.sum();
+    kept[k] = sum / total;
+    mixture.variances[k] = sum / inverse;
+    for (int j = kFirstPrior + k % 2; j <= k; j += 2) {
+      const auto before = static_cast<std::size_t>(j);
+      double both = 0.0;
+      if (k % 2 == 0) {
+        both = (weighted * even.kept[before]).sum();
+      }
+      for (std::size_t i = 0; k % 2 == 1 && i < odd.size(); ++i) {
+        both += (shares[i] * odd[i].kept[at] * odd[i].kept[before]).sum();
+      }
+      mixture.apart(k, j) = both / total - kept[k] * kept[j];
+    }
+    if (k % 2 == 1) {
+      for (int j = kFirstPrior; j < kSize; j += 2) {
+        const double both = (weighted * even.kept[static_cast<std::size_t>(j)]).sum() / total;
+        mixture.apart(std::max(j, k), std::min(j, k)) = both;
       }
     }
   }
-  for (double& square : squares_of) {
-    square = std::sqrt(square / total);
+  for (int k = kFirstPrior + 1; k < kSize; k += 2) {
+    for (int j = kFirstPrior; j < kSize; j += 2) {
+      mixture.apart(std::max(j, k), std::min(j, k)) -= kept[k] * kept[j];
+    }
   }
-  return squares_of;
+  mixture.apart = mixture.apart.selfadjointView<Eigen::Lower>();
+  // No sample says anything of the terms that the polynomial lacks but through A and rho.
+  const Pairs ninth = third * fall_off4 * fall_off8;
+  const Pairs odd_shares = kOdd2[0] * shares[0] + kOdd2[1] * shares[1] + kOdd2[2] * shares[2];
+  mixture.variances[kSize] = (odd_shares * ninth).sum() / total;
+  mixture.variances[kSize + 1] = (pairs * ninth * points.fall_off2).sum() / total;
+  return mixture;
 }
 
 /// Derivatives 0 ... 4 at u = 0 of P_0 ... P_10.
@@ -95,8 +182,6 @@ const Eigen::Matrix<double, 5, kAllTerms>& basis_at_middle() {
   static const Eigen::Matrix<double, 5, kAllTerms> basis = legendre_derivatives<5, kAllTerms>(0.0);
   return basis;
 }
-
-double squared(double x) { return x * x; }
 
 }  // namespace
 
@@ -176,10 +261,11 @@ LocalResult fit_window(std::span<const PathNode> nodes, double noise, double for
 
   const Matrix inverse_factor = inverse_lower(fit.factor());
   const Vector variance = variance_of_unit * inverse_factor.colwise().squaredNorm().transpose();
-  const Deviations prior = prior_deviations(fit.coefficients(), variance);
+  const Vector free = fit.coefficients();
+  const PriorMixture prior = prior_mixture(free, variance);
   Matrix information = fit.normal();
   for (int k = kFirstPrior; k < kSize; ++k) {
-    information(k, k) += variance_of_unit / squared(prior[static_cast<std::size_t>(k)]);
+    information(k, k) += variance_of_unit / prior.variances[k];
   }
   Matrix factor;
   if (!cholesky(information, &factor)) {
@@ -198,15 +284,21 @@ LocalResult fit_window(std::span<const PathNode> nodes, double noise, double for
   e.kappa = geometry.kappa / unit;
   e.kappa_s = geometry.kappa_s / (unit * unit);
   const Eigen::Matrix<double, 4, kSize> inner = rows.leftCols<kSize>();
-  e.covariance = variance_of_unit * inner * inverse_cholesky(factor) * inner.transpose();
+  Eigen::Matrix<double, kSize, 4> whitened;
+  for (int i = 0; i < 4; ++i) {
+    whitened.col(i) = solve_lower<kSize>(factor, inner.row(i).transpose());
+  }
+  e.covariance = variance_of_unit * whitened.transpose().lazyProduct(whitened);
   // A term that the polynomial lacks goes partly into those that it has: few samples cannot tell
   // them apart.
   for (int k = 0; k < kTail; ++k) {
     const Vector taken = solve_cholesky<kSize>(factor, overlap.col(k));
     const Eigen::Vector4d missing = rows.col(kSize + k) - inner * taken;
-    e.covariance +=
-        squared(prior[static_cast<std::size_t>(kSize + k)]) * missing * missing.transpose();
+    e.covariance += prior.variances[kSize + k] * missing * missing.transpose();
   }
+  // The grid's points differ in how much of the terms they keep.
+  const Eigen::Matrix<double, 4, kSize> terms = inner * free.asDiagonal();
+  e.covariance += terms.lazyProduct(prior.apart).eval().lazyProduct(terms.transpose());
   e.window_arc_m = unit * arc_length<kSize>(c, frame.first_u, frame.last_u);
   e.sigma_m = noise;
   result.status = LocalStatus::Ok;

@@ -5,6 +5,7 @@
 //   live_tree: of an answer, the invariants and the tree. The label is the contacts' mean number.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <chrono>
 #include <random>
 
@@ -24,8 +25,11 @@ std::vector<test::Scene> scenes_of(CurveClass curve_class, int points_per_patch,
   test::SceneOptions options;
   options.points_per_patch = points_per_patch;
   options.patches = patches;
+  // Many patches share the curve piece between them.
+  options.least_fraction = std::min(options.least_fraction, 0.5 / patches);
+  options.most_fraction = std::min(options.most_fraction, 0.9 / patches);
   std::vector<test::Scene> scenes;
-  for (int i = 0; i < kScenes; ++i) {
+  for (int i = 0; i < std::max(8, 2 * kScenes / patches); ++i) {
     scenes.push_back(test::random_scene(curve_class, options, rng));
   }
   return scenes;
@@ -122,12 +126,12 @@ void stream(benchmark::State& state) {
 }
 BENCHMARK(stream)->DenseRange(1, 8)->Unit(benchmark::kMicrosecond);
 
-/// What the tree adds to an answer for 222 samples.
+/// What the tree adds to an answer for so many patches of 111 samples.
 void live_tree(benchmark::State& state) {
   const auto curve_class = static_cast<CurveClass>(state.range(0));
   std::vector<test::AnsweredScene> scenes;
   std::size_t contacts = 0;
-  for (const test::Scene& scene : scenes_of(curve_class, 111, 2)) {
+  for (const test::Scene& scene : scenes_of(curve_class, 111, static_cast<int>(state.range(1)))) {
     scenes.push_back(test::answered(scene));
     contacts += scenes.back().contacts.size();
   }
@@ -139,7 +143,9 @@ void live_tree(benchmark::State& state) {
   state.SetLabel(std::string(name_of(curve_class)) + ", " +
                  std::to_string(contacts / scenes.size()) + " contacts");
 }
-BENCHMARK(live_tree)->DenseRange(1, 8)->Unit(benchmark::kMicrosecond);
+BENCHMARK(live_tree)
+    ->ArgsProduct({{1, 2, 3, 4, 5, 6, 7, 8}, {2, 8, 16, 64}})
+    ->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace palpate

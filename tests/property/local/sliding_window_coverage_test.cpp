@@ -20,7 +20,8 @@ constexpr std::array kLengths_m = {0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.
 /// Of the size of the parts.
 constexpr std::array kNoises = {0.0, 1e-5, 1e-4, 5e-4, 2e-3};
 constexpr double kSize_m = 0.025;
-constexpr int kStrokes = 2;  ///< of each kind
+/// Of each kind; PALPATE_TEST_STRESS multiplies it.
+int strokes() { return std::max(1, test::stress_count(2)); }
 /// Windows looked at along a stroke, first and last among them: neighbours share their samples.
 constexpr std::size_t kWindows = 12;
 /// What a noise of zero is stated as: double precision's own at 0.2 m from the origin. [m]
@@ -67,7 +68,7 @@ Tallies walk(bool stated) {
   for (std::size_t shape = 0; shape < test::kStrokeShapes; ++shape) {
     for (const double length : kLengths_m) {
       for (const double noise : kNoises) {
-        for (int i = 0; i < kStrokes; ++i) {
+        for (int i = 0; i < strokes(); ++i) {
           if (turn++ % every != 0) {
             continue;
           }
@@ -90,6 +91,10 @@ Tallies walk(bool stated) {
             const Eigen::Vector3d error = stroke.error_of(estimates[e]);
             for (Tally* tally :
                  {&tallies.pooled, &tallies.classes[stroke.name], &tallies.cells[cell]}) {
+              // What double precision rounds has a bound and no deviation that could be stated.
+              if (noise == 0.0 && tally != &tallies.cells[cell]) {
+                continue;
+              }
               tally->count += 1.0;
               for (std::size_t k = 0; k < 2; ++k) {
                 const auto row = static_cast<Eigen::Index>(k) + 2;
@@ -119,8 +124,8 @@ TEST_P(SlidingWindowCoverage, PublishedDeviationsHoldTheErrors) {
     // 0.9 less what chance takes from it with probability 1e-3; the windows of a stroke share
     // samples and, where it is estimated, the noise, and count as four.
     constexpr double kDeviations = 3.1;
-    constexpr double kIndependent = 4.0 * kStrokes * kNoises.size();
-    const double least = 0.90 - kDeviations * std::sqrt(0.90 * 0.10 / kIndependent);
+    const double independent = 4.0 * strokes() * kNoises.size();
+    const double least = 0.90 - kDeviations * std::sqrt(0.90 * 0.10 / independent);
     for (std::size_t k = 0; k < 2; ++k) {
       EXPECT_GE(tally.share(k), least) << name << (k == 0 ? " kappa" : " kappa_s");
     }
@@ -132,14 +137,14 @@ TEST_P(SlidingWindowCoverage, PublishedDeviationsHoldTheErrors) {
       constexpr double kMostGross = 0.01;
       EXPECT_LE(tally.gross_share(k), kMostGross) << name << (k == 0 ? " kappa" : " kappa_s");
       EXPECT_LE(tally.rms(k), 1.1) << name << (k == 0 ? " kappa" : " kappa_s");
-      // Not bought by width: the published variance is at most twice the errors'.
-      EXPECT_GE(tally.rms(k), std::sqrt(0.5)) << name << (k == 0 ? " kappa" : " kappa_s");
+      // Not bought by width.
+      EXPECT_GE(tally.rms(k), 0.8) << name << (k == 0 ? " kappa" : " kappa_s");
     }
   }
   tallies.pooled.print("all");
   for (std::size_t k = 0; k < 2; ++k) {
     // 95 % in the limit of a normal law; two per cent are more than the scatter of so many windows.
-    EXPECT_GE(tallies.pooled.share(k), 0.93) << (k == 0 ? "kappa" : "kappa_s");
+    EXPECT_NEAR(tallies.pooled.share(k), 0.95, 0.02) << (k == 0 ? "kappa" : "kappa_s");
   }
 }
 
