@@ -157,7 +157,7 @@ void touch(const Piece& piece, const SceneOptions& options, double scale, std::m
       end = begin + arc;
       const double t_begin = table.parameter_at(begin);
       const double t_end = table.parameter_at(end);
-      if (piece.gap < 0.0 || t_begin > piece.gap || t_end < -piece.gap) {
+      if (options.across_cusp || piece.gap < 0.0 || t_begin > piece.gap || t_end < -piece.gap) {
         break;
       }
     }

@@ -23,6 +23,9 @@ struct SceneOptions {
   double least_arc_over_size = 0.0;
   double most_arc_over_size = 0.0;
   double size_m = 0.05;  ///< half diagonal of the whole curve piece [m]
+  /// Whether a patch may run across a cusp, or next to it: nothing follows a path there, but single
+  /// touches may lie so.
+  bool across_cusp = false;
 };
 
 struct Scene {

@@ -190,6 +190,41 @@ SearchCase search_case(CurveClass curve_class, std::uint64_t seed, std::uint32_t
   return result;
 }
 
+SearchCase lone_search_case(CurveClass curve_class, std::uint64_t seed, std::uint32_t number) {
+  // A sequence of its own: not that of search_case.
+  constexpr std::uint32_t kLone = 0x10e;
+  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+                         static_cast<std::uint32_t>(curve_class), number, kLone};
+  std::mt19937_64 rng(sequence);
+  constexpr double kMostTouches = 60.0;
+  const double fewest = degrees_of_freedom(curve_class) + 1.0;
+  const auto count = static_cast<std::size_t>(std::lround(arc_or_noise(rng, fewest, kMostTouches)));
+  SceneOptions options;
+  options.patches = std::uniform_int_distribution<int>(1, 3)(rng);
+  options.points_per_patch = 200;
+  options.sigma_over_size = arc_or_noise(rng, 1e-6, 1e-2);
+  options.least_arc_over_size = 0.05;
+  options.most_arc_over_size = 4.0;
+  options.across_cusp = true;
+  const Scene strokes = random_scene(curve_class, options, rng);
+  std::vector<std::pair<Vec2, double>> places;
+  for (std::size_t p = 0; p < strokes.patches.size(); ++p) {
+    for (std::size_t i = 0; i < strokes.patches[p].size(); ++i) {
+      places.emplace_back(strokes.patches[p][i], strokes.t[p][i]);
+    }
+  }
+  std::shuffle(places.begin(), places.end(), rng);
+  SearchCase result;
+  result.scene = strokes;
+  result.scene.patches.clear();
+  result.scene.t.clear();
+  for (std::size_t k = 0; k < count; ++k) {
+    result.scene.patches.push_back({places[k].first});
+    result.scene.t.push_back({places[k].second});
+  }
+  return result;
+}
+
 SearchOutcome outcome_on_reduced(const SearchCase& search_case) {
   return outcome(search_case, false);
 }

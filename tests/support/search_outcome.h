@@ -19,6 +19,11 @@ struct SearchCase {
 /// radius 1e-3 to 1e-1 sizes, touches from outside the bends.
 SearchCase search_case(CurveClass curve_class, std::uint64_t seed, std::uint32_t number);
 
+/// The same of touches one at a time, in no order: every patch is a single sample. One more than
+/// the class has unknowns to 60 of them, log-uniform, on one to three arcs as above, which may lie
+/// next to a cusp and across it.
+SearchCase lone_search_case(CurveClass curve_class, std::uint64_t seed, std::uint32_t number);
+
 struct SearchOutcome {
   bool counted = false;  ///< the truth leads to an optimum of the class; else there is none
   bool refused = false;  ///< the truth leads to one that is taken for none that can be touched

@@ -35,6 +35,26 @@ AxisFit refine_axis_and_arms(std::span<const FitPoint> points, std::span<const P
   return fit;
 }
 
+/// The fit as it is, with the points' foot points and chi-square.
+PolynomialFit placed_on(std::span<const FitPoint> points, PolynomialFit fit) {
+  fit.chi2 = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PlacedPoint placed = place_on(fit, fit.t[i], points[i].position);
+    const double residual = placed.signed_distance * points[i].inverse_sigma;
+    fit.t[i] = placed.t;
+    fit.chi2 += residual * residual;
+  }
+  return fit;
+}
+
+/// Ended in the same valley: seeds on both sides of one do.
+bool is_same_valley(const AxisFit& a, const AxisFit& b) {
+  constexpr double kSameChi2 = 1e-2;   // of it: where a walk ends
+  constexpr double kSameAngle = 1e-2;  // rad
+  return std::abs(a.chi2 - b.chi2) <= kSameChi2 * a.chi2 &&
+         std::abs(std::remainder(a.theta - b.theta, 2.0 * kPi)) <= kSameAngle;
+}
+
 /// Walks the valleys of all seeds on the reduced points; best first.
 std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& reduced) {
   constexpr int kMostIterations = 15;
@@ -47,6 +67,7 @@ std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& redu
   }
   std::sort(walked.begin(), walked.end(),
             [](const AxisFit& a, const AxisFit& b) { return a.chi2 < b.chi2; });
+  walked.erase(std::unique(walked.begin(), walked.end(), is_same_valley), walked.end());
   return walked;
 }
 
@@ -103,18 +124,6 @@ SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced
     std::swap(pair.best, pair.rival);
   }
   return pair;
-}
-
-/// The fit as it is, with the points' foot points and chi-square.
-PolynomialFit placed_on(std::span<const FitPoint> points, PolynomialFit fit) {
-  fit.chi2 = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PlacedPoint placed = place_on(fit, fit.t[i], points[i].position);
-    const double residual = placed.signed_distance * points[i].inverse_sigma;
-    fit.t[i] = placed.t;
-    fit.chi2 += residual * residual;
-  }
-  return fit;
 }
 
 void keep_better(std::optional<PolynomialFit>* best, PolynomialFit fit) {

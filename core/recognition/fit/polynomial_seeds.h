@@ -14,6 +14,9 @@ namespace palpate {
 struct PolynomialSeeds {
   static constexpr std::size_t kGraphSeeds = 3;  ///< at most, for the models without arms
   static constexpr std::size_t kArmSeeds = 5;    ///< at most, for the models with arms
+  /// The same where points are touches of their own: what may lie on either arm has about as many
+  /// minima again as strokes have, which hold their points on one.
+  static constexpr std::size_t kLoneArmSeeds = 10;
   std::vector<AxisFit> parabola;
   std::vector<AxisFit> cubical_parabola;
   std::vector<AxisFit> semi_cubical_parabola;

@@ -11,6 +11,7 @@
 #include "core/curves/curve.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/class_fits.h"
+#include "core/recognition/samples/farthest_first.h"
 #include "core/recognition/smooth/arcs.h"
 
 namespace palpate {
@@ -38,23 +39,18 @@ Indices lone_patches(std::span<const StoredPatch> patches) {
   return lone;
 }
 
-/// `most` of the touches, each the farthest from those before it. O(most * touches).
+/// `most` of the touches, spread widest; all where there are no more.
 Indices spread(std::span<const StoredPatch> patches, const Indices& lone, std::size_t most) {
   if (lone.size() <= most) {
     return lone;
   }
-  const auto at = [&](std::size_t k) { return patches[lone[k]].samples.front().position_m; };
-  std::vector<double> squares(lone.size(), std::numeric_limits<double>::infinity());
+  std::vector<Vec2> places;
+  for (const std::size_t p : lone) {
+    places.push_back(patches[p].samples.front().position_m);
+  }
   Indices chosen;
-  std::size_t next = 0;
-  while (chosen.size() < most) {
-    chosen.push_back(lone[next]);
-    const Vec2 last = at(next);
-    for (std::size_t k = 0; k < lone.size(); ++k) {
-      squares[k] = std::min(squares[k], (at(k) - last).squaredNorm());
-    }
-    next = static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) -
-                                    squares.begin());
+  for (const std::size_t k : farthest_first(places, most)) {
+    chosen.push_back(lone[k]);
   }
   return chosen;
 }

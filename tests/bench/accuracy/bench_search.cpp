@@ -1,6 +1,6 @@
 // How often the search for a class's optimum misses it: beside the optimum that the truth leads to
 // (tests/support/search_outcome.h). Prints tables by class, patches and noise.
-//   bench_search [--scenes N] [--seed S] [--list]
+//   bench_search [--touches] [--scenes N] [--seed S] [--list]
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -20,7 +20,9 @@ constexpr double kMissed = 1.0;
 const double kDecisive = 2.0 * std::log(1000.0);
 
 constexpr std::array kNoiseBounds = {1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
-constexpr int kMostPatches = 6;
+// How many patches, or touches, are counted together: up to these.
+constexpr std::array<std::size_t, 6> kPatchBounds = {1, 2, 3, 4, 5, 6};
+constexpr std::array<std::size_t, 6> kTouchBounds = {6, 8, 12, 20, 35, 60};
 
 struct Count {
   int cases = 0;
@@ -53,9 +55,11 @@ int main(int argc, char** argv) {
   int scenes = 1000;
   std::uint64_t seed = 2026;
   bool list = false;
+  bool touches = false;
   if (const auto end = bench::BenchOptions("How often the search for a class's optimum misses it")
                            .number("--scenes", scenes, "Scenes of each class")
                            .seed(seed)
+                           .flag("--touches", touches, "Touches one at a time, in no order")
                            .flag("--list", list, "Print every case missed")
                            .parse(argc, argv)) {
     return *end;
@@ -68,13 +72,16 @@ int main(int argc, char** argv) {
       "that are refused as not "
       "touchable\n",
       kMissed, kDecisive, kMissed);
+  const auto& bounds = touches ? kTouchBounds : kPatchBounds;
   for (const CurveClass curve_class : kCurveClasses) {
     Count all;
-    std::array<Count, kMostPatches> by_patches;
+    std::array<Count, kPatchBounds.size()> by_patches;
     std::array<Count, kNoiseBounds.size() - 1> by_noise;
     std::array<Count, 2> by_tip;
     for (int i = 0; i < scenes; ++i) {
-      const auto drawn = test::search_case(curve_class, seed, static_cast<std::uint32_t>(i));
+      const auto number = static_cast<std::uint32_t>(i);
+      const auto drawn = touches ? test::lone_search_case(curve_class, seed, number)
+                                 : test::search_case(curve_class, seed, number);
       const auto reduced = test::outcome_on_reduced(drawn);
       const auto on_all = test::outcome_on_all(drawn);
       const double sigma = drawn.scene.sigma_m / test::SceneOptions{}.size_m;
@@ -84,7 +91,9 @@ int main(int argc, char** argv) {
         ++noise;
       }
       all.add(reduced, on_all);
-      by_patches[patches - 1].add(reduced, on_all);
+      std::size_t bin = 0;
+      while (bin + 1 < bounds.size() && patches > bounds[bin]) ++bin;
+      by_patches[bin].add(reduced, on_all);
       by_noise[noise].add(reduced, on_all);
       by_tip[drawn.tip_radius_m > 0.0 ? 1 : 0].add(reduced, on_all);
       if (list && reduced.refused) {
@@ -105,7 +114,8 @@ int main(int argc, char** argv) {
     std::printf("%s\n", std::string(name_of(curve_class)).c_str());
     print("all", all);
     for (std::size_t p = 0; p < by_patches.size(); ++p) {
-      print(std::to_string(p + 1) + (p == 0 ? " patch" : " patches"), by_patches[p]);
+      print("up to " + std::to_string(bounds[p]) + (touches ? " touches" : " patches"),
+            by_patches[p]);
     }
     for (std::size_t k = 0; k < by_noise.size(); ++k) {
       char title[40];

@@ -70,6 +70,65 @@ std::string share(int part, int whole) {
                           " % of " + std::to_string(whole);
 }
 
+/// Constant of a recording beside its known shape and lobe along an axis, and their variances as
+/// white noise of the samples' scatter leaves them. The lobes between an ellipse's axes are not
+/// told from its own turn.
+struct KnownTerms {
+  Eigen::VectorXd value_m;
+  Eigen::VectorXd variance_m2;
+};
+
+KnownTerms terms_of(const Qualification& result, double axis_angle) {
+  constexpr Eigen::Index kTold = 2;
+  constexpr int kLobes = 2;
+  const int count = offset_coefficients(kLobes);
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count + 2, count + 2);  // and the place's x, y
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(count + 2);
+  double squares = 0.0;
+  int used = 0;
+  for (const QualifiedSample& sample : result.samples) {
+    if (sample.spike) continue;
+    Eigen::VectorXd row(count + 2);
+    row << offset_basis(sample.normal_angle - axis_angle, kLobes).transpose(),
+        std::cos(sample.normal_angle), std::sin(sample.normal_angle);
+    normal += row * row.transpose();
+    right += sample.distance_m * row;
+    squares += sample.distance_m * sample.distance_m;
+    ++used;
+  }
+  const Eigen::MatrixXd inverse = normal.inverse();
+  const Eigen::VectorXd value = inverse * right;
+  const double variance = (squares - value.dot(right)) / (used - count - 2);
+  return {value.head(kTold), variance * inverse.diagonal().head(kTold)};
+}
+
+/// What a file from the ring cannot know: by how much the same probe is off otherwise on the part.
+void print_reproducibility(const Qualification& on_ring, const Ring& ring, const EllipsePart& part,
+                           std::ostream& out) {
+  ArtefactRecording recording;
+  recording.strokes.push_back(
+      {samples_of(part.recording.points), ring.recording.context.tip_radius_m});
+  const Qualification on_part =
+      qualify(Ellipse{part.semi_major_m, part.semi_minor_m}, {{recording}});
+  if (on_part.poses.empty()) return;
+  const double axis_angle = on_part.poses.front().theta;
+  const KnownTerms first = terms_of(on_ring, axis_angle);
+  const KnownTerms second = terms_of(on_part, axis_angle);
+  out << "\n| beside its known shape | constant [um] | lobe along the part's axes [um] "
+         "|\n|---|---|---|\n";
+  const auto print = [&](const char* name, const KnownTerms& terms) {
+    out << "| " << name;
+    for (Eigen::Index i = 0; i < terms.value_m.size(); ++i) {
+      out << " | " << 1e6 * terms.value_m[i] << " +- " << 1e6 * std::sqrt(terms.variance_m2[i]);
+    }
+    out << " |\n";
+  };
+  print("ring", first);
+  print("part", second);
+  print("part less ring",
+        {second.value_m - first.value_m, Eigen::VectorXd(first.variance_m2 + second.variance_m2)});
+}
+
 }  // namespace
 
 void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostream& out) {
@@ -136,6 +195,7 @@ void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostrea
         << 1e6 * (answer.shape.values[1] - part.semi_minor_m) << " +- "
         << 1e6 * std::sqrt(answer.covariance(1, 1)) << " |\n";
   }
+  print_reproducibility(result, ring, part, out);
 }
 
 }  // namespace palpate::bench

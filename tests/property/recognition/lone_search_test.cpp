@@ -1,0 +1,51 @@
+// Whether a class's optimum is found among touches one at a time, in no order.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/support/search_outcome.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+/// Chi-square above the optimum by which a class is taken for out though it is the true one: odds
+/// of 1000.
+const double kDecisive = 2.0 * std::log(1000.0);
+
+/// One arm of a semi-cubical parabola from beside its cusp on. A vertex in the midst of the touches
+/// must not leave those before it free: found so, the class was out by 4000 of chi-square.
+TEST(LoneSearch, FindsOneArmOfASemiCubicalParabolaBesideItsCusp) {
+  constexpr double kA = 4.0;  // 1/sqrt m
+  constexpr double kB = 0.3;
+  constexpr double kFrom = 0.06;  // sqrt m
+  constexpr double kTo = 0.2;
+  constexpr double kSigma_m = 1e-4;
+  constexpr int kTouches = 11;
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> noise(0.0, kSigma_m);
+  const int scenes = test::stress_count(60);
+  for (int i = 0; i < scenes; ++i) {
+    test::SearchCase scene;
+    scene.scene.curve_class = CurveClass::SemiCubicalParabola;
+    scene.scene.values = {kA, kB, 0.0};
+    scene.scene.world_T_curve = {test::uniform(rng, -0.5, 0.5), test::uniform(rng, -0.5, 0.5),
+                                 test::uniform(rng, -kPi, kPi)};
+    scene.scene.sigma_m = kSigma_m;
+    for (int k = 0; k < kTouches; ++k) {
+      const double t = test::uniform(rng, kFrom, kTo);
+      Vec2 place = scene.scene.world_T_curve * Vec2(t * t, kA * t * t * t + kB * t * t);
+      const double y = noise(rng);
+      place += Vec2(noise(rng), y);
+      scene.scene.patches.push_back({place});
+      scene.scene.t.push_back({t});
+    }
+    const test::SearchOutcome outcome = test::outcome_on_reduced(scene);
+    ASSERT_TRUE(outcome.counted) << i;
+    EXPECT_LT(outcome.excess(), kDecisive) << i;
+  }
+}
+
+}  // namespace
+}  // namespace palpate
