@@ -95,12 +95,12 @@ if [ "$sanitize" = yes ]; then
   export ASAN_OPTIONS=detect_stack_use_after_return=1 UBSAN_OPTIONS=print_stacktrace=1
   begin_part "building (address and undefined behaviour)" 480
   build asan tests_core tests_recognition
-  begin_part "testing (address and undefined behaviour)" 420
+  begin_part "testing (address and undefined behaviour)" 240
   # The processes' own tests measure time; their twin in one process is among the others. The statistics were
   # taken above: here a thirtieth of their scenes runs the same code.
   PALPATE_TEST_STRESS=0.03 \
     ctest --test-dir build/asan --output-on-failure -j "$jobs" -L 'core|recognition'
-  begin_part "building (thread)" 300
+  begin_part "building (thread)" 150
   build tsan twin_test
   begin_part "testing (thread)" 60
   # libzmq is not instrumented: its hand-over between threads looks like a race.
@@ -110,7 +110,7 @@ fi
 
 if [ "$fuzz" != 0 ]; then
   targets=(answers config contact_csv http_border ingest keys part probe recording scene)
-  begin_part "building (fuzz)" 120
+  begin_part "building (fuzz)" 60
   build asan "${targets[@]/#/fuzz_}"
   mkdir -p build/fuzz
   # Some inputs a second under sanitizers: it tells something in minutes only.

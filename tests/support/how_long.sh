@@ -8,11 +8,11 @@
 calibration_reference_s=4.1
 # Core seconds there of what the scripts do, from empty folders. Of a build: tests/support/cpu_seconds.py.
 demo_build_cost=320
-strict_build_cost=800
-strict_test_cost=340
-sanitize_cost=2570
-tidy_cost=450
-fuzz_cost=500
+strict_build_cost=650
+strict_test_cost=530
+sanitize_cost=1520
+tidy_cost=460
+fuzz_cost=300
 
 calibrate() {  # sets calibration_s, the seconds that it takes here and now
   local LC_ALL=C  # a point in EPOCHREALTIME
