@@ -318,7 +318,7 @@ void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSa
     if (drawing.curve->places.front().band) table.key(kBandColour, band_label(*drawing.curve));
     table.key(kXAxisColour, "its x axis");
     table.key(kYAxisColour, "its y axis");
-    if (drawing.curve->places.front().band) table.key(kBandColour, "ellipse: its origin, 95 %");
+    if (drawing.curve->places.front().band) table.key(kBandColour, "where its origin is, 95 %");
   }
   for (const DrawnCurve& rival : drawing.rivals) {
     table.key(kRivalColour,
