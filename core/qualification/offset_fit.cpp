@@ -64,6 +64,11 @@ Row row_of(const Curve& artefact, MaterialSign material, const ArtefactSample& s
   return row;
 }
 
+/// What a sample lies farther out for its recording's set-up. [m]
+double setup_of(const OffsetUnknowns& unknowns, const ArtefactSample& sample) {
+  return unknowns.setup_m.empty() ? 0.0 : unknowns.setup_m[sample.recording];
+}
+
 /// Order of the harmonics that so many coefficients are.
 int order_of(Eigen::Index coefficients) {
   return coefficients == 1 ? 0 : static_cast<int>(coefficients + 1) / 2;
@@ -73,8 +78,12 @@ int order_of(Eigen::Index coefficients) {
 class SampleCost : public ceres::CostFunction {
  public:
   SampleCost(const Curve& artefact, MaterialSign material, const ArtefactSample& sample,
-             double scale_m, int coefficients)
-      : artefact_(artefact), material_(material), sample_(sample), scale_m_(scale_m) {
+             double setup_m, double scale_m, int coefficients)
+      : artefact_(artefact),
+        material_(material),
+        sample_(sample),
+        setup_m_(setup_m),
+        scale_m_(scale_m) {
     set_num_residuals(1);
     *mutable_parameter_block_sizes() = {2, 1, coefficients};
   }
@@ -84,7 +93,7 @@ class SampleCost : public ceres::CostFunction {
     const Row row =
         row_of(artefact_, material_, sample_, {blocks[0][0], blocks[0][1], blocks[1][0]},
                Eigen::Map<const Eigen::VectorXd>(blocks[2], count), order_of(count), 0.0);
-    residual[0] = row.residual / scale_m_;
+    residual[0] = (row.residual - setup_m_) / scale_m_;
     if (jacobians != nullptr) {
       if (jacobians[0] != nullptr) {
         std::copy_n(row.by_translation.data(), 2, jacobians[0]);
@@ -104,6 +113,7 @@ class SampleCost : public ceres::CostFunction {
   const Curve& artefact_;
   MaterialSign material_;
   const ArtefactSample& sample_;
+  double setup_m_;
   double scale_m_;
 };
 
@@ -111,10 +121,11 @@ class SampleCost : public ceres::CostFunction {
 class WhiteCost : public ceres::CostFunction {
  public:
   WhiteCost(const Curve& artefact, MaterialSign material, std::span<const ArtefactSample> samples,
-            const KnownNoise& noise, std::size_t recordings, int coefficients)
+            const KnownNoise& noise, const OffsetUnknowns& unknowns, int coefficients)
       : artefact_(artefact), material_(material), samples_(samples), noise_(noise) {
     set_num_residuals(static_cast<int>(samples.size()));
-    for (std::size_t i = 0; i < recordings; ++i) {
+    for (const ArtefactSample& sample : samples) setup_m_.push_back(setup_of(unknowns, sample));
+    for (std::size_t i = 0; i < unknowns.poses.size(); ++i) {
       mutable_parameter_block_sizes()->push_back(2);
       mutable_parameter_block_sizes()->push_back(1);
     }
@@ -138,7 +149,7 @@ class WhiteCost : public ceres::CostFunction {
       const Row row = row_of(artefact_, material_, sample,
                              {blocks[2 * r][0], blocks[2 * r][1], blocks[2 * r + 1][0]},
                              coefficients, order_of(count), lag);
-      white(i, 0) = row.residual;
+      white(i, 0) = row.residual - setup_m_[static_cast<std::size_t>(i)];
       if (jacobians != nullptr) {
         const auto first = static_cast<Eigen::Index>(1 + 3 * r);
         white.block(i, first, 1, 2) = row.by_translation;
@@ -172,6 +183,7 @@ class WhiteCost : public ceres::CostFunction {
   MaterialSign material_;
   std::span<const ArtefactSample> samples_;
   KnownNoise noise_;
+  std::vector<double> setup_m_;  ///< by sample
 };
 
 /// The harmonics over what they are expected to have.
@@ -235,9 +247,11 @@ OffsetResiduals residuals_about(const Curve& artefact, MaterialSign material,
   const auto rows = static_cast<Eigen::Index>(samples.size());
   const Eigen::Index pose_columns = is_circle(artefact) ? 2 : 3;
   const auto recordings = static_cast<Eigen::Index>(unknowns.poses.size());
+  const Eigen::Index setups = unknowns.setup_m.empty() ? 0 : recordings - 1;
   OffsetResiduals about;
   about.residual_m.resize(rows);
-  about.flat = Eigen::MatrixXd::Zero(rows, pose_columns * recordings + (unknowns.lag_m ? 1 : 0));
+  about.flat =
+      Eigen::MatrixXd::Zero(rows, setups + pose_columns * recordings + (unknowns.lag_m ? 1 : 0));
   about.basis.resize(rows, offset_coefficients(order));
   for (Eigen::Index i = 0; i < rows; ++i) {
     const ArtefactSample& sample = samples[static_cast<std::size_t>(i)];
@@ -245,8 +259,10 @@ OffsetResiduals residuals_about(const Curve& artefact, MaterialSign material,
     const Pose2& pose = unknowns.poses[sample.recording];
     const Row row = row_of(artefact, material, sample, pose, unknowns.offset.coefficients_m,
                            unknowns.offset.order, lag);
-    const Eigen::Index first = pose_columns * static_cast<Eigen::Index>(sample.recording);
-    about.residual_m[i] = row.residual;
+    const auto recording = static_cast<Eigen::Index>(sample.recording);
+    const Eigen::Index first = setups + pose_columns * recording;
+    about.residual_m[i] = row.residual - setup_of(unknowns, sample);
+    if (setups > 0 && recording > 0) about.flat(i, recording - 1) = 1.0;
     about.flat.block(i, first, 1, 2) = -row.by_translation;
     if (pose_columns == 3) about.flat(i, first + 2) = -row.by_angle;
     if (unknowns.lag_m) about.flat(i, about.flat.cols() - 1) = -row.by_lag;
@@ -265,10 +281,10 @@ bool fit_robustly(const Curve& artefact, MaterialSign material,
   add_poses(artefact, blocks, problem);
   const int count = static_cast<int>(blocks.coefficients.size());
   for (const ArtefactSample& sample : samples) {
-    problem.AddResidualBlock(new SampleCost(artefact, material, sample, scale_m, count),
-                             new ceres::CauchyLoss(kWidth),
-                             blocks.translation[sample.recording].data(),
-                             &blocks.angle[sample.recording], blocks.coefficients.data());
+    problem.AddResidualBlock(
+        new SampleCost(artefact, material, sample, setup_of(unknowns, sample), scale_m, count),
+        new ceres::CauchyLoss(kWidth), blocks.translation[sample.recording].data(),
+        &blocks.angle[sample.recording], blocks.coefficients.data());
   }
   add_prior(prior, blocks, problem);
   ceres::Solver::Options options = solver_options();
@@ -295,9 +311,8 @@ std::optional<double> fit_under_noise(const Curve& artefact, MaterialSign materi
   const int count = static_cast<int>(blocks.coefficients.size());
   all.push_back(blocks.coefficients.data());
   all.push_back(&blocks.lag);
-  problem.AddResidualBlock(
-      new WhiteCost(artefact, material, samples, noise, unknowns.poses.size(), count), nullptr,
-      all);
+  problem.AddResidualBlock(new WhiteCost(artefact, material, samples, noise, unknowns, count),
+                           nullptr, all);
   if (!unknowns.lag_m) problem.SetParameterBlockConstant(&blocks.lag);
   add_prior(prior, blocks, problem);
   ceres::Solver::Summary summary;

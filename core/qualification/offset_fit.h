@@ -14,14 +14,18 @@ namespace palpate {
 struct OffsetUnknowns {
   std::vector<Pose2> poses;  ///< of the recordings
   NormalOffset offset;
+  /// What a recording's constant differs by from the offset's: a set-up of its own. Empty = all are
+  /// alike. The fits below hold it as it is.
+  std::vector<double> setup_m;
   std::optional<double> lag_m;  ///< nullopt = not sought, 0
 };
 
 /// Residuals of all samples about the unknowns, and how they change: columns as in OffsetModel.
 struct OffsetResiduals {
   Eigen::VectorXd residual_m;  ///< distance less offset
-  Eigen::MatrixXd flat;        ///< x, y (and angle, where the artefact is no circle) of each
-                               ///< recording, then the lag; a column's negative derivative
+  Eigen::MatrixXd flat;        ///< constant of each recording but the first, where they have their
+                               ///< own; x, y (and angle, where the artefact is no circle) of each
+                               ///< recording; the lag; a column's negative derivative
   Eigen::MatrixXd basis;       ///< of `order`
   std::vector<double> normal_angle;
 };

@@ -1,10 +1,12 @@
 #include "core/qualification/probe_correction.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "core/numerics/symmetric_eigen.h"
+#include "core/recognition/verdict/determined.h"
 
 namespace palpate {
 namespace {
@@ -81,6 +83,14 @@ std::optional<Curve> curve_of(const Recognition& answer) {
   return answer.hypotheses.empty() || answer.hypotheses.front().at_limit
              ? std::nullopt
              : make_curve(answer.shape.curve_class, answer.shape.values);
+}
+
+double half_extent(std::span<const ProbedPatch> patches) {
+  Eigen::AlignedBox2d box;
+  for (const ProbedPatch& patch : patches) {
+    for (const ContactSample& sample : patch.samples) box.extend(sample.position_m);
+  }
+  return box.isEmpty() ? 0.0 : 0.5 * box.diagonal().norm();
 }
 
 }  // namespace
@@ -174,9 +184,30 @@ ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& pose,
   for (const auto& [probe, sum] : by_probe) {
     const Eigen::MatrixXd influence = solve.lazyProduct(sum);
     covariance +=
-        influence.lazyProduct(probe->offset.covariance_m2).lazyProduct(influence.transpose());
+        influence.lazyProduct(covariance_elsewhere(*probe)).lazyProduct(influence.transpose());
   }
   return covariance;
+}
+
+double inflation_of_probes(std::span<const ProbedPatch> patches) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const ProbedPatch& patch : patches) {
+    count += patch.samples.size();
+    if (patch.probe == nullptr) continue;
+    double before = 0.0;  // sum of D_ij / deviation^2 over the samples before
+    double pairs = 0.0;   // of 1 / sigma^2 times that, both ways, and with itself
+    for (std::size_t i = 0; i < patch.samples.size(); ++i) {
+      const ContactSample& sample = patch.samples[i];
+      if (i > 0) {
+        const double step = (sample.position_m - patch.samples[i - 1].position_m).norm();
+        before = (before + 1.0) * std::exp(-step / patch.probe->deviation_length_m.value);
+      }
+      if (sample.sigma_m > 0.0) pairs += (1.0 + 2.0 * before) / (sample.sigma_m * sample.sigma_m);
+    }
+    sum += mean_square(patch.probe->deviation_m) * pairs;
+  }
+  return count > 0 ? 1.0 + sum / static_cast<double>(count) : 1.0;
 }
 
 ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
@@ -213,17 +244,35 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
   Recognizer recognizer(options);
   add_all(corrected, recognizer);
   const Recognition plain = recognizer.recognize();
-  const std::optional<Curve> curve = curve_of(plain);
-  if (!curve || plain.shape.curve_class != answer.shape.curve_class) return result;
-  const ShapePoseCovariance more = covariance_of_probes(*curve, plain.world_T_curve, corrected);
-  if (more.rows() != plain.covariance.rows()) return result;
-  answer.shape = plain.shape;
-  answer.world_T_curve = plain.world_T_curve;
-  answer.covariance = plain.covariance + more;
+  const bool same = curve_of(plain) && plain.shape.curve_class == answer.shape.curve_class &&
+                    plain.covariance.size() > 0;
   Hypothesis& best = answer.hypotheses.front();
-  best.shape = answer.shape;
-  best.world_T_curve = answer.world_T_curve;
-  best.covariance = plain.hypotheses.front().covariance + more;
+  // Where the two differ the cautious covariance holds the coherent deviation twice.
+  double share = 1.0;
+  if (same) {
+    answer.shape = best.shape = plain.shape;
+    answer.world_T_curve = best.world_T_curve = plain.world_T_curve;
+    answer.covariance = plain.covariance;
+    best.covariance = plain.hypotheses.front().covariance;
+    // Neighbours that err together: so do the files' deviations, which are added below. (Beside a
+    // stated form deviation the two are not told apart, and count both.)
+    if (plain.noise_correlation_m > 0.0 && !(options.form_deviation_m > 0.0)) {
+      const double seen = plain.covariance_inflation;
+      share = std::max(1.0, seen / inflation_of_probes(corrected)) / seen;
+    }
+  }
+  const std::optional<Curve> curve = curve_of(answer);
+  if (!curve || answer.covariance.size() == 0) return result;
+  const ShapePoseCovariance more = covariance_of_probes(*curve, answer.world_T_curve, corrected);
+  if (more.rows() != answer.covariance.rows()) return result;
+  answer.covariance = share * answer.covariance + more;
+  best.covariance = share * best.covariance + more;
+  if (answer.status == RecognitionStatus::Recognized &&
+      !is_determined(answer.shape, answer.covariance, half_extent(corrected),
+                     options.determined_fraction)) {
+    answer.status = RecognitionStatus::Ambiguous;
+    answer.doubt = Doubt::Undetermined;
+  }
   return result;
 }
 

@@ -38,11 +38,16 @@ ProbedPatch as_qualified(ProbedPatch patch);
 /// Covariance of [shape; x; y; theta] that the probes' qualities put there beside white noise, J
 /// the distances' derivatives and W the noise's inverse variances:
 ///   (J^T W J)^-1 J^T W (B S B^T + D) W J (J^T W J)^-1,
-/// S the covariance of the offset's coefficients, B what these move the samples by, and D the
-/// covariance of the coherent deviation, deviation^2 exp(-distance / length) within a patch. No
-/// bound over all coherences as `form_deviation_m` is: the probe file knows the length.
+/// S the covariance of the offset's coefficients in a set-up of its own, B what these move the
+/// samples by, and D the covariance of the coherent deviation, deviation^2 exp(-distance / length)
+/// within a patch. No bound over all coherences as `form_deviation_m` is: the probe file knows the
+/// length.
 ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& world_T_curve,
                                          std::span<const ProbedPatch> patches);
+
+/// What a coherent deviation as the probes' files have it multiplies the covariance of white noise
+/// by, for what varies slowly: 1 + the mean over samples of sum_j D_ij / sigma_i^2.
+double inflation_of_probes(std::span<const ProbedPatch> patches);
 
 struct ProbedRecognition {
   Recognition recognition;
@@ -55,7 +60,8 @@ struct ProbedRecognition {
 /// whether it is RECOGNIZED, is decided with the probes' coherent deviation counted as form
 /// deviation beside the options' own: the bound over all coherences. The covariance of the best
 /// class is that of white noise and the stated form deviation, from a recognition of its own, with
-/// covariance_of_probes. Four recognitions.
+/// covariance_of_probes; what its residuals tell of coherence beyond the files' enlarges it as
+/// ever. An answer whose shape that leaves undetermined is not RECOGNIZED. Four recognitions.
 ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
                                    const RecognizerOptions& options);
 

@@ -8,6 +8,7 @@
 #include "core/numerics/normal_law.h"
 #include "core/qualification/offset_evidence.h"
 #include "core/qualification/offset_fit.h"
+#include "core/qualification/setup_constants.h"
 #include "core/recognition/given/given_class.h"
 
 namespace palpate {
@@ -177,6 +178,28 @@ std::vector<std::pair<double, double>> gaps_between(std::vector<double> angles) 
   return gaps;
 }
 
+/// Of each recording, what its samples' middle residual says: a first guess of its set-up.
+void guess_setups(const Ground& ground, const Eigen::VectorXd& residual_m,
+                  OffsetUnknowns& unknowns) {
+  for (std::size_t r = 0; r < unknowns.setup_m.size(); ++r) {
+    std::vector<double> own;
+    for (std::size_t i = 0; i < ground.samples.size(); ++i) {
+      if (ground.samples[i].recording == r) {
+        own.push_back(residual_m[static_cast<Eigen::Index>(i)]);
+      }
+    }
+    unknowns.setup_m[r] += median_of(std::move(own));
+  }
+}
+
+/// Takes what is common to all recordings' constants as the offset's.
+void settle_setups(const Eigen::VectorXd& constants_m, double common_m, OffsetUnknowns& unknowns) {
+  for (std::size_t r = 0; r < unknowns.setup_m.size(); ++r) {
+    unknowns.setup_m[r] = constants_m[static_cast<Eigen::Index>(r)] - common_m;
+  }
+  unknowns.offset.coefficients_m[0] = common_m;
+}
+
 /// Radius of curvature of the artefact where it was touched, the middle one.
 double radius_of(const Curve& artefact, const Ground& ground, const std::vector<Pose2>& poses) {
   std::vector<double> bends;
@@ -268,6 +291,7 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   }
   const double least_scale = 1e-12 * size;
   set_order(unknowns, highest);
+  if (!options.same_setup) unknowns.setup_m.assign(recordings.size(), 0.0);
   OffsetResiduals about;
   constexpr int kRobustRounds = 3;
   for (int round = 0; round < kRobustRounds; ++round) {
@@ -277,6 +301,10 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
     }
     ground = ground_of(artefact, recordings, unknowns.poses);
     about = residuals_about(artefact, material, ground.samples, unknowns, highest);
+    if (unknowns.setup_m.size() > 1) {
+      guess_setups(ground, about.residual_m, unknowns);
+      about = residuals_about(artefact, material, ground.samples, unknowns, highest);
+    }
     scale = median_size(about.residual_m) / kMedianOfNormal;
   }
   const std::vector<char> used =
@@ -286,6 +314,9 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   result.both_directions = runs_both_ways(ground.samples);
   OffsetEvidence evidence;
   double lag_variance = 0.0;
+  // The size that served to weigh the orders must not draw the answer to 0: ten times as wide, a
+  // harmonic of that size loses at most a tenth of its deviation to it.
+  constexpr double kWide = 10.0;
   constexpr int kRounds = 2;  // the second one with a lag, once there are harmonics to see it by
   for (int round = 0; round < kRounds; ++round) {
     about = residuals_about(artefact, material, ground.samples, unknowns, highest);
@@ -300,15 +331,26 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
     unknowns.lag_m = lag ? std::optional(unknowns.lag_m.value_or(0.0)) : std::nullopt;
     const KnownNoise noise{evidence.sigma_m.value, evidence.coherence, ground.strokes, ground.arc_m,
                            used};
-    // The size that served to weigh the orders must not draw the answer to 0: ten times as wide, a
-    // harmonic of that size loses at most a tenth of its deviation to it.
-    constexpr double kWide = 10.0;
     const auto fitted = fit_under_noise(artefact, material, ground.samples, noise,
                                         {kWide * evidence.harmonic_m}, unknowns);
     if (!fitted) return failed(QualificationStatus::NotTheArtefact);
     lag_variance = *fitted;
+    if (options.same_setup) continue;
+    about = residuals_about(artefact, material, ground.samples, unknowns, evidence.order);
+    const SetupConstants constants =
+        constants_of({about.residual_m, about.flat, about.basis, ground.strokes, ground.arc_m, used,
+                      least_scale},
+                     evidence.coherence, evidence.sigma_m.value, unknowns.offset.coefficients_m,
+                     unknowns.setup_m, kWide * evidence.harmonic_m);
+    // What a constant differs by between set-ups is expected to be as large as what the offset
+    // differs by between directions and along a stroke: nothing else is known of it beforehand.
+    const SetupSpread setups =
+        spread_of(constants, std::hypot(evidence.harmonic_m, evidence.deviation_m.value));
+    settle_setups(constants.value_m, setups.constant_m, unknowns);
+    result.probe.setup_m = setups.elsewhere_m;
   }
   unknowns.offset.covariance_m2 += evidence.spread_m2;
+  about = residuals_about(artefact, material, ground.samples, unknowns, unknowns.offset.order);
   // A ring of another size, a wrong unit or no curve at all can be laid on anything with an offset
   // and a noise of their own size: no probe is as bad as a tenth of that.
   constexpr double kMostOff = 0.1;
@@ -328,13 +370,13 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   result.poses = unknowns.poses;
   result.order_probabilities = evidence.probabilities;
   result.bore = material < 0;
-  about = residuals_about(artefact, material, ground.samples, unknowns, unknowns.offset.order);
   std::vector<double> touched;
   for (std::size_t i = 0; i < ground.samples.size(); ++i) {
     const ArtefactSample& sample = ground.samples[i];
     const double residual = about.residual_m[static_cast<Eigen::Index>(i)];
+    const double setup = unknowns.setup_m.empty() ? 0.0 : unknowns.setup_m[sample.recording];
     const double offset =
-        about.basis.row(static_cast<Eigen::Index>(i)).dot(unknowns.offset.coefficients_m);
+        setup + about.basis.row(static_cast<Eigen::Index>(i)).dot(unknowns.offset.coefficients_m);
     result.samples.push_back({sample.recording, sample.stroke, sample.number, about.normal_angle[i],
                               residual + offset, residual, used[i] == 0});
     if (used[i] != 0) {

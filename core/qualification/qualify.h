@@ -29,6 +29,9 @@ std::string_view name_of(QualificationStatus status);
 
 struct QualificationOptions {
   bool bore = false;  ///< the material lies outside the curve; only asked where no tip radius tells
+  /// Parts will be touched in the very set-up of these recordings, so that the offset's constant is
+  /// the same. Otherwise it is another in each recording.
+  bool same_setup = false;
   /// Probability that a recording without spikes loses a sample as one.
   double false_spike_probability = 0.01;
 };

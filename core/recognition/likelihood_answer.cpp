@@ -103,6 +103,7 @@ Recognition answer_by_likelihood(const Weighing& w, const VerdictOptions& option
   answer.covariance = best.covariance;
   answer.sigma_m = residual_noise_m(w);
   answer.noise_correlation_m = w.correlation_length * w.data.scale;
+  answer.covariance_inflation = w.inflation;
   answer.doubt = doubt_about(w, best, options, stored);
   answer.status =
       answer.doubt == Doubt::None ? RecognitionStatus::Recognized : RecognitionStatus::Ambiguous;

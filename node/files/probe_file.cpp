@@ -29,7 +29,8 @@ class ProbeCheck {
         !estimate(probe_.deviation_m(), "deviation_m", character.deviation_m) ||
         !estimate(probe_.deviation_length_m(), "deviation_length_m",
                   character.deviation_length_m) ||
-        !estimate(probe_.spike_probability(), "spike_probability", character.spike_probability)) {
+        !estimate(probe_.spike_probability(), "spike_probability", character.spike_probability) ||
+        !estimate(probe_.setup_m(), "setup_m", character.setup_m)) {
       return std::nullopt;
     }
     if (character.spike_probability.value > 1.0) {
@@ -200,6 +201,8 @@ void to_wire(const ProbeCharacter& character, v1::Probe& probe) {
   set(character.deviation_m, *probe.mutable_deviation_m());
   set(character.deviation_length_m, *probe.mutable_deviation_length_m());
   set(character.spike_probability, *probe.mutable_spike_probability());
+  probe.clear_setup_m();
+  if (character.setup_m.value > 0.0) set(character.setup_m, *probe.mutable_setup_m());
   probe.clear_lag_m();
   if (character.lag_m) set(*character.lag_m, *probe.mutable_lag_m());
 }

@@ -164,6 +164,11 @@ void add_calibrate_command(CLI::App& app, int& exit_code) {
       ->type_name("FORMAT");
   command->add_flag("--bore", calibrate->options.bore,
                     "The material lies around the curve, not within it; a tip radius tells it too");
+  command->add_flag(
+      "--same-setup", calibrate->options.same_setup,
+      "Parts will be touched in the very set-up of these recordings: the offset's\n"
+      "constant is the same. Without it every recording is a set-up of its own, and what\n"
+      "their constants differ by is what another set-up's may");
   add_file_flags(*command, calibrate->file);
   command->callback([calibrate, &exit_code] { exit_code = run(*calibrate); });
 }

@@ -53,6 +53,14 @@ std::string qualification_text(const Qualification& qualification,
   const auto deviation = [&](Eigen::Index i) { return std::sqrt(offset.covariance_m2(i, i)); };
   add_line(text, "offset",
            length_text(offset.coefficients_m[0], deviation(0)) + " out of the material");
+  if (probe.setup_m.value > 0.0) {
+    add_line(text, "set-ups",
+             "another's offset differs by " +
+                 length_text(probe.setup_m.value, probe.setup_m.deviation) +
+                 (qualification.poses.size() > 1
+                      ? std::string()
+                      : std::string(", a guess: several recordings tell it")));
+  }
   if (probe.tip_radius_m > 0.0) {
     add_line(text, "tip radius",
              length_text(probe.tip_radius_m + offset.coefficients_m[0], deviation(0)) +

@@ -1,15 +1,22 @@
 #include "tests/bench/real/qualified_part.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
+#include <random>
+#include <sstream>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/numerics/chi_square.h"
 #include "core/qualification/probe_correction.h"
 #include "core/qualification/qualify.h"
+#include "tests/support/ellipse_bound.h"
 #include "tests/support/scene_data.h"
 
 namespace palpate::bench {
@@ -32,10 +39,23 @@ struct Row {
   int recognised_held = 0;
   int ellipses = 0;
   int ellipses_held = 0;
-  int wrong = 0;
+  std::vector<std::string> wrong;  ///< RECOGNIZED, a line each
 };
 
-void add(const Recognition& answer, const EllipsePart& part, Row* row) {
+std::string line_of(const Recognition& answer) {
+  std::ostringstream line;
+  line << std::setprecision(4) << palpate::name_of(answer.shape.curve_class) << " p "
+       << answer.hypotheses.front().probability << ',';
+  for (std::size_t i = 0; i < parameter_letters(answer.shape.curve_class).size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    line << ' ' << answer.shape.values[k] << " +- " << std::sqrt(answer.covariance(k, k));
+  }
+  line << ", sigma " << answer.sigma_m << " m, " << answer.outlier_count << " of "
+       << answer.sample_count << " outliers";
+  return line.str();
+}
+
+void add(const std::string& arc, const Recognition& answer, const EllipsePart& part, Row* row) {
   const Hypothesis* ellipse = test::hypothesis_of(answer, CurveClass::Ellipse);
   const Eigen::Vector2d truth(part.semi_major_m, part.semi_minor_m);
   double worst = std::numeric_limits<double>::infinity();
@@ -46,12 +66,12 @@ void add(const Recognition& answer, const EllipsePart& part, Row* row) {
   row->errors.push_back(worst);
   const bool recognised = answer.status == RecognitionStatus::Recognized;
   const bool is_ellipse = answer.shape.curve_class == CurveClass::Ellipse;
-  if (recognised && !is_ellipse) ++row->wrong;
+  if (recognised && !is_ellipse) row->wrong.push_back(arc + line_of(answer));
   if (!is_ellipse || ellipse == nullptr || ellipse->at_limit) return;
   const Eigen::Vector2d off = answer.shape.values.head<2>() - truth;
   const Eigen::Matrix2d covariance = answer.covariance.topLeftCorner<2, 2>();
   const bool held = off.dot(covariance.inverse() * off) <= chi_square_threshold(0.05, 2);
-  if (recognised && worst > kAxisBeyondUse && !held) ++row->wrong;
+  if (recognised && worst > kAxisBeyondUse && !held) row->wrong.push_back(arc + line_of(answer));
   ++row->ellipses;
   row->ellipses_held += held ? 1 : 0;
   row->recognised += recognised ? 1 : 0;
@@ -103,14 +123,8 @@ KnownTerms terms_of(const Qualification& result, double axis_angle) {
 }
 
 /// What a file from the ring cannot know: by how much the same probe is off otherwise on the part.
-void print_reproducibility(const Qualification& on_ring, const Ring& ring, const EllipsePart& part,
+void print_reproducibility(const Qualification& on_ring, const Qualification& on_part,
                            std::ostream& out) {
-  ArtefactRecording recording;
-  recording.strokes.push_back(
-      {samples_of(part.recording.points), ring.recording.context.tip_radius_m});
-  const Qualification on_part =
-      qualify(Ellipse{part.semi_major_m, part.semi_minor_m}, {{recording}});
-  if (on_part.poses.empty()) return;
   const double axis_angle = on_part.poses.front().theta;
   const KnownTerms first = terms_of(on_ring, axis_angle);
   const KnownTerms second = terms_of(on_part, axis_angle);
@@ -127,6 +141,24 @@ void print_reproducibility(const Qualification& on_ring, const Ring& ring, const
   print("part", second);
   print("part less ring",
         {second.value_m - first.value_m, Eigen::VectorXd(first.variance_m2 + second.variance_m2)});
+}
+
+/// Errors of the worse axis that normal ones of the bound's covariance would have, were white noise
+/// all there is: no unbiased estimate from these contacts has smaller ones.
+void add_bound(const std::vector<Vec2>& points, double sigma_m, const Pose2& pose,
+               const EllipsePart& part, std::mt19937_64& rng, std::vector<double>* errors) {
+  const Eigen::MatrixXd slopes =
+      test::distance_slopes(Ellipse{part.semi_major_m, part.semi_minor_m}, pose, points);
+  const Eigen::MatrixXd covariance = sigma_m * sigma_m * (slopes.transpose() * slopes).inverse();
+  const Eigen::Matrix2d root = covariance.topLeftCorner<2, 2>().llt().matrixL();
+  std::normal_distribution<double> normal;
+  constexpr int kDraws = 200;
+  for (int i = 0; i < kDraws; ++i) {
+    const double first = normal(rng);
+    const Eigen::Vector2d off = root * Eigen::Vector2d(first, normal(rng));
+    errors->push_back(
+        std::max(std::abs(off[0]) / part.semi_major_m, std::abs(off[1]) / part.semi_minor_m));
+  }
 }
 
 }  // namespace
@@ -149,13 +181,20 @@ void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostrea
     out << (i > 0 ? ", " : " ")
         << um({probe.offset.coefficients_m[i], std::sqrt(probe.offset.covariance_m2(i, i))});
   }
-  out << ". Probability of no harmonic, of harmonic 2, to 3, ...:";
+  out << "; in another set-up the constant differs by " << um(probe.setup_m)
+      << ". Probability of no harmonic, of harmonic 2, to 3, ...:";
   for (const double p : result.order_probabilities) out << ' ' << p;
   out << ".\n\n"
-      << "| arc [deg] | qualified | median error of the worse axis [%] | 95 % region holds the "
-         "truth, RECOGNIZED | the same, every ellipse | RECOGNIZED and wrong |\n"
-      << "|---|---|---|---|---|---|\n";
-  Recording whole = part.recording;
+      << "| arc [deg] | qualified | median error of the worse axis [%] | by the bound | 95 % "
+         "region "
+         "holds the truth, RECOGNIZED | the same, every ellipse | RECOGNIZED and wrong |\n"
+      << "|---|---|---|---|---|---|---|\n";
+  const Recording& whole = part.recording;
+  ArtefactRecording round_the_part;
+  round_the_part.strokes.push_back({samples_of(whole.points), ring.recording.context.tip_radius_m});
+  const Qualification on_part =
+      qualify(Ellipse{part.semi_major_m, part.semi_minor_m}, {{round_the_part}});
+  if (on_part.poses.empty()) throw std::runtime_error("the part is not that ellipse");
   const auto answer_to = [&](const std::vector<Vec2>& points, bool qualified) {
     if (!qualified) return recognise(whole.context, points);
     const ProbedPatch patch{whole.context, samples_of(points), &probe};
@@ -163,9 +202,12 @@ void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostrea
   };
   const Recognition centred = recognise(whole.context, whole.points);
   const Vec2 centre = centred.world_T_curve.translation();
+  std::vector<std::string> wrong;
   for (const int degrees : {60, 90, 120, 180}) {
     for (const bool qualified : {false, true}) {
       Row row;
+      std::vector<double> by_bound;
+      std::mt19937_64 rng(1);
       for (int i = 0; i < kStarts; ++i) {
         const double start = 2.0 * kPi * i / kStarts;
         std::vector<std::pair<double, Vec2>> inside;
@@ -178,14 +220,22 @@ void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostrea
                          [](const auto& a, const auto& b) { return a.first < b.first; });
         std::vector<Vec2> points;
         for (const auto& [from, point] : inside) points.push_back(point);
-        add(answer_to(points, qualified), part, &row);
+        const std::string arc = std::to_string(degrees) + " deg from " +
+                                std::to_string(i * 360 / kStarts) + " deg, " +
+                                (qualified ? "qualified: " : "as it came: ");
+        add(arc, answer_to(points, qualified), part, &row);
+        add_bound(points, probe.sigma_m.value, on_part.poses.front(), part, rng, &by_bound);
       }
       out << "| " << degrees << " | " << (qualified ? "yes" : "no") << " | "
-          << 100.0 * middle_of(row.errors) << " | " << share(row.recognised_held, row.recognised)
-          << " | " << share(row.ellipses_held, row.ellipses) << " | " << row.wrong << " |\n"
+          << 100.0 * middle_of(row.errors) << " | " << 100.0 * middle_of(std::move(by_bound))
+          << " | " << share(row.recognised_held, row.recognised) << " | "
+          << share(row.ellipses_held, row.ellipses) << " | " << row.wrong.size() << " |\n"
           << std::flush;
+      wrong.insert(wrong.end(), row.wrong.begin(), row.wrong.end());
     }
   }
+  out << "\nThe wrong ones (" << wrong.size() << "):\n";
+  for (const std::string& line : wrong) out << "- " << line << '\n';
   out << "\n| full turn | a - truth [um] | b - truth [um] |\n|---|---|---|\n";
   for (const bool qualified : {false, true}) {
     const Recognition answer = answer_to(whole.points, qualified);
@@ -195,7 +245,7 @@ void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostrea
         << 1e6 * (answer.shape.values[1] - part.semi_minor_m) << " +- "
         << 1e6 * std::sqrt(answer.covariance(1, 1)) << " |\n";
   }
-  print_reproducibility(result, ring, part, out);
+  print_reproducibility(result, on_part, out);
 }
 
 }  // namespace palpate::bench

@@ -20,14 +20,14 @@ def lobes(phi):
     return -3e-5 + 4e-5 * math.cos(2 * phi)
 
 
-def ellipse(a, b, seed, count=400, probe="p", turn=2 * math.pi, tip=TIP):
-    """Centres of a tip all around an ellipse, as a probe with two lobes says them."""
+def ellipse(a, b, seed, count=400, probe="p", turn=2 * math.pi, tip=TIP, more=0.0):
+    """Centres of a tip all around an ellipse, as a probe with two lobes says them; `more`: in this set-up, farther out."""
     rng = random.Random(seed)
     text = "probe,patch,x_m,y_m,tip_radius_m\n"
     for i in range(count):
         t = turn * i / count
         phi = math.atan2(a * math.sin(t), b * math.cos(t))
-        off = tip + lobes(phi) + rng.gauss(0, SIGMA)
+        off = tip + lobes(phi) + more + rng.gauss(0, SIGMA)
         text += f"{probe},0,{a * math.cos(t) + off * math.cos(phi)!r},{b * math.sin(t) + off * math.sin(phi)!r},{tip}\n"
     return text
 
@@ -40,7 +40,7 @@ class Calibrate(unittest.TestCase):
 
     def calibrated(self, *more):
         path = self.folder / "p.probe"
-        code, out, err = run(TOOL, "calibrate", "--circle", "0.025", "--output", str(path), *more, "-",
+        code, out, err = run(TOOL, "calibrate", "--circle", "0.025", "--same-setup", "--output", str(path), *more, "-",
                              text_in=ellipse(0.025, 0.025, 1))
         self.assertEqual(code, 0, err)
         return path, out
@@ -90,6 +90,28 @@ class Calibrate(unittest.TestCase):
         for value, truth, i in ((answer.parameters.a, 0.03, 0), (answer.parameters.b, 0.02, 1)):
             self.assertLess(abs(value - truth), 4 * math.sqrt(answer.covariance[i * 5 + i]))
             self.assertLess(math.sqrt(answer.covariance[i * 5 + i]), 1e-5)
+
+    def test_recordings_tell_what_set_ups_differ_by(self):
+        rings = [self.folder / f"ring{i}.csv" for i in range(4)]
+        for i, ring in enumerate(rings):
+            ring.write_text(ellipse(0.025, 0.025, i, more=(4e-5, -3e-5, 1e-5, -2e-5)[i]))
+        path = self.folder / "p.probe"
+        part = ellipse(0.03, 0.02, 9, more=3e-5)
+        sizes = []
+        for files, guess in ((rings[:1], True), (rings, False)):
+            code, out, err = run(TOOL, "calibrate", "--circle", "0.025", "--output", str(path), *map(str, files))
+            self.assertEqual(code, 0, err)
+            self.assertIn("set-ups", out)
+            self.assertEqual("a guess" in out, guess)
+            probe = text_format.Parse(path.read_text(), probe_pb2.Probe())
+            sizes.append(probe.setup_m.value)
+            answer, _ = self.fit("--probe", str(path), text=part)
+            deviation = math.sqrt(answer.covariance[0])
+            self.assertGreater(deviation, 0.9 * probe.setup_m.value)
+            self.assertLess(abs(answer.parameters.a - 0.03), 2.5 * deviation)
+        # The four lie 3.2e-5 about their mean; of a guess only the lobes, 4e-5, are known.
+        self.assertTrue(2e-5 < sizes[1] < 8e-5, sizes)
+        self.assertGreater(sizes[0], 4e-5)
 
     def test_the_text_names_the_file(self):
         path, _ = self.calibrated()
