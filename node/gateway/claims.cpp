@@ -18,7 +18,7 @@ Claims::Claims(std::uint64_t own_id, std::vector<std::string> places, std::size_
 /// Those who wait for the same place do not take it at the same moment.
 milliseconds Claims::some_patience() {
   random_state_ = random_state_ * 6364136223846793005U + 1442695040888963407U;
-  return kSilence + milliseconds((random_state_ >> 33U) % 200U);
+  return kSilence + milliseconds((random_state_ >> 33U) % 150U);
 }
 
 void Claims::hear(std::string_view place, std::uint64_t id, SteadyTime now) {

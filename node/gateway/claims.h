@@ -18,10 +18,13 @@ namespace palpate::gateway {
 /// this may be simple, and works on while a stream looks for a leader.
 class Claims {
  public:
-  static constexpr std::chrono::milliseconds kPeriod{150};
-  /// Silence after which an owner is gone: four words of it lost. With what those who wait differ
+  static constexpr std::chrono::milliseconds kPeriod{100};
+  /// Silence after which an owner is gone: five words of it lost. With what those who wait differ
   /// by and the time to begin, a group is answered again well within two seconds.
-  static constexpr std::chrono::milliseconds kSilence{700};
+  static constexpr std::chrono::milliseconds kSilence{500};
+
+  /// After taking a place, within which one who took it at the same moment has been heard.
+  static constexpr std::chrono::milliseconds kSettle{100};
 
   struct Changes {
     std::vector<std::string> take;

@@ -14,8 +14,8 @@ namespace palpate::gateway {
 
 struct FedNodeOptions {
   std::string program = "palpate-node";
-  std::string config;           ///< its configuration file; empty = none
-  std::string folder = "/tmp";  ///< of its two endpoints, which tools may use as any node's
+  std::string config;  ///< its configuration file; empty = none
+  std::string folder;  ///< of its two endpoints, which tools may use as any node's
   /// Longest contact message: a longer one would cost us the connection. [bytes]
   std::size_t max_message_bytes = 65536;
 };

@@ -108,7 +108,9 @@ void Gateway::serve_places(SteadyTime now) {
       continue;
     }
     spdlog::info("{}: taken", printable(name.text()));
-    places_[name.text()] = std::make_unique<Place>(context_, plant_, name, options_.node);
+    places_[name.text()] =
+        std::make_unique<Place>(context_, plant_, name, options_.node, now + Claims::kSettle);
+    next_word_ = now;
   }
   for (const auto& [text, place] : places_) place->serve(now);
 }

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <exception>
 #include <memory>
@@ -106,10 +107,12 @@ void add_options(CLI::App& app, CommandLine& line) {
   app.add_option("--curve-server-key", line.node_key, "Up, CURVE: the node's public key file")
       ->needs(own)
       ->type_name("FILE");
-  app.add_option("--take", line.take,
-                 "Down: CELL, or CELL:PARTITION of the server's mapping, to recognise; repeated, "
-                 "and by several gateways: each is taken by one at a time")
-      ->type_name("PLACE");
+  CLI::Option* take =
+      app.add_option(
+             "--take", line.take,
+             "Down: CELL, or CELL:PARTITION of the server's mapping, to recognise; repeated, "
+             "and by several gateways: each is taken by one at a time")
+          ->type_name("PLACE");
   app.add_option("--most-places", line.gateway.most_places, "Down: so many of them at a time")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str()
@@ -120,10 +123,12 @@ void add_options(CLI::App& app, CommandLine& line) {
   app.add_option("--node-config", line.gateway.node.config, "Down: its configuration file")
       ->check(CLI::ExistingFile)
       ->type_name("FILE");
-  app.add_option("--run-folder", line.gateway.node.folder,
-                 "Down: folder of its endpoints, ipc://FOLDER/CELL-PARTITION.results")
-      ->capture_default_str()
+  app.add_option(
+         "--run-folder", line.gateway.node.folder,
+         "Down: folder of its endpoints, ipc://FOLDER/CELL-PARTITION.results; for this user only")
+      ->check(CLI::ExistingDirectory)
       ->type_name("FOLDER");
+  take->needs("--run-folder");
   app.add_option("--max-message-bytes", line.gateway.node.max_message_bytes,
                  "Down: longest contact message [bytes]")
       ->check(CLI::Range(1024, 100'000'000))
@@ -132,6 +137,15 @@ void add_options(CLI::App& app, CommandLine& line) {
   app.add_option("--log-level", line.log_level, "trace, debug, info, warning, error or off")
       ->capture_default_str()
       ->type_name("LEVEL");
+  // As for the node: each may also be set in the environment.
+  for (CLI::Option* option : app.get_options()) {
+    std::string name = option->get_single_name();
+    if (name.empty() || name == "help" || name == "version" || name == "config") continue;
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
+      return c == '-' ? '_' : static_cast<char>(std::toupper(c));
+    });
+    option->envname("PALPATE_GATEWAY_" + name);
+  }
 }
 
 std::vector<std::string> split(const std::string& text, char at) {

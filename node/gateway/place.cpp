@@ -116,13 +116,15 @@ std::string contact_filter(const PlaceName& name, std::string_view group_token) 
 
 }  // namespace
 
-Place::Place(zmq::context_t& context, Plant& plant, PlaceName name, FedNodeOptions node)
+Place::Place(zmq::context_t& context, Plant& plant, PlaceName name, FedNodeOptions node,
+             SteadyTime begin_at)
     : context_(context),
       plant_(plant),
       name_(std::move(name)),
       node_options_(std::move(node)),
       consumer_("recognise" +
-                (name_.partition.empty() ? std::string() : "-" + to_token(name_.partition))) {
+                (name_.partition.empty() ? std::string() : "-" + to_token(name_.partition))),
+      begin_at_(begin_at) {
   status_.set_cell(name_.cell);
   status_.set_partition(name_.partition);
 }
@@ -448,7 +450,7 @@ void Place::node_answered(const v1::Recognition& recognition, std::string_view p
   answer.id =
       found->first + "/" + std::to_string(header.epoch()) + "/" + std::to_string(header.seq());
   // While the plant stores one, the next ones of an object become one: coarser, never later.
-  const bool may_replace = group.answers.size() > (group.is_storing ? 1U : 0U);
+  const bool may_replace = group.answers.size() > (group.is_first_sent ? 1U : 0U);
   if (may_replace && group.answers.back().span.object == span->object) {
     answer.span.from = group.answers.back().span.from;
     answer.span.contacts += group.answers.back().span.contacts;
@@ -461,7 +463,7 @@ void Place::node_answered(const v1::Recognition& recognition, std::string_view p
 
 void Place::store_next(const std::string& name, Group& group) {
   if (group.is_storing || group.answers.empty()) return;
-  group.is_storing = true;
+  group.is_storing = group.is_first_sent = true;
   const Answer& answer = group.answers.front();
   plant_.store(this, make_subject(name_.cell, "recognition", name), answer.payload,
                {{"Nats-Msg-Id", answer.id},
@@ -480,8 +482,8 @@ void Place::stored(const std::string& name, const Stored& stored) {
     case Stored::Verdict::NotNow:
       return;  // tend() tries again, under the same id
     case Stored::Verdict::NotTheLast:
-      status_.set_answers_refused(status_.answers_refused() + 1);
-      return fail("another recogniser has answered for group " + printable(name));
+      group.is_storing = true;
+      return is_it_ours(name);
     case Stored::Verdict::TooLong:
       spdlog::error("{}: an answer of group {} is longer than the plant's max_payload",
                     printable(name_.text()), printable(name));
@@ -500,7 +502,24 @@ void Place::stored(const std::string& name, const Stored& stored) {
     group.unanswered.pop_front();
   }
   group.answers.pop_front();
+  group.is_first_sent = false;
   store_next(name, group);
+}
+
+/// Something has been stored after the answer that we know as the last: another's, or ours, of
+/// which a server that died has not told us.
+void Place::is_it_ours(const std::string& name) {
+  const json query{{"last_by_subj", make_subject(name_.cell, "recognition", name)}};
+  plant_.request(
+      this, "$JS.API.DIRECT.GET." + recognition_stream(name_.cell), query.dump(), {},
+      kLookupTimeout, [this, name](const PlantMessage* message) {
+        const std::string& id = groups_[name].answers.front().id;
+        if (message != nullptr && message->header("Nats-Msg-Id") == id) {
+          return stored(name, {Stored::Verdict::Before, message->number("Nats-Sequence")});
+        }
+        status_.set_answers_refused(status_.answers_refused() + 1);
+        fail("another recogniser has answered for group " + printable(name));
+      });
 }
 
 void Place::mark_done(std::uint64_t stream_seq) {

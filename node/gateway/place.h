@@ -37,7 +37,9 @@ struct PlaceName {
 
 class Place {
  public:
-  Place(zmq::context_t& context, Plant& plant, PlaceName name, FedNodeOptions node);
+  /// Touches nothing of the plant's before `begin_at`.
+  Place(zmq::context_t& context, Plant& plant, PlaceName name, FedNodeOptions node,
+        SteadyTime begin_at);
   ~Place();
   Place(const Place&) = delete;
   Place& operator=(const Place&) = delete;
@@ -72,6 +74,7 @@ class Place {
     std::uint64_t last_answer_seq = 0;     // in the stream of recognitions; 0 = none
     std::deque<Answer> answers;
     bool is_storing = false;
+    bool is_first_sent = false;  // answers' first may be stored already: it stays as it is
     bool is_ready = false;  // in ready_
   };
 
@@ -111,6 +114,7 @@ class Place {
   void node_answered(const v1::Recognition& recognition, std::string_view payload);
   void store_next(const std::string& name, Group& group);
   void stored(const std::string& name, const Stored& stored);
+  void is_it_ours(const std::string& name);
   void mark_done(std::uint64_t stream_seq);
   void acknowledge();
   void tend(SteadyTime now);

@@ -90,8 +90,9 @@ class Tools(unittest.TestCase):
     def test_wrong_options(self):
         cases = [
             ([], 2, "one of --from and --take"),
-            (["--take", "a:b:c"], 2, "no CELL or CELL:PARTITION"),
-            (["--take", "a b"], 2, "no CELL or CELL:PARTITION"),
+            (["--take", "a:b:c", "--run-folder", "/tmp"], 2, "no CELL or CELL:PARTITION"),
+            (["--take", "a b", "--run-folder", "/tmp"], 2, "no CELL or CELL:PARTITION"),
+            (["--take", "a"], 2, "--take requires --run-folder"),
             (["--from", "ipc:///tmp/x"], 2, "--from requires --cell"),
             (["--from", "bind:tcp://0.0.0.0:1", "--cell", "c", "--spool", "/tmp/x"], 2, "beyond this machine"),
             (["--from", "ipc:///tmp/x", "--cell", "a/b", "--spool", "/tmp/x"], 2, "no name"),
