@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "node/tool/recording.h"
+#include "node/files/recording.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::string path = "/tmp/fuzz_recording." + std::to_string(::getpid());

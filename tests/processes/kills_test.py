@@ -139,7 +139,7 @@ class Kills(unittest.TestCase):
 
     def records_of(self, recording):
         """How many messages of contacts it has, and whether it ends with a whole record. Reads the format anew, from
-        node/tool/recording.h."""
+        node/files/recording.h."""
         if len(recording) < 8:
             return 0, not recording
         self.assertEqual(recording[:8], b"palpate2")

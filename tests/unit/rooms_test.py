@@ -18,12 +18,13 @@ CORE = [
 NODE = CORE + [
     "node/python",
     "node/files", "node/process", "node/wire", "node/csv", "node/intake", "node/client", "node/security",
-    "node/groups", "node/publish", "node", "node/tool", "node/tool/text", "node/tool/drawing", "node/tool/view",
+    "node/groups", "node/publish", "node", "node/gateway", "node/tool", "node/tool/text", "node/tool/drawing", "node/tool/view",
     "node/tool/commands", "node/tool/main",
 ]
 SIM = CORE + ["node/files", "node/process", "node/wire", "node/csv", "node/intake", "node/client", "sim"]
 # What one program is made of is no part of another.
-APART = [("node/tool", "node/groups"), ("node/tool", "node/publish")]
+APART = [("node/tool", "node/groups"), ("node/tool", "node/publish"), ("node/tool", "node/gateway"),
+         ("node/gateway", "node/groups"), ("node/gateway", "node/publish")]
 
 
 def room_of(path):

@@ -4,11 +4,11 @@
 #include <memory>
 #include <optional>
 
+#include "node/files/recording.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/listening_place.h"
-#include "node/tool/recording.h"
 #include "node/tool/text/progress.h"
 
 namespace palpate {

@@ -12,12 +12,12 @@
 #include <utility>
 
 #include "node/client/contact_publisher.h"
+#include "node/files/recording.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/contact_groups.h"
-#include "node/tool/recording.h"
 #include "node/tool/text/progress.h"
 #include "node/wire/convert.h"
 #include "node/wire/topics.h"

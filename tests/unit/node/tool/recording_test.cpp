@@ -1,5 +1,5 @@
 // Recordings: written, read, broken off, damaged.
-#include "node/tool/recording.h"
+#include "node/files/recording.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

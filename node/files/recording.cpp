@@ -1,4 +1,4 @@
-#include "node/tool/recording.h"
+#include "node/files/recording.h"
 
 #include <google/protobuf/io/coded_stream.h>
 #include <zlib.h>

@@ -1,0 +1,112 @@
+#include "node/gateway/fed_node.h"
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include "node/wire/topics.h"
+
+namespace palpate::gateway {
+namespace {
+
+// Answers and accepted contacts that may wait for us in the node, which drops beyond: many times
+// what can be in flight at a time.
+constexpr const char* kNodesHighWaterMark = "100000";
+
+SocketSettings unbounded() {
+  SocketSettings settings;
+  settings.send_high_water_mark = 0;
+  settings.receive_high_water_mark = 0;
+  return settings;
+}
+
+}  // namespace
+
+FedNode::FedNode(zmq::context_t& context, const FedNodeOptions& options, const std::string& name)
+    : contacts_path_(options.folder + "/" + name + ".contacts"),
+      results_path_(options.folder + "/" + name + ".results"),
+      contacts_(make_socket(context, zmq::socket_type::xpub, unbounded())),
+      results_(make_socket(context, zmq::socket_type::sub, unbounded())) {
+  std::vector<std::string> arguments{options.program,
+                                     "--name",
+                                     name.substr(0, kMaxNameLength),
+                                     "--contacts",
+                                     "bind:ipc://" + contacts_path_,
+                                     "--results",
+                                     "bind:ipc://" + results_path_,
+                                     "--results-high-water-mark",
+                                     kNodesHighWaterMark,
+                                     "--contacts-high-water-mark",
+                                     kNodesHighWaterMark,
+                                     "--max-message-bytes",
+                                     std::to_string(options.max_message_bytes)};
+  if (!options.config.empty()) {
+    arguments.emplace_back("--config");
+    arguments.push_back(options.config);
+  }
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+
+  // Nothing of a former node's is to be taken for this one's.
+  std::error_code ignored;
+  for (const std::string& path : {contacts_path_, results_path_}) {
+    std::filesystem::remove(path, ignored);
+  }
+  const pid_t parent = ::getpid();
+  process_ = ::fork();
+  if (process_ < 0) throw std::runtime_error("no process for a node");
+  if (process_ == 0) {
+    // Only what is safe after the fork of a process of several threads.
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) ::_exit(1);
+    sigset_t none;
+    sigemptyset(&none);
+    ::sigprocmask(SIG_SETMASK, &none, nullptr);
+    ::execvp(pointers.front(), pointers.data());
+    ::_exit(127);
+  }
+  // The status last: whoever hears one hears the others.
+  for (const TopicKind kind : {TopicKind::Contact, TopicKind::Recognition, TopicKind::Status}) {
+    results_.set(zmq::sockopt::subscribe, topic_prefix(kind));
+  }
+  for (const auto& [socket, path] :
+       {std::pair(&contacts_, &contacts_path_), std::pair(&results_, &results_path_)}) {
+    const std::string error = attach(*socket, Endpoint{false, "ipc://" + *path});
+    if (!error.empty()) throw std::runtime_error(error);
+  }
+}
+
+FedNode::~FedNode() {
+  if (process_ > 0) {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+  }
+  std::error_code ignored;
+  for (const std::string& path : {contacts_path_, results_path_}) {
+    std::filesystem::remove(path, ignored);
+    std::filesystem::remove(path + ".lock", ignored);
+  }
+}
+
+bool FedNode::is_ready(bool heard) {
+  TwoFrames message;
+  while (receive_now(contacts_, message)) is_heard_ = true;  // its subscription
+  return is_heard_ && heard;
+}
+
+bool FedNode::has_ended() {
+  if (process_ > 0 && ::waitpid(process_, nullptr, WNOHANG) == process_) process_ = -1;
+  return process_ < 0;
+}
+
+void FedNode::send(std::string_view topic, std::string_view payload) {
+  send_now(contacts_, topic, payload);
+}
+
+}  // namespace palpate::gateway

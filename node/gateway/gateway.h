@@ -1,0 +1,65 @@
+// palpate-gateway: between a cell's endpoints and the plant's streams. One thread and one poll.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+#include <zmq.hpp>
+
+#include "node/gateway/claims.h"
+#include "node/gateway/place.h"
+#include "node/gateway/plant.h"
+#include "node/gateway/streams.h"
+#include "node/gateway/upward.h"
+#include "node/process/service_manager.h"
+#include "palpate/v1/gateway_status.pb.h"
+
+namespace palpate::gateway {
+
+struct GatewayOptions {
+  std::string name = "gateway";
+  PlantOptions plant;
+  StreamLimits streams;
+  std::optional<UpwardOptions> up;
+  std::vector<PlaceName> places;  ///< that it may take
+  std::size_t most_places = 64;
+  FedNodeOptions node;
+};
+
+class Gateway {
+ public:
+  /// Throws std::runtime_error where an endpoint, a folder or a file cannot be had.
+  explicit Gateway(const GatewayOptions& options);
+
+  /// Serves until `stop_fd` is readable. Throws std::runtime_error where the cell's node refuses
+  /// it.
+  void run(int stop_fd);
+
+ private:
+  void serve_plant(SteadyTime now);
+  void serve_places(SteadyTime now);
+  void tell(SteadyTime now);
+  void publish_status();
+  void log_changes();
+
+  GatewayOptions options_;
+  zmq::context_t context_;
+  Plant plant_;
+  std::optional<Upward> up_;
+  Claims claims_;
+  std::map<std::string, std::unique_ptr<Place>, std::less<>> places_;  // by PlaceName::text()
+  std::map<std::string, bool, std::less<>> cells_;  // whether their streams are there
+  std::uint64_t connection_ = 0;
+  bool was_connected_ = false;
+  v1::GatewayStatus status_;
+  v1::GatewayUpStatus told_;
+  std::string disk_error_told_;
+  SteadyTime next_word_;
+  SteadyTime next_status_;
+  ServiceManager service_manager_;
+};
+
+}  // namespace palpate::gateway

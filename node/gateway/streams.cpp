@@ -1,0 +1,75 @@
+#include "node/gateway/streams.h"
+
+#include <memory>
+#include <utility>
+
+#include "node/gateway/subjects.h"
+
+namespace palpate::gateway {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kNanosecondsPerSecond = 1e9;
+// The status of a node or gateway over the last hour, at one a second.
+constexpr int kStatusMessages = 3600;
+// JSStreamNameExistErr: it is there, with other limits than ours. They are whoever's who made it.
+constexpr int kExistsOtherwise = 10058;
+
+std::string stream(std::string_view cell, const char* kind) {
+  return "palpate-" + to_token(cell) + "-" + kind;
+}
+
+json common(const std::string& name, json subjects, const StreamLimits& limits) {
+  return {{"name", name},
+          {"subjects", std::move(subjects)},
+          {"retention", "limits"},
+          {"discard", "old"},
+          {"storage", "file"},
+          {"num_replicas", limits.replicas},
+          {"max_bytes", limits.max_bytes},
+          {"max_msgs", -1},
+          {"max_consumers", -1},
+          {"allow_direct", true},
+          {"duplicate_window",
+           static_cast<std::int64_t>(limits.duplicate_window_s * kNanosecondsPerSecond)}};
+}
+
+}  // namespace
+
+std::string contact_stream(std::string_view cell) { return stream(cell, "contact"); }
+std::string recognition_stream(std::string_view cell) { return stream(cell, "recognition"); }
+std::string status_stream(std::string_view cell) { return stream(cell, "status"); }
+
+void make_streams(Plant& plant, const void* owner, const std::string& cell,
+                  const StreamLimits& limits, std::function<void(bool)> done) {
+  json contacts = common(contact_stream(cell), {make_subject(cell, "contact") + ".>"}, limits);
+  constexpr double kSecondsPerHour = 3600.0;
+  contacts["max_age"] = static_cast<std::int64_t>(limits.contacts_max_age_h * kSecondsPerHour *
+                                                  kNanosecondsPerSecond);
+  // Without an age: the last answer of a group says where its recognition stands.
+  json recognitions =
+      common(recognition_stream(cell), {make_subject(cell, "recognition") + ".>"}, limits);
+  json status =
+      common(status_stream(cell),
+             {make_subject(cell, "status") + ".>", make_subject(cell, "gateway") + ".>"}, limits);
+  status["max_msgs_per_subject"] = kStatusMessages;
+  struct Count {
+    int left = 3;
+    bool all_there = true;
+  };
+  const auto count = std::make_shared<Count>();
+  for (const json& config : {contacts, recognitions, status}) {
+    plant.api(owner, "STREAM.CREATE." + config["name"].get<std::string>(), config,
+              [count, done](const json* answer) {
+                bool is_there = answer != nullptr;
+                if (is_there && answer->contains("error")) {
+                  is_there = (*answer)["error"].value("err_code", 0) == kExistsOtherwise;
+                }
+                count->all_there = count->all_there && is_there;
+                if (--count->left == 0) done(count->all_there);
+              });
+  }
+}
+
+}  // namespace palpate::gateway

@@ -1,0 +1,61 @@
+// From a cell to the plant: contacts, recognitions and status, each once and in order.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+#include <zmq.hpp>
+
+#include "node/gateway/outbox.h"
+#include "node/gateway/spool.h"
+#include "node/intake/sequence_tracker.h"
+#include "node/wire/endpoint.h"
+#include "node/wire/handshake_watch.h"
+#include "node/wire/socket.h"
+#include "palpate/v1/gateway_status.pb.h"
+
+namespace palpate::gateway {
+
+struct UpwardOptions {
+  std::string cell;
+  /// The cell's node's results endpoint, which has the contacts that it accepts as they came. Where
+  /// a cell has no node, an endpoint to bind, to which its probes connect.
+  Endpoint endpoint;
+  std::vector<TopicKind> kinds;  ///< carried up
+  std::optional<CurveClient> curve;
+  std::string spool_folder;
+  std::uint64_t spool_bytes = std::uint64_t{1} << 30;
+};
+
+class Upward {
+ public:
+  /// Throws std::runtime_error where the endpoint or the spool cannot be had.
+  Upward(zmq::context_t& context, Plant& plant, const UpwardOptions& options);
+
+  zmq::socket_t& socket() { return socket_; }
+
+  /// Takes what has come, and sends what may go; some milliseconds at most. Call it some times a
+  /// second at least. True where more waits.
+  bool serve(SteadyTime now);
+
+  /// Why the cell's node refuses this gateway; empty where it does not.
+  const std::string& refusal() { return handshakes_.refusal(); }
+
+  void fill(v1::GatewayUpStatus& status) const;
+  const std::string& disk_error() const { return spool_.error(); }
+
+ private:
+  void take(const TwoFrames& message, SteadyTime now);
+  bool is_news(std::string_view topic, const Addressed& to);
+
+  UpwardOptions options_;
+  zmq::socket_t socket_;
+  HandshakeWatch handshakes_;
+  Spool spool_;
+  Outbox outbox_;
+  std::map<std::string, SequenceTracker, std::less<>> sequences_;  // by topic
+  v1::GatewayUpStatus counters_;
+};
+
+}  // namespace palpate::gateway

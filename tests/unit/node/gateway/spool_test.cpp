@@ -1,0 +1,118 @@
+#include "node/gateway/spool.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace palpate::gateway {
+namespace {
+
+class SpoolTest : public ::testing::Test {
+ protected:
+  SpoolTest() { std::filesystem::remove_all(folder_); }
+  ~SpoolTest() override { std::filesystem::remove_all(folder_); }
+
+  std::vector<std::string> all_of(Spool& spool, bool release = true) const {
+    std::vector<std::string> payloads;
+    while (auto taken = spool.next()) {
+      EXPECT_EQ(taken->message.topic, "contact/f/");
+      payloads.push_back(taken->message.payload);
+      if (release) spool.release(taken->segment);
+    }
+    return payloads;
+  }
+  std::size_t files() const {
+    std::size_t count = 0;
+    for (const auto& file : std::filesystem::directory_iterator(folder_)) {
+      count += file.path().extension() == ".recording";
+    }
+    return count;
+  }
+
+  std::string folder_ = ::testing::TempDir() + "spool_test." + std::to_string(::getpid());
+  static constexpr std::uint64_t kBound = 16'000;
+};
+
+std::vector<std::string> numbers(int first, int last) {
+  std::vector<std::string> all;
+  for (int i = first; i < last; ++i) all.push_back(std::to_string(i));
+  return all;
+}
+
+TEST_F(SpoolTest, WhatGoesInComesOutInOrderAndLeavesTheDisk) {
+  Spool spool(folder_, kBound);
+  for (const std::string& number : numbers(0, 100)) spool.add("contact/f/", number);
+  EXPECT_EQ(spool.size(), 100U);
+  EXPECT_GT(files(), 1U);
+  EXPECT_EQ(all_of(spool), numbers(0, 100));
+  EXPECT_TRUE(spool.empty());
+  EXPECT_EQ(files(), 0U);
+  EXPECT_EQ(spool.bytes(), 0U);
+  // And again, while some of it is still to be released.
+  for (const std::string& number : numbers(0, 5)) spool.add("contact/f/", number);
+  EXPECT_EQ(all_of(spool, false), numbers(0, 5));
+  spool.add("contact/f/", "5");
+  EXPECT_EQ(all_of(spool), numbers(5, 6));
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(SpoolTest, ANewProcessTakesUpWhatIsNotReleased) {
+  {
+    Spool spool(folder_, kBound);
+    for (const std::string& number : numbers(0, 30)) spool.add("contact/f/", number);
+    for (int i = 0; i < 10; ++i) (void)spool.next();  // sent, but nobody said that it is stored
+  }
+  Spool spool(folder_, kBound);
+  EXPECT_EQ(all_of(spool), numbers(0, 30));
+}
+
+TEST_F(SpoolTest, BeyondTheBoundTheOldestGoAndAreCounted) {
+  Spool spool(folder_, kBound);
+  for (const std::string& number : numbers(0, 1000)) spool.add("contact/f/", number);
+  EXPECT_LE(spool.bytes(), kBound);
+  EXPECT_GT(spool.lost(), 0U);
+  EXPECT_EQ(spool.size() + spool.lost(), 1000U);
+  const std::vector<std::string> left = all_of(spool);
+  EXPECT_EQ(left, numbers(1000 - static_cast<int>(left.size()), 1000));
+}
+
+TEST_F(SpoolTest, TheBoundMayTakeWhatIsBeingRead) {
+  Spool spool(folder_, kBound);
+  for (const std::string& number : numbers(0, 300)) spool.add("contact/f/", number);
+  const auto taken = spool.next();
+  ASSERT_TRUE(taken);
+  for (const std::string& number : numbers(300, 1000)) spool.add("contact/f/", number);
+  spool.release(taken->segment);
+  const std::size_t left = all_of(spool).size();
+  EXPECT_EQ(1 + left + spool.lost(), 1000U);
+}
+
+TEST_F(SpoolTest, ARecordThatIsBrokenOffIsLeftOut) {
+  {
+    Spool spool(folder_, kBound);
+    for (const std::string& number : numbers(0, 10)) spool.add("contact/f/", number);
+  }
+  for (const auto& file : std::filesystem::directory_iterator(folder_)) {
+    if (file.path().extension() == ".recording") {
+      std::filesystem::resize_file(file.path(), file.file_size() - 3);
+    }
+  }
+  std::ofstream(folder_ + "/0000000000000000.recording") << "no segment";
+  std::ofstream(folder_ + "/stranger") << "none either";
+  Spool spool(folder_, kBound);
+  EXPECT_EQ(all_of(spool), numbers(0, 9));
+  EXPECT_TRUE(std::filesystem::exists(folder_ + "/stranger"));
+}
+
+TEST_F(SpoolTest, OneProcessAFolder) {
+  Spool spool(folder_, kBound);
+  EXPECT_THROW(Spool(folder_, kBound), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace palpate::gateway
