@@ -1,4 +1,4 @@
-# cpack -G DEB: palpate (programs), libpalpate-dev (static libraries and headers) and python3-palpate. Before 1.0 every
+# cpack -G DEB: palpate (programs), palpate-gateway, libpalpate-dev (static libraries and headers) and python3-palpate. Before 1.0 every
 # minor version may break the binary interface, so that a package of shared libraries would serve nobody:
 # `cmake --install` has them.
 set(CPACK_PACKAGE_NAME palpate)
@@ -12,6 +12,9 @@ set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_COMPONENTS_ALL dev)
 if(TARGET palpate-node)
   list(APPEND CPACK_COMPONENTS_ALL runtime)
+endif()
+if(TARGET palpate-gateway)
+  list(APPEND CPACK_COMPONENTS_ALL gateway)
 endif()
 if(TARGET palpate_python)
   list(APPEND CPACK_COMPONENTS_ALL python)
@@ -41,6 +44,16 @@ ${about}This package has the tool for files and streams (palpate), the recognize
 of probes (palpate-sim).")
 set(scripts ${PROJECT_SOURCE_DIR}/node/package/deb)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA ${scripts}/conffiles ${scripts}/postinst ${scripts}/prerm)
+
+set(CPACK_DEBIAN_GATEWAY_PACKAGE_NAME palpate-gateway)
+set(CPACK_DEBIAN_GATEWAY_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_GATEWAY_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_GATEWAY_PACKAGE_DEPENDS palpate)
+set(CPACK_DEBIAN_GATEWAY_PACKAGE_SUGGESTS nats-server)
+set(CPACK_DEBIAN_GATEWAY_DESCRIPTION "recognition of curved parts by touch - many cells
+${about}This package has the gateway between a cell and the streams of a NATS
+server (JetStream): contacts kept, recognition shared over machines that may
+die. Its services are not started by themselves.")
 
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libpalpate-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cctype>
 #include <csignal>
 #include <exception>
 #include <memory>
@@ -76,7 +75,7 @@ void add_plant_options(CLI::App& app, CommandLine& line) {
 }
 
 void add_options(CLI::App& app, CommandLine& line) {
-  app.set_config("--config", "", "File of these options, NAME = VALUE a line");
+  app.set_config("--config", "", "File of these options, NAME = VALUE a line")->type_name("FILE");
   app.set_version_flag("--version", PALPATE_VERSION);
   app.add_option("--name", line.gateway.name, "Name, as in palpate.<cell>.gateway.<name>")
       ->capture_default_str()
@@ -137,15 +136,6 @@ void add_options(CLI::App& app, CommandLine& line) {
   app.add_option("--log-level", line.log_level, "trace, debug, info, warning, error or off")
       ->capture_default_str()
       ->type_name("LEVEL");
-  // As for the node: each may also be set in the environment.
-  for (CLI::Option* option : app.get_options()) {
-    std::string name = option->get_single_name();
-    if (name.empty() || name == "help" || name == "version" || name == "config") continue;
-    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
-      return c == '-' ? '_' : static_cast<char>(std::toupper(c));
-    });
-    option->envname("PALPATE_GATEWAY_" + name);
-  }
 }
 
 std::vector<std::string> split(const std::string& text, char at) {

@@ -75,7 +75,7 @@ class Place {
     std::deque<Answer> answers;
     bool is_storing = false;
     bool is_first_sent = false;  // answers' first may be stored already: it stays as it is
-    bool is_ready = false;  // in ready_
+    bool is_ready = false;       // in ready_
   };
 
   struct Delivered {

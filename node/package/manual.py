@@ -18,8 +18,10 @@ CHECKS = {"POSITIVE": "above 0", "NONNEGATIVE": "not below 0"}
 
 # What no --help says.
 FILES = {"palpate-node": [("/etc/palpate/node.textproto", "Options of the system's service, palpate-node.service. "
-                           "palpate-node --print-config prints all of them.")]}
-SEE_ALSO = ["palpate", "palpate-node", "palpate-sim"]
+                           "palpate-node --print-config prints all of them.")],
+         "palpate-gateway": [("/etc/palpate/gateway-NAME.conf", "Options of palpate-gateway@NAME.service."),
+                             ("/usr/share/palpate/plant/", "Examples of these, and of nats-server's own.")]}
+SEE_ALSO = ["palpate", "palpate-gateway", "palpate-node", "palpate-sim"]
 
 
 @dataclasses.dataclass

@@ -11,7 +11,8 @@ from programs import BUILD, NODE, SIM, TOOL
 from strangers import call
 
 MANUAL = BUILD / "manual"
-PROGRAMS = (TOOL, NODE, SIM)
+GATEWAY = BUILD / "node/gateway/palpate-gateway"  # where there was libnats
+PROGRAMS = (TOOL, NODE, SIM) + ((GATEWAY,) if GATEWAY.exists() else ())
 
 
 def calls():

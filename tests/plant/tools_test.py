@@ -1,14 +1,13 @@
 """Tools on a recogniser of the plant as on any node, TLS both ways, and what is said of wrong options."""
 import json
-import pathlib
 import subprocess
 import time
 import unittest
 
 from bus import Bus, Probe
-from plant import (GATEWAY, Client, Ledger, Servers, carrier, gateway_status, recogniser, skip_where_absent,
+from plant import (GATEWAY, SERVER, Client, Ledger, Servers, carrier, gateway_status, recogniser, skip_where_absent,
                    wait_for_stored)
-from programs import NODE, SOURCE, TOOL, run
+from programs import SOURCE, TOOL, run
 
 
 class Tools(unittest.TestCase):
@@ -86,6 +85,22 @@ class Tools(unittest.TestCase):
                     f"{who}.key", "-out", f"{who}.csr")
             openssl("x509", "-req", "-in", f"{who}.csr", "-CA", "ca.pem", "-CAkey", "ca.key", "-CAcreateserial", "-days", 2,
                     "-extfile", "names", "-out", f"{who}.pem")
+
+    def test_the_configurations_given_are_valid(self):
+        folder = SOURCE / "node/package/plant"
+        for path in sorted(folder.glob("nats-*.conf")):
+            code, out, err = run(SERVER, "-t", "-c", path)
+            self.assertEqual(code, 0, out + err)
+        for path in sorted(folder.glob("gateway-*.conf")):
+            with Bus() as bus:
+                # Nobody is there: it goes on, until it is stopped.
+                process = bus.start(GATEWAY, "--config", path, "--spool", bus.folder / "spool", "--run-folder", bus.folder,
+                                    "--plant", "nats://127.0.0.1:1", stderr=subprocess.PIPE)
+                time.sleep(0.5)
+                self.assertIsNone(process.poll(), process.stderr.read() if process.poll() is not None else "")
+                process.terminate()
+                self.assertEqual(process.wait(5), 0)
+                process.stderr.close()
 
     def test_wrong_options(self):
         cases = [
