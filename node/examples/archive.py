@@ -1,0 +1,213 @@
+#!/usr/bin/env python3
+"""Recognises archives of contacts on a Dask cluster: one row an object, in a CSV file.
+
+  PYTHONPATH=... python3 node/examples/archive.py --out rows.csv strokes/*.csv night.recording log.jsonl
+
+Reads recordings (palpate record), CSV files of the contract's columns (a header line with probe, patch, x_m, y_m and
+optionally sigma_m, object, group, tip_radius_m, material_side) and JSON lines (a ContactBatch in protobuf's JSON each).
+Without --scheduler it works on processes of this machine; --workers says how many.
+
+Each file is dealt to tasks, each task's rows are a file in OUT.parts: what is there is not done again, in whatever order
+and however often it is started. When all are there, OUT is written, sorted by file, group and object. Recognition sees
+each object's samples in their order in the file, so the rows do not depend on who computes them. A task that fails is
+tried again (--retries), as is one whose worker dies; a file that cannot be read is named at the end, exit code 1.
+
+Needs the palpate module, python3-protobuf with the generated package, and python3-distributed.
+"""
+import argparse
+import collections
+import csv
+import hashlib
+import io
+import json
+import os
+import pathlib
+import struct
+import sys
+import time
+import zlib
+
+PIECE_BYTES = 1 << 20  # of a file, for one task: seconds of work
+COLUMNS = ["file", "group", "object", "status", "doubt", "curve_class", "probability", "a", "b", "c", "x_m", "y_m",
+           "theta_rad", "a_std", "b_std", "c_std", "x_m_std", "y_m_std", "theta_rad_std", "sigma_m", "samples", "patches",
+           "outliers", "forgotten"]
+
+
+
+def batches_of_recording(path):
+    """ContactBatch messages; the format is described in node/files/recording.h."""
+    from palpate.v1 import contact_pb2
+    data = path.read_bytes()
+    if data[:8] != b"palpate2":
+        raise ValueError("no recording")
+    head = struct.Struct("<4sqIIII")
+    at = 8
+    while at + head.size <= len(data):
+        mark, _, frames, topic, payload, checksum = head.unpack_from(data, at)
+        body = data[at + head.size:at + head.size + topic + payload]
+        if mark != b"\xa7rec" or len(body) < topic + payload or \
+                zlib.crc32(body, zlib.crc32(data[at + 4:at + head.size - 4])) != checksum:
+            at = data.find(b"\xa7rec", at + 1)  # damaged, or broken off: on to the next whole one
+            if at < 0:
+                return
+            continue
+        at += head.size + topic + payload
+        if frames == 2 and body.startswith(b"contact/"):
+            yield contact_pb2.ContactBatch.FromString(body[topic:])
+
+
+def batches_of_json_lines(path):
+    from google.protobuf import json_format
+    from palpate.v1 import contact_pb2
+    with open(path, encoding="utf-8") as lines:
+        for line in lines:
+            if line.strip():
+                yield json_format.Parse(line, contact_pb2.ContactBatch())
+
+
+def samples_of_batches(batches):
+    sides = {0: "unspecified", 1: "left", 2: "right"}
+    for batch in batches:
+        probe = batch.header.source
+        key = (probe, batch.patch, batch.tip_radius_m, sides[batch.material_side])
+        for sample in batch.samples:
+            yield batch.group or probe, batch.object, key, (sample.x_m, sample.y_m), sample.sigma_m
+
+
+def samples_of_csv(path):
+    with open(path, newline="", encoding="utf-8") as lines:
+        for row in csv.DictReader(line for line in lines if not line.startswith("#")):
+            probe = row["probe"]
+            key = (probe, int(row["patch"]), float(row.get("tip_radius_m") or 0), row.get("material_side") or "unspecified")
+            yield (row.get("group") or probe, int(row.get("object") or 0), key, (float(row["x_m"]), float(row["y_m"])),
+                   float(row.get("sigma_m") or 0))
+
+
+def samples_of(path):
+    """(group, object, patch's key, (x_m, y_m), sigma_m) of each sample."""
+    with open(path, "rb") as file:
+        start = file.read(8)
+    if start.startswith(b"palpate2"):
+        return samples_of_batches(batches_of_recording(path))
+    if start.lstrip().startswith(b"{"):
+        return samples_of_batches(batches_of_json_lines(path))
+    return samples_of_csv(path)
+
+
+def recognise(patches, sigma_m):
+    """The answer's part of a row."""
+    import palpate
+    recognizer = palpate.Recognizer(sigma=sigma_m or None, most_patches=max(64, len(patches)))
+    probes = {}
+    for number, ((probe, _, tip_radius, side), (points, sigmas)) in enumerate(patches.items()):
+        known = sigmas if any(sigmas) else None
+        recognizer.add(points, patch=number, probe=probes.setdefault(probe, len(probes)), sigma=known,
+                       tip_radius=tip_radius, material_side=side)
+    answer = recognizer.recognize()
+    row = {"status": answer.status, "doubt": answer.doubt, "curve_class": answer.curve_class,
+           "probability": answer.probabilities.get(answer.curve_class, ""), "sigma_m": answer.sigma,
+           "samples": answer.sample_count, "patches": len(patches), "outliers": answer.outlier_count,
+           "forgotten": answer.forgotten_count}
+    if answer.params or answer.pose[0] == answer.pose[0]:
+        row |= answer.params | dict(zip(("x_m", "y_m", "theta_rad"), answer.pose))
+        row |= {{"x": "x_m", "y": "y_m", "theta": "theta_rad"}.get(name, name) + "_std": value
+                for name, value in answer.std.items()}
+    return row
+
+
+def rows_of_piece(path, piece, pieces, sigma_m):
+    """Runs on a worker: rows of the objects of a file that this piece has, as CSV text."""
+    objects = collections.defaultdict(lambda: collections.defaultdict(lambda: ([], [])))
+    for group, number, key, point, sigma in samples_of(pathlib.Path(path)):
+        if zlib.crc32(f"{group}/{number}".encode()) % pieces == piece:
+            points, sigmas = objects[group, number][key]
+            points.append(point)
+            sigmas.append(sigma)
+    out = io.StringIO()
+    writer = csv.DictWriter(out, COLUMNS, restval="", lineterminator="\n")
+    for (group, number), patches in sorted(objects.items()):
+        writer.writerow({"file": path, "group": group, "object": number} | recognise(patches, sigma_m))
+    return out.getvalue()
+
+
+def tasks_of(files, sigma_m):
+    """{name of its part: arguments}. The name changes with the file and with what is asked."""
+    tasks = {}
+    for path in files:
+        state = os.stat(path)
+        pieces = max(1, -(-state.st_size // PIECE_BYTES))
+        for piece in range(pieces):
+            said = json.dumps([str(path), state.st_size, state.st_mtime_ns, piece, pieces, sigma_m])
+            tasks[hashlib.sha256(said.encode()).hexdigest()[:24] + ".csv"] = (str(path), piece, pieces, sigma_m)
+    return tasks
+
+
+def write_whole(path, text):
+    """Whole or not at all."""
+    beside = path.with_suffix(".writing")
+    beside.write_text(text, encoding="utf-8")
+    beside.replace(path)
+
+
+def compute(client, tasks, parts, retries, progress):
+    """Has the tasks done whose parts are not there. Gives {part: error} of those that failed."""
+    from distributed import as_completed
+    futures = {client.submit(rows_of_piece, *arguments, key=name, retries=retries, pure=False): name
+               for name, arguments in tasks.items() if not (parts / name).exists()}
+    done, answers, failed, begin, told = len(tasks) - len(futures), 0, {}, time.monotonic(), 0.0
+    for future in as_completed(futures):
+        name = futures[future]
+        if future.status == "finished":
+            text = future.result()
+            write_whole(parts / name, text)
+            answers += text.count("\n")
+        else:
+            failed[name] = f"{tasks[name][0]}: {future.exception()!r}"
+        done += 1
+        future.release()
+        seconds = time.monotonic() - begin
+        if progress and (seconds > told + 1 or done == len(tasks)):
+            told = seconds
+            print(f"{done} of {len(tasks)} tasks, {answers} answers, {answers / max(seconds, 1e-9):.0f} a second"
+                  + (f", {len(failed)} failed" if failed else ""), file=sys.stderr, flush=True)
+    return failed
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("files", nargs="+", type=pathlib.Path)
+    parser.add_argument("--out", required=True, type=pathlib.Path, help="CSV file of the rows")
+    parser.add_argument("--sigma", type=float, default=0.0, help="noise where a file has none; 0 = estimate it [m]")
+    parser.add_argument("--workers", type=int, default=os.cpu_count(), help="processes on this machine")
+    parser.add_argument("--scheduler", help="address of a Dask scheduler, in place of them")
+    parser.add_argument("--retries", type=int, default=2)
+    parser.add_argument("--quiet", action="store_true", help="no progress on standard error")
+    options = parser.parse_args()
+
+    from distributed import Client, LocalCluster
+    parts = options.out.with_suffix(options.out.suffix + ".parts")
+    parts.mkdir(parents=True, exist_ok=True)
+    files = [path.resolve() for path in options.files]
+    tasks = tasks_of(files, options.sigma)
+    if options.scheduler:
+        client = Client(options.scheduler)
+    else:
+        client = Client(LocalCluster(n_workers=options.workers, threads_per_worker=1, processes=True,
+                                     dashboard_address=None))
+    failed = compute(client, tasks, parts, options.retries, not options.quiet)
+    client.shutdown()
+    if failed:
+        print("\n".join(sorted(set(failed.values()))), file=sys.stderr)
+        return 1
+    rows = [row for name in tasks for row in csv.reader(io.StringIO((parts / name).read_text(encoding="utf-8")))]
+    rows.sort(key=lambda row: (row[0], row[1], int(row[2])))
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerows([COLUMNS, *rows])
+    write_whole(options.out, out.getvalue())
+    print(f"{len(rows)} rows in {options.out}", file=sys.stderr)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,61 @@
+#!/usr/bin/python3
+"""node/examples/archive.py on one local process and on two, and on two of which one is killed: rows, seconds, scaling.
+
+    PALPATE_SOURCE=$PWD PALPATE_BUILD=$PWD/build/strict \\
+      PYTHONPATH=$PWD/tests/support:$PWD/build/strict/node/python:$PWD/build/strict/proto/python \\
+      /usr/bin/python3 tests/bench/plant/archive_scaling.py [--strokes N]
+
+Each stroke is 30 samples of a circle's arc with noise, an object of its own, a thousand in a CSV file. Scaling is of the time between
+the first and the last task: processes start before it.
+"""
+import argparse
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+from programs import SOURCE
+
+sys.path.insert(0, str(SOURCE / "tests/python"))
+from archive_test import ARCHIVE, Archive, write_csv  # noqa: E402
+
+STROKES_PER_FILE = 1000
+
+
+def run(folder, files, workers, kill=False):
+    out = folder / f"{workers}{'-killed' if kill else ''}.csv"
+    process = subprocess.Popen([sys.executable, ARCHIVE, "--out", out, "--workers", str(workers), *files],
+                               stderr=subprocess.PIPE, text=True)
+    if kill:
+        Archive().kill_a_worker(process, out.with_suffix(".csv.parts"))
+    said = process.communicate()[1]
+    assert process.returncode == 0, said
+    answers, rate = re.findall(r"(\d+) answers, (\d+) a second", said)[-1]
+    print(f"{workers} worker(s){', one killed' if kill else ''}: {answers} rows, {rate} a second", flush=True)
+    return out.read_text(), float(rate), said
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--strokes", type=int, default=100_000)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        files = []
+        for number in range(options.strokes // STROKES_PER_FILE):
+            files.append(folder / f"{number:04d}.csv")
+            write_csv(files[-1], STROKES_PER_FILE, seed=number)
+        start = time.monotonic()
+        one, one_rate, _ = run(folder, files, 1)
+        two, two_rate, _ = run(folder, files, 2)
+        killed, _, said = run(folder, files, 2, kill=True)
+        assert one == two == killed, "the rows differ"
+        assert one.count("\n") == 1 + options.strokes
+        print(f"{options.strokes} strokes: the same rows of all three runs; {two_rate / one_rate:.2f} times as fast with two workers; "
+              f"{time.monotonic() - start:.0f} s in all. Last words of progress: {said.splitlines()[-2]}")
+
+
+if __name__ == "__main__":
+    main()
