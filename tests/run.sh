@@ -110,7 +110,7 @@ if [ "$sanitize" = yes ]; then
 fi
 
 if [ "$fuzz" != 0 ]; then
-  targets=(answers config contact_csv http_border ingest keys part probe recording scene)
+  targets=(answers config contact_csv http_border ingest keys part plant probe recording scene)
   begin_part "building (fuzz)" 60
   build asan "${targets[@]/#/fuzz_}"
   mkdir -p build/fuzz

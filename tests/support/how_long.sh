@@ -9,10 +9,10 @@ calibration_reference_s=4.1
 # Core seconds there of what the scripts do, from empty folders. Of a build: tests/support/cpu_seconds.py.
 demo_build_cost=320
 strict_build_cost=650
-strict_test_cost=530
+strict_test_cost=650
 sanitize_cost=1520
 tidy_cost=460
-fuzz_cost=300
+fuzz_cost=330
 
 calibrate() {  # sets calibration_s, the seconds that it takes here and now
   local LC_ALL=C  # a point in EPOCHREALTIME
