@@ -70,7 +70,7 @@ void add_flags(CLI::App& app, NodeConfig& flags) {
           names, [set](std::int64_t count) { set(count > 0 ? "true" : "false"); }, info.help);
     } else if constexpr (std::is_same_v<Field, std::vector<std::string>>) {
       app.add_option_function<std::vector<std::string>>(
-             flag_of(name),
+             palpate::flags_of(info),
              [set](const std::vector<std::string>& texts) {
                for (const std::string& text : texts) set(text);
              },
@@ -79,7 +79,7 @@ void add_flags(CLI::App& app, NodeConfig& flags) {
           ->type_name("")
           ->default_str(default_text(defaults, name));
     } else {
-      app.add_option_function<std::string>(flag_of(name), set, info.help)
+      app.add_option_function<std::string>(palpate::flags_of(info), set, info.help)
           ->type_name("")
           ->default_str(default_text(defaults, name));
     }

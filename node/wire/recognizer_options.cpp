@@ -1,8 +1,16 @@
 #include "node/wire/recognizer_options.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace palpate {
+
+std::string flags_of(const OptionInfo& info) {
+  std::string name = info.name;
+  std::replace(name.begin(), name.end(), '_', '-');
+  const std::string also = info.also;
+  return (also.empty() ? "" : also + ",") + "--" + name;
+}
 
 std::string resolve(const RecognizerWords& words, RecognizerOptions& recognizer) {
   if (words.method == "ml") {

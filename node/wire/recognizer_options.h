@@ -16,7 +16,11 @@ struct OptionInfo {
   const char* help;
   double lowest = 0.0;  ///< numbers only
   double highest = std::numeric_limits<double>::max();
+  const char* also = "";  ///< a second flag, where the name is longer than what people say
 };
+
+/// The flags of an option of that name, as CLI11 takes them: "--sigma,--sigma-m".
+std::string flags_of(const OptionInfo& info);
 
 /// The recogniser's options that are said in words.
 struct RecognizerWords {
@@ -38,7 +42,8 @@ void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& vi
          "ml (maximum likelihood: all classes fitted and weighed) or tree (local estimates alone)"},
         words.method);
   visit({"classes", "Class to consider, e.g. ellipse; may be repeated; none = all"}, words.classes);
-  visit({"sigma_m", "Noise of samples that bring none; 0 = estimate it from the data [m]", 0, 1e3},
+  visit({"sigma_m", "Noise of samples that bring none; 0 = estimate it from the data [m]", 0, 1e3,
+         "--sigma"},
         recognizer.sigma_m);
   visit({"recognized_probability", "RECOGNIZED needs a posterior of at least this", 0, 1},
         recognizer.recognized_probability);
@@ -76,7 +81,8 @@ void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& vi
   visit({"tree_relative_floor", "Tree: standard deviation added to every estimate", 0, 1},
         recognizer.tree.relative_floor);
   visit({"tree_relative_tolerance",
-         "Tree: above 0, the paper's plain tolerance in place of statistics", 0, 1},
+         "Tree: above 0, the paper's plain tolerance in place of statistics", 0, 1,
+         "--relative-tolerance"},
         recognizer.tree.relative_tolerance);
 }
 

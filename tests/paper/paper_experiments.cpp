@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "core/invariants/conic_invariants.h"
 #include "core/invariants/conic_parameters.h"
@@ -11,6 +10,7 @@
 #include "core/invariants/semi_cubical_parabola_invariants.h"
 #include "core/invariants/signature_fit/spline_least_squares.h"
 #include "tests/paper/finite_differences.h"
+#include "tests/paper/random_curves.h"
 
 namespace palpate::paper {
 namespace {
@@ -18,61 +18,18 @@ namespace {
 using test::PlacedCurve;
 
 constexpr int kEvaluations = 100;
-constexpr std::uint64_t kSeed = 2007;
-
-/// Numbers that are the same on every platform: the standard's distributions are not.
-class Random {
- public:
-  explicit Random(std::uint64_t stream) : engine_(kSeed * 1000 + stream) {}
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
-  double sign() { return uniform(-1.0, 1.0) < 0.0 ? -1.0 : 1.0; }
-
- private:
-  std::mt19937_64 engine_;
-};
-
-PlacedCurve curve_of(CurveClass curve_class, double first, double second = 0.0,
-                     double third = 0.0) {
-  return {curve_class, {first, second, third}, {}};
-}
-
-/// A random place where the paper's data could have come from: within the bend of the curve, away
-/// from inflections (where Icp2 divides by the curvature) and cusps.
-double random_place(const PlacedCurve& curve, Random& random) {
-  switch (curve.curve_class) {
-    case CurveClass::Ellipse:
-      return random.uniform(0.0, 2.0 * kPi);
-    case CurveClass::Parabola:
-    case CurveClass::Hyperbola:
-      return random.uniform(-1.5, 1.5);
-    case CurveClass::CubicalParabola:
-      return random.sign() * random.uniform(0.15, 0.8);
-    case CurveClass::SemiCubicalParabola:
-      return random.sign() * random.uniform(0.4, 1.5);
-    default:
-      return random.sign() * random.uniform(0.25, 1.2);
-  }
-}
 
 MeasuredGeometry measure(const PlacedCurve& curve, double t, Measurement how) {
   return finite_differences(curve, t, how == Measurement::Exact ? 0.0 : step_of(curve.curve_class));
 }
 
-/// Two points that are not alike: |kappa|^(-2/3) at least 15 % apart for conics, tangents at least
-/// 0.15 rad apart (modulo pi) for cubics.
+/// Two points that are not alike.
 std::pair<MeasuredGeometry, MeasuredGeometry> random_pair(const PlacedCurve& curve, Measurement how,
                                                           Random& random) {
-  const bool conic =
-      curve.curve_class == CurveClass::Ellipse || curve.curve_class == CurveClass::Hyperbola;
   for (;;) {
     const MeasuredGeometry p = measure(curve, random_place(curve, random), how);
     const MeasuredGeometry q = measure(curve, random_place(curve, random), how);
-    const double u = 1.0 / curvature_two_thirds(p.kappa);
-    const double v = 1.0 / curvature_two_thirds(q.kappa);
-    if (conic ? std::abs(u - v) > 0.15 * std::max(u, v)
-              : std::abs(std::sin(p.tangent_angle - q.tangent_angle)) > 0.15) {
+    if (are_told_apart(curve.curve_class, p, q)) {
       return {p, q};
     }
   }
@@ -136,26 +93,6 @@ bool semi_cubical(const MeasuredGeometry& p, const MeasuredGeometry& q, double& 
   first = std::pow(result.solutions[0].parameters[0], 2);
   second = result.solutions[0].parameters[1];
   return result.status == InvariantStatus::Ok;
-}
-
-/// A random curve of table 3. Ranges [m]: sizes 1 to 3, b / a of the ellipse 0.4 to 0.85, |b| and
-/// |c| of the cubics up to 2.
-PlacedCurve random_curve(CurveClass curve_class, Random& random) {
-  const double a = random.uniform(1.0, 3.0);
-  switch (curve_class) {
-    case CurveClass::Ellipse:
-      return curve_of(curve_class, a, a * random.uniform(0.4, 0.85));
-    case CurveClass::Parabola:
-      return curve_of(curve_class, a);
-    case CurveClass::Hyperbola:
-      return curve_of(curve_class, a, random.uniform(1.0, 3.0));
-    case CurveClass::CubicalParabola:
-    case CurveClass::SemiCubicalParabola:
-      return curve_of(curve_class, a, random.sign() * random.uniform(0.5, 2.0));
-    default:
-      return curve_of(curve_class, a, random.sign() * random.uniform(0.5, 2.0),
-                      random.sign() * random.uniform(0.5, 2.0));
-  }
 }
 
 /// Parameters from as few points as the paper uses: one for the parabola, two, three for the
@@ -326,23 +263,22 @@ std::vector<WrongInvariant> table2(Measurement how) {
   };
 }
 
+std::span<const Table3Class> table3_classes() {
+  static constexpr std::array kRows = {
+      Table3Class{"ellipse", CurveClass::Ellipse, 100, {0.02, 7.99, 0.40, 0.0}},
+      Table3Class{"hyperbola", CurveClass::Hyperbola, 100, {0.10, 9.71, 1.15, 0.0}},
+      Table3Class{"parabola", CurveClass::Parabola, 100, {0.01, 3.35, 0.36, 0.0}},
+      Table3Class{"cubical parabola", CurveClass::CubicalParabola, 100, {0.02, 7.49, 0.83, 0.0}},
+      Table3Class{
+          "semi-cubical parabola", CurveClass::SemiCubicalParabola, 100, {0.04, 8.09, 1.23, 0.0}},
+      Table3Class{"cubic spline", CurveClass::CubicSpline, 25, {1.57, 10.22, 5.68, 0.0}}};
+  return kRows;
+}
+
 std::vector<RecoveryColumn> table3(Measurement how) {
-  struct Row {
-    std::string_view name;
-    CurveClass curve_class;
-    int curves;
-    Statistics paper;
-  };
-  const std::array rows = {
-      Row{"ellipse", CurveClass::Ellipse, 100, {0.02, 7.99, 0.40, 0.0}},
-      Row{"hyperbola", CurveClass::Hyperbola, 100, {0.10, 9.71, 1.15, 0.0}},
-      Row{"parabola", CurveClass::Parabola, 100, {0.01, 3.35, 0.36, 0.0}},
-      Row{"cubical parabola", CurveClass::CubicalParabola, 100, {0.02, 7.49, 0.83, 0.0}},
-      Row{"semi-cubical parabola", CurveClass::SemiCubicalParabola, 100, {0.04, 8.09, 1.23, 0.0}},
-      Row{"cubic spline", CurveClass::CubicSpline, 25, {1.57, 10.22, 5.68, 0.0}}};
   std::vector<RecoveryColumn> table;
   std::uint64_t stream = 30;
-  for (const Row& row : rows) {
+  for (const Table3Class& row : table3_classes()) {
     Random random(stream++);
     std::vector<double> errors;
     while (static_cast<int>(errors.size()) < row.curves) {

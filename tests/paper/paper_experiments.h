@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +49,15 @@ struct WrongInvariant {
 };
 
 std::vector<WrongInvariant> table2(Measurement measurement = Measurement::FiniteDifferences);
+
+/// A class of table 3, and what the paper prints of it [%].
+struct Table3Class {
+  std::string_view name;
+  CurveClass curve_class;
+  int curves;
+  Statistics paper;
+};
+std::span<const Table3Class> table3_classes();
 
 /// One column of table 3: relative error of the recovered parameters over random curves, in
 /// percent.

@@ -17,9 +17,9 @@ namespace palpate::paper {
 namespace {
 
 constexpr int kTrials = 200;
-constexpr double kSigma_mm = 0.05;
-constexpr double kSpacing_mm = 0.2;
 constexpr int kSamples = 111;  // n + (m - 1) l
+constexpr double kSigma_m = 5e-5;
+constexpr double kStroke_m = 2e-4 * (kSamples - 1);
 
 /// The paper's method: one two-round estimate a stroke, (26) and (28) of two or (50) of three.
 std::optional<Eigen::Vector3d> by_paper(const test::Scene& scene) {
@@ -71,27 +71,41 @@ Recovered statistics(const std::vector<Eigen::Vector3d>& values) {
   return result;
 }
 
-/// Strokes at `centres` (curve parameters); lengths in `unit_mm` millimetres.
-SensorExperiment run(CurveClass curve_class, const Eigen::Vector3d& truth,
-                     const std::vector<double>& centres, double unit_mm, std::uint64_t seed) {
-  const Curve curve = *make_curve(curve_class, truth);
+/// The part with `unit_m` metres for a unit of length: canonical t goes as its root where x = t^2.
+SensorPart in_unit(SensorPart part, double unit_m) {
+  part.stroke_m /= unit_m;
+  part.sigma_m /= unit_m;
+  if (part.curve_class == CurveClass::Ellipse) {
+    part.shape /= unit_m;
+    return part;
+  }
+  const double root = std::sqrt(unit_m);
+  part.shape = part.shape.cwiseProduct(Eigen::Vector3d(root, 1.0, 1.0 / root));
+  for (double& centre : part.centres) {
+    centre /= root;
+  }
+  return part;
+}
+
+/// On all strokes but the last.
+SensorExperiment run(const SensorPart& part, std::uint64_t seed) {
+  const Curve curve = *make_curve(part.curve_class, part.shape);
   std::vector<test::Stroke> strokes;
-  for (const double centre : centres) {
-    strokes.push_back({centre, (kSamples - 1) * kSpacing_mm / unit_mm, kSamples, 1});
+  for (std::size_t i = 0; i + 1 < part.centres.size(); ++i) {
+    strokes.push_back({part.centres[i], part.stroke_m, kSamples, 1});
   }
   SensorExperiment experiment;
   experiment.trials = kTrials;
-  experiment.curve_class = curve_class;
-  std::copy(truth.begin(), truth.end(), experiment.truth);
+  experiment.curve_class = part.curve_class;
+  std::copy(part.shape.begin(), part.shape.end(), experiment.truth);
   std::mt19937_64 rng(seed);
   std::vector<Eigen::Vector3d> paper;
   std::vector<Eigen::Vector3d> defaults;
   for (int trial = 0; trial < kTrials; ++trial) {
-    const double sigma = kSigma_mm / unit_mm;
-    const test::Scene scene = test::touched_curve(curve, {}, strokes, sigma, rng);
+    const test::Scene scene = test::touched_curve(curve, {}, strokes, part.sigma_m, rng);
     if (trial == 0) {
       const Eigen::MatrixXd bound = test::bound_of(scene);
-      for (std::size_t k = 0; k < parameter_letters(curve_class).size(); ++k) {
+      for (std::size_t k = 0; k < parameter_letters(part.curve_class).size(); ++k) {
         experiment.bound[k] =
             std::sqrt(bound(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)));
       }
@@ -99,12 +113,12 @@ SensorExperiment run(CurveClass curve_class, const Eigen::Vector3d& truth,
     if (const auto shape = by_paper(scene)) {
       paper.push_back(*shape);
     }
-    const Recognition answer = test::recognise(scene, sigma);
-    experiment.recognised +=
-        answer.status == RecognitionStatus::Recognized && answer.shape.curve_class == curve_class
-            ? 1
-            : 0;
-    const Hypothesis* hypothesis = test::hypothesis_of(answer, curve_class);
+    const Recognition answer = test::recognise(scene, part.sigma_m);
+    experiment.recognised += answer.status == RecognitionStatus::Recognized &&
+                                     answer.shape.curve_class == part.curve_class
+                                 ? 1
+                                 : 0;
+    const Hypothesis* hypothesis = test::hypothesis_of(answer, part.curve_class);
     if (hypothesis != nullptr && hypothesis->covariance.size() > 0) {
       defaults.push_back(hypothesis->shape.values);
     }
@@ -116,15 +130,22 @@ SensorExperiment run(CurveClass curve_class, const Eigen::Vector3d& truth,
 
 }  // namespace
 
-SensorExperiment table4() {
-  constexpr double kUnit_mm = 1.0;
-  return run(CurveClass::Ellipse, {25.0, 17.5, 0.0}, {0.8, 2.8}, kUnit_mm, 4);
+SensorPart table4_part() {
+  return {CurveClass::Ellipse, {0.025, 0.0175, 0.0}, {0.8, 2.8, 4.6}, kStroke_m, kSigma_m};
 }
 
-SensorExperiment table5() {
-  constexpr double kUnit_mm = 10.0;
-  return run(CurveClass::CubicSpline, {1.10734, 1.67996, -0.401898}, {-1.4, 0.75, 1.1}, kUnit_mm,
-             5);
+SensorPart table5_part() {
+  // Printed in cm.
+  const double root = std::sqrt(0.01);
+  return {CurveClass::CubicSpline,
+          {1.10734 / root, 1.67996, -0.401898 * root},
+          {-1.4 * root, 0.75 * root, 1.1 * root, 1.45 * root},
+          kStroke_m,
+          kSigma_m};
 }
+
+SensorExperiment table4() { return run(in_unit(table4_part(), 1e-3), 4); }
+
+SensorExperiment table5() { return run(in_unit(table5_part(), 1e-2), 5); }
 
 }  // namespace palpate::paper

@@ -2,6 +2,7 @@
 // the defaults.
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "core/curves/curve_class.h"
@@ -29,12 +30,23 @@ struct SensorExperiment {
   double bound[3] = {};   ///< Kanatani-Cramer-Rao, one standard deviation, at the truth
 };
 
-/// Table 4: the ellipse of 25 x 17.5 mm. Sigma 0.05 mm, two strokes of 111 samples 0.2 mm apart. In
-/// mm.
+/// A part of the paper's, and strokes of 111 samples, 0.2 mm apart, along it, in metres.
+struct SensorPart {
+  CurveClass curve_class = CurveClass::Unclassified;
+  Eigen::Vector3d shape;
+  /// Middles of the strokes (curve parameters): those of the table's experiment, then one more, for
+  /// the tree takes one more point than the shape.
+  std::vector<double> centres;
+  double stroke_m = 0.0;
+  double sigma_m = 0.0;
+};
+SensorPart table4_part();
+SensorPart table5_part();
+
+/// Table 4: the ellipse of 25 x 17.5 mm. Sigma 0.05 mm, two strokes. In mm.
 SensorExperiment table4();
 
-/// Table 5: the cubic spline segment of figure 10 (d), three such strokes along it. In cm, as
-/// printed.
+/// Table 5: the cubic spline segment of figure 10 (d), three strokes along it. In cm, as printed.
 SensorExperiment table5();
 
 }  // namespace palpate::paper

@@ -3,6 +3,8 @@ import json
 import math
 import unittest
 
+from google.protobuf import json_format
+
 from bus import Bus, wait_for
 from palpate.v1 import curve_pb2, recognition_pb2
 from programs import SIM, SOURCE, TOOL, run
@@ -31,6 +33,30 @@ class SameAnswer(unittest.TestCase):
                 size = len(found) + 1
                 for i, (one, two) in enumerate(zip(found, other)):
                     self.assertLess(abs(one - two), 0.1 * math.sqrt(live.covariance[i * (size + 1)]), (scene, i))
+
+
+    def test_the_papers_pipeline_is_selected_by_the_same_words(self):
+        pipeline = ["--method", "tree", "--estimator", "two-round", "--window", "75", "--shift", "4",
+                    "--relative-tolerance", "0.05"]
+        with Bus() as bus:
+            path = bus.folder / "part.csv"
+            rows = ["probe,patch,x_m,y_m,sigma_m"]
+            for patch, start in enumerate((0.2, 1.0, 2.3, 3.4)):
+                for i in range(111):
+                    t = start + 0.25 * i / 110
+                    rows.append(f"finger,{patch},{0.3 + 0.025 * math.cos(t)!r},{0.0175 * math.sin(t)!r},1e-9")
+            path.write_text("\n".join(rows) + "\n")
+            code, out, err = run(TOOL, "fit", path, "--format", "json", *pipeline)
+            self.assertEqual(code, 0, err)
+            offline = json_format.Parse(out, recognition_pb2.Recognition(), ignore_unknown_fields=True)
+            self.assertEqual(offline.curve_class, curve_pb2.CURVE_CLASS_ELLIPSE)
+            self.assertEqual(offline.decisions[-1].threshold, 0.05)
+            bus.start_node(*pipeline)
+            planner = bus.subscriber()
+            self.assertEqual(run(TOOL, "replay", path, "--contacts", bus.contacts, "--fast")[0], 0)
+            live = wait_for(planner, lambda a: a.sample_count == offline.sample_count)
+            for field in ("curve_class", "status", "parameters", "pose", "covariance", "decisions", "invariants"):
+                self.assertEqual(getattr(live, field), getattr(offline, field), field)
 
 
 if __name__ == "__main__":

@@ -44,19 +44,11 @@ struct FitCommand {
   RecognizerOptions recognizer;
 };
 
-std::string flag_of(std::string name) {
-  std::replace(name.begin(), name.end(), '_', '-');
-  return "--" + name;
-}
-
 /// Flags for the recogniser's options, out of their one table.
 void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
   for_each_recognizer_option(fit.words, fit.recognizer, [&](const OptionInfo& info, auto& field) {
     using Field = std::decay_t<decltype(field)>;
-    std::string flag = flag_of(info.name);
-    flag = flag == "--sigma-m"                   ? "--sigma,--sigma-m"
-           : flag == "--tree-relative-tolerance" ? "--relative-tolerance,--tree-relative-tolerance"
-                                                 : flag;
+    const std::string flag = flags_of(info);
     if constexpr (std::is_same_v<Field, bool>) {
       command.add_flag(flag, field, info.help)->group("Recognition");
       return;

@@ -116,6 +116,9 @@ class TextLines : public WatchOutput {
         std::printf(" [%.2f ms after the touch]", shown.latency_ms);
         std::fflush(stdout);
       }
+      if (!shown.held.invariants().empty()) {
+        std::cout << "; invariants: " << invariants_text(shown.held);
+      }
       std::cout << std::endl;
       shown.at = now;
       shown.is_held = false;
@@ -313,8 +316,9 @@ void add_watch_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "watch",
       "Show what the recognizer says: class, parameters and pose with their standard deviations, "
-      "time\n"
-      "since the touch, and the probes: on a terminal one table that is drawn anew; elsewhere a "
+      "the\n"
+      "recognition tree's invariants, time since the touch, and the probes: on a terminal one "
+      "table that is drawn anew; elsewhere a "
       "line where\n"
       "there is an answer, and where a probe falls silent, comes back or loses messages.");
   command->add_option("GROUP", watch->groups, "Groups to watch; none = all")->type_name("");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "node/files/printable.h"
@@ -125,17 +126,20 @@ void add_decisions(const v1::Recognition& answer, std::string& text) {
   }
 }
 
+/// Without a standard deviation where a tolerance decided.
+std::string value_text(const v1::Invariant& invariant) {
+  return std::isfinite(invariant.sigma()) ? with_sigma(invariant.value(), invariant.sigma())
+                                          : number(invariant.value());
+}
+
 void add_invariants(const v1::Recognition& answer, std::string& text) {
   if (answer.invariants().empty()) {
     return;
   }
   text += "  invariants, in powers of metres\n";
   for (const v1::Invariant& invariant : answer.invariants()) {
-    const std::string value = std::isfinite(invariant.sigma())
-                                  ? with_sigma(invariant.value(), invariant.sigma())
-                                  : number(invariant.value());
     add_row(text, "    %-6s of %-24s %s\n", printable(invariant.name()).c_str(),
-            spoken_name(invariant.curve_class()).c_str(), value.c_str());
+            spoken_name(invariant.curve_class()).c_str(), value_text(invariant).c_str());
   }
 }
 
@@ -240,6 +244,21 @@ std::string summary_text(const v1::Recognition& answer) {
   std::string text = spoken_name(answer.curve_class()) + " (" + status_text(answer) + ")";
   for (const Quantity& quantity : quantities_of(answer)) {
     text += ", " + quantity.name + " " + quantity.text;
+  }
+  return text;
+}
+
+std::string invariants_text(const v1::Recognition& answer) {
+  std::string text;
+  std::optional<v1::CurveClass> of;
+  for (const v1::Invariant& invariant : answer.invariants()) {
+    if (of != invariant.curve_class()) {
+      of = invariant.curve_class();
+      text += (text.empty() ? "" : "; ") + spoken_name(*of) + " ";
+    } else {
+      text += ", ";
+    }
+    text += printable(invariant.name()) + " " + value_text(invariant);
   }
   return text;
 }

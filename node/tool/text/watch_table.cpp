@@ -82,6 +82,9 @@ void add_group(const std::string& name, const WatchedGroup& group, const NameWid
   if (answer.status() != v1::RECOGNITION_STATUS_RECOGNIZED) {
     lines.push_back("  " + advice_text(answer));
   }
+  if (!answer.invariants().empty()) {
+    lines.push_back("  " + invariants_text(answer));
+  }
 }
 
 void add_probe(const v1::ProbeStatus& probe, double status_age_s, const NameWidths& widths,

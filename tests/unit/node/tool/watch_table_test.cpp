@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace palpate {
 namespace {
 
@@ -78,6 +80,23 @@ TEST(WatchTable, ShowsTheWholeShapeAndEveryColumnIn80Columns) {
   const auto lines = watch_table(state, 80, 24);
   EXPECT_THAT(lines[3], HasSubstr("a 20.0000 +- 0.0010 mm, b 10.0000 +- 0.0010 mm, x 300"));
   EXPECT_THAT(lines[4], HasSubstr("RESTARTS"));
+}
+
+TEST(WatchTable, ShowsTheInvariantsByClass) {
+  WatchedState state = state_of(1, 0);
+  const auto add = [&](v1::CurveClass curve_class, const char* name, double value, double sigma) {
+    v1::Invariant& invariant = *state.groups["group-0"].answer.add_invariants();
+    invariant.set_curve_class(curve_class);
+    invariant.set_name(name);
+    invariant.set_value(value);
+    invariant.set_sigma(sigma);
+  };
+  add(v1::CURVE_CLASS_ELLIPSE, "Ic1", 163.4, 16.0);
+  add(v1::CURVE_CLASS_ELLIPSE, "Ic2", 28.3, 1.5);
+  // Where a tolerance decides there is no deviation.
+  add(v1::CURVE_CLASS_PARABOLA, "Ip", 4.25, std::numeric_limits<double>::infinity());
+  const auto lines = watch_table(state, 200, 24);
+  EXPECT_EQ(lines[3], "  ellipse Ic1 163 +- 16, Ic2 28.3 +- 1.5; parabola Ip 4.25");
 }
 
 TEST(WatchTable, ColumnsStandBelowTheirNamesWhateverTheObjectIsNumbered) {
