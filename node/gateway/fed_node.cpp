@@ -50,6 +50,7 @@ FedNode::FedNode(zmq::context_t& context, const FedNodeOptions& options, const s
     arguments.push_back(options.config);
   }
   std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
 

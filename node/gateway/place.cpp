@@ -28,6 +28,9 @@ constexpr int kMostUnacknowledged = 8192;
 // whoever has most) before it would reject any.
 constexpr std::size_t kMostInFlight = 512;
 constexpr std::size_t kMostBytesInFlight = std::size_t{4} << 20;
+// Of a place: as many as half of the most that a node may be given (kMostThings in node/options.h).
+// Further names, which only a stranger invents, are not taken.
+constexpr std::size_t kMostGroups = 50'000;
 constexpr milliseconds kTend{50};
 constexpr milliseconds kRetry{300};
 // The engine says this often that a consumer lives; without it for so long we ask.
@@ -242,7 +245,7 @@ void Place::take_contact(const PlantMessage& message, std::uint64_t stream_seq) 
   if (message.payload().size() <= node_options_.max_message_bytes) {
     read = read_contact(message.subject(), message.payload(), stream_seq);
   }
-  if (!read) {
+  if (!read || (groups_.size() >= kMostGroups && !groups_.contains(read->group))) {
     status_.set_hostile(status_.hostile() + 1);
     mark_done(stream_seq);
     return;

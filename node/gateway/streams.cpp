@@ -42,7 +42,7 @@ std::string recognition_stream(std::string_view cell) { return stream(cell, "rec
 std::string status_stream(std::string_view cell) { return stream(cell, "status"); }
 
 void make_streams(Plant& plant, const void* owner, const std::string& cell,
-                  const StreamLimits& limits, std::function<void(bool)> done) {
+                  const StreamLimits& limits, const std::function<void(bool)>& done) {
   json contacts = common(contact_stream(cell), {make_subject(cell, "contact") + ".>"}, limits);
   constexpr double kSecondsPerHour = 3600.0;
   contacts["max_age"] = static_cast<std::int64_t>(limits.contacts_max_age_h * kSecondsPerHour *

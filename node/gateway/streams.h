@@ -24,6 +24,6 @@ std::string status_stream(std::string_view cell);
 
 /// Asks for the three; done(true) where they are there.
 void make_streams(Plant& plant, const void* owner, const std::string& cell,
-                  const StreamLimits& limits, std::function<void(bool)> done);
+                  const StreamLimits& limits, const std::function<void(bool)>& done);
 
 }  // namespace palpate::gateway

@@ -3,7 +3,7 @@ import random
 import time
 import unittest
 
-from bus import Bus, Probe, memory_kb
+from bus import Bus, Probe, memory_kb, stop
 from palpate.v1 import contact_pb2
 from plant import (Client, Ledger, Servers, carrier, gateway_status, recogniser, skip_where_absent, wait_for_stored)
 
@@ -61,6 +61,7 @@ class Hostile(unittest.TestCase):
                 self.assertEqual(place.restarts, 0)
                 self.assertIsNone(down.poll())
                 self.assertLess(growth_kb, MOST_GROWTH_KB)
+                self.assertEqual(stop(down)[0], 0)
 
     def token(self, rng):
         return rng.choice(["a", "=2E", "=2e", "=", "=41", "%", "a=2", "\\", "'", "x" * 200, "=00", "\u00e4"])
@@ -132,7 +133,7 @@ class Hostile(unittest.TestCase):
                 # Bytes may be a message by chance, of no samples, but hardly with a header.
                 self.assertEqual(status.malformed, hostile)
                 self.assertEqual(status.stored, 100)
-                self.assertIsNone(up.poll())
+                self.assertEqual(stop(up)[0], 0)
 
 
 if __name__ == "__main__":
