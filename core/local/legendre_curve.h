@@ -15,25 +15,28 @@ inline constexpr std::array<double, 5> kGaussWeights = {0.236926885056189088, 0.
                                                         0.568888888888888889, 0.478628670499366468,
                                                         0.236926885056189088};
 
-/// Slope at u of the polynomial with Legendre coefficients c.
-template <int Size>
-double slope(const LegendreVector<Size>& c, double u) {
+/// Slope of the polynomial with Legendre coefficients c, where P_0 ... P_{Size-2} are the first of
+/// p.
+template <int Size, int Terms>
+double slope_of(const LegendreVector<Size>& c, const LegendreVector<Terms>& p) {
+  static_assert(Terms + 1 >= Size);
   // P'_{k+1} = P'_{k-1} + (2k + 1) P_k
-  double before = 0.0;
-  double p = 1.0;
   double d_before = 0.0;
   double d = 0.0;
   double sum = 0.0;
   for (int k = 0; k + 1 < Size; ++k) {
-    const double next = ((2 * k + 1) * u * p - k * before) / (k + 1);
-    const double d_next = d_before + (2 * k + 1) * p;
-    before = p;
-    p = next;
+    const double d_next = d_before + (2 * k + 1) * p[k];
     d_before = d;
     d = d_next;
     sum += c[k + 1] * d;
   }
   return sum;
+}
+
+/// The same at u.
+template <int Size>
+double slope(const LegendreVector<Size>& c, double u) {
+  return slope_of<Size, Size>(c, legendre<Size>(u));
 }
 
 /// Arc length of the polynomial from u0 to u1.

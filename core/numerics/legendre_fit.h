@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <utility>
 
 #include "core/numerics/small_cholesky.h"
 
@@ -14,7 +15,7 @@ namespace palpate {
 template <int Size>
 using LegendreVector = Eigen::Matrix<double, Size, 1>;
 
-/// P_0(u) ... P_{Size-1}(u).
+/// P_0(u) ... P_{Size-1}(u), by P_{k+1} = ((2k + 1) u P_k - k P_{k-1}) / (k + 1).
 template <int Size>
 LegendreVector<Size> legendre(double u) {
   LegendreVector<Size> p;
@@ -22,9 +23,11 @@ LegendreVector<Size> legendre(double u) {
   if constexpr (Size > 1) {
     p[1] = u;
   }
-  for (int k = 1; k + 1 < Size; ++k) {
-    p[k + 1] = ((2 * k + 1) * u * p[k] - k * p[k - 1]) / (k + 1);
+  // Term by term, with quotients that the compiler knows: a division each was most of the time.
+  [&]<int... K>(std::integer_sequence<int, K...>) {
+    ((p[K + 2] = (2.0 * K + 3.0) / (K + 2.0) * u * p[K + 1] - (K + 1.0) / (K + 2.0) * p[K]), ...);
   }
+  (std::make_integer_sequence<int, (Size > 2 ? Size - 2 : 0)>());
   return p;
 }
 
@@ -55,8 +58,10 @@ class LegendreFit {
   using Vector = LegendreVector<kSize>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
 
-  void add(double u, double v, double weight) {
-    const Vector p = legendre<kSize>(u);
+  void add(double u, double v, double weight) { add(legendre<kSize>(u), v, weight); }
+
+  /// The same, of P_0(u) ... P_Degree(u).
+  void add(const Vector& p, double v, double weight) {
     for (int i = 0; i < kSize; ++i) {
       const double wp = weight * p[i];
       for (int j = 0; j <= i; ++j) {

@@ -87,6 +87,8 @@ measure "search for the worst case" worst_case.txt "$bench/worst_case/bench_wors
 measure "the sliding window beside the best window in hindsight" hindsight.md "$bench/accuracy/bench_hindsight" \
   --strokes $strokes
 measure "the paper's tables" paper.md build/strict/tests/paper/paper_tables
+PYTHONPATH=tests/support:build/strict/proto/python measure "the paper's tables by the whole pipeline" pipeline.md \
+  /usr/bin/python3 tests/paper/pipeline_tables.py
 measure "signature curves" signatures.csv "$bench/accuracy/bench_signatures"
 measure "real recordings" real.md "$bench/real/bench_real"
 step "peers on the same points"

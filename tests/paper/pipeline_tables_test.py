@@ -1,10 +1,16 @@
 """The paper's tables 3 to 5 by its whole pipeline through `palpate fit`, held to the printed figures as paper_tables_test.cpp
 holds the library: what the paper does not print (its points, ranges, steps, its sensor's noise) leaves errors of the printed
 size, and agreement within the printed range, as the claim."""
+import math
 import statistics
+import tempfile
 import unittest
 
+from google.protobuf import json_format
+
 import pipeline_tables as tables
+from palpate.v1 import curve_pb2, recognition_pb2
+from programs import SIM, SOURCE, TOOL, run
 
 
 class Table3(unittest.TestCase):
@@ -42,6 +48,32 @@ class Sensor(unittest.TestCase):
                 real, *printed = tables.TABLE5[name]
                 self.assertGreaterEqual(len(columns[name]), 72, name)
                 self.assertLess(abs(statistics.median(columns[name]) - real), max(abs(p - real) for p in printed), name)
+
+
+class ShippedScenes(unittest.TestCase):
+    def answer(self, scene, *options):
+        with tempfile.TemporaryDirectory() as folder:
+            path = f"{folder}/part.csv"
+            self.assertEqual(run(SIM, SOURCE / f"sim/scenes/{scene}.textproto", "--csv", path)[0], 0)
+            code, out, err = run(TOOL, "fit", path, "--format", "json", "--method", "tree", *options)
+            self.assertEqual(code, 0, err)
+        return json_format.Parse(out, recognition_pb2.Recognition(), ignore_unknown_fields=True)
+
+    def is_the_ellipse(self, answer, pose):
+        self.assertEqual(answer.curve_class, curve_pb2.CURVE_CLASS_ELLIPSE)
+        found = (answer.parameters.a, answer.parameters.b, answer.pose.x_m, answer.pose.y_m)
+        for i, (value, truth) in enumerate(zip(found, (0.03, 0.02, *pose))):
+            self.assertLess(abs(value - truth), 4 * math.sqrt(answer.covariance[6 * i]), i)
+
+    def test_a_noisy_ellipse_by_the_papers_pipeline_at_any_tolerance(self):
+        for tolerance in (0.05, 0.2, 0.5):
+            answer = self.answer("ellipse", *tables.TWO_ROUND, "--relative-tolerance", tolerance)
+            self.assertEqual(answer.status, recognition_pb2.RECOGNITION_STATUS_RECOGNIZED)
+            self.is_the_ellipse(answer, (0.3, 0.12))
+
+    def test_an_ellipse_between_two_round_fingers_by_the_tree_alone(self):
+        # Four places of one curvature within their errors: the tangents must tell it from a circle.
+        self.is_the_ellipse(self.answer("two_finger_grasp"), (0.42, 0.0))
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@
 
 #include "core/local/graph_geometry.h"
 #include "core/local/legendre_curve.h"
+#include "core/local/stream/straightening.h"
 #include "core/numerics/legendre_fit.h"
 #include "core/numerics/small_cholesky.h"
 
@@ -31,11 +32,24 @@ using Matrix = Eigen::Matrix<double, kSize, kSize>;
 /// in 25 such strokes is cut. The upper 1 % would cut four times a stroke, and would make windows
 /// shorter by the sixteenth root of the two thresholds' ratio, 4 %, only.
 constexpr double kAdequate = 18.42;
+/// The same of all five terms beyond the third, where the window is straightened.
+constexpr double kCircular = 25.74;
 /// half extent > kMinHalfExtentSigmas * sigma: shorter, and noise along the axis is no small
 /// perturbation of the places of the samples.
 constexpr double kMinHalfExtentSigmas = 10.0;
+/// rounding < kMostRounding, of the half extent: else rounding alone decides the axis.
+constexpr double kMostRounding = 1.0 / 16.0;
 /// |slope| <= kMaxSlope over the window: 45 degrees.
 constexpr double kMaxSlope = 1.0;
+/// Windows that turn farther from their middle are straightened.
+constexpr double kMostTurnOfAGraph = 0.25 * kPi;
+/// Of less the polynomial takes a circle for one to 1e-9 of the radius, and straightening changes
+/// nothing: its term of degree 8 is 5 / 128 of the 8th power of the half extent over the radius,
+/// over 50 in Legendre's basis.
+constexpr double kLeastTurn = 0.2;
+/// cos^2(phi / 2) >= kLeastShrink, phi what the window turns by from its middle: 120 degrees to
+/// either side. Beyond, samples count less than a sixteenth.
+constexpr double kLeastShrink = 0.25;
 
 double squared(double x) { return x * x; }
 
@@ -177,37 +191,58 @@ PriorMixture prior_mixture(const Vector& c, const Vector& variance) {
   return mixture;
 }
 
+/// Of the coordinates of the nodes. [m]
+double rounding_of(std::span<const PathNode> nodes) {
+  return std::numeric_limits<double>::epsilon() *
+         std::max(nodes.front().position_m.cwiseAbs().maxCoeff(),
+                  nodes.back().position_m.cwiseAbs().maxCoeff());
+}
+
 /// Derivatives 0 ... 4 at u = 0 of P_0 ... P_10.
 const Eigen::Matrix<double, 5, kAllTerms>& basis_at_middle() {
   static const Eigen::Matrix<double, 5, kAllTerms> basis = legendre_derivatives<5, kAllTerms>(0.0);
   return basis;
 }
 
-}  // namespace
-
-LocalResult fit_window(std::span<const PathNode> nodes, double noise, double form_deviation_m,
-                       bool may_enlarge_noise) {
+/// With `is_circular` only what is a circle but for kappa_s, to the noise: else TurnsTooFar.
+LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<const PathNode> nodes,
+                   double noise, double form_deviation_m, bool may_enlarge_noise) {
   LocalResult result;
-  if (nodes.size() < kFewestWindowNodes) {
-    return result;
-  }
   // Nothing is allocated for a pyramid's window.
   std::array<Vec2, 2 * NodePyramid::kMostNodes> few;
   std::vector<Vec2> many(nodes.size() > NodePyramid::kMostNodes ? 2 * nodes.size() : 0);
   const std::span<Vec2> room = many.empty() ? std::span<Vec2>(few) : std::span<Vec2>(many);
   const std::span<Vec2> positions = room.first(nodes.size());
   const std::span<Vec2> uv = room.subspan(nodes.size(), nodes.size());
+  std::array<double, NodePyramid::kMostNodes> few_weights;
+  std::vector<double> many_weights(many.empty() ? 0 : nodes.size());
+  const std::span<double> weights =
+      many.empty() ? std::span<double>(few_weights) : std::span<double>(many_weights);
+  double samples_weight = 0.0;
   double weight_sum = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    positions[i] = nodes[i].position_m;
-    weight_sum += nodes[i].weight;
+    const Straightening::Point point = straight.to_line(nodes[i].position_m);
+    if (point.shrink < kLeastShrink) {
+      result.status = LocalStatus::TurnsTooFar;
+      return result;
+    }
+    positions[i] = point.w_m;
+    weights[i] = nodes[i].weight * squared(point.shrink);
+    samples_weight += nodes[i].weight;
+    weight_sum += weights[i];
   }
-  const auto [status, frame] = aligned_frame(positions);
+  auto [status, frame] = aligned_frame(positions);
   if (status != LocalStatus::Ok) {
     result.status = status;
     return result;
   }
   const double unit = frame.half_extent_m;
+  // Of the coordinates as they came: those of the frame are counted from the window's middle.
+  frame.rounding = std::max(frame.rounding, rounding_of(nodes) / unit);
+  if (frame.rounding >= kMostRounding) {
+    result.status = LocalStatus::NoExtent;
+    return result;
+  }
   // Noise of the lightest node, which may run back the farthest.
   const double mean_weight = weight_sum / static_cast<double>(nodes.size());
   const double node_noise = std::max(noise / std::sqrt(mean_weight) / unit, frame.rounding);
@@ -219,12 +254,22 @@ LocalResult fit_window(std::span<const PathNode> nodes, double noise, double for
   if (kMinHalfExtentSigmas * node_noise >= 1.0) {
     return result;
   }
+  // Form error that is smooth along the arc adds at most this to any combination of the residuals.
+  const double precision =
+      samples_weight / std::max(squared(noise), squared(frame.rounding * unit) * mean_weight);
+  const double coherent = 1.0 + squared(form_deviation_m) * precision;
+  double variance_of_unit = squared(node_noise) * coherent;
   LegendreFit<4> smooth;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     uv[i] = frame.to_frame(positions[i]);
-    smooth.add(uv[i].x(), uv[i].y(), nodes[i].weight / mean_weight);
+    smooth.add(uv[i].x(), uv[i].y(), weights[i] / mean_weight);
   }
   if (!smooth.factorise(0.0)) {
+    return result;
+  }
+  // Most windows that are no circle show it here, at a third of the cost.
+  if (is_circular && squared(smooth.scores()[4]) > kCircular * variance_of_unit) {
+    result.status = LocalStatus::TurnsTooFar;
     return result;
   }
   // The tangent's slope from the quartic: the full polynomial's own swings with the noise.
@@ -232,24 +277,24 @@ LocalResult fit_window(std::span<const PathNode> nodes, double noise, double for
   Fit fit;
   Eigen::Matrix<double, kSize, kTail> overlap = Eigen::Matrix<double, kSize, kTail>::Zero();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const double s = slope<5>(quartic, uv[i].x());
+    const LegendreVector<kAllTerms> p = legendre<kAllTerms>(uv[i].x());
+    const double s = slope_of<5, kAllTerms>(quartic, p);
     if (std::abs(s) > kMaxSlope) {
       result.status = LocalStatus::TurnsTooFar;
       return result;
     }
-    const double weight = nodes[i].weight / mean_weight / (1.0 + s * s);
-    fit.add(uv[i].x(), uv[i].y(), weight);
-    const LegendreVector<kAllTerms> p = legendre<kAllTerms>(uv[i].x());
+    const double weight = weights[i] / mean_weight / (1.0 + s * s);
+    fit.add(p.head<kSize>(), uv[i].y(), weight);
     overlap += weight * p.head<kSize>() * p.tail<kTail>().transpose();
   }
   if (!fit.factorise(0.0)) {
     return result;
   }
-  // Form error that is smooth along the arc adds at most this to any combination of the residuals.
-  const double precision =
-      weight_sum / std::max(squared(noise), squared(frame.rounding * unit) * mean_weight);
-  const double coherent = 1.0 + squared(form_deviation_m) * precision;
-  double variance_of_unit = squared(node_noise) * coherent;
+  if (is_circular &&
+      fit.scores().tail<kSize - kFirstPrior>().squaredNorm() > kCircular * variance_of_unit) {
+    result.status = LocalStatus::TurnsTooFar;
+    return result;
+  }
   const double highest = fit.scores().tail<2>().squaredNorm();
   if (highest > kAdequate * variance_of_unit) {
     if (!may_enlarge_noise) {
@@ -273,12 +318,14 @@ LocalResult fit_window(std::span<const PathNode> nodes, double noise, double for
   }
   const Vector c = solve_cholesky(factor, fit.moments());
 
+  // Of the frame, along the straightened circle.
+  const auto abscissa_at = [&, frame = frame](double u) { return frame.to_world({u, 0.0}).x(); };
   const auto& basis = basis_at_middle();
   const Eigen::Matrix<double, 5, 1> derivatives = basis.leftCols<kSize>() * c;
   const GraphGeometry geometry = graph_geometry(derivatives);
   const Eigen::Vector4d units(unit, 1.0, 1.0 / unit, 1.0 / (unit * unit));
   const Eigen::Matrix<double, 4, kAllTerms> rows = units.asDiagonal() * (geometry.jacobian * basis);
-  LocalEstimate& e = result.estimate;
+  LocalEstimate e;
   e.position = frame.to_world({0.0, derivatives[0]});
   e.tangent_angle = wrap_angle(std::atan2(frame.axis.y(), frame.axis.x()) + geometry.angle);
   e.kappa = geometry.kappa / unit;
@@ -299,14 +346,42 @@ LocalResult fit_window(std::span<const PathNode> nodes, double noise, double for
   // The grid's points differ in how much of the terms they keep.
   const Eigen::Matrix<double, 4, kSize> terms = inner * free.asDiagonal();
   e.covariance += terms.lazyProduct(prior.apart).eval().lazyProduct(terms.transpose());
-  e.window_arc_m = unit * arc_length<kSize>(c, frame.first_u, frame.last_u);
+  const double length = arc_length<kSize>(c, frame.first_u, frame.last_u);
+  const double longer = length / (frame.last_u - frame.first_u);
+  e.window_arc_m = longer * straight.arc_m(abscissa_at(frame.first_u), abscissa_at(frame.last_u));
   e.sigma_m = noise;
+  e = straight.to_world(e);
+  result.estimate = e;
   result.status = LocalStatus::Ok;
   if (!(e.position.allFinite() && std::isfinite(e.kappa) && std::isfinite(e.kappa_s) &&
         e.covariance.allFinite() && std::isfinite(e.window_arc_m))) {
     result = {LocalStatus::NotFinite, {}};
   }
   return result;
+}
+
+}  // namespace
+
+LocalResult fit_window(std::span<const PathNode> nodes, double noise, double form_deviation_m,
+                       bool may_enlarge_noise) {
+  if (nodes.size() < kFewestWindowNodes) {
+    return {};
+  }
+  const Straightening straight(nodes);
+  const auto straightened = [&] {
+    return fit_in(straight, true, nodes, noise, form_deviation_m, false);
+  };
+  if (straight.turns_beyond(kMostTurnOfAGraph)) {
+    return straightened();
+  }
+  const LocalResult graph =
+      fit_in(straight.left_bent(), false, nodes, noise, form_deviation_m, may_enlarge_noise);
+  if (graph.status == LocalStatus::NotFollowed && straight.turns_beyond(kLeastTurn)) {
+    if (const LocalResult circular = straightened()) {
+      return circular;
+    }
+  }
+  return graph;
 }
 
 }  // namespace palpate

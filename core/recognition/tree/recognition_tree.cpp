@@ -148,9 +148,8 @@ class SignificanceTree {
     if (parabola(tested, line)) {
       return true;
     }
-    // Curvatures equal within their errors leave no slope, hence neither sign nor size.
     if (line.status != InvariantStatus::Ok) {
-      return false;
+      return alike_ellipse();
     }
     // The sign of Ic1 is not known: the tangents, which are measured far better, may decide.
     const double size = std::max(std::abs(line.ic1), std::sqrt(line.covariance(0, 0)));
@@ -192,6 +191,22 @@ class SignificanceTree {
       }
     }
     return rotation(curve_class, shapes, ellipse ? "ellipse rotation" : "hyperbola rotation");
+  }
+
+  /// Curvatures equal within their errors leave the line no slope, hence neither sign nor size; but
+  /// an ellipse has four places of one curvature, a parabola or hyperbola two, and the tangents may
+  /// tell. Shapes of a few axis ratios that have it half way between the vertices.
+  bool alike_ellipse() {
+    const ConstantCurvature mean = fit_constant_curvature(measured_);
+    if (mean.status != InvariantStatus::Ok || !(mean.kappa > 0.0)) {
+      return false;
+    }
+    std::vector<Eigen::Vector3d> shapes;
+    for (const double ratio : {0.9, 0.7, 0.5}) {
+      const double a = ratio * std::pow(0.5 * (1.0 + ratio * ratio), -1.5) / mean.kappa;
+      shapes.emplace_back(a, ratio * a, 0.0);
+    }
+    return rotation(CurveClass::Ellipse, shapes, "ellipse rotation");
   }
 
   bool parabola(const ConicLine& tested, const ConicLine& line) {

@@ -32,7 +32,8 @@ std::string status_text(const v1::Recognition& answer);
 /// One line: class, parameters and pose with their standard deviations.
 std::string summary_text(const v1::Recognition& answer);
 
-/// The recognition tree's invariants by class, in powers of metres: "ellipse Ic1 163 +- 16, Ic2 52.1
+/// The recognition tree's invariants by class, in powers of metres: "ellipse Ic1 163 +- 16,
+/// Ic2 52.1
 /// +- 3.2; parabola Ip 3.1 +- 0.2"; empty where it asked about no class.
 std::string invariants_text(const v1::Recognition& answer);
 

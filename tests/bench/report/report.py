@@ -247,6 +247,9 @@ cell and for kappa and kappa_s apart; columns: noise over the part's size; 0.00:
 Printed values, the paper's method in our hands, and the defaults.
 
 {paper}
+The same tables by the whole pipeline, `palpate fit` with its options:
+
+{(folder / "pipeline.md").read_text().replace("## ", "#### ")}
 Figures 2 and 3: a cubical parabola, its signature and its semi-signature curve, lambda the slope in its own frame.
 
 ![Semi-signature curve](semi_signature.svg)

@@ -133,9 +133,16 @@ TEST_P(WindowFitOf, ExactSamplesGiveExactGeometry) {
 }
 
 TEST(WindowFit, SaysWhyThereIsNone) {
-  test::TouchedArc arc = test::touched_arcs()[1];
-  arc.length_m = 0.75 * kPi * 0.020;  // 135 degrees
-  EXPECT_EQ(test::fit_samples(test::samples_of(arc, 200), 2e-5).status, LocalStatus::TurnsTooFar);
+  test::TouchedArc circle = test::touched_arcs()[1];
+  circle.length_m = 1.2 * kPi * 0.020;  // 216 degrees
+  EXPECT_EQ(test::fit_samples(test::samples_of(circle, 200), 2e-5).status, LocalStatus::Ok);
+  circle.length_m = 1.5 * kPi * 0.020;  // 270 degrees
+  EXPECT_EQ(test::fit_samples(test::samples_of(circle, 200), 2e-5).status,
+            LocalStatus::TurnsTooFar);
+  test::TouchedArc ellipse = test::touched_arcs()[2];
+  ellipse.length_m = 0.06;  // some 135 degrees, and no circle
+  EXPECT_EQ(test::fit_samples(test::samples_of(ellipse, 200), 2e-5).status,
+            LocalStatus::TurnsTooFar);
   EXPECT_EQ(test::fit_samples({}, 2e-5).status, LocalStatus::TooFewSamples);
   EXPECT_EQ(test::fit_samples(std::vector<Vec2>(50, Vec2(1, 2)), 2e-5).status,
             LocalStatus::NoExtent);
