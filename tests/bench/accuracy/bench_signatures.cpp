@@ -8,10 +8,10 @@
 #include <random>
 #include <string>
 
-#include "core/curves/signature.h"
 #include "core/local/estimator.h"
 #include "core/local/stream/sliding_window.h"
 #include "tests/paper/figure_invariants.h"
+#include "tests/support/signature.h"
 #include "tests/support/touched_curve.h"
 
 namespace {
@@ -44,7 +44,7 @@ const Shape kShapes[] = {
 
 void print_curve(const std::string& figure, const std::string& label, const Curve& curve, double t0,
                  double t1) {
-  for (const SignaturePoint& point : signature_curve(curve, t0, t1, kCurvePoints)) {
+  for (const test::SignaturePoint& point : test::signature_curve(curve, t0, t1, kCurvePoints)) {
     const Vec2 place = position(curve, point.t);
     std::printf("%s,%s,curve,%.8g,%.8g,%.8g,%.8g,%.8g\n", figure.c_str(), label.c_str(), place.x(),
                 place.y(), point.slope(), point.kappa, point.kappa_s);

@@ -1,5 +1,5 @@
 // Signature and semi-signature curves.
-#include "core/curves/signature.h"
+#include "tests/support/signature.h"
 
 #include <gtest/gtest.h>
 
@@ -16,10 +16,10 @@ TEST(Signature, SamplesEveryClassAndLeavesTheCuspOut) {
   std::mt19937_64 rng = test::test_rng();
   for (const CurveClass curve_class : kCurveClasses) {
     const RandomCurve random = random_curve(curve_class, rng);
-    const auto points = signature_curve(random.curve, -1.0, 1.0, 201);
+    const auto points = test::signature_curve(random.curve, -1.0, 1.0, 201);
     // t = 0 is the cusp of a semi-cubical parabola.
     EXPECT_EQ(points.size(), curve_class == CurveClass::SemiCubicalParabola ? 200U : 201U);
-    for (const SignaturePoint& point : points) {
+    for (const test::SignaturePoint& point : points) {
       const LocalGeometry local = geometry(random.curve, point.t);
       EXPECT_EQ(point.kappa, local.kappa);
       EXPECT_EQ(point.kappa_s, local.kappa_s);
@@ -32,7 +32,7 @@ TEST(Signature, ClosedEquationsOfTheConicsHoldAtEveryReferencePoint) {
   int points = 0;
   for (const test::ReferenceCurve& reference : test::reference_curves()) {
     const auto curve = make_curve(reference.curve_class, {reference.a, reference.b, reference.c});
-    const auto signature = curve ? conic_signature(*curve) : std::nullopt;
+    const auto signature = curve ? test::conic_signature(*curve) : std::nullopt;
     if (!signature) {
       continue;
     }
@@ -58,17 +58,17 @@ TEST(Signature, TravelledTheOtherWayTheCurveIsTheSame) {
          {CurveClass::Circle, CurveClass::Ellipse, CurveClass::Parabola, CurveClass::Hyperbola}) {
       const RandomCurve random = random_curve(curve_class, rng);
       const LocalGeometry local = reversed(geometry(random.curve, random.random_t(rng)));
-      EXPECT_LE(std::abs(conic_signature(random.curve)->residual(local.kappa, local.kappa_s)),
+      EXPECT_LE(std::abs(test::conic_signature(random.curve)->residual(local.kappa, local.kappa_s)),
                 1e-13);
     }
   }
 }
 
 TEST(Signature, HasNoClosedEquationForTheOthersAndNoNaN) {
-  EXPECT_FALSE(conic_signature(Line{}).has_value());
+  EXPECT_FALSE(test::conic_signature(Line{}).has_value());
   std::mt19937_64 rng = test::test_rng();
-  EXPECT_FALSE(conic_signature(random_curve(CurveClass::CubicSpline, rng).curve).has_value());
-  const auto ellipse = conic_signature(random_curve(CurveClass::Ellipse, rng).curve);
+  EXPECT_FALSE(test::conic_signature(random_curve(CurveClass::CubicSpline, rng).curve).has_value());
+  const auto ellipse = test::conic_signature(random_curve(CurveClass::Ellipse, rng).curve);
   EXPECT_EQ(ellipse->residual(0.0, 1.0), 1.0);
   EXPECT_EQ(ellipse->residual(1e-200, 1e200), 1.0);
 }

@@ -1,8 +1,8 @@
-#include "core/curves/signature.h"
+#include "tests/support/signature.h"
 
 #include <cmath>
 
-namespace palpate {
+namespace palpate::test {
 namespace {
 
 double two_thirds(double x) {
@@ -64,4 +64,4 @@ std::optional<ConicSignature> conic_signature(const Curve& curve) {
   }
 }
 
-}  // namespace palpate
+}  // namespace palpate::test

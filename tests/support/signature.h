@@ -8,7 +8,7 @@
 
 #include "core/curves/curve.h"
 
-namespace palpate {
+namespace palpate::test {
 
 /// One point of both: the signature is its (kappa, kappa_s), the semi-signature has the canonical
 /// tangent too.
@@ -39,4 +39,4 @@ struct ConicSignature {
 /// nullopt for the cubics and the line.
 std::optional<ConicSignature> conic_signature(const Curve& curve);
 
-}  // namespace palpate
+}  // namespace palpate::test
