@@ -11,13 +11,12 @@ import os
 import pathlib
 import random
 import signal
-import subprocess
+import statistics
 import threading
 import time
 import unittest
 
-import zmq
-from bus import Bus, Probe, receive, stop
+from bus import Bus, Probe, receive
 from plant import Client, Ledger, Servers, carrier, recogniser, skip_where_absent
 
 KILLS = int(os.environ.get("PALPATE_PLANT_KILLS", "4"))
@@ -50,7 +49,7 @@ class Cells(threading.Thread):
         super().__init__()
         self.over = threading.Event()
         self.probes = []
-        self.worst_lateness_s = 0.0  # of a thread that only wants to wake: what the machine is behind
+        self.slowdowns = []  # time over processor time of a little work, each turn: what others take of the cores
         self.sent = {cell: {} for cell in CELLS}
         for number in range(GROUPS):
             cell = CELLS[number % len(CELLS)]
@@ -65,14 +64,20 @@ class Cells(threading.Thread):
         while not (self.over.is_set() and turn % BATCHES_PER_OBJECT == 0):
             object_number, step = 1 + turn // BATCHES_PER_OBJECT, turn % BATCHES_PER_OBJECT
             for index, (cell, number, probes) in enumerate(self.probes):
-                due = start + BATCH_S * (turn + index / GROUPS)
-                time.sleep(max(0.0, due - time.monotonic()))
-                self.worst_lateness_s = max(self.worst_lateness_s, time.monotonic() - due)
+                time.sleep(max(0.0, start + BATCH_S * (turn + index / GROUPS) - time.monotonic()))
                 for side, probe in enumerate(probes):
                     probe.send(probe.batch(10 * step + 240 * side, object_number=object_number, patch=side,
                                            radius=0.02 + 0.0005 * number, step=0.013))
                     self.sent[cell][probe.name] = probe.seq
             turn += 1
+            self.slowdowns.append(self.slowdown())
+
+    @staticmethod
+    def slowdown(work_s=0.005):
+        wall, own = time.monotonic(), time.thread_time()
+        while time.thread_time() < own + work_s:
+            pass
+        return (time.monotonic() - wall) / (time.thread_time() - own)
 
 
 class LedgerTest(unittest.TestCase):
@@ -135,14 +140,14 @@ class LedgerTest(unittest.TestCase):
                 last |= {(cell, *key): answer for key, answer in ledger.last_answers().items()}
         print(f"{total} contacts of {GROUPS} groups stored once and answered once, "
               f"{sum(len(a) for each in ledgers.values() for a in each.answers.values())} answers, {KILLS} kills")
-        print(f"  the machine was {1e3 * feed.worst_lateness_s:.0f} ms late at worst")
+        slowdown = statistics.mean(feed.slowdowns)
+        print(f"  work beside it took {slowdown:.1f} times as long as it needed")
         for kind, lag in lags.items():
             print(f"  worst from contact to stored answer after the kill of {kind}: {lag:.2f} s")
         print(f"  {self.compare(ledgers, last)}")
-        # A recovery is some tens of steps of several processes, each as late as the machine makes it.
-        slack_s = 20 * feed.worst_lateness_s
+        # No test of the machine: a recovery is work of several processes, and takes as much longer as work does.
         for kind, lag in lags.items():
-            self.assertLess(lag, slack_s + (SILENCE_S if kind != "server" else SILENCE_S + 2 * ELECTION_S), kind)
+            self.assertLess(lag, SILENCE_S * slowdown + (2 * ELECTION_S if kind == "server" else 0), kind)
 
     def wait_for_places(self, bus, count):
         def taken():

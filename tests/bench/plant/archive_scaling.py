@@ -54,7 +54,8 @@ def main():
         assert one == two == killed, "the rows differ"
         assert one.count("\n") == 1 + options.strokes
         print(f"{options.strokes} strokes: the same rows of all three runs; {two_rate / one_rate:.2f} times as fast with two workers; "
-              f"{time.monotonic() - start:.0f} s in all. Last words of progress: {said.splitlines()[-2]}")
+              f"{time.monotonic() - start:.0f} s in all. last words of progress: "
+              + [line for line in said.splitlines() if " tasks, " in line][-1])
 
 
 if __name__ == "__main__":

@@ -16,7 +16,6 @@ import statistics
 import threading
 import time
 
-import zmq
 from bus import Bus, Probe
 from palpate.v1 import contact_pb2, recognition_pb2
 from plant import Client, Servers, carrier, recogniser, wait_for_stored
