@@ -268,7 +268,7 @@ LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<co
     return result;
   }
   // Most windows that are no circle show it here, at a third of the cost.
-  if (is_circular && squared(smooth.scores()[4]) > kCircular * variance_of_unit) {
+  if (is_circular && squared(smooth.scores()[4]) > kCircular * squared(node_noise)) {
     result.status = LocalStatus::TurnsTooFar;
     return result;
   }
@@ -290,8 +290,8 @@ LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<co
   if (!fit.factorise(0.0)) {
     return result;
   }
-  if (is_circular &&
-      fit.scores().tail<kSize - kFirstPrior>().squaredNorm() > kCircular * variance_of_unit) {
+  const auto higher = fit.scores().tail<kSize - kFirstPrior>();
+  if (is_circular && higher.squaredNorm() > kCircular * squared(node_noise)) {
     result.status = LocalStatus::TurnsTooFar;
     return result;
   }
@@ -368,14 +368,18 @@ LocalResult fit_window(std::span<const PathNode> nodes, double noise, double for
     return {};
   }
   const Straightening straight(nodes);
-  const auto straightened = [&] {
-    return fit_in(straight, true, nodes, noise, form_deviation_m, false);
+  const auto graph_of = [&] {
+    return fit_in(straight.left_bent(), false, nodes, noise, form_deviation_m, may_enlarge_noise);
   };
+  // Form deviation hides whether the path is a circle: such windows are as long as a graph.
+  if (form_deviation_m > 0.0) {
+    return graph_of();
+  }
+  const auto straightened = [&] { return fit_in(straight, true, nodes, noise, 0.0, false); };
   if (straight.turns_beyond(kMostTurnOfAGraph)) {
     return straightened();
   }
-  const LocalResult graph =
-      fit_in(straight.left_bent(), false, nodes, noise, form_deviation_m, may_enlarge_noise);
+  const LocalResult graph = graph_of();
   if (graph.status == LocalStatus::NotFollowed && straight.turns_beyond(kLeastTurn)) {
     if (const LocalResult circular = straightened()) {
       return circular;
