@@ -27,6 +27,11 @@ constexpr double kTurn = 0.6;  // rad
 /// the order.
 constexpr std::size_t kSought = 48;
 
+constexpr unsigned bit_of(CurveClass curve_class) { return 1U << static_cast<int>(curve_class); }
+constexpr unsigned kWithoutCubics = bit_of(CurveClass::Line) | bit_of(CurveClass::Circle) |
+                                    bit_of(CurveClass::Ellipse) | bit_of(CurveClass::Parabola) |
+                                    bit_of(CurveClass::Hyperbola);
+
 using Indices = std::vector<std::size_t>;
 
 Indices lone_patches(std::span<const StoredPatch> patches) {
@@ -76,16 +81,58 @@ void sort_along(const Curve& curve, std::vector<T>* things, const ParameterOf& p
   std::rotate(things->begin(), things->begin() + static_cast<std::ptrdiff_t>(first), things->end());
 }
 
-/// How far it is along the curve from the first of its touches to the last, in straight steps. [m]
-double touched_length_m(const CanonicalFit& fit, const Curve& curve) {
-  std::vector<double> places;
-  for (const FittedPoint& point : fit.points) {
-    places.push_back(point.t);
+/// Touches in the order of their feet along the curve. [m]
+struct Ordered {
+  std::vector<Vec2> feet_m;
+  std::vector<Vec2> points_m;
+};
+
+Ordered ordered_along(const CanonicalFit& fit, const Curve& curve, const FitData& data) {
+  std::vector<std::pair<double, Vec2>> places;
+  for (std::size_t i = 0; i < fit.points.size(); ++i) {
+    places.emplace_back(fit.points[i].t, data.scale * data.points[i].position);
   }
-  sort_along(curve, &places, [](double t) { return t; });
+  sort_along(curve, &places, [](const auto& place) { return place.first; });
+  Ordered ordered;
+  for (const auto& [t, point_m] : places) {
+    ordered.feet_m.push_back(position(curve, t));
+    ordered.points_m.push_back(point_m);
+  }
+  return ordered;
+}
+
+/// In straight steps. [m]
+double length_of(const std::vector<Vec2>& path_m) {
   double length = 0.0;
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    length += (position(curve, places[i]) - position(curve, places[i - 1])).norm();
+  for (std::size_t i = 1; i < path_m.size(); ++i) {
+    length += (path_m[i] - path_m[i - 1]).norm();
+  }
+  return length;
+}
+
+/// Length of the shortest tree through all points, by Prim's algorithm: no way through them is
+/// shorter, in whatever order. [m]
+double shortest_tree(const std::vector<Vec2>& points_m) {
+  std::vector<double> from_tree(points_m.size(), std::numeric_limits<double>::infinity());
+  std::vector<bool> in_tree(points_m.size(), false);
+  double length = 0.0;
+  std::size_t last = 0;
+  for (std::size_t taken = 1; taken < points_m.size(); ++taken) {
+    in_tree[last] = true;
+    std::size_t next = last;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < points_m.size(); ++i) {
+      if (in_tree[i]) {
+        continue;
+      }
+      from_tree[i] = std::min(from_tree[i], (points_m[i] - points_m[last]).norm());
+      if (from_tree[i] < nearest) {
+        nearest = from_tree[i];
+        next = i;
+      }
+    }
+    length += nearest;
+    last = next;
   }
   return length;
 }
@@ -93,34 +140,54 @@ double touched_length_m(const CanonicalFit& fit, const Curve& curve) {
 struct PlacedCurve {
   Curve curve;
   Pose2 world_T_curve;
+  double chi2 = 0.0;
+  std::vector<Vec2> touches_m;  ///< in their order along it
 };
 
 /// The curve that explains the points best: by the Bayesian information criterion, each touch
 /// anywhere along the curve with the same density. (Without that a needle whose two sides share
 /// the points of a line would explain their noise.)
-std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, unsigned classes) {
-  const Arcs arcs = smooth_arcs(data, sigma_known);
+std::optional<PlacedCurve> best_of(const ClassFits& fits, const Arcs& arcs, unsigned classes) {
   const FitData& reduced = arcs.smooth.reduced;
   const auto n = static_cast<double>(reduced.points.size());
   std::optional<PlacedCurve> best;
   double lowest = std::numeric_limits<double>::infinity();
-  for (const auto& fit : fit_classes(reduced, nullptr, classes)) {
-    const auto canonical = fit && !fit->at_limit ? to_canonical(*fit, reduced) : std::nullopt;
+  for (const auto& fit : fits) {
+    const bool wanted = fit && !fit->at_limit && (classes & bit_of(fit->curve_class)) != 0;
+    const auto canonical = wanted ? to_canonical(*fit, reduced) : std::nullopt;
     const auto curve = canonical ? make_curve(canonical->shape.curve_class, canonical->shape.values)
                                  : std::nullopt;
     if (!curve) {
       continue;
     }
     const double chi2 = std::max(fit->chi2, std::numeric_limits<double>::min());
+    Ordered ordered = ordered_along(*canonical, *curve, reduced);
     const double criterion = (arcs.sigma_known ? chi2 : n * std::log(chi2)) +
                              degrees_of_freedom(fit->curve_class) * std::log(n) +
-                             2.0 * n * std::log(touched_length_m(*canonical, *curve));
+                             2.0 * n * std::log(length_of(ordered.feet_m));
     if (criterion < lowest) {
       lowest = criterion;
-      best = PlacedCurve{*curve, canonical->world_T_curve};
+      best = PlacedCurve{*curve, canonical->world_T_curve, chi2, std::move(ordered.points_m)};
     }
   }
   return best;
+}
+
+/// A curve to order the touches by.
+std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, unsigned classes) {
+  const Arcs arcs = smooth_arcs(data, sigma_known);
+  const FitData& reduced = arcs.smooth.reduced;
+  // A conic that explains the touches within their noise, and does not go back and forth between
+  // them as the two sides of a needle would, has them in their order, whatever else may.
+  constexpr double kDetour = 1.1;  // a step back over a tenth of the way
+  std::optional<PlacedCurve> conic =
+      best_of(fit_classes(reduced, nullptr, classes & kWithoutCubics), arcs, kWithoutCubics);
+  const bool orders = conic && arcs.sigma_known &&
+                      fits_well(conic->chi2, residual_count(reduced)) &&
+                      length_of(conic->touches_m) <= kDetour * shortest_tree(conic->touches_m);
+  return orders || (classes & ~kWithoutCubics) == 0
+             ? conic
+             : best_of(fit_classes(reduced, nullptr, classes), arcs, ~0U);
 }
 
 /// A touch's place on the curve.
