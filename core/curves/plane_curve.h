@@ -35,6 +35,11 @@ struct FootPoint {
   double distance = 0.0;  ///< signed: positive to the left of increasing t [m]
 };
 
+/// What the derivative of (C(t) - p) . C'(t) must have at least of the square of the speed for
+/// Newton's method to follow the foot of p: at the centre of curvature, where that is no minimum of
+/// the distance any more, it is 0, and Newton's step is at most ten of Gauss and Newton's.
+inline constexpr double kLeastFootSlope = 0.1;
+
 /// A place on a curve, and how it was travelled. It says where a measurement fits best, not whether
 /// it fits: that is for the caller to see from geometry(t).
 struct Localisation {

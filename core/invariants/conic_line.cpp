@@ -14,13 +14,15 @@ namespace {
 /// weights exact data, whose covariance is zero.
 constexpr double kPointRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// A curvature is of a certain sign where it is this many standard deviations from zero.
+/// A curvature is of a certain sign where it is this many standard deviations from zero: noise has
+/// the other sign there once in 30,000 points.
 constexpr double kSignSigmas = 4.0;
 
 /// The spread of u counts as more than noise where its chi-square exceeds its mean by this many
-/// standard deviations.
+/// standard deviations, by chance one circle in a hundred.
 constexpr double kSpreadSigmas = 3.0;
 
+/// Bounds the time; what has not settled by then is judged by the last change (kSlopeAcceptable).
 constexpr int kMaxIterations = 100;
 constexpr double kSlopeTolerance = 1e-13;  ///< relative change of the slope: converged if below
 constexpr double kSlopeAcceptable =

@@ -29,7 +29,8 @@ std::array<T, 2> semi_axes(const T& ic1, const T& ic2, const T& discriminant) {
 /// invariants' evaluation. A discriminant above minus this is a circle's.
 constexpr double kDiscriminantRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-/// One-sided: a discriminant this many standard deviations below zero is no ellipse's.
+/// One-sided: a discriminant this many standard deviations below zero is no ellipse's, but for a
+/// circle in 30,000.
 constexpr double kDiscriminantSigmas = 4.0;
 
 ConicParameters finish(const Eigen::Vector2d& invariants, const Eigen::Matrix2d& covariance,

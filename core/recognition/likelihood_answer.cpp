@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics/negligible.h"
 #include "core/recognition/verdict/determined.h"
 
 namespace palpate {
 namespace {
-
-/// Whether noise of the stated size can have left this chi-square (five standard deviations).
-bool is_noise(double chi2, double dof) { return chi2 <= dof + 5.0 * std::sqrt(2.0 * dof); }
 
 Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
   const auto i = static_cast<std::size_t>(curve_class);
@@ -43,12 +41,14 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
     return Doubt::SeveralClasses;
   }
   const CurveClass curve_class = best.shape.curve_class;
-  // Where so many samples had to be set aside, what fits badly may be spikes that were not.
-  constexpr double kManySpikes = 0.1;  // of the samples
+  // Up to this part of spikes a block of 16 samples, which the search for them tells as long as
+  // half of it is good, holds nine or more once in 10^5 (binomial law, 5e-6), and so a patch of 111
+  // samples once in ten thousand. Beyond it what fits badly may be spikes that were not found.
+  constexpr double kManySpikes = 0.1;
   const auto stored = static_cast<double>(stored_samples);
   const bool many_spikes =
       stored - static_cast<double>(w.data.points.size()) > kManySpikes * stored;
-  if (many_spikes && !is_noise(w.counted_chi2, best.dof)) {
+  if (many_spikes && !can_be_noise(w.counted_chi2, best.dof)) {
     return Doubt::Misfit;
   }
   if (curve_class == CurveClass::Unclassified) {
@@ -56,12 +56,12 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
       return Doubt::SeveralClasses;
     }
     // What not even the smooth model follows says nothing about classes.
-    return many_spikes || !is_noise(best.chi2, best.dof) ? Doubt::Misfit : Doubt::None;
+    return many_spikes || !can_be_noise(best.chi2, best.dof) ? Doubt::Misfit : Doubt::None;
   }
   if (best.at_limit || best.covariance.size() == 0) {
     return Doubt::AtLimit;
   }
-  if (!is_noise(w.counted_chi2 / w.noise_inflation, best.dof)) {
+  if (!can_be_noise(w.counted_chi2 / w.noise_inflation, best.dof)) {
     return Doubt::Misfit;
   }
   // A second mode that has more than what RECOGNIZED leaves to doubt.

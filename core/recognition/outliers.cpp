@@ -60,9 +60,11 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   if (std::none_of(magnitude.begin(), magnitude.end(), [&](double m) { return m > limit; })) {
     return std::nullopt;
   }
-  // What sets aside more, and two of any number, is another curve: the smooth model has taken out
-  // spikes that are more frequent. At that rate four in a row come once in 20^4 samples, more than
-  // the memory holds: those are a bend.
+  // Four in a row are a bend. At a rate of one in 20 chance has so many in a row once in 20^4
+  // samples, more than the memory holds: what sets aside more is another curve, for spikes that are
+  // more frequent were found before any class was known (samples/clean_patches.h). Two may leave
+  // however few there are: of the fewest places that are RECOGNIZED, eight, a spline's unknowns are
+  // left.
   constexpr std::size_t kOneIn = 20;
   constexpr std::size_t kMost = 2;
   constexpr std::size_t kLongestRun = 3;

@@ -20,6 +20,7 @@
 #include "core/recognition/touches/strung_touches.h"
 #include "core/recognition/tree_answer.h"
 #include "core/recognition/tree_beside.h"
+#include "core/recognition/weigh/contenders.h"
 #include "core/recognition/weigh/weigh.h"
 
 namespace palpate {
@@ -251,14 +252,15 @@ class Recognizer::Impl {
   Weighed weigh_once_more(const FitData& data, bool sigma_known,
                           std::span<const StoredPatch> patches) {
     constexpr double kGrowth = 1.25;  // ten searches while a patch grows tenfold
-    constexpr double kOut = 0.01;  // probability: of what had less, the search left the fit rough
+    // Probability: of what had less, a search leaves the fit rough (weigh/contenders.cpp).
+    const double out = std::exp(-log_odds(options_.recognized_probability) - 0.5 * kLeastError);
     const std::size_t samples = memory_.sample_count();
     const bool warm = last_ && last_->patches == data.patches.size() &&
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
     if (warm) {
       Weighed weighed = weigh_without_outliers(data, sigma_known, patches, last_->starts);
       const Weighing& w = weighed.w;
-      if (last_->probabilities[static_cast<std::size_t>(w.best)] > kOut) {
+      if (last_->probabilities[static_cast<std::size_t>(w.best)] > out) {
         last_->starts = w.starts;
         last_->probabilities = w.probabilities;
         return weighed;

@@ -3,16 +3,14 @@
 #include <cmath>
 #include <utility>
 
+#include "tests/support/test_rng.h"
+
 namespace palpate::test {
 namespace {
 
 constexpr double kLeastSize_m = 5e-3;
 constexpr double kMostSize_m = 0.5;
 constexpr int kMostPatches = 4;
-
-double log_uniform(std::mt19937_64& rng, double least, double most) {
-  return std::exp(std::uniform_real_distribution<double>(std::log(least), std::log(most))(rng));
-}
 
 Scene touched(CurveClass curve_class, OutsideShape shape, const SceneOptions& options,
               std::mt19937_64& rng) {

@@ -2,6 +2,7 @@
 // test sees the same numbers alone, in any order and on any machine.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <random>
 
@@ -16,6 +17,10 @@ std::mt19937_64 test_rng(std::uint64_t stream = 0);
 
 inline double uniform(std::mt19937_64& rng, double least, double most) {
   return std::uniform_real_distribution<double>(least, most)(rng);
+}
+
+inline double log_uniform(std::mt19937_64& rng, double least, double most) {
+  return std::exp(uniform(rng, std::log(least), std::log(most)));
 }
 
 inline double random_sign(std::mt19937_64& rng) {

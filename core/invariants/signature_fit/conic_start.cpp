@@ -55,7 +55,9 @@ double conic_orientation(CurveClass curve_class, const Eigen::Vector3d& p,
 std::vector<CurveStart> conic_starts(CurveClass curve_class,
                                      std::span<const Eigen::Vector3d> shapes,
                                      std::span<const MeasuredGeometry> points) {
-  constexpr int kOrientations = 12;  // 30 degrees apart, 15 for the ellipse
+  // 30 degrees apart, 15 for the ellipse: half a step is within what Gauss-Newton turns in one.
+  // Those kept bound the time.
+  constexpr int kOrientations = 12;
   constexpr std::size_t kKept = 4;
   std::vector<CurveStart> starts;
   for (const Eigen::Vector3d& shape : shapes) {

@@ -12,6 +12,8 @@
 namespace palpate {
 namespace {
 
+/// Bounds of the time: 15 pairs of points, of which one well apart is enough for a start, and the
+/// two roots that such a pair's quadratic has.
 constexpr std::size_t kSeedPoints = 6;
 constexpr std::size_t kRefined = 2;
 

@@ -14,6 +14,7 @@
 namespace palpate {
 namespace {
 
+/// Twice as many as determine orientation, a and b.
 constexpr int kLargestPointCount = 6;
 
 /// TinySolver compares the ABSOLUTE change of the cost with function_tolerance, whatever its
@@ -25,9 +26,10 @@ constexpr double kStepTolerance = 1e-13;
 constexpr int kMaxIterations = 30;
 
 /// A fit whose chi-square exceeds its mean by more than this many standard deviations is suspected
-/// of a wrong minimum: more starts are tried.
+/// of a wrong minimum: more starts are tried, by chance for one in a hundred.
 constexpr double kPlausibleSigmas = 3.0;
-/// Starts from pairs of points, refined one after the other while no fit explains the points.
+/// Starts from pairs of points, refined one after the other while no fit explains the points. As
+/// many as there are pairs of the points taken, and one. Bounds the time.
 constexpr int kFallbackStarts = 16;
 
 /// The points of (50), at most kLargestPointCount, in normalised lengths.

@@ -9,6 +9,7 @@
 namespace palpate {
 namespace {
 
+/// Half of it determines a quartic with three samples to spare.
 constexpr std::size_t kBlock = 16;
 
 /// Noise is taken as at least kFormFactor * slope^4 * extent, which is what a quartic leaves of a
@@ -119,7 +120,7 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigm
 /// standard deviation; 0 where there is none. [m]
 double parabola_scale_m(std::span<const Vec2> samples, std::size_t length,
                         std::vector<double>& sizes) {
-  constexpr std::size_t kMostBlocks = 8;
+  constexpr std::size_t kMostBlocks = 8;  // bounds the time; their median is enough (kAboveScale)
   LeastMedianParabola parabola;
   sizes.clear();
   for_each_block(samples.size(), length, std::max(length, samples.size() / kMostBlocks),
@@ -134,10 +135,15 @@ double parabola_scale_m(std::span<const Vec2> samples, std::size_t length,
 /// Whether spikes pass for noise: then half of each block lies much nearer to a parabola. That is
 /// looked for only where a residual is larger than noise leaves any in 19 of 20 patches, or
 /// where the noise is above that of the third differences.
-void look_for_spiked_noise(std::span<const Vec2> samples, double largest, BlockSurvey* survey) {
-  constexpr double kAlarms = 0.05;           // of patches
-  constexpr double kAboveDifferences = 1.7;  // two to three standard deviations of their quantile
-  constexpr double kAboveScale = 1.5;        // over four of the median of seven blocks' scales
+void look_for_spiked_noise(std::span<const Vec2> samples, double largest, double threshold,
+                           BlockSurvey* survey) {
+  constexpr double kAlarms = 0.05;  // of patches, which then cost a look
+  // Three standard deviations of the quantile for 111 samples: sqrt(q (1 - q) / m) over its density
+  // and itself is 2.0 / sqrt(m), and what neighbouring differences share makes it 2.3 / sqrt(m).
+  // Beyond it a patch costs a look.
+  constexpr double kAboveDifferences = 1.7;
+  // Three of the median of seven blocks' scales: one of 16 samples tells it to 0.36 of itself.
+  constexpr double kAboveScale = 1.5;
   std::vector<double> sizes;
   const double quiet = two_sided_normal_quantile(kAlarms / static_cast<double>(samples.size()));
   if (largest <= quiet && survey->sigma_m <= kAboveDifferences * low_noise_of(samples, sizes)) {
@@ -158,9 +164,10 @@ void look_for_spiked_noise(std::span<const Vec2> samples, double largest, BlockS
   }
   survey->is_noise_spiked = survey->sigma_m > kAboveScale * scale_m;
   if (survey->is_noise_spiked) {
-    // A start so tight that the spikes next to the noise stay outside; the search widens it.
-    constexpr double kTight = 0.45;
-    survey->sigma_m = kTight * scale_m;
+    // A start so tight that the spikes next to the noise stay outside, but no tighter than that
+    // noise loses one sample of a block. The search widens it.
+    constexpr double kLost = 1.0 / static_cast<double>(kBlock);
+    survey->sigma_m = two_sided_normal_quantile(kLost) / threshold * scale_m;
     survey->length = std::min(survey->length, block_length(samples, scale_m));
   }
 }
@@ -197,7 +204,7 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
     // long blocks must be, and half of each lies near a parabola.
     std::vector<double> sizes;
     survey.length = block_length(samples, low_noise_of(samples, sizes));
-    look_for_spiked_noise(samples, blocks.largest, &survey);
+    look_for_spiked_noise(samples, blocks.largest, threshold, &survey);
     survey.is_any_off = survey.is_noise_spiked;
     if (!survey.is_noise_spiked) {
       survey.status = LocalStatus::Unresolved;
@@ -210,7 +217,7 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
       blocks.backtrack_m > kBacktrackSigmas * std::sqrt(2.0) * survey.sigma_m;
   survey.is_any_off = blocks.largest > threshold || (is_resolved() && is_out_of_order);
   if (!(sigma_m > 0.0)) {
-    look_for_spiked_noise(samples, blocks.largest, &survey);
+    look_for_spiked_noise(samples, blocks.largest, threshold, &survey);
   }
   return survey;
 }

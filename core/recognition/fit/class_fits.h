@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/curves/curve_class.h"
+#include "core/numerics/negligible.h"
 #include "core/recognition/fit/implicit_fit.h"
 #include "core/recognition/fit/polynomial_fit.h"
 #include "core/recognition/fit/polynomial_search.h"
@@ -40,11 +41,9 @@ using ClassFits = std::array<std::optional<ClassFit>, 9>;
 /// The implicit form of a parabola's polynomials, of unit norm.
 ConicCoefficients conic_of_parabola(const PolynomialFit& fit);
 
-/// Whether a fit to reduced points that leaves that many residuals is as good as noise allows: five
-/// standard deviations.
+/// Whether a fit to reduced points that leaves that many residuals is as good as noise allows.
 inline bool fits_well(double chi2, std::size_t residuals) {
-  const double n = static_cast<double>(residuals);
-  return chi2 < n + 5.0 * std::sqrt(2.0 * n);
+  return can_be_noise(chi2, static_cast<double>(residuals));
 }
 
 /// Classes by bit 1 << CurveClass.

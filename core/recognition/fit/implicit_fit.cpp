@@ -265,7 +265,7 @@ double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot
     const double cy = g.x() + away.x() * 2.0 * q[2] - away.y() * q[1];
     const double determinant = g.x() * cy - g.y() * cx;
     Vec2 step;
-    if (determinant > 0.1 * g2) {
+    if (determinant > kLeastFootSlope * g2) {
       step = {(-v * cy + c * g.y()) / determinant, (-g.x() * c + v * cx) / determinant};
     } else {
       step = -v / g2 * g;  // beyond the centre of curvature: stay with the first-order foot point

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 
+#include "core/curves/plane_curve.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {
@@ -45,8 +46,7 @@ struct NormalAtFoot {
   double slope() const { return first.squaredNorm() - distance * normal.dot(second); }
 
   bool is_followed() const {
-    constexpr double kLeast = 0.1;  // of the square of the speed, as of the fits' own feet
-    return slope() >= kLeast * first.squaredNorm() && first.squaredNorm() > 0.0;
+    return slope() >= kLeastFootSlope * first.squaredNorm() && first.squaredNorm() > 0.0;
   }
 
   /// By what angle the normal turns where the point moves by 1 along the curve.

@@ -8,14 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "core/numerics/negligible.h"
 #include "core/recognition/fit/measured_normal.h"
 #include "core/recognition/fit/touchable.h"
 
 namespace palpate {
 namespace {
 
-/// How far above a spline's chi-square its rival's may be: odds of exp(10).
-constexpr double kHopeless = 20.0;
+/// How far above a spline's chi-square its rival's may be.
+constexpr double kHopeless = 2.0 * kNegligibleLogOdds;
 
 /// An ellipse or hyperbola at its limit is a parabola.
 PolynomialModel polynomial_model(const ClassFit& fit) {

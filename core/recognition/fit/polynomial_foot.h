@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/curves/algebraic/polynomial_curve.h"
+#include "core/curves/plane_curve.h"
 
 namespace palpate {
 
@@ -14,10 +15,6 @@ struct PlacedPoint {
   double signed_distance = 0.0;  ///< positive to the left of increasing t
   Vec2 normal = Vec2::Zero();    ///< unit, along the distance: left of increasing t but at a cusp
 };
-
-/// What the derivative of (C(t) - p) . C'(t) must have at least of the square of the speed: at the
-/// centre of curvature, where the foot point is no minimum any more, it is 0.
-inline constexpr double kLeastSlope = 0.1;
 
 /// The step after which a foot point is good enough where noise is of standard deviation `sigma`,
 /// normalised: the parameter's error is then the step's cube times a factor that sharp bends make
@@ -52,7 +49,7 @@ inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2
     const double along = away.dot(first);
     const double slope = speed2 - away.dot(second);
     double step = 0.0;
-    if (slope < kLeastSlope * speed2) {
+    if (slope < kLeastFootSlope * speed2) {
       step = along / speed2;  // a Gauss-Newton step is safe
     } else {
       // With the bend of (C - p) . C' where it is no more than a correction.

@@ -176,7 +176,7 @@ class PolynomialProblem {
       const double speed2 = first.squaredNorm();
       const Vec2 away = foot.signed_distance * foot.normal;
       const double slope = speed2 - away.dot(second);
-      if (!(slope >= kLeastSlope * speed2) || speed2 <= 0.0) {
+      if (!(slope >= kLeastFootSlope * speed2) || speed2 <= 0.0) {
         continue;  // no foot point to follow
       }
       const Vec2 shift = position_at(v, foot.t);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/numerics/negligible.h"
 #include "core/recognition/fit/axis_fit.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/touchable.h"
@@ -178,7 +179,7 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
   // A step or two; what was plausible goes as far as it takes to stay so, and not to need a search.
   constexpr RefineEffort kFollow{5, 1, 1e-2};
   constexpr RefineEffort kFarther{8, 1, 1e-2};
-  constexpr double kPlausible = 20.0;  // odds of exp(10)
+  constexpr double kPlausible = 2.0 * kNegligibleLogOdds;
   // Odds of exp(50) or more: the few points that may be added before the next search (a quarter of
   // all) do not turn them.
   constexpr double kFarOut = 100.0;
@@ -245,7 +246,7 @@ void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFi
     }
     if (!arrived()) {
       keep(refine_polynomial(seeds.front().model, reduced.points, **best, kSurfacePoints,
-                             {50, 1, 1e-4, out_of_reach}));
+                             thorough(out_of_reach)));
     }
   };
   improve(&fits->parabola, fits->seeds.parabola);

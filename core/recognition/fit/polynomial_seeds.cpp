@@ -71,7 +71,10 @@ struct PatchArms {
 class ArmSearch {
  public:
   /// Vertices from "at the leftmost point" to "so far away that the arms are graphs", in spans of
-  /// the points along the axis.
+  /// the points along the axis. One d spans before the leftmost leaves parameters from r to 1 of
+  /// the farthest point's, r^2 = d / (1 + d). A vertex of another r puts the parameter at the near
+  /// end off by the difference, and those farther on by less: that is what a walk has to make good.
+  /// Between neighbours r differs by 0.16 at most.
   static constexpr std::array kVertexDistances = {0.002, 0.02, 0.06, 0.15, 0.35, 0.8, 1.8, 4.0};
 
   ArmSearch(std::span<const FitPoint> points, std::span<const PatchSpan> patches)
@@ -266,8 +269,9 @@ class ArmSearch {
 }  // namespace
 
 void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds) {
-  constexpr std::size_t kDirections =
-      72;  // 2.5 degrees: minima are narrow where there is little noise
+  // 2.5 degrees: half a step puts the far end of a needle off by its width where that is a fiftieth
+  // of its length.
+  constexpr std::size_t kDirections = 72;
   std::vector<Candidate> parabolas(kDirections);
   std::vector<Candidate> cubics(kDirections);
   for (std::size_t d = 0; d < kDirections; ++d) {
@@ -291,7 +295,9 @@ void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds) {
 
 void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
                    PolynomialSeeds* seeds) {
-  constexpr std::size_t kDirections = 48;  // 7.5 degrees
+  // 7.5 degrees: half a step moves a point at the far end across the axis by a fifteenth of the
+  // way, about as much as half a cell of vertices does.
+  constexpr std::size_t kDirections = 48;
   constexpr std::size_t kVertices = ArmSearch::kVertexDistances.size();
   ArmSearch search(points, patches);
   std::vector<Candidate> semi_cubicals(kDirections * kVertices);

@@ -16,8 +16,10 @@ struct RefineEffort {
   double out_of_reach = std::numeric_limits<double>::infinity();
 };
 
-/// Tells classes that cannot be from those that may: a well determined shape has converged long
-/// before, and what wanders along a valley is not determined.
+// Iterations bound the time: a well determined shape converges before, and what
+// wanders on along a valley is not determined.
+
+/// Tells classes that cannot be from those that may.
 inline constexpr RefineEffort kCoarseEffort{20, 1, 1e-3};
 
 /// For the plausible ones on the reduced points, and on all where these disagree: to a tenth of a
@@ -31,5 +33,9 @@ inline constexpr RefineEffort kBestOnReducedEffort{120, 1, 1e-5};
 /// For the best class on all points: to its very optimum. What has none within so many steps runs
 /// along a valley that is as good as flat.
 inline constexpr RefineEffort kPolishEffort{20, 2, 1e-6};
+
+/// For a class that is to be told from all others and has not arrived yet: to a hundredth of a
+/// standard deviation.
+inline RefineEffort thorough(double out_of_reach) { return {50, 1, 1e-4, out_of_reach}; }
 
 }  // namespace palpate

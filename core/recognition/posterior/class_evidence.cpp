@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/numerics/negligible.h"
 #include "core/numerics/small_cholesky.h"
 #include "core/numerics/triangular_root.h"
 
@@ -27,7 +28,8 @@ TouchedVector prior_gradient(const Touch& touch, const TouchedCurve& curve) {
 }
 
 /// From the slice beside, the mode is near; from the optimum of the likelihood it may be far, where
-/// the data determine little.
+/// the data determine little. Bounds of the time: steps end by themselves where the potential is
+/// settled.
 constexpr int kFewSteps = 4;
 constexpr int kMostSteps = 40;
 
@@ -106,7 +108,6 @@ std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& st
   // A normal law ends after four steps of its deviation; a loose coordinate's are doubled.
   constexpr std::size_t kMostSlices = 14;
   constexpr int kMostTries = 20;
-  constexpr double kNothing = 7.0;  // of the log density: a thousandth
   // Of it, from slice to slice: beyond it a shoulder of the density may lie between.
   constexpr double kLargestChange = 2.0;
   const double longest = longest_walk(touch.curve_class, k);
@@ -128,14 +129,14 @@ std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& st
     }
     const double density = log_density(*curve, k);
     const double change = std::abs(density - last->log_density);
-    if (change > kLargestChange && last->log_density > top - 0.5 * kNothing) {
+    if (change > kLargestChange && last->log_density > top - 0.5 * kTailOfDensity) {
       step *= 0.5;
       continue;
     }
     slices.push_back({std::move(*curve), density});
     last = &slices.back();
     top = std::max(top, density);
-    if (density < top - kNothing) {
+    if (density < top - kTailOfDensity) {
       break;
     }
     if (change < how.smallest_change) {
@@ -152,9 +153,6 @@ int widest_coordinate(const Touch& touch, const TouchedCurve& best, const Touche
   // Coordinates are logarithms, slopes and angles: over a tenth of their unit, the second-order
   // term of a residual is a twentieth of the first.
   constexpr double kLinear = 0.1;
-  // Where a class ends (m = 0, 1) or the data resolve the square alone (c of the spline), this many
-  // deviations around.
-  constexpr double kFarFromEnd = 4.0;
   // A deviation of d bends the curve by some d^2 / 2 of the extent; over the noise of the mean of
   // all points that is how many deviations the narrow coordinates move. A tenth adds a hundredth to
   // their variance.
@@ -173,7 +171,9 @@ int widest_coordinate(const Touch& touch, const TouchedCurve& best, const Touche
     const bool ends_at_zero =
         (curve_class == CurveClass::CubicSpline && k == 3) || (conic && k == 1);
     double nonlinear = deviation / kLinear;
-    if (ends_at_zero && std::abs(best.z[k]) < kFarFromEnd * deviation) {
+    // A class ends there (m = 0), or the data resolve the square alone (c of the spline): slices,
+    // as far as they go, would come to it.
+    if (ends_at_zero && best.z[k] * best.z[k] < 2.0 * kTailOfDensity * deviation * deviation) {
       nonlinear = std::max(nonlinear, 1.0);
     }
     if (slices == Slices::ForMoment) {
@@ -235,6 +235,8 @@ std::optional<double> integrate(const FitData& data, const Walk& how, ClassEvide
 
 /// A prior cannot leave more than all of the likelihood: with that, the fit was no optimum.
 bool is_of_optimum(const ClassEvidence& evidence) {
+  // As far as chi-square is told of a fit: to 1 by its end on the reduced points (contenders.cpp),
+  // and to as much again on the way from it to the mode.
   constexpr double kLeft = 1.0;
   return evidence.log_occam <= kLeft;
 }

@@ -9,11 +9,13 @@
 #include <numbers>
 #include <optional>
 
+#include "core/numerics/negligible.h"
+
 namespace palpate {
 namespace {
 
 constexpr int kMostNodes = 12;  // of a section at a time; a smoothed one has at most ten
-constexpr int kTerms = 12;      // of a path's power series
+constexpr int kTerms = 12;      // of a path's power series: one more than the nodes tell
 using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostNodes, kMostNodes>;
 using Nodes = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostNodes, 1>;
 using Terms = Eigen::Matrix<double, Eigen::Dynamic, kTerms, 0, kMostNodes, kTerms>;
@@ -210,7 +212,6 @@ FreeForm paths_of(const SmoothModel& smooth, double size, double weight) {
 }  // namespace
 
 FreeForm free_form(const SmoothModel& smooth, double inflation) {
-  constexpr double kNothing = 7.0;  // of the log evidence: a thousandth
   const double weight = 1.0 / std::sqrt(inflation);
   FreeForm best;
   double top = -std::numeric_limits<double>::infinity();
@@ -228,7 +229,7 @@ FreeForm free_form(const SmoothModel& smooth, double inflation) {
     } else {
       sum += std::exp(value - top);
     }
-    return value > top - kNothing;
+    return value > top - kTailOfDensity;
   };
   // The evidence has one maximum: outwards from the middle until it has fallen off.
   const auto from = [&](std::size_t s, int step) {

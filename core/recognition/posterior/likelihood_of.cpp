@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/numerics/chi_square.h"
+#include "core/numerics/negligible.h"
 #include "core/recognition/posterior/runs_along.h"
 #include "core/recognition/smooth/residual_correlation.h"
 #include "core/recognition/smooth/stated_form_error.h"
@@ -75,7 +76,6 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   const ResidualCorrelation correlation = correlation_along(placed, arcs.data);
   // What the smooth model explains and the class does not, beyond what noise gives the smooth
   // model's further coefficients; a false alarm costs an answer its certainty.
-  constexpr double kFalseAlarm = 1e-6;
   const int more = smooth.parameters - parameters;
   // Whether a class that tells the noise misfits only neighbours on it show, which err together.
   const bool noise_is_told = tells_noise(arcs, likelihood);
@@ -83,17 +83,18 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
       noise_is_told
           ? unclassified ||
                 (more > 0 && chi_square_survival((chi2 - smooth.chi2) / likelihood.inflation(),
-                                                 more) < kFalseAlarm)
+                                                 more) < kNegligibleProbability)
           : correlation.time > 1.0;
-  // White residuals much larger than the smooth model's are noise that it took for bends
+  // White residuals larger than the smooth model's can be are noise that it took for bends
   // (outliers, samples out of order); correlated ones are form error up to its limit, neighbours
   // erring together, so that only one in `time` counts.
-  constexpr double kMuchLarger = 1.5;  // five deviations of a variance that 200 residuals tell
-  // Of the half extent: beyond it, it is another shape, if free paths of the patches say so too.
-  // (Of touches that lie apart they say nothing.)
+  // Of the half extent: 50 um on a part 100 mm across, where ISO 286-1 has 54 um for grade IT8,
+  // which turning and milling hold. Beyond it, it is another shape, if free paths of the patches
+  // say so too. (Of touches that lie apart they say nothing.) A part made less truly is for
+  // `form_deviation_m`.
   constexpr double kLargestFormError = 1e-3;
   const bool noisy =
-      correlation.time == 1.0 && variance > kMuchLarger * noise && excess <= kLargestNoise;
+      correlation.time == 1.0 && !can_be_noise(chi2 / noise, dof) && excess <= kLargestNoise;
   const bool form_error = correlation.time > 1.0 && (excess <= kLargestFormError || !noise_is_told);
   SeenDeviation seen;
   if (misfits && (noisy || form_error)) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/numerics/negligible.h"
 #include "core/recognition/posterior/likelihood_of.h"
 
 namespace palpate {
@@ -23,7 +24,7 @@ double out_of_reach(const Arcs& arcs, const Likelihood& likelihood, const Eviden
   double chi2 = static_cast<double>(residual_count(smooth.reduced)) +
                 kLargestNoise * kLargestNoise * information;
   const double paths = log_evidence_of_free_form(likelihood, of_paths, smooth.chi2);
-  while (likelihood.log_evidence(smooth.chi2 + chi2, 0.0, 0.0) > paths - kNegligible) {
+  while (likelihood.log_evidence(smooth.chi2 + chi2, 0.0, 0.0) > paths - kNegligibleLogOdds) {
     chi2 *= 2.0;
   }
   return chi2;

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/numerics/negligible.h"
+
 namespace palpate {
 namespace {
 
@@ -91,7 +93,7 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
   });
   for (const CurveClass curve_class : order) {
     const auto i = static_cast<std::size_t>(curve_class);
-    if (likelihood.log_evidence(fits[i]->chi2, 0.0, 0.0) < best - kNegligible) {
+    if (likelihood.log_evidence(fits[i]->chi2, 0.0, 0.0) < best - kNegligibleLogOdds) {
       continue;
     }
     evidences.on_reduced_chi2[i] = on_reduced[i]->chi2;
@@ -107,9 +109,11 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
 }
 
 Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits& on_reduced,
-                     double smooth_chi2, const FitData& reduced, const Likelihood& likelihood) {
-  // A hundred times what could matter to an answer at 0.95; slices seldom change a mass by ten.
-  constexpr double kMatters = 8.0;
+                     double smooth_chi2, const FitData& reduced, const Likelihood& likelihood,
+                     double margin) {
+  // Slices seldom change a mass by ten: with ten times that, what cannot keep the best from being
+  // RECOGNIZED stays out.
+  const double matters_within = margin + std::log(100.0);
   std::array<double, 9> log_of;
   log_of.fill(kNone);
   log_of[0] = log_evidence_of_free_form(likelihood, evidences, smooth_chi2);
@@ -123,7 +127,7 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   const auto best = std::max_element(log_of.begin(), log_of.end());
   // Where nothing has evidence, as where noise is so small that rounding hides it, nothing matters.
   const auto matters = [&](double log_evidence) {
-    return log_evidence > kNone && log_evidence >= *best - kMatters;
+    return log_evidence > kNone && log_evidence >= *best - matters_within;
   };
   const bool spline_is_best = best == log_of.begin() + kSpline && on_reduced[kSpline]->rival;
   if (std::count_if(log_of.begin(), log_of.end(), matters) < 2 && !spline_is_best) {
@@ -227,7 +231,7 @@ double rival_share(const ClassFits& fits, const Likelihood& likelihood,
   const double rise = (spline->rival->chi2 - spline->polynomial->chi2) / likelihood.inflation();
   const double log_ratio = evidences.rival->log_occam - own->log_occam - 0.5 * rise;
   // The rival fits worse; where its evidence says much more all the same, the two are one mode.
-  return 1.0 / (1.0 + std::exp(-std::min(log_ratio, kNegligible)));
+  return 1.0 / (1.0 + std::exp(-std::min(log_ratio, kNegligibleLogOdds)));
 }
 
 }  // namespace palpate

@@ -28,9 +28,6 @@ struct Evidences {
   std::array<double, 9> on_reduced_chi2{};
 };
 
-/// log of odds that no answer depends on: a millionth.
-inline constexpr double kNegligible = 14.0;
-
 /// Of no class yet, but of free-form paths.
 Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood);
 
@@ -50,9 +47,10 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const Likelihood& likelihood, Evidences before = {});
 
 /// The same with quadrature for the classes whose share is not negligible, where there are several;
-/// and the spline's other mode.
+/// and the spline's other mode. `margin`: log odds that keep the best from being RECOGNIZED.
 Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits& on_reduced,
-                     double smooth_chi2, const FitData& reduced, const Likelihood& likelihood);
+                     double smooth_chi2, const FitData& reduced, const Likelihood& likelihood,
+                     double margin);
 
 /// Posterior probabilities, all classes alike probable before. A conic that has no optimum on its
 /// own side of the parabola has the mass that the other side's optimum leaves there.

@@ -42,7 +42,7 @@ Foot follow_foot(const Curve& curve, const Vec2& point, double t) {
     const double speed2 = at.first.squaredNorm();
     const double slope = speed2 + away.dot(at.second);
     // At the centre of curvature the slope is 0; a Gauss-Newton step is safe.
-    const double step = -along / (slope > 0.1 * speed2 ? slope : speed2);
+    const double step = -along / (slope > kLeastFootSlope * speed2 ? slope : speed2);
     if (i == kMostFootSteps || !std::isfinite(step)) {  // as at a cusp, of speed 0
       return {t, at.position, at.first};
     }

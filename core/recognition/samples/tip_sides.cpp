@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics/negligible.h"
+
 namespace palpate {
 
 int stated_side(MaterialSide side) {
@@ -36,8 +38,6 @@ int measured_side(const StoredPatch& patch, const FitData& reduced,
   // hundredths, touches have it from a curve that may not be the right one yet: a normal within 51
   // degrees of the path's own is believed, one that lies further aside tells nothing. [rad]
   constexpr double kTravelSigma = 0.3;
-  // Log odds of a million to one: the evidence is not asked any more.
-  constexpr double kNoDoubt = 13.8;
   // What is known better says no more beside the travel's error. [rad]
   constexpr double kLeastSigma = 1e-3;
   if (patch.details.empty() || path.empty()) {
@@ -67,13 +67,12 @@ int measured_side(const StoredPatch& patch, const FitData& reduced,
   // Of the left over the right, by von Mises' law of this concentration about either.
   const double concentration = 1.0 / (1.0 / information + kTravelSigma * kTravelSigma);
   const double log_odds = 2.0 * concentration * to_the_left / information;
-  return std::abs(log_odds) < kNoDoubt ? 0 : (log_odds > 0.0 ? 1 : -1);
+  return std::abs(log_odds) < kNegligibleLogOdds ? 0 : (log_odds > 0.0 ? 1 : -1);
 }
 
 }  // namespace
 
 std::optional<double> certain_turn(std::span<const FitPoint> patch) {
-  constexpr double kCertain = 5.0;  // standard deviations
   double weight = 0.0;
   double length = 0.0;
   for (std::size_t i = 0; i < patch.size(); ++i) {
@@ -82,7 +81,7 @@ std::optional<double> certain_turn(std::span<const FitPoint> patch) {
   }
   const double turn = turn_of(patch);
   // That of a parabola fitted to evenly spread samples: sigma sqrt(720 / n) over the length.
-  return weight > 0.0 && std::abs(turn) * length > kCertain * std::sqrt(720.0 / weight)
+  return weight > 0.0 && std::abs(turn) * length > kNegligibleDeviations * std::sqrt(720.0 / weight)
              ? std::optional(turn)
              : std::nullopt;
 }

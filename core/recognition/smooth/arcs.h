@@ -6,7 +6,8 @@
 
 namespace palpate {
 
-/// With fewer degrees of freedom than this the smooth model's residuals tell no noise.
+/// With fewer degrees of freedom than this the smooth model's residuals tell no noise: four leave
+/// it a relative standard deviation of 1 / sqrt(2 * 4), 35 %.
 inline constexpr int kFewestDegreesOfNoise = 4;
 
 struct Arcs {

@@ -8,16 +8,22 @@
 #include <span>
 #include <utility>
 
+#include "core/numerics/negligible.h"
 #include "core/numerics/orthogonal_polynomials.h"
 
 namespace palpate {
 namespace {
 
-constexpr std::size_t kFewestPoints = 6;  // a section shorter than this tells nothing about noise
-constexpr double kLongestTurn = 1.0;      // so that a section is a graph over its chord [rad]
+/// A section shorter than this tells nothing about noise: of fewer, a parabola leaves no three
+/// residuals.
+constexpr std::size_t kFewestPoints = 6;
+/// So that a section is a graph over its chord. [rad]
+constexpr double kLongestTurn = 1.0;
 
 /// Sections of one patch by the turning of chords between means of a few points.
 std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch) {
+  // Of four samples at least, whose mean has half of their noise; so many that a radian of a patch
+  // that goes all the way round has seven.
   constexpr std::size_t kMostBlocks = 48;
   const std::size_t n = patch.size();
   const std::size_t blocks = std::clamp<std::size_t>(n / 4, 1, kMostBlocks);
@@ -233,10 +239,9 @@ double quiet_variance(const std::vector<Section>& sections) {
 /// exp(-x) at most (B. Laurent and P. Massart, 2000, lemma 1): by chance fewer than one section in
 /// a million, which then costs time alone.
 bool is_not_followed(const Section& section, double variance) {
-  constexpr double kMinusLogChance = 13.8;
   const int dof = section.dof();
-  return dof > 0 && section.chi2() > variance * (dof + 2.0 * std::sqrt(dof * kMinusLogChance) +
-                                                 2.0 * kMinusLogChance);
+  return dof > 0 && section.chi2() > variance * (dof + 2.0 * std::sqrt(dof * kNegligibleLogOdds) +
+                                                 2.0 * kNegligibleLogOdds);
 }
 
 void cut_until_followed(const FitData& data, Section section, bool sigma_known, double variance,

@@ -17,10 +17,8 @@
 namespace palpate {
 namespace {
 
+/// Points taken, evenly: all pairs of them are 28, of which the paper's tests need one.
 constexpr std::size_t kPoints = 8;
-
-/// Pairs whose |kappa|^(-2/3) differ by less than this fraction say nothing about Ic1.
-constexpr double kLeastDifference = 0.02;
 
 /// Smallest and largest of a set of numbers.
 struct Range {
@@ -132,8 +130,9 @@ class ToleranceTree {
         if (pair.status == InvariantStatus::SignChange) {
           return passes("conic Ic1", std::numeric_limits<double>::infinity());
         }
+        // Curvatures that are the same by the tolerance say nothing of the slope between them, Ic1.
         if (pair.status == InvariantStatus::Ok &&
-            std::abs(two_thirds - other) > kLeastDifference * std::max(two_thirds, other)) {
+            std::abs(two_thirds - other) > tolerance_ * std::max(two_thirds, other)) {
           ic1.add(pair.ic1);
           ic2.add(pair.ic2);
         }

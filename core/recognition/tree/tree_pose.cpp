@@ -8,6 +8,7 @@
 
 #include "core/curves/curve.h"
 #include "core/invariants/signature_fit/canonical_models.h"
+#include "core/numerics/negligible.h"
 
 namespace palpate {
 namespace {
@@ -112,7 +113,6 @@ TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
   double sum = 0.0;
   // On which side of a patch the centre lies, its curvatures must tell from their noise; the best
   // of them always counts.
-  constexpr double kCertain = 5.0;  // standard deviations
   std::vector<double> turns;
   double side_limit = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -120,7 +120,7 @@ TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
     turns.push_back(same_patch ? turns.back() : turn_of_patch(points, points[i].patch));
     side_limit = std::max(side_limit, std::abs(turns.back()));
   }
-  side_limit = std::min(side_limit, kCertain);
+  side_limit = std::min(side_limit, kNegligibleDeviations);
   const auto add = [&](const Eigen::Vector3d& row, double value, double variance) {
     const double weight = 1.0 / (variance + relative_floor * relative_floor);
     normal_matrix += weight * row * row.transpose();

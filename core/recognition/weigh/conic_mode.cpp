@@ -16,7 +16,9 @@ bool has_optimum(const std::optional<ClassFit>& fit) { return fit && !fit->at_li
 /// A circle as an ellipse whose axis points to `direction`.
 CanonicalFit as_ellipse(const CanonicalFit& circle, double direction) {
   CanonicalFit ellipse = circle;
-  constexpr double kFlattened = 0.9;  // off the ridge that the circle is
+  // Off the ridge that the circle is, where no direction is downhill, and no farther than steps are
+  // linear (class_evidence.cpp): by a tenth.
+  constexpr double kFlattened = 0.9;
   const double radius = circle.shape.values[0];
   ellipse.shape = {CurveClass::Ellipse, {radius / kFlattened, kFlattened * radius, 0.0}};
   ellipse.world_T_curve.theta = circle.world_T_curve.theta + direction;

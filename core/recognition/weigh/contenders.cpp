@@ -137,8 +137,7 @@ Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
   const double misfit_ratio = std::max(1.0, smooth.noise_ratio() * smooth.noise_ratio());
   margin *= misfit_ratio;
   // Sections that bend too much to be followed to the noise err by much the same for all classes:
-  // twice as much as for the best, and some units of chi-square anyhow.
-  constexpr double kLeastError = 4.0;  // odds of exp(2)
+  // twice as much as for the best, and kLeastError anyhow.
   double error = misfit_ratio * kLeastError;
   bool trusted = true;
   for (bool changed = true; changed;) {
@@ -171,15 +170,15 @@ Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
   return w;
 }
 
-Contenders decided(Contenders w, const Ground& ground) {
+Contenders decided(Contenders w, const Ground& ground, double margin) {
   const Arcs& arcs = ground.arcs;
   const FitData& reduced = ground.reduced;
   const Likelihood& likelihood = ground.likelihood;
   while (true) {
     w.evidences =
         evidences_of(w.fits, w.coarse, arcs.smooth, reduced, likelihood, std::move(w.evidences));
-    w.evidences =
-        integrated(std::move(w.evidences), w.fits, w.coarse, arcs.smooth.chi2, reduced, likelihood);
+    w.evidences = integrated(std::move(w.evidences), w.fits, w.coarse, arcs.smooth.chi2, reduced,
+                             likelihood, margin);
     const auto i = static_cast<std::size_t>(most_probable(probabilities_of(w, ground)));
     auto& fit = w.fits[i];
     if (!fit || fit->polished || fit->at_limit) {

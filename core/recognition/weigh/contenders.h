@@ -7,6 +7,11 @@
 
 namespace palpate {
 
+/// By how much chi-square on all points may differ from what the reduced points tell where these
+/// follow them: a term that a section's polynomial does without has less than the logarithm of its
+/// samples (BIC), 4 of 55.
+inline constexpr double kLeastError = 4.0;
+
 /// What all classes are judged on.
 struct Ground {
   const Arcs& arcs;
@@ -40,6 +45,7 @@ CurveClass most_probable(const ClassProbabilities& probabilities);
 Contenders refine_plausible(Contenders contenders, const Ground& ground, double margin);
 
 /// With the integrals that matter, and the most probable class at its optimum on all points.
-Contenders decided(Contenders contenders, const Ground& ground);
+/// `margin`: as above.
+Contenders decided(Contenders contenders, const Ground& ground, double margin);
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/numerics/negligible.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/moments.h"
 #include "core/recognition/posterior/out_of_reach.h"
@@ -77,14 +78,13 @@ std::optional<Placed> best_on_all(const Contenders& contenders, const Ground& gr
 std::array<std::optional<CanonicalFit>, 9> placed_canonically(
     const Contenders& contenders, const ClassProbabilities& probabilities, const Ground& ground,
     std::optional<Placed> before) {
-  constexpr double kNegligible = 1e-6;
   const CurveClass best = best_class(contenders.fits, ground.likelihood, contenders.evidences);
   std::array<std::optional<CanonicalFit>, 9> canonical;
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     const auto& fit = contenders.fits[i];
     if (!fit || fit->at_limit || !std::isfinite(fit->chi2) ||
-        (curve_class != best && !(probabilities[i] > kNegligible))) {
+        (curve_class != best && !(probabilities[i] > kNegligibleProbability))) {
       continue;
     }
     if (!fit->on_all) {
@@ -128,6 +128,43 @@ bool no_conic(std::span<const SidedStart> starts, const std::vector<int>& sides)
   return start != nullptr && start->no_conic;
 }
 
+/// What the stages say, gathered. `arcs` and `sided` are those that `ground` is of. `best_placed`:
+/// the best class, if it is placed on all points already.
+Weighing told(Arcs&& arcs, SidedFits&& sided, Contenders contenders, const Ground& ground,
+              const SeenDeviation& seen, double coherent_variance,
+              std::optional<Placed> best_placed) {
+  Weighing w;
+  w.probabilities = probabilities_of(contenders, ground);
+  w.best = most_probable(w.probabilities);
+  w.margin_of_unclassified = margin_of_unclassified(contenders.fits, arcs.smooth.chi2,
+                                                    ground.likelihood, contenders.evidences);
+  w.rival_share = rival_share(contenders.fits, ground.likelihood, contenders.evidences);
+  w.noise_inflation = seen.noise_inflation;
+  w.white_variance = seen.white_variance;
+  w.correlation_length = seen.correlation_length;
+  w.inflation = seen.noise_inflation * seen.few_residuals + coherent_variance;
+  const auto b = static_cast<std::size_t>(w.best);
+  const auto& best = contenders.fits[b];
+  w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, ground.likelihood);
+  w.canonical = placed_canonically(contenders, w.probabilities, ground, std::move(best_placed));
+  const auto& evidence = contenders.evidences.classes[b];
+  if (const auto& on_reduced = contenders.evidences.on_reduced[b];
+      evidence && on_reduced && w.canonical[b]) {
+    w.moment =
+        covariance_of_valley(*evidence, *on_reduced, *w.canonical[b], ground.reduced, w.inflation);
+  }
+  w.starts = starts_of(sided, contenders, arcs);
+  w.fits = std::move(contenders.fits);
+  w.coarse = std::move(contenders.coarse);
+  w.sides = std::move(sided.sides);
+  w.reduced = std::move(sided.reduced);
+  w.sides_margin = sided.margin;
+  w.sigma = arcs.sigma;
+  w.data = std::move(arcs.data);
+  w.smooth = std::move(arcs.smooth);
+  return w;
+}
+
 }  // namespace
 
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
@@ -157,38 +194,9 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
       contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
     }
   }
-  contenders = decided(std::move(contenders), ground);
-
-  Weighing w;
-  w.probabilities = probabilities_of(contenders, ground);
-  w.best = most_probable(w.probabilities);
-  w.margin_of_unclassified = margin_of_unclassified(contenders.fits, arcs.smooth.chi2,
-                                                    ground.likelihood, contenders.evidences);
-  w.rival_share = rival_share(contenders.fits, ground.likelihood, contenders.evidences);
-  w.noise_inflation = seen.noise_inflation;
-  w.white_variance = seen.white_variance;
-  w.correlation_length = seen.correlation_length;
-  w.inflation = seen.noise_inflation * seen.few_residuals + stated.coherent_variance;
-  const auto b = static_cast<std::size_t>(w.best);
-  const auto& best = contenders.fits[b];
-  w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, ground.likelihood);
-  w.canonical = placed_canonically(contenders, w.probabilities, ground, std::move(best_placed));
-  const auto& evidence = contenders.evidences.classes[b];
-  if (const auto& on_reduced = contenders.evidences.on_reduced[b];
-      evidence && on_reduced && w.canonical[b]) {
-    w.moment =
-        covariance_of_valley(*evidence, *on_reduced, *w.canonical[b], ground.reduced, w.inflation);
-  }
-  w.starts = starts_of(sided, contenders, arcs);
-  w.fits = std::move(contenders.fits);
-  w.coarse = std::move(contenders.coarse);
-  w.sides = std::move(sided.sides);
-  w.reduced = std::move(sided.reduced);
-  w.sides_margin = sided.margin;
-  w.sigma = arcs.sigma;
-  w.data = std::move(arcs.data);
-  w.smooth = std::move(arcs.smooth);
-  return w;
+  contenders = decided(std::move(contenders), ground, margin_of(options));
+  return told(std::move(arcs), std::move(sided), std::move(contenders), ground, seen,
+              stated.coherent_variance, std::move(best_placed));
 }
 
 }  // namespace palpate
