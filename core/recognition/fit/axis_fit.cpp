@@ -164,11 +164,10 @@ PolynomialFit to_polynomial(const AxisFit& fit, std::span<const FitPoint> points
   if (!fit.arms.empty()) {
     x = {fit.x0, 0.0, 1.0, 0.0};
   } else if (fit.model == PolynomialModel::CubicalParabola) {
-    // Move the origin of t to the inflection, where t^2 drops out. From s half extents away 1, t
-    // and t^3 are alike but for 1 / s^2, the normal equations but for 1 / s^4: half of a double's
-    // digits are left of them where s is the eighth root of its rounding. One farther away starts
-    // there.
-    constexpr double kFarthestInflection = 90.5;
+    // Move the origin of t to the inflection, where t^2 drops out. From 50 half extents away the
+    // curvature changes by 4 % over the data: an inflection farther away is as good as none, and
+    // the way starts there. Starts from farther out end in a valley along which all fit alike.
+    constexpr double kFarthestInflection = 50.0;
     if (std::abs(y[2]) > 3.0 * kFarthestInflection * std::abs(y[3])) {
       y[3] = std::copysign(std::abs(y[2]) / (3.0 * kFarthestInflection), y[3]);
     }
