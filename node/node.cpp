@@ -39,8 +39,6 @@ constexpr milliseconds kFinishDrainTime{100};
 
 SteadyTime now_steady() { return std::chrono::steady_clock::now(); }
 
-std::string_view view_of(const zmq::message_t& frame) { return {frame.data<char>(), frame.size()}; }
-
 SocketSettings contacts_settings(const NodeOptions& options, const NodeKeys& keys) {
   SocketSettings settings;
   settings.receive_high_water_mark = static_cast<int>(options.contacts_high_water_mark);

@@ -14,8 +14,6 @@ SocketSettings settings_of(const ResultSubscriberOptions& options) {
   return settings;
 }
 
-std::string_view view_of(const zmq::message_t& frame) { return {frame.data<char>(), frame.size()}; }
-
 }  // namespace
 
 ResultSubscriber::ResultSubscriber(const ResultSubscriberOptions& options)

@@ -53,8 +53,6 @@ constexpr const char* kFrom = "Palpate-From";
 constexpr const char* kThrough = "Palpate-Through";
 constexpr const char* kBegin = "Palpate-Begin";
 
-std::string_view view_of(const zmq::message_t& frame) { return {frame.data<char>(), frame.size()}; }
-
 template <typename Message>
 bool parse(Message& message, std::string_view payload) {
   return message.ParseFromArray(payload.data(), static_cast<int>(payload.size()));

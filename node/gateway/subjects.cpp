@@ -43,7 +43,7 @@ std::uint64_t hash_of(std::string_view bytes) {
 }
 
 template <typename Message>
-bool parse(Message& message, std::string_view payload) {
+bool parse_with_header(Message& message, std::string_view payload) {
   return message.ParseFromArray(payload.data(), static_cast<int>(payload.size())) &&
          message.has_header();
 }
@@ -113,7 +113,7 @@ std::optional<Addressed> address(std::string_view cell, std::string_view topic,
   switch (parsed->kind) {
     case TopicKind::Contact: {
       v1::ContactBatch batch;
-      if (!parse(batch, payload)) return std::nullopt;
+      if (!parse_with_header(batch, payload)) return std::nullopt;
       header = batch.header();
       if (!header.source().empty() && header.source() != parsed->name) return std::nullopt;
       to.group = batch.group().empty() ? std::string(parsed->name) : batch.group();
@@ -124,14 +124,15 @@ std::optional<Addressed> address(std::string_view cell, std::string_view topic,
     }
     case TopicKind::Recognition: {
       v1::Recognition recognition;
-      if (!parse(recognition, payload) || recognition.group() != parsed->name) return std::nullopt;
+      if (!parse_with_header(recognition, payload) || recognition.group() != parsed->name)
+        return std::nullopt;
       header = recognition.header();
       to.subject = make_subject(cell, "recognition", parsed->name);
       break;
     }
     case TopicKind::Status: {
       v1::NodeStatus status;
-      if (!parse(status, payload)) return std::nullopt;
+      if (!parse_with_header(status, payload)) return std::nullopt;
       header = status.header();
       to.subject = make_subject(cell, "status", parsed->name);
       break;

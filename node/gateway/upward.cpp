@@ -26,8 +26,6 @@ SocketSettings settings_of(const UpwardOptions& options) {
   return settings;
 }
 
-std::string_view view_of(const zmq::message_t& frame) { return {frame.data<char>(), frame.size()}; }
-
 }  // namespace
 
 Upward::Upward(zmq::context_t& context, Plant& plant, const UpwardOptions& options)

@@ -43,6 +43,11 @@ zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
 /// in `lock`, to be kept as long as the socket, or without it until the process ends.
 std::string attach(zmq::socket_t& socket, const Endpoint& endpoint, PathLock* lock = nullptr);
 
+/// A frame's bytes, for as long as it lives.
+inline std::string_view view_of(const zmq::message_t& frame) {
+  return {frame.data<char>(), frame.size()};
+}
+
 /// What one receive brought. Frames beyond the second are dropped and counted only.
 struct TwoFrames {
   zmq::message_t topic;

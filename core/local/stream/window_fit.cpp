@@ -379,9 +379,9 @@ LocalResult fit_window(std::span<const PathNode> nodes, double noise, double for
   if (straight.turns_beyond(kMostTurnOfAGraph)) {
     return straightened();
   }
-  const LocalResult graph = graph_of();
+  LocalResult graph = graph_of();
   if (graph.status == LocalStatus::NotFollowed && straight.turns_beyond(kLeastTurn)) {
-    if (const LocalResult circular = straightened()) {
+    if (LocalResult circular = straightened()) {
       return circular;
     }
   }
