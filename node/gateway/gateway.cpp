@@ -26,6 +26,7 @@ SteadyTime now_steady() { return std::chrono::steady_clock::now(); }
 
 std::vector<std::string> texts_of(const std::vector<PlaceName>& places) {
   std::vector<std::string> texts;
+  texts.reserve(places.size());
   for (const PlaceName& place : places) texts.push_back(place.text());
   return texts;
 }

@@ -37,11 +37,11 @@ void check(natsStatus status, const char* what) {
   }
 }
 
-std::string_view view_of(const char* text) { return text == nullptr ? std::string_view() : text; }
+std::string_view or_empty(const char* text) { return text == nullptr ? std::string_view() : text; }
 
 }  // namespace
 
-std::string_view PlantMessage::reply() const { return view_of(natsMsg_GetReply(message_.get())); }
+std::string_view PlantMessage::reply() const { return or_empty(natsMsg_GetReply(message_.get())); }
 
 std::string_view PlantMessage::payload() const {
   return {natsMsg_GetData(message_.get()),
@@ -52,7 +52,7 @@ std::string_view PlantMessage::header(const char* name) const {
   const char** values = nullptr;
   int count = 0;
   if (natsMsgHeader_Values(message_.get(), name, &values, &count) != NATS_OK) return {};
-  const std::string_view last = count > 0 ? view_of(values[count - 1]) : std::string_view();
+  const std::string_view last = count > 0 ? or_empty(values[count - 1]) : std::string_view();
   std::free(static_cast<void*>(values));  // the array; the texts are the message's
   return last;
 }
