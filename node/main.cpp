@@ -37,11 +37,6 @@ struct CommandLine {
   bool print_config = false;
 };
 
-std::string flag_of(std::string name) {
-  for (char& c : name) c = c == '_' ? '-' : c;
-  return "--" + name;
-}
-
 std::string default_text(const NodeConfig& defaults, const std::string& name) {
   const auto* field = NodeConfig::descriptor()->FindFieldByName(name);
   const int index = field->is_repeated() ? 0 : -1;
@@ -61,11 +56,12 @@ void add_flags(CLI::App& app, NodeConfig& flags) {
     const std::string name = info.name;
     const auto set = [&flags, name](const std::string& text) {
       if (const std::string why = palpate::set_option(flags, name, text); !why.empty()) {
-        throw CLI::ValidationError(flag_of(name), why);
+        throw CLI::ValidationError(palpate::flag_of(name), why);
       }
     };
     if constexpr (std::is_same_v<Field, bool>) {
-      const std::string names = flag_of(name) + ",!--no-" + flag_of(name).substr(2);
+      const std::string names =
+          palpate::flag_of(name) + ",!--no-" + palpate::flag_of(name).substr(2);
       app.add_flag_function(
           names, [set](std::int64_t count) { set(count > 0 ? "true" : "false"); }, info.help);
     } else if constexpr (std::is_same_v<Field, std::vector<std::string>>) {

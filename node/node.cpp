@@ -37,8 +37,6 @@ constexpr std::int64_t kMaxSubscriptionBytes = 1024;
 constexpr milliseconds kFinishTime{200};
 constexpr milliseconds kFinishDrainTime{100};
 
-SteadyTime now_steady() { return std::chrono::steady_clock::now(); }
-
 SocketSettings contacts_settings(const NodeOptions& options, const NodeKeys& keys) {
   SocketSettings settings;
   settings.receive_high_water_mark = static_cast<int>(options.contacts_high_water_mark);

@@ -64,11 +64,6 @@ Row row_of(const Curve& artefact, MaterialSign material, const ArtefactSample& s
   return row;
 }
 
-/// What a sample lies farther out for its recording's set-up. [m]
-double setup_of(const OffsetUnknowns& unknowns, const ArtefactSample& sample) {
-  return unknowns.setup_m.empty() ? 0.0 : unknowns.setup_m[sample.recording];
-}
-
 /// Order of the harmonics that so many coefficients are.
 int order_of(Eigen::Index coefficients) {
   return coefficients == 1 ? 0 : static_cast<int>(coefficients + 1) / 2;
@@ -240,6 +235,10 @@ void add_prior(const HarmonicPrior& prior, Blocks& blocks, ceres::Problem& probl
 }
 
 }  // namespace
+
+double setup_of(const OffsetUnknowns& unknowns, const ArtefactSample& sample) {
+  return unknowns.setup_m.empty() ? 0.0 : unknowns.setup_m[sample.recording];
+}
 
 OffsetResiduals residuals_about(const Curve& artefact, MaterialSign material,
                                 std::span<const ArtefactSample> samples,

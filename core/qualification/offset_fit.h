@@ -20,6 +20,9 @@ struct OffsetUnknowns {
   std::optional<double> lag_m;  ///< nullopt = not sought, 0
 };
 
+/// What a sample lies farther out for its recording's set-up. [m]
+double setup_of(const OffsetUnknowns& unknowns, const ArtefactSample& sample);
+
 /// Residuals of all samples about the unknowns, and how they change: columns as in OffsetModel.
 struct OffsetResiduals {
   Eigen::VectorXd residual_m;  ///< distance less offset

@@ -374,9 +374,9 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   for (std::size_t i = 0; i < ground.samples.size(); ++i) {
     const ArtefactSample& sample = ground.samples[i];
     const double residual = about.residual_m[static_cast<Eigen::Index>(i)];
-    const double setup = unknowns.setup_m.empty() ? 0.0 : unknowns.setup_m[sample.recording];
     const double offset =
-        setup + about.basis.row(static_cast<Eigen::Index>(i)).dot(unknowns.offset.coefficients_m);
+        setup_of(unknowns, sample) +
+        about.basis.row(static_cast<Eigen::Index>(i)).dot(unknowns.offset.coefficients_m);
     result.samples.push_back({sample.recording, sample.stroke, sample.number, about.normal_angle[i],
                               residual + offset, residual, used[i] == 0});
     if (used[i] != 0) {

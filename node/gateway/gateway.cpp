@@ -2,7 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include <charconv>
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -21,8 +21,6 @@ constexpr milliseconds kTick{20};
 constexpr milliseconds kStatusPeriod{1000};
 // Who says that he has a place: "palpate.<cell>.place", or with the partition behind it.
 constexpr const char* kPlaceKind = "place";
-
-SteadyTime now_steady() { return std::chrono::steady_clock::now(); }
 
 std::vector<std::string> texts_of(const std::vector<PlaceName>& places) {
   std::vector<std::string> texts;
@@ -46,12 +44,8 @@ Gateway::Gateway(const GatewayOptions& options)
     cells_[place.cell] = false;
     plant_.subscribe(make_subject(place.cell, kPlaceKind, place.partition),
                      [this, text = place.text()](const PlantMessage& message) {
-                       std::uint64_t id = 0;
-                       const std::string_view said = message.payload();
-                       const auto parsed =
-                           std::from_chars(said.data(), said.data() + said.size(), id);
-                       if (parsed.ec == std::errc() && parsed.ptr == said.data() + said.size()) {
-                         claims_.hear(text, id, now_steady());
+                       if (const auto id = whole_number(message.payload())) {
+                         claims_.hear(text, *id, now_steady());
                        }
                      });
   }

@@ -41,6 +41,13 @@ std::string_view or_empty(const char* text) { return text == nullptr ? std::stri
 
 }  // namespace
 
+std::optional<std::uint64_t> whole_number(std::string_view text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 std::string_view PlantMessage::reply() const { return or_empty(natsMsg_GetReply(message_.get())); }
 
 std::string_view PlantMessage::payload() const {
@@ -58,10 +65,7 @@ std::string_view PlantMessage::header(const char* name) const {
 }
 
 std::uint64_t PlantMessage::number(const char* name) const {
-  const std::string_view text = header(name);
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? value : 0;
+  return whole_number(header(name)).value_or(0);
 }
 
 void Plant::State::take(std::uint64_t subscription, natsMsg* message) {

@@ -12,15 +12,16 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
-namespace palpate::gateway {
+#include "node/process/clock.h"
 
-using SteadyTime = std::chrono::steady_clock::time_point;
+namespace palpate::gateway {
 
 struct PlantOptions {
   std::vector<std::string> urls{
@@ -32,6 +33,9 @@ struct PlantOptions {
   std::string tls_certificate;
   std::string tls_key;
 };
+
+/// A text that is a number and nothing else.
+std::optional<std::uint64_t> whole_number(std::string_view text);
 
 /// A message of the plant.
 class PlantMessage {

@@ -1,4 +1,4 @@
-// The wall clock and the epoch number of this process.
+// The clocks and the epoch number of this process.
 #pragma once
 
 #include <chrono>
@@ -13,6 +13,10 @@ inline std::int64_t unix_time_ns() {
              std::chrono::system_clock::now().time_since_epoch())
       .count();
 }
+
+/// A clock that is never set.
+using SteadyTime = std::chrono::steady_clock::time_point;
+inline SteadyTime now_steady() { return std::chrono::steady_clock::now(); }
 
 /// A number that no earlier process has had: 64 random bits.
 inline std::uint64_t random_epoch() {

@@ -5,11 +5,14 @@
 
 namespace palpate {
 
-std::string flags_of(const OptionInfo& info) {
-  std::string name = info.name;
+std::string flag_of(std::string name) {
   std::replace(name.begin(), name.end(), '_', '-');
+  return "--" + name;
+}
+
+std::string flags_of(const OptionInfo& info) {
   const std::string also = info.also;
-  return (also.empty() ? "" : also + ",") + "--" + name;
+  return (also.empty() ? "" : also + ",") + flag_of(info.name);
 }
 
 std::string resolve(const RecognizerWords& words, RecognizerOptions& recognizer) {

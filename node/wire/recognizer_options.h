@@ -19,6 +19,9 @@ struct OptionInfo {
   const char* also = "";  ///< a second flag, where the name is longer than what people say
 };
 
+/// "--sigma-m" of "sigma_m".
+std::string flag_of(std::string name);
+
 /// The flags of an option of that name, as CLI11 takes them: "--sigma,--sigma-m".
 std::string flags_of(const OptionInfo& info);
 

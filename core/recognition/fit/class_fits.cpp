@@ -24,13 +24,6 @@ ClassFit polynomial_class(CurveClass curve_class, const PolynomialFit& fit) {
   return result;
 }
 
-/// Whether any class of `classes` needs the models with a cubic term.
-bool wants_cubics(unsigned classes) {
-  return (classes & (1U << static_cast<int>(CurveClass::CubicalParabola) |
-                     1U << static_cast<int>(CurveClass::SemiCubicalParabola) |
-                     1U << static_cast<int>(CurveClass::CubicSpline))) != 0;
-}
-
 }  // namespace
 
 ConicCoefficients conic_of_parabola(const PolynomialFit& fit) {
@@ -65,9 +58,10 @@ ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsi
   const ImplicitFit circle = refine_circle(points, algebraic_circle(points), side, kNearEnough);
   set(implicit_class(CurveClass::Circle, circle));
 
-  PolynomialFits polynomials = starts != nullptr       ? follow_polynomials(reduced, *starts)
-                               : wants_cubics(classes) ? search_polynomials(reduced, out_of_reach)
-                                                       : search_parabola(reduced);
+  PolynomialFits polynomials = starts != nullptr ? follow_polynomials(reduced, *starts)
+                               : (classes & kCubics) != 0
+                                   ? search_polynomials(reduced, out_of_reach)
+                                   : search_parabola(reduced);
   // The algebraic start serves unless it led to a conic that nothing touches, or one that a limit
   // betters; then the limits are the starts.
   ImplicitFit conic = refine_conic(points, algebraic_conic(points), side, kNearEnough);

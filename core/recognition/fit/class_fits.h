@@ -46,8 +46,12 @@ inline bool fits_well(double chi2, std::size_t residuals) {
   return can_be_noise(chi2, static_cast<double>(residuals));
 }
 
-/// Classes by bit 1 << CurveClass.
+/// Sets of classes, a bit each.
+constexpr unsigned class_bit(CurveClass curve_class) { return 1U << static_cast<int>(curve_class); }
 inline constexpr unsigned kAllClasses = ~0U;
+inline constexpr unsigned kCubics = class_bit(CurveClass::CubicalParabola) |
+                                    class_bit(CurveClass::SemiCubicalParabola) |
+                                    class_bit(CurveClass::CubicSpline);
 
 /// Fits every class to the smooth model's reduced points, taken as surface points: seeds by
 /// exhaustive coarse search, or `starts` (for these points) where given and anything then fits;

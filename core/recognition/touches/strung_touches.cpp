@@ -27,11 +27,6 @@ constexpr double kTurn = 0.6;  // rad
 /// the order.
 constexpr std::size_t kSought = 48;
 
-constexpr unsigned bit_of(CurveClass curve_class) { return 1U << static_cast<int>(curve_class); }
-constexpr unsigned kWithoutCubics = bit_of(CurveClass::Line) | bit_of(CurveClass::Circle) |
-                                    bit_of(CurveClass::Ellipse) | bit_of(CurveClass::Parabola) |
-                                    bit_of(CurveClass::Hyperbola);
-
 using Indices = std::vector<std::size_t>;
 
 Indices lone_patches(std::span<const StoredPatch> patches) {
@@ -153,7 +148,7 @@ std::optional<PlacedCurve> best_of(const ClassFits& fits, const Arcs& arcs, unsi
   std::optional<PlacedCurve> best;
   double lowest = std::numeric_limits<double>::infinity();
   for (const auto& fit : fits) {
-    const bool wanted = fit && !fit->at_limit && (classes & bit_of(fit->curve_class)) != 0;
+    const bool wanted = fit && !fit->at_limit && (classes & class_bit(fit->curve_class)) != 0;
     const auto canonical = wanted ? to_canonical(*fit, reduced) : std::nullopt;
     const auto curve = canonical ? make_curve(canonical->shape.curve_class, canonical->shape.values)
                                  : std::nullopt;
@@ -181,13 +176,13 @@ std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, 
   // them as the two sides of a needle would, has them in their order, whatever else may.
   constexpr double kDetour = 1.1;  // a step back over a tenth of the way
   std::optional<PlacedCurve> conic =
-      best_of(fit_classes(reduced, nullptr, classes & kWithoutCubics), arcs, kWithoutCubics);
+      best_of(fit_classes(reduced, nullptr, classes & ~kCubics), arcs, ~kCubics);
   const bool orders = conic && arcs.sigma_known &&
                       fits_well(conic->chi2, residual_count(reduced)) &&
                       length_of(conic->touches_m) <= kDetour * shortest_tree(conic->touches_m);
-  return orders || (classes & ~kWithoutCubics) == 0
+  return orders || (classes & kCubics) == 0
              ? conic
-             : best_of(fit_classes(reduced, nullptr, classes), arcs, ~0U);
+             : best_of(fit_classes(reduced, nullptr, classes), arcs, kAllClasses);
 }
 
 /// A touch's place on the curve.
