@@ -7,7 +7,7 @@ Reads recordings (palpate record), CSV files of the contract's columns (a header
 optionally sigma_m, object, group, tip_radius_m, material_side) and JSON lines (a ContactBatch in protobuf's JSON each).
 Without --scheduler it works on processes of this machine; --workers says how many.
 
-Each file is dealt to tasks, each task's rows are a file in OUT.parts: what is there is not done again, in whatever order
+Each file is read once and its objects dealt to tasks, each task's rows are a file in OUT.parts: what is there is not done again, in whatever order
 and however often it is started. When all are there, OUT is written, sorted by file, group and object. Recognition sees
 each object's samples in their order in the file, so the rows do not depend on who computes them. A task that fails is
 tried again (--retries), as is one whose worker dies; a file that cannot be read is named at the end, exit code 1.
@@ -15,11 +15,12 @@ tried again (--retries), as is one whose worker dies; a file that cannot be read
 Needs the palpate module, python3-protobuf with the generated package, and python3-distributed.
 """
 import argparse
-import collections
+import array
 import csv
 import hashlib
 import io
 import json
+import operator
 import os
 import pathlib
 import struct
@@ -31,7 +32,6 @@ PIECE_BYTES = 1 << 20  # of a file, for one task: seconds of work
 COLUMNS = ["file", "group", "object", "status", "doubt", "curve_class", "probability", "a", "b", "c", "x_m", "y_m",
            "theta_rad", "a_std", "b_std", "c_std", "x_m_std", "y_m_std", "theta_rad_std", "sigma_m", "samples", "patches",
            "outliers", "forgotten"]
-
 
 
 def batches_of_recording(path):
@@ -76,11 +76,27 @@ def samples_of_batches(batches):
 
 def samples_of_csv(path):
     with open(path, newline="", encoding="utf-8") as lines:
-        for row in csv.DictReader(line for line in lines if not line.startswith("#")):
-            probe = row["probe"]
-            key = (probe, int(row["patch"]), float(row.get("tip_radius_m") or 0), row.get("material_side") or "unspecified")
-            yield (row.get("group") or probe, int(row.get("object") or 0), key, (float(row["x_m"]), float(row["y_m"])),
-                   float(row.get("sigma_m") or 0))
+        rows = csv.reader("\n" if line.startswith("#") else line for line in lines)
+        header = next((row for row in rows if row), [])
+        missing = {"probe", "patch", "x_m", "y_m"} - set(header)
+        if missing:
+            raise ValueError(f"line {rows.line_num}: no column {', '.join(sorted(missing))}")
+        names = ("probe", "patch", "x_m", "y_m", "group", "object", "tip_radius_m", "material_side", "sigma_m")
+        # What the file has no column for is the empty field that each row gets at its end.
+        probe, patch, x, y, group, number, tip_radius, side, sigma = (
+            header.index(name) if name in header else len(header) for name in names)
+        for row in rows:
+            if not row:
+                continue
+            if len(row) != len(header):
+                raise ValueError(f"line {rows.line_num}: {len(row)} fields, {len(header)} columns")
+            row.append("")
+            try:
+                key = row[probe], int(row[patch]), float(row[tip_radius] or 0), row[side] or "unspecified"
+                yield (row[group] or row[probe], int(row[number] or 0), key, (float(row[x]), float(row[y])),
+                       float(row[sigma] or 0))
+            except ValueError as error:
+                raise ValueError(f"line {rows.line_num}: {error}") from None
 
 
 def samples_of(path):
@@ -96,12 +112,13 @@ def samples_of(path):
 
 def recognise(patches, sigma_m):
     """The answer's part of a row."""
+    import numpy as np
     import palpate
     recognizer = palpate.Recognizer(sigma=sigma_m or None, most_patches=max(64, len(patches)))
     probes = {}
     for number, ((probe, _, tip_radius, side), (points, sigmas)) in enumerate(patches.items()):
-        known = sigmas if any(sigmas) else None
-        recognizer.add(points, patch=number, probe=probes.setdefault(probe, len(probes)), sigma=known,
+        known = np.frombuffer(sigmas) if any(sigmas) else None
+        recognizer.add(np.frombuffer(points).reshape(-1, 2), patch=number, probe=probes.setdefault(probe, len(probes)), sigma=known,
                        tip_radius=tip_radius, material_side=side)
     answer = recognizer.recognize()
     row = {"status": answer.status, "doubt": answer.doubt, "curve_class": answer.curve_class,
@@ -115,17 +132,24 @@ def recognise(patches, sigma_m):
     return row
 
 
-def rows_of_piece(path, piece, pieces, sigma_m):
-    """Runs on a worker: rows of the objects of a file that this piece has, as CSV text."""
-    objects = collections.defaultdict(lambda: collections.defaultdict(lambda: ([], [])))
+def deal(path, pieces):
+    """Runs on a worker: a file, read once, as `pieces` lists of objects: (group, number, {patch's key: (points, sigmas)})."""
+    objects = {}
     for group, number, key, point, sigma in samples_of(pathlib.Path(path)):
-        if zlib.crc32(f"{group}/{number}".encode()) % pieces == piece:
-            points, sigmas = objects[group, number][key]
-            points.append(point)
-            sigmas.append(sigma)
+        points, sigmas = objects.setdefault((group, number), {}).setdefault(key, (array.array("d"), array.array("d")))
+        points.extend(point)
+        sigmas.append(sigma)
+    dealt = [[] for _ in range(pieces)]
+    for (group, number), patches in sorted(objects.items()):
+        dealt[zlib.crc32(f"{group}/{number}".encode()) % pieces].append((group, number, patches))
+    return dealt
+
+
+def rows_of(path, objects, sigma_m):
+    """Runs on a worker: a row for each of the objects, as CSV text."""
     out = io.StringIO()
     writer = csv.DictWriter(out, COLUMNS, restval="", lineterminator="\n")
-    for (group, number), patches in sorted(objects.items()):
+    for group, number, patches in objects:
         writer.writerow({"file": path, "group": group, "object": number} | recognise(patches, sigma_m))
     return out.getvalue()
 
@@ -152,8 +176,15 @@ def write_whole(path, text):
 def compute(client, tasks, parts, retries, progress):
     """Has the tasks done whose parts are not there. Gives {part: error} of those that failed."""
     from distributed import as_completed
-    futures = {client.submit(rows_of_piece, *arguments, key=name, retries=retries, pure=False): name
-               for name, arguments in tasks.items() if not (parts / name).exists()}
+    futures, dealt = {}, {}
+    for name, (path, piece, pieces, sigma_m) in tasks.items():
+        if (parts / name).exists():
+            continue
+        if path not in dealt:
+            dealt[path] = client.submit(deal, path, pieces, retries=retries, pure=False)
+        objects = client.submit(operator.getitem, dealt[path], piece, pure=False)
+        futures[client.submit(rows_of, path, objects, sigma_m, key=name, retries=retries, pure=False)] = name
+    dealt = objects = None  # each is forgotten as soon as its rows are there
     done, answers, failed, begin, told = len(tasks) - len(futures), 0, {}, time.monotonic(), 0.0
     for future in as_completed(futures):
         name = futures[future]

@@ -21,9 +21,6 @@ namespace {
 using nlohmann::json;
 using std::chrono::milliseconds;
 
-// Contacts that the plant has delivered and that have no stored answer yet. Beyond it the plant
-// waits, which bounds our memory: a second of the busiest cell.
-constexpr int kMostUnacknowledged = 8192;
 // Given to the node and unanswered. The node lets 16 MiB wait (max_waiting_bytes, half of it for
 // whoever has most) before it would reject any.
 constexpr std::size_t kMostInFlight = 512;
@@ -33,21 +30,12 @@ constexpr std::size_t kMostBytesInFlight = std::size_t{4} << 20;
 constexpr std::size_t kMostGroups = 50'000;
 constexpr milliseconds kTend{50};
 constexpr milliseconds kRetry{300};
-// The engine says this often that a consumer lives; without it for so long we ask.
-constexpr milliseconds kHeartbeat{500};
-constexpr milliseconds kConsumerSilence{1500};
 // A node says each second that it lives.
 constexpr milliseconds kNodeSilence{5000};
 constexpr milliseconds kLookupTimeout{500};
 // Of a replay that stops before its last contact: a replica of the stream that is behind has it
 // soon.
 constexpr int kReplayTries = 20;
-constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
-// It delivers nothing twice: a new beginning has a consumer of its own.
-constexpr std::int64_t kAckWaitNs = std::int64_t{3600} * 1000 * kNanosecondsPerMillisecond;
-
-// The engine's number of an error (JSConsumerNotFoundErr).
-constexpr int kNoConsumer = 10014;
 
 constexpr const char* kFrom = "Palpate-From";
 constexpr const char* kThrough = "Palpate-Through";
@@ -58,11 +46,6 @@ bool parse(Message& message, std::string_view payload) {
   return message.ParseFromArray(payload.data(), static_cast<int>(payload.size()));
 }
 
-std::string contact_filter(const PlaceName& name, std::string_view group_token) {
-  std::string filter = make_subject(name.cell, "contact", name.partition);
-  return filter.append(".").append(group_token).append(".*");
-}
-
 }  // namespace
 
 Place::Place(zmq::context_t& context, Plant& plant, PlaceName name, FedNodeOptions node,
@@ -71,15 +54,17 @@ Place::Place(zmq::context_t& context, Plant& plant, PlaceName name, FedNodeOptio
       plant_(plant),
       name_(std::move(name)),
       node_options_(std::move(node)),
-      consumer_("recognise" +
-                (name_.partition.empty() ? std::string() : "-" + to_token(name_.partition))),
+      consumer_(
+          plant, name_,
+          {[this](const PlantMessage& message, std::uint64_t seq) { take_contact(message, seq); },
+           [this](const std::string& why) { fail(why); }}),
       begin_at_(begin_at) {
   status_.set_cell(name_.cell);
   status_.set_partition(name_.partition);
 }
 
 Place::~Place() {
-  acknowledge();
+  consumer_.acknowledge();
   forget_all();
 }
 
@@ -96,22 +81,18 @@ void Place::begin(SteadyTime now) {
     return;
   }
   node_heard_ = now;
-  find_start();
+  consumer_.begin();
 }
 
 void Place::forget_all() {
   plant_.forget(this);
-  plant_.unsubscribe(subscription_);
-  subscription_ = 0;
+  consumer_.forget();
   node_.reset();
   node_has_spoken_ = false;
-  consumer_seq_ = stream_seq_ = 0;
   ready_.clear();
   given_.clear();
   given_count_ = in_flight_count_ = in_flight_bytes_ = 0;
   groups_.clear();
-  delivered_.clear();
-  ack_reply_.clear();
 }
 
 void Place::fail(const std::string& why) {
@@ -119,71 +100,7 @@ void Place::fail(const std::string& why) {
   status_.set_restarts(status_.restarts() + 1);
   forget_all();
   has_begun_ = false;
-  begin_at_ = std::chrono::steady_clock::now() + kRetry;
-}
-
-/// After the last contact acknowledged by a former consumer. It only spares work: what is delivered
-/// though it is answered, is known to be by the answers.
-void Place::find_start() {
-  plant_.api(this, "CONSUMER.INFO." + contact_stream(name_.cell) + "." + consumer_, nullptr,
-             [this](const json* answer) {
-               if (answer == nullptr) return fail("the plant has no answer for its consumer");
-               const auto error = answer->find("error");
-               if (error != answer->end() && error->value("err_code", 0) != kNoConsumer) {
-                 return fail("its consumer: " + error->value("description", std::string()));
-               }
-               std::uint64_t floor = 0;
-               if (const auto found = answer->find("ack_floor"); found != answer->end()) {
-                 floor = found->value("stream_seq", std::uint64_t{0});
-               }
-               plant_.api(this, "CONSUMER.DELETE." + contact_stream(name_.cell) + "." + consumer_,
-                          nullptr, [this, floor](const json* deleted) {
-                            if (deleted == nullptr) return fail("its consumer cannot be replaced");
-                            make_consumer(floor + 1);
-                          });
-             });
-}
-
-void Place::make_consumer(std::uint64_t start_seq) {
-  deliver_subject_ = plant_.private_subject();
-  subscription_ = plant_.subscribe(deliver_subject_,
-                                   [this](const PlantMessage& message) { delivered(message); });
-  if (subscription_ == 0) return fail("no subscription");
-  consumer_heard_ = std::chrono::steady_clock::now();
-  const json config{{"durable_name", consumer_},
-                    {"deliver_subject", deliver_subject_},
-                    {"deliver_policy", "by_start_sequence"},
-                    {"opt_start_seq", start_seq},
-                    {"ack_policy", "all"},
-                    {"ack_wait", kAckWaitNs},
-                    {"max_ack_pending", kMostUnacknowledged},
-                    {"filter_subject", contact_filter(name_, "*")},
-                    {"idle_heartbeat", kHeartbeat.count() * kNanosecondsPerMillisecond}};
-  const std::string stream = contact_stream(name_.cell);
-  plant_.api(this, "CONSUMER.DURABLE.CREATE." + stream + "." + consumer_,
-             {{"stream_name", stream}, {"config", config}}, [this, start_seq](const json* answer) {
-               if (answer == nullptr) return fail("its consumer cannot be made");
-               if (const auto error = answer->find("error"); error != answer->end()) {
-                 return fail("its consumer: " + error->value("description", std::string()));
-               }
-               spdlog::info("{}: from contact {} on", printable(name_.text()), start_seq);
-             });
-}
-
-void Place::delivered(const PlantMessage& message) {
-  consumer_heard_ = std::chrono::steady_clock::now();
-  if (message.subject() == deliver_subject_) {  // the engine's own word; contacts have their own
-    if (message.number("Nats-Last-Consumer") > consumer_seq_) fail("contacts were lost on the way");
-    return;
-  }
-  const DeliveryNumbers numbers = numbers_of(message.reply());
-  const bool is_gap = numbers.consumer_seq > consumer_seq_ + 1;
-  consumer_seq_ = numbers.consumer_seq;
-  if (numbers.stream_seq <= stream_seq_) return;  // again, after a change of the consumer's leader
-  if (is_gap) return fail("contacts were lost on the way");
-  stream_seq_ = numbers.stream_seq;
-  delivered_.push_back({stream_seq_, std::string(message.reply()), false});
-  take_contact(message, stream_seq_);
+  begin_at_ = now_steady() + kRetry;
 }
 
 void Place::take_contact(const PlantMessage& message, std::uint64_t stream_seq) {
@@ -193,7 +110,7 @@ void Place::take_contact(const PlantMessage& message, std::uint64_t stream_seq) 
   }
   if (!read || (groups_.size() >= kMostGroups && !groups_.contains(read->group))) {
     status_.set_hostile(status_.hostile() + 1);
-    mark_done(stream_seq);
+    consumer_.done(stream_seq);
     return;
   }
   const auto found = groups_.try_emplace(std::move(read->group)).first;
@@ -201,19 +118,6 @@ void Place::take_contact(const PlantMessage& message, std::uint64_t stream_seq) 
   if (group.state == Group::State::Live) return add_new(group, std::move(read->contact));
   group.arrived.push_back(std::move(read->contact));
   if (group.state == Group::State::Unknown) ask(found->first, group);
-}
-
-/// Silence may be a consumer that looks for a leader, one that is gone, or a message lost.
-void Place::check_consumer() {
-  plant_.api(this, "CONSUMER.INFO." + contact_stream(name_.cell) + "." + consumer_, nullptr,
-             [this](const json* answer) {
-               if (answer == nullptr) return;
-               const auto config = answer->find("config");
-               if (config == answer->end() ||
-                   config->value("deliver_subject", std::string()) != deliver_subject_) {
-                 fail("its consumer is another's, or gone");
-               }
-             });
 }
 
 // --- What of a group is answered
@@ -246,7 +150,7 @@ void Place::ask(const std::string& name, Group& group) {
             asked.arrived.begin(), asked.arrived.end(),
             [&](const FedContact& contact) { return contact.stream_seq > asked.through; });
         if (!is_new) {
-          for (const FedContact& contact : asked.arrived) mark_done(contact.stream_seq);
+          for (const FedContact& contact : asked.arrived) consumer_.done(contact.stream_seq);
           asked.arrived.clear();
           asked.state = Group::State::Unknown;
           return;
@@ -296,7 +200,7 @@ void Place::end_replay(Group& group) {
 }
 
 void Place::add_new(Group& group, FedContact contact) {
-  if (contact.stream_seq <= group.through) return mark_done(contact.stream_seq);
+  if (contact.stream_seq <= group.through) return consumer_.done(contact.stream_seq);
   status_.set_contacts(status_.contacts() + 1);
   group.unanswered.push_back(contact.stream_seq);
   group.feed.add(std::move(contact));
@@ -343,7 +247,7 @@ void Place::hear(const TwoFrames& message) {
     v1::NodeStatus node;
     if (!parse(node, payload)) return;
     node_has_spoken_ = true;
-    node_heard_ = std::chrono::steady_clock::now();
+    node_heard_ = now_steady();
     // It has judged so many; what it took of them it has shown before.
     while (!given_.empty() && given_count_ - given_.size() < node.messages_received()) {
       node_rejected();
@@ -375,7 +279,7 @@ void Place::node_rejected() {
     if (out->is_new) {
       status_.set_rejected(status_.rejected() + 1);
       std::erase(group.unanswered, out->stream_seq);
-      mark_done(out->stream_seq);
+      consumer_.done(out->stream_seq);
     }
   }
   make_ready(group);
@@ -447,7 +351,7 @@ void Place::stored(const std::string& name, const Stored& stored) {
       break;
   }
   while (!group.unanswered.empty() && group.unanswered.front() <= span.through) {
-    mark_done(group.unanswered.front());
+    consumer_.done(group.unanswered.front());
     group.unanswered.pop_front();
   }
   group.answers.pop_front();
@@ -471,32 +375,12 @@ void Place::is_it_ours(const std::string& name) {
       });
 }
 
-void Place::mark_done(std::uint64_t stream_seq) {
-  const auto found = std::lower_bound(
-      delivered_.begin(), delivered_.end(), stream_seq,
-      [](const Delivered& each, std::uint64_t seq) { return each.stream_seq < seq; });
-  if (found != delivered_.end() && found->stream_seq == stream_seq) found->is_done = true;
-  while (!delivered_.empty() && delivered_.front().is_done) {
-    ack_reply_ = std::move(delivered_.front().reply);
-    delivered_.pop_front();
-  }
-}
-
-/// One acknowledges all before it.
-void Place::acknowledge() {
-  if (!ack_reply_.empty() && plant_.publish(ack_reply_, "+ACK")) ack_reply_.clear();
-}
-
 void Place::tend(SteadyTime now) {
   next_tend_ = now + kTend;
-  acknowledge();
+  consumer_.tend(now);
   for (auto& [name, group] : groups_) {
     if (group.state == Group::State::Unknown && !group.arrived.empty()) ask(name, group);
     store_next(name, group);
-  }
-  if (subscription_ != 0 && plant_.is_connected() && now - consumer_heard_ > kConsumerSilence) {
-    consumer_heard_ = now;
-    check_consumer();
   }
 }
 

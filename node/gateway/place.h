@@ -18,6 +18,7 @@
 #include <string_view>
 #include <zmq.hpp>
 
+#include "node/gateway/contact_consumer.h"
 #include "node/gateway/fed_node.h"
 #include "node/gateway/group_feed.h"
 #include "node/gateway/plant.h"
@@ -26,14 +27,6 @@
 #include "palpate/v1/recognition.pb.h"
 
 namespace palpate::gateway {
-
-struct PlaceName {
-  std::string cell;
-  std::string partition;  ///< of the server's mapping, "0", "1" ...; empty = all groups of the cell
-
-  /// "press" or "press:0".
-  std::string text() const { return partition.empty() ? cell : cell + ":" + partition; }
-};
 
 class Place {
  public:
@@ -78,26 +71,15 @@ class Place {
     bool is_ready = false;       // in ready_
   };
 
-  struct Delivered {
-    std::uint64_t stream_seq = 0;
-    std::string reply;
-    bool is_done = false;
-  };
-
   struct Given {
     Group* group = nullptr;
     FedContact contact;  // without its payload
   };
 
-  // Beginning: a fresh node, and a consumer from the first contact that may be unanswered on.
   void begin(SteadyTime now);
   void fail(const std::string& why);
   void forget_all();
-  void find_start();
-  void make_consumer(std::uint64_t start_seq);
-  void delivered(const PlantMessage& message);
   void take_contact(const PlantMessage& message, std::uint64_t stream_seq);
-  void check_consumer();
 
   // What of a group is answered already, and its present object again.
   void ask(const std::string& name, Group& group);
@@ -115,34 +97,25 @@ class Place {
   void store_next(const std::string& name, Group& group);
   void stored(const std::string& name, const Stored& stored);
   void is_it_ours(const std::string& name);
-  void mark_done(std::uint64_t stream_seq);
-  void acknowledge();
   void tend(SteadyTime now);
 
   zmq::context_t& context_;
   Plant& plant_;
   PlaceName name_;
   FedNodeOptions node_options_;
-  std::string consumer_;
+  ContactConsumer consumer_;
   v1::GatewayPlaceStatus status_;
 
   // All that a new beginning forgets.
   std::unique_ptr<FedNode> node_;
   bool node_has_spoken_ = false;
   SteadyTime node_heard_;
-  std::uint64_t subscription_ = 0;
-  std::string deliver_subject_;
-  std::uint64_t consumer_seq_ = 0;  // of the message delivered last, by the consumer's count
-  std::uint64_t stream_seq_ = 0;    // by the stream's
-  SteadyTime consumer_heard_;
   std::map<std::string, Group, std::less<>> groups_;
   std::deque<Group*> ready_;
   std::deque<Given> given_;  // to the node, which has not yet shown whether it takes them
   std::uint64_t given_count_ = 0;
   std::size_t in_flight_count_ = 0;
   std::size_t in_flight_bytes_ = 0;
-  std::deque<Delivered> delivered_;  // not acknowledged, in the stream's order
-  std::string ack_reply_;            // of the last of those that may be
 
   SteadyTime begin_at_;
   bool has_begun_ = false;

@@ -94,6 +94,11 @@ std::string make_subject(std::string_view cell, std::string_view kind, std::stri
   return subject;
 }
 
+std::string contact_filter(const PlaceName& place, std::string_view group_token) {
+  std::string filter = make_subject(place.cell, "contact", place.partition);
+  return filter.append(".").append(group_token).append(".*");
+}
+
 std::optional<ContactSubject> parse_contact_subject(std::string_view subject) {
   const std::vector<std::string_view> tokens = tokens_of(subject);
   if (tokens.size() < 5 || tokens.size() > 6) return std::nullopt;

@@ -22,6 +22,17 @@ std::optional<std::string> from_token(std::string_view token);
 std::string make_subject(std::string_view cell, std::string_view kind, std::string_view name = {},
                          std::string_view second_name = {});
 
+struct PlaceName {
+  std::string cell;
+  std::string partition;  ///< of the server's mapping, "0", "1" ...; empty = all groups of the cell
+
+  /// "press" or "press:0".
+  std::string text() const { return partition.empty() ? cell : cell + ":" + partition; }
+};
+
+/// Of the contacts of a place: all of them, or those of one group.
+std::string contact_filter(const PlaceName& place, std::string_view group_token = "*");
+
 struct ContactSubject {
   std::string group;
   std::string probe;

@@ -6,11 +6,13 @@
       /usr/bin/python3 tests/bench/plant/archive_scaling.py [--strokes N]
 
 Each stroke is 30 samples of a circle's arc with noise, an object of its own, a thousand in a CSV file. Scaling is of the time between
-the first and the last task: processes start before it.
+the first and the last task: processes start before it. Beside it: what the machine gives to two processes of the same work that share
+nothing.
 """
 import argparse
 import pathlib
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -37,6 +39,26 @@ def run(folder, files, workers, kill=False):
     return out.read_text(), float(rate), said
 
 
+def plain_scaling(file, rounds=5):
+    """What this machine gives to two processes that know nothing of each other, over one: the same work without Dask."""
+    code = (f"import sys; sys.path.insert(0, {str(ARCHIVE.parent)!r}); import archive, time; path = sys.argv[1];"
+            "work = lambda: archive.rows_of(path, archive.deal(path, 1)[0], 0.0);"
+            "work(); print(flush=True); input(); begin = time.monotonic(); [work() for _ in range(3)];"
+            "print(time.monotonic() - begin)")
+
+    def seconds(count):
+        processes = [subprocess.Popen([sys.executable, "-c", code, file], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+                     for _ in range(count)]
+        for process in processes:
+            process.stdout.readline()
+        for process in processes:  # all are ready: now
+            process.stdin.write("\n")
+            process.stdin.flush()
+        return max(float(process.communicate()[0]) for process in processes)
+
+    return statistics.median(2 * seconds(1) / seconds(2) for _ in range(rounds))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--strokes", type=int, default=100_000)
@@ -47,13 +69,15 @@ def main():
         for number in range(options.strokes // STROKES_PER_FILE):
             files.append(folder / f"{number:04d}.csv")
             write_csv(files[-1], STROKES_PER_FILE, seed=number)
+        machine = plain_scaling(files[0])
         start = time.monotonic()
         one, one_rate, _ = run(folder, files, 1)
         two, two_rate, _ = run(folder, files, 2)
         killed, _, said = run(folder, files, 2, kill=True)
         assert one == two == killed, "the rows differ"
         assert one.count("\n") == 1 + options.strokes
-        print(f"{options.strokes} strokes: the same rows of all three runs; {two_rate / one_rate:.2f} times as fast with two workers; "
+        print(f"{options.strokes} strokes: the same rows of all three runs; {two_rate / one_rate:.2f} times as fast with two workers, "
+              f"where this machine gives two processes without Dask {machine:.2f} times the work of one; "
               f"{time.monotonic() - start:.0f} s in all. last words of progress: "
               + [line for line in said.splitlines() if " tasks, " in line][-1])
 
