@@ -45,8 +45,8 @@ packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-d
           libbenchmark-dev protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev
           libcli11-dev libboost-dev nlohmann-json3-dev zlib1g-dev libdxflib-dev python3 python3-protobuf python3-zmq
           python3-ezdxf python3-numpy git pybind11-dev python3-dev clang-format chromium chromium-driver
-          doxygen dpkg-dev file iproute2 libnats-dev lintian make man-db nats-server openssl python3-distributed python3-pip
-          python3-setuptools python3-wheel strace systemd zsh)
+          doxygen dpkg-dev file iproute2 libnats-dev lintian make man-db nats-server openssl python3-cryptography
+          python3-distributed python3-pip python3-setuptools python3-wheel strace systemd zsh)
 if [ "$sanitize" = yes ] || [ "$fuzz" != 0 ]; then packages+=(clang); fi
 if [ "$tidy" = yes ]; then packages+=(clang clang-tidy); fi
 missing=()

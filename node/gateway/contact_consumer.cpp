@@ -60,9 +60,8 @@ void ContactConsumer::begin() {
 
 void ContactConsumer::make(std::uint64_t start_seq) {
   deliver_subject_ = plant_.private_subject();
-  subscription_ =
-      plant_.subscribe(deliver_subject_, [this](const PlantMessage& message) { take(message); });
-  if (subscription_ == 0) return events_.failed("no subscription");
+  subscription_ = plant_.connection().subscribe(
+      deliver_subject_, [this](const PlantMessage& message) { take(message); });
   heard_ = now_steady();
   const json config{{"durable_name", name_},
                     {"deliver_subject", deliver_subject_},
@@ -87,7 +86,7 @@ void ContactConsumer::make(std::uint64_t start_seq) {
 
 void ContactConsumer::forget() {
   plant_.forget(this);
-  plant_.unsubscribe(subscription_);
+  plant_.connection().unsubscribe(subscription_);
   subscription_ = 0;
   consumer_seq_ = stream_seq_ = 0;
   delivered_.clear();
@@ -125,7 +124,7 @@ void ContactConsumer::done(std::uint64_t stream_seq) {
 
 /// One acknowledges all before it.
 void ContactConsumer::acknowledge() {
-  if (!ack_reply_.empty() && plant_.publish(ack_reply_, "+ACK")) ack_reply_.clear();
+  if (!ack_reply_.empty() && plant_.connection().publish(ack_reply_, "+ACK")) ack_reply_.clear();
 }
 
 void ContactConsumer::tend(SteadyTime now) {

@@ -42,12 +42,12 @@ Gateway::Gateway(const GatewayOptions& options)
   }
   for (const PlaceName& place : options_.places) {
     cells_[place.cell] = false;
-    plant_.subscribe(make_subject(place.cell, kPlaceKind, place.partition),
-                     [this, text = place.text()](const PlantMessage& message) {
-                       if (const auto id = whole_number(message.payload())) {
-                         claims_.hear(text, *id, now_steady());
-                       }
-                     });
+    plant_.connection().subscribe(make_subject(place.cell, kPlaceKind, place.partition),
+                                  [this, text = place.text()](const PlantMessage& message) {
+                                    if (const auto id = whole_number(message.payload())) {
+                                      claims_.hear(text, *id, now_steady());
+                                    }
+                                  });
   }
   v1::Header& header = *status_.mutable_header();
   header.set_source(options_.name);
@@ -59,7 +59,7 @@ void Gateway::run(int stop_fd) {
   service_manager_.ready("carries");
   while (!stop_requested(stop_fd)) {
     std::vector<zmq::pollitem_t> items{{nullptr, stop_fd, ZMQ_POLLIN, 0},
-                                       {nullptr, plant_.fd(), ZMQ_POLLIN, 0}};
+                                       {nullptr, plant_.connection().fd(), ZMQ_POLLIN, 0}};
     if (up_) items.push_back({up_->socket().handle(), 0, ZMQ_POLLIN, 0});
     for (const auto& [text, place] : places_) {
       if (zmq::socket_t* socket = place->socket()) {
@@ -89,6 +89,13 @@ void Gateway::serve_plant(SteadyTime now) {
   if (plant_.is_connected() != was_connected_) {
     was_connected_ = plant_.is_connected();
     spdlog::info("{} the plant", was_connected_ ? "connected to" : "no connection to");
+    if (was_connected_) complaint_told_.clear();
+  }
+  // It is repeated at each attempt.
+  if (std::string complaint = plant_.connection().take_complaint();
+      !complaint.empty() && complaint != complaint_told_) {
+    spdlog::warn("the plant: {}", printable(complaint));
+    complaint_told_ = std::move(complaint);
   }
 }
 
@@ -115,16 +122,16 @@ void Gateway::tell(SteadyTime now) {
     next_word_ = now + Claims::kPeriod;
     for (const auto& [text, place] : places_) {
       const PlaceName& name = place->name();
-      plant_.publish(make_subject(name.cell, kPlaceKind, name.partition),
-                     std::to_string(claims_.id()));
+      plant_.connection().publish(make_subject(name.cell, kPlaceKind, name.partition),
+                                  std::to_string(claims_.id()));
     }
   }
   if (now < next_status_) return;
   next_status_ = now + kStatusPeriod;
   log_changes();
   if (!plant_.is_connected()) return;
-  if (plant_.connection_count() != connection_) {
-    connection_ = plant_.connection_count();
+  if (plant_.connection().connection_count() != connection_) {
+    connection_ = plant_.connection().connection_count();
     for (auto& [cell, is_made] : cells_) is_made = false;
   }
   for (auto& [cell, is_made] : cells_) {
@@ -136,14 +143,15 @@ void Gateway::tell(SteadyTime now) {
 }
 
 void Gateway::publish_status() {
-  status_.set_connections(plant_.connection_count());
+  status_.set_connections(plant_.connection().connection_count());
   if (up_) up_->fill(*status_.mutable_up());
   status_.clear_places();
   for (const auto& [text, place] : places_) *status_.add_places() = place->status();
   v1::Header& header = *status_.mutable_header();
   header.set_stamp_ns(unix_time_ns());
   for (const auto& [cell, is_made] : cells_) {
-    plant_.publish(make_subject(cell, "gateway", options_.name), status_.SerializeAsString());
+    plant_.connection().publish(make_subject(cell, "gateway", options_.name),
+                                status_.SerializeAsString());
   }
   header.set_seq(header.seq() + 1);
 }

@@ -54,6 +54,7 @@ class Gateway {
   std::map<std::string, bool, std::less<>> cells_;  // whether their streams are there
   std::uint64_t connection_ = 0;
   bool was_connected_ = false;
+  std::string complaint_told_;
   v1::GatewayStatus status_;
   v1::GatewayUpStatus told_;
   std::string disk_error_told_;

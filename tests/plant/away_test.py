@@ -6,12 +6,13 @@ takes it away for a minute in place of some seconds.
 """
 import os
 import re
+import signal
 import statistics
 import time
 import unittest
 
-from bus import Bus, Probe, receive
-from plant import Client, Ledger, Servers, carrier, gateway_status, skip_where_absent, wait_for_stored
+from bus import Bus, Probe, receive, stop
+from plant import (Client, Ledger, Servers, carrier, gateway_status, recogniser, skip_where_absent, wait_for_stored)
 
 AWAY_S = float(os.environ.get("PALPATE_PLANT_AWAY_S", "6"))
 BATCHES_PER_OBJECT = 20
@@ -106,6 +107,78 @@ class Away(unittest.TestCase):
                       f"{1e3 * statistics.quantiles(times, n=100)[98]:.1f} ms at p99")
             # Every contact was answered in the cell, at once; none was waited for (receive() fails after 2 s).
             self.assertIsNone(node.poll())
+
+    def test_a_plant_whose_disk_is_full_has_all_when_it_has_room_again(self):
+        """Contacts wait in the cell, answers with their recogniser: none is lost, none twice."""
+        count = 600  # some 500 bytes each
+        with Bus() as bus, Servers(bus.folder, partitions=1) as servers:
+            roomy = servers.file(0).read_text()
+            servers.file(0).write_text(roomy.replace("jetstream {", "jetstream { max_file_store: 150KB, "))
+            servers.start().wait()
+            endpoint = f"ipc://{bus.folder}/contacts"
+            up = carrier(bus, servers.url, "up", "press", "bind:" + endpoint, "--carry", "contact")
+            down = recogniser(bus, servers.url, "down", ["press:0"])
+            with Client(servers.url) as client:
+                gateway_status(client, "press", "down")
+                probe = Probe(bus.publisher(high_water_mark=100000), group="hand")
+                for _ in range(count):
+                    probe.send(probe.batch(10 * (probe.seq % BATCHES_PER_OBJECT),
+                                           object_number=1 + probe.seq // BATCHES_PER_OBJECT))
+                    time.sleep(0.002)
+                self.wait_for_log(up, "messages wait on disk")
+                full = client.api("STREAM.INFO.palpate-press-contact")["state"]["messages"]
+                self.assertLess(full, count)
+            servers.kill()
+            servers.file(0).write_text(roomy)
+            servers.start().wait()
+            with Client(servers.url) as client:
+                wait_for_stored(client, "palpate-press-contact", count)
+                deadline = time.monotonic() + 20
+                while True:
+                    ledger = Ledger(client, "press")
+                    last = max(seq for _, seq in ledger.contacts)
+                    if ledger.answers.get("hand", [(0, 0)])[-1][1] == last or time.monotonic() > deadline:
+                        break
+                ledger.sent_once(self, {probe.name: count})
+                ledger.answered_once(self)
+                self.assertEqual(gateway_status(client, "press", "up").up.lost, 0)
+            print(f"a plant whose disk is full after {full} of {count} contacts: all stored and answered once when it has room")
+            self.assertEqual(stop(down)[0], 0)
+
+    def test_doubles_beyond_the_engines_window_are_rejected(self):
+        """Two gateways carry a cell; one stands still for longer than the engine remembers, and then sends what it had."""
+        count = 400
+        with Bus() as bus, Servers(bus.folder, partitions=1) as servers:
+            servers.start().wait()
+            bus.start_node()
+            carriers = [carrier(bus, servers.url, f"up{i}", "press", bus.results, "--carry", "contact",
+                                "--duplicate-window-s", "0.5") for i in range(2)]
+            recogniser(bus, servers.url, "down", ["press:0"], "--duplicate-window-s", "0.5")
+            with Client(servers.url) as client:
+                for name in ("up0", "up1", "down"):
+                    gateway_status(client, "press", name)
+                time.sleep(1.2)  # they hold back at their start
+                probe = Probe(bus.publisher(high_water_mark=100000), group="hand")
+                for number in range(count):
+                    probe.send(probe.batch(10 * (number % BATCHES_PER_OBJECT), object_number=1 + number // BATCHES_PER_OBJECT))
+                    if number == 100:
+                        carriers[0].send_signal(signal.SIGSTOP)
+                    time.sleep(0.005)
+                time.sleep(1)
+                carriers[0].send_signal(signal.SIGCONT)
+                deadline = time.monotonic() + 20
+                while True:
+                    stored = client.api("STREAM.INFO.palpate-press-contact")["state"]["messages"]
+                    place = gateway_status(client, "press", "down").places[0]
+                    if place.contacts == stored == place.answered + place.rejected or time.monotonic() > deadline:
+                        break
+                doubles = stored - count
+                answers = Ledger(client, "press").answers["hand"]
+            print(f"{doubles} of {count} contacts stored twice, {place.rejected} rejected, {place.answered} answered")
+            self.assertGreater(doubles, 100)
+            self.assertEqual((place.answered, place.rejected, place.restarts), (count, doubles, 0))
+            last = {answer.object: answer.sample_count for _, _, _, answer, _ in answers}
+            self.assertEqual(last, {1 + i: 10 * BATCHES_PER_OBJECT for i in range(count // BATCHES_PER_OBJECT)})
 
     def stroke(self, probe, planner, seconds):
         """One batch after the other; how long each waited for its answer."""

@@ -42,6 +42,7 @@ class Servers:
         self.folder, self.count = pathlib.Path(folder), count
         self.ports = free_ports(2 * count)
         self.processes = [None] * count
+        self.access = {}  # what a Client needs beyond the address
         mapping = ""
         if partitions:
             mapping = ('mappings = { "palpate.*.contact.*.*": "palpate.{{wildcard(1)}}.contact.{{partition(%d,2)}}.'
@@ -66,6 +67,10 @@ class Servers:
                 self.processes[number] = subprocess.Popen([SERVER, "-c", str(self.file(number))], stderr=log, stdout=log)
         return self
 
+    def reload(self, i=0):
+        """The server reads its file again."""
+        self.processes[i].send_signal(signal.SIGHUP)
+
     def kill(self, i=0, with_signal=signal.SIGKILL):
         self.processes[i].send_signal(with_signal)
         if with_signal == signal.SIGKILL:
@@ -76,7 +81,7 @@ class Servers:
         deadline = time.monotonic() + timeout_s
         while time.monotonic() < deadline:
             try:
-                with Client(self.url, timeout_s=2) as client:
+                with Client(self.url, timeout_s=2, **self.access) as client:
                     if "error" not in client.api("INFO", {}):
                         return self
             except (OSError, TimeoutError):
@@ -98,9 +103,10 @@ Message = collections.namedtuple("Message", "subject reply headers payload")
 
 
 class Client:
-    """As much of the protocol as a test needs: publish, subscribe, request; by any of the servers that is up."""
+    """As much of the protocol as a test needs: publish, subscribe, request; by any of the servers that is up. `tls`: an
+    ssl.SSLContext; `login`: what to say of oneself in CONNECT, from what the server says of itself."""
 
-    def __init__(self, url, timeout_s=10):
+    def __init__(self, url, timeout_s=10, tls=None, login=None):
         self.url, self.timeout_s = url, timeout_s
         error = None
         for address in url.split(","):
@@ -115,9 +121,13 @@ class Client:
         self.file = self.socket.makefile("rb")
         self.inbox = f"_INBOX.{os.getpid()}x{id(self)}"
         self.sids, self.kept = 0, collections.deque()
-        self.file.readline()
-        self.write(b'CONNECT {"verbose":false,"pedantic":false,"headers":true,"no_responders":true,"lang":"test",'
-                   b'"version":"1","protocol":1}\r\nPING\r\n')
+        info = json.loads(self.file.readline().removeprefix(b"INFO "))
+        if tls is not None:
+            self.socket = tls.wrap_socket(self.socket, server_hostname=host)
+            self.file = self.socket.makefile("rb")
+        said = {"verbose": False, "pedantic": False, "headers": True, "no_responders": True, "lang": "test", "version": "1",
+                "protocol": 1} | (login(info) if login else {})
+        self.write(b"CONNECT " + json.dumps(said).encode() + b"\r\nPING\r\n")
         self.subscribe(self.inbox + ".*")
         self.requests = 0
 

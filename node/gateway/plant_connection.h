@@ -1,0 +1,120 @@
+// The connection to the plant's engine, NATS: libnats has threads of its own, what they bring is
+// taken by one.
+#pragma once
+
+#include <nats/nats.h>
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "node/gateway/plant_message.h"
+#include "node/process/clock.h"
+
+namespace palpate::gateway {
+
+struct PlantOptions {
+  std::vector<std::string> urls{
+      "nats://127.0.0.1:4222"};  ///< of one server or several of a cluster
+  std::string client_name = "palpate-gateway";
+  // The engine's own files; empty = none.
+  std::string credentials;  ///< a user's .creds
+  std::string tls_ca;
+  std::string tls_certificate;
+  std::string tls_key;
+};
+
+/// Belongs to one thread but for what says otherwise.
+class PlantConnection {
+ public:
+  using Listener = std::function<void(const PlantMessage&)>;
+
+  /// Begins to connect, and goes on for ever where nobody is there yet, or who is there refuses.
+  /// Throws std::runtime_error where a file cannot be read.
+  explicit PlantConnection(const PlantOptions& options);
+  ~PlantConnection();
+  PlantConnection(const PlantConnection&) = delete;
+  PlantConnection& operator=(const PlantConnection&) = delete;
+
+  bool is_connected() const { return connection_ != nullptr && state_->connected.load(); }
+  /// Connections made so far: another number means that what was on its way may be lost.
+  std::uint64_t connection_count() const { return state_->connections.load(); }
+  /// What the engine or libnats last complained of; empty where of nothing since it was asked.
+  std::string take_complaint();
+
+  /// To be polled for input: serve() has something to do.
+  int fd() const { return state_->wake_fd; }
+  void wake() const { state_->wake(); }
+  /// Calls the listeners of what has come. Throws std::runtime_error where an address is none.
+  void serve(SteadyTime now);
+
+  /// False where there is no connection, or libnats does not take it.
+  bool publish(const std::string& subject, std::string_view payload, const char* reply = nullptr,
+               const Headers& headers = {});
+
+  /// Hears of a subject until unsubscribe(), over all connections to come.
+  std::uint64_t subscribe(const std::string& subject, Listener listener);
+  void unsubscribe(std::uint64_t subscription);
+
+  /// Messages dropped because serve() was not called for long.
+  std::uint64_t dropped() const { return state_->dropped.load(); }
+
+ private:
+  // What libnats' threads touch.
+  struct State {
+    std::atomic<bool> connected{false};
+    std::atomic<bool> closed{false};
+    std::atomic<std::uint64_t> connections{0};
+    std::atomic<std::uint64_t> dropped{0};
+    int wake_fd = -1;
+    std::mutex mutex;
+    std::vector<PlantMessage> arrived;
+    std::string complaint;
+
+    ~State();
+    void wake() const;
+    void take(std::uint64_t subscription, natsMsg* message);
+    void complain(std::string_view text);
+  };
+
+  // Of a subscription, to libnats' thread, which has done with it later than we.
+  struct Tap {
+    std::shared_ptr<State> state;
+    std::uint64_t id = 0;
+  };
+
+  struct Subscription {
+    std::string subject;
+    Listener listener;
+    natsSubscription* nats = nullptr;  // of the present connection
+  };
+
+  struct Attempt {
+    natsStatus status = NATS_OK;
+    natsConnection* connection = nullptr;
+    std::string complaint;
+  };
+
+  void set_callbacks();
+  void connect();
+  void listen(std::uint64_t id, Subscription& subscription);
+  void renew(SteadyTime now);
+  void drop();
+
+  std::shared_ptr<State> state_;
+  std::unique_ptr<natsOptions, void (*)(natsOptions*)> options_;
+  std::future<Attempt> attempt_;
+  natsConnection* connection_ = nullptr;
+  std::uint64_t last_id_ = 0;
+  std::map<std::uint64_t, Subscription> subscriptions_;
+  SteadyTime next_attempt_;
+};
+
+}  // namespace palpate::gateway
