@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/numerics/legendre_sums.h"
 #include "core/numerics/small_cholesky.h"
 
 namespace palpate {
@@ -57,6 +58,15 @@ class LegendreFit {
   static constexpr int kSize = Degree + 1;
   using Vector = LegendreVector<kSize>;
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
+
+  LegendreFit() = default;
+
+  /// Of points that are summed already.
+  template <int Terms>
+  explicit LegendreFit(const LegendreSums<Terms, kSize>& sums)
+      : gram_(sums.template products<kSize, kSize>()),
+        moment_(sums.moments()),
+        weight_(sums.weight()) {}
 
   void add(double u, double v, double weight) { add(legendre<kSize>(u), v, weight); }
 

@@ -48,6 +48,19 @@ Eigen::Matrix<double, Size, 1> solve_lower(const Eigen::Matrix<double, N, N>& lo
   return b;
 }
 
+/// X of L X = B in place: all columns at once, along the rows.
+template <int N, int Columns>
+void solve_lower_rows(const Eigen::Matrix<double, N, N>& lower,
+                      Eigen::Matrix<double, N, Columns, Eigen::RowMajor>* b) {
+  for (int i = 0; i < N; ++i) {
+    Eigen::Matrix<double, 1, Columns> row = b->row(i);
+    for (int k = 0; k < i; ++k) {
+      row -= lower(i, k) * b->row(k);
+    }
+    b->row(i) = row * (1.0 / lower(i, i));
+  }
+}
+
 /// x of L^T x = b, with the leading Size rows and columns of L.
 template <int Size, int N>
 Eigen::Matrix<double, Size, 1> solve_lower_transposed(const Eigen::Matrix<double, N, N>& lower,
