@@ -36,8 +36,11 @@ struct Weighing {
   double margin_of_unclassified = 0.0;
   /// Of the spline's posterior, that its mode on the other side of c = 0 has.
   double rival_share = 0.0;
-  /// Of the best class about its estimate, where a covariance linear about it does not hold it.
+  /// Of the best class about its estimate, where a covariance linear about it does not hold it, or
+  /// where neighbours err together.
   std::optional<ShapePoseCovariance> moment;
+  /// The same for white noise of `inflation` times the stated variance, over `inflation`.
+  std::optional<ShapePoseCovariance> white_moment;
   /// For the next weighing; the first is that of `sides`.
   std::vector<SidedStart> starts;
   /// Per patch the side of travel on which the tip centres were taken to lie (tip_sides.h).

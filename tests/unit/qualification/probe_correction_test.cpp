@@ -79,8 +79,9 @@ TEST(ProbeCorrection, WithTheFileTheEllipseIsAtTheBoundAndHeld) {
   EXPECT_GE(held, band(0.95).least);
   // Of the chi-square law with two degrees of freedom, mean 2 and variance 4.
   EXPECT_NEAR(normalised, 2.0, 4.0 * 2.0 / std::sqrt(runs));
-  EXPECT_LT(with, without);
-  EXPECT_LT(held_without, band(0.95).least);  // what the file is for
+  EXPECT_LT(with, without);  // what the file is for
+  // Without it the residuals tell how large such deviations are, and the answer holds the truth.
+  EXPECT_GE(held_without, band(0.9).least);
 }
 
 // Five recordings tell how far the constant differs between set-ups; the part is in a sixth.
