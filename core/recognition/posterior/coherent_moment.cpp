@@ -162,22 +162,25 @@ struct Mixture {
   double top = -kInfinity;
   double total = 0.0;
   Moment moment = Moment::Zero();
+  double variance = 0.0;  ///< of the deviations at a point
 
   /// Whether anything of a cell would be seen beside those before.
   bool counts(double log_weight) const {
     constexpr double kNothing = 20.0;  // e^-20 of the highest, over some thousand cells
     return log_weight > top - kNothing;
   }
-  void add(double log_weight, const Moment& of_cell) {
+  void add(double log_weight, const Moment& of_cell, double variance_of_cell) {
     if (log_weight > top) {
       const double before = std::exp(top - log_weight);
       total *= before;
       moment *= before;
+      variance *= before;
       top = log_weight;
     }
     const double weight = std::exp(log_weight - top);
     total += weight;
     moment += weight * of_cell;
+    variance += weight * variance_of_cell;
   }
   double log_total() const { return top + std::log(total); }
 };
@@ -209,8 +212,8 @@ double log_student(double size) { return -2.0 * std::log1p(size * size / 3.0); }
 
 /// Adds the offsets of one size (standard deviation of the constant and the second harmonic), the
 /// highest order being any alike.
-void add_offsets(const Left& left, double size, double log_prior, const NoiseLaw& noise,
-                 double scatter, Mixture* mixture) {
+void add_offsets(const Left& left, const Drift& drift, double size, double log_prior,
+                 const NoiseLaw& noise, double scatter, Mixture* mixture) {
   Offsets sizes;
   sizes[0] = size;
   for (int k = 2; k <= kHighestOrder; ++k) {
@@ -232,6 +235,7 @@ void add_offsets(const Left& left, double size, double log_prior, const NoiseLaw
   double chi2 = scatter + left.chi2;
   double log_determinant = left.log_determinant;
   ShapePose away = left.away;
+  double variance = drift.deviation * drift.deviation;
   Moment covariance = Moment::Zero();
   covariance.topLeftCorner(left.covariance.rows(), left.covariance.cols()) = left.covariance;
   for (int i = 0; i < kOffsets; ++i) {
@@ -243,10 +247,12 @@ void add_offsets(const Left& left, double size, double log_prior, const NoiseLaw
     if (i % 2 == 1) {
       continue;  // a cosine without its sine
     }
+    variance += i > 0 ? sizes[i] * sizes[i] : 0.0;  // of both at any direction
     const double positive = std::max(chi2, std::numeric_limits<double>::min());
     const double log_weight = log_prior + noise.log_evidence(positive) - 0.5 * log_determinant;
     if (mixture->counts(log_weight)) {
-      mixture->add(log_weight, noise.scale(positive) * covariance + away * away.transpose());
+      mixture->add(log_weight, noise.scale(positive) * covariance + away * away.transpose(),
+                   noise.scale(positive) * variance);
     }
   }
 }
@@ -292,7 +298,7 @@ OverSizes over_all_sizes(const std::vector<Step>& steps, Eigen::Index unknowns, 
         const double ratio = std::ldexp(1.0, j);
         const double log_prior = std::log(ratio) + log_student(ratio);  // by its logarithm
         prior += kOrders * std::exp(log_prior);
-        add_offsets(left, ratio * expected, log_prior, noise, scatter, &result.mixture);
+        add_offsets(left, drift, ratio * expected, log_prior, noise, scatter, &result.mixture);
       }
     }
   }
@@ -325,6 +331,7 @@ std::optional<CoherentMoment> coherent_moment(const CanonicalFit& placed, const 
   CoherentMoment result;
   result.probability = 1.0 / (1.0 + std::exp(log_none + log_prior - mixture.log_total()));
   result.moment = (mixture.moment / mixture.total).topLeftCorner(unknowns, unknowns);
+  result.deviation = sigma * std::sqrt(mixture.variance / mixture.total);
   return result;
 }
 

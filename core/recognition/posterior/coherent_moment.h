@@ -14,6 +14,9 @@ struct CoherentMoment {
   double probability = 0.0;
   /// E[(x - estimate)(x - estimate)^T] of x = [shape; x; y; theta], given that there are.
   ShapePoseCovariance moment;
+  /// Root mean square of them at a point, but for the offset's constant, which bends no path;
+  /// normalised.
+  double deviation = 0.0;
 };
 
 /// Residuals are noise, a drift along each patch and an offset by the direction of the normal, none

@@ -175,6 +175,7 @@ Weighing told(Arcs&& arcs, SidedFits&& sided, Contenders contenders, const Groun
       const auto coherent =
           coherent_moment(*on_reduced, ground.reduced, stated, arcs.sigma, arcs.smooth.chi2);
       if (coherent) {
+        w.coherent_deviation = std::sqrt(coherent->probability) * coherent->deviation;
         w.moment =
             with_coherence(*coherent, w.moment, bound, w.inflation, stated.coherent_variance);
       }

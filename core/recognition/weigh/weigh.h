@@ -56,6 +56,9 @@ struct Weighing {
   double white_variance = 1.0;      ///< of the noise, in units of sigma^2
   double counted_chi2 = 0.0;        ///< of `best`, with what may be stated form error tempered
   double correlation_length = 0.0;  ///< normalised; 0 = white
+  /// Root mean square of what neighbours share at a point, as far as residuals tell of it;
+  /// normalised.
+  double coherent_deviation = 0.0;
 };
 
 /// `data` from make_fit_data. Follows core/README.md, "Refinement and the bound" and "Evidence".
