@@ -248,7 +248,6 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
                     plain.covariance.size() > 0;
   Hypothesis& best = answer.hypotheses.front();
   // Where the two differ the cautious covariance holds the coherent deviation twice.
-  double share = 1.0;
   if (same) {
     answer.shape = best.shape = plain.shape;
     answer.world_T_curve = best.world_T_curve = plain.world_T_curve;
@@ -256,17 +255,22 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
     best.covariance = plain.hypotheses.front().covariance;
     // Neighbours that err together: so do the files' deviations, which are added below. (Beside a
     // stated form deviation the two are not told apart, and count both.)
-    if (plain.noise_correlation_m > 0.0 && !(options.form_deviation_m > 0.0)) {
+    const bool has_file = std::any_of(patches.begin(), patches.end(), [](const ProbedPatch& patch) {
+      return patch.probe != nullptr;
+    });
+    if (has_file && plain.white_covariance.size() > 0) {
       const double seen = plain.covariance_inflation;
-      share = std::max(1.0, seen / inflation_of_probes(corrected)) / seen;
+      const bool together = plain.noise_correlation_m > 0.0 && !(options.form_deviation_m > 0.0);
+      const double share = together ? std::max(1.0, seen / inflation_of_probes(corrected)) : seen;
+      answer.covariance = best.covariance = share * plain.white_covariance;
     }
   }
   const std::optional<Curve> curve = curve_of(answer);
   if (!curve || answer.covariance.size() == 0) return result;
   const ShapePoseCovariance more = covariance_of_probes(*curve, answer.world_T_curve, corrected);
   if (more.rows() != answer.covariance.rows()) return result;
-  answer.covariance = share * answer.covariance + more;
-  best.covariance = share * best.covariance + more;
+  answer.covariance += more;
+  best.covariance += more;
   if (answer.status == RecognitionStatus::Recognized &&
       !is_determined(answer.shape, answer.covariance, half_extent(corrected),
                      options.determined_fraction)) {

@@ -98,6 +98,9 @@ Recognition answer_by_likelihood(const Weighing& w, const VerdictOptions& option
   if (canonical && w.moment) {
     best.covariance = *w.moment;
   }
+  if (canonical) {
+    answer.white_covariance = w.white_moment ? *w.white_moment : canonical->covariance;
+  }
   answer.shape = best.shape;
   answer.world_T_curve = best.world_T_curve;
   answer.covariance = best.covariance;

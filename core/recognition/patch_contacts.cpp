@@ -10,7 +10,8 @@ namespace palpate {
 
 bool PatchContacts::Known::same_as(const Known& other) const {
   return version == other.version && touches == other.touches && windows == other.windows &&
-         side == other.side && outliers == other.outliers;
+         side == other.side && form_deviation_m == other.form_deviation_m &&
+         outliers == other.outliers;
 }
 
 std::vector<LocalizedContact> PatchContacts::of(std::span<const StoredPatch> patches,
@@ -27,6 +28,7 @@ std::vector<LocalizedContact> PatchContacts::of(std::span<const StoredPatch> pat
     Known now;
     now.version = version_of(patch);
     now.windows = windows;
+    now.form_deviation_m = options.form_deviation_m;
     if (!sides.empty() && !patch.samples.empty()) {
       assert(sided < sides.size());
       now.side = sides[sided++];

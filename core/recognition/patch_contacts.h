@@ -31,6 +31,7 @@ class PatchContacts {
     std::vector<Vec2> touches;  ///< of a run, which may change anywhere
     std::size_t windows = 0;
     int side = 0;
+    double form_deviation_m = 0.0;
     std::vector<bool> outliers;
     std::vector<LocalizedContact> contacts;
 

@@ -75,8 +75,10 @@ struct Recognition {
   std::size_t simplified_count = 0;
   double sigma_m = 0.0;              ///< noise of a sample, given or estimated [m]
   double noise_correlation_m = 0.0;  ///< correlation length of the residuals; 0 = white [m]
-  /// What the covariance of white noise of the stated size is multiplied by: for noise that the
-  /// residuals tell, for neighbours that err together, for stated form error.
+  /// Of the most probable hypothesis: the covariance that white noise of the stated size leaves,
+  /// and what it would be multiplied by were noise that the residuals tell, neighbours that err
+  /// together and stated form error so much more white noise.
+  ShapePoseCovariance white_covariance;
   double covariance_inflation = 1.0;
 };
 

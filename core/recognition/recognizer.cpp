@@ -85,6 +85,16 @@ void doubt(Recognition* answer, Doubt doubt) {
   }
 }
 
+/// What residuals tell of a smooth deviation, to a factor of the root of two and no less, so that
+/// windows are not made anew wherever a sample changes it a little. [m]
+double told_deviation_m(const Weighing& w) {
+  constexpr double kSteps = 2.0;  // to a factor of two
+  return w.coherent_deviation > 0.0
+             ? w.data.scale *
+                   std::exp2(std::ceil(kSteps * std::log2(w.coherent_deviation)) / kSteps)
+             : 0.0;
+}
+
 /// One flag per point of `all`: not in `kept`, which has the others in their order.
 std::vector<bool> left_out(const FitData& all, const FitData& kept) {
   std::vector<bool> flags(all.points.size(), true);
@@ -215,7 +225,7 @@ class Recognizer::Impl {
         w, {options_.recognized_probability, options_.determined_fraction}, stored);
     answer.outlier_count = stored - w.data.points.size();
     answer.contacts = contacts_.of(weighed.patches ? *weighed.patches : patches, w.sides,
-                                   weighed.outliers, contact_options());
+                                   weighed.outliers, contact_options(told_deviation_m(w)));
     add_path(tree_beside(w, answer.contacts, options_.tree), &answer);
     const double p_value = answer.tree_p_values[static_cast<std::size_t>(answer.shape.curve_class)];
     if (p_value < options_.tree.significance) {
@@ -323,10 +333,11 @@ class Recognizer::Impl {
     return again;
   }
 
-  ContactOptions contact_options() const {
+  /// `deviation_m`: what residuals tell of a smooth deviation, if it is more than is stated.
+  ContactOptions contact_options(double deviation_m = 0.0) const {
     ContactOptions options = options_.contacts;
     options.sigma_m = options_.sigma_m;
-    options.form_deviation_m = options_.form_deviation_m;
+    options.form_deviation_m = std::max(options_.form_deviation_m, deviation_m);
     return options;
   }
 

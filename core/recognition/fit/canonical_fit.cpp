@@ -212,8 +212,9 @@ Eigen::Matrix<double, 6, 1> turn_by_pose_and_shape(const Curve& curve, double t,
   }
 }
 
-/// Inverse of an information matrix of known rank; null directions get variance 0.
-ShapePoseCovariance invert(const ShapePoseCovariance& information, int rank) {
+}  // namespace
+
+InverseInformation inverse_information(const ShapePoseCovariance& information, int rank) {
   const Eigen::Index n = information.rows();
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> scale(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -222,17 +223,21 @@ ShapePoseCovariance invert(const ShapePoseCovariance& information, int rank) {
   const ShapePoseCovariance scaled = scale.asDiagonal() * information * scale.asDiagonal();
   const SymmetricEigen eigen = symmetric_eigen(scaled);
   ShapePoseCovariance inverse = ShapePoseCovariance::Zero(n, n);
+  InverseInformation result;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    result.log_determinant -= scale[i] > 0.0 ? 2.0 * std::log(scale[i]) : 0.0;
+  }
   for (Eigen::Index k = n - rank; k < n; ++k) {
     // Rounding leaves the weakest direction no smaller than this; beyond it the variance is as good
     // as infinite, and says so by its size.
     const double least = std::numeric_limits<double>::epsilon();
     const double value = std::max(eigen.values[k], least);
     inverse += eigen.vectors.col(k) * eigen.vectors.col(k).transpose() / value;
+    result.log_determinant += std::log(value);
   }
-  return scale.asDiagonal() * inverse * scale.asDiagonal();
+  result.covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
+  return result;
 }
-
-}  // namespace
 
 std::optional<CanonicalPlace> canonical_place(const ClassFit& fit, const FitData& data) {
   const auto placement = placed_in_world(fit, data);
@@ -306,7 +311,8 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
   information.topRightCorner(letters, 3) = pose_first.block(3, 0, letters, 3);
   information.bottomLeftCorner(3, letters) = pose_first.block(0, 3, 3, letters);
   information.bottomRightCorner<3, 3>() = pose_first.topLeftCorner<3, 3>();
-  canonical.covariance = invert(information, degrees_of_freedom(canonical.shape.curve_class));
+  canonical.covariance =
+      inverse_information(information, degrees_of_freedom(canonical.shape.curve_class)).covariance;
   return canonical;
 }
 

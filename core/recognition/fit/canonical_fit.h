@@ -30,6 +30,13 @@ struct CanonicalFit {
   std::vector<FittedPoint> points;
 };
 
+/// Inverse of an information matrix of known rank; null directions have variance 0.
+struct InverseInformation {
+  ShapePoseCovariance covariance;
+  double log_determinant = 0.0;  ///< of the information, but for its null directions
+};
+InverseInformation inverse_information(const ShapePoseCovariance& information, int rank);
+
 /// Shape and pose alone.
 struct CanonicalPlace {
   ShapeParameters shape;

@@ -74,17 +74,17 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   const double noise = smooth.dof() > 0 ? smooth.chi2 / smooth.dof() : 1.0;
   const double excess = arcs.sigma * std::sqrt(std::max(0.0, variance - noise));
   const ResidualCorrelation correlation = correlation_along(placed, arcs.data);
+  // Whether a class that tells the noise misfits only neighbours on it show, which err together.
+  const bool noise_is_told = tells_noise(arcs, likelihood);
   // What the smooth model explains and the class does not, beyond what noise gives the smooth
   // model's further coefficients; a false alarm costs an answer its certainty.
   const int more = smooth.parameters - parameters;
-  // Whether a class that tells the noise misfits only neighbours on it show, which err together.
-  const bool noise_is_told = tells_noise(arcs, likelihood);
+  const double chance =
+      noise_is_told && more > 0
+          ? chi_square_survival((chi2 - smooth.chi2) / likelihood.inflation(), more)
+          : 1.0;
   const bool misfits =
-      noise_is_told
-          ? unclassified ||
-                (more > 0 && chi_square_survival((chi2 - smooth.chi2) / likelihood.inflation(),
-                                                 more) < kNegligibleProbability)
-          : correlation.time > 1.0;
+      noise_is_told ? unclassified || chance < kNegligibleProbability : correlation.time > 1.0;
   // White residuals larger than the smooth model's can be are noise that it took for bends
   // (outliers, samples out of order); correlated ones are form error up to its limit, neighbours
   // erring together, so that only one in `time` counts.
@@ -97,6 +97,10 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
       correlation.time == 1.0 && !can_be_noise(chi2 / noise, dof) && excess <= kLargestNoise;
   const bool form_error = correlation.time > 1.0 && (excess <= kLargestFormError || !noise_is_told);
   SeenDeviation seen;
+  // White noise looks so once in a thousand times by its neighbours, and as often by the smooth
+  // model: what is to be made of it the evidence says, which costs about as much as a search.
+  constexpr double kWorthAsking = 1e-3;
+  seen.correlated = correlation.time > 1.0 || chance < kWorthAsking;
   if (misfits && (noisy || form_error)) {
     seen.noise_inflation = variance * correlation.time;
     seen.correlation_length = correlation.length;

@@ -29,6 +29,8 @@ struct SeenDeviation {
   /// What covariances are to be multiplied with beside that: a noise that few residuals tell may be
   /// larger than they say.
   double few_residuals = 1.0;
+  /// Whether neighbours may err together, which the evidence is to say.
+  bool correlated = false;
   double correlation_length = 0.0;  ///< over which residuals err together, normalised; 0 = white
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/numerics/negligible.h"
+#include "core/recognition/posterior/coherent_moment.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/moments.h"
 #include "core/recognition/posterior/out_of_reach.h"
@@ -112,6 +113,20 @@ std::optional<ShapePoseCovariance> covariance_of_valley(const ClassEvidence& evi
                    second_moment(on_reduced, *valley, reduced));
 }
 
+/// The moment where neighbours may err together: what such deviations leave unknown, with what the
+/// valley's bend adds, as far as there are any. `valley`: covariance_of_valley, if there is one;
+/// `bound`: of the noise alone; `inflation`: that of `valley`; `stated`: of it, for stated form
+/// error.
+ShapePoseCovariance with_coherence(const CoherentMoment& coherent,
+                                   const std::optional<ShapePoseCovariance>& valley,
+                                   const ShapePoseCovariance& bound, double inflation,
+                                   double stated) {
+  const ShapePoseCovariance linear = inflation * bound;
+  const ShapePoseCovariance shared = coherent.moment + stated * bound;
+  const ShapePoseCovariance bent = valley ? with_bend(shared, linear, *valley) : shared;
+  return coherent.probability * bent + (1.0 - coherent.probability) * (valley ? *valley : linear);
+}
+
 /// Where all ways in which the tips may lie are to be followed from; the first is the one taken.
 std::vector<SidedStart> starts_of(const SidedFits& sided, const Contenders& contenders,
                                   const Arcs& arcs) {
@@ -129,9 +144,9 @@ bool no_conic(std::span<const SidedStart> starts, const std::vector<int>& sides)
 }
 
 /// What the stages say, gathered. `arcs` and `sided` are those that `ground` is of. `best_placed`:
-/// the best class, if it is placed on all points already.
+/// the best class, if it is placed on all points already; `stated`: the law before any was seen.
 Weighing told(Arcs&& arcs, SidedFits&& sided, Contenders contenders, const Ground& ground,
-              const SeenDeviation& seen, double coherent_variance,
+              const SeenDeviation& seen, const Likelihood& stated,
               std::optional<Placed> best_placed) {
   Weighing w;
   w.probabilities = probabilities_of(contenders, ground);
@@ -142,7 +157,7 @@ Weighing told(Arcs&& arcs, SidedFits&& sided, Contenders contenders, const Groun
   w.noise_inflation = seen.noise_inflation;
   w.white_variance = seen.white_variance;
   w.correlation_length = seen.correlation_length;
-  w.inflation = seen.noise_inflation * seen.few_residuals + coherent_variance;
+  w.inflation = seen.noise_inflation * seen.few_residuals + stated.coherent_variance;
   const auto b = static_cast<std::size_t>(w.best);
   const auto& best = contenders.fits[b];
   w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, ground.likelihood);
@@ -150,8 +165,21 @@ Weighing told(Arcs&& arcs, SidedFits&& sided, Contenders contenders, const Groun
   const auto& evidence = contenders.evidences.classes[b];
   if (const auto& on_reduced = contenders.evidences.on_reduced[b];
       evidence && on_reduced && w.canonical[b]) {
+    const ShapePoseCovariance& bound = w.canonical[b]->covariance;
     w.moment =
         covariance_of_valley(*evidence, *on_reduced, *w.canonical[b], ground.reduced, w.inflation);
+    if (w.moment) {
+      w.white_moment = *w.moment / w.inflation;
+    }
+    if (seen.correlated) {
+      const auto coherent =
+          coherent_moment(*on_reduced, ground.reduced, stated, arcs.sigma, arcs.smooth.chi2);
+      if (coherent) {
+        w.coherent_deviation = std::sqrt(coherent->probability) * coherent->deviation;
+        w.moment =
+            with_coherence(*coherent, w.moment, bound, w.inflation, stated.coherent_variance);
+      }
+    }
   }
   w.starts = starts_of(sided, contenders, arcs);
   w.fits = std::move(contenders.fits);
@@ -195,8 +223,8 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
     }
   }
   contenders = decided(std::move(contenders), ground, margin_of(options));
-  return told(std::move(arcs), std::move(sided), std::move(contenders), ground, seen,
-              stated.coherent_variance, std::move(best_placed));
+  return told(std::move(arcs), std::move(sided), std::move(contenders), ground, seen, stated,
+              std::move(best_placed));
 }
 
 }  // namespace palpate
