@@ -71,6 +71,25 @@ class ShippedScenes(unittest.TestCase):
             self.assertEqual(answer.status, recognition_pb2.RECOGNITION_STATUS_RECOGNIZED)
             self.is_the_ellipse(answer, (0.3, 0.12))
 
+    def test_a_tolerance_counts_the_noise_of_short_windows_as_disagreement(self):
+        # Two windows a stroke, as long as the data allow: their deviations explain all that they disagree by, and so the tree
+        # knows the ellipse. kappa_s, which the invariants take squared, is known to no better than a quarter of its largest.
+        statistical = self.answer("ellipse")
+        self.assertEqual(statistical.status, recognition_pb2.RECOGNITION_STATUS_RECOGNIZED)
+        self.is_the_ellipse(statistical, (0.3, 0.12))
+        largest = max(abs(c.kappa_s_per_m2) for c in statistical.contacts)
+        self.assertTrue(all(c.kappa_s_sigma_per_m2 > largest / 4 for c in statistical.contacts))
+        # A tolerance knows no deviations.
+        by_tolerance = self.answer("ellipse", "--relative-tolerance", "0.2")
+        self.assertEqual([(c.kappa_per_m, c.kappa_s_per_m2) for c in by_tolerance.contacts],
+                         [(c.kappa_per_m, c.kappa_s_per_m2) for c in statistical.contacts])
+        refused = {d.test: d for d in by_tolerance.decisions}["conic Ic1"]
+        self.assertFalse(refused.passed)
+        # Over whole strokes kappa_s is known better, by up to 2^3.5.
+        whole = self.answer("ellipse", "--relative-tolerance", "0.5", "--windows-per-patch", "1", "--least-windows", "3")
+        self.assertEqual(whole.status, recognition_pb2.RECOGNITION_STATUS_RECOGNIZED)
+        self.is_the_ellipse(whole, (0.3, 0.12))
+
     def test_an_ellipse_between_two_round_fingers_by_the_tree_alone(self):
         # Four places of one curvature within their errors: the tangents must tell it from a circle.
         self.is_the_ellipse(self.answer("two_finger_grasp"), (0.42, 0.0))
