@@ -42,7 +42,9 @@ struct Hypothesis {
   ShapeParameters shape;
   Pose2 world_T_curve;
   /// The Kanatani-Cramer-Rao bound; of the most probable hypothesis of RecognitionMethod::
-  /// MaximumLikelihood with what the bend of its valley adds (core/README.md, "The posterior").
+  /// MaximumLikelihood with what the bend of its valley adds (core/README.md, "The posterior") and,
+  /// where neighbours err together, what such deviations hide in the shape ("Deviations that
+  /// neighbours share").
   ShapePoseCovariance covariance;
   double probability = 0.0;  ///< posterior among all hypotheses, "unclassified" included
   double chi2 = 0.0;         ///< sum of squared normalised residuals of the samples in use

@@ -128,10 +128,10 @@ ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvide
   return moment.topLeftCorner(n, n);
 }
 
-ShapePoseCovariance with_bend(const ShapePoseCovariance& bound,
-                              const ShapePoseCovariance& bound_on_reduced,
-                              const ShapePoseCovariance& moment) {
-  const ShapePoseCovariance sum = bound + moment - bound_on_reduced;
+std::optional<ShapePoseCovariance> bend_added(const ShapePoseCovariance& covariance,
+                                              const ShapePoseCovariance& linear,
+                                              const ShapePoseCovariance& moment) {
+  const ShapePoseCovariance sum = covariance + moment - linear;
   // In units of the moment's deviations; a free component has none.
   Eigen::Matrix<double, 6, 6> scaled = Eigen::Matrix<double, 6, 6>::Identity();
   for (Eigen::Index i = 0; i < sum.rows(); ++i) {
@@ -141,7 +141,13 @@ ShapePoseCovariance with_bend(const ShapePoseCovariance& bound,
     }
   }
   Eigen::Matrix<double, 6, 6> root;
-  return cholesky(scaled, &root) ? sum : moment;
+  return cholesky(scaled, &root) ? std::optional(sum) : std::nullopt;
+}
+
+ShapePoseCovariance with_bend(const ShapePoseCovariance& bound,
+                              const ShapePoseCovariance& bound_on_reduced,
+                              const ShapePoseCovariance& moment) {
+  return bend_added(bound, bound_on_reduced, moment).value_or(moment);
 }
 
 }  // namespace palpate

@@ -1,6 +1,8 @@
 // Second moments of shape and pose over the valley that a class's likelihood has.
 #pragma once
 
+#include <optional>
+
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/posterior/class_evidence.h"
 
@@ -12,6 +14,12 @@ namespace palpate {
 /// `data` as `evidence` was taken from. Metres and radians, world frame.
 ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvidence& evidence,
                                   const FitData& data);
+
+/// A covariance with what `moment` has beyond `linear`, the covariance that it would be if its
+/// valley did not bend; nullopt where that would be no covariance.
+std::optional<ShapePoseCovariance> bend_added(const ShapePoseCovariance& covariance,
+                                              const ShapePoseCovariance& linear,
+                                              const ShapePoseCovariance& moment);
 
 /// The bound of all points with what the valley's moment adds to the bound of the reduced points,
 /// which carry a little less; the moment itself where that would be no covariance.

@@ -123,7 +123,8 @@ ShapePoseCovariance with_coherence(const CoherentMoment& coherent,
                                    double stated) {
   const ShapePoseCovariance linear = inflation * bound;
   const ShapePoseCovariance shared = coherent.moment + stated * bound;
-  const ShapePoseCovariance bent = valley ? with_bend(shared, linear, *valley) : shared;
+  const ShapePoseCovariance bent =
+      valley ? bend_added(shared, linear, *valley).value_or(shared) : shared;
   return coherent.probability * bent + (1.0 - coherent.probability) * (valley ? *valley : linear);
 }
 
