@@ -71,10 +71,12 @@ struct EllipseModel {
   static ModelDerivatives<T> derivatives(const T* p, const T& t) {
     using std::cos;
     using std::sin;
-    const T ac = p[0] * cos(t);
-    const T as = p[0] * sin(t);
-    const T bc = p[1] * cos(t);
-    const T bs = p[1] * sin(t);
+    const T c = cos(t);
+    const T s = sin(t);
+    const T ac = p[0] * c;
+    const T as = p[0] * s;
+    const T bc = p[1] * c;
+    const T bs = p[1] * s;
     return {{-as, bc}, {-ac, -bs}, {as, -bc}};
   }
 };
@@ -94,10 +96,12 @@ struct HyperbolaModel {
   static ModelDerivatives<T> derivatives(const T* p, const T& t) {
     using std::cosh;
     using std::sinh;
-    const T ac = p[0] * cosh(t);
-    const T as = p[0] * sinh(t);
-    const T bc = p[1] * cosh(t);
-    const T bs = p[1] * sinh(t);
+    const T c = cosh(t);
+    const T s = sinh(t);
+    const T ac = p[0] * c;
+    const T as = p[0] * s;
+    const T bc = p[1] * c;
+    const T bs = p[1] * s;
     return {{as, bc}, {ac, bs}, {as, bc}};
   }
 };

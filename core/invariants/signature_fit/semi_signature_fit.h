@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,10 @@ struct SemiSignatureOptions {
   /// default is what doubles resolve.
   double relative_decrease = 1e-13;
   double absolute_decrease = 0.0;  ///< or less than this
+  /// It ends, too, where the iterations that are left, each as good as the next one promises to be,
+  /// would leave chi-square above this: the class does not explain the points, and by how little is
+  /// not asked.
+  double hopeless_chi2 = std::numeric_limits<double>::infinity();
 };
 
 /// Where a fit begins.

@@ -124,7 +124,8 @@ class SemiSignatureFitter {
       for (;;) {
         const Global step = reduced_step(damping);
         const double predicted = step.allFinite() ? predicted_decrease(step) : 0.0;
-        if (step.allFinite() && predicted <= negligible_decrease()) {
+        if (step.allFinite() &&
+            (predicted <= negligible_decrease() || is_hopeless(predicted, iteration))) {
           return InvariantStatus::Ok;
         }
         const Global next = global_ + step;
@@ -180,7 +181,7 @@ class SemiSignatureFitter {
   static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
   /// Linearisation of one point: the residual and its derivatives by the globals and by its own t,
-  /// and the products that eliminating t needs.
+  /// and the products that eliminating t needs. Of symmetric matrices the lower triangle is kept.
   struct Block {
     Eigen::Vector3d residual;
     Eigen::Matrix<double, 3, kGlobal> by_global;
@@ -197,6 +198,24 @@ class SemiSignatureFitter {
            std::sqrt(rounding_ * chi2_);
   }
 
+  /// A step that is held back promises less than there is to be had: what counts is all that the
+  /// linearisation has, dearer to tell and asked only where the step itself promises too little.
+  bool is_hopeless(double predicted, int iteration) const {
+    const double left = options_.max_iterations - iteration;
+    const auto remains = [&](double decrease) {
+      return chi2_ - left * decrease > options_.hopeless_chi2;
+    };
+    if (!remains(predicted)) {
+      return false;
+    }
+    const auto [hessian, gradient] = reduced_hessian(0.0);
+    double linear = gradient.dot(SmallLdlt<kGlobal>(hessian).solve(gradient));
+    for (const Block& block : blocks_) {
+      linear += block.t_squared > 0.0 ? block.t_residual * block.t_residual / block.t_squared : 0.0;
+    }
+    return remains(linear);
+  }
+
   /// Chi-square, and the differences between measurements and model that it is made of.
   double evaluate(const Global& global, const std::vector<LocalParameter>& places,
                   std::vector<Eigen::Vector3d>* differences) const {
@@ -211,8 +230,10 @@ class SemiSignatureFitter {
       // The angle from the model's tangent to the one touched, in the frame of the curve.
       const double x = direction * (tangents_[i].x * axis_x + tangents_[i].y * axis_y);
       const double y = direction * (tangents_[i].y * axis_x - tangents_[i].x * axis_y);
-      const double angle =
-          std::atan2(model.first.x * y - model.first.y * x, model.first.x * x + model.first.y * y);
+      const double sine = model.first.x * y - model.first.y * x;
+      const double cosine = model.first.x * x + model.first.y * y;
+      // Both up to a length. The arc tangent of a quotient costs half as much.
+      const double angle = cosine > 0.0 ? std::atan(sine / cosine) : std::atan2(sine, cosine);
       Eigen::Vector3d& difference = (*differences)[i];
       difference = {angle, measured.kappa - direction * curvatures.kappa,
                     measured.kappa_s - curvatures.kappa_s};
@@ -242,11 +263,16 @@ class SemiSignatureFitter {
       block.by_global.template leftCols<kShape>() = by_own.template leftCols<kShape>();
       block.by_global.col(kShape) = -whitening.col(0);
       block.by_t = by_own.col(kShape);
-      block.coupling = block.by_global.transpose() * block.by_t;
       block.t_squared = block.by_t.squaredNorm();
       block.t_residual = block.by_t.dot(block.residual);
-      hessian_.noalias() += block.by_global.transpose() * block.by_global;
-      gradient_.noalias() += block.by_global.transpose() * block.residual;
+      for (int k = 0; k < kGlobal; ++k) {
+        const auto by = block.by_global.col(k);
+        block.coupling[k] = by.dot(block.by_t);
+        gradient_[k] += by.dot(block.residual);
+        for (int j = 0; j <= k; ++j) {
+          hessian_(k, j) += by.dot(block.by_global.col(j));
+        }
+      }
     }
   }
 
@@ -259,8 +285,12 @@ class SemiSignatureFitter {
       const double own = block.t_squared * (1.0 + damping);
       if (own > 0.0) {
         const Global share = block.coupling / own;
-        hessian.noalias() -= share * block.coupling.transpose();
         gradient -= block.t_residual * share;
+        for (int k = 0; k < kGlobal; ++k) {
+          for (int j = 0; j <= k; ++j) {
+            hessian(k, j) -= share[k] * block.coupling[j];
+          }
+        }
       }
     }
     return {hessian, gradient};
@@ -282,7 +312,9 @@ class SemiSignatureFitter {
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       const Block& block = blocks_[i];
       Eigen::Vector3d change = block.by_t * steps_[i];
-      change.noalias() += block.by_global * step;
+      for (int k = 0; k < kGlobal; ++k) {
+        change += step[k] * block.by_global.col(k);
+      }
       decrease -= change.dot(2.0 * block.residual + change);
     }
     return decrease;

@@ -13,6 +13,7 @@
 #include "core/invariants/signature_fit/parabola_fits.h"
 #include "core/invariants/signature_fit/spline_least_squares.h"
 #include "core/numerics/chi_square.h"
+#include "core/numerics/negligible.h"
 #include "core/recognition/tree/recognition_tree_tolerance.h"
 #include "core/recognition/tree/tree_pose.h"
 #include "core/recognition/tree/tree_record.h"
@@ -264,8 +265,25 @@ class SignificanceTree {
     }
     const auto known = effort_.known(curve_class);
     return known ? fit_semi_signature(curve_class, measured_, known->parameters, known->orientation,
-                                      effort_.fit)
+                                      options_of(curve_class))
                  : SemiSignatureFit{};
+  }
+
+  /// Of a conic that does not explain the points only that is asked; a cubic's parameters are its
+  /// invariants, and its optimum is sought whatever is left.
+  SemiSignatureOptions options_of(CurveClass curve_class) const {
+    SemiSignatureOptions options = effort_.fit;
+    const bool is_conic = curve_class == CurveClass::Ellipse ||
+                          curve_class == CurveClass::Parabola ||
+                          curve_class == CurveClass::Hyperbola;
+    if (is_conic) {
+      // P(chi2 > k + 2 sqrt(k u) + 2 u) <= exp(-u) for k degrees of freedom (B. Laurent, P.
+      // Massart, 2000), k the most of any conic's: the parabola's.
+      const double k = 2.0 * static_cast<double>(measured_.size()) - 2.0;
+      const double u = std::max(kNegligibleLogOdds, -std::log(options_.significance));
+      options.hopeless_chi2 = k + 2.0 * std::sqrt(k * u) + 2.0 * u;
+    }
+    return options;
   }
 
   bool cubic(CurveClass curve_class) {

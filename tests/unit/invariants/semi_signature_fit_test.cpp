@@ -69,6 +69,47 @@ TEST(SemiSignatureFit, RecoversEveryReferenceCurveFromANearStart) {
   }
 }
 
+/// Conics from rough starts to points of every class, as the tree beside an answer asks them.
+TEST(SemiSignatureFit, EndsEarlyOnlyWhereTheWholeSearchLeavesAsMuch) {
+  constexpr double kHopeless = 60.0;
+  const SemiSignatureOptions whole = {
+      .max_iterations = 20, .relative_decrease = 1e-3, .absolute_decrease = 0.1};
+  SemiSignatureOptions hopeless = whole;
+  hopeless.hopeless_chi2 = kHopeless;
+  int ended = 0;
+  int explained = 0;
+  for (const ReferenceCurve& curve : test::reference_curves()) {
+    auto points = turned_points(curve);
+    for (MeasuredGeometry& point : points) {
+      const double size = curvature_scale({&point, 1});
+      point.covariance =
+          Eigen::Vector3d(1e-2, 0.03 * size, 0.1 * size * size).cwiseAbs2().asDiagonal();
+    }
+    const double unit = 1.0 / curvature_scale(points);
+    for (const CurveClass conic :
+         {CurveClass::Ellipse, CurveClass::Parabola, CurveClass::Hyperbola}) {
+      const Eigen::Vector3d start(unit, conic == CurveClass::Parabola ? 0.0 : 0.5 * unit, 0.0);
+      for (int turn = 0; turn < 12; ++turn) {
+        const double orientation = 2.0 * kPi * turn / 12.0;
+        const SemiSignatureFit full = fit_semi_signature(conic, points, start, orientation, whole);
+        const SemiSignatureFit fit =
+            fit_semi_signature(conic, points, start, orientation, hopeless);
+        if (full.chi2 <= kHopeless) {
+          ++explained;
+          EXPECT_EQ(fit.chi2, full.chi2) << name_of(curve.curve_class) << " " << name_of(conic);
+        } else {
+          EXPECT_GT(fit.chi2, kHopeless);
+          ended += fit.chi2 > full.chi2 ? 1 : 0;
+        }
+      }
+    }
+  }
+  RecordProperty("ended", ended);
+  RecordProperty("explained", explained);
+  EXPECT_GT(ended, 0);
+  EXPECT_GT(explained, 0);
+}
+
 TEST(SemiSignatureFit, PlacesAreTheCurveParameters) {
   for (const ReferenceCurve& curve : test::reference_curves_of(CurveClass::Hyperbola)) {
     const auto fit =
