@@ -18,6 +18,10 @@ namespace palpate {
 struct MinimiseOptions {
   int iterations = 100;          ///< steps tried, at most
   double chi2_tolerance = 1e-7;  ///< change of chi-square by a step at which to end
+  /// The same of chi-square, where that is above `coarse_above`: what no noise can have left need
+  /// not be known as if it had.
+  double relative_tolerance = 0.0;
+  double coarse_above = std::numeric_limits<double>::infinity();
   /// Of the diagonal of J^T J. Little: the valleys of short arcs are long.
   double first_damping = 1e-8;
   /// Ends where the linear model leaves more than this: so far off nothing is to be told.
@@ -84,8 +88,12 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
       continue;
     }
     const Vector velocity = -solve_cholesky(factor, gradient);
+    const double tolerance =
+        summary.chi2 > options.coarse_above
+            ? std::max(options.chi2_tolerance, options.relative_tolerance * summary.chi2)
+            : options.chi2_tolerance;
     const double promised = velocity.dot(damping * diagonal.cwiseProduct(velocity) - gradient);
-    if (!(promised > kNothing * options.chi2_tolerance)) {
+    if (!(promised > kNothing * tolerance)) {
       summary.converged = damping <= options.first_damping;
       break;
     }
@@ -107,7 +115,7 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
       *x = there;
       summary.chi2 = chi2;
       problem->accept();
-      if (gain < options.chi2_tolerance) {
+      if (gain < tolerance) {
         summary.converged = damping <= options.first_damping;
         break;
       }
@@ -116,7 +124,7 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
       damping *= std::max(1.0 / 3.0, 1.0 - as_promised * as_promised * as_promised);
       growth = 2.0;
     } else {
-      if (promised < options.chi2_tolerance) {
+      if (promised < tolerance) {
         break;
       }
       refuse();

@@ -19,11 +19,14 @@ inline constexpr double kTailOfDensity = 7.0;
 /// Standard deviations of a normal law that leave less: 5.7e-7 on both sides together.
 inline constexpr double kNegligibleDeviations = 5.0;
 
-/// Whether noise of the size that is taken for it can have left this chi-square: no more than so
-/// many of its standard deviations above its mean. (Of few degrees of freedom the law has a longer
+/// The most chi-square that noise of the size that is taken for it leaves: so many of its standard
+/// deviations above its mean. (Of few degrees of freedom the law has a longer
 /// tail: with 5 of them one in a thousand is beyond, with 100 one in 10^5.)
-inline bool can_be_noise(double chi2, double dof) {
-  return chi2 <= dof + kNegligibleDeviations * std::sqrt(2.0 * dof);
+inline double most_of_noise(double dof) {
+  return dof + kNegligibleDeviations * std::sqrt(2.0 * dof);
 }
+
+/// Whether noise can have left this chi-square.
+inline bool can_be_noise(double chi2, double dof) { return chi2 <= most_of_noise(dof); }
 
 }  // namespace palpate

@@ -66,6 +66,27 @@ OrthogonalPolynomials::Value OrthogonalPolynomials::evaluate(double x, int d) co
   return value;
 }
 
+double OrthogonalPolynomials::slope_variance(double x, int d) const {
+  double before = 0.0;
+  double before_derivative = 0.0;
+  double p = 1.0;
+  double p_derivative = 0.0;
+  double norm = weight_sum_;
+  double variance = 0.0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) {
+    const double next = (x - alpha_[k]) * p - beta_[k] * before;
+    const double next_derivative =
+        p + (x - alpha_[k]) * p_derivative - beta_[k] * before_derivative;
+    before = p;
+    before_derivative = p_derivative;
+    p = next;
+    p_derivative = next_derivative;
+    norm *= beta_[k + 1];
+    variance += p_derivative * p_derivative / norm;
+  }
+  return variance;
+}
+
 std::vector<OrthogonalPolynomials::Node> OrthogonalPolynomials::gauss_rule(int d) const {
   using Matrix =
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxDegree + 1, kMaxDegree + 1>;

@@ -36,6 +36,9 @@ class OrthogonalPolynomials {
   /// The fit of degree d at x.
   Value evaluate(double x, int d) const;
 
+  /// Variance of the derivative by x of the fit of degree d, the weights being inverse variances.
+  double slope_variance(double x, int d) const;
+
   /// The d + 1 nodes and weights that integrate polynomials up to degree 2 d + 1 exactly over the
   /// weighted abscissae: sum_i w_i p(x_i) = sum_k W_k p(X_k). (G. Golub and J. Welsch, 1969: the
   /// eigenvalues of the Jacobi matrix of the recurrence.) Ascending x.

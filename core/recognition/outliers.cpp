@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/numerics/normal_law.h"
+#include "core/recognition/posterior/likelihood_of.h"
 
 namespace palpate {
 namespace {
@@ -72,23 +73,35 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   kept.points.clear();
   kept.patches.clear();
   std::size_t dropped = 0;
+  double squares_of_kept = 0.0;
+  double squares_of_dropped = 0.0;
+  double information = 0.0;
   for (const PatchSpan& patch : data.patches) {
     const std::size_t begin = kept.points.size();
     std::size_t run = 0;
     for (std::size_t i = patch.begin; i < patch.end; ++i) {
+      const double square = magnitude[i] * magnitude[i];
       if (magnitude[i] > limit) {
         ++dropped;
+        squares_of_dropped += square;
         if (++run > kLongestRun) {
           return std::nullopt;
         }
       } else {
         run = 0;
+        squares_of_kept += square;
+        information += data.points[i].inverse_sigma * data.points[i].inverse_sigma;
         kept.points.push_back(data.points[i]);
       }
     }
     kept.patches.push_back({begin, kept.points.size()});
   }
-  if (dropped > kMost + n / kOneIn) {
+  // Of the chi-square that an outlier brings into a fit it leaves itself 1 - h, h its leverage:
+  // more than half, unless it alone determines the curve. What the others leave beyond any noise is
+  // not its doing.
+  const bool misfits = squares_of_kept > kLargestNoise * kLargestNoise * information &&
+                       squares_of_kept > squares_of_dropped;
+  if (misfits || dropped > kMost + n / kOneIn) {
     return std::nullopt;
   }
   return kept;

@@ -225,7 +225,12 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
   const SphereResiduals<K> residuals(points, basis, start_in_model, side);
   Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
   const auto summary =
-      minimise_residuals(residuals, {effort.iterations, effort.chi2_tolerance}, &step);
+      minimise_residuals(residuals,
+                         {.iterations = effort.iterations,
+                          .chi2_tolerance = effort.chi2_tolerance,
+                          .relative_tolerance = effort.relative_tolerance(residuals.NumResiduals()),
+                          .coarse_above = most_chi2_of_noise(points)},
+                         &step);
   return {residuals.coefficients(step), summary.chi2, summary.iterations, side,
           residuals.feet(step)};
 }

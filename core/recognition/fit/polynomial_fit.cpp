@@ -40,6 +40,8 @@ PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int 
     const MinimiseSummary summary = minimise(&problem, &x,
                                              {.iterations = effort.iterations,
                                               .chi2_tolerance = left * effort.chi2_tolerance,
+                                              .relative_tolerance = effort.relative_tolerance(n),
+                                              .coarse_above = most_chi2_of_noise(points),
                                               .out_of_reach = effort.out_of_reach});
     if (start_number == 0) {
       fit.chi2 = summary.initial_chi2;

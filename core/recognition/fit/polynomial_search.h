@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/curves/algebraic/canonical_conic.h"
 #include "core/recognition/fit/polynomial_fit.h"
 #include "core/recognition/fit/polynomial_seeds.h"
 #include "core/recognition/samples/fit_data.h"
@@ -17,6 +18,8 @@ struct PolynomialFits {
   std::optional<PolynomialFit> cubic_spline;
   /// The spline's optimum on the other side of c = 0, if there is one.
   std::optional<PolynomialFit> rival;
+  /// Where no class fitted some of the points: the conic nearest to them, the one start.
+  std::optional<ConicCoefficients> conic;
   PolynomialSeeds seeds;    ///< that the search started from
   bool every_seed = false;  ///< refined, as nothing fitted
   /// Of all classes, conics included, on the points of these fits: what is far above it is not

@@ -1,7 +1,10 @@
 // How far a refinement goes.
 #pragma once
 
+#include <algorithm>
 #include <limits>
+
+#include "core/numerics/negligible.h"
 
 namespace palpate {
 
@@ -14,6 +17,15 @@ struct RefineEffort {
   double chi2_tolerance = 1e-7;
   /// Of chi-square: a start of which the linear model leaves more is given up (polynomial models).
   double out_of_reach = std::numeric_limits<double>::infinity();
+
+  /// chi2_tolerance where so many residuals leave more than any noise: of chi-square. What then
+  /// counts is noise as large as they are, and no more than a third of a standard deviation, which
+  /// is a tenth of chi-square, of a curve that is not the one that was touched.
+  double relative_tolerance(double residuals) const {
+    constexpr double kCoarser = 10.0;
+    constexpr double kCoarsest = 0.1;
+    return std::min(kCoarser * chi2_tolerance, kCoarsest) / most_of_noise(residuals);
+  }
 };
 
 // Iterations bound the time: a well determined shape converges before, and what

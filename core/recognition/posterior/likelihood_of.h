@@ -9,11 +9,6 @@
 
 namespace palpate {
 
-/// Of the half extent: beyond this noise nothing is measured. The fewest places that are RECOGNIZED
-/// (recognizer.cpp) are three more than a conic has parameters, so that points anywhere lie within
-/// the noise of some conic with a probability of about its third power: one in a million.
-inline constexpr double kLargestNoise = 0.01;
-
 /// Whether the noise is known without any class.
 bool tells_noise(const Arcs& arcs, const Likelihood& likelihood);
 

@@ -1,28 +1,68 @@
 #include "core/recognition/posterior/out_of_reach.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <limits>
 
 #include "core/numerics/negligible.h"
 #include "core/recognition/posterior/likelihood_of.h"
+#include "core/recognition/samples/tip_sides.h"
 
 namespace palpate {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// How far from the curve a sample that is none of it may lie: no farther than from the nearest on
+/// one side that is, and more than three in a row are no spikes (outliers.h).
+double farthest_spike(std::span<const FitPoint> patch, std::size_t i) {
+  constexpr std::size_t kLongestRun = 3;
+  double before = i < kLongestRun ? kInfinity : 0.0;
+  double after = patch.size() - i <= kLongestRun ? kInfinity : 0.0;
+  for (std::size_t k = 1; k <= kLongestRun; ++k) {
+    before = i < k ? before : std::max(before, (patch[i].position - patch[i - k].position).norm());
+    after = i + k >= patch.size()
+                ? after
+                : std::max(after, (patch[i].position - patch[i + k].position).norm());
+  }
+  return std::min(before, after);
+}
+
+}  // namespace
 
 double out_of_reach(const Arcs& arcs, const Likelihood& likelihood, const Evidences& of_paths) {
+  if (!tells_noise(arcs, likelihood)) {
+    return kInfinity;
+  }
   const SmoothModel& smooth = arcs.smooth;
-  const bool follows_all =
-      fits_well(smooth.chi2, static_cast<std::size_t>(std::max(smooth.dof(), 0))) &&
-      std::none_of(smooth.sections.begin(), smooth.sections.end(),
-                   [](const ReducedSection& section) { return section.kept; });
-  if (!follows_all || !tells_noise(arcs, likelihood) || has_tips(arcs.data.points)) {
-    return std::numeric_limits<double>::infinity();
-  }
-  double information = 0.0;
+  const double noise = std::max(1.0, smooth.noise_ratio());
+  double chi2 = noise * noise * static_cast<double>(residual_count(smooth.reduced));
+  const auto add = [&](double distance, const FitPoint& point) {
+    chi2 += distance * distance * point.inverse_sigma * point.inverse_sigma;
+  };
   for (const FitPoint& point : arcs.data.points) {
-    information += point.inverse_sigma * point.inverse_sigma;
+    add(kLargestNoise, point);
   }
-  double chi2 = static_cast<double>(residual_count(smooth.reduced)) +
-                kLargestNoise * kLargestNoise * information;
+  for (const FitPoint& point : smooth.reduced.points) {
+    add(swayed_by(point, noise), point);
+  }
+  for (std::size_t p = 0; p < arcs.data.patches.size(); ++p) {
+    const auto patch = arcs.data.patch(p);
+    for (std::size_t i = 0; i < patch.size(); ++i) {
+      const std::uint32_t nearest = smooth.nearest_reduced[arcs.data.patches[p].begin + i];
+      const auto section = std::prev(
+          std::upper_bound(smooth.sections.begin(), smooth.sections.end(), nearest,
+                           [](std::uint32_t k, const ReducedSection& s) { return k < s.begin; }));
+      if (section->kept) {
+        add(farthest_spike(patch, i), patch[i]);
+      }
+    }
+  }
+  if (!std::isfinite(chi2)) {
+    return kInfinity;
+  }
   const double paths = log_evidence_of_free_form(likelihood, of_paths, smooth.chi2);
   while (likelihood.log_evidence(smooth.chi2 + chi2, 0.0, 0.0) > paths - kNegligibleLogOdds) {
     chi2 *= 2.0;

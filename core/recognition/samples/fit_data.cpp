@@ -128,6 +128,14 @@ double least_sigma(std::span<const FitPoint> points) {
   return 1.0 / sharpest;
 }
 
+double most_chi2_of_noise(std::span<const FitPoint> points) {
+  double information = 0.0;
+  for (const FitPoint& point : points) {
+    information += point.inverse_sigma * point.inverse_sigma;
+  }
+  return kLargestNoise * kLargestNoise * information;
+}
+
 bool has_tips(std::span<const FitPoint> points) {
   return std::any_of(points.begin(), points.end(),
                      [](const FitPoint& point) { return point.offset > 0.0; });

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,11 @@
 #include "core/recognition/samples/sample_memory.h"
 
 namespace palpate {
+
+/// Of the half extent: beyond this noise nothing is measured. The fewest places that are RECOGNIZED
+/// (recognizer.cpp) are three more than a conic has parameters, so that points anywhere lie within
+/// the noise of some conic with a probability of about its third power: one in a million.
+inline constexpr double kLargestNoise = 0.01;
 
 /// One contact point in normalised coordinates (world = frame * (scale * normalised)).
 struct FitPoint {
@@ -21,6 +27,9 @@ struct FitPoint {
   /// is known. (Along a stroke the positions tell the direction.)
   Vec2 normal = Vec2::Zero();
   double inverse_normal_sigma = 0.0;  ///< 1 / (deviation of its direction [rad]); 0 = none
+  /// Deviation of the tangent, along which a tip is taken off [rad]; infinite where no smooth model
+  /// tells it.
+  double tangent_sigma = std::numeric_limits<double>::infinity();
 };
 
 /// The run of points of one patch, in their order along the arc: [begin, end).
@@ -67,6 +76,9 @@ double rms_sigma(const FitData& data);
 
 /// The least noise of any of the points, normalised; infinite without points.
 double least_sigma(std::span<const FitPoint> points);
+
+/// The chi-square that noise of kLargestNoise leaves.
+double most_chi2_of_noise(std::span<const FitPoint> points);
 
 /// Whether any of the points is the centre of a tip.
 bool has_tips(std::span<const FitPoint> points);

@@ -135,6 +135,12 @@ std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patche
   return ways;
 }
 
+double swayed_by(const FitPoint& point, double noise) {
+  return point.offset > 0.0
+             ? point.offset * std::min(1.0, kNegligibleDeviations * noise * point.tangent_sigma)
+             : 0.0;
+}
+
 FitData on_surface(const FitData& reduced, std::span<const int> sides) {
   FitData surface = reduced;
   for (std::size_t p = 0; p < surface.patches.size(); ++p) {

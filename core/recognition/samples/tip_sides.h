@@ -32,6 +32,11 @@ std::vector<double> turns_of(const FitData& reduced);
 std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
                                              const FitData& reduced, std::span<const double> bends);
 
+/// How far from the surface a point may be put where a tip is taken off along its tangent's normal:
+/// as far as the direction's error turns the tip's radius. `noise`: in units of what is taken for
+/// it.
+double swayed_by(const FitPoint& point, double noise);
+
 /// Reduced points moved from tip centres to the surface along the normals of the centres' path,
 /// which are those of the surface.
 FitData on_surface(const FitData& reduced, std::span<const int> sides);

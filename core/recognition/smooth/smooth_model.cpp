@@ -166,6 +166,12 @@ void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model) {
   const auto rule = polynomials.gauss_rule(degree);
   const std::size_t begin = model->reduced.points.size();
   const double offset = data->points[fit.section.begin].offset;
+  // No node says more than all samples together: where the polynomial is steeper than the slopes
+  // that weighed them, it says nothing of the noise.
+  double information = 0.0;
+  for (std::size_t i = fit.section.begin; i < fit.section.end; ++i) {
+    information += data->points[i].inverse_sigma * data->points[i].inverse_sigma;
+  }
   model->sections.push_back({begin, begin + rule.size(), fit.frame.middle, fit.frame.axis,
                              fit.frame.half_length, false, false});
   for (const auto& node : rule) {
@@ -174,8 +180,14 @@ void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model) {
     // The direction, along which a tip is taken off, by what is significant: two degrees more swing
     // with the noise.
     const double along = polynomials.evaluate(node.x, fit.degree).derivative;
-    model->reduced.points.push_back({fit.frame.at(node.x, value.value), fit.frame.tangent(along),
-                                     std::sqrt(node.weight * (1.0 + slope * slope)), offset});
+    model->reduced.points.push_back(
+        {fit.frame.at(node.x, value.value), fit.frame.tangent(along),
+         std::sqrt(std::min(node.weight * (1.0 + slope * slope), information)), offset});
+    if (offset > 0.0) {
+      // Of the higher degree: what the criterion leaves out sways the direction by less.
+      model->reduced.points.back().tangent_sigma =
+          std::sqrt(polynomials.slope_variance(node.x, degree)) / fit.frame.half_length;
+    }
   }
   for (std::size_t i = fit.section.begin; i < fit.section.end; ++i) {
     const double x = fit.frame.along(data->points[i].position);
@@ -327,6 +339,7 @@ void scale_noise(double factor, FitData* data, SmoothModel* smooth) {
   for (std::vector<FitPoint>* points : {&data->points, &smooth->reduced.points}) {
     for (FitPoint& point : *points) {
       point.inverse_sigma /= factor;
+      point.tangent_sigma *= factor;
     }
   }
   smooth->chi2 /= factor * factor;

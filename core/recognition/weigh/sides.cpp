@@ -9,6 +9,7 @@
 #include "core/numerics/negligible.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/posterior/coherent_evidence.h"
+#include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/weigh/contenders.h"
 #include "core/recognition/weigh/tip_directions.h"
@@ -38,17 +39,19 @@ struct Way {
   Evidences evidences;
 };
 
-Way way_of(ClassFits fits, FitData reduced, const Arcs& arcs, const Likelihood& likelihood) {
-  const SmoothModel& smooth = arcs.smooth;
+Way way_of(ClassFits fits, FitData reduced, const Judged& by) {
+  const SmoothModel& smooth = by.arcs.smooth;
   Way way;
   way.fits = std::move(fits);
   way.reduced = std::move(reduced);
   const ClassFits told = as_told(way.fits, smooth);
-  way.evidences = evidences_of(told, way.fits, smooth, way.reduced, likelihood);
-  way.candidate = best_class(told, likelihood, way.evidences);
+  way.evidences = evidences_of(told, way.fits, smooth, way.reduced, by.likelihood, by.of_paths);
+  way.candidate = best_class(told, by.likelihood, way.evidences);
   if (const auto& fit = way.fits[static_cast<std::size_t>(way.candidate)]) {
-    way.settled = settled(*fit, way.reduced, RivalOf::Best);
-    way.refined = refine_on_all(*way.settled, smooth, arcs.data);
+    const bool may_win =
+        !tells_noise(by.arcs, by.likelihood) || fits_well(fit->chi2, residual_count(way.reduced));
+    way.settled = settled(*fit, way.reduced, may_win ? RivalOf::Best : RivalOf::Other);
+    way.refined = refine_on_all(*way.settled, smooth, by.arcs.data);
   }
   return way;
 }
@@ -60,15 +63,16 @@ bool agrees(const Way& way, const SmoothModel& smooth) {
   return way.refined && std::abs(way.settled->chi2 + smooth.chi2 - way.refined->chi2) <= kAgreement;
 }
 
-/// Whether directions could be what keeps the curve found from the points: one that is wholly wrong
-/// puts the surface off by the tip's radius.
-bool directions_may_explain(const ClassFit& settled, const FitData& touches) {
+/// Whether directions could be what keeps the curve found from the points.
+bool directions_may_explain(const ClassFit& settled, const FitData& touches,
+                            const SmoothModel& smooth) {
   // The square of a residual that noise may leave.
   constexpr double kNoise = kNegligibleDeviations * kNegligibleDeviations;
+  const double noise = std::max(1.0, smooth.noise_ratio());
   double most = 0.0;
   for (const FitPoint& point : touches.points) {
-    const double off = point.offset * point.inverse_sigma;
-    most += off * off + kNoise;
+    const double off = swayed_by(point, noise) * point.inverse_sigma;
+    most += off * off + kNoise * noise * noise;
   }
   return settled.chi2 <= most;
 }
@@ -76,7 +80,8 @@ bool directions_may_explain(const ClassFit& settled, const FitData& touches) {
 /// log of the evidence of a way's candidate, however free-form paths fare beside it: the ways are
 /// compared with one another. A part whose walls are two curves that differ by little more than
 /// coherent errors may is told no better than these are known.
-double log_evidence_of(const Way& way, const Arcs& arcs, const Likelihood& likelihood) {
+double log_evidence_of(const Way& way, const Judged& by) {
+  const auto& [arcs, likelihood, of_paths, classes, out_of_reach] = by;
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   const auto placed = way.refined ? to_canonical(*way.settled, way.reduced) : std::nullopt;
   if (!placed) {
@@ -95,43 +100,52 @@ double log_evidence_of(const Way& way, const Arcs& arcs, const Likelihood& likel
 /// The curve that fits the tips' centres best, sought when it is asked for.
 class CurveOfCentres {
  public:
-  CurveOfCentres(const Arcs& arcs, const Likelihood& likelihood, unsigned classes)
-      : arcs_(arcs), likelihood_(likelihood), classes_(classes) {}
+  explicit CurveOfCentres(const Judged& by) : by_(by) {}
 
   /// Its points are the smooth model's reduced ones; nullopt where no class fits.
   const std::optional<CanonicalFit>& get() {
     if (!sought_) {
       sought_ = true;
-      const FitData& centres = arcs_.smooth.reduced;
-      const Way way = way_of(fit_classes(centres, nullptr, classes_), centres, arcs_, likelihood_);
+      const FitData& centres = by_.arcs.smooth.reduced;
+      const Way way = way_of(fit_classes(centres, nullptr, by_.classes), centres, by_);
       curve_ = way.settled ? to_canonical(*way.settled, centres) : std::nullopt;
     }
     return curve_;
   }
 
  private:
-  const Arcs& arcs_;
-  const Likelihood& likelihood_;
-  unsigned classes_;
+  const Judged& by_;
   bool sought_ = false;
   std::optional<CanonicalFit> curve_;
 };
+
+/// Directions that turn by less are settled: the surface is off by a millionth of the radius. [rad]
+constexpr double kSettledTurn = 1e-3;
 
 /// Fits with the tips on these sides of `touches`. Where points show no direction of their own, or
 /// one so swayed by noise that tips taken off along it no longer lie as all points do, directions
 /// come from the curve found: one that is off by an angle puts the surface off by half its square
 /// times the tip's radius, so that each round squares the error.
-Way fit_along(FitData touches, std::span<const int> sides, const Arcs& arcs,
-              const Likelihood& likelihood, unsigned classes, std::span<const SidedStart> starts) {
-  const SmoothModel& smooth = arcs.smooth;
+Way fit_along(FitData touches, std::span<const int> sides, const Judged& by,
+              std::span<const SidedStart> starts) {
+  const SmoothModel& smooth = by.arcs.smooth;
   FitData reduced = on_surface(touches, sides);
-  ClassFits fits = fit_classes_from(starts, sides, reduced, classes);
-  Way way = way_of(std::move(fits), std::move(reduced), arcs, likelihood);
+  ClassFits fits = fit_classes_from(starts, sides, reduced, by.classes, by.out_of_reach);
+  if (std::none_of(fits.begin(), fits.end(),
+                   [&](const auto& fit) { return fit && fit->chi2 <= by.out_of_reach; })) {
+    Way way;  // nothing that could be, whatever directions and evidence say
+    way.fits = std::move(fits);
+    way.reduced = std::move(reduced);
+    return way;
+  }
+  Way way = way_of(std::move(fits), std::move(reduced), by);
   // A third of a radian leads to a millionth within three.
   constexpr int kRounds = 3;
-  constexpr double kSettledTurn = 1e-3;  // rad: puts the surface off by a millionth of the radius
+  // Of chi-square by a round: residuals that directions leave fall with the error's square, from a
+  // third of a radian to a ninth of what they were. What is not even halved they do not leave.
+  constexpr double kLeastGain = 2.0;
   for (int round = 0; round < kRounds; ++round) {
-    if (!way.settled || !directions_may_explain(*way.settled, touches)) {
+    if (!way.settled || !directions_may_explain(*way.settled, touches, smooth)) {
       break;
     }
     // (a candidate that is no such curve on all points says nothing about the directions of all)
@@ -147,25 +161,33 @@ Way fit_along(FitData touches, std::span<const int> sides, const Arcs& arcs,
     }
     FitData nearer = on_surface(touches, sides);
     const PolynomialFits carried = carried_to(warm_start_from(way.fits, way.reduced), nearer);
-    ClassFits again = fit_classes(nearer, &carried, classes);
-    way = way_of(std::move(again), std::move(nearer), arcs, likelihood);
+    ClassFits again = fit_classes(nearer, &carried, by.classes);
+    const double before = way.settled->chi2;
+    way = way_of(std::move(again), std::move(nearer), by);
+    if (way.settled && tells_noise(by.arcs, by.likelihood) &&
+        way.settled->chi2 > before / kLeastGain &&
+        !fits_well(way.settled->chi2, residual_count(way.reduced))) {
+      break;
+    }
   }
   return way;
 }
 
 /// The same; where directions led to no curve that all points have, once more along those of the
 /// curve of the centres, whose normals are nearly the surface's whichever side that is on.
-Way fit_way(const FitData& touches, std::span<const int> sides, const Arcs& arcs,
-            const Likelihood& likelihood, unsigned classes, std::span<const SidedStart> starts,
-            CurveOfCentres* centres) {
-  Way way = fit_along(touches, sides, arcs, likelihood, classes, starts);
-  if (agrees(way, arcs.smooth) || !way.settled || !directions_may_explain(*way.settled, touches) ||
-      !centres->get()) {
+Way fit_way(const FitData& touches, std::span<const int> sides, const Judged& by,
+            std::span<const SidedStart> starts, CurveOfCentres* centres) {
+  const SmoothModel& smooth = by.arcs.smooth;
+  Way way = fit_along(touches, sides, by, starts);
+  if (agrees(way, smooth) || !way.settled ||
+      !directions_may_explain(*way.settled, touches, smooth) || !centres->get()) {
     return way;
   }
   FitData turned = touches;
-  set_directions(DirectionsOf::AllPoints, *centres->get(), arcs.smooth, &turned);
-  Way again = fit_along(std::move(turned), sides, arcs, likelihood, classes, {});
+  if (set_directions(DirectionsOf::AllPoints, *centres->get(), smooth, &turned) < kSettledTurn) {
+    return way;
+  }
+  Way again = fit_along(std::move(turned), sides, by, {});
   const bool better = again.refined && (!way.refined || again.refined->chi2 < way.refined->chi2);
   return better ? again : way;
 }
@@ -193,25 +215,24 @@ Directed directed(const SmoothModel& smooth, CurveOfCentres* centres) {
 
 }  // namespace
 
-SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
-                         const Likelihood& likelihood, unsigned classes,
-                         std::span<const SidedStart> starts, double out_of_reach) {
+SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Judged& by,
+                         std::span<const SidedStart> starts) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   // A prior (core/README.md, "The prior"): tips that touch a part from within a bend are rare,
   // probes come from outside; whoever touches bores states the side. Were it above the doubt that
   // RECOGNIZED leaves (0.05), nothing touched by a tip of which no side is stated could be
   // RECOGNIZED.
   constexpr double kInsideProbability = 0.01;
-  CurveOfCentres centres(arcs, likelihood, classes);
-  const auto [touches, bends] = directed(arcs.smooth, &centres);
+  CurveOfCentres centres(by);
+  const auto [touches, bends] = directed(by.arcs.smooth, &centres);
   const auto ways = possible_sides(patches, touches, bends);
   if (!has_tips(touches.points)) {
     FitData reduced = on_surface(touches, ways.front());
-    ClassFits fits = fit_classes_from(starts, ways.front(), reduced, classes, out_of_reach);
+    ClassFits fits = fit_classes_from(starts, ways.front(), reduced, by.classes, by.out_of_reach);
     return {std::move(fits), std::move(reduced), ways.front(), kInfinity, {}};
   }
   if (ways.size() == 1) {
-    Way way = fit_way(touches, ways.front(), arcs, likelihood, classes, starts, &centres);
+    Way way = fit_way(touches, ways.front(), by, starts, &centres);
     return {std::move(way.fits), std::move(way.reduced), ways.front(), kInfinity, {}};
   }
   const double log_price_of_inside = log_odds(1.0 - kInsideProbability);
@@ -220,11 +241,11 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
   double highest = -kInfinity;
   double second = -kInfinity;
   for (const std::vector<int>& sides : ways) {
-    Way way = fit_way(touches, sides, arcs, likelihood, classes, starts, &centres);
+    Way way = fit_way(touches, sides, by, starts, &centres);
     const bool first = &sides == &ways.front();
     // A line has no bend to be outside of.
     const double price = first || way.candidate == CurveClass::Line ? 0.0 : log_price_of_inside;
-    const double evidence = log_evidence_of(way, arcs, likelihood) - price;
+    const double evidence = log_evidence_of(way, by) - price;
     if (first || evidence > highest) {
       if (!first) {
         others.push_back({best.sides, warm_start_from(best.fits, best.reduced)});
@@ -242,14 +263,13 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Arcs& arcs,
   return best;
 }
 
-bool lie_otherwise(const Likelihood& likelihood, std::span<const StoredPatch> patches,
-                   const Arcs& arcs, unsigned classes, std::span<const SidedStart> starts,
-                   SidedFits* sided) {
+bool lie_otherwise(std::span<const StoredPatch> patches, Judged by,
+                   std::span<const SidedStart> starts, SidedFits* sided) {
   if (!std::isfinite(sided->margin)) {
     return false;
   }
-  SidedFits again = fit_over_sides(patches, arcs, likelihood, classes, starts,
-                                   std::numeric_limits<double>::infinity());
+  by.of_paths = evidences_of_paths(by.arcs.smooth, by.likelihood);
+  SidedFits again = fit_over_sides(patches, by, starts);
   if (again.sides == sided->sides) {
     sided->margin = again.margin;
     return false;

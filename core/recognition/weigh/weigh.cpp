@@ -202,7 +202,8 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
   const Evidences of_paths = evidences_of_paths(arcs.smooth, stated);
   const double hopeless = out_of_reach(arcs, stated, of_paths);
-  SidedFits sided = fit_over_sides(patches, arcs, stated, options.classes, starts, hopeless);
+  SidedFits sided =
+      fit_over_sides(patches, {arcs, stated, of_paths, options.classes, hopeless}, starts);
   Ground ground{arcs, sided.reduced, stated, hopeless};
   Contenders contenders =
       contending(std::move(sided.fits), no_conic(starts, sided.sides), ground, options, of_paths);
@@ -214,7 +215,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
                   : SeenDeviation{};
   if (seen.likelihood) {
     ground.likelihood = *seen.likelihood;
-    if (lie_otherwise(ground.likelihood, patches, arcs, options.classes,
+    if (lie_otherwise(patches, {arcs, ground.likelihood, {}, options.classes},
                       starts_of(sided, contenders, arcs), &sided)) {
       contenders =
           contending(std::move(sided.fits), no_conic(starts, sided.sides), ground, options);
