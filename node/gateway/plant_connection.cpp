@@ -60,6 +60,7 @@ void PlantConnection::State::take(std::uint64_t subscription, natsMsg* message) 
   bool first = false;
   {
     const std::lock_guard lock(mutex);
+    if (ended) return;
     if (arrived.size() >= kMostArrived) {
       ++dropped;
       return;
@@ -168,6 +169,12 @@ void PlantConnection::connect() {
 PlantConnection::~PlantConnection() {
   if (attempt_.valid()) connection_ = attempt_.get().connection;
   drop();
+  {
+    // A message is libnats' to free, which it can no longer once it is closed.
+    const std::lock_guard lock(state_->mutex);
+    state_->ended = true;
+    state_->arrived.clear();
+  }
   // libnats' threads may be in a callback: they end before what they touch.
   nats_CloseAndWait(kConnectTimeout.count());
 }

@@ -75,6 +75,7 @@ class PlantConnection {
     std::atomic<std::uint64_t> dropped{0};
     int wake_fd = -1;
     std::mutex mutex;
+    bool ended = false;
     std::vector<PlantMessage> arrived;
     std::string complaint;
 
