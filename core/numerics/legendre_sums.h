@@ -78,8 +78,8 @@ class LegendreSums {
     static_assert(Rows + FirstColumn + Columns - 1 <= Terms);
     Eigen::Matrix<double, Rows, Columns> matrix;
     [&]<int... K>(std::integer_sequence<int, K...>) {
-      (products_of_column < Rows, FirstColumn + K,
-       FirstColumn == 0 ? K : 0 > (matrix.col(K).data()), ...);
+      constexpr bool kIsSquare = FirstColumn == 0;
+      (products_of_column<Rows, FirstColumn + K, int{kIsSquare} * K>(matrix.col(K).data()), ...);
     }
     (std::make_integer_sequence<int, Columns>());
     return matrix;

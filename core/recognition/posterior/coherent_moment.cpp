@@ -29,13 +29,13 @@ using OffsetMatrix = Eigen::Matrix<double, kOffsets, kOffsets>;
 using ShapePose = Eigen::Matrix<double, kUnknowns, 1>;
 using Moment = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// One point of a run, in units of the typical noise.
-struct Step {
+struct RowStep {
   Row row = Row::Zero();
   double variance = 1.0;         ///< of its noise
-  double from_last = kInfinity;  ///< distance, normalised; infinite where a run begins
+  double from_last = kInfinite;  ///< distance, normalised; infinite where a run begins
 };
 
 /// Coefficients of one order have this index and, but for the constant, the next.
@@ -57,12 +57,12 @@ Offsets offset_row(const Vec2& normal) {
   return row;
 }
 
-std::vector<Step> steps_of(const CanonicalFit& placed, const FitData& reduced, const Curve& curve,
-                           double sigma) {
+std::vector<RowStep> steps_of(const CanonicalFit& placed, const FitData& reduced,
+                              const Curve& curve, double sigma) {
   const Runs runs = runs_along(placed, reduced.patches);
   const auto letters =
       static_cast<Eigen::Index>(parameter_letters(placed.shape.curve_class).size());
-  std::vector<Step> steps;
+  std::vector<RowStep> steps;
   steps.reserve(runs.order.size());
   for (const PatchSpan& run : runs.spans) {
     for (std::size_t k = run.begin; k < run.end; ++k) {
@@ -71,7 +71,7 @@ std::vector<Step> steps_of(const CanonicalFit& placed, const FitData& reduced, c
       const FittedPoint& fitted = placed.points[i];
       const double deviation = 1.0 / (point.inverse_sigma * sigma);
       const Vec2 normal = placed.world_T_curve.rotate_back(fitted.normal);
-      Step step;
+      RowStep step;
       step.row.head(letters) =
           position_by_parameters(curve, fitted.t).leftCols(letters).transpose() * normal;
       step.row.segment<2>(letters) = fitted.normal;
@@ -98,17 +98,17 @@ struct Drift {
 };
 
 /// The rows' products once such a drift is made white by Kalman's recursion.
-struct Whitened {
+struct WhiteRows {
   Sums sums = Sums::Zero();
   double log_determinant = 0.0;  ///< of their covariance over that of the noise alone
 };
 
-Whitened whitened(const std::vector<Step>& steps, const Drift& drift) {
+WhiteRows white_rows(const std::vector<RowStep>& steps, const Drift& drift) {
   const double variance = drift.deviation * drift.deviation;
-  Whitened result;
+  WhiteRows result;
   Row mean = Row::Zero();
   double spread = variance;
-  for (const Step& step : steps) {
+  for (const RowStep& step : steps) {
     const double kept = std::exp(-step.from_last / drift.length);
     mean *= kept;
     spread = kept * kept * spread + (1.0 - kept * kept) * variance;
@@ -139,7 +139,7 @@ struct Left {
   double log_determinant = 0.0;
 };
 
-Left left_by(const Whitened& white, Eigen::Index unknowns, int rank) {
+Left left_by(const WhiteRows& white, Eigen::Index unknowns, int rank) {
   const InverseInformation inverse =
       inverse_information(white.sums.topLeftCorner(unknowns, unknowns), rank);
   const auto with_offsets = white.sums.block(0, kUnknowns, unknowns, kOffsets);
@@ -159,7 +159,7 @@ Left left_by(const Whitened& white, Eigen::Index unknowns, int rank) {
 
 /// A mean over cells whose weights come as logarithms.
 struct Mixture {
-  double top = -kInfinity;
+  double top = -kInfinite;
   double total = 0.0;
   Moment moment = Moment::Zero();
   double variance = 0.0;  ///< of the deviations at a point
@@ -268,12 +268,12 @@ struct OverSizes {
   double log_prior = 0.0;
 };
 
-OverSizes over_all_sizes(const std::vector<Step>& steps, Eigen::Index unknowns, int rank,
+OverSizes over_all_sizes(const std::vector<RowStep>& steps, Eigen::Index unknowns, int rank,
                          const NoiseLaw& noise, double scatter, double samples) {
   double squares = 0.0;
   double longest = 0.0;
   double run = 0.0;
-  for (const Step& step : steps) {
+  for (const RowStep& step : steps) {
     squares += step.row[kResidual] * step.row[kResidual];
     run = std::isfinite(step.from_last) ? run + step.from_last : 0.0;
     longest = std::max(longest, run);
@@ -292,7 +292,7 @@ OverSizes over_all_sizes(const std::vector<Step>& steps, Eigen::Index unknowns, 
   for (int i = 0; i < kDeviations && deviation > least; ++i, deviation *= 0.5) {
     for (int k = 1; k <= kLengths; ++k) {
       const Drift drift{deviation, std::ldexp(longest, -k)};
-      const Left left = left_by(whitened(steps, drift), unknowns, rank);
+      const Left left = left_by(white_rows(steps, drift), unknowns, rank);
       const double expected = expected_offset(drift);
       for (int j = kLeastSize; j <= kLargestSize; ++j) {
         const double ratio = std::ldexp(1.0, j);
@@ -319,14 +319,14 @@ std::optional<CoherentMoment> coherent_moment(const CanonicalFit& placed, const 
       residual_count(reduced) > reduced.points.size()) {
     return std::nullopt;
   }
-  const std::vector<Step> steps = steps_of(placed, reduced, *curve, sigma);
+  const std::vector<RowStep> steps = steps_of(placed, reduced, *curve, sigma);
   const Eigen::Index unknowns = placed.covariance.rows();
   const auto [mixture, log_prior] =
       over_all_sizes(steps, unknowns, rank, noise, scatter, likelihood.samples);
   if (!(mixture.total > 0.0)) {
     return std::nullopt;
   }
-  const Left none = left_by(whitened(steps, {0.0, 1.0}), unknowns, rank);
+  const Left none = left_by(white_rows(steps, {0.0, 1.0}), unknowns, rank);
   const double log_none = noise.log_evidence(scatter + none.chi2) - 0.5 * none.log_determinant;
   CoherentMoment result;
   result.probability = 1.0 / (1.0 + std::exp(log_none + log_prior - mixture.log_total()));
