@@ -97,10 +97,9 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
       correlation.time == 1.0 && !can_be_noise(chi2 / noise, dof) && excess <= kLargestNoise;
   const bool form_error = correlation.time > 1.0 && (excess <= kLargestFormError || !noise_is_told);
   SeenDeviation seen;
-  // White noise looks so once in a thousand times by its neighbours, and as often by the smooth
-  // model: what is to be made of it the evidence says, which costs about as much as a search.
-  constexpr double kWorthAsking = 1e-3;
-  seen.correlated = correlation.time > 1.0 || chance < kWorthAsking;
+  // White noise looks so once in a thousand times by its neighbours, and hardly ever by the smooth
+  // model.
+  seen.correlated = correlation.time > 1.0 || chance < kNegligibleProbability;
   if (misfits && (noisy || form_error)) {
     seen.noise_inflation = variance * correlation.time;
     seen.correlation_length = correlation.length;
