@@ -45,35 +45,14 @@ OrthogonalPolynomials::OrthogonalPolynomials(std::span<const double> x, std::spa
   }
 }
 
-OrthogonalPolynomials::Value OrthogonalPolynomials::evaluate(double x, int d) const {
+template <typename Visit>
+void OrthogonalPolynomials::for_each_polynomial(double x, int d, const Visit& visit) const {
   double before = 0.0;
   double before_derivative = 0.0;
   double p = 1.0;
   double p_derivative = 0.0;
-  Value value;
-  for (int k = 0; k <= d; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    value.value += coefficient_[i] * p;
-    value.derivative += coefficient_[i] * p_derivative;
-    const double next = (x - alpha_[i]) * p - beta_[i] * before;
-    const double next_derivative =
-        p + (x - alpha_[i]) * p_derivative - beta_[i] * before_derivative;
-    before = p;
-    before_derivative = p_derivative;
-    p = next;
-    p_derivative = next_derivative;
-  }
-  return value;
-}
-
-double OrthogonalPolynomials::slope_variance(double x, int d) const {
-  double before = 0.0;
-  double before_derivative = 0.0;
-  double p = 1.0;
-  double p_derivative = 0.0;
-  double norm = weight_sum_;
-  double variance = 0.0;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) {
+  for (std::size_t k = 0; k <= static_cast<std::size_t>(d); ++k) {
+    visit(k, p, p_derivative);
     const double next = (x - alpha_[k]) * p - beta_[k] * before;
     const double next_derivative =
         p + (x - alpha_[k]) * p_derivative - beta_[k] * before_derivative;
@@ -81,9 +60,25 @@ double OrthogonalPolynomials::slope_variance(double x, int d) const {
     before_derivative = p_derivative;
     p = next;
     p_derivative = next_derivative;
-    norm *= beta_[k + 1];
-    variance += p_derivative * p_derivative / norm;
   }
+}
+
+OrthogonalPolynomials::Value OrthogonalPolynomials::evaluate(double x, int d) const {
+  Value value;
+  for_each_polynomial(x, d, [&](std::size_t k, double p, double p_derivative) {
+    value.value += coefficient_[k] * p;
+    value.derivative += coefficient_[k] * p_derivative;
+  });
+  return value;
+}
+
+double OrthogonalPolynomials::slope_variance(double x, int d) const {
+  double norm = weight_sum_;
+  double variance = 0.0;
+  for_each_polynomial(x, d, [&](std::size_t k, double, double p_derivative) {
+    norm *= k > 0 ? beta_[k] : 1.0;
+    variance += p_derivative * p_derivative / norm;
+  });
   return variance;
 }
 

@@ -45,6 +45,10 @@ class OrthogonalPolynomials {
   std::vector<Node> gauss_rule(int d) const;
 
  private:
+  /// visit(k, p_k(x), p_k'(x)) for k = 0 ... d.
+  template <typename Visit>
+  void for_each_polynomial(double x, int d, const Visit& visit) const;
+
   static constexpr std::size_t kSize = kMaxDegree + 1;
   int degree_ = 0;
   double weight_sum_ = 0.0;

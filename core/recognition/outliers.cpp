@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/numerics/normal_law.h"
-#include "core/recognition/posterior/likelihood_of.h"
 
 namespace palpate {
 namespace {
@@ -75,7 +74,6 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   std::size_t dropped = 0;
   double squares_of_kept = 0.0;
   double squares_of_dropped = 0.0;
-  double information = 0.0;
   for (const PatchSpan& patch : data.patches) {
     const std::size_t begin = kept.points.size();
     std::size_t run = 0;
@@ -90,7 +88,6 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
       } else {
         run = 0;
         squares_of_kept += square;
-        information += data.points[i].inverse_sigma * data.points[i].inverse_sigma;
         kept.points.push_back(data.points[i]);
       }
     }
@@ -99,8 +96,8 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   // Of the chi-square that an outlier brings into a fit it leaves itself 1 - h, h its leverage:
   // more than half, unless it alone determines the curve. What the others leave beyond any noise is
   // not its doing.
-  const bool misfits = squares_of_kept > kLargestNoise * kLargestNoise * information &&
-                       squares_of_kept > squares_of_dropped;
+  const bool misfits =
+      squares_of_kept > most_chi2_of_noise(kept.points) && squares_of_kept > squares_of_dropped;
   if (misfits || dropped > kMost + n / kOneIn) {
     return std::nullopt;
   }

@@ -1,8 +1,8 @@
 #include "node/gateway/delivered_contact.h"
 
 #include <algorithm>
-#include <charconv>
 
+#include "node/gateway/plant_message.h"
 #include "node/gateway/subjects.h"
 #include "palpate/v1/contact.pb.h"
 
@@ -38,8 +38,7 @@ DeliveryNumbers numbers_of(std::string_view reply) {
   DeliveryNumbers found;
   while (!reply.empty()) {
     const std::string_view text = reply.substr(0, reply.find('.'));
-    std::uint64_t number = 0;
-    std::from_chars(text.data(), text.data() + text.size(), number);
+    const std::uint64_t number = whole_number(text).value_or(0);
     if (token == first) found.stream_seq = number;
     if (token == first + 1) found.consumer_seq = number;
     ++token;

@@ -54,7 +54,7 @@ void Outbox::answered(const std::string& lane_name, std::uint64_t ticket, const 
   const auto entry = std::find_if(lane.begin(), lane.end(),
                                   [&](const Entry& each) { return each.ticket == ticket; });
   if (entry == lane.end()) return;
-  const SteadyTime now = std::chrono::steady_clock::now();
+  const SteadyTime now = now_steady();
   End end = End::Stored;
   switch (stored.verdict) {
     case Stored::Verdict::Yes:

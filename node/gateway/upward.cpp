@@ -41,7 +41,7 @@ Upward::Upward(zmq::context_t& context, Plant& plant, const UpwardOptions& optio
         }
         if (end == Outbox::End::Refused) counters_.set_refused(counters_.refused() + 1);
       }) {
-  outbox_.hold_until(std::chrono::steady_clock::now() + kHold);
+  outbox_.hold_until(now_steady() + kHold);
   // Three prefixes, however many topics: libzmq loses subscriptions beyond a thousand when it
   // connects again.
   for (const TopicKind kind : options_.kinds) {

@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from bus import Bus, Probe, stop
+from bus import Bus, Probe, stop, wait_for_log
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from cryptography.hazmat.primitives.serialization import Encoding, NoEncryption, PrivateFormat, PublicFormat
 from plant import Client, Ledger, Servers, carrier, recogniser, skip_where_absent, start_gateway, wait_for_stored
@@ -84,12 +84,6 @@ class Access(unittest.TestCase):
         ledger.sent_once(self, {"finger": BATCHES})
         ledger.answered_once(self)
 
-    def wait_for_log(self, process, text, timeout_s=10):
-        deadline = time.monotonic() + timeout_s
-        while text not in process.log_path.read_text():
-            self.assertLess(time.monotonic(), deadline, f"no \"{text}\" in {process.log_path.read_text()}")
-            time.sleep(0.05)
-
     def test_users_and_tls_of_the_shipped_configuration(self):
         """Its section for beyond this machine, as it stands behind its comment signs."""
         with Bus() as bus, Servers(bus.folder) as servers:
@@ -117,7 +111,7 @@ class Access(unittest.TestCase):
             up = carrier(bus, url("press"), "up", "press", "bind:" + endpoint, "--carry", "contact", "--carry", "status", *own)
             down = recogniser(bus, url("recogniser"), "down", ["press:0"], *own)
             for process in (up, down):
-                self.wait_for_log(process, "connected to the plant")
+                wait_for_log(process, "connected to the plant")
             with Client(servers.url, **servers.access) as client:
                 self.stroke_and_answers(bus, client)
                 # Nobody was refused anything.
@@ -144,13 +138,13 @@ class Access(unittest.TestCase):
                                         f"bind:ipc://{bus.folder}/other", "--spool", bus.folder / "other.spool", *own)
                 bare = start_gateway(bus, url("press"), "bare", "--cell", "press", "--from", f"bind:ipc://{bus.folder}/third",
                                      "--spool", bus.folder / "third.spool", "--tls-ca", bus.folder / "ca.pem")
-                self.wait_for_log(strange, "the plant: Authorization Violation")
-                self.wait_for_log(bare, "the plant: ")
+                wait_for_log(strange, "the plant: Authorization Violation")
+                wait_for_log(bare, "the plant: ")
                 # A server that takes the password after all.
                 servers.file(0).write_text((text + beyond).replace('"press", password: "secret"', '"press", password: "guessed"'))
                 servers.reload()
-                self.wait_for_log(strange, "connected to the plant")
-                self.wait_for_log(up, "the plant: Authorization Violation")
+                wait_for_log(strange, "connected to the plant")
+                wait_for_log(up, "the plant: Authorization Violation")
                 self.assertNotIn("connected", bare.log_path.read_text())
             for process in (up, down, strange, bare):
                 self.assertEqual(stop(process)[0], 0)
@@ -184,10 +178,10 @@ class Access(unittest.TestCase):
             strange = start_gateway(bus, servers.url, "strange", "--cell", "press", "--from", f"bind:ipc://{bus.folder}/other",
                                     "--spool", bus.folder / "other.spool", "--credentials", bus.folder / "foreign.creds")
             for process in (up, down):
-                self.wait_for_log(process, "connected to the plant")
+                wait_for_log(process, "connected to the plant")
             with Client(servers.url, **servers.access) as client:
                 self.stroke_and_answers(bus, client)
-            self.wait_for_log(strange, "the plant: Authorization Violation")
+            wait_for_log(strange, "the plant: Authorization Violation")
             for process in (up, down, strange):
                 self.assertEqual(stop(process)[0], 0)
 

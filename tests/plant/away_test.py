@@ -11,7 +11,7 @@ import statistics
 import time
 import unittest
 
-from bus import Bus, Probe, receive, stop
+from bus import Bus, Probe, receive, stop, wait_for_log
 from plant import (Client, Ledger, Servers, carrier, gateway_status, recogniser, skip_where_absent, wait_for_stored)
 
 AWAY_S = float(os.environ.get("PALPATE_PLANT_AWAY_S", "6"))
@@ -39,9 +39,9 @@ class Away(unittest.TestCase):
                 stroke(50)
                 wait_for_stored(client, "palpate-press-contact", 200)
             servers.kill()
-            self.wait_for_log(gateway, "no connection")
+            wait_for_log(gateway, "no connection")
             stroke(50)
-            self.wait_for_log(gateway, "messages wait on disk")
+            wait_for_log(gateway, "messages wait on disk")
             time.sleep(0.5)
             gateway.kill()
             gateway.wait()
@@ -125,7 +125,7 @@ class Away(unittest.TestCase):
                     probe.send(probe.batch(10 * (probe.seq % BATCHES_PER_OBJECT),
                                            object_number=1 + probe.seq // BATCHES_PER_OBJECT))
                     time.sleep(0.002)
-                self.wait_for_log(up, "messages wait on disk")
+                wait_for_log(up, "messages wait on disk")
                 full = client.api("STREAM.INFO.palpate-press-contact")["state"]["messages"]
                 self.assertLess(full, count)
             servers.kill()
@@ -197,12 +197,6 @@ class Away(unittest.TestCase):
             times.append(time.monotonic() - sent)
             time.sleep(0.01)
         return times
-
-    def wait_for_log(self, process, text, timeout_s=10):
-        deadline = time.monotonic() + timeout_s
-        while text not in process.log_path.read_text():
-            self.assertLess(time.monotonic(), deadline, f"no \"{text}\" in {process.log_path.read_text()}")
-            time.sleep(0.05)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import signal
 import time
 import unittest
 
-from bus import Bus, errors_in_sigmas, wait_for
+from bus import Bus, errors_in_sigmas, wait_for, wait_for_log
 from palpate.v1 import recognition_pb2
 from programs import NODE, SIM, SOURCE, TOOL, run
 
@@ -35,12 +35,6 @@ class ProbeFiles(unittest.TestCase):
         self.done(TOOL, "replay", part, "--contacts", bus.contacts, "--fast")
         return wait_for(planner, lambda a: a.sample_count == samples and (after is None or a.object != after.object),
                         timeout_s=20)
-
-    def wait_for_log(self, node, said):
-        deadline = time.monotonic() + 10
-        while said not in node.log_path.read_text():
-            self.assertLess(time.monotonic(), deadline, node.log_path.read_text())
-            time.sleep(0.01)
 
     def test_the_node_measures_as_fit_does_and_says_by_which_file(self):
         with Bus() as bus:
@@ -125,12 +119,12 @@ class ProbeFiles(unittest.TestCase):
             # Read again with the right name, it holds from the next samples on.
             file.write_text(file.read_text().replace('name: "other"', 'name: "stylus"'))
             node.send_signal(signal.SIGHUP)
-            self.wait_for_log(node, "1 probe files reread")
+            wait_for_log(node, "1 probe files reread")
             self.assertEqual(list(self.answer(bus, part, after=before).probe_files), [str(file)])
             # One that cannot be used changes nothing.
             file.write_text("name: 3\n")
             node.send_signal(signal.SIGHUP)
-            self.wait_for_log(node, f"probe files stay as they were: {file}:1:7")
+            wait_for_log(node, f"probe files stay as they were: {file}:1:7")
 
     def test_a_file_without_a_name_is_for_all_others(self):
         with Bus() as bus:

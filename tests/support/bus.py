@@ -193,3 +193,12 @@ def stop(process, with_signal=signal.SIGTERM, timeout=5):
     process.send_signal(with_signal)
     code = process.wait(timeout)
     return code, time.monotonic() - start
+
+
+def wait_for_log(process, text, timeout_s=10):
+    """Until its log, process.log_path, says this."""
+    deadline = time.monotonic() + timeout_s
+    while text not in process.log_path.read_text():
+        if time.monotonic() > deadline:
+            raise AssertionError(f"no \"{text}\" in {process.log_path.read_text()}")
+        time.sleep(0.01)

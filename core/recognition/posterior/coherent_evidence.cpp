@@ -2,38 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
-#include "core/recognition/posterior/runs_along.h"
+#include "core/recognition/posterior/markov_drift.h"
 
 namespace palpate {
 namespace {
-
-/// One point of a run, in units of the typical noise.
-struct Step {
-  double residual = 0.0;
-  double variance = 1.0;   ///< of its noise
-  double from_last = 0.0;  ///< distance, normalised; infinite where a run begins
-};
-
-std::vector<Step> steps_of(const CanonicalFit& placed, const FitData& reduced, double sigma) {
-  const Runs runs = runs_along(placed, reduced.patches);
-  std::vector<Step> steps;
-  steps.reserve(runs.order.size());
-  for (const PatchSpan& run : runs.spans) {
-    for (std::size_t k = run.begin; k < run.end; ++k) {
-      const std::size_t i = runs.order[k];
-      const FitPoint& point = reduced.points[i];
-      const double deviation = 1.0 / (point.inverse_sigma * sigma);
-      const double from_last =
-          k > run.begin ? (point.position - reduced.points[runs.order[k - 1]].position).norm()
-                        : std::numeric_limits<double>::infinity();
-      steps.push_back({placed.points[i].residual * deviation, deviation * deviation, from_last});
-    }
-  }
-  return steps;
-}
 
 /// What a coherent deviation makes of residuals.
 struct Whitened {
@@ -41,21 +15,17 @@ struct Whitened {
   double log_determinant = 0.0;  ///< of their covariance over that of the noise alone
 };
 
-/// Kalman's recursion: the deviation has `variance`, correlation exp(-distance / length).
-Whitened whitened(const std::vector<Step>& steps, double variance, double length) {
+Whitened whitened(const std::vector<DriftStep>& steps, double variance, double length) {
   Whitened result;
   double mean = 0.0;
-  double spread = variance;
-  for (const Step& step : steps) {
-    const double kept = std::exp(-step.from_last / length);
-    mean *= kept;
-    spread = kept * kept * spread + (1.0 - kept * kept) * variance;
-    const double of_residual = spread + step.variance;
+  DriftFilter drift(variance, length);
+  for (const DriftStep& step : steps) {
+    const DriftFilter::Gain gain = drift.next(step);
+    mean *= gain.kept;
     const double surprise = step.residual - mean;
-    result.chi2 += surprise * surprise / of_residual;
-    result.log_determinant += std::log(of_residual / step.variance);
-    mean += spread / of_residual * surprise;
-    spread *= step.variance / of_residual;
+    result.chi2 += surprise * surprise / gain.variance;
+    result.log_determinant += std::log(gain.variance / step.variance);
+    mean += gain.share * surprise;
   }
   return result;
 }
@@ -65,10 +35,10 @@ Whitened whitened(const std::vector<Step>& steps, double variance, double length
 double log_coherent_evidence(const Likelihood& likelihood, const ClassEvidence& evidence,
                              const CanonicalFit& placed, const FitData& reduced, double sigma,
                              double samples, double chi2, double scatter) {
-  const std::vector<Step> steps = steps_of(placed, reduced, sigma);
+  const std::vector<DriftStep> steps = drift_steps(placed, reduced, sigma);
   double white = 0.0;
   double whole = 0.0;
-  for (const Step& step : steps) {
+  for (const DriftStep& step : steps) {
     white += step.residual * step.residual / step.variance;
     whole += std::isfinite(step.from_last) ? step.from_last : 0.0;
   }

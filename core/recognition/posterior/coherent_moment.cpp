@@ -8,7 +8,7 @@
 
 #include "core/curves/curve.h"
 #include "core/numerics/small_cholesky.h"
-#include "core/recognition/posterior/runs_along.h"
+#include "core/recognition/posterior/markov_drift.h"
 
 namespace palpate {
 namespace {
@@ -31,11 +31,9 @@ using Moment = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// One point of a run, in units of the typical noise.
 struct RowStep {
+  DriftStep at;
   Row row = Row::Zero();
-  double variance = 1.0;         ///< of its noise
-  double from_last = kInfinite;  ///< distance, normalised; infinite where a run begins
 };
 
 /// Coefficients of one order have this index and, but for the constant, the next.
@@ -59,39 +57,29 @@ Offsets offset_row(const Vec2& normal) {
 
 std::vector<RowStep> steps_of(const CanonicalFit& placed, const FitData& reduced,
                               const Curve& curve, double sigma) {
-  const Runs runs = runs_along(placed, reduced.patches);
   const auto letters =
       static_cast<Eigen::Index>(parameter_letters(placed.shape.curve_class).size());
   std::vector<RowStep> steps;
-  steps.reserve(runs.order.size());
-  for (const PatchSpan& run : runs.spans) {
-    for (std::size_t k = run.begin; k < run.end; ++k) {
-      const std::size_t i = runs.order[k];
-      const FitPoint& point = reduced.points[i];
-      const FittedPoint& fitted = placed.points[i];
-      const double deviation = 1.0 / (point.inverse_sigma * sigma);
-      const Vec2 normal = placed.world_T_curve.rotate_back(fitted.normal);
-      RowStep step;
-      step.row.head(letters) =
-          position_by_parameters(curve, fitted.t).leftCols(letters).transpose() * normal;
-      step.row.segment<2>(letters) = fitted.normal;
-      step.row[letters + 2] = placed.shape.curve_class == CurveClass::Circle
-                                  ? 0.0  // a circle turns into itself
-                                  : normal.dot(left_of(position(curve, fitted.t)));
-      step.row.head<kUnknowns>() /= sigma * reduced.scale;
-      step.row.segment<kOffsets>(kUnknowns) = offset_row(fitted.normal);
-      step.row[kResidual] = fitted.residual * deviation;
-      step.variance = deviation * deviation;
-      if (k > run.begin) {
-        step.from_last = (point.position - reduced.points[runs.order[k - 1]].position).norm();
-      }
-      steps.push_back(step);
-    }
+  steps.reserve(reduced.points.size());
+  for (const DriftStep& at : drift_steps(placed, reduced, sigma)) {
+    const FittedPoint& fitted = placed.points[at.point];
+    const Vec2 normal = placed.world_T_curve.rotate_back(fitted.normal);
+    RowStep step{at};
+    step.row.head(letters) =
+        position_by_parameters(curve, fitted.t).leftCols(letters).transpose() * normal;
+    step.row.segment<2>(letters) = fitted.normal;
+    step.row[letters + 2] = placed.shape.curve_class == CurveClass::Circle
+                                ? 0.0  // a circle turns into itself
+                                : normal.dot(left_of(position(curve, fitted.t)));
+    step.row.head<kUnknowns>() /= sigma * reduced.scale;
+    step.row.segment<kOffsets>(kUnknowns) = offset_row(fitted.normal);
+    step.row[kResidual] = at.residual;
+    steps.push_back(step);
   }
   return steps;
 }
 
-/// A drift along each patch, Markov's law: correlation exp(-distance / length).
+/// Of a drift along each patch.
 struct Drift {
   double deviation = 0.0;  ///< in units of the typical noise
   double length = 1.0;     ///< normalised
@@ -104,23 +92,19 @@ struct WhiteRows {
 };
 
 WhiteRows white_rows(const std::vector<RowStep>& steps, const Drift& drift) {
-  const double variance = drift.deviation * drift.deviation;
   WhiteRows result;
   Row mean = Row::Zero();
-  double spread = variance;
+  DriftFilter filter(drift.deviation * drift.deviation, drift.length);
   for (const RowStep& step : steps) {
-    const double kept = std::exp(-step.from_last / drift.length);
-    mean *= kept;
-    spread = kept * kept * spread + (1.0 - kept * kept) * variance;
-    const double of_row = spread + step.variance;
+    const DriftFilter::Gain gain = filter.next(step.at);
+    mean *= gain.kept;
     const Row surprise = step.row - mean;
-    const Row weighted = surprise / of_row;
+    const Row weighted = surprise / gain.variance;
     for (int k = 0; k < kColumns; ++k) {
       result.sums.col(k).head(k + 1) += surprise[k] * weighted.head(k + 1);
     }
-    result.log_determinant += std::log(of_row / step.variance);
-    mean += spread / of_row * surprise;
-    spread *= step.variance / of_row;
+    result.log_determinant += std::log(gain.variance / step.at.variance);
+    mean += gain.share * surprise;
   }
   result.sums.triangularView<Eigen::StrictlyLower>() = result.sums.transpose();
   return result;
@@ -275,7 +259,7 @@ OverSizes over_all_sizes(const std::vector<RowStep>& steps, Eigen::Index unknown
   double run = 0.0;
   for (const RowStep& step : steps) {
     squares += step.row[kResidual] * step.row[kResidual];
-    run = std::isfinite(step.from_last) ? run + step.from_last : 0.0;
+    run = std::isfinite(step.at.from_last) ? run + step.at.from_last : 0.0;
     longest = std::max(longest, run);
   }
   // Deviations: from where the mean of all samples hides them to where the shape would have taken

@@ -38,13 +38,11 @@ double out_of_reach(const Arcs& arcs, const Likelihood& likelihood, const Eviden
   }
   const SmoothModel& smooth = arcs.smooth;
   const double noise = std::max(1.0, smooth.noise_ratio());
-  double chi2 = noise * noise * static_cast<double>(residual_count(smooth.reduced));
+  double chi2 = noise * noise * static_cast<double>(residual_count(smooth.reduced)) +
+                most_chi2_of_noise(arcs.data.points);
   const auto add = [&](double distance, const FitPoint& point) {
     chi2 += distance * distance * point.inverse_sigma * point.inverse_sigma;
   };
-  for (const FitPoint& point : arcs.data.points) {
-    add(kLargestNoise, point);
-  }
   for (const FitPoint& point : smooth.reduced.points) {
     add(swayed_by(point, noise), point);
   }
