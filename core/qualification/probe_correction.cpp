@@ -211,7 +211,10 @@ double inflation_of_probes(std::span<const ProbedPatch> patches) {
 }
 
 ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
-                                   const RecognizerOptions& options) {
+                                   RecognizerOptions options) {
+  options.unqualified_probe = options.unqualified_probe &&
+                              std::any_of(patches.begin(), patches.end(),
+                                          [](const auto& patch) { return patch.probe == nullptr; });
   std::vector<ProbedPatch> raw;
   double coherent = 0.0;
   for (const ProbedPatch& patch : patches) {

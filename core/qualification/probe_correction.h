@@ -62,8 +62,8 @@ struct ProbedRecognition {
 /// class is that of white noise and the stated form deviation, from a recognition of its own, with
 /// covariance_of_probes; what its residuals tell of coherence beyond the files' enlarges it as
 /// ever. An answer whose shape that leaves undetermined is not RECOGNIZED. Four recognitions.
-ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
-                                   const RecognizerOptions& options);
+/// `options.unqualified_probe` is for patches without a file.
+ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches, RecognizerOptions options);
 
 /// The same of an object whose samples are in memory. `probes`: by the patches' number of their
 /// probe. A mean of neighbours is corrected as one sample of so much less noise; without any noise

@@ -301,7 +301,8 @@ class Recognizer::Impl {
   }
 
   WeighOptions weigh_options() const {
-    return {options_.classes, options_.recognized_probability, options_.form_deviation_m};
+    return {options_.classes, options_.recognized_probability, options_.form_deviation_m,
+            options_.unqualified_probe};
   }
 
   /// Weighed again with the spikes that the best class explains, where the class stands then.

@@ -35,6 +35,11 @@ struct RecognizerOptions {
   /// parameters takes for shape: 0 says that parts are exactly of their class. Maximum likelihood
   /// only. [m]
   double form_deviation_m = 0.0;
+  /// Nobody has measured how the probe deviates, and it may do so smoothly: by the direction of the
+  /// normal (lobes, its radius) and along a stroke (drift), as probable as not, in whatever size
+  /// residuals leave possible. Covariances and the odds of the classes hold it. Otherwise it counts
+  /// only where residuals look so. Maximum likelihood only; costs a few milliseconds an answer.
+  bool unqualified_probe = false;
   /// Probability that a scene without spikes loses a sample to outlier rejection.
   double false_outlier_probability = 0.01;
   /// Classes to consider, by bit 1 << CurveClass; all by default.

@@ -206,9 +206,9 @@ class ComputeTime {
 class Recognizer {
  public:
   Recognizer(double sigma_m, const std::vector<std::string>& classes, double form_deviation_m,
-             std::size_t most_patches, std::size_t most_samples_per_patch)
-      : recognizer_(
-            options_of(sigma_m, classes, form_deviation_m, most_patches, most_samples_per_patch)) {}
+             bool unqualified_probe, std::size_t most_patches, std::size_t most_samples_per_patch)
+      : recognizer_(options_of(sigma_m, classes, form_deviation_m, unqualified_probe, most_patches,
+                               most_samples_per_patch)) {}
 
   /// `points` n x 2 in metres, `sigma_m` of length n, 1 or 0, the others as PointDetails; returns
   /// how many were taken.
@@ -276,7 +276,8 @@ class Recognizer {
  private:
   static palpate::RecognizerOptions options_of(double sigma_m,
                                                const std::vector<std::string>& classes,
-                                               double form_deviation_m, std::size_t most_patches,
+                                               double form_deviation_m, bool unqualified_probe,
+                                               std::size_t most_patches,
                                                std::size_t most_samples_per_patch) {
     for (const auto& [name, value] :
          {std::pair("sigma", sigma_m), std::pair("form_deviation", form_deviation_m)}) {
@@ -287,6 +288,7 @@ class Recognizer {
     palpate::RecognizerOptions options;
     options.sigma_m = sigma_m;
     options.form_deviation_m = form_deviation_m;
+    options.unqualified_probe = unqualified_probe;
     options.memory.most_patches = most_patches;
     options.memory.most_lone_touches = std::max(options.memory.most_lone_touches, most_patches);
     options.memory.most_samples_per_patch = most_samples_per_patch;
@@ -390,7 +392,8 @@ py::dict fit_given(const std::string& name, const Array& points, double sigma, c
 
 PYBIND11_MODULE(_core, module) {
   py::class_<Recognizer>(module, "Recognizer")
-      .def(py::init<double, const std::vector<std::string>&, double, std::size_t, std::size_t>())
+      .def(py::init<double, const std::vector<std::string>&, double, bool, std::size_t,
+                    std::size_t>())
       .def("add", &Recognizer::add)
       .def("recognize", &Recognizer::recognize)
       .def("reset", &Recognizer::reset);

@@ -57,6 +57,10 @@ void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& vi
       {"form_deviation_m",
        "Stated form error of the parts, a standard deviation: half of a +- tolerance [m]", 0, 1e3},
       recognizer.form_deviation_m);
+  visit({"unqualified_probe",
+         "Nobody has measured the probe's lobes, radius and drift: let deviations count for which "
+         "it has no probe file"},
+        recognizer.unqualified_probe);
   visit({"false_outlier_probability", "Chance that a clean scene loses a sample as a spike", 0, 1},
         recognizer.false_outlier_probability);
   visit({"most_samples_per_patch", "Samples of a patch before neighbours are merged", 8,

@@ -60,6 +60,13 @@ class Fit(unittest.TestCase):
         self.check(result)
         self.assertLess(abs(result.sigma / SIGMA - 1), 5 / math.sqrt(2 * 217))
 
+    def test_a_probe_that_nobody_has_qualified_is_less_certain(self):
+        trusted = palpate.fit(PATCHES, sigma=SIGMA, unit="mm")
+        unqualified = palpate.fit(PATCHES, sigma=SIGMA, unit="mm", unqualified_probe=True)
+        self.assertEqual(unqualified.curve_class, "ellipse")
+        more = np.diag(unqualified.covariance) / np.diag(trusted.covariance)
+        self.assertTrue((more > 1.0).all(), more)
+
     def test_other_powers_of_length(self):
         t = np.linspace(-30, 30, 120)
         points = np.column_stack([t, 2e-4 * t**3])  # y = a x^3, a in 1/mm^2

@@ -35,6 +35,42 @@ ShapePose difference(CurveClass curve_class, const ShapePose& b, const ShapePose
   return d;
 }
 
+/// The derivatives of [shape; x; y; theta], normalised frame, by the coordinates in units of their
+/// widths; coordinate `fixed` (or -1) does not move.
+Eigen::Matrix<double, 6, 6> jacobian_at(const Touch& touch, const TouchedCurve& curve, int fixed) {
+  constexpr double kStep = 1e-5;
+  Eigen::Matrix<double, 6, 6> jacobian = Eigen::Matrix<double, 6, 6>::Zero();
+  const int coordinates = shape_coordinates(touch.curve_class) + 2;
+  for (int k = 0; k < coordinates; ++k) {
+    if (k == fixed) {
+      continue;
+    }
+    TouchedVector ahead = curve.z;
+    TouchedVector behind = curve.z;
+    ahead[k] += kStep;
+    behind[k] -= kStep;
+    const auto f = shape_pose_at(touch, ahead);
+    const auto g = shape_pose_at(touch, behind);
+    if (f && g) {
+      jacobian.col(k) = curve.widths[k] / (2.0 * kStep) * difference(touch.curve_class, *f, *g);
+    }
+  }
+  return jacobian;
+}
+
+/// To metres, and positions to the world.
+Eigen::Matrix<double, 6, 6> world_by_normalised(CurveClass curve_class, const FitData& data) {
+  const auto letters = static_cast<Eigen::Index>(parameter_letters(curve_class).size());
+  Eigen::Matrix<double, 6, 6> to_world = Eigen::Matrix<double, 6, 6>::Identity();
+  for (Eigen::Index k = 0; k < letters; ++k) {
+    to_world(k, k) = parameter_scale(curve_class, static_cast<int>(k), data.scale);
+  }
+  const double c = data.scale * std::cos(data.frame.theta);
+  const double s = data.scale * std::sin(data.frame.theta);
+  to_world.block<2, 2>(letters, letters) << c, -s, s, c;
+  return to_world;
+}
+
 /// The share of each slice by the likelihood alone: the signed root of chi-square over its least is
 /// a standard normal variable, exactly where the model is linear in some function of the
 /// coordinate, and to third order elsewhere. Neither the prior nor the coordinate's scale enters.
@@ -83,7 +119,6 @@ ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvide
   centre.segment<3>(letters) << pose.x / data.scale, pose.y / data.scale, pose.theta;
 
   Eigen::Matrix<double, 6, 6> moment = Eigen::Matrix<double, 6, 6>::Zero();
-  const int coordinates = shape_coordinates(curve_class) + 2;
   const std::vector<double> shares = likelihood_shares(evidence.nodes);
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const TouchedCurve& curve = evidence.nodes[i].curve;
@@ -92,40 +127,25 @@ ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvide
       continue;
     }
     const TouchedMatrix root = root_of(curve, evidence.widest);
-    Eigen::Matrix<double, 6, 6> jacobian = Eigen::Matrix<double, 6, 6>::Zero();
-    for (int k = 0; k < coordinates; ++k) {
-      if (k == evidence.widest) {
-        continue;
-      }
-      constexpr double kStep = 1e-5;
-      TouchedVector ahead = curve.z;
-      TouchedVector behind = curve.z;
-      ahead[k] += kStep;
-      behind[k] -= kStep;
-      const auto f = shape_pose_at(touch, ahead);
-      const auto g = shape_pose_at(touch, behind);
-      if (f && g) {
-        jacobian.col(k) = curve.widths[k] / (2.0 * kStep) * difference(curve_class, *f, *g);
-      }
-    }
+    const Eigen::Matrix<double, 6, 6> jacobian = jacobian_at(touch, curve, evidence.widest);
     const ShapePose away = difference(curve_class, *x, centre);
     const Eigen::Matrix<double, 6, 6> half = inverse_lower(root) * jacobian.transpose();
     moment += shares[i] * (half.transpose() * half + away * away.transpose());
   }
-  // To metres, and positions to the world.
-  Eigen::Matrix<double, 6, 6> to_world = Eigen::Matrix<double, 6, 6>::Identity();
-  for (Eigen::Index k = 0; k < letters; ++k) {
-    to_world(k, k) = parameter_scale(curve_class, static_cast<int>(k), data.scale);
-  }
-  const double c = data.scale * std::cos(data.frame.theta);
-  const double s = data.scale * std::sin(data.frame.theta);
-  to_world.block<2, 2>(letters, letters) << c, -s, s, c;
+  const Eigen::Matrix<double, 6, 6> to_world = world_by_normalised(curve_class, data);
   moment = to_world * moment * to_world.transpose();
   if (curve_class == CurveClass::Circle) {  // turned into itself: theta is 0 by convention
     moment.row(letters + 2).setZero();
     moment.col(letters + 2).setZero();
   }
   return moment.topLeftCorner(n, n);
+}
+
+Eigen::Matrix<double, 6, 6> shape_pose_by_coordinates(const ClassEvidence& evidence,
+                                                      const FitData& data) {
+  const Touch& touch = evidence.touch;
+  return world_by_normalised(touch.curve_class, data) *
+         jacobian_at(touch, evidence.nodes[evidence.mode].curve, -1);
 }
 
 std::optional<ShapePoseCovariance> bend_added(const ShapePoseCovariance& covariance,

@@ -15,6 +15,11 @@ namespace palpate {
 ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvidence& evidence,
                                   const FitData& data);
 
+/// How [shape; x; y; theta] (metres and radians, world frame) moves with the coordinates of the
+/// evidence's mode, a column for each, in units of the prior's widths.
+Eigen::Matrix<double, 6, 6> shape_pose_by_coordinates(const ClassEvidence& evidence,
+                                                      const FitData& data);
+
 /// A covariance with what `moment` has beyond `linear`, the covariance that it would be if its
 /// valley did not bend; nullopt where that would be no covariance.
 std::optional<ShapePoseCovariance> bend_added(const ShapePoseCovariance& covariance,

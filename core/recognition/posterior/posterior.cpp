@@ -64,7 +64,8 @@ double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
                     CurveClass curve_class, double chi2) {
   const auto& evidence = evidences.classes[static_cast<std::size_t>(curve_class)];
   return evidence && std::isfinite(chi2)
-             ? likelihood.log_evidence(chi2, evidence->log_occam, evidence->determined)
+             ? likelihood.log_evidence(chi2, evidence->log_occam, evidence->determined) +
+                   evidences.log_shared[static_cast<std::size_t>(curve_class)]
              : kNone;
 }
 
@@ -80,6 +81,8 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
   } else {
     evidences = evidences_of_paths(smooth, likelihood);
   }
+  evidences.log_shared = before.log_shared;
+  evidences.shared_or_other = before.shared_or_other;
   double best = log_evidence_of_free_form(likelihood, evidences, smooth.chi2);
   // The best fits first: what the prior leaves is at most all, so that the rest can be told by
   // chi-square alone.
@@ -93,7 +96,8 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
   });
   for (const CurveClass curve_class : order) {
     const auto i = static_cast<std::size_t>(curve_class);
-    if (likelihood.log_evidence(fits[i]->chi2, 0.0, 0.0) < best - kNegligibleLogOdds) {
+    if (likelihood.log_evidence(fits[i]->chi2, 0.0, 0.0) + evidences.log_shared[i] <
+        best - kNegligibleLogOdds) {
       continue;
     }
     evidences.on_reduced_chi2[i] = on_reduced[i]->chi2;
@@ -185,8 +189,8 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
                   log_density_ratio_at_parabola(beyond);
     }
   }
-  if (likelihood.coherent_or_other) {
-    // What the class leaves is form error of the part, or another shape: even odds.
+  if (likelihood.coherent_or_other || evidences.shared_or_other) {
+    // What the class leaves is a deviation of part or probe, or another shape: even odds.
     log_of[0] = std::nextafter(*std::max_element(log_of.begin() + 1, log_of.end()), kNone);
   }
   const double best = *std::max_element(log_of.begin(), log_of.end());

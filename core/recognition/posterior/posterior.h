@@ -26,6 +26,11 @@ struct Evidences {
   double inflation = 0.0;
   std::array<std::optional<CanonicalFit>, 9> on_reduced;
   std::array<double, 9> on_reduced_chi2{};
+  /// log of what deviations that neighbours share give the classes' evidence, or take
+  /// (weigh/shared_deviations.h).
+  std::array<double, 9> log_shared{};
+  /// With them classes have more than free paths: it is such a deviation, or another shape.
+  bool shared_or_other = false;
 };
 
 /// Of no class yet, but of free-form paths.

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/numerics/negligible.h"
+#include "core/recognition/coherent/coherent_evidence.h"
 #include "core/recognition/fit/on_all_points.h"
-#include "core/recognition/posterior/coherent_evidence.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/weigh/contenders.h"

@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/numerics/negligible.h"
-#include "core/recognition/posterior/coherent_moment.h"
+#include "core/recognition/coherent/coherent_moment.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/moments.h"
 #include "core/recognition/posterior/out_of_reach.h"
 #include "core/recognition/weigh/conic_mode.h"
 #include "core/recognition/weigh/contenders.h"
+#include "core/recognition/weigh/shared_deviations.h"
 #include "core/recognition/weigh/sides.h"
 
 namespace palpate {
@@ -201,18 +203,20 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   Arcs arcs = smooth_arcs(std::move(data), sigma_known);
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
   const Evidences of_paths = evidences_of_paths(arcs.smooth, stated);
-  const double hopeless = out_of_reach(arcs, stated, of_paths);
+  const double hopeless = options.unqualified_probe ? std::numeric_limits<double>::infinity()
+                                                    : out_of_reach(arcs, stated, of_paths);
   SidedFits sided =
       fit_over_sides(patches, {arcs, stated, of_paths, options.classes, hopeless}, starts);
   Ground ground{arcs, sided.reduced, stated, hopeless};
   Contenders contenders =
       contending(std::move(sided.fits), no_conic(starts, sided.sides), ground, options, of_paths);
   std::optional<Placed> best_placed = best_on_all(contenders, ground);
-  const SeenDeviation seen =
-      best_placed ? seen_deviation(arcs, stated, best_placed->chi2, best_placed->canonical,
-                                   most_probable(probabilities_of(contenders, ground)) ==
-                                       CurveClass::Unclassified)
-                  : SeenDeviation{};
+  SeenDeviation seen = best_placed
+                           ? seen_deviation(arcs, stated, best_placed->chi2, best_placed->canonical,
+                                            most_probable(probabilities_of(contenders, ground)) ==
+                                                CurveClass::Unclassified)
+                           : SeenDeviation{};
+  seen.correlated = seen.correlated || options.unqualified_probe;
   if (seen.likelihood) {
     ground.likelihood = *seen.likelihood;
     if (lie_otherwise(patches, {arcs, ground.likelihood, {}, options.classes},
@@ -223,6 +227,10 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
     } else {
       contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
     }
+  }
+  if (seen.correlated && !seen.likelihood) {
+    contenders = with_shared_deviations(std::move(contenders), ground, options.unqualified_probe,
+                                        margin_of(options));
   }
   contenders = decided(std::move(contenders), ground, margin_of(options));
   return told(std::move(arcs), std::move(sided), std::move(contenders), ground, seen, stated,

@@ -19,7 +19,8 @@ struct WeighOptions {
   unsigned classes = kAllClasses;  ///< to consider, by bit 1 << CurveClass
   /// What an answer needs to be RECOGNIZED: what cannot keep it from that is not refined.
   double recognized_probability = 0.95;
-  double form_deviation_m = 0.0;  ///< as RecognizerOptions::form_deviation_m
+  double form_deviation_m = 0.0;   ///< as RecognizerOptions::form_deviation_m
+  bool unqualified_probe = false;  ///< likewise
 };
 
 struct Weighing {

@@ -32,11 +32,12 @@ class Recognizer:
     """Follows one object: add points as they come, ask for the answer whenever it is wanted."""
 
     def __init__(self, sigma: float | None = None, unit: str = "m", classes: Iterable[str] = (),
-                 form_deviation: float = 0.0, most_patches: int = 64, most_samples_per_patch: int = 1024) -> None:
+                 form_deviation: float = 0.0, most_patches: int = 64, most_samples_per_patch: int = 1024,
+                 unqualified_probe: bool = False) -> None:
         self._unit = unit
         self._scale = units(unit)
         self._core = _core.Recognizer(self._scale * (sigma or 0.0), list(classes), self._scale * form_deviation,
-                                      most_patches, most_samples_per_patch)
+                                      unqualified_probe, most_patches, most_samples_per_patch)
         self._points: list[np.ndarray] = []
         self._drawn = 0
         self._tip_radius = 0.0
@@ -80,13 +81,16 @@ class Recognizer:
 
 def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_side: str = "unspecified",
         classes: Iterable[str] = (), form_deviation: float = 0.0, touches: bool = False,
-        most_samples_per_patch: int = 1024, normals=None, normal_sigma: float | None = None) -> Result:
+        most_samples_per_patch: int = 1024, normals=None, normal_sigma: float | None = None,
+        unqualified_probe: bool = False) -> Result:
     """Recognises one object: an array (n, 2) of one patch, or a list of them.
 
     sigma: standard deviation of a point, one number or (for one patch) one a point; None estimates it.
     tip_radius: the points are centres of a round tip. material_side: of the direction of travel.
     touches: every point is a touch of its own, in no order along the part.
     form_deviation: standard deviation of the part from its ideal curve, half of a +- tolerance.
+    unqualified_probe: nobody has measured the probe's lobes, radius and drift: uncertainties and the odds of the
+    classes hold what of these the residuals leave possible.
     normals: of the surface, measured, as the points: an array or a list of them, as Recognizer.add has it.
     """
     patches = _patches(points, touches)
@@ -98,7 +102,8 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
     if len(of_patches) != len(patches):
         raise ValueError("normals: not as many as points")
     # A list is there at once: nothing of it is forgotten.
-    recognizer = Recognizer(None, unit, classes, form_deviation, max(64, len(patches)), most_samples_per_patch)
+    recognizer = Recognizer(None, unit, classes, form_deviation, max(64, len(patches)), most_samples_per_patch,
+                            unqualified_probe)
     for number, patch in enumerate(patches):
         recognizer.add(patch, number, 0, sigma, tip_radius, material_side, of_patches[number], normal_sigma)
     return recognizer.recognize()

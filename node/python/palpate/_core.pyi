@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 class Recognizer:
-    def __init__(self, sigma_m: float, classes: list[str], form_deviation_m: float, most_patches: int,
-                 most_samples_per_patch: int, /) -> None: ...
+    def __init__(self, sigma_m: float, classes: list[str], form_deviation_m: float, unqualified_probe: bool,
+                 most_patches: int, most_samples_per_patch: int, /) -> None: ...
     def add(self, points: ArrayLike, sigma_m: ArrayLike, probe: int, patch: int, tip_radius_m: float,
             material_side: str, normals: ArrayLike, normal_sigma_rad: ArrayLike, covariances_m2: ArrayLike,
             /) -> tuple[int, int]: ...

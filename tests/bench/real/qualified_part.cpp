@@ -161,6 +161,63 @@ void add_bound(const std::vector<Vec2>& points, double sigma_m, const Pose2& pos
   }
 }
 
+/// What palpate is told of the probe.
+enum class Told { Nothing, Unqualified, File };
+constexpr Told kAllTold[] = {Told::Nothing, Told::Unqualified, Told::File};
+
+std::string name_of(Told told) {
+  return told == Told::Nothing ? "nothing" : told == Told::Unqualified ? "unqualified" : "its file";
+}
+
+RecognizerOptions options_of(Told told) {
+  RecognizerOptions options;
+  options.unqualified_probe = told == Told::Unqualified;
+  return options;
+}
+
+/// The points within so many degrees as seen from `centre`, in order, from start `i` of kStarts.
+std::vector<Vec2> arc_of(const std::vector<Vec2>& all, const Vec2& centre, int degrees, int i) {
+  const double start = 2.0 * kPi * i / kStarts;
+  std::vector<std::pair<double, Vec2>> inside;
+  for (const Vec2& point : all) {
+    const Vec2 away = point - centre;
+    const double from = std::fmod(std::atan2(away.y(), away.x()) - start + 4.0 * kPi, 2.0 * kPi);
+    if (from < degrees * kPi / 180.0) inside.emplace_back(from, point);
+  }
+  std::stable_sort(inside.begin(), inside.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Vec2> points;
+  for (const auto& [from, point] : inside) points.push_back(point);
+  return points;
+}
+
+/// Arcs of the ring itself: how many are RECOGNIZED as what it is, and as something else.
+void print_ring(const Ring& ring, std::ostream& out) {
+  const Recording& whole = ring.recording;
+  const Recognition centred = recognise(whole.context, whole.points, options_of(Told::Unqualified));
+  out << "\n| arc of the ring [deg] | told of the probe | RECOGNIZED as a circle | as anything "
+         "else "
+         "| AMBIGUOUS |\n|---|---|---|---|---|\n";
+  for (const int degrees : {60, 90, 120, 180, 270, 360}) {
+    for (const Told told : {Told::Nothing, Told::Unqualified}) {
+      int circles = 0;
+      int others = 0;
+      for (int i = 0; i < kStarts; ++i) {
+        const Recognition answer = recognise(
+            whole.context, arc_of(whole.points, centred.world_T_curve.translation(), degrees, i),
+            options_of(told));
+        const bool sure = answer.status == RecognitionStatus::Recognized;
+        const bool circle = answer.shape.curve_class == CurveClass::Circle;
+        circles += sure && circle ? 1 : 0;
+        others += sure && !circle ? 1 : 0;
+      }
+      out << "| " << degrees << " | " << name_of(told) << " | " << circles << " | " << others
+          << " | " << kStarts - circles - others << " |\n"
+          << std::flush;
+    }
+  }
+}
+
 }  // namespace
 
 void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostream& out) {
@@ -185,7 +242,8 @@ void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostrea
       << ". Probability of no harmonic, of harmonic 2, to 3, ...:";
   for (const double p : result.order_probabilities) out << ' ' << p;
   out << ".\n\n"
-      << "| arc [deg] | qualified | median error of the worse axis [%] | by the bound | 95 % "
+      << "| arc [deg] | told of the probe | median error of the worse axis [%] | by the bound | 95 "
+         "% "
          "region "
          "holds the truth, RECOGNIZED | the same, every ellipse | RECOGNIZED and wrong |\n"
       << "|---|---|---|---|---|---|---|\n";
@@ -195,8 +253,8 @@ void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostrea
   const Qualification on_part =
       qualify(Ellipse{part.semi_major_m, part.semi_minor_m}, {{round_the_part}});
   if (on_part.poses.empty()) throw std::runtime_error("the part is not that ellipse");
-  const auto answer_to = [&](const std::vector<Vec2>& points, bool qualified) {
-    if (!qualified) return recognise(whole.context, points);
+  const auto answer_to = [&](const std::vector<Vec2>& points, Told told) {
+    if (told != Told::File) return recognise(whole.context, points, options_of(told));
     const ProbedPatch patch{whole.context, samples_of(points), &probe};
     return recognise_probed({&patch, 1}, {}).recognition;
   };
@@ -204,31 +262,20 @@ void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostrea
   const Vec2 centre = centred.world_T_curve.translation();
   std::vector<std::string> wrong;
   for (const int degrees : {60, 90, 120, 180}) {
-    for (const bool qualified : {false, true}) {
+    for (const Told told : kAllTold) {
       Row row;
       std::vector<double> by_bound;
       std::mt19937_64 rng(1);
       for (int i = 0; i < kStarts; ++i) {
-        const double start = 2.0 * kPi * i / kStarts;
-        std::vector<std::pair<double, Vec2>> inside;
-        for (const Vec2& point : whole.points) {
-          const Vec2 away = point - centre;
-          double from = std::fmod(std::atan2(away.y(), away.x()) - start + 4.0 * kPi, 2.0 * kPi);
-          if (from < degrees * kPi / 180.0) inside.emplace_back(from, point);
-        }
-        std::stable_sort(inside.begin(), inside.end(),
-                         [](const auto& a, const auto& b) { return a.first < b.first; });
-        std::vector<Vec2> points;
-        for (const auto& [from, point] : inside) points.push_back(point);
+        const std::vector<Vec2> points = arc_of(whole.points, centre, degrees, i);
         const std::string arc = std::to_string(degrees) + " deg from " +
-                                std::to_string(i * 360 / kStarts) + " deg, " +
-                                (qualified ? "qualified: " : "as it came: ");
-        add(arc, answer_to(points, qualified), part, &row);
+                                std::to_string(i * 360 / kStarts) + " deg, " + name_of(told) + ": ";
+        add(arc, answer_to(points, told), part, &row);
         add_bound(points, probe.sigma_m.value, on_part.poses.front(), part, rng, &by_bound);
       }
-      out << "| " << degrees << " | " << (qualified ? "yes" : "no") << " | "
-          << 100.0 * middle_of(row.errors) << " | " << 100.0 * middle_of(std::move(by_bound))
-          << " | " << share(row.recognised_held, row.recognised) << " | "
+      out << "| " << degrees << " | " << name_of(told) << " | " << 100.0 * middle_of(row.errors)
+          << " | " << 100.0 * middle_of(std::move(by_bound)) << " | "
+          << share(row.recognised_held, row.recognised) << " | "
           << share(row.ellipses_held, row.ellipses) << " | " << row.wrong.size() << " |\n"
           << std::flush;
       wrong.insert(wrong.end(), row.wrong.begin(), row.wrong.end());
@@ -237,15 +284,15 @@ void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostrea
   out << "\nThe wrong ones (" << wrong.size() << "):\n";
   for (const std::string& line : wrong) out << "- " << line << '\n';
   out << "\n| full turn | a - truth [um] | b - truth [um] |\n|---|---|---|\n";
-  for (const bool qualified : {false, true}) {
-    const Recognition answer = answer_to(whole.points, qualified);
-    out << "| " << (qualified ? "qualified" : "as it came") << " | "
-        << 1e6 * (answer.shape.values[0] - part.semi_major_m) << " +- "
-        << 1e6 * std::sqrt(answer.covariance(0, 0)) << " | "
+  for (const Told told : kAllTold) {
+    const Recognition answer = answer_to(whole.points, told);
+    out << "| " << name_of(told) << " | " << 1e6 * (answer.shape.values[0] - part.semi_major_m)
+        << " +- " << 1e6 * std::sqrt(answer.covariance(0, 0)) << " | "
         << 1e6 * (answer.shape.values[1] - part.semi_minor_m) << " +- "
         << 1e6 * std::sqrt(answer.covariance(1, 1)) << " |\n";
   }
   print_reproducibility(result, on_part, out);
+  print_ring(ring, out);
 }
 
 }  // namespace palpate::bench

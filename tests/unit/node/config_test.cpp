@@ -57,9 +57,11 @@ TEST(Config, DefaultsAreTheStructs) {
 TEST(Config, OptionsReachTheRecognizer) {
   v1::NodeConfig config;
   ASSERT_EQ(set_option(config, "form_deviation_m", "5e-5"), "");
+  ASSERT_EQ(set_option(config, "unqualified_probe", "true"), "");
   const Result<NodeOptions> options = make_options(config);
   ASSERT_TRUE(options) << options.error;
   EXPECT_EQ(options.value->intake.recognizer.form_deviation_m, 5e-5);
+  EXPECT_TRUE(options.value->intake.recognizer.unqualified_probe);
   ASSERT_EQ(set_option(config, "form_deviation_m", "-5e-5"), "");
   EXPECT_THAT(make_options(config).error, HasSubstr("form_deviation_m"));
 }

@@ -1,5 +1,5 @@
 // Deviations drawn from the law that the moment is taken under: what it says must hold of them.
-#include "core/recognition/posterior/coherent_moment.h"
+#include "core/recognition/coherent/coherent_moment.h"
 
 #include <gtest/gtest.h>
 

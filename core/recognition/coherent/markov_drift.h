@@ -23,12 +23,16 @@ struct DriftStep {
 std::vector<DriftStep> drift_steps(const CanonicalFit& placed, const FitData& reduced,
                                    double sigma);
 
+struct Drift {
+  double deviation = 0.0;  ///< in units of the typical noise
+  double length = 1.0;     ///< normalised
+};
+
 /// Kalman's recursion, which makes what lies beside such a drift white.
 class DriftFilter {
  public:
-  /// Of the drift, in units of the typical noise, and normalised.
-  DriftFilter(double variance, double length)
-      : variance_(variance), length_(length), spread_(variance) {}
+  explicit DriftFilter(const Drift& drift)
+      : variance_(drift.deviation * drift.deviation), length_(drift.length), spread_(variance_) {}
 
   struct Gain {
     double kept = 0.0;      ///< of the drift expected at the point before

@@ -1,10 +1,10 @@
-#include "core/recognition/posterior/coherent_evidence.h"
+#include "core/recognition/coherent/coherent_evidence.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "core/recognition/posterior/markov_drift.h"
+#include "core/recognition/coherent/markov_drift.h"
 
 namespace palpate {
 namespace {
@@ -15,12 +15,12 @@ struct Whitened {
   double log_determinant = 0.0;  ///< of their covariance over that of the noise alone
 };
 
-Whitened whitened(const std::vector<DriftStep>& steps, double variance, double length) {
+Whitened whitened(const std::vector<DriftStep>& steps, const Drift& drift) {
   Whitened result;
   double mean = 0.0;
-  DriftFilter drift(variance, length);
+  DriftFilter filter(drift);
   for (const DriftStep& step : steps) {
-    const DriftFilter::Gain gain = drift.next(step);
+    const DriftFilter::Gain gain = filter.next(step);
     mean *= gain.kept;
     const double surprise = step.residual - mean;
     result.chi2 += surprise * surprise / gain.variance;
@@ -56,7 +56,7 @@ double log_coherent_evidence(const Likelihood& likelihood, const ClassEvidence& 
   std::vector<double> logs;
   for (double variance = 1.0 / samples; variance <= samples; variance *= kFactor) {
     for (int k = 0; k < kLengths; ++k) {
-      logs.push_back(log_of(whitened(steps, variance, std::ldexp(whole, -k))));
+      logs.push_back(log_of(whitened(steps, {std::sqrt(variance), std::ldexp(whole, -k)})));
     }
   }
   const double none = log_of({white, 0.0});

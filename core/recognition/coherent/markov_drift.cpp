@@ -1,4 +1,4 @@
-#include "core/recognition/posterior/markov_drift.h"
+#include "core/recognition/coherent/markov_drift.h"
 
 #include "core/recognition/posterior/runs_along.h"
 

@@ -1,0 +1,94 @@
+#include "core/recognition/coherent/coherent_gain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/curves/curve.h"
+#include "core/numerics/small_cholesky.h"
+#include "core/recognition/coherent/coherent_cells.h"
+#include "core/recognition/posterior/moments.h"
+
+namespace palpate {
+namespace {
+
+using Left = LeftByDrift<kHighestOfClasses>;
+
+/// What a drift leaves where the coordinates have normal laws of width 1 beforehand.
+std::optional<Left> left_by(const std::vector<CoherentStep>& steps, const Drift& drift) {
+  const auto white = white_rows<kHighestOfClasses>(steps, drift);
+  UnknownsMatrix lower;
+  const UnknownsMatrix information =
+      white.sums.topLeftCorner<kUnknowns, kUnknowns>() + UnknownsMatrix::Identity();
+  if (!cholesky(information, &lower)) {
+    return std::nullopt;
+  }
+  constexpr int kOffsets = offsets_to(kHighestOfClasses);
+  constexpr int kOthers = 1 + kOffsets;
+  Eigen::Matrix<double, kUnknowns, kOthers, Eigen::RowMajor> half =
+      white.sums.topRightCorner<kUnknowns, kOthers>();
+  solve_lower_rows(lower, &half);
+  const Eigen::Matrix<double, kOthers, kOthers> others =
+      white.sums.bottomRightCorner<kOthers, kOthers>() - half.transpose().lazyProduct(half);
+  Left left;
+  left.chi2 = others(0, 0);
+  left.right = others.col(0).tail<kOffsets>();
+  left.information = others.bottomRightCorner<kOffsets, kOffsets>();
+  left.log_determinant = white.log_determinant + 2.0 * std::log(lower.diagonal().prod());
+  return left;
+}
+
+}  // namespace
+
+std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassEvidence& evidence,
+                                        const FitData& reduced, const Likelihood& likelihood,
+                                        double sigma, double scatter) {
+  const CurveClass curve_class = placed.shape.curve_class;
+  const auto curve = make_curve(curve_class, placed.shape.values);
+  const int coordinates = shape_coordinates(curve_class) + 2;
+  const NoiseLaw noise(likelihood, coordinates);
+  if (!curve || !can_tell_deviations(reduced, noise, coordinates)) {
+    return std::nullopt;
+  }
+  std::vector<CoherentStep> steps = coherent_steps(placed, reduced, *curve, sigma);
+  const UnknownsMatrix by_coordinates = shape_pose_by_coordinates(evidence, reduced);
+  for (CoherentStep& step : steps) {
+    const Unknowns by_shape_pose = step.row.head<kUnknowns>();
+    step.row.head<kUnknowns>() = by_coordinates.transpose() * by_shape_pose;
+    step.at.variance *= likelihood.inflation();  // stated form error counts as noise
+  }
+  const auto none = left_by(steps, {});
+  if (!none) {
+    return std::nullopt;
+  }
+  const double log_none = noise.log_evidence(scatter + none->chi2) - 0.5 * none->log_determinant;
+  const double longest = longest_run(steps);
+  const double most = std::sqrt(likelihood.samples);
+  LogSum sum{log_none};
+  double prior = 0.0;
+  for (double deviation = 1.0 / most; deviation <= most; deviation *= 2.0) {
+    for (int halvings = 1; halvings <= kMostHalvings; ++halvings) {
+      const Drift drift{deviation, std::ldexp(longest, -halvings)};
+      const auto left = left_by(steps, drift);
+      // The largest offsets leave the least.
+      double least = scatter;
+      for (int power = kLargestOffset; power >= kLeastOffset; --power) {
+        const OffsetSize size = offset_size(drift, power);
+        prior += kHighestOfClasses * std::exp(size.log_prior);
+        if (!left ||
+            !sum.counts(size.log_prior + noise.log_evidence(least) - 0.5 * left->log_determinant)) {
+          continue;
+        }
+        if (const auto cells = offset_cells(*left, size, noise, scatter)) {
+          least = std::max(least, cells->chi2.back());
+          for (const double log_weight : cells->log_weight) {
+            sum.add(log_weight);
+          }
+        }
+      }
+    }
+  }
+  return std::log(0.5 * (std::exp(log_none - sum.top) + sum.total / prior)) + sum.top - log_none;
+}
+
+}  // namespace palpate

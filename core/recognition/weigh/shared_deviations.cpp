@@ -1,0 +1,108 @@
+#include "core/recognition/weigh/shared_deviations.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/recognition/coherent/coherent_gain.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kNoEvidence = -std::numeric_limits<double>::infinity();
+
+/// log evidences, by class.
+using LogEvidences = std::array<double, 9>;
+
+double log_sum(const LogEvidences& logs) {
+  const double top = *std::max_element(logs.begin(), logs.end());
+  double sum = 0.0;
+  for (const double log : logs) {
+    sum += std::exp(log - top);
+  }
+  return top + std::log(sum);
+}
+
+/// The classes that such deviations are asked of, the best of all first: what leaves less
+/// chi-square than the best has no more for them to explain, and is given what the best is.
+std::vector<std::size_t> asked(const Contenders& w, const Ground& ground) {
+  const CurveClass best = best_class(w.fits, ground.likelihood, w.evidences);
+  if (best == CurveClass::Unclassified) {
+    return {};
+  }
+  const auto b = static_cast<std::size_t>(best);
+  std::vector<std::size_t> classes{b};
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    const auto& fit = w.fits[i];
+    if (fit && !fit->at_limit && std::isfinite(fit->chi2) && fit->chi2 > w.fits[b]->chi2 &&
+        w.coarse[i]->chi2 <= ground.out_of_reach) {
+      classes.push_back(i);
+    }
+  }
+  return classes;
+}
+
+/// Evidence of a class on the reduced points.
+void weigh_on_reduced(std::size_t i, const Ground& ground, Contenders* w) {
+  Evidences& evidences = w->evidences;
+  if (evidences.classes[i] && evidences.on_reduced_chi2[i] == w->coarse[i]->chi2) {
+    return;
+  }
+  evidences.on_reduced_chi2[i] = w->coarse[i]->chi2;
+  evidences.classes[i].reset();
+  if ((evidences.on_reduced[i] = to_canonical(*w->coarse[i], ground.reduced))) {
+    evidences.classes[i] =
+        evidence_of(*evidences.on_reduced[i], ground.reduced, evidences.inflation);
+  }
+}
+
+}  // namespace
+
+Contenders with_shared_deviations(Contenders w, const Ground& ground, bool of_any_size,
+                                  double margin) {
+  const std::vector<std::size_t> classes = asked(w, ground);
+  if (classes.empty() || (classes.size() < 2 && !of_any_size)) {
+    return w;
+  }
+  LogEvidences gain{};
+  for (const std::size_t i : classes) {
+    weigh_on_reduced(i, ground, &w);
+    const auto& evidence = w.evidences.classes[i];
+    const auto own =
+        evidence ? log_coherent_gain(*w.evidences.on_reduced[i], *evidence, ground.reduced,
+                                     ground.likelihood, ground.arcs.sigma, ground.arcs.smooth.chi2)
+                 : std::nullopt;
+    if (i == classes.front()) {
+      gain.fill(own.value_or(0.0));
+    } else if (own) {
+      gain[i] = *own;
+    }
+  }
+  LogEvidences white;
+  LogEvidences shared;
+  for (std::size_t i = 0; i < white.size(); ++i) {
+    const auto& fit = w.fits[i];
+    white[i] = fit && !fit->at_limit ? log_evidence(ground.likelihood, w.evidences,
+                                                    static_cast<CurveClass>(i), fit->chi2)
+                                     : kNoEvidence;
+    shared[i] = white[i] + gain[i];
+  }
+  const double paths =
+      log_evidence_of_free_form(ground.likelihood, w.evidences, ground.arcs.smooth.chi2);
+  w.evidences.shared_or_other =
+      of_any_size && paths > log_sum(white) - margin && log_sum(shared) > paths;
+  const double more = w.evidences.shared_or_other ? 0.0 : log_sum(shared) - log_sum(white);
+  if (!std::isfinite(more)) {
+    return w;
+  }
+  for (std::size_t i = 1; i < gain.size(); ++i) {
+    w.evidences.log_shared[i] = gain[i] - more;
+  }
+  return refine_plausible(std::move(w), ground, margin);
+}
+
+}  // namespace palpate
