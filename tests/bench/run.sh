@@ -96,6 +96,10 @@ step "peers on the same points"
 /usr/bin/python3 tests/bench/peers/peers.py "$out" >"$out/peers.md"
 /usr/bin/python3 tests/bench/peers/given_class.py build/strict/node/tool/palpate >"$out/given_class.md" ||
   echo "a class that is given: no peers (python3-scipy)"
+measure "a class that is given, against 50 digits" given_reference.md /usr/bin/python3 \
+  tests/bench/peers/given_reference.py build/strict/node/tool/palpate
+measure "touches one at a time beside an exhaustive reference" touches.txt "$bench/accuracy/bench_touches" --reference \
+  --scenes $peers
 
 step "report"
 /usr/bin/python3 tests/bench/report/report.py "$out" --scale $scale

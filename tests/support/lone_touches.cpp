@@ -9,6 +9,45 @@
 #include "core/curves/curve.h"
 
 namespace palpate::test {
+namespace {
+
+/// A tip's centre on that side of the curve, + for the left of increasing t.
+Vec2 lifted(const Curve& curve, double t, double lift_m) {
+  return position(curve, t) + lift_m * left_of(derivatives(curve, t).first.normalized());
+}
+
+/// Of the stretch of the curve that has these parameters. [m]
+std::vector<Vec2> places_along(const Curve& curve, const std::vector<double>& t) {
+  constexpr int kPlaces = 500;
+  const auto [low, high] = std::minmax_element(t.begin(), t.end());
+  std::vector<Vec2> along;
+  for (int i = 0; i <= kPlaces; ++i) {
+    along.push_back(position(curve, *low + (*high - *low) * i / kPlaces));
+  }
+  return along;
+}
+
+/// Whether a tip can be there: nothing of the curve lies within it, but for what its roundness
+/// leaves between two of the places.
+bool has_room(const std::vector<Vec2>& along, const Vec2& centre_m, double tip_radius_m) {
+  constexpr double kTouching = 0.999;
+  return std::none_of(along.begin(), along.end(), [&](const Vec2& place) {
+    return (place - centre_m).norm() < kTouching * tip_radius_m;
+  });
+}
+
+/// Whether the touched stretch goes through one place twice, as no wall does: a spline with c < 0,
+/// whose x = t^2 and y(t) = y(-t) at a t^2 = -c.
+bool crosses_itself(const Scene& scene) {
+  if (scene.curve_class != CurveClass::CubicSpline || scene.values[2] >= 0.0) {
+    return false;
+  }
+  const double crossing = std::sqrt(-scene.values[2] / scene.values[0]);
+  const auto [low, high] = std::minmax_element(scene.t.front().begin(), scene.t.front().end());
+  return *low < -crossing && crossing < *high;
+}
+
+}  // namespace
 
 LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_size,
                          double tip_over_size, std::mt19937_64& rng) {
@@ -21,7 +60,9 @@ LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_si
   options.least_fraction = has_cusp ? 0.3 : 0.7;
   options.most_fraction = has_cusp ? 0.4 : 0.95;
   LoneTouches touches;
-  touches.scene = random_scene(curve_class, options, rng);
+  do {
+    touches.scene = random_scene(curve_class, options, rng);
+  } while (tip_over_size > 0.0 && crosses_itself(touches.scene));
   touches.tip_radius_m = tip_over_size * options.size_m;
   const auto curve = make_curve(touches.scene.curve_class, touches.scene.values);
   const std::vector<Vec2> places = touches.scene.patches.front();
@@ -31,9 +72,15 @@ LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_si
   const double side = bend >= 0.0 ? -1.0 : 1.0;  // of increasing t, on which the centres lie
   std::vector<std::size_t> order(places.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  // Where the curve bends towards the tip more sharply than it is round, no tip comes.
+  // Where the curve bends towards the tip more sharply than it is round, or lies in its way
+  // elsewhere, no tip comes.
+  const std::vector<Vec2> along = places_along(*curve, t);
   std::erase_if(order, [&](std::size_t k) {
-    return side * touches.tip_radius_m * geometry(*curve, t[k]).kappa > 0.9;
+    constexpr double kRoom = 0.9;
+    return touches.tip_radius_m > 0.0 &&
+           (side * touches.tip_radius_m * geometry(*curve, t[k]).kappa > kRoom ||
+            !has_room(along, lifted(*curve, t[k], side * touches.tip_radius_m),
+                      touches.tip_radius_m));
   });
   std::shuffle(order.begin(), order.end(), rng);
   touches.scene.patches.clear();

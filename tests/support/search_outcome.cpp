@@ -12,6 +12,7 @@
 #include "core/recognition/fit/touchable.h"
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/smooth/smooth_model.h"
+#include "tests/support/placed_fit.h"
 
 namespace palpate::test {
 namespace {
@@ -72,45 +73,8 @@ Prepared prepare(const SearchCase& search_case) {
 /// The true curve in the data's frame, as a fit to the reduced points.
 ClassFit truth_of(const Scene& scene, const Prepared& prepared) {
   const FitData& reduced = prepared.reduced;
-  ClassFit truth;
-  truth.curve_class = scene.curve_class;
-  Pose2 pose = reduced.frame.inverse() * scene.world_T_curve;
-  const Eigen::Vector3d& v = scene.values;
-  PolynomialFit polynomial;
-  PolynomialCoefficients& c = polynomial.coefficients;
-  switch (scene.curve_class) {
-    case CurveClass::Parabola:
-      c.col(1) = Vec2(0.0, 2.0 * v[0]);
-      c.col(2) = Vec2(v[0], 0.0);
-      break;
-    case CurveClass::CubicalParabola:
-      c.col(1) = Vec2(1.0, v[1]);
-      c.col(3) = Vec2(0.0, v[0]);
-      break;
-    case CurveClass::SemiCubicalParabola:
-    case CurveClass::CubicSpline:
-      c.col(1) = Vec2(0.0, v[2]);
-      c.col(2) = Vec2(1.0, v[1]);
-      c.col(3) = Vec2(0.0, v[0]);
-      break;
-    default: {
-      pose.x /= reduced.scale;
-      pose.y /= reduced.scale;
-      Eigen::Vector3d values = v;
-      if (scene.curve_class != CurveClass::Line) {
-        values /= reduced.scale;
-      }
-      ImplicitFit fit;
-      fit.coefficients = conic_of(scene.curve_class, values, pose);
-      truth.implicit = fit;
-      return truth;
-    }
-  }
-  for (int k = 0; k < 4; ++k) {
-    c.col(k) = pose.rotate(c.col(k)) / reduced.scale;
-  }
-  c.col(0) += pose.translation() / reduced.scale;
   // Parameters: those of the nearest samples of the same patch.
+  std::vector<double> t;
   for (std::size_t p = 0; p < reduced.patches.size(); ++p) {
     const auto samples = prepared.data.patch(p);
     for (const FitPoint& point : reduced.patch(p)) {
@@ -119,22 +83,10 @@ ClassFit truth_of(const Scene& scene, const Prepared& prepared) {
             return (a.position - point.position).squaredNorm() <
                    (b.position - point.position).squaredNorm();
           });
-      polynomial.t.push_back(scene.t[p][static_cast<std::size_t>(nearest - samples.begin())]);
+      t.push_back(scene.t[p][static_cast<std::size_t>(nearest - samples.begin())]);
     }
   }
-  // t in [-1, 1], as all fits have it.
-  double reach = 0.0;
-  for (const double t : polynomial.t) {
-    reach = std::max(reach, std::abs(t));
-  }
-  for (int k = 1; k < 4; ++k) {
-    c.col(k) *= std::pow(reach, k);
-  }
-  for (double& t : polynomial.t) {
-    t /= reach;
-  }
-  truth.polynomial = std::move(polynomial);
-  return truth;
+  return placed_fit({scene.curve_class, scene.values}, scene.world_T_curve, reduced, t);
 }
 
 double chi2_of(const std::optional<ClassFit>& fit) { return fit ? fit->chi2 : kInfinity; }

@@ -1,25 +1,54 @@
 #include "core/recognition/samples/farthest_first.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace palpate {
+namespace {
+
+/// `least_square`: of the distance, which may be -1 for points that lie in one place.
+Spread spread_by_squares(std::span<const Vec2> points, std::size_t most, double least_square) {
+  Spread spread;
+  spread.nearest.assign(points.size(), 0);
+  most = std::min(most, points.size());
+  std::vector<double> squares(points.size(), std::numeric_limits<double>::infinity());
+  double apart = std::numeric_limits<double>::infinity();
+  std::size_t next = 0;
+  while (spread.chosen.size() < most && squares[next] > least_square) {
+    apart = squares[next];
+    const Vec2 last = points[next];
+    squares[next] = -1.0;  // chosen: points that lie in one place are all the same distance away
+    spread.nearest[next] = spread.chosen.size();
+    double farthest = -std::numeric_limits<double>::infinity();
+    std::size_t at = next;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double square = (points[k] - last).squaredNorm();
+      if (square < squares[k]) {
+        squares[k] = square;
+        spread.nearest[k] = spread.chosen.size();
+      }
+      if (squares[k] > farthest) {
+        farthest = squares[k];
+        at = k;
+      }
+    }
+    spread.chosen.push_back(next);
+    next = at;
+  }
+  spread.apart = std::sqrt(apart);
+  return spread;
+}
+
+}  // namespace
+
+Spread spread_widest(std::span<const Vec2> points, std::size_t most, double least) {
+  return spread_by_squares(points, most, least * least);
+}
 
 std::vector<std::size_t> farthest_first(std::span<const Vec2> points, std::size_t most) {
-  std::vector<double> squares(points.size(), std::numeric_limits<double>::infinity());
-  std::vector<std::size_t> chosen;
-  std::size_t next = 0;
-  while (chosen.size() < std::min(most, points.size())) {
-    chosen.push_back(next);
-    const Vec2& last = points[next];
-    squares[next] = -1.0;  // chosen: points that lie in one place are all the same distance away
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      squares[k] = std::min(squares[k], (points[k] - last).squaredNorm());
-    }
-    next = static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) -
-                                    squares.begin());
-  }
-  return chosen;
+  constexpr double kAnyDistance = -2.0;
+  return spread_by_squares(points, most, kAnyDistance).chosen;
 }
 
 }  // namespace palpate

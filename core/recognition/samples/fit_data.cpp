@@ -170,6 +170,7 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
       *sigma_known = *sigma_known && sigma_m > 0.0;
       FitPoint point;
       point.position = to_frame(sample.position_m) / data.scale;
+      point.tangent = data.frame.rotate_back(patch.direction);
       point.offset = patch.context.tip_radius_m / data.scale;
       const double sigma = sigma_m > 0.0 ? std::max(sigma_m / data.scale, least_sigma) : 1.0;
       point.inverse_sigma = std::sqrt(sample.weight) / sigma;

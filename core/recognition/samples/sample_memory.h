@@ -32,6 +32,10 @@ struct StoredPatch {
   /// Touches strung into a run (touches/strung_touches.h): it changes anywhere, not only at its
   /// end.
   bool strung = false;
+  /// Of a touch alone that lies on the way through such runs: the way's direction, unit, and the
+  /// turn of its step there [rad]; zero where there is none.
+  Vec2 direction = Vec2::Zero();
+  double turn = 0.0;
 };
 
 /// What tells that a patch of a memory, whose samples come at its end, is still the same.

@@ -95,8 +95,8 @@ std::vector<double> turns_of(const FitData& reduced) {
 }
 
 std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
-                                             const FitData& reduced,
-                                             std::span<const double> bends) {
+                                             const FitData& reduced, std::span<const double> bends,
+                                             std::span<const double> senses) {
   std::vector<int> known(reduced.patches.size(), 0);
   std::vector<int> outside_of_bend(reduced.patches.size(), 0);
   bool any_unknown = false;
@@ -130,8 +130,11 @@ std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patche
   };
   add([&](std::size_t i) { return outside_of_bend[i]; });
   add([&](std::size_t i) { return -outside_of_bend[i]; });
-  add([](std::size_t) { return 1; });
-  add([](std::size_t) { return -1; });
+  const auto left_of_curve = [&](std::size_t i) {
+    return !senses.empty() && senses[i] < 0.0 ? -1 : 1;
+  };
+  add([&](std::size_t i) { return left_of_curve(i); });
+  add([&](std::size_t i) { return -left_of_curve(i); });
   return ways;
 }
 

@@ -25,12 +25,15 @@ std::vector<double> turns_of(const FitData& reduced);
 /// The ways in which the material may lie beside the patches: +1 where a tip centre lies to the
 /// left of travel, -1 to the right, per patch. One way where measured normals show it beyond doubt
 /// (they know better than what is stated) or the probes say it; otherwise the part
-/// is taken to be convex everywhere or concave everywhere, or on the same side of every patch's
-/// travel. Surface contacts (no tip radius) have the single way of zeros.
-/// `bends`: the side to which each patch bends, > 0 for left. A touch alone in its patch has no
-/// travel that a probe could say a side of: its direction is that of its point's tangent.
+/// is taken to be convex everywhere or concave everywhere, or on the same side of the curve all
+/// along. Surface contacts (no tip radius) have the single way of zeros.
+/// `bends`: the side to which each patch bends, > 0 for left. `senses`: < 0 where a patch travels
+/// against the curve; empty where no curve is known, and the same side is that of every patch's own
+/// travel. A touch alone in its patch has no travel that a probe could say a side of: its direction
+/// is that of its point's tangent.
 std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
-                                             const FitData& reduced, std::span<const double> bends);
+                                             const FitData& reduced, std::span<const double> bends,
+                                             std::span<const double> senses = {});
 
 /// How far from the surface a point may be put where a tip is taken off along its tangent's normal:
 /// as far as the direction's error turns the tip's radius. `noise`: in units of what is taken for

@@ -65,16 +65,19 @@ void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
   const Vec2 first = data->points[section.begin].position;
   const Vec2 along = data->points[section.end - 1].position - first;
   const double whole = along.norm();
+  const Vec2& told = data->points[section.begin].tangent;  // of a touch alone
+  const Vec2 axis = whole > 0.0 ? Vec2(along / whole) : told.isZero() ? Vec2(1.0, 0.0) : told;
   model->sections.push_back({model->reduced.points.size(),
                              model->reduced.points.size() + section.size(), first + 0.5 * along,
-                             whole > 0.0 ? Vec2(along / whole) : Vec2(1.0, 0.0),
-                             whole > 0.0 ? 0.5 * whole : 1.0, false, true});
+                             axis, whole > 0.0 ? 0.5 * whole : 1.0, false, true});
   for (std::size_t i = section.begin; i < section.end; ++i) {
     const std::size_t before = i > section.begin ? i - 1 : i;
     const std::size_t after = i + 1 < section.end ? i + 1 : i;
     const Vec2 chord = data->points[after].position - data->points[before].position;
     const double length = chord.norm();
-    data->points[i].tangent = length > 0.0 ? Vec2(chord / length) : Vec2(0.0, 0.0);
+    if (section.size() > 1) {
+      data->points[i].tangent = length > 0.0 ? Vec2(chord / length) : Vec2(0.0, 0.0);
+    }
     model->nearest_reduced[i] = static_cast<std::uint32_t>(model->reduced.points.size());
     model->reduced.points.push_back(data->points[i]);
   }

@@ -9,10 +9,12 @@
 #include <utility>
 
 #include "core/curves/curve.h"
+#include "core/numerics/negligible.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/samples/farthest_first.h"
 #include "core/recognition/smooth/arcs.h"
+#include "core/recognition/touches/shortest_way.h"
 
 namespace palpate {
 namespace {
@@ -23,9 +25,9 @@ namespace {
 constexpr std::size_t kRun = 12;
 constexpr double kTurn = 0.6;  // rad
 
-/// Touches that the curve for the order is sought through: more would cost time and tell no more of
-/// the order.
-constexpr std::size_t kSought = 48;
+/// Touches that the curve for the order is sought through, four for each of a spline's unknowns:
+/// more would cost time and tell no more of the order.
+constexpr std::size_t kSought = 24;
 
 using Indices = std::vector<std::size_t>;
 
@@ -96,42 +98,6 @@ Ordered ordered_along(const CanonicalFit& fit, const Curve& curve, const FitData
   return ordered;
 }
 
-/// In straight steps. [m]
-double length_of(const std::vector<Vec2>& path_m) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < path_m.size(); ++i) {
-    length += (path_m[i] - path_m[i - 1]).norm();
-  }
-  return length;
-}
-
-/// Length of the shortest tree through all points, by Prim's algorithm: no way through them is
-/// shorter, in whatever order. [m]
-double shortest_tree(const std::vector<Vec2>& points_m) {
-  std::vector<double> from_tree(points_m.size(), std::numeric_limits<double>::infinity());
-  std::vector<bool> in_tree(points_m.size(), false);
-  double length = 0.0;
-  std::size_t last = 0;
-  for (std::size_t taken = 1; taken < points_m.size(); ++taken) {
-    in_tree[last] = true;
-    std::size_t next = last;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < points_m.size(); ++i) {
-      if (in_tree[i]) {
-        continue;
-      }
-      from_tree[i] = std::min(from_tree[i], (points_m[i] - points_m[last]).norm());
-      if (from_tree[i] < nearest) {
-        nearest = from_tree[i];
-        next = i;
-      }
-    }
-    length += nearest;
-    last = next;
-  }
-  return length;
-}
-
 struct PlacedCurve {
   Curve curve;
   Pose2 world_T_curve;
@@ -174,7 +140,6 @@ std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, 
   const FitData& reduced = arcs.smooth.reduced;
   // A conic that explains the touches within their noise, and does not go back and forth between
   // them as the two sides of a needle would, has them in their order, whatever else may.
-  constexpr double kDetour = 1.1;  // a step back over a tenth of the way
   std::optional<PlacedCurve> conic =
       best_of(fit_classes(reduced, nullptr, classes & ~kCubics), arcs, ~kCubics);
   const bool orders = conic && arcs.sigma_known &&
@@ -185,39 +150,41 @@ std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, 
              : best_of(fit_classes(reduced, nullptr, classes), arcs, kAllClasses);
 }
 
-/// A touch's place on the curve.
+/// A touch's place in the order of all.
 struct Place {
   std::size_t patch = 0;
-  double t = 0.0;
+  double along = 0.0;  ///< what they are ordered by
+  /// Between what the path may have turned by up to there. [rad]
+  double least_angle = 0.0, most_angle = 0.0;
+  Vec2 direction = Vec2::Zero();  ///< there, if it is known
+  double turn = 0.0;              ///< as StoredPatch::turn
 };
 
 double angle_between(const Vec2& a, const Vec2& b) {
   return std::abs(std::atan2(cross(a, b), a.dot(b)));
 }
 
-/// By how much the curve turns between two places: over the middle, so that more than half a turn
-/// shows.
-double turn_between(const Curve& curve, const Place& a, const Place& b) {
-  const double period = domain(curve).period;
-  const double end = b.t >= a.t ? b.t : b.t + period;
+/// By how much the curve turns between two parameters: over the middle, so that more than half a
+/// turn shows.
+double turn_between(const Curve& curve, double a, double b) {
+  const double end = b >= a ? b : b + domain(curve).period;
   const auto tangent = [&](double t) { return derivatives(curve, t).first; };
-  const Vec2 middle = tangent(0.5 * (a.t + end));
-  return angle_between(tangent(a.t), middle) + angle_between(middle, tangent(end));
+  const Vec2 middle = tangent(0.5 * (a + end));
+  return angle_between(tangent(a), middle) + angle_between(middle, tangent(end));
 }
 
-/// Which of `places`, in their order along the curve, are runs: [begin, end).
-std::vector<PatchSpan> runs_of(const Curve& curve, const std::vector<Place>& places) {
+/// Which of `places`, in their order, are runs: [begin, end).
+std::vector<PatchSpan> runs_of(const std::vector<Place>& places) {
   std::vector<PatchSpan> runs;
-  if (places.size() < kRun) {
-    return runs;
-  }
-  std::vector<double> turned = {0.0};  // up to each place
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    turned.push_back(turned.back() + turn_between(curve, places[i - 1], places[i]));
-  }
   for (std::size_t begin = 0; begin + kRun <= places.size(); ++begin) {
     const std::size_t end = begin + kRun;
-    if (turned[end - 1] - turned[begin] > kTurn) {
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (std::size_t i = begin; i < end; ++i) {
+      least = std::min(least, places[i].least_angle);
+      most = std::max(most, places[i].most_angle);
+    }
+    if (most - least > kTurn) {
       continue;
     }
     if (!runs.empty() && begin < runs.back().end) {
@@ -247,14 +214,90 @@ StoredPatch strung(std::span<const StoredPatch> patches, std::span<const Place> 
   return run;
 }
 
-}  // namespace
+/// Runs, and which patches they have taken up.
+struct Strung {
+  std::vector<StoredPatch> runs;
+  std::vector<bool> taken;
+  std::vector<Place> alone;  ///< whose direction is known
 
-std::optional<std::vector<StoredPatch>> strung_touches(std::span<const StoredPatch> patches,
-                                                       double default_sigma_m, unsigned classes) {
-  const Indices lone = lone_patches(patches);
-  if (lone.size() < kRun) {
-    return std::nullopt;
+  explicit Strung(std::size_t patches) : taken(patches, false) {}
+
+  void add(std::span<const StoredPatch> patches, const std::vector<Place>& places) {
+    for (const PatchSpan& run : runs_of(places)) {
+      const auto of_run = std::span(places).subspan(run.begin, run.size());
+      runs.push_back(strung(patches, of_run));
+      for (const Place& place : of_run) {
+        taken[place.patch] = true;
+      }
+    }
+    for (const Place& place : places) {
+      if (!taken[place.patch] && !place.direction.isZero()) {
+        alone.push_back(place);
+      }
+    }
   }
+};
+
+std::map<double, Indices> by_tip(std::span<const StoredPatch> patches, const Indices& lone) {
+  std::map<double, Indices> of_tip;  // by its radius [m]
+  for (const std::size_t p : lone) {
+    of_tip[patches[p].context.tip_radius_m].push_back(p);
+  }
+  return of_tip;
+}
+
+/// In the order of the shortest way through them, which needs no curve; nullopt where that leaves a
+/// doubt, and then where a smooth path through the runs leaves more than the noise that is stated.
+std::optional<Strung> strung_by_way(std::span<const StoredPatch> patches, const Indices& lone,
+                                    double default_sigma_m) {
+  // Of the noise: closer together it would have a say in the order.
+  constexpr double kLeastStep = 20.0;
+  Strung result(patches.size());
+  for (const auto& [tip_radius_m, of_tip] : by_tip(patches, lone)) {
+    if (of_tip.size() < kRun) {
+      continue;
+    }
+    std::vector<Vec2> places_m;
+    double sigma_m = 0.0;
+    for (const std::size_t p : of_tip) {
+      const StoredSample& sample = patches[p].samples.front();
+      const double own_m = sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+      if (!(own_m > 0.0)) {
+        return std::nullopt;
+      }
+      sigma_m = std::max(sigma_m, own_m);
+      places_m.push_back(sample.position_m);
+    }
+    const auto way = shortest_way(places_m, kLeastStep * sigma_m);
+    if (!way) {
+      return std::nullopt;
+    }
+    std::vector<Place> places;
+    for (const OnWay& on_way : *way) {
+      // Where a step turns as far as a run may, its direction is no direction of the touch.
+      const bool straight = on_way.most_angle - on_way.least_angle <= kTurn;
+      places.push_back(
+          {of_tip[on_way.place], on_way.along, on_way.least_angle, on_way.most_angle,
+           straight ? Vec2(std::cos(on_way.angle), std::sin(on_way.angle)) : Vec2(0.0, 0.0),
+           on_way.turn});
+    }
+    result.add(patches, places);
+  }
+  if (result.runs.empty()) {
+    return result;
+  }
+  bool sigma_known = false;
+  FitData data = make_fit_data(result.runs, default_sigma_m, &sigma_known);
+  const SmoothModel smooth = fit_smooth_model(&data, sigma_known);
+  const bool followed = std::none_of(smooth.sections.begin(), smooth.sections.end(),
+                                     [](const ReducedSection& section) { return section.kept; });
+  return followed && can_be_noise(smooth.chi2, smooth.dof()) ? std::optional(std::move(result))
+                                                             : std::nullopt;
+}
+
+/// In the order of the curve that explains them best; nullopt where there is none.
+std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, const Indices& lone,
+                                      double default_sigma_m, unsigned classes) {
   std::vector<StoredPatch> sought;
   for (const StoredPatch& patch : patches) {
     if (patch.samples.size() > 1) {
@@ -266,37 +309,55 @@ std::optional<std::vector<StoredPatch>> strung_touches(std::span<const StoredPat
   }
   bool sigma_known = false;
   const FitData data = make_fit_data(sought, default_sigma_m, &sigma_known);
-  const auto curve = curve_through(data, sigma_known, classes);
-  if (!curve) {
+  const auto found = curve_through(data, sigma_known, classes);
+  if (!found) {
     return std::nullopt;
   }
-  std::map<double, std::vector<Place>> of_tip;  // by its radius [m]
-  for (const std::size_t p : lone) {
-    const Vec2 local = curve->world_T_curve.to_local(patches[p].samples.front().position_m);
-    of_tip[patches[p].context.tip_radius_m].push_back({p, foot_point(curve->curve, local).t});
-  }
-  std::vector<bool> taken(patches.size(), false);
-  std::vector<StoredPatch> runs;
-  for (auto& [tip_radius_m, places] : of_tip) {
-    sort_along(curve->curve, &places, [](const Place& place) { return place.t; });
-    for (const PatchSpan& run : runs_of(curve->curve, places)) {
-      const auto of_run = std::span(places).subspan(run.begin, run.size());
-      runs.push_back(strung(patches, of_run));
-      for (const Place& place : of_run) {
-        taken[place.patch] = true;
-      }
+  const Curve& curve = found->curve;
+  Strung result(patches.size());
+  for (const auto& [tip_radius_m, of_tip] : by_tip(patches, lone)) {
+    std::vector<Place> places;
+    for (const std::size_t p : of_tip) {
+      const Vec2 local = found->world_T_curve.to_local(patches[p].samples.front().position_m);
+      places.push_back({p, foot_point(curve, local).t, 0.0, 0.0, Vec2(0.0, 0.0), 0.0});
     }
+    sort_along(curve, &places, [](const Place& place) { return place.along; });
+    for (std::size_t i = 1; i < places.size(); ++i) {
+      places[i].least_angle = places[i].most_angle =
+          places[i - 1].most_angle + turn_between(curve, places[i - 1].along, places[i].along);
+    }
+    result.add(patches, places);
   }
-  if (runs.empty()) {
+  return result;
+}
+
+}  // namespace
+
+std::optional<std::vector<StoredPatch>> strung_touches(std::span<const StoredPatch> patches,
+                                                       double default_sigma_m, unsigned classes) {
+  const Indices lone = lone_patches(patches);
+  if (lone.size() < kRun) {
     return std::nullopt;
+  }
+  auto strung = strung_by_way(patches, lone, default_sigma_m);
+  if (!strung) {
+    strung = strung_by_curve(patches, lone, default_sigma_m, classes);
+  }
+  if (!strung || strung->runs.empty()) {
+    return std::nullopt;
+  }
+  std::vector<StoredPatch> all(patches.begin(), patches.end());
+  for (const Place& place : strung->alone) {
+    all[place.patch].direction = place.direction;
+    all[place.patch].turn = place.turn;
   }
   std::vector<StoredPatch> result;
-  for (std::size_t p = 0; p < patches.size(); ++p) {
-    if (!taken[p]) {
-      result.push_back(patches[p]);
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    if (!strung->taken[p]) {
+      result.push_back(std::move(all[p]));
     }
   }
-  std::move(runs.begin(), runs.end(), std::back_inserter(result));
+  std::move(strung->runs.begin(), strung->runs.end(), std::back_inserter(result));
   return result;
 }
 

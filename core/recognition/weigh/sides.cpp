@@ -56,10 +56,12 @@ Way way_of(ClassFits fits, FitData reduced, const Judged& by) {
   return way;
 }
 
+/// Of chi-square: what changes odds less than tenfold.
+constexpr double kAgreement = 4.6;  // 2 ln 10
+
 /// Whether the reduced points, tips taken off, tell of the candidate what all points do: to within
 /// what changes odds less than tenfold.
 bool agrees(const Way& way, const SmoothModel& smooth) {
-  constexpr double kAgreement = 4.6;  // of chi-square: 2 ln 10
   return way.refined && std::abs(way.settled->chi2 + smooth.chi2 - way.refined->chi2) <= kAgreement;
 }
 
@@ -150,8 +152,11 @@ Way fit_along(FitData touches, std::span<const int> sides, const Judged& by,
     }
     // (a candidate that is no such curve on all points says nothing about the directions of all)
     const bool swayed = way.refined && !agrees(way, smooth);
-    const auto curve =
-        swayed || has_kept_tips(smooth) ? to_canonical(*way.settled, way.reduced) : std::nullopt;
+    // On all points distances are those of the tips' centres, whatever the directions.
+    const bool of_all = swayed && way.refined->chi2 < way.settled->chi2 + smooth.chi2;
+    const auto curve = of_all                            ? to_canonical(*way.refined, by.arcs.data)
+                       : swayed || has_kept_tips(smooth) ? to_canonical(*way.settled, way.reduced)
+                                                         : std::nullopt;
     if (!curve) {
       break;
     }
@@ -163,7 +168,11 @@ Way fit_along(FitData touches, std::span<const int> sides, const Judged& by,
     const PolynomialFits carried = carried_to(warm_start_from(way.fits, way.reduced), nearer);
     ClassFits again = fit_classes(nearer, &carried, by.classes);
     const double before = way.settled->chi2;
-    way = way_of(std::move(again), std::move(nearer), by);
+    Way next = way_of(std::move(again), std::move(nearer), by);
+    if (swayed && !(next.refined && next.refined->chi2 <= way.refined->chi2 + kAgreement)) {
+      break;  // led astray
+    }
+    way = std::move(next);
     if (way.settled && tells_noise(by.arcs, by.likelihood) &&
         way.settled->chi2 > before / kLeastGain &&
         !fits_well(way.settled->chi2, residual_count(way.reduced))) {
@@ -192,24 +201,41 @@ Way fit_way(const FitData& touches, std::span<const int> sides, const Judged& by
   return better ? again : way;
 }
 
-/// The reduced points with directions for those that show none, and the sides to which the patches
-/// bend.
+/// The reduced points with directions for those that show none, the sides to which the patches
+/// bend, and how they travel along the curve of the centres where that was needed.
 struct Directed {
   FitData touches;
   std::vector<double> bends;
+  std::vector<double> senses;
 };
 
 /// What the tips do not show by themselves comes from the curve of their centres.
-Directed directed(const SmoothModel& smooth, CurveOfCentres* centres) {
-  Directed result{smooth.reduced, {}};
-  if (has_kept_tips(smooth) || has_uncertain_bends(smooth)) {
+Directed directed(std::span<const StoredPatch> patches, const SmoothModel& smooth,
+                  CurveOfCentres* centres) {
+  Directed result{smooth.reduced, {}, {}};
+  const bool untold = has_untold_tips(smooth);
+  if (untold || has_uncertain_bends(smooth)) {
     if (const auto& curve = centres->get()) {
-      set_directions(DirectionsOf::KeptPoints, *curve, smooth, &result.touches);
+      set_directions(DirectionsOf::UntoldPoints, *curve, smooth, &result.touches);
       result.bends = bends_of(*curve, result.touches);
-      return result;
+      if (untold) {
+        result.senses = senses_of(*curve, result.touches);
+      }
     }
   }
-  result.bends = turns_of(result.touches);
+  if (result.bends.empty()) {
+    result.bends = turns_of(result.touches);
+  }
+  auto bend = result.bends.begin();
+  for (const StoredPatch& patch : patches) {
+    if (patch.samples.empty()) {
+      continue;
+    }
+    if (!patch.direction.isZero()) {
+      *bend = patch.turn;
+    }
+    ++bend;
+  }
   return result;
 }
 
@@ -224,8 +250,8 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Judged& by,
   // RECOGNIZED.
   constexpr double kInsideProbability = 0.01;
   CurveOfCentres centres(by);
-  const auto [touches, bends] = directed(by.arcs.smooth, &centres);
-  const auto ways = possible_sides(patches, touches, bends);
+  const auto [touches, bends, senses] = directed(patches, by.arcs.smooth, &centres);
+  const auto ways = possible_sides(patches, touches, bends, senses);
   if (!has_tips(touches.points)) {
     FitData reduced = on_surface(touches, ways.front());
     ClassFits fits = fit_classes_from(starts, ways.front(), reduced, by.classes, by.out_of_reach);

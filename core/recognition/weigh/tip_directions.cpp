@@ -9,24 +9,32 @@
 namespace palpate {
 namespace {
 
-/// The curve's direction at the foot of a point, in the points' frame; zero on a cusp.
-Vec2 direction_at(const Curve& curve, const CanonicalFit& fit, std::size_t i, const Pose2& frame) {
-  const Vec2 along = derivatives(curve, fit.points[i].t).first;
-  const double length = along.norm();
-  return length > 0.0 ? Vec2(frame.rotate_back(fit.world_T_curve.rotate(along)) / length)
-                      : Vec2(0.0, 0.0);
+/// The curve's directions at the feet of the touches' points, in their frame; zero on a cusp. Feet
+/// of the tips' centres, from which the curve is seen the same however little of it bends: a
+/// surface point that is a little off may have its foot on the other side of a sharp bend.
+std::vector<Vec2> directions_of(const Curve& curve, const CanonicalFit& fit,
+                                const FitData& touches) {
+  std::vector<Vec2> directions;
+  for (const FitPoint& point : touches.points) {
+    const Vec2 local =
+        fit.world_T_curve.to_local(touches.frame * Vec2(touches.scale * point.position));
+    const Vec2 along = derivatives(curve, foot_point(curve, local).t).first;
+    const double length = along.norm();
+    directions.push_back(
+        length > 0.0 ? Vec2(touches.frame.rotate_back(fit.world_T_curve.rotate(along)) / length)
+                     : Vec2(0.0, 0.0));
+  }
+  return directions;
 }
 
 /// Whether a patch was travelled as the curve's parameter rises (1) or falls (-1): as most of the
 /// samples that `path` stands for have it. A patch runs along its curve one way, whatever the
 /// direction that noise gave to one of its points. 0 where no point of `path` has a direction.
-double sense_of(const Curve& curve, const CanonicalFit& fit, const FitData& path,
-                const PatchSpan& patch) {
+double sense_of(const std::vector<Vec2>& directions, const FitData& path, const PatchSpan& patch) {
   double sum = 0.0;
   for (std::size_t i = patch.begin; i < patch.end; ++i) {
     const FitPoint& point = path.points[i];
-    sum += point.inverse_sigma * point.inverse_sigma *
-           direction_at(curve, fit, i, path.frame).dot(point.tangent);
+    sum += point.inverse_sigma * point.inverse_sigma * directions[i].dot(point.tangent);
   }
   return sum < 0.0 ? -1.0 : (sum > 0.0 ? 1.0 : 0.0);
 }
@@ -36,7 +44,19 @@ double turned_by(const Vec2& before, const Vec2& after) {
   return before.isZero() ? kPi : std::abs(std::atan2(cross(before, after), before.dot(after)));
 }
 
+/// Whether a touch alone has its direction from elsewhere.
+bool is_told(const ReducedSection& section, const FitData& reduced) {
+  return section.end - section.begin == 1 && !reduced.points[section.begin].tangent.isZero();
+}
+
 }  // namespace
+
+bool has_untold_tips(const SmoothModel& smooth) {
+  return std::any_of(smooth.sections.begin(), smooth.sections.end(), [&](const auto& section) {
+    return section.kept && smooth.reduced.points[section.begin].offset > 0.0 &&
+           !is_told(section, smooth.reduced);
+  });
+}
 
 bool has_kept_tips(const SmoothModel& smooth) {
   return std::any_of(smooth.sections.begin(), smooth.sections.end(), [&](const auto& section) {
@@ -47,7 +67,8 @@ bool has_kept_tips(const SmoothModel& smooth) {
 bool has_uncertain_bends(const SmoothModel& smooth) {
   for (std::size_t p = 0; p < smooth.reduced.patches.size(); ++p) {
     const auto patch = smooth.reduced.patch(p);
-    if (!patch.empty() && patch.front().offset > 0.0 && !certain_turn(patch)) {
+    const bool told = patch.size() == 1 && !patch.front().tangent.isZero();
+    if (!patch.empty() && patch.front().offset > 0.0 && !told && !certain_turn(patch)) {
       return true;
     }
   }
@@ -61,18 +82,20 @@ double set_directions(DirectionsOf which, const CanonicalFit& fit, const SmoothM
   if (!curve) {
     return largest;
   }
+  const std::vector<Vec2> directions = directions_of(*curve, fit, *touches);
   auto section = smooth.sections.begin();
   for (const PatchSpan& patch : touches->patches) {
     // As the smooth model saw it travelled: sides are told by that, and a sense that followed each
     // round's curve could turn about within some rounds.
-    double sense = sense_of(*curve, fit, smooth.reduced, patch);
-    if (sense == 0.0) sense = sense_of(*curve, fit, *touches, patch) < 0.0 ? -1.0 : 1.0;
+    double sense = sense_of(directions, smooth.reduced, patch);
+    if (sense == 0.0) sense = sense_of(directions, *touches, patch) < 0.0 ? -1.0 : 1.0;
     for (; section != smooth.sections.end() && section->begin < patch.end; ++section) {
-      if (which == DirectionsOf::KeptPoints && !section->kept) {
+      if ((which != DirectionsOf::AllPoints && !section->kept) ||
+          (which == DirectionsOf::UntoldPoints && is_told(*section, smooth.reduced))) {
         continue;
       }
       for (std::size_t i = section->begin; i < section->end; ++i) {
-        const Vec2 along = sense * direction_at(*curve, fit, i, touches->frame);
+        const Vec2 along = sense * directions[i];
         if (!along.isZero()) {
           largest = std::max(largest, turned_by(touches->points[i].tangent, along));
           touches->points[i].tangent = along;
@@ -89,6 +112,7 @@ std::vector<double> bends_of(const CanonicalFit& fit, const FitData& touches) {
   if (!curve) {
     return bends;
   }
+  const std::vector<Vec2> directions = directions_of(*curve, fit, touches);
   for (std::size_t p = 0; p < bends.size(); ++p) {
     if (certain_turn(touches.patch(p))) {
       continue;
@@ -97,9 +121,20 @@ std::vector<double> bends_of(const CanonicalFit& fit, const FitData& touches) {
     for (std::size_t i = touches.patches[p].begin; i < touches.patches[p].end; ++i) {
       sum += geometry(*curve, fit.points[i].t).kappa;
     }
-    bends[p] = sense_of(*curve, fit, touches, touches.patches[p]) < 0.0 ? -sum : sum;
+    bends[p] = sense_of(directions, touches, touches.patches[p]) < 0.0 ? -sum : sum;
   }
   return bends;
+}
+
+std::vector<double> senses_of(const CanonicalFit& fit, const FitData& touches) {
+  std::vector<double> senses(touches.patches.size(), 0.0);
+  if (const auto curve = make_curve(fit.shape.curve_class, fit.shape.values)) {
+    const std::vector<Vec2> directions = directions_of(*curve, fit, touches);
+    for (std::size_t p = 0; p < senses.size(); ++p) {
+      senses[p] = sense_of(directions, touches, touches.patches[p]);
+    }
+  }
+  return senses;
 }
 
 }  // namespace palpate

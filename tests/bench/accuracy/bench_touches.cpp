@@ -3,7 +3,10 @@
 // time. Prints a table.
 //   bench_touches [--scenes N] [--count N] [--noise SIGMA_OVER_SIZE] [--normals DEGREES]
 //   [--unstated]
-//                 [--seed S]
+//                 [--curve NAME] [--seed S] [--reference]
+// --reference: beside a search that leaves nothing out (tests/support/touch_reference.h), by points
+// of stated noise: where it says that the touches determine the class, whether that is recognised,
+// and how often an optimum was missed.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,10 +19,12 @@
 #include "tests/bench/options/thread_time.h"
 #include "tests/support/lone_touches.h"
 #include "tests/support/scene_data.h"
+#include "tests/support/touch_reference.h"
 
 namespace {
 
 using namespace palpate;
+using test::LoneTouches;
 
 struct Cell {
   int scenes = 0, recognized = 0, wrong = 0, sure = 0;
@@ -29,6 +34,37 @@ struct Cell {
   std::map<std::string, int> by_wrong;
 };
 
+LoneTouches scene_of(std::uint64_t seed, CurveClass curve_class, int count, int number,
+                     double noise, double tip, std::mt19937_64* rng) {
+  std::seed_seq seeds{seed, static_cast<std::uint64_t>(curve_class),
+                      static_cast<std::uint64_t>(count), static_cast<std::uint64_t>(number)};
+  rng->seed(seeds);
+  return test::lone_touches(curve_class, count, noise, tip, *rng);
+}
+
+void print_beside(const std::vector<int>& counts, int scenes, double noise, std::uint64_t seed,
+                  const std::string& curve) {
+  std::printf("%-22s %5s | %6s %10s | %10s %10s | %5s %6s | %s\n", "class", "count", "scenes",
+              "determined", "P >= 0.95", "RECOGNIZED", "wrong", "missed", "largest change of P");
+  test::BesideReference all;
+  for (const int count : counts) {
+    for (const CurveClass curve_class : kCurveClasses) {
+      if (!curve.empty() && curve != name_of(curve_class)) continue;
+      test::BesideReference cell;
+      std::mt19937_64 rng;
+      for (int i = 0; i < scenes; ++i) {
+        cell.add(scene_of(seed, curve_class, count, i, noise, 0.0, &rng));
+      }
+      std::printf("%-22s %5d | %6d %10d | %10d %10d | %5d %6d | %.3f\n",
+                  std::string(name_of(curve_class)).c_str(), count, cell.scenes, cell.determined,
+                  cell.sure, cell.recognized, cell.wrong, cell.missed, cell.farthest);
+      all += cell;
+    }
+  }
+  std::printf("%-22s %5s | %6d %10d | %10d %10d | %5d %6d |\n", "all", "", all.scenes,
+              all.determined, all.sure, all.recognized, all.wrong, all.missed);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -37,32 +73,40 @@ int main(int argc, char** argv) {
   std::uint64_t seed = 2026;
   int count_only = 0;
   bool unstated = false;
+  bool reference = false;
   double normals_deg = 0.0;
+  std::string curve;
   if (const auto end =
           bench::BenchOptions("Touches one at a time")
               .number("--scenes", scenes, "Number of scenes a row")
               .number("--count", count_only, "Touches of a scene; 0 = 4 to 1000")
+              .flag("--reference", reference, "Beside an exhaustive search, by points")
               .flag("--unstated", unstated, "The samples do not state their noise")
               .number("--noise", noise, "Noise over the size")
               .number("--normals", normals_deg, "Deviation of measured normals [degrees]; 0 = none")
+              .text("--curve", curve, "This class only")
               .seed(seed)
               .parse(argc, argv)) {
     return *end;
   }
-  std::printf("%-22s %5s %4s | %6s %5s %5s %5s | %9s | %7s %7s\n", "class", "count", "tip",
-              "scenes", "sure", "recog", "wrong", "err/dev", "ms p50", "max");
   const std::vector<int> counts = count_only > 0
                                       ? std::vector<int>{count_only}
                                       : std::vector<int>{4, 6, 8, 12, 20, 40, 100, 200, 1000};
+  if (reference) {
+    print_beside(count_only > 0 ? counts : std::vector<int>{4, 6, 8, 12, 20, 40, 100, 200}, scenes,
+                 noise, seed, curve);
+    return 0;
+  }
+  std::printf("%-22s %5s %4s | %6s %5s %5s %5s | %9s | %7s %7s\n", "class", "count", "tip",
+              "scenes", "sure", "recog", "wrong", "err/dev", "ms p50", "max");
   for (const int count : counts) {
     for (const double tip : {0.0, 0.05}) {
       for (const CurveClass curve_class : kCurveClasses) {
+        if (!curve.empty() && curve != name_of(curve_class)) continue;
         Cell cell;
         for (int i = 0; i < scenes; ++i) {
-          std::seed_seq seeds{seed, static_cast<std::uint64_t>(curve_class),
-                              static_cast<std::uint64_t>(count), static_cast<std::uint64_t>(i)};
-          std::mt19937_64 rng(seeds);
-          const test::LoneTouches touches = test::lone_touches(curve_class, count, noise, tip, rng);
+          std::mt19937_64 rng;
+          const LoneTouches touches = scene_of(seed, curve_class, count, i, noise, tip, &rng);
           Recognizer recognizer;
           const double sigma_m = unstated ? 0.0 : touches.scene.sigma_m;
           if (normals_deg > 0.0) {
