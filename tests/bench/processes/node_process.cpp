@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -76,13 +77,26 @@ double NodeProcess::resident_bytes() const {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
+namespace {
+
+/// Of variance 1, always the same, and of which neighbours know nothing: SplitMix64's mixing
+/// (G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators", 2014).
+double scatter_of(int i) {
+  std::uint64_t bits = 0x9e3779b97f4a7c15U * (static_cast<std::uint64_t>(i) + 1);
+  bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
+  bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebU;
+  bits ^= bits >> 31U;
+  return std::sqrt(12.0) * (std::ldexp(static_cast<double>(bits), -64) - 0.5);
+}
+
+}  // namespace
+
 v1::ContactBatch batch_of(int first, int count, std::uint64_t object) {
   v1::ContactBatch batch;
   batch.set_object(object);
   for (int i = first; i < first + count; ++i) {
     v1::ContactSample& sample = *batch.add_samples();
-    // A deterministic scatter of that standard deviation.
-    const double radius = kRadius_m + kSigma_m * std::sqrt(2.0) * std::sin(12.9898 * i);
+    const double radius = kRadius_m + kSigma_m * scatter_of(i);
     sample.set_x_m(radius * std::cos(kStep_rad * i));
     sample.set_y_m(radius * std::sin(kStep_rad * i));
     sample.set_sigma_m(kSigma_m);
