@@ -17,7 +17,7 @@ Spread spread_by_squares(std::span<const Vec2> points, std::size_t most, double 
   std::size_t next = 0;
   while (spread.chosen.size() < most && squares[next] > least_square) {
     apart = squares[next];
-    const Vec2 last = points[next];
+    const Vec2& last = points[next];
     squares[next] = -1.0;  // chosen: points that lie in one place are all the same distance away
     spread.nearest[next] = spread.chosen.size();
     double farthest = -std::numeric_limits<double>::infinity();
