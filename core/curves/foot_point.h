@@ -28,7 +28,7 @@ FootPoint foot_point_at(const C& curve, double t, const Vec2& point) {
 /// no farther away than rounding: for the last digits of a foot that is known to a few.
 template <typename C>
 double polish_foot_point(const C& curve, double t, const Vec2& point) {
-  constexpr int kMostIterations = 8;
+  constexpr int kMostIterations = 8;  // digits double: four from the first, and as many to spare
   constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
   double best = t;
   double best_slope = std::numeric_limits<double>::infinity();

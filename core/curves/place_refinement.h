@@ -22,6 +22,8 @@ struct RefinedPlace {
 /// of like angle apart.
 template <typename C>
 RefinedPlace refine_place(const C& curve, double t, const LocalGeometry& measured) {
+  // Of an exact geometry the digits double; of one that no place has exactly, the error falls by a
+  // constant factor, and where twenty steps do not settle it, the disagreement says so.
   constexpr int kMostIterations = 20;
   // Where the digits end: t moves the position by less than this part of the radius of curvature.
   constexpr double kRounding = 2.0 * std::numeric_limits<double>::epsilon();

@@ -8,6 +8,7 @@
 
 namespace palpate {
 
+/// The least that has a kappa_s; the largest takes the bias of next order from it as well.
 inline constexpr int kMinJetDegree = 3;
 inline constexpr int kMaxJetDegree = 5;
 

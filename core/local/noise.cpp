@@ -11,6 +11,7 @@
 namespace palpate {
 namespace {
 
+// The quartic's five unknowns and eleven residuals, which tell noise to a fifth, 1 / sqrt(22).
 constexpr std::size_t kLongBlock = 16;
 constexpr std::size_t kShortBlock = 8;  // the unknowns and three residuals
 

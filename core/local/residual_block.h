@@ -36,6 +36,7 @@ class ResidualBlock {
   /// Largest |studentised(i)|. [m]
   double largest() const { return largest_m_; }
 
+  /// Of the noise's variance: beyond it a sample is told to three deviations of noise at best.
   static constexpr double kMaxExtrapolation = 10.0;
 
   /// Largest distance along the axis that a sample in use lies behind an earlier one. [m]

@@ -139,6 +139,7 @@ class LegendreFit {
   /// Mean square of what the lower degrees leave of P_k, relative to the basis' maximum 1: below,
   /// rounding decides.
   static constexpr double kMinPivot = 1e4 * std::numeric_limits<double>::epsilon();
+  /// Of the same by noise along the axis: more of it takes a tenth and more of what P_k tells.
   static constexpr double kMaxShrinkage = 0.1;
 
   Matrix gram_ = Matrix::Zero();

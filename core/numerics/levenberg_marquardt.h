@@ -52,6 +52,8 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
                          const MinimiseOptions& options) {
   using Vector = Eigen::Matrix<double, Problem::kParameters, 1>;
   using Matrix = Eigen::Matrix<double, Problem::kParameters, Problem::kParameters>;
+  // What changes no residual by more than a thousandth of its deviation, for a unit step, is damped
+  // as if it did.
   constexpr double kLeastDiagonal = 1e-6;
   // Beyond it the second-order term is no correction any more (Transtrum and Sethna).
   constexpr double kLargestRatio = 0.75;  // of accelerations to velocities

@@ -140,7 +140,7 @@ void visit_real_roots(const Polynomial<kDegree>& c, const Visit& visit) {
     balanced[k] = c[k] / c[kDegree] / power;
     power *= scale;
   }
-  constexpr double kBound = 2.0;
+  constexpr double kBound = 2.0;  // Fujiwara's, above
   const auto roots = real_roots_detail::roots_within<kDegree>(balanced, kBound);
   for (std::size_t i = 0; i < roots.count; ++i) {
     visit(scale * roots.x[i]);

@@ -29,7 +29,7 @@ CurveDerivatives derivatives(const KnottedCubic& curve, double t) {
 /// The foot followed by Newton's method from t, which is near: the points lie on the curve but for
 /// noise.
 double follow_foot(const KnottedCubic& curve, const Vec2& point, double t) {
-  constexpr int kMostIterations = 8;
+  constexpr int kMostIterations = 8;     // digits double near the foot
   constexpr double kLastStep = 1e-8;     // after it the error is its square
   constexpr double kLongestStep = 0.25;  // of the parameter range [-1, 1]
   for (int i = 0; i < kMostIterations; ++i) {
@@ -121,6 +121,7 @@ template <int kParameters>
 KnottedCubicFit refine(std::span<const FitPoint> points, const KnottedCubicFit& start) {
   using Residuals = KnottedResiduals<kParameters>;
   const Residuals residuals(points, start);
+  // Far below what odds see of chi-square; steps halve the error or better where two cubics fit.
   constexpr int kMostIterations = 30;
   constexpr double kChi2Tolerance = 1e-6;
   typename Residuals::Parameters x = residuals.parameters();

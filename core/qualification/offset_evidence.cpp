@@ -177,8 +177,8 @@ Range lengths_of(const OffsetModel& model) {
                                       model.arc_m[static_cast<std::size_t>(stroke.begin)]);
     }
   }
-  constexpr double kFewestSteps = 4.0;
-  constexpr double kShare = 0.5;  // of a stroke: beyond it the constant takes it up
+  constexpr double kFewestSteps = 4.0;  // drift over fewer looks as noise does
+  constexpr double kShare = 0.5;        // of a stroke: beyond it the constant takes it up
   if (steps.empty() || !(longest > 0.0)) return {0.0, 0.0};
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());

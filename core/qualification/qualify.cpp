@@ -157,7 +157,7 @@ std::vector<char> within_noise(const Eigen::VectorXd& residuals, double least_sc
 }
 
 bool runs_both_ways(const std::vector<ArtefactSample>& samples) {
-  constexpr double kLeastShare = 0.1;
+  constexpr double kLeastShare = 0.1;  // an even share tells the lag to 0.6 of what this one does
   double forth = 0.0;
   double back = 0.0;
   for (const ArtefactSample& sample : samples) {
@@ -260,7 +260,7 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   constexpr std::size_t kFewest = 12;
   std::vector<std::vector<ArtefactSample>> thin;
   for (const ArtefactRecording& recording : recordings) {
-    constexpr std::size_t kEnoughForPose = 1000;
+    constexpr std::size_t kEnoughForPose = 1000;  // a thirtieth of the noise
     thin.push_back(thinned(recording, kEnoughForPose));
     if (thin.back().size() < kFewest) return failed(QualificationStatus::TooFewSamples);
   }
@@ -293,6 +293,7 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   set_order(unknowns, highest);
   if (!options.same_setup) unknowns.setup_m.assign(recordings.size(), 0.0);
   OffsetResiduals about;
+  // The scale of the first is that of what the start leaves; the second has the noise's.
   constexpr int kRobustRounds = 3;
   for (int round = 0; round < kRobustRounds; ++round) {
     scale = std::max(scale, least_scale);

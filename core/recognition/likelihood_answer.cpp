@@ -61,7 +61,7 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
   if (best.at_limit || best.covariance.size() == 0) {
     return Doubt::AtLimit;
   }
-  if (!can_be_noise(w.counted_chi2 / w.noise_inflation, best.dof)) {
+  if (best.dof > 0 && !can_be_noise(w.counted_chi2 / w.noise_inflation, best.dof)) {
     return Doubt::Misfit;
   }
   // A second mode that has more than what RECOGNIZED leaves to doubt.
@@ -82,8 +82,8 @@ double residual_noise_m(const Weighing& w) {
   return w.sigma * w.data.scale * std::sqrt(w.white_variance);
 }
 
-Recognition answer_by_likelihood(const Weighing& w, const VerdictOptions& options,
-                                 std::size_t stored) {
+Recognition answer_by_likelihood(const Weighing& w, const BestMoments& moments,
+                                 const VerdictOptions& options, std::size_t stored) {
   Recognition answer;
   for (std::size_t i = 0; i < w.probabilities.size(); ++i) {
     if (i == 0 || w.fits[i]) {
@@ -95,11 +95,11 @@ Recognition answer_by_likelihood(const Weighing& w, const VerdictOptions& option
       [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
   Hypothesis& best = answer.hypotheses.front();
   const auto& canonical = w.canonical[static_cast<std::size_t>(best.shape.curve_class)];
-  if (canonical && w.moment) {
-    best.covariance = *w.moment;
+  if (canonical && moments.moment) {
+    best.covariance = *moments.moment;
   }
   if (canonical) {
-    answer.white_covariance = w.white_moment ? *w.white_moment : canonical->covariance;
+    answer.white_covariance = moments.white_moment ? *moments.white_moment : canonical->covariance;
   }
   answer.shape = best.shape;
   answer.world_T_curve = best.world_T_curve;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/recognition/recognition.h"
+#include "core/recognition/weigh/best_moments.h"
 #include "core/recognition/weigh/weigh.h"
 
 namespace palpate {
@@ -16,7 +17,7 @@ double residual_noise_m(const Weighing& weighing);
 
 /// All of the answer but contacts, tree and counts of samples. `stored`: samples in memory, of
 /// which those that the weighing has not were set aside as spikes.
-Recognition answer_by_likelihood(const Weighing& weighing, const VerdictOptions& options,
-                                 std::size_t stored);
+Recognition answer_by_likelihood(const Weighing& weighing, const BestMoments& moments,
+                                 const VerdictOptions& options, std::size_t stored);
 
 }  // namespace palpate

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/numerics/normal_law.h"
+#include "core/recognition/samples/stored_spikes.h"
 
 namespace palpate {
 namespace {
@@ -60,14 +61,11 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   if (std::none_of(magnitude.begin(), magnitude.end(), [&](double m) { return m > limit; })) {
     return std::nullopt;
   }
-  // Four in a row are a bend. At a rate of one in 20 chance has so many in a row once in 20^4
-  // samples, more than the memory holds: what sets aside more is another curve, for spikes that are
-  // more frequent were found before any class was known (samples/clean_patches.h). Two may leave
-  // however few there are: of the fewest places that are RECOGNIZED, eight, a spline's unknowns are
-  // left.
+  // What sets aside more than one in 20 is another curve, for spikes that are more frequent were
+  // found before any class was known (samples/clean_patches.h). Two may leave however few there
+  // are: of the fewest places that are RECOGNIZED, eight, a spline's unknowns are left.
   constexpr std::size_t kOneIn = 20;
   constexpr std::size_t kMost = 2;
-  constexpr std::size_t kLongestRun = 3;
   FitData kept = data;
   kept.points.clear();
   kept.patches.clear();
@@ -82,7 +80,7 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
       if (magnitude[i] > limit) {
         ++dropped;
         squares_of_dropped += square;
-        if (++run > kLongestRun) {
+        if (++run > kLongestRunOfSpikes) {
           return std::nullopt;
         }
       } else {

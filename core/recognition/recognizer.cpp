@@ -1,7 +1,6 @@
 #include "core/recognition/recognizer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -26,9 +25,18 @@
 namespace palpate {
 namespace {
 
-/// Fewer places than this fit almost anything: nothing is RECOGNIZED. A spline takes six, and two
-/// speak for or against it.
-constexpr std::size_t kFewestPlaces = 8;
+/// As many places must speak for or against a class as are left over by its parameters: two. By
+/// chance they lie so near to a curve of it with a probability of about the square of the noise
+/// over their extent.
+constexpr std::size_t kFewestLeftOver = 2;
+
+/// Fewer leave a class, the spline, a family of curves through all of them: it has no evidence that
+/// the others' could be compared with.
+constexpr std::size_t kFewestCompared = 6;
+
+/// Fewer places than this fit almost anything where nobody states the noise, or no class is named.
+/// A spline takes six, and two speak for or against it.
+constexpr std::size_t kFewestPlaces = kFewestCompared + kFewestLeftOver;
 
 /// From so many patches that lie apart there is an answer all the same, if an AMBIGUOUS one: what
 /// could be, and where it would lie. A circle takes three, and one speaks for or against it.
@@ -51,20 +59,30 @@ std::size_t counted_in_full(std::span<const StoredPatch> patches) {
       }));
 }
 
-/// At how many different places the points lie, up to kFewestPlaces.
-std::size_t places_of(const FitData& data) {
-  std::array<Vec2, kFewestPlaces> places;
-  std::size_t distinct = 0;
+/// Whether the points lie at so many different places.
+bool have_places(const FitData& data, std::size_t count) {
+  std::vector<Vec2> places;
+  places.reserve(count);
   for (const FitPoint& point : data.points) {
-    const auto end = places.begin() + static_cast<std::ptrdiff_t>(distinct);
-    if (std::find(places.begin(), end, point.position) == end) {
-      places[distinct++] = point.position;
-      if (distinct == kFewestPlaces) {
-        break;
-      }
+    if (places.size() == count) {
+      break;
+    }
+    if (std::find(places.begin(), places.end(), point.position) == places.end()) {
+      places.push_back(point.position);
     }
   }
-  return distinct;
+  return places.size() == count;
+}
+
+/// At how many its class can be RECOGNIZED, by evidence and of stated noise. A sample that is set
+/// aside is an unknown more.
+std::size_t fewest_places(const Recognition& answer) {
+  const CurveClass curve_class = answer.shape.curve_class;
+  if (curve_class == CurveClass::Unclassified) {
+    return kFewestPlaces;
+  }
+  const auto parameters = static_cast<std::size_t>(degrees_of_freedom(curve_class));
+  return std::max(kFewestCompared, parameters + kFewestLeftOver) + answer.outlier_count;
 }
 
 /// Whether the points spread over an extent that double precision resolves.
@@ -87,11 +105,11 @@ void doubt(Recognition* answer, Doubt doubt) {
 
 /// What residuals tell of a smooth deviation, to a factor of the root of two and no less, so that
 /// windows are not made anew wherever a sample changes it a little. [m]
-double told_deviation_m(const Weighing& w) {
+double told_deviation_m(const BestMoments& moments, double scale_m) {
   constexpr double kSteps = 2.0;  // to a factor of two
-  return w.coherent_deviation > 0.0
-             ? w.data.scale *
-                   std::exp2(std::ceil(kSteps * std::log2(w.coherent_deviation)) / kSteps)
+  return moments.coherent_deviation > 0.0
+             ? scale_m *
+                   std::exp2(std::ceil(kSteps * std::log2(moments.coherent_deviation)) / kSteps)
              : 0.0;
 }
 
@@ -173,20 +191,21 @@ class Recognizer::Impl {
         clean_.of(memory_.patches(), options_.false_outlier_probability);
     bool sigma_known = false;
     FitData data = make_fit_data(clean, options_.sigma_m, &sigma_known);
-    const std::size_t places = places_of(data);
     const std::size_t fewest =
         memory_.patches().size() < kFewestPatches ? kFewestPlaces : kFewestPatches;
-    if (places < fewest || !have_extent(data)) {
+    if (!have_places(data, fewest) || !have_extent(data)) {
       return answer;
     }
     const auto strung = strung_touches(clean, options_.sigma_m, options_.classes);
     if (strung) {
-      data = make_fit_data(*strung, options_.sigma_m, &sigma_known);
+      data = make_fit_data(strung->patches, options_.sigma_m, &sigma_known);
     }
-    const std::span<const StoredPatch> patches = strung ? *strung : clean;
+    const std::span<const StoredPatch> patches = strung ? strung->patches : clean;
+    const std::span<const SidedStart> sought =
+        strung ? std::span<const SidedStart>(strung->starts) : std::span<const SidedStart>();
     answer = options_.method == RecognitionMethod::Tree
                  ? by_tree(data, sigma_known, patches)
-                 : by_likelihood(data, sigma_known, patches, clean);
+                 : by_likelihood(data, sigma_known, patches, sought, clean);
     if (options_.method == RecognitionMethod::MaximumLikelihood && sigma_known) {
       in_full_ = counted_in_full(patches);
     }
@@ -195,7 +214,8 @@ class Recognizer::Impl {
     if (!sigma_known && are_touches(clean) && answer.sigma_m > kLargestNoise * data.scale) {
       doubt(&answer, Doubt::Misfit);
     }
-    if (places < kFewestPlaces) {
+    const bool by_evidence = options_.method == RecognitionMethod::MaximumLikelihood && sigma_known;
+    if (!have_places(data, by_evidence ? fewest_places(answer) : kFewestPlaces)) {
       doubt(&answer, Doubt::FewPlaces);
     }
     // Told of the samples as they came, not of the means that stand for them.
@@ -211,21 +231,25 @@ class Recognizer::Impl {
     std::optional<std::vector<StoredPatch>> patches;
   };
 
-  /// `patches`: those that the data are of; `clean`: as they were touched.
+  /// `patches`: those that the data are of; `sought`: what stringing them has found; `clean`: as
+  /// they were touched.
   Recognition by_likelihood(const FitData& data, bool sigma_known,
                             std::span<const StoredPatch> patches,
+                            std::span<const SidedStart> sought,
                             std::span<const StoredPatch> clean) {
-    Weighed weighed = weigh_once_more(data, sigma_known, patches);
+    Weighed weighed = weigh_once_more(data, sigma_known, patches, sought);
     const std::size_t stored = memory_.stored_count();
     if (stored > data.points.size()) {
       weighed = with_explained(std::move(weighed), clean);
     }
     const Weighing& w = weighed.w;
+    const BestMoments moments = moments_of_best(w);
     Recognition answer = answer_by_likelihood(
-        w, {options_.recognized_probability, options_.determined_fraction}, stored);
+        w, moments, {options_.recognized_probability, options_.determined_fraction}, stored);
     answer.outlier_count = stored - w.data.points.size();
-    answer.contacts = contacts_.of(weighed.patches ? *weighed.patches : patches, w.sides,
-                                   weighed.outliers, contact_options(told_deviation_m(w)));
+    answer.contacts =
+        contacts_.of(weighed.patches ? *weighed.patches : patches, w.sides, weighed.outliers,
+                     contact_options(told_deviation_m(moments, w.data.scale)));
     add_path(tree_beside(w, answer.contacts, options_.tree), &answer);
     const double p_value = answer.tree_p_values[static_cast<std::size_t>(answer.shape.curve_class)];
     if (p_value < options_.tree.significance) {
@@ -259,8 +283,10 @@ class Recognizer::Impl {
   /// From the last weighing while the object is touched on in the same patches; from a new search
   /// where they have grown by this, where there is another patch, and where a class comes out best
   /// that was out.
+  /// `sought`: by_likelihood's.
   Weighed weigh_once_more(const FitData& data, bool sigma_known,
-                          std::span<const StoredPatch> patches) {
+                          std::span<const StoredPatch> patches,
+                          std::span<const SidedStart> sought) {
     constexpr double kGrowth = 1.25;  // ten searches while a patch grows tenfold
     // Probability: of what had less, a search leaves the fit rough (weigh/contenders.cpp).
     const double out = std::exp(-log_odds(options_.recognized_probability) - 0.5 * kLeastError);
@@ -268,7 +294,8 @@ class Recognizer::Impl {
     const bool warm = last_ && last_->patches == data.patches.size() &&
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
     if (warm) {
-      Weighed weighed = weigh_without_outliers(data, sigma_known, patches, last_->starts);
+      Weighed weighed =
+          weigh_without_outliers(data, sigma_known, patches, last_->starts, Starts::OfLast);
       const Weighing& w = weighed.w;
       if (last_->probabilities[static_cast<std::size_t>(w.best)] > out) {
         last_->starts = w.starts;
@@ -276,21 +303,23 @@ class Recognizer::Impl {
         return weighed;
       }
     }
-    Weighed weighed = weigh_without_outliers(data, sigma_known, patches, {});
+    Weighed weighed = weigh_without_outliers(data, sigma_known, patches, sought, Starts::OfSearch);
     last_ = Last{weighed.w.starts, weighed.w.probabilities, samples, data.patches.size()};
     return weighed;
   }
 
+  enum class Starts { OfLast, OfSearch };
+
   Weighed weigh_without_outliers(const FitData& data, bool sigma_known,
                                  std::span<const StoredPatch> patches,
-                                 std::span<const SidedStart> starts) const {
+                                 std::span<const SidedStart> starts, Starts which) const {
     Weighed weighed{weigh(data, sigma_known, patches, weigh_options(), starts), {}, {}};
     Weighing& w = weighed.w;
     if (const auto kept =
             without_outliers(w, data, sigma_known, options_.false_outlier_probability)) {
       // A search is not followed: the outliers may have led it astray.
       std::vector<SidedStart> nearer =
-          starts.empty() ? std::vector<SidedStart>{} : std::move(w.starts);
+          which == Starts::OfSearch ? std::vector<SidedStart>{} : std::move(w.starts);
       for (SidedStart& sided : nearer) {
         sided.start.no_conic = false;  // among the outliers
       }
@@ -322,11 +351,11 @@ class Recognizer::Impl {
       return weighed;
     }
     if (auto strung = strung_touches(*more, options_.sigma_m, options_.classes)) {
-      more = std::move(strung);
+      more = std::move(strung->patches);
     }
     bool sigma_known = false;
     const FitData data = make_fit_data(*more, options_.sigma_m, &sigma_known);
-    Weighed again = weigh_without_outliers(data, sigma_known, *more, last_->starts);
+    Weighed again = weigh_without_outliers(data, sigma_known, *more, last_->starts, Starts::OfLast);
     if (again.w.best != w.best || !again.w.canonical[static_cast<std::size_t>(again.w.best)]) {
       return weighed;
     }

@@ -58,6 +58,14 @@ bool is_finite(const Pose2& pose) {
 
 }  // namespace
 
+std::size_t fewest_places(CurveClass curve_class) {
+  constexpr int kOfSpline = 6;
+  constexpr int kOfNone = 8;
+  return static_cast<std::size_t>(curve_class == CurveClass::Unclassified
+                                      ? kOfNone
+                                      : std::max(kOfSpline, degrees_of_freedom(curve_class) + 2));
+}
+
 TouchedPlaces places_of(std::span<const Vec2> positions) {
   std::set<std::pair<double, double>> distinct;
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
@@ -122,8 +130,8 @@ std::string broken_invariant(const Recognition& answer, const TouchedPlaces& pla
       !is_finite(answer.world_T_curve)) {
     return "RECOGNIZED without a finite shape";
   }
-  if (places.distinct < kFewestPlaces) {
-    return "RECOGNIZED from fewer than 8 distinct places";
+  if (places.distinct < fewest_places(answer.shape.curve_class)) {
+    return "RECOGNIZED from fewer distinct places than its class asks for";
   }
   if (places.at_rounding) {
     return "RECOGNIZED where the extent is at rounding";

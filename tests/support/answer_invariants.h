@@ -9,8 +9,9 @@
 
 namespace palpate::test {
 
-/// Fewest distinct places that a RECOGNIZED answer may rest on.
-inline constexpr std::size_t kFewestPlaces = 8;
+/// Fewest distinct places that a RECOGNIZED answer may rest on: two more than its class has
+/// parameters, and no fewer than a spline has; eight for no class.
+std::size_t fewest_places(CurveClass curve_class);
 
 /// What an answer rests on.
 struct TouchedPlaces {
@@ -25,7 +26,7 @@ TouchedPlaces places_of(std::span<const Vec2> positions);
 /// The first invariant that the answer breaks, in words; empty where it keeps all:
 /// probabilities in [0, 1] that sum to 1 within 1e-9, no NaN; covariances symmetric and positive
 /// semidefinite to rounding where their entries are finite; contacts finite; never RECOGNIZED from
-/// fewer than 8 distinct places, nor where the extent is at rounding.
+/// fewer distinct places than its class asks for, nor where the extent is at rounding.
 std::string broken_invariant(const Recognition& answer, const TouchedPlaces& places);
 
 }  // namespace palpate::test

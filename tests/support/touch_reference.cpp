@@ -13,6 +13,7 @@
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/smooth/arcs.h"
 #include "core/recognition/touches/shortest_way.h"
+#include "core/recognition/verdict/determined.h"
 #include "core/recognition/weigh/contenders.h"
 #include "tests/support/placed_fit.h"
 #include "tests/support/scene_data.h"
@@ -50,11 +51,21 @@ ClassFit placed(const ShapeParameters& shape, const Pose2& world_T_curve, const 
 /// All optima that were found, by CurveClass: several of one may be the same.
 using Optima = std::array<std::vector<ClassFit>, 9>;
 
-/// Takes a start to its optimum, if that is a curve of its class.
+/// Takes a start to its optimum, and a spline's rival to its own, if that is a curve of its class.
 void follow(const ClassFit& start, const FitData& data, Optima* optima) {
+  std::vector<ClassFit>& of_class = (*optima)[static_cast<std::size_t>(start.curve_class)];
   ClassFit there = settled(start, data, RivalOf::Best);
+  if (there.rival) {
+    ClassFit rival = there;
+    rival.polynomial = there.rival;
+    rival.chi2 = there.rival->chi2;
+    rival.rival.reset();
+    if (is_what_it_says(rival, data)) {
+      of_class.push_back(std::move(rival));
+    }
+  }
   if (is_what_it_says(there, data)) {
-    (*optima)[static_cast<std::size_t>(start.curve_class)].push_back(std::move(there));
+    of_class.push_back(std::move(there));
   }
 }
 
@@ -101,6 +112,11 @@ void follow_part(const LoneTouches& touches, std::size_t every, std::size_t firs
       follow(placed(canonical->shape, canonical->world_T_curve, data), data, optima);
     }
   }
+}
+
+/// Whether two starts led to one curve. A conic has one optimum beside the data.
+bool is_same_optimum(const ClassFit& a, const ClassFit& b) {
+  return !a.polynomial || !b.polynomial || is_same_curve(*a.polynomial, *b.polynomial);
 }
 
 /// Ellipse and hyperbola without an optimum of their own are the parabola.
@@ -154,15 +170,19 @@ TouchReference reference_of(const LoneTouches& touches) {
   follow(placed({scene.curve_class, scene.values}, scene.world_T_curve, data), data, &optima);
 
   const Likelihood likelihood = likelihood_of(arcs, 0.0);
+  const auto truth = static_cast<std::size_t>(scene.curve_class);
   const Evidences of_paths = evidences_of_paths(arcs.smooth, likelihood);
   TouchReference reference;
   reference.chi2.fill(kInfinity);
+  reference.compares_all = true;
   ClassFits fits;
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
-    if (static_cast<int>(points.size()) <= degrees_of_freedom(curve_class)) {
-      continue;  // nothing is left over to test it with
+    if (static_cast<int>(points.size()) < degrees_of_freedom(curve_class)) {
+      reference.compares_all = false;  // it goes through them in a family of ways
+      continue;
     }
+    std::vector<std::pair<const ClassFit*, double>> distinct;  // and log of the evidence
     double highest = -kInfinity;
     for (ClassFit& optimum : optima[i]) {
       reference.chi2[i] = std::min(reference.chi2[i], optimum.chi2);
@@ -174,10 +194,24 @@ TouchReference reference_of(const LoneTouches& touches) {
           evidences_of(alone, alone, arcs.smooth, data, likelihood, of_paths);
       const double log_of = log_evidence(likelihood, evidences, curve_class, optimum.chi2) -
                             static_cast<double>(points.size()) * std::log(detour);
-      if (detour < kNeedle && (!fits[i] || log_of > highest)) {
+      if (detour >= kNeedle) {
+        continue;
+      }
+      if (std::none_of(distinct.begin(), distinct.end(),
+                       [&](const auto& other) { return is_same_optimum(*other.first, optimum); })) {
+        distinct.emplace_back(&optimum, log_of);
+      }
+      if (!fits[i] || log_of > highest) {
         highest = log_of;
         fits[i] = optimum;
       }
+    }
+    if (i == truth) {
+      double sum = 0.0;
+      for (const auto& [fit, log_of] : distinct) {
+        sum += std::exp(log_of - highest);
+      }
+      reference.other_shapes = distinct.empty() ? 0.0 : 1.0 - 1.0 / sum;
     }
     if (!fits[i] && searched[i] && searched[i]->at_limit) {
       fits[i] = searched[i];  // what is known of its limit
@@ -188,7 +222,21 @@ TouchReference reference_of(const LoneTouches& touches) {
   evidences = integrated(std::move(evidences), fits, fits, arcs.smooth.chi2, data, likelihood,
                          log_odds(kRecognized));
   reference.probabilities = probabilities_of(fits, arcs.smooth.chi2, likelihood, evidences);
+  if (const auto placed_truth = fits[truth] ? to_canonical(*fits[truth], data) : std::nullopt) {
+    reference.knows_shape = is_determined(placed_truth->shape, placed_truth->covariance, data.scale,
+                                          RecognizerOptions().determined_fraction);
+  }
   return reference;
+}
+
+int* BesideReference::counted_for(Doubt doubt, const TouchReference& reference) {
+  if (doubt == Doubt::FewPlaces) {
+    return &few_places;
+  }
+  if (doubt == Doubt::TwoShapes && reference.other_shapes > 1.0 - kRecognized) {
+    return &two_shapes;
+  }
+  return doubt == Doubt::Undetermined && !reference.knows_shape ? &shape_unknown : &other_doubt;
 }
 
 void BesideReference::add(const LoneTouches& touches) {
@@ -212,11 +260,15 @@ void BesideReference::add(const LoneTouches& touches) {
   const bool is_recognized = answer.status == RecognitionStatus::Recognized;
   const bool right = answer.shape.curve_class == truth;
   wrong += is_recognized && !right ? 1 : 0;
-  if (told(truth) >= kRecognized) {
+  if (reference.compares_all && told(truth) >= kRecognized) {
     ++determined;
-    sure += found(truth) >= kRecognized ? 1 : 0;
+    const bool is_sure = found(truth) >= kRecognized;
+    sure += is_sure ? 1 : 0;
     recognized += is_recognized && right ? 1 : 0;
     mistaken += is_recognized && !right ? 1 : 0;
+    if (is_sure && !is_recognized) {
+      ++*counted_for(answer.doubt, reference);
+    }
   }
   bool any = false;
   for (const CurveClass curve_class : kCurveClasses) {
@@ -234,6 +286,10 @@ BesideReference& BesideReference::operator+=(const BesideReference& other) {
   determined += other.determined;
   sure += other.sure;
   recognized += other.recognized;
+  few_places += other.few_places;
+  two_shapes += other.two_shapes;
+  shape_unknown += other.shape_unknown;
+  other_doubt += other.other_doubt;
   mistaken += other.mistaken;
   wrong += other.wrong;
   missed += other.missed;

@@ -14,6 +14,11 @@ struct TouchReference {
   ClassProbabilities probabilities{};
   /// The least chi-square of each class that any start led to; infinite where it has no optimum.
   std::array<double, 9> chi2{};
+  /// Whether every class can go through the touches in a number of ways only: else the
+  /// probabilities are of those that do.
+  bool compares_all = false;
+  bool knows_shape = false;   ///< of the true class, to what RECOGNIZED asks
+  double other_shapes = 0.0;  ///< share of the true class that its other optima have
 };
 
 /// Every class is fitted to all touches from the starts of three searches (fit_classes, the fit of
@@ -29,13 +34,20 @@ struct BesideReference {
   int determined = 0;     ///< the reference gives the true class what RECOGNIZED takes
   int sure = 0;           ///< of these: so does the recogniser
   int recognized = 0;     ///< of these: RECOGNIZED as that
-  int mistaken = 0;       ///< of these: RECOGNIZED as another
+  int few_places = 0;     ///< of the sure, not RECOGNIZED: fewer than two touches are left over
+  int two_shapes = 0;     ///< of them: two shapes of the class fit alike, by the reference too
+  int shape_unknown = 0;  ///< of them: the shape is not known well enough, by the reference too
+  int other_doubt = 0;    ///< of them: for a reason that the reference does not share
+  int mistaken = 0;       ///< of the determined: RECOGNIZED as another
   int wrong = 0;          ///< of all: RECOGNIZED as another
   int missed = 0;         ///< an optimum of a class that matters by the reference was missed
   double farthest = 0.0;  ///< largest difference of a class's probability, determined or not
 
   void add(const LoneTouches& touches);
   BesideReference& operator+=(const BesideReference& other);
+
+ private:
+  int* counted_for(Doubt doubt, const TouchReference& reference);
 };
 
 }  // namespace palpate::test

@@ -25,6 +25,7 @@
 
 namespace palpate::detail {
 
+/// Of the diagonal: nearly the whole step of Gauss and Newton.
 inline constexpr double kInitialDamping = 1e-3;
 inline constexpr double kLargestDamping =
     1e12;  ///< a step this short that still does not help: stop

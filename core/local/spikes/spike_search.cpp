@@ -17,6 +17,8 @@ double sigma_within(const std::vector<double>& sizes, double limit) {
     sum += size * size;
   }
   const double kept = std::sqrt(sum / static_cast<double>(sizes.size()));
+  // A step leaves 0.08, 0.43 or 0.85 of the error where the limit is 3, 2 or 1 deviations; where it
+  // is less, what lies within tells no deviation, and the limit is returned.
   constexpr int kIterations = 20;
   double sigma = kept;
   for (int i = 0; i < kIterations && sigma > 0.0 && sigma < limit; ++i) {

@@ -10,6 +10,7 @@
 namespace palpate {
 namespace {
 
+// The unknowns of a quartic and three residuals.
 constexpr std::size_t kFewestSamples = 8;
 
 /// Samples that are no spikes so far, and their numbers as given.

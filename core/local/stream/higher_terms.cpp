@@ -8,6 +8,7 @@
 namespace palpate {
 namespace {
 
+// Curvature and its derivative tell the size of the terms beyond; place and direction do not.
 constexpr int kFirstEvidence = 2;
 using Terms = Eigen::Matrix<double, kWindowSize, 1>;
 

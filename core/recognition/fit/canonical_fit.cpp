@@ -216,6 +216,14 @@ Eigen::Matrix<double, 6, 1> turn_by_pose_and_shape(const Curve& curve, double t,
 
 InverseInformation inverse_information(const ShapePoseCovariance& information, int rank) {
   const Eigen::Index n = information.rows();
+  if (!information.allFinite()) {  // units in which a square is beyond a double: nothing is told
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    InverseInformation untold;
+    untold.covariance = ShapePoseCovariance::Zero(n, n);
+    untold.covariance.diagonal().setConstant(kInfinite);
+    untold.log_determinant = kInfinite;
+    return untold;
+  }
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> scale(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     scale[i] = information(i, i) > 0.0 ? 1.0 / std::sqrt(information(i, i)) : 0.0;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "core/recognition/fit/few_points.h"
+#include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/touchable.h"
 #include "core/recognition/fit/warm_start.h"
 
@@ -31,7 +33,7 @@ ClassFit polynomial_class(CurveClass curve_class, const PolynomialFit& fit) {
 std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& reduced,
                                    unsigned classes, double out_of_reach) {
   constexpr int side = 0;
-  constexpr RefineEffort kNearEnough{100, 1, 1e-3};  // what is plausible is settled later
+  const RefineEffort near_enough{100, 1, 1e-3, out_of_reach};  // what is plausible is settled later
   const std::span<const FitPoint> points(reduced.points);
   ClassFits result;
   const auto set = [&](ClassFit fit) {
@@ -39,24 +41,26 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
   };
 
   set(implicit_class(CurveClass::Line,
-                     refine_line(points, algebraic_line(points), side, kNearEnough)));
-  const ImplicitFit circle = refine_circle(points, algebraic_circle(points), side, kNearEnough);
+                     refine_line(points, algebraic_line(points), side, near_enough)));
+  const ImplicitFit circle = refine_circle(points, algebraic_circle(points), side, near_enough);
   set(implicit_class(CurveClass::Circle, circle));
 
-  PolynomialFits polynomials = starts != nullptr ? follow_polynomials(reduced, *starts)
-                               : (classes & kCubics) != 0
-                                   ? search_polynomials(reduced, out_of_reach)
-                                   : search_parabola(reduced);
+  PolynomialFits polynomials =
+      starts != nullptr          ? follow_polynomials(reduced, *starts, out_of_reach)
+      : (classes & kCubics) != 0 ? search_polynomials(reduced, out_of_reach)
+                                 : search_parabola(reduced);
   // The algebraic start serves unless it led to a conic that nothing touches, or one that a limit
   // betters; then the limits are the starts.
   const bool started = starts != nullptr && starts->conic;
-  ImplicitFit conic =
-      refine_conic(points, started ? *starts->conic : algebraic_conic(points), side, kNearEnough);
+  RefineEffort on_all = kOnAllEffort;
+  on_all.out_of_reach = out_of_reach;
+  ImplicitFit conic = started ? refine_conic(points, *starts->conic, side, on_all)
+                              : refine_conic(points, algebraic_conic(points), side, near_enough);
   bool usable = is_touchable(conic, reduced);
   double least_chi2 = conic.chi2;  // of any conic, touchable or not
   const auto also_from = [&](double chi2, const ConicCoefficients& start) {
     if (!started && (!usable || chi2 < conic.chi2)) {
-      const ImplicitFit other = refine_conic(points, start, side, kNearEnough);
+      const ImplicitFit other = refine_conic(points, start, side, near_enough);
       least_chi2 = std::min(least_chi2, other.chi2);
       if (is_touchable(other, reduced) && (!usable || other.chi2 < conic.chi2)) {
         conic = other;
@@ -117,6 +121,155 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
   return result;
 }
 
+/// Whether every class leaves more than noise or form error of any size that is measured at.
+bool leaves_more_than_noise(const ClassFits& fits, const FitData& data) {
+  const double most = most_chi2_of_noise(data.points);
+  return std::none_of(fits.begin(), fits.end(),
+                      [&](const auto& fit) { return fit && fit->chi2 <= most; });
+}
+
+/// Whether some class fits as well as noise allows.
+bool any_fits(const ClassFits& fits, const FitData& data) {
+  const std::size_t residuals = residual_count(data);
+  return std::any_of(fits.begin(), fits.end(),
+                     [&](const auto& fit) { return fit && fits_well(fit->chi2, residuals); });
+}
+
+/// Of the carried polynomials that of a class; the parabola's where an ellipse or hyperbola is at
+/// its limit.
+const std::optional<PolynomialFit>& polynomial_of(CurveClass curve_class,
+                                                  const PolynomialFits& carried) {
+  switch (curve_class) {
+    case CurveClass::CubicalParabola:
+      return carried.cubical_parabola;
+    case CurveClass::SemiCubicalParabola:
+      return carried.semi_cubical_parabola;
+    case CurveClass::CubicSpline:
+      return carried.cubic_spline;
+    default:
+      return carried.parabola;
+  }
+}
+
+/// Fits to few of the points as they are on all of them.
+ClassFits placed_on(ClassFits fits, const FitData& few, const FitData& all) {
+  const PolynomialFits carried = carried_to(warm_start_from(fits, few), all);
+  for (auto& fit : fits) {
+    if (fit && fit->implicit) {
+      fit->implicit = placed_on(all.points, *std::move(fit->implicit));
+      fit->chi2 = fit->implicit->chi2;
+    } else if (fit) {
+      fit->polynomial = placed_on(all.points, *polynomial_of(fit->curve_class, carried));
+      fit->chi2 = fit->polynomial->chi2;
+      if (fit->rival) {
+        fit->rival = placed_on(all.points, *carried.rival);
+      }
+    }
+  }
+  return fits;
+}
+
+/// Fits to few of the points followed on all of them.
+ClassFits followed_on(const ClassFits& found, const FitData& few, const FitData& all,
+                      unsigned classes, double out_of_reach) {
+  PolynomialFits carried = carried_to(warm_start_from(found, few), all);
+  if (carried.parabola) {
+    carried.conic = conic_of_parabola(*carried.parabola);  // the limit, if none is nearer
+  }
+  for (const CurveClass curve_class : {CurveClass::Ellipse, CurveClass::Hyperbola}) {
+    const auto& conic = found[static_cast<std::size_t>(curve_class)];
+    if (conic && conic->implicit) {
+      carried.conic = conic->implicit->coefficients;
+    }
+  }
+  carried.every_seed = true;  // not asked to fit: what does not is for the caller to see
+  return *fits_from(&carried, all, classes, out_of_reach);
+}
+
+/// The polynomials among them that fitted the few, settled on all from feet wherever these are:
+/// near a sharp bend the nearest of some places may be on the other arm.
+ClassFits settled_from_feet(const ClassFits& found, const FitData& few, const FitData& all) {
+  const PolynomialFits carried = carried_to(warm_start_from(found, few), all);
+  const std::size_t residuals = residual_count(few);
+  const auto with_feet = [&](PolynomialFit fit) {
+    for (std::size_t i = 0; i < all.points.size(); ++i) {
+      fit.t[i] = nearest_parameter(fit.coefficients, all.points[i].position);
+    }
+    return fit;
+  };
+  ClassFits result;
+  for (const auto& fit : found) {
+    if (fit && fit->polynomial && !fit->at_limit && fits_well(fit->chi2, residuals)) {
+      ClassFit start = *fit;
+      start.polynomial = with_feet(*polynomial_of(fit->curve_class, carried));
+      if (fit->rival && fits_well(fit->rival->chi2, residuals)) {
+        start.rival = with_feet(*carried.rival);
+      } else {
+        start.rival.reset();
+      }
+      result[static_cast<std::size_t>(fit->curve_class)] = settled(start, all, RivalOf::Other);
+    }
+  }
+  return result;
+}
+
+/// By what the best fit misses each point, squared, over its noise.
+std::vector<double> squares_of_best(const ClassFits& fits, std::span<const FitPoint> points) {
+  const ClassFit* best = nullptr;
+  for (const auto& fit : fits) {
+    if (fit && (best == nullptr || fit->chi2 < best->chi2)) {
+      best = &*fit;
+    }
+  }
+  std::vector<double> squares;
+  squares.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const FitPoint& point = points[i];
+    const Vec2 foot = best->implicit
+                          ? best->implicit->feet[i]
+                          : position_at(best->polynomial->coefficients, best->polynomial->t[i]);
+    squares.push_back((point.position - foot).squaredNorm() * point.inverse_sigma *
+                      point.inverse_sigma);
+  }
+  return squares;
+}
+
+/// Of two fits of every class the better ones.
+ClassFits better_of(ClassFits a, const ClassFits& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const bool better =
+        b[i] &&
+        (!a[i] || (a[i]->at_limit == b[i]->at_limit ? b[i]->chi2 < a[i]->chi2 : a[i]->at_limit));
+    if (better) {
+      a[i] = b[i];
+    }
+  }
+  return a;
+}
+
+/// fit_classes() without a start, of points that are many.
+ClassFits searched_on_few(const FitData& few, const FitData& all, unsigned classes,
+                          double out_of_reach) {
+  ClassFits found = *fits_from(nullptr, few, classes, out_of_reach);
+  if (leaves_more_than_noise(found, few)) {
+    return placed_on(std::move(found), few, all);
+  }
+  ClassFits fits = followed_on(found, few, all, classes, out_of_reach);
+  if (!any_fits(found, few) || any_fits(fits, all)) {
+    return fits;
+  }
+  fits = better_of(std::move(fits), settled_from_feet(found, few, all));
+  if (any_fits(fits, all)) {
+    return fits;
+  }
+  // What fits the few and not all was not told by them: once more with those that it misses most.
+  const FitData more = few_and_missed(all, squares_of_best(fits, all.points));
+  const ClassFits again = *fits_from(nullptr, more, classes, out_of_reach);
+  fits = better_of(std::move(fits), followed_on(again, more, all, classes, out_of_reach));
+  return any_fits(fits, all) ? fits
+                             : better_of(std::move(fits), settled_from_feet(again, more, all));
+}
+
 }  // namespace
 
 ConicCoefficients conic_of_parabola(const PolynomialFit& fit) {
@@ -136,27 +289,24 @@ ConicCoefficients conic_of_parabola(const PolynomialFit& fit) {
   return q.normalized();
 }
 
-ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts, unsigned classes,
+ClassFits fit_classes(const FitData& reduced, const WarmStart* start, unsigned classes,
                       double out_of_reach) {
-  if (starts != nullptr) {
-    if (auto fits = fits_from(starts, reduced, classes, out_of_reach)) {
-      return *std::move(fits);
-    }
-  }
-  if (const auto few = few_of(reduced)) {
-    const ClassFits found = *fits_from(nullptr, *few, classes, out_of_reach);
-    PolynomialFits carried = carried_to(warm_start_from(found, *few), reduced);
-    for (const CurveClass curve_class : {CurveClass::Ellipse, CurveClass::Hyperbola}) {
-      const auto& conic = found[static_cast<std::size_t>(curve_class)];
-      if (carried.every_seed && conic && conic->implicit) {
-        carried.conic = conic->implicit->coefficients;
+  const auto few = few_of(reduced);
+  if (start != nullptr) {
+    if (few && start->polynomials.every_seed) {
+      const PolynomialFits carried = carried_to(*start, *few);
+      ClassFits found = *fits_from(&carried, *few, classes, out_of_reach);
+      if (leaves_more_than_noise(found, *few)) {
+        return placed_on(std::move(found), *few, reduced);
       }
     }
+    const PolynomialFits carried = carried_to(*start, reduced);
     if (auto fits = fits_from(&carried, reduced, classes, out_of_reach)) {
       return *std::move(fits);
     }
   }
-  return *fits_from(nullptr, reduced, classes, out_of_reach);
+  return few ? searched_on_few(*few, reduced, classes, out_of_reach)
+             : *fits_from(nullptr, reduced, classes, out_of_reach);
 }
 
 }  // namespace palpate

@@ -53,12 +53,15 @@ inline constexpr unsigned kCubics = class_bit(CurveClass::CubicalParabola) |
                                     class_bit(CurveClass::SemiCubicalParabola) |
                                     class_bit(CurveClass::CubicSpline);
 
+struct WarmStart;
+
 /// Fits every class to the smooth model's reduced points, taken as surface points: seeds by
-/// exhaustive coarse search, or `starts` (for these points) where given and anything then fits;
+/// exhaustive coarse search, or `start` where given and anything then fits;
 /// least orthogonal distances, as far as telling plausible classes from others takes. What
 /// `classes` leaves out may be missing. `out_of_reach`: beyond this chi-square it is not
-/// asked how well a class fits.
-ClassFits fit_classes(const FitData& reduced, const PolynomialFits* starts = nullptr,
+/// asked how well a class fits. Where points are many, searches go through few of them, twice at
+/// most: beside them each point costs a bounded number of steps.
+ClassFits fit_classes(const FitData& reduced, const WarmStart* start = nullptr,
                       unsigned classes = kAllClasses,
                       double out_of_reach = std::numeric_limits<double>::infinity());
 

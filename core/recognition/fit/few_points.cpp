@@ -7,15 +7,16 @@
 
 namespace palpate {
 
-std::optional<FitData> few_of(const FitData& reduced) {
-  // Ten for each of a spline's six unknowns.
-  constexpr std::size_t kFew = 64;
+namespace {
+
+// Ten for each of a spline's six unknowns.
+constexpr std::size_t kFew = 64;
+
+/// One flag a point.
+std::vector<bool> chosen_few(const FitData& reduced) {
   // Of a patch: place, direction, curvature and its change are all that a class may be told by at
   // one place.
   constexpr std::size_t kFewestOfPatch = 4;
-  if (reduced.points.size() <= 2 * kFew) {
-    return std::nullopt;
-  }
   std::vector<std::size_t> touched;
   std::vector<Vec2> middles;
   for (std::size_t p = 0; p < reduced.patches.size(); ++p) {
@@ -25,31 +26,62 @@ std::optional<FitData> few_of(const FitData& reduced) {
     }
   }
   const std::size_t each = std::max(kFewestOfPatch, kFew / touched.size());
-  std::vector<std::size_t> taken(reduced.patches.size(), 0);
+  std::vector<bool> chosen(reduced.points.size(), false);
   std::size_t sum = 0;
   for (const std::size_t k : farthest_first(middles, kFew)) {
     if (sum >= kFew) {
       break;
     }
-    const std::size_t p = touched[k];
-    sum += taken[p] = std::min(each, reduced.patches[p].size());
+    const PatchSpan& patch = reduced.patches[touched[k]];
+    const std::size_t taken = std::min(each, patch.size());
+    for (std::size_t j = 0; j < taken; ++j) {
+      chosen[patch.begin + (taken > 1 ? j * (patch.size() - 1) / (taken - 1) : 0)] = true;
+    }
+    sum += taken;
   }
+  return chosen;
+}
+
+FitData those(const FitData& reduced, const std::vector<bool>& chosen) {
   FitData few;
   few.frame = reduced.frame;
   few.scale = reduced.scale;
-  for (std::size_t p = 0; p < taken.size(); ++p) {
-    if (taken[p] == 0) {
-      continue;
-    }
-    const PatchSpan& patch = reduced.patches[p];
+  for (const PatchSpan& patch : reduced.patches) {
     const std::size_t begin = few.points.size();
-    for (std::size_t j = 0; j < taken[p]; ++j) {
-      const std::size_t k = taken[p] > 1 ? j * (patch.size() - 1) / (taken[p] - 1) : 0;
-      few.points.push_back(reduced.points[patch.begin + k]);
+    for (std::size_t i = patch.begin; i < patch.end; ++i) {
+      if (chosen[i]) {
+        few.points.push_back(reduced.points[i]);
+      }
     }
-    few.patches.push_back({begin, few.points.size()});
+    if (few.points.size() > begin) {
+      few.patches.push_back({begin, few.points.size()});
+    }
   }
   return few;
+}
+
+}  // namespace
+
+std::optional<FitData> few_of(const FitData& reduced) {
+  return reduced.points.size() > 2 * kFew ? std::optional(those(reduced, chosen_few(reduced)))
+                                          : std::nullopt;
+}
+
+FitData few_and_missed(const FitData& reduced, std::span<const double> squares) {
+  std::vector<bool> chosen = chosen_few(reduced);
+  std::vector<std::size_t> others;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (!chosen[i]) {
+      others.push_back(i);
+    }
+  }
+  const std::size_t more = std::min(kFew, others.size());
+  std::nth_element(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(more), others.end(),
+                   [&](std::size_t a, std::size_t b) { return squares[a] > squares[b]; });
+  for (std::size_t k = 0; k < more; ++k) {
+    chosen[others[k]] = true;
+  }
+  return those(reduced, chosen);
 }
 
 }  // namespace palpate

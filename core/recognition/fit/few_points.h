@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "core/recognition/samples/fit_data.h"
 
@@ -11,5 +12,8 @@ namespace palpate {
 /// with points from end to end, in their order. A class leaves no more chi-square on them than on
 /// all: what misfits them misfits all. nullopt where there are no more. O(patches + points).
 std::optional<FitData> few_of(const FitData& reduced);
+
+/// Those, which there have to be, and as many more that have the largest of `squares`, one a point.
+FitData few_and_missed(const FitData& reduced, std::span<const double> squares);
 
 }  // namespace palpate

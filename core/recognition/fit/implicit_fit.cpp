@@ -229,7 +229,8 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
                          {.iterations = effort.iterations,
                           .chi2_tolerance = effort.chi2_tolerance,
                           .relative_tolerance = effort.relative_tolerance(residuals.NumResiduals()),
-                          .coarse_above = most_chi2_of_noise(points)},
+                          .coarse_above = most_chi2_of_noise(points),
+                          .out_of_reach = effort.out_of_reach},
                          &step);
   return {residuals.coefficients(step), summary.chi2, summary.iterations, side,
           residuals.feet(step)};
@@ -368,6 +369,17 @@ ConicCoefficients algebraic_line(std::span<const FitPoint> points) {
   ConicCoefficients q;
   q << 0.0, 0.0, 0.0, normal.x(), normal.y(), -normal.dot(mean);
   return q.normalized();
+}
+
+ImplicitFit placed_on(std::span<const FitPoint> points, ImplicitFit fit) {
+  fit.chi2 = 0.0;
+  fit.feet.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double residual = signed_distance(fit.coefficients, points[i].position, &fit.feet[i]) *
+                            points[i].inverse_sigma;
+    fit.chi2 += residual * residual;
+  }
+  return fit;
 }
 
 ImplicitFit refine_conic(std::span<const FitPoint> points, const ConicCoefficients& start, int side,

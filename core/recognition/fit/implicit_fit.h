@@ -36,6 +36,9 @@ ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficie
 ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
                         const RefineEffort& effort = {});
 
+/// The fit as it is, with the foot points and the chi-square of these surface points.
+ImplicitFit placed_on(std::span<const FitPoint> points, ImplicitFit fit);
+
 /// Signed distance of a point to the conic near it, positive where the polynomial is. The foot
 /// point is found by Newton's method from the point itself: the nearest one wherever the distance
 /// is small beside the radius of curvature. `foot` receives it.

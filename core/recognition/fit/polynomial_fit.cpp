@@ -91,4 +91,15 @@ PlacedPoint place_on(const PolynomialFit& fit, double t, const Vec2& point, doub
   return follow_foot_point(fit.coefficients, point, t, last_step);
 }
 
+PolynomialFit placed_on(std::span<const FitPoint> points, PolynomialFit fit) {
+  fit.chi2 = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PlacedPoint placed = place_on(fit, fit.t[i], points[i].position);
+    const double residual = placed.signed_distance * points[i].inverse_sigma;
+    fit.t[i] = placed.t;
+    fit.chi2 += residual * residual;
+  }
+  return fit;
+}
+
 }  // namespace palpate

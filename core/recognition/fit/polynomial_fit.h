@@ -36,4 +36,7 @@ bool is_same_curve(const PolynomialFit& a, const PolynomialFit& b);
 PlacedPoint place_on(const PolynomialFit& fit, double t, const Vec2& point,
                      double last_step = kExactFootStep);
 
+/// The fit as it is, with the foot points and the chi-square of surface points: `fit.t` near them.
+PolynomialFit placed_on(std::span<const FitPoint> points, PolynomialFit fit);
+
 }  // namespace palpate

@@ -36,18 +36,6 @@ AxisFit refine_axis_and_arms(std::span<const FitPoint> points, std::span<const P
   return fit;
 }
 
-/// The fit as it is, with the points' foot points and chi-square.
-PolynomialFit placed_on(std::span<const FitPoint> points, PolynomialFit fit) {
-  fit.chi2 = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PlacedPoint placed = place_on(fit, fit.t[i], points[i].position);
-    const double residual = placed.signed_distance * points[i].inverse_sigma;
-    fit.t[i] = placed.t;
-    fit.chi2 += residual * residual;
-  }
-  return fit;
-}
-
 /// Ended in the same valley: seeds on both sides of one do.
 bool is_same_valley(const AxisFit& a, const AxisFit& b) {
   constexpr double kSameChi2 = 1e-2;   // of it: where a walk ends
@@ -175,7 +163,8 @@ PolynomialFits search_parabola(const FitData& reduced) {
   return fits;
 }
 
-PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts) {
+PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts,
+                                  double out_of_reach) {
   // A step or two; what was plausible goes as far as it takes to stay so, and not to need a search.
   constexpr RefineEffort kFollow{5, 1, 1e-2};
   constexpr RefineEffort kFarther{8, 1, 1e-2};
@@ -192,8 +181,9 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
       return start ? std::optional(placed_on(reduced.points, *start)) : std::nullopt;
     }
     const bool was_plausible = start->chi2 <= starts.lowest_chi2 + kPlausible;
-    return refine_polynomial(model, reduced.points, *start, kSurfacePoints,
-                             was_plausible ? kFarther : kFollow);
+    RefineEffort effort = was_plausible ? kFarther : kFollow;
+    effort.out_of_reach = out_of_reach;
+    return refine_polynomial(model, reduced.points, *start, kSurfacePoints, effort);
   };
   fits.parabola = follow(starts.parabola, PolynomialModel::Parabola);
   fits.cubical_parabola = follow(starts.cubical_parabola, PolynomialModel::CubicalParabola);
@@ -207,7 +197,7 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
       std::swap(fits.rival, fits.cubic_spline);
     }
   }
-  start_from_limits(reduced, highest_chi2, kInfinity, &fits);
+  start_from_limits(reduced, highest_chi2, out_of_reach, &fits);
   return fits;
 }
 

@@ -18,7 +18,7 @@ struct PolynomialFits {
   std::optional<PolynomialFit> cubic_spline;
   /// The spline's optimum on the other side of c = 0, if there is one.
   std::optional<PolynomialFit> rival;
-  /// Where no class fitted some of the points: the conic nearest to them, the one start.
+  /// Of few of the points: the conic nearest to them, the one start.
   std::optional<ConicCoefficients> conic;
   PolynomialSeeds seeds;    ///< that the search started from
   bool every_seed = false;  ///< refined, as nothing fitted
@@ -36,8 +36,10 @@ PolynomialFits search_polynomials(const FitData& reduced,
 PolynomialFits search_parabola(const FitData& reduced);
 
 /// The same from earlier fits, whose t must be those of `reduced` (warm_start.h): no search. Fits
-/// that were out by far stay as they are, their chi2 that of the new points.
-PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts);
+/// that were out by far stay as they are, their chi2 that of the new points. `out_of_reach`: as
+/// above, of all of them.
+PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts,
+                                  double out_of_reach = std::numeric_limits<double>::infinity());
 
 /// The last resort where nothing fits: refines thoroughly every seed of the models with arms, whose
 /// sharp bends make narrow valleys, and the best of the others.

@@ -15,16 +15,16 @@ struct RefineEffort {
   /// Change of chi-square at which a start ends: its root is the distance from the optimum, in
   /// standard deviations, that may be left.
   double chi2_tolerance = 1e-7;
-  /// Of chi-square: a start of which the linear model leaves more is given up (polynomial models).
+  /// Of chi-square: a start of which the linear model leaves more is given up.
   double out_of_reach = std::numeric_limits<double>::infinity();
 
-  /// chi2_tolerance where so many residuals leave more than any noise: of chi-square. What then
-  /// counts is noise as large as they are, and no more than a third of a standard deviation, which
-  /// is a tenth of chi-square, of a curve that is not the one that was touched.
+  /// Of chi-square, where so many residuals leave more than any noise. Noise as large as they are
+  /// is then what counts, and a curve that is not the one that was touched need be no nearer to its
+  /// optimum than a third of a standard deviation, a tenth of chi-square: what all steps gain
+  /// together that each gain less.
   double relative_tolerance(double residuals) const {
-    constexpr double kCoarser = 10.0;
-    constexpr double kCoarsest = 0.1;
-    return std::min(kCoarser * chi2_tolerance, kCoarsest) / most_of_noise(residuals);
+    constexpr double kThirdOfDeviation = 0.1;
+    return kThirdOfDeviation / (iterations * most_of_noise(residuals));
   }
 };
 

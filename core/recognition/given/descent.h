@@ -98,7 +98,7 @@ struct Descent {
 template <typename T, typename Seat>
 Descent<T> descend(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> points,
                    const DescentEffort& effort, const Seat& seat) {
-  constexpr double kFirstDamping = 1e-3;
+  constexpr double kFirstDamping = 1e-3;   // nearly Newton's step
   constexpr double kLeastDamping = 1e-18;  // none, beside a matrix of unit diagonal
   constexpr double kMostDamping = 1e12;
   const auto n = static_cast<std::size_t>(Unknowns(curve->curve_class).count);

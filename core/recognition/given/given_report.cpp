@@ -17,7 +17,7 @@ using Exact = DoubleDouble;
 /// (information)^-1 of the unknowns, in their units; a direction that is not determined at all
 /// gets a variance as large as doubles can tell.
 SquareMatrix<Exact> inverse_of(const SquareMatrix<Exact>& information, std::size_t n) {
-  constexpr double kNothing = 1e-30;
+  constexpr double kNothing = 1e-30;  // a hundred roundings of an Exact
   const auto moves = unit_moves(information, n);
   const auto scaled = in_unit_moves(information, n, moves);
   auto lower = lower_factor(scaled, n, 0.0);

@@ -60,7 +60,7 @@ template <typename T>
 Placement<T> place(const PlacedCurve<T>& curve, const PlaneVector<T>& point,
                    PlaneVector<T>* parameter) {
   using std::sqrt;
-  constexpr int kMostSteps = 8;
+  constexpr int kMostSteps = 8;  // digits double: five to an exact type's 32
   // The square of it is below the rounding of T.
   constexpr double kLastStep = std::is_same_v<T, double> ? 1e-8 : 1e-16;
   // A tangent shorter than this part of the curve's acceleration is none: a cusp.

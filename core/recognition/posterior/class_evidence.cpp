@@ -27,25 +27,41 @@ TouchedVector prior_gradient(const Touch& touch, const TouchedCurve& curve) {
   return log_prior_gradient(touch.curve_class, curve.z).cwiseProduct(curve.widths);
 }
 
+/// The root for a step down the potential, with the curvature that the prior's tails have. From
+/// three quarters of a normal law's on, a step by that is nearly as long.
+TouchedMatrix step_root(const Touch& touch, const TouchedCurve& curve) {
+  const TouchedVector less = TouchedVector::Ones() - tail_weights(touch.curve_class, curve.z);
+  if (less.maxCoeff() < 0.25) {
+    return curve.root;
+  }
+  TouchedMatrix curvature = curve.root * curve.root.transpose();
+  curvature.diagonal() -= less;
+  TouchedMatrix tailed;
+  return cholesky(curvature, &tailed) ? tailed : curve.root;
+}
+
 /// From the slice beside, the mode is near; from the optimum of the likelihood it may be far, where
 /// the data determine little. Bounds of the time: steps end by themselves where the potential is
-/// settled.
+/// settled, and what is too far for so many is sought from the prior (followed_from_prior).
 constexpr int kFewSteps = 4;
-constexpr int kMostSteps = 40;
+constexpr int kMostSteps = 8;
+
+/// Of the potential, where steps end: odds right to a fiftieth.
+constexpr double kSettled = 2e-2;
 
 /// Gauss-Newton steps down the potential, coordinate `fixed` staying.
 TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed,
-                     int most_steps = kFewSteps) {
-  constexpr double kSettled = 2e-2;  // of the potential: odds right to a fiftieth
+                     int most_steps = kFewSteps, double settled = kSettled) {
   double halving = 1.0;
   for (int i = 0; i < most_steps; ++i) {
-    const TouchedMatrix root = root_of(curve, fixed);
+    // From slice to slice the way is short.
+    const TouchedMatrix root = fixed < 0 ? step_root(touch, curve) : root_of(curve, fixed);
     TouchedVector slope = curve.gradient - prior_gradient(touch, curve);
     if (fixed >= 0) {
       slope[fixed] = 0.0;
     }
     const TouchedVector step = solve_cholesky(root, slope);
-    if (!(0.5 * halving * slope.dot(step) > kSettled)) {
+    if (!(0.5 * halving * slope.dot(step) > settled)) {
       break;
     }
     auto there = curve_at(touch, curve.z - halving * step.cwiseProduct(curve.widths), curve, data);
@@ -233,6 +249,77 @@ std::optional<double> integrate(const FitData& data, const Walk& how, ClassEvide
   return top + std::log(sum) - 0.5 * std::log(2.0 * std::numbers::pi);
 }
 
+/// The same curve with residuals that count `ratio` times; nullopt where rounding hides its root.
+std::optional<TouchedCurve> counted(TouchedCurve curve, double ratio) {
+  TouchedMatrix curvature = curve.root * curve.root.transpose();
+  curvature.diagonal().array() -= 1.0;
+  curvature *= ratio * ratio;
+  curvature.diagonal().array() += 1.0;
+  curve.chi2 *= ratio * ratio;
+  curve.gradient *= ratio * ratio;
+  return cholesky(TouchedMatrix(curvature), &curve.root) ? std::optional(std::move(curve))
+                                                         : std::nullopt;
+}
+
+/// The mode that the prior leads to: from a noise that hides the shape, followed as that is lowered
+/// to what it is, as long as it holds more than `log_least`. A fit far out in the prior's tails
+/// lies in a valley too narrow and too bent for its noise to be walked along. `start`: its place
+/// and feet count.
+std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data,
+                                                const TouchedCurve& start, double log_least) {
+  constexpr double kHidden = 0.1;  // half extents
+  // Of the deviation, from level to level: what settles to within half a unit of the potential at
+  // one is within four deviations of the next one's valley.
+  constexpr double kLevel = 0.25;
+  constexpr double kOnTheWay = 0.5;
+  constexpr int kStepsPerLevel = 3;  // bounds the time
+  const double full = touch.weight;
+  touch.weight = std::min(full, rms_sigma(data) / kHidden);
+  std::optional<TouchedCurve> curve = curve_at(touch, start.z, start, data);
+  while (curve) {
+    const bool last = !(touch.weight < full);
+    curve = descend(touch, data, *std::move(curve), -1, last ? kMostSteps : kStepsPerLevel,
+                    last ? kSettled : kOnTheWay);
+    // Less noise leaves no more of it.
+    if (!(log_mass(*curve) > log_least)) {
+      return std::nullopt;
+    }
+    if (last) {
+      return curve;
+    }
+    const double before = touch.weight;
+    touch.weight = std::min(full, before / kLevel);
+    curve = counted(*std::move(curve), touch.weight / before);
+  }
+  return std::nullopt;
+}
+
+/// Place and feet of the curve that the prior expects, touched on the arm of this sign.
+TouchedCurve expected(const Touch& touch, const TouchedCurve& like, double arm) {
+  constexpr int kBend = 3;  // the coordinate c of the spline
+  TouchedCurve start;
+  start.z = expected_coordinates(touch.curve_class, arm, like.z[kBend]);
+  const auto shape = shape_at(touch.curve_class, start.z, touch.shape);
+  start.t.assign(like.t.size(), shape ? shape->t : 0.0);
+  return start;
+}
+
+/// Laplace's formula at a mode.
+void set_mode(TouchedCurve mode, ClassEvidence* evidence) {
+  evidence->determined =
+      static_cast<double>(kMostCoordinates) - inverse_cholesky(mode.root).trace();
+  evidence->log_prior = mode.log_prior;
+  evidence->log_occam = log_mass(mode) + 0.5 * evidence->fitted_chi2;
+  evidence->log_occam_of_mode = evidence->log_occam;
+  const int own = shape_coordinates(evidence->touch.curve_class);
+  const Eigen::Matrix<double, 2, kMostCoordinates> touch_rows = mode.root.middleRows<2>(own);
+  const Eigen::Matrix2d of_touch = touch_rows * touch_rows.transpose();
+  evidence->log_occam_of_touch =
+      0.5 * (evidence->fitted_chi2 - mode.chi2 - std::log(of_touch.determinant()));
+  evidence->mode = 0;
+  evidence->nodes = {{std::move(mode), 1.0}};
+}
+
 /// A prior cannot leave more than all of the likelihood: with that, the fit was no optimum.
 bool is_of_optimum(const ClassEvidence& evidence) {
   // As far as chi-square is told of a fit: to 1 by its end on the reduced points (contenders.cpp),
@@ -314,17 +401,41 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
   ClassEvidence evidence;
   evidence.touch = *touch;
   evidence.fitted_chi2 = first->chi2;
-  TouchedCurve mode = descend(*touch, data, std::move(*first), -1, kMostSteps);
-  evidence.determined = static_cast<double>(kMostCoordinates) - inverse_cholesky(mode.root).trace();
-  evidence.log_prior = mode.log_prior;
-  evidence.log_occam = log_mass(mode) + 0.5 * evidence.fitted_chi2;
-  const int own = shape_coordinates(touch->curve_class);
-  const Eigen::Matrix<double, 2, kMostCoordinates> touch_rows = mode.root.middleRows<2>(own);
-  const Eigen::Matrix2d of_touch = touch_rows * touch_rows.transpose();
-  evidence.log_occam_of_touch =
-      0.5 * (evidence.fitted_chi2 - mode.chi2 - std::log(of_touch.determinant()));
-  evidence.nodes.push_back({std::move(mode), 1.0});
+  set_mode(descend(*touch, data, std::move(*first), -1, kMostSteps), &evidence);
   return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
+}
+
+ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least) {
+  evidence.prior_mode_sought = true;
+  const TouchedCurve fitted = evidence.nodes[evidence.mode].curve;
+  const CurveClass curve_class = evidence.touch.curve_class;
+  const Touch touch = along_patch(evidence.touch, data);
+  const auto take = [&](double arm) {
+    const double least_mass = std::max(evidence.log_occam, least) - 0.5 * evidence.fitted_chi2;
+    const TouchedCurve start = expected(touch, fitted, arm);
+    if (auto mode = followed_from_prior(touch, data, start, least_mass)) {
+      evidence.touch = touch;
+      set_mode(*std::move(mode), &evidence);
+    }
+  };
+  const int place = place_coordinate(curve_class);
+  const double arm = place < 0 ? 0.0 : fitted.z[place];
+  take(arm);
+  if (curve_class == CurveClass::SemiCubicalParabola) {
+    take(-arm);  // no way leads over the cusp, which has no tangent
+  }
+  return evidence;
+}
+
+ClassEvidence at_better_mode(ClassEvidence evidence, const ClassEvidence& before) {
+  const TouchedCurve& mode = before.nodes[before.mode].curve;
+  evidence.prior_mode_sought = before.prior_mode_sought;
+  if (before.prior_mode_sought && before.nodes.size() == 1 &&
+      log_mass(mode) > log_mass(evidence.nodes[evidence.mode].curve)) {
+    evidence.touch = before.touch;
+    set_mode(mode, &evidence);
+  }
+  return evidence;
 }
 
 std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& data,

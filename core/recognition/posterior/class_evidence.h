@@ -21,6 +21,11 @@ struct ClassEvidence {
   /// log of the marginal likelihood over the likelihood at the optimum: what the prior leaves of
   /// it.
   double log_occam = 0.0;
+  /// Of that, what lies about the mode.
+  double log_occam_of_mode = 0.0;
+  /// log of the evidence over a line's, where that was asked (straight_paths.h).
+  std::optional<double> log_over_line;
+  bool prior_mode_sought = false;
   /// The same with all of the prior at this shape: what is left is what the place and direction of
   /// the touch cost every curve.
   double log_occam_of_touch = 0.0;
@@ -57,6 +62,16 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
 /// precision: a vertex so far away has no share in the prior. O(points).
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
                                          double inflation);
+
+/// The same at the mode that the prior leads to, where that holds more, and more than `least`, the
+/// log of what the prior leaves of the likelihood: a fit may be at an optimum of the likelihood far
+/// out in the prior's tails, in a valley with a place of as good a fit that the prior expects, but
+/// too long and too bent to be walked along. `evidence`: of one node.
+ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least);
+
+/// The same at the mode of `before`, where that holds more: another fit of the class to the same
+/// data, at the same inflation.
+ClassEvidence at_better_mode(ClassEvidence evidence, const ClassEvidence& before);
 
 /// The same, integrated by slices along the coordinate that is left the widest, where that takes
 /// any; by Laplace's formula where not. `evidence`: of the same data, at any inflation. nullopt

@@ -88,13 +88,16 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   // White residuals larger than the smooth model's can be are noise that it took for bends
   // (outliers, samples out of order); correlated ones are form error up to its limit, neighbours
   // erring together, so that only one in `time` counts.
+  // What is stated holds against residuals too few to tell a noise: of touches that lie apart,
+  // which no smooth model follows.
+  const bool tells_more = smooth.dof() > 0 || dof >= kFewestDegreesOfNoise;
   // Of the half extent: 50 um on a part 100 mm across, where ISO 286-1 has 54 um for grade IT8,
   // which turning and milling hold. Beyond it, it is another shape, if free paths of the patches
   // say so too. (Of touches that lie apart they say nothing.) A part made less truly is for
   // `form_deviation_m`.
   constexpr double kLargestFormError = 1e-3;
-  const bool noisy =
-      correlation.time == 1.0 && !can_be_noise(chi2 / noise, dof) && excess <= kLargestNoise;
+  const bool noisy = correlation.time == 1.0 && tells_more && !can_be_noise(chi2 / noise, dof) &&
+                     excess <= kLargestNoise;
   const bool form_error = correlation.time > 1.0 && (excess <= kLargestFormError || !noise_is_told);
   SeenDeviation seen;
   // White noise looks so once in a thousand times by its neighbours, and hardly ever by the smooth

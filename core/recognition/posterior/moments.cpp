@@ -38,7 +38,7 @@ ShapePose difference(CurveClass curve_class, const ShapePose& b, const ShapePose
 /// The derivatives of [shape; x; y; theta], normalised frame, by the coordinates in units of their
 /// widths; coordinate `fixed` (or -1) does not move.
 Eigen::Matrix<double, 6, 6> jacobian_at(const Touch& touch, const TouchedCurve& curve, int fixed) {
-  constexpr double kStep = 1e-5;
+  constexpr double kStep = 1e-5;  // nearly the cube root of the rounding: central differences
   Eigen::Matrix<double, 6, 6> jacobian = Eigen::Matrix<double, 6, 6>::Zero();
   const int coordinates = shape_coordinates(touch.curve_class) + 2;
   for (int k = 0; k < coordinates; ++k) {

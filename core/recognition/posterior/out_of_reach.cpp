@@ -8,6 +8,7 @@
 
 #include "core/numerics/negligible.h"
 #include "core/recognition/posterior/likelihood_of.h"
+#include "core/recognition/samples/stored_spikes.h"
 #include "core/recognition/samples/tip_sides.h"
 
 namespace palpate {
@@ -16,12 +17,11 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// How far from the curve a sample that is none of it may lie: no farther than from the nearest on
-/// one side that is, and more than three in a row are no spikes (outliers.h).
+/// one side that is, and longer runs are no spikes.
 double farthest_spike(std::span<const FitPoint> patch, std::size_t i) {
-  constexpr std::size_t kLongestRun = 3;
-  double before = i < kLongestRun ? kInfinity : 0.0;
-  double after = patch.size() - i <= kLongestRun ? kInfinity : 0.0;
-  for (std::size_t k = 1; k <= kLongestRun; ++k) {
+  double before = i < kLongestRunOfSpikes ? kInfinity : 0.0;
+  double after = patch.size() - i <= kLongestRunOfSpikes ? kInfinity : 0.0;
+  for (std::size_t k = 1; k <= kLongestRunOfSpikes; ++k) {
     before = i < k ? before : std::max(before, (patch[i].position - patch[i - k].position).norm());
     after = i + k >= patch.size()
                 ? after

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/numerics/negligible.h"
+#include "core/recognition/posterior/straight_paths.h"
 
 namespace palpate {
 namespace {
@@ -69,6 +70,87 @@ double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
              : kNone;
 }
 
+namespace {
+
+/// What a class has in paths that are nearly straight, where the line is in question: all that
+/// counts of it, or more than lies about its fit.
+void add_straight_paths(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
+                        Evidences* evidences) {
+  constexpr auto kLine = static_cast<std::size_t>(CurveClass::Line);
+  const auto& line = evidences->classes[kLine];
+  const auto bend = line ? bend_of_line(*line, reduced) : std::nullopt;
+  if (!bend) {
+    return;
+  }
+  const double of_line =
+      likelihood.log_evidence(fits[kLine]->chi2, line->log_occam, line->determined);
+  for (const CurveClass curve_class : kCurveClasses) {
+    const auto i = static_cast<std::size_t>(curve_class);
+    auto& evidence = evidences->classes[i];
+    if (!evidence || i == kLine) {
+      continue;
+    }
+    if (!evidence->log_over_line) {
+      evidence->log_over_line = log_evidence_over_line(curve_class, *bend);
+    }
+    const double of_fit = likelihood.log_evidence(fits[i]->chi2, 0.0, evidence->determined);
+    evidence->log_occam =
+        std::max(evidence->log_occam_of_mode, of_line + *evidence->log_over_line - of_fit);
+  }
+}
+
+/// Of eight classes, so much less than the best, less than a thousandth is left: no probability
+/// that is said to be more than 0.999 can be told from another (posterior_calibration_test).
+constexpr double kUnseenLogOdds = 9.0;
+
+/// The class's mode that the prior leads to, where it might have more there than about its fit, and
+/// so much that it is seen beside `best`.
+void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced,
+                    const Likelihood& likelihood, double best, Evidences* evidences) {
+  constexpr double kWorthAMode = 2.0;  // log odds: a factor of seven
+  auto& found = evidences->classes[i];
+  if (!found || found->prior_mode_sought) {
+    return;
+  }
+  // All that a better mode can gain, about, is what the prior takes off this one.
+  const double gain = -found->log_prior;
+  const double told =
+      log_evidence(likelihood, *evidences, static_cast<CurveClass>(i), fits[i]->chi2);
+  const double seen_from = best - kUnseenLogOdds;
+  if (gain > kWorthAMode && told + gain > seen_from) {
+    const double seen_occam = found->log_occam + seen_from - told;
+    found = with_prior_mode(*std::move(found), reduced, seen_occam);
+  }
+}
+
+/// The same of all that `fits` has, the best last: alone, it has all of the mass at any mode.
+void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
+                     double log_of_free_form, Evidences* evidences) {
+  const auto told = [&](std::size_t i) {
+    return fits[i] ? log_evidence(likelihood, *evidences, static_cast<CurveClass>(i), fits[i]->chi2)
+                   : kNone;
+  };
+  std::size_t best = 1;
+  for (std::size_t i = 2; i < fits.size(); ++i) {
+    best = told(i) > told(best) ? i : best;
+  }
+  const double log_of_best = told(best);
+  bool alone = log_of_free_form < log_of_best - kUnseenLogOdds;
+  for (std::size_t i = 1; i < fits.size(); ++i) {
+    if (i != best) {
+      add_prior_mode(i, fits, reduced, likelihood, std::max(log_of_best, log_of_free_form),
+                     evidences);
+      alone = alone && told(i) < log_of_best - kUnseenLogOdds;
+    }
+  }
+  if (!alone) {
+    add_prior_mode(best, fits, reduced, likelihood, std::max(log_of_best, log_of_free_form),
+                   evidences);
+  }
+}
+
+}  // namespace
+
 Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
                        const Likelihood& likelihood, Evidences before) {
@@ -106,8 +188,27 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
       evidences.classes[i] = std::move(before.classes[i]);
     } else if ((evidences.on_reduced[i] = to_canonical(*on_reduced[i], reduced))) {
       evidences.classes[i] = evidence_of(*evidences.on_reduced[i], reduced, inflation);
+      if (same_noise && evidences.classes[i] && before.classes[i]) {
+        evidences.classes[i] = at_better_mode(*std::move(evidences.classes[i]), *before.classes[i]);
+      }
     }
     best = std::max(best, log_evidence(likelihood, evidences, curve_class, fits[i]->chi2));
+  }
+  constexpr auto kLine = static_cast<std::size_t>(CurveClass::Line);
+  const double of_line =
+      fits[kLine] ? log_evidence(likelihood, evidences, CurveClass::Line, fits[kLine]->chi2)
+                  : kNone;
+  if (of_line > best - kNegligibleLogOdds) {
+    add_straight_paths(fits, reduced, likelihood, &evidences);
+  } else {
+    for (auto& evidence : evidences.classes) {
+      if (evidence && evidence->log_over_line) {
+        evidence->log_over_line.reset();
+        evidence->log_occam = evidence->log_occam_of_mode;
+      }
+    }
+    add_prior_modes(fits, reduced, likelihood,
+                    log_evidence_of_free_form(likelihood, evidences, smooth.chi2), &evidences);
   }
   return evidences;
 }
@@ -139,7 +240,7 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   }
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
-    if (!matters(log_of[i])) {
+    if (!matters(log_of[i]) || evidences.classes[i]->log_over_line) {
       continue;
     }
     auto evidence = by_slices(*evidences.classes[i], reduced, evidences.inflation, Slices::ForMass);
@@ -149,7 +250,7 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
     evidences.classes[i] = std::move(evidence);
     evidences.on_reduced_chi2[i] = kNone;  // no longer Laplace's: not to be taken over
   }
-  if (matters(log_of[kSpline])) {
+  if (matters(log_of[kSpline]) && !evidences.classes[kSpline]->log_over_line) {
     // Of a class that is only one of several, Laplace's formula tells the other mode's share well
     // enough.
     evidences.rival = rival_of(*on_reduced[kSpline], reduced, evidences.inflation);

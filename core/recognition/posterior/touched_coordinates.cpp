@@ -1,5 +1,6 @@
 #include "core/recognition/posterior/touched_coordinates.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,31 +15,57 @@ const double kUniformWidth = 1.0 / std::sqrt(2.0 * kPi);
 
 /// What is touched of a part is between a tenth of its size (half the diagonal of its box) and all
 /// of it: the size is 1 to 20 half extents, half way on the logarithm. Sizes far from that fall off
-/// as their own power: the law of log(size) is a hyperbolic secant, that of the curvature 1 / size
-/// a half Cauchy.
+/// as the square of their own power: the law of log(size) is the square of a hyperbolic secant.
 const double kLogSize = 0.5 * std::log(20.0);
+/// Of the normal law as high: the density is 1 / 2 at the centre.
+const double kSizeWidth = 2.0 * kUniformWidth;
 
-/// In roots of the size, t and c of semi-cubical parabola and spline: slopes that Cauchy's law of
-/// scale 1 gives a straight bend 3 / 2 a t + b and c / t.
-constexpr double kPlaceScale = 1.5;
-constexpr double kBendScale = 2.0;
+/// Student's law of `freedom` degrees of freedom about 0.
+struct StudentLaw {
+  int freedom = 1;
+  double scale = 1.0;
 
-/// A slope is the tangent of an angle whose density is half its cosine: steep ones are rare, as
-/// what touches a part far out on its straight arms is. Student's law of 2 degrees of freedom.
-const double kSlopeWidth = 2.0 * kUniformWidth;
-double log_slope(double slope) { return -1.5 * std::log1p(slope * slope); }
-double log_slope_derivative(double slope) { return -3.0 * slope / (1.0 + slope * slope); }
+  /// Of (1 + x^2)^(-(freedom + 1) / 2).
+  static double integral(int freedom) {
+    return freedom == 1   ? kPi
+           : freedom == 2 ? 2.0
+                          : integral(freedom - 2) * (freedom - 2.0) / (freedom - 1.0);
+  }
+  /// Of the normal law as high.
+  double width() const { return scale * integral(freedom) * kUniformWidth; }
+  /// log of the density over the one at 0.
+  double log(double x) const {
+    return -0.5 * (freedom + 1.0) * std::log1p(x * x / (scale * scale));
+  }
+  double derivative(double x) const { return -(freedom + 1.0) * x / (scale * scale + x * x); }
+};
 
-double log_cauchy(double x, double scale) { return -std::log1p(x * x / (scale * scale)); }
-double log_cauchy_derivative(double x, double scale) { return -2.0 * x / (scale * scale + x * x); }
+/// Far out on its arms every class is straight, and so is what is very large. Parts end, and what
+/// is touched is not much smaller than they are: the tails are such that curvature has a density
+/// that falls to 0 with it at the straight line. With longer ones a straight edge would be taken
+/// for an arm by odds that fall with the noise only. Where curvature falls with the power n of a
+/// coordinate, that is 2 n degrees of freedom. Slopes against an axis or vertex tangent: n = 3,
+/// half of them within 30 degrees.
+constexpr StudentLaw kSlope{6, 2.0};
+/// a t of semi-cubical parabola and spline: slope 3 / 2 a t, curvature as its power -4. One in
+/// twenty lies beyond the place where the slope is 3, at which a part's size is told
+/// (log_length_over_size).
+constexpr StudentLaw kPlaceFromCusp{8, 2.45};
+/// t / L of the cubical parabola: slope 3 (t / L)^2, curvature as the power -5. As many beyond 1.
+constexpr StudentLaw kPlaceFromInflection{10, 1.4};
+/// a c of the spline: curvature 2 / (a c)^2 at t = 0. Its inflections, 3 (a t)^2 = a c, have the
+/// slope 3 where the scale is.
+constexpr StudentLaw kBend{4, 3.0};
+/// m = e^2 - 1 of hyperbolas, about 1: Cauchy's.
+constexpr StudentLaw kEccentricity{1, 1.0};
 
 double log_size(CurveClass curve_class, double log_length) {
-  // -log cosh without overflow.
+  // -2 log cosh without overflow.
   const double x = std::abs(log_length - log_length_over_size(curve_class) - kLogSize);
-  return -(x + std::log1p(std::exp(-2.0 * x)) - std::numbers::ln2);
+  return -2.0 * (x + std::log1p(std::exp(-2.0 * x)) - std::numbers::ln2);
 }
 double log_size_derivative(CurveClass curve_class, double log_length) {
-  return -std::tanh(log_length - log_length_over_size(curve_class) - kLogSize);
+  return -2.0 * std::tanh(log_length - log_length_over_size(curve_class) - kLogSize);
 }
 
 }  // namespace
@@ -122,7 +149,7 @@ TouchedVector coordinates_of(CurveClass curve_class, const TouchedShape& shape) 
           std::atan2(b * std::cos(t), -a * std::sin(t));
       break;
     case CurveClass::Hyperbola:
-      z.head<3>() << std::log(b * b / a), b * b / (a * a), a / b * std::sinh(t);
+      z.head<3>() << std::log(b * b / a), b * b / (a * a), std::hypot(a, b) / b * std::sinh(t);
       break;
     case CurveClass::Parabola:
       z.head<2>() << std::log(2.0 * a), t;
@@ -169,7 +196,7 @@ std::optional<TouchedShape> shape_at(CurveClass curve_class, const TouchedVector
       const double p = std::exp(z[0]);
       const double a = p / z[1];
       const double b = p / std::sqrt(z[1]);
-      shape = {{a, b, 0.0}, std::asinh(b / a * z[2])};
+      shape = {{a, b, 0.0}, std::asinh(b / std::hypot(a, b) * z[2])};
       break;
     }
     case CurveClass::Parabola:
@@ -193,35 +220,80 @@ std::optional<TouchedShape> shape_at(CurveClass curve_class, const TouchedVector
   return shape.values.allFinite() && std::isfinite(shape.t) ? std::optional(shape) : std::nullopt;
 }
 
+TouchedVector prior_centre(CurveClass curve_class) {
+  TouchedVector centre = TouchedVector::Zero();
+  if (shape_coordinates(curve_class) > 0) {
+    centre[0] = log_length_over_size(curve_class) + kLogSize;
+  }
+  centre[1] = curve_class == CurveClass::Hyperbola ? 1.0 : 0.0;
+  return centre;
+}
+
+int place_coordinate(CurveClass curve_class) {
+  switch (curve_class) {
+    case CurveClass::Line:
+    case CurveClass::Circle:
+      return -1;
+    case CurveClass::Parabola:
+      return 1;
+    default:
+      return 2;
+  }
+}
+
+TouchedVector expected_coordinates(CurveClass curve_class, double arm, double bend) {
+  TouchedVector z = prior_centre(curve_class);
+  switch (curve_class) {
+    case CurveClass::Ellipse:
+      z.segment<2>(1) << 0.5, 0.5 * kPi;
+      break;
+    case CurveClass::Parabola:
+      z[1] = std::copysign(kSlope.scale, arm);
+      break;
+    case CurveClass::Hyperbola:
+      z[2] = std::copysign(kSlope.scale, arm);
+      break;
+    case CurveClass::CubicalParabola:
+      z[2] = std::copysign(kPlaceFromInflection.scale, arm);
+      break;
+    case CurveClass::CubicSpline:
+      z[3] = std::copysign(kBend.scale, bend);
+      [[fallthrough]];
+    case CurveClass::SemiCubicalParabola:
+      z[2] = std::copysign(kPlaceFromCusp.scale, arm);
+      break;
+    default:
+      break;
+  }
+  return z;
+}
+
 TouchedVector prior_widths(CurveClass curve_class, const TouchedVector& z) {
   TouchedVector widths = TouchedVector::Zero();
-  // The secant law's height is that of Cauchy's.
   switch (curve_class) {
     case CurveClass::Circle:
-      widths[0] = kCauchyWidth;
+      widths[0] = kSizeWidth;
       break;
     case CurveClass::Ellipse:
       // m uniform in (-1, 0). A pose turned by half a turn is the same, so directions have half;
-      // their density goes from uniform on the circle to the parabola's.
-      widths.head<3>() << kCauchyWidth, kUniformWidth,
-          2.0 * std::comp_ellint_2(std::sqrt(1.0 - z[1])) * kUniformWidth;
+      // their density, sin^2 + |m| cos^2, goes from uniform on the circle to the parabola's.
+      widths.head<3>() << kSizeWidth, kUniformWidth, 0.5 * kPi * (1.0 + z[1]) * kUniformWidth;
       break;
     case CurveClass::Hyperbola:
-      // m by Cauchy's law about 1, scale 1: three quarters of it are positive. The place is y / p,
-      // the slope against the vertex' tangent on the parabola.
-      widths.head<3>() << kCauchyWidth, 0.75 * kCauchyWidth, kSlopeWidth;
+      // Three quarters of the law of m are positive. The place is w = e y / p, as which curvature
+      // falls: p kappa = (1 + w^2)^(-3/2), e = 1 the parabola's.
+      widths.head<3>() << kSizeWidth, 0.75 * kEccentricity.width(), kSlope.width();
       break;
     case CurveClass::Parabola:
-      widths.head<2>() << kCauchyWidth, kSlopeWidth;
+      widths.head<2>() << kSizeWidth, kSlope.width();
       break;
     case CurveClass::CubicalParabola:
       // Either sign of a; half a turn maps the curve to itself, so places have half.
-      widths.head<3>() << 2.0 * kCauchyWidth, kSlopeWidth, 0.5 * kSlopeWidth;
+      widths.head<3>() << 2.0 * kSizeWidth, kSlope.width(), 0.5 * kPlaceFromInflection.width();
       break;
     case CurveClass::SemiCubicalParabola:
     case CurveClass::CubicSpline:
-      widths.head<4>() << kCauchyWidth, kSlopeWidth, kPlaceScale * kCauchyWidth,
-          kBendScale * kCauchyWidth;
+      widths.head<4>() << kSizeWidth, kSlope.width(), kPlaceFromCusp.width(), kBend.width();
       if (curve_class == CurveClass::SemiCubicalParabola) {
         widths[3] = 0.0;
       }
@@ -241,19 +313,19 @@ double log_prior(CurveClass curve_class, const TouchedVector& z) {
       return log_size(curve_class, z[0]);
     case CurveClass::Ellipse: {
       const double sine = std::sin(z[2]);
-      return log_size(curve_class, z[0]) + 0.5 * std::log(sine * sine + z[1] * (1.0 - sine * sine));
+      return log_size(curve_class, z[0]) + std::log(sine * sine + z[1] * (1.0 - sine * sine));
     }
     case CurveClass::Parabola:
-      return log_size(curve_class, z[0]) + log_slope(z[1]);
+      return log_size(curve_class, z[0]) + kSlope.log(z[1]);
     case CurveClass::Hyperbola:
-      return log_size(curve_class, z[0]) + log_cauchy(z[1] - 1.0, 1.0) + log_slope(z[2]);
+      return log_size(curve_class, z[0]) + kEccentricity.log(z[1] - 1.0) + kSlope.log(z[2]);
     case CurveClass::CubicalParabola:
-      return log_size(curve_class, z[0]) + log_slope(z[1]) + log_slope(z[2]);
+      return log_size(curve_class, z[0]) + kSlope.log(z[1]) + kPlaceFromInflection.log(z[2]);
     case CurveClass::SemiCubicalParabola:
-      return log_size(curve_class, z[0]) + log_slope(z[1]) + log_cauchy(z[2], kPlaceScale);
+      return log_size(curve_class, z[0]) + kSlope.log(z[1]) + kPlaceFromCusp.log(z[2]);
     case CurveClass::CubicSpline:
-      return log_size(curve_class, z[0]) + log_slope(z[1]) + log_cauchy(z[2], kPlaceScale) +
-             log_cauchy(z[3], kBendScale);
+      return log_size(curve_class, z[0]) + kSlope.log(z[1]) + kPlaceFromCusp.log(z[2]) +
+             kBend.log(z[3]);
     default:
       return 0.0;
   }
@@ -269,33 +341,56 @@ TouchedVector log_prior_gradient(CurveClass curve_class, const TouchedVector& z)
       const double sine = std::sin(z[2]);
       const double cosine = std::cos(z[2]);
       const double squares = sine * sine + z[1] * cosine * cosine;
-      gradient[1] = 0.5 * cosine * cosine / squares;
-      gradient[2] = (1.0 - z[1]) * sine * cosine / squares;
+      gradient[1] = cosine * cosine / squares;
+      gradient[2] = 2.0 * (1.0 - z[1]) * sine * cosine / squares;
       break;
     }
     case CurveClass::Parabola:
-      gradient[1] = log_slope_derivative(z[1]);
+      gradient[1] = kSlope.derivative(z[1]);
       break;
     case CurveClass::Hyperbola:
-      gradient[1] = log_cauchy_derivative(z[1] - 1.0, 1.0);
-      gradient[2] = log_slope_derivative(z[2]);
+      gradient[1] = kEccentricity.derivative(z[1] - 1.0);
+      gradient[2] = kSlope.derivative(z[2]);
       break;
     case CurveClass::CubicalParabola:
-      gradient[1] = log_slope_derivative(z[1]);
-      gradient[2] = log_slope_derivative(z[2]);
+      gradient[1] = kSlope.derivative(z[1]);
+      gradient[2] = kPlaceFromInflection.derivative(z[2]);
       break;
     case CurveClass::SemiCubicalParabola:
     case CurveClass::CubicSpline:
-      gradient[1] = log_slope_derivative(z[1]);
-      gradient[2] = log_cauchy_derivative(z[2], kPlaceScale);
+      gradient[1] = kSlope.derivative(z[1]);
+      gradient[2] = kPlaceFromCusp.derivative(z[2]);
       if (curve_class == CurveClass::CubicSpline) {
-        gradient[3] = log_cauchy_derivative(z[3], kBendScale);
+        gradient[3] = kBend.derivative(z[3]);
       }
       break;
     default:
       break;
   }
   return gradient;
+}
+
+// -log of each tailed law is concave in the square of the distance from its centre: the parabola
+// about the centre with the slope that it has at z is above it (D. Hunter and K. Lange, "A tutorial
+// on MM algorithms", 2004).
+TouchedVector tail_weights(CurveClass curve_class, const TouchedVector& z) {
+  TouchedVector weights = TouchedVector::Ones();
+  if (shape_coordinates(curve_class) == 0) {
+    return weights;
+  }
+  const TouchedVector slope = log_prior_gradient(curve_class, z);
+  const TouchedVector widths = prior_widths(curve_class, z);
+  const TouchedVector centre = prior_centre(curve_class);
+  // The other coordinates of an ellipse have no tails.
+  const int tailed = curve_class == CurveClass::Ellipse ? 1 : shape_coordinates(curve_class);
+  for (int k = 0; k < tailed; ++k) {
+    const double away = z[k] - centre[k];
+    const double curvature = away != 0.0 ? -slope[k] / away : 0.0;
+    if (curvature > 0.0) {
+      weights[k] = std::min(1.0, curvature * widths[k] * widths[k]);
+    }
+  }
+  return weights;
 }
 
 }  // namespace palpate

@@ -46,6 +46,16 @@ std::optional<TouchedShape> shape_at(CurveClass curve_class, const TouchedVector
 /// and turn, the same for every class, included.
 TouchedVector prior_widths(CurveClass curve_class, const TouchedVector& z);
 
+/// Where the prior is highest.
+TouchedVector prior_centre(CurveClass curve_class);
+
+/// The coordinate that the place is; -1 where all places are alike.
+int place_coordinate(CurveClass curve_class);
+
+/// What the prior expects: the size at its centre, the other coordinates as far out as their
+/// scales. `arm`, `bend`: of their signs are the place and the spline's c.
+TouchedVector expected_coordinates(CurveClass curve_class, double arm, double bend);
+
 /// log of the length that z[0] is the logarithm of, over the size of the part.
 double log_length_over_size(CurveClass curve_class);
 
@@ -54,5 +64,10 @@ double log_prior(CurveClass curve_class, const TouchedVector& z);
 
 /// Its derivatives by the coordinates.
 TouchedVector log_prior_gradient(CurveClass curve_class, const TouchedVector& z);
+
+/// Along each coordinate -log_prior lies below a parabola that touches it at z. What that rises by
+/// over what a normal law of the width does, at most 1: little in a heavy tail, where steps by the
+/// law's own curvature would stay.
+TouchedVector tail_weights(CurveClass curve_class, const TouchedVector& z);
 
 }  // namespace palpate

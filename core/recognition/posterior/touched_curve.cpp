@@ -29,7 +29,7 @@ struct Foot {
 /// The foot of `point` (curve's frame) near t: Newton's method on (C - p) . C' = 0. The last step
 /// is short, and the curve at its end is told by Taylor's series: it is not asked again.
 Foot follow_foot(const Curve& curve, const Vec2& point, double t) {
-  constexpr int kMostFootSteps = 6;
+  constexpr int kMostFootSteps = 6;  // digits double from wherever the last curve had it
   // Half extents. What a step leaves along the curve is some square of it, 1e-7, and an error along
   // it is its square across.
   constexpr double kLastStep = 3e-4;
@@ -268,6 +268,21 @@ std::optional<Touch> touch_of(const CanonicalFit& fit, const FitData& data) {
       touch.normal_weights.push_back(point.normal_weight);
     }
   }
+  return touch;
+}
+
+Touch along_patch(Touch touch, const FitData& data) {
+  const std::size_t at = reference_point(data);
+  const auto patch = std::find_if(data.patches.begin(), data.patches.end(),
+                                  [&](const PatchSpan& p) { return at >= p.begin && at < p.end; });
+  const std::size_t before = std::max(at, patch->begin + 1) - 1;
+  const std::size_t after = std::min(at + 1, patch->end - 1);
+  const Vec2 along = data.points[after].position - data.points[before].position;
+  if (!(along.squaredNorm() > 0.0)) {
+    return touch;
+  }
+  touch.place = data.points[at].position;
+  touch.tangent = std::copysign(1.0, along.dot(touch.tangent)) * along.normalized();
   return touch;
 }
 

@@ -47,6 +47,9 @@ Pose2 pose_of(const Touch& touch, const TouchedVector& z, const Curve& curve, do
 /// The touch of a fit, and the curve itself there; `fit` has a point for each of `data`, which are
 /// surface points. nullopt where the fit is no curve of its class in double precision.
 std::optional<Touch> touch_of(const CanonicalFit& fit, const FitData& data);
+/// The same class touched at that point, in the direction of the points beside it: what fits short
+/// arcs too well may cross them.
+Touch along_patch(Touch touch, const FitData& data);
 std::optional<TouchedCurve> curve_at(const Touch& touch, const CanonicalFit& fit,
                                      const FitData& data);
 

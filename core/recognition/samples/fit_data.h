@@ -13,8 +13,9 @@
 namespace palpate {
 
 /// Of the half extent: beyond this noise nothing is measured. The fewest places that are RECOGNIZED
-/// (recognizer.cpp) are three more than a conic has parameters, so that points anywhere lie within
-/// the noise of some conic with a probability of about its third power: one in a million.
+/// where nobody states it (recognizer.cpp) are three more than a conic has parameters, so that
+/// points anywhere lie within the noise of some conic with a probability of about its third power:
+/// one in a million.
 inline constexpr double kLargestNoise = 0.01;
 
 /// One contact point in normalised coordinates (world = frame * (scale * normalised)).

@@ -1,12 +1,17 @@
 // Spikes among stored samples.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
 #include "core/recognition/samples/sample_memory.h"
 
 namespace palpate {
+
+/// Four samples in a row off a curve are a bend. At a rate of one in 20 chance has so many in a row
+/// once in 20^4 samples, more than the memory holds.
+inline constexpr std::size_t kLongestRunOfSpikes = 3;
 
 /// find_spikes (core/local/spikes/spikes.h) on the positions of one patch, noise by the patch
 /// itself: one flag per sample. `false_alarm`: probability that a patch without spikes loses any

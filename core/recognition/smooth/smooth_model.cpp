@@ -10,55 +10,10 @@
 
 #include "core/numerics/negligible.h"
 #include "core/numerics/orthogonal_polynomials.h"
+#include "core/recognition/smooth/turning_sections.h"
 
 namespace palpate {
 namespace {
-
-/// A section shorter than this tells nothing about noise: of fewer, a parabola leaves no three
-/// residuals.
-constexpr std::size_t kFewestPoints = 6;
-/// So that a section is a graph over its chord. [rad]
-constexpr double kLongestTurn = 1.0;
-
-/// Sections of one patch by the turning of chords between means of a few points.
-std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch) {
-  // Of four samples at least, whose mean has half of their noise; so many that a radian of a patch
-  // that goes all the way round has seven.
-  constexpr std::size_t kMostBlocks = 48;
-  const std::size_t n = patch.size();
-  const std::size_t blocks = std::clamp<std::size_t>(n / 4, 1, kMostBlocks);
-  std::vector<Vec2> means(blocks, Vec2::Zero());
-  std::vector<std::size_t> starts(blocks + 1);
-  for (std::size_t b = 0; b <= blocks; ++b) {
-    starts[b] = patch.begin + b * n / blocks;
-  }
-  for (std::size_t b = 0; b < blocks; ++b) {
-    for (std::size_t i = starts[b]; i < starts[b + 1]; ++i) {
-      means[b] += data.points[i].position;
-    }
-    means[b] /= static_cast<double>(starts[b + 1] - starts[b]);
-  }
-  std::vector<PatchSpan> sections;
-  std::size_t begin = patch.begin;
-  double angle = 0.0;
-  double least = 0.0;
-  double most = 0.0;
-  for (std::size_t b = 2; b < blocks; ++b) {
-    const Vec2 before = means[b - 1] - means[b - 2];
-    const Vec2 after = means[b] - means[b - 1];
-    angle += std::atan2(cross(before, after), before.dot(after));
-    least = std::min(least, angle);
-    most = std::max(most, angle);
-    if (most - least > kLongestTurn && starts[b] - begin >= kFewestPoints &&
-        patch.end - starts[b] >= kFewestPoints) {
-      sections.push_back({begin, starts[b]});
-      begin = starts[b];
-      angle = least = most = 0.0;
-    }
-  }
-  sections.push_back({begin, patch.end});
-  return sections;
-}
 
 /// A section too short to be smoothed stands for itself.
 void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
@@ -114,11 +69,17 @@ struct SectionFit {
   int reduced_degree() const { return std::min(degree + 2, polynomials.degree()); }
 };
 
+/// What a section's degree is chosen by.
+struct Noise {
+  bool known = true;      ///< otherwise the criterion profiles it
+  double variance = 1.0;  ///< in units of the stated one
+};
+
 std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& section,
-                                      bool sigma_known) {
+                                      const Noise& noise) {
   const std::span<const FitPoint> points(data.points.data() + section.begin, section.size());
   const std::size_t n = points.size();
-  if (n < kFewestPoints) {
+  if (n < kFewestOfSection) {
     return std::nullopt;
   }
   const Vec2 chord = points.back().position - points.front().position;
@@ -152,7 +113,7 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
     const double chi2 =
         std::max(fit.polynomials.residual_sum(d), std::numeric_limits<double>::min());
     const double criterion =
-        (sigma_known ? chi2 : count * std::log(chi2)) + (d + 1) * std::log(count);
+        (noise.known ? chi2 / noise.variance : count * std::log(chi2)) + (d + 1) * std::log(count);
     if (criterion < best) {
       best = criterion;
       fit.degree = d;
@@ -213,23 +174,37 @@ struct Section {
 };
 
 /// Smooths a section, or its halves where even a high degree does not follow it (a sharp bend).
-void smooth_section(const FitData& data, const PatchSpan& points, bool sigma_known,
+void smooth_section(const FitData& data, const PatchSpan& points, const Noise& noise,
                     std::vector<Section>* sections) {
-  auto whole = fit_section(data, points, sigma_known);
+  auto whole = fit_section(data, points, noise);
   constexpr int kHighDegree = OrthogonalPolynomials::kMaxDegree - 2;
-  if (whole && whole->degree >= kHighDegree && points.size() >= 4 * kFewestPoints) {
+  if (whole && whole->degree >= kHighDegree && points.size() >= 4 * kFewestOfSection) {
     const std::size_t middle = points.begin + points.size() / 2;
-    smooth_section(data, {points.begin, middle}, sigma_known, sections);
-    smooth_section(data, {middle, points.end}, sigma_known, sections);
+    smooth_section(data, {points.begin, middle}, noise, sections);
+    smooth_section(data, {middle, points.end}, noise, sections);
     return;
   }
   sections->push_back({points, std::move(whole)});
 }
 
-/// The variance, in units of the stated one, that the quieter sections show: the lower quartile,
-/// each counted by its degrees of freedom. Neither a few sections that are not followed raise it
-/// nor noise that is stated too low.
-double quiet_variance(const std::vector<Section>& sections) {
+/// Whether that many residuals are larger than noise of the variance can leave. Chi-square exceeds
+/// dof + 2 sqrt(dof x) + 2 x with probability exp(-x) at most (B. Laurent and P. Massart, 2000,
+/// lemma 1).
+bool is_no_noise(double chi2, int dof, double variance) {
+  return dof > 0 && chi2 > variance * (dof + 2.0 * std::sqrt(dof * kNegligibleLogOdds) +
+                                       2.0 * kNegligibleLogOdds);
+}
+
+/// What the quieter sections leave: those of the lowest variances that have a quarter of all
+/// degrees of freedom. Neither a few sections that are not followed raise it nor noise that is
+/// stated too low.
+struct QuietSections {
+  double highest = 1.0;  ///< variance of any of them, in units of the stated one
+  double chi2 = 0.0;     ///< of all of them
+  int dof = 0;
+};
+
+QuietSections quiet_of(const std::vector<Section>& sections) {
   std::vector<std::pair<double, int>> ratios;
   int whole = 0;
   for (const Section& section : sections) {
@@ -239,57 +214,69 @@ double quiet_variance(const std::vector<Section>& sections) {
     }
   }
   std::sort(ratios.begin(), ratios.end());
-  int below = 0;
+  QuietSections quiet;
   for (const auto& [ratio, dof] : ratios) {
-    below += dof;
-    if (4 * below >= whole) {
-      return ratio;
+    quiet.highest = ratio;
+    quiet.chi2 += ratio * dof;
+    quiet.dof += dof;
+    if (4 * quiet.dof >= whole) {
+      break;
     }
   }
-  return 1.0;
+  return quiet;
 }
 
-/// Whether a section's residuals are larger than the noise can be: no polynomial follows a bend
-/// that only some of its samples see. Chi-square exceeds dof + 2 sqrt(dof x) + 2 x with probability
-/// exp(-x) at most (B. Laurent and P. Massart, 2000, lemma 1): by chance fewer than one section in
-/// a million, which then costs time alone.
+/// Whether no polynomial follows a section: a bend that only some of its samples see. By chance
+/// fewer than one section in a million, which then costs time alone.
 bool is_not_followed(const Section& section, double variance) {
   const int dof = section.dof();
-  return dof > 0 && section.chi2() > variance * (dof + 2.0 * std::sqrt(dof * kNegligibleLogOdds) +
-                                                 2.0 * kNegligibleLogOdds);
+  return dof > 0 && is_no_noise(section.chi2(), dof, variance);
 }
 
-void cut_until_followed(const FitData& data, Section section, bool sigma_known, double variance,
+void cut_until_followed(const FitData& data, Section section, const Noise& noise, double variance,
                         std::vector<Section>* sections) {
   const PatchSpan points = section.points;
   if (!is_not_followed(section, variance)) {
     sections->push_back(std::move(section));
     return;
   }
-  if (points.size() < 2 * kFewestPoints) {
+  if (points.size() < 2 * kFewestOfSection) {
     sections->push_back({points, std::nullopt});
     return;
   }
   const std::size_t middle = points.begin + points.size() / 2;
   for (const PatchSpan& half : {PatchSpan{points.begin, middle}, PatchSpan{middle, points.end}}) {
-    cut_until_followed(data, {half, fit_section(data, half, sigma_known)}, sigma_known, variance,
-                       sections);
+    cut_until_followed(data, {half, fit_section(data, half, noise)}, noise, variance, sections);
   }
 }
 
 /// The sections, those that are not followed cut into halves until what remains is, or is too short
 /// to be smoothed.
-std::vector<Section> followed(const FitData& data, std::vector<Section> sections, bool sigma_known,
-                              double variance) {
+std::vector<Section> followed(const FitData& data, std::vector<Section> sections,
+                              const Noise& noise, double variance) {
   if (std::none_of(sections.begin(), sections.end(),
                    [&](const Section& section) { return is_not_followed(section, variance); })) {
     return sections;
   }
   std::vector<Section> result;
   for (Section& section : sections) {
-    cut_until_followed(data, std::move(section), sigma_known, variance, &result);
+    cut_until_followed(data, std::move(section), noise, variance, &result);
   }
   return result;
+}
+
+/// All patches, cut where they turn and where a high degree does not follow them.
+std::vector<Section> smoothed(const FitData& data, const Noise& noise) {
+  std::vector<Section> sections;
+  for (const PatchSpan& patch : data.patches) {
+    if (patch.size() == 0) {
+      continue;  // every sample was set aside
+    }
+    for (const PatchSpan& points : sections_of(data, patch, noise.known)) {
+      smooth_section(data, points, noise, &sections);
+    }
+  }
+  return sections;
 }
 
 void add_section(FitData* data, const Section& section, SmoothModel* model) {
@@ -312,18 +299,17 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known) {
   model.nearest_reduced.resize(data->points.size());
   model.reduced.frame = data->frame;
   model.reduced.scale = data->scale;
-  std::vector<Section> sections;
-  for (const PatchSpan& patch : data->patches) {
-    if (patch.size() == 0) {
-      continue;  // every sample was set aside
-    }
-    for (const PatchSpan& points : sections_of(*data, patch)) {
-      smooth_section(*data, points, sigma_known, &sections);
-    }
+  Noise noise{sigma_known, 1.0};
+  std::vector<Section> sections = smoothed(*data, noise);
+  QuietSections quiet = quiet_of(sections);
+  if (sigma_known && is_no_noise(quiet.chi2, quiet.dof, 1.0)) {
+    // Stated too low everywhere: by it every bend of the noise would be followed.
+    noise.variance = quiet.chi2 / quiet.dof;
+    sections = smoothed(*data, noise);
+    quiet = quiet_of(sections);
   }
-  const double quiet = quiet_variance(sections);
-  sections =
-      followed(*data, std::move(sections), sigma_known, sigma_known ? std::max(quiet, 1.0) : quiet);
+  sections = followed(*data, std::move(sections), noise,
+                      sigma_known ? std::max(quiet.highest, 1.0) : quiet.highest);
 
   auto section = sections.begin();
   for (const PatchSpan& patch : data->patches) {

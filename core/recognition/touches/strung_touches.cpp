@@ -25,9 +25,11 @@ namespace {
 constexpr std::size_t kRun = 12;
 constexpr double kTurn = 0.6;  // rad
 
-/// Touches that the curve for the order is sought through, four for each of a spline's unknowns:
-/// more would cost time and tell no more of the order.
+/// Touches that the curve for the order is sought through: four for each of a spline's unknowns.
+/// Where nobody states the noise, so few leave straight edges to needles (bench_touches --unstated
+/// --curve line).
 constexpr std::size_t kSought = 24;
+constexpr std::size_t kSoughtOfUnstated = 48;
 
 using Indices = std::vector<std::size_t>;
 
@@ -134,8 +136,10 @@ std::optional<PlacedCurve> best_of(const ClassFits& fits, const Arcs& arcs, unsi
   return best;
 }
 
-/// A curve to order the touches by.
-std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, unsigned classes) {
+/// A curve to order the touches by; `start` receives what was found, if every class was sought and
+/// one fits.
+std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, unsigned classes,
+                                         std::optional<WarmStart>* start) {
   const Arcs arcs = smooth_arcs(data, sigma_known);
   const FitData& reduced = arcs.smooth.reduced;
   // A conic that explains the touches within their noise, and does not go back and forth between
@@ -145,9 +149,15 @@ std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, 
   const bool orders = conic && arcs.sigma_known &&
                       fits_well(conic->chi2, residual_count(reduced)) &&
                       length_of(conic->touches_m) <= kDetour * shortest_tree(conic->touches_m);
-  return orders || (classes & kCubics) == 0
-             ? conic
-             : best_of(fit_classes(reduced, nullptr, classes), arcs, kAllClasses);
+  if (orders || (classes & kCubics) == 0) {
+    return conic;
+  }
+  const ClassFits fits = fit_classes(reduced, nullptr, classes);
+  WarmStart found = warm_start_from(fits, reduced);
+  if (arcs.sigma_known && !found.polynomials.every_seed) {
+    *start = std::move(found);
+  }
+  return best_of(fits, arcs, kAllClasses);
 }
 
 /// A touch's place in the order of all.
@@ -218,7 +228,8 @@ StoredPatch strung(std::span<const StoredPatch> patches, std::span<const Place> 
 struct Strung {
   std::vector<StoredPatch> runs;
   std::vector<bool> taken;
-  std::vector<Place> alone;  ///< whose direction is known
+  std::vector<Place> alone;        ///< whose direction is known
+  std::optional<WarmStart> start;  ///< of the curve that told the order
 
   explicit Strung(std::size_t patches) : taken(patches, false) {}
 
@@ -304,17 +315,22 @@ std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, cons
       sought.push_back(patch);
     }
   }
-  for (const std::size_t p : spread(patches, lone, kSought)) {
+  const bool stated =
+      default_sigma_m > 0.0 || std::all_of(patches.begin(), patches.end(), [](const auto& patch) {
+        return std::all_of(patch.samples.begin(), patch.samples.end(),
+                           [](const StoredSample& sample) { return sample.sigma_m > 0.0; });
+      });
+  for (const std::size_t p : spread(patches, lone, stated ? kSought : kSoughtOfUnstated)) {
     sought.push_back(patches[p]);
   }
   bool sigma_known = false;
   const FitData data = make_fit_data(sought, default_sigma_m, &sigma_known);
-  const auto found = curve_through(data, sigma_known, classes);
+  Strung result(patches.size());
+  const auto found = curve_through(data, sigma_known, classes, &result.start);
   if (!found) {
     return std::nullopt;
   }
   const Curve& curve = found->curve;
-  Strung result(patches.size());
   for (const auto& [tip_radius_m, of_tip] : by_tip(patches, lone)) {
     std::vector<Place> places;
     for (const std::size_t p : of_tip) {
@@ -333,8 +349,8 @@ std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, cons
 
 }  // namespace
 
-std::optional<std::vector<StoredPatch>> strung_touches(std::span<const StoredPatch> patches,
-                                                       double default_sigma_m, unsigned classes) {
+std::optional<StrungTouches> strung_touches(std::span<const StoredPatch> patches,
+                                            double default_sigma_m, unsigned classes) {
   const Indices lone = lone_patches(patches);
   if (lone.size() < kRun) {
     return std::nullopt;
@@ -351,13 +367,17 @@ std::optional<std::vector<StoredPatch>> strung_touches(std::span<const StoredPat
     all[place.patch].direction = place.direction;
     all[place.patch].turn = place.turn;
   }
-  std::vector<StoredPatch> result;
+  StrungTouches result;
   for (std::size_t p = 0; p < all.size(); ++p) {
     if (!strung->taken[p]) {
-      result.push_back(std::move(all[p]));
+      result.patches.push_back(std::move(all[p]));
     }
   }
-  std::move(strung->runs.begin(), strung->runs.end(), std::back_inserter(result));
+  std::move(strung->runs.begin(), strung->runs.end(), std::back_inserter(result.patches));
+  if (strung->start) {
+    result.starts.push_back(
+        {std::vector<int>(result.patches.size(), 0), *std::move(strung->start)});
+  }
   return result;
 }
 

@@ -5,9 +5,17 @@
 #include <span>
 #include <vector>
 
+#include "core/recognition/fit/warm_start.h"
 #include "core/recognition/samples/sample_memory.h"
 
 namespace palpate {
+
+struct StrungTouches {
+  std::vector<StoredPatch> patches;
+  /// Every class as it fits the touches that the order was sought through, tips' centres where they
+  /// are round; sides all 0. Empty where no curve was sought, no cubic, or none that fits.
+  std::vector<SidedStart> starts;
+};
 
 /// `patches` with those of a single sample that lie densely along the curve taken together, in
 /// their order along it, as patches of their own at the end: from then on they are like strokes,
@@ -16,7 +24,7 @@ namespace palpate {
 /// follows it. Touches of different tips are not mixed. A run has the name of its first touch, and
 /// no side that a probe could have said. nullopt where there is no run. `default_sigma_m`: of
 /// samples that bring none; `classes`: by bit 1 << CurveClass.
-std::optional<std::vector<StoredPatch>> strung_touches(std::span<const StoredPatch> patches,
-                                                       double default_sigma_m, unsigned classes);
+std::optional<StrungTouches> strung_touches(std::span<const StoredPatch> patches,
+                                            double default_sigma_m, unsigned classes);
 
 }  // namespace palpate

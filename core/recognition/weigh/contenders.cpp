@@ -25,6 +25,12 @@ bool is_plausible(const ClassFit& told, double highest, double margin, double er
          log_evidence(likelihood, evidences, told.curve_class, chi2) > highest - margin;
 }
 
+/// Whether a class is told by how much of it is as straight as a line that is told: not by its fit,
+/// which is any of many.
+bool is_of_straight_paths(const Evidences& evidences, std::size_t i) {
+  return evidences.classes[i] && evidences.classes[i]->log_over_line;
+}
+
 /// A class that is no such curve on all points.
 ClassFit out(const ClassFit& coarse) {
   ClassFit fit = coarse;
@@ -64,9 +70,11 @@ ClassFit weighed(const ClassFit& coarse, const FitData& reduced, bool trusted,
   return refine_on_all(coarse, smooth, data).value_or(out(coarse));
 }
 
-/// Takes w->coarse of a class to its optimum on the reduced points, unless it is there.
+/// Takes w->coarse of a class to its optimum on the reduced points, unless it is there, or leaves
+/// more than any noise after all that a search has tried: that is no curve of the class.
 const ClassFit& settle(std::size_t i, RivalOf rival, const FitData& reduced, Contenders* w) {
-  if (!w->fits[i]->weighed || (rival == RivalOf::Best && w->coarse[i]->rival)) {
+  if (w->coarse[i]->chi2 <= most_chi2_of_noise(reduced.points) &&
+      (!w->fits[i]->weighed || (rival == RivalOf::Best && w->coarse[i]->rival))) {
     w->coarse[i] = settled(*w->coarse[i], reduced, rival);
   }
   return *w->coarse[i];
@@ -159,7 +167,7 @@ Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
                                 : -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < w.fits.size(); ++i) {
       auto& fit = w.fits[i];
-      if (fit && !fit->weighed && !fit->at_limit &&
+      if (fit && !fit->weighed && !fit->at_limit && !is_of_straight_paths(w.evidences, i) &&
           is_plausible(*fit, highest, margin, error, likelihood, w.evidences)) {
         fit = weighed(settle(i, RivalOf::Other, reduced, &w), reduced, trusted, smooth, data);
         changed = true;

@@ -21,38 +21,60 @@ namespace {
 ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
                            const FitData& reduced, unsigned classes,
                            double out_of_reach = std::numeric_limits<double>::infinity()) {
-  const WarmStart* start = start_for(starts, sides);
-  if (start == nullptr) {
-    return fit_classes(reduced, nullptr, classes, out_of_reach);
-  }
-  const PolynomialFits carried = carried_to(*start, reduced);
-  return fit_classes(reduced, &carried, classes, out_of_reach);
+  return fit_classes(reduced, start_for(starts, sides), classes, out_of_reach);
 }
 
-/// The classes fitted for one way in which the tips may lie.
-struct Way {
-  ClassFits fits;
-  FitData reduced;  ///< surface points
-  CurveClass candidate = CurveClass::Unclassified;
-  std::optional<ClassFit> settled;  ///< the candidate at its optimum on the reduced points
-  std::optional<ClassFit> refined;  ///< on all points
-  Evidences evidences;
-};
+/// The class that a way stands or falls with, by the evidence of all, and its optimum on the
+/// reduced points. Returns whether it is another than before.
+bool settle_candidate(const Judged& by, Way* way) {
+  const SmoothModel& smooth = by.arcs.smooth;
+  const ClassFits told = as_told(way->fits, smooth);
+  way->evidences =
+      evidences_of(told, way->fits, smooth, way->reduced, by.likelihood, std::move(way->evidences));
+  const CurveClass before = way->candidate;
+  way->candidate = best_class(told, by.likelihood, way->evidences);
+  if (way->candidate == before) {
+    return false;
+  }
+  way->settled.reset();
+  way->refined.reset();
+  if (const auto& fit = way->fits[static_cast<std::size_t>(way->candidate)]) {
+    const bool may_win =
+        !tells_noise(by.arcs, by.likelihood) || fits_well(fit->chi2, residual_count(way->reduced));
+    way->settled = settled(*fit, way->reduced, may_win ? RivalOf::Best : RivalOf::Other);
+  }
+  return true;
+}
+
+/// The candidate as all points see it: refined on them, or as it is where they tell what the
+/// reduced points do.
+std::optional<ClassFit> seen_by_all(const ClassFit& settled, const FitData& reduced,
+                                    const Judged& by) {
+  constexpr double kSame = 1.0;  // of chi-square: odds are right to a factor of 1.6
+  const SmoothModel& smooth = by.arcs.smooth;
+  if (is_what_it_says(settled, reduced)) {
+    ClassFit fit = settled;
+    fit.chi2 = chi2_on_all(settled, smooth, by.arcs.data);
+    if (std::abs(fit.chi2 - (settled.chi2 + smooth.chi2)) <= kSame) {
+      return fit;
+    }
+  }
+  return refine_on_all(settled, smooth, by.arcs.data);
+}
+
+/// The same, and on all points. What was refined before is not once more.
+void take_candidate(const Judged& by, Way* way) {
+  if (settle_candidate(by, way) && way->settled) {
+    way->refined = seen_by_all(*way->settled, way->reduced, by);
+  }
+}
 
 Way way_of(ClassFits fits, FitData reduced, const Judged& by) {
-  const SmoothModel& smooth = by.arcs.smooth;
   Way way;
   way.fits = std::move(fits);
   way.reduced = std::move(reduced);
-  const ClassFits told = as_told(way.fits, smooth);
-  way.evidences = evidences_of(told, way.fits, smooth, way.reduced, by.likelihood, by.of_paths);
-  way.candidate = best_class(told, by.likelihood, way.evidences);
-  if (const auto& fit = way.fits[static_cast<std::size_t>(way.candidate)]) {
-    const bool may_win =
-        !tells_noise(by.arcs, by.likelihood) || fits_well(fit->chi2, residual_count(way.reduced));
-    way.settled = settled(*fit, way.reduced, may_win ? RivalOf::Best : RivalOf::Other);
-    way.refined = refine_on_all(*way.settled, smooth, by.arcs.data);
-  }
+  way.evidences = by.of_paths;
+  take_candidate(by, &way);
   return way;
 }
 
@@ -63,6 +85,23 @@ constexpr double kAgreement = 4.6;  // 2 ln 10
 /// what changes odds less than tenfold.
 bool agrees(const Way& way, const SmoothModel& smooth) {
   return way.refined && std::abs(way.settled->chi2 + smooth.chi2 - way.refined->chi2) <= kAgreement;
+}
+
+/// Whether a way leaves no more than `chi2` on all points, by its candidate or the class that was
+/// the candidate before: a class with fewer parameters always leaves more.
+bool is_as_near(const Way& way, CurveClass before, double chi2, const Judged& by) {
+  if (!way.refined) {
+    return false;
+  }
+  if (way.refined->chi2 <= chi2) {
+    return true;
+  }
+  const auto& fit = way.fits[static_cast<std::size_t>(before)];
+  const auto refined =
+      fit && before != way.candidate
+          ? refine_on_all(settled(*fit, way.reduced, RivalOf::Other), by.arcs.smooth, by.arcs.data)
+          : std::nullopt;
+  return refined && refined->chi2 <= chi2;
 }
 
 /// Whether directions could be what keeps the curve found from the points.
@@ -99,26 +138,45 @@ double log_evidence_of(const Way& way, const Judged& by) {
                   : kNone;
 }
 
-/// The curve that fits the tips' centres best, sought when it is asked for.
+/// The curve that fits the tips' centres best, sought, or followed, when it is asked for.
 class CurveOfCentres {
  public:
-  explicit CurveOfCentres(const Judged& by) : by_(by) {}
+  CurveOfCentres(const Judged& by, std::span<const SidedStart> starts)
+      : by_(by), starts_(starts), sides_(by.arcs.smooth.reduced.patches.size(), 0) {}
 
   /// Its points are the smooth model's reduced ones; nullopt where no class fits.
   const std::optional<CanonicalFit>& get() {
     if (!sought_) {
       sought_ = true;
       const FitData& centres = by_.arcs.smooth.reduced;
-      const Way way = way_of(fit_classes(centres, nullptr, by_.classes), centres, by_);
+      Way way;
+      way.fits = fit_classes_from(starts_, sides_, centres, by_.classes);
+      way.reduced = centres;
+      way.evidences = by_.of_paths;
+      settle_candidate(by_, &way);
       curve_ = way.settled ? to_canonical(*way.settled, centres) : std::nullopt;
+      start_ = warm_start_from(way.fits, centres);
     }
     return curve_;
   }
 
+  /// Where the classes are to be followed from along its directions, once get() has been asked:
+  /// where none fits the centres themselves, a search has shown that. nullptr where one does.
+  const WarmStart* start() const { return start_.polynomials.every_seed ? &start_ : nullptr; }
+
+  /// Where it is to be followed from in the next weighing: tips on neither side; nullopt where
+  /// nobody asked for it.
+  std::optional<SidedStart> next_start() const {
+    return sought_ ? std::optional(SidedStart{sides_, start_}) : std::nullopt;
+  }
+
  private:
   const Judged& by_;
+  std::span<const SidedStart> starts_;
+  std::vector<int> sides_;
   bool sought_ = false;
   std::optional<CanonicalFit> curve_;
+  WarmStart start_;
 };
 
 /// Directions that turn by less are settled: the surface is off by a millionth of the radius. [rad]
@@ -165,11 +223,11 @@ Way fit_along(FitData touches, std::span<const int> sides, const Judged& by,
       break;
     }
     FitData nearer = on_surface(touches, sides);
-    const PolynomialFits carried = carried_to(warm_start_from(way.fits, way.reduced), nearer);
-    ClassFits again = fit_classes(nearer, &carried, by.classes);
+    const WarmStart start = warm_start_from(way.fits, way.reduced);
+    ClassFits again = fit_classes(nearer, &start, by.classes, by.out_of_reach);
     const double before = way.settled->chi2;
     Way next = way_of(std::move(again), std::move(nearer), by);
-    if (swayed && !(next.refined && next.refined->chi2 <= way.refined->chi2 + kAgreement)) {
+    if (swayed && !is_as_near(next, way.candidate, way.refined->chi2 + kAgreement, by)) {
       break;  // led astray
     }
     way = std::move(next);
@@ -183,12 +241,13 @@ Way fit_along(FitData touches, std::span<const int> sides, const Judged& by,
 }
 
 /// The same; where directions led to no curve that all points have, once more along those of the
-/// curve of the centres, whose normals are nearly the surface's whichever side that is on.
+/// curve of the centres, whose normals are nearly the surface's whichever side that is on. What is
+/// followed has been tried along these when it was sought.
 Way fit_way(const FitData& touches, std::span<const int> sides, const Judged& by,
             std::span<const SidedStart> starts, CurveOfCentres* centres) {
   const SmoothModel& smooth = by.arcs.smooth;
   Way way = fit_along(touches, sides, by, starts);
-  if (agrees(way, smooth) || !way.settled ||
+  if (start_for(starts, sides) != nullptr || agrees(way, smooth) || !way.settled ||
       !directions_may_explain(*way.settled, touches, smooth) || !centres->get()) {
     return way;
   }
@@ -196,7 +255,11 @@ Way fit_way(const FitData& touches, std::span<const int> sides, const Judged& by
   if (set_directions(DirectionsOf::AllPoints, *centres->get(), smooth, &turned) < kSettledTurn) {
     return way;
   }
-  Way again = fit_along(std::move(turned), sides, by, {});
+  std::vector<SidedStart> from;
+  if (const WarmStart* start = centres->start()) {
+    from.push_back({{sides.begin(), sides.end()}, *start});
+  }
+  Way again = fit_along(std::move(turned), sides, by, from);
   const bool better = again.refined && (!way.refined || again.refined->chi2 < way.refined->chi2);
   return better ? again : way;
 }
@@ -239,69 +302,76 @@ Directed directed(std::span<const StoredPatch> patches, const SmoothModel& smoot
   return result;
 }
 
-}  // namespace
-
-SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Judged& by,
-                         std::span<const SidedStart> starts) {
+/// The way of the highest evidence, the first (from outside the bends) at the odds of the prior.
+void take_most_probable(const Judged& by, SidedFits* sided) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   // A prior (core/README.md, "The prior"): tips that touch a part from within a bend are rare,
   // probes come from outside; whoever touches bores states the side. Were it above the doubt that
   // RECOGNIZED leaves (0.05), nothing touched by a tip of which no side is stated could be
   // RECOGNIZED.
   constexpr double kInsideProbability = 0.01;
-  CurveOfCentres centres(by);
-  const auto [touches, bends, senses] = directed(patches, by.arcs.smooth, &centres);
-  const auto ways = possible_sides(patches, touches, bends, senses);
-  if (!has_tips(touches.points)) {
-    FitData reduced = on_surface(touches, ways.front());
-    ClassFits fits = fit_classes_from(starts, ways.front(), reduced, by.classes, by.out_of_reach);
-    return {std::move(fits), std::move(reduced), ways.front(), kInfinity, {}};
-  }
-  if (ways.size() == 1) {
-    Way way = fit_way(touches, ways.front(), by, starts, &centres);
-    return {std::move(way.fits), std::move(way.reduced), ways.front(), kInfinity, {}};
+  sided->taken = 0;
+  sided->margin = kInfinity;
+  if (sided->ways.size() < 2) {
+    return;
   }
   const double log_price_of_inside = log_odds(1.0 - kInsideProbability);
-  SidedFits best;
-  std::vector<SidedStart> others;
   double highest = -kInfinity;
   double second = -kInfinity;
-  for (const std::vector<int>& sides : ways) {
-    Way way = fit_way(touches, sides, by, starts, &centres);
-    const bool first = &sides == &ways.front();
+  for (std::size_t i = 0; i < sided->ways.size(); ++i) {
+    const Way& way = sided->ways[i];
     // A line has no bend to be outside of.
-    const double price = first || way.candidate == CurveClass::Line ? 0.0 : log_price_of_inside;
+    const double price = i == 0 || way.candidate == CurveClass::Line ? 0.0 : log_price_of_inside;
     const double evidence = log_evidence_of(way, by) - price;
-    if (first || evidence > highest) {
-      if (!first) {
-        others.push_back({best.sides, warm_start_from(best.fits, best.reduced)});
-      }
+    if (i == 0 || evidence > highest) {
       second = highest;
       highest = evidence;
-      best = {std::move(way.fits), std::move(way.reduced), sides, 0.0, {}};
+      sided->taken = i;
     } else {
-      others.push_back({sides, warm_start_from(way.fits, way.reduced)});
       second = std::max(second, evidence);
     }
   }
-  best.others = std::move(others);
-  best.margin = std::isfinite(second) ? highest - second : kInfinity;
-  return best;
+  sided->margin = std::isfinite(second) ? highest - second : kInfinity;
 }
 
-bool lie_otherwise(std::span<const StoredPatch> patches, Judged by,
-                   std::span<const SidedStart> starts, SidedFits* sided) {
+}  // namespace
+
+SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Judged& by,
+                         std::span<const SidedStart> starts) {
+  CurveOfCentres centres(by, starts);
+  const auto [touches, bends, senses] = directed(patches, by.arcs.smooth, &centres);
+  SidedFits sided;
+  const auto all_sides = possible_sides(patches, touches, bends, senses);
+  if (!has_tips(touches.points)) {
+    Way way;
+    way.sides = all_sides.front();
+    way.reduced = on_surface(touches, way.sides);
+    way.fits = fit_classes_from(starts, way.sides, way.reduced, by.classes, by.out_of_reach);
+    sided.ways.push_back(std::move(way));
+    return sided;
+  }
+  for (const std::vector<int>& sides : all_sides) {
+    sided.ways.push_back(fit_way(touches, sides, by, starts, &centres));
+    sided.ways.back().sides = sides;
+  }
+  sided.centres = centres.next_start();
+  take_most_probable(by, &sided);
+  return sided;
+}
+
+bool lie_otherwise(const Judged& by, SidedFits* sided) {
   if (!std::isfinite(sided->margin)) {
     return false;
   }
-  by.of_paths = evidences_of_paths(by.arcs.smooth, by.likelihood);
-  SidedFits again = fit_over_sides(patches, by, starts);
-  if (again.sides == sided->sides) {
-    sided->margin = again.margin;
-    return false;
+  for (Way& way : sided->ways) {
+    if (way.settled) {
+      way.evidences = by.of_paths;
+      take_candidate(by, &way);
+    }
   }
-  *sided = std::move(again);
-  return true;
+  const std::size_t before = sided->taken;
+  take_most_probable(by, sided);
+  return sided->taken != before;
 }
 
 }  // namespace palpate

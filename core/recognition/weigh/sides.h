@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,22 +13,35 @@
 
 namespace palpate {
 
-struct SidedFits {
-  ClassFits fits;   ///< of every class, to `reduced`
-  FitData reduced;  ///< the arcs' reduced points, taken to the surface
+/// The classes fitted for one way in which the tips may lie.
+struct Way {
   /// Per patch the side of travel on which the tip centres lie (tip_sides.h).
   std::vector<int> sides;
+  ClassFits fits;   ///< of every class, to `reduced`
+  FitData reduced;  ///< the arcs' reduced points, taken to the surface
+  CurveClass candidate = CurveClass::Unclassified;
+  std::optional<ClassFit> settled;  ///< the candidate at its optimum on the reduced points
+  std::optional<ClassFit> refined;  ///< on all points, unless these tell what the reduced ones do
+  Evidences evidences;
+};
+
+struct SidedFits {
+  std::vector<Way> ways;  ///< the first is from outside the bends, where probes do not tell
+  std::size_t taken = 0;  ///< the most probable of them
   /// log odds over the next best way for them to lie, priors included; infinite where the probes
   /// told.
-  double margin = 0.0;
-  std::vector<SidedStart> others;  ///< where the other ways are to be followed from
+  double margin = std::numeric_limits<double>::infinity();
+  /// Where the curve of the tips' centres is to be followed from, if it was needed.
+  std::optional<SidedStart> centres;
+
+  const Way& way() const { return ways[taken]; }
 };
 
 /// What the ways are judged by.
 struct Judged {
   const Arcs& arcs;
   const Likelihood& likelihood;
-  Evidences of_paths;              ///< with that of free-form paths, under this law or another
+  Evidences of_paths;              ///< with that of free-form paths, under this law
   unsigned classes = kAllClasses;  ///< by bit 1 << CurveClass
   double out_of_reach =
       std::numeric_limits<double>::infinity();  ///< as in fit_classes(), whatever the sides
@@ -39,10 +53,11 @@ struct Judged {
 SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Judged& by,
                          std::span<const SidedStart> starts);
 
-/// The same once more, where sides are open, under a law that `sided` was not told by: what is seen
-/// to be more than noise tells sides no better than it tells classes. Returns whether the tips lie
-/// another way then; where they do not, the fits stay as they are. `starts`: of all ways.
-bool lie_otherwise(std::span<const StoredPatch> patches, Judged by,
-                   std::span<const SidedStart> starts, SidedFits* sided);
+/// The ways judged once more, where sides are open, under a law that they were not fitted by: what
+/// is seen to be more than noise tells sides no better than it tells classes. The fits stay: least
+/// squares are the same under either law. (What was out of reach under the first stays out: it
+/// leaves more than the largest noise, and the second has none larger.) Returns whether another way
+/// is taken then.
+bool lie_otherwise(const Judged& by, SidedFits* sided);
 
 }  // namespace palpate

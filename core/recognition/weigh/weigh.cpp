@@ -6,9 +6,7 @@
 #include <utility>
 
 #include "core/numerics/negligible.h"
-#include "core/recognition/coherent/coherent_moment.h"
 #include "core/recognition/posterior/likelihood_of.h"
-#include "core/recognition/posterior/moments.h"
 #include "core/recognition/posterior/out_of_reach.h"
 #include "core/recognition/weigh/conic_mode.h"
 #include "core/recognition/weigh/contenders.h"
@@ -23,12 +21,17 @@ double margin_of(const WeighOptions& options) {
   return std::max(log_odds(options.recognized_probability), 0.0);
 }
 
-/// Without the classes that nobody wants and those that leave nothing over to test them with.
-ClassFits testable(ClassFits fits, unsigned classes, std::size_t residuals) {
+/// Without the classes that nobody wants, those that go through points so few in any of a family of
+/// ways, and, where it is they that tell the noise, those that leave nothing over for that. (A
+/// class that goes through all points one way has its evidence like any other: left out, the next
+/// one that misses them by little would have all.)
+ClassFits testable(ClassFits fits, unsigned classes, const Arcs& arcs) {
+  const int least_over = arcs.sigma_known ? 0 : 1;
+  const int residuals = static_cast<int>(residual_count(arcs.data));
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     const bool wanted = (classes & (1U << i)) != 0;
-    if (!wanted || static_cast<int>(residuals) <= degrees_of_freedom(curve_class)) {
+    if (!wanted || residuals < degrees_of_freedom(curve_class) + least_over) {
       fits[i].reset();
     }
   }
@@ -56,7 +59,7 @@ Contenders contending(ClassFits coarse, bool no_conic, const Ground& ground,
   const Arcs& arcs = ground.arcs;
   Contenders contenders;
   contenders.no_conic = no_conic;
-  contenders.coarse = testable(std::move(coarse), options.classes, residual_count(arcs.data));
+  contenders.coarse = testable(std::move(coarse), options.classes, arcs);
   contenders.fits = as_told(contenders.coarse, arcs.smooth);
   contenders.evidences = of_paths;
   contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
@@ -102,41 +105,19 @@ std::array<std::optional<CanonicalFit>, 9> placed_canonically(
   return canonical;
 }
 
-/// The covariance of a class where one that is linear about its estimate does not hold its valley.
-std::optional<ShapePoseCovariance> covariance_of_valley(const ClassEvidence& evidence,
-                                                        const CanonicalFit& on_reduced,
-                                                        const CanonicalFit& best,
-                                                        const FitData& reduced, double inflation) {
-  const auto valley = by_slices(evidence, reduced, inflation, Slices::ForMoment);
-  if (!valley || valley->widest < 0) {
-    return std::nullopt;
-  }
-  return with_bend(inflation * best.covariance, inflation * on_reduced.covariance,
-                   second_moment(on_reduced, *valley, reduced));
-}
-
-/// The moment where neighbours may err together: what such deviations leave unknown, with what the
-/// valley's bend adds, as far as there are any. `valley`: covariance_of_valley, if there is one;
-/// `bound`: of the noise alone; `inflation`: that of `valley`; `stated`: of it, for stated form
-/// error.
-ShapePoseCovariance with_coherence(const CoherentMoment& coherent,
-                                   const std::optional<ShapePoseCovariance>& valley,
-                                   const ShapePoseCovariance& bound, double inflation,
-                                   double stated) {
-  const ShapePoseCovariance linear = inflation * bound;
-  const ShapePoseCovariance shared = coherent.moment + stated * bound;
-  const ShapePoseCovariance bent =
-      valley ? bend_added(shared, linear, *valley).value_or(shared) : shared;
-  return coherent.probability * bent + (1.0 - coherent.probability) * (valley ? *valley : linear);
-}
-
 /// Where all ways in which the tips may lie are to be followed from; the first is the one taken.
-std::vector<SidedStart> starts_of(const SidedFits& sided, const Contenders& contenders,
-                                  const Arcs& arcs) {
-  std::vector<SidedStart> starts = sided.others;
-  starts.insert(starts.begin(),
-                {sided.sides, warm_start_from(contenders.coarse, arcs.smooth.reduced)});
+std::vector<SidedStart> starts_of(const SidedFits& sided, const Contenders& contenders) {
+  const Way& taken = sided.way();
+  std::vector<SidedStart> starts{{taken.sides, warm_start_from(contenders.coarse, taken.reduced)}};
   starts.front().start.no_conic = contenders.no_conic;
+  for (const Way& way : sided.ways) {
+    if (&way != &taken) {
+      starts.push_back({way.sides, warm_start_from(way.fits, way.reduced)});
+    }
+  }
+  if (sided.centres) {
+    starts.push_back(*sided.centres);
+  }
   return starts;
 }
 
@@ -165,30 +146,15 @@ Weighing told(Arcs&& arcs, SidedFits&& sided, Contenders contenders, const Groun
   const auto& best = contenders.fits[b];
   w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, ground.likelihood);
   w.canonical = placed_canonically(contenders, w.probabilities, ground, std::move(best_placed));
-  const auto& evidence = contenders.evidences.classes[b];
-  if (const auto& on_reduced = contenders.evidences.on_reduced[b];
-      evidence && on_reduced && w.canonical[b]) {
-    const ShapePoseCovariance& bound = w.canonical[b]->covariance;
-    w.moment =
-        covariance_of_valley(*evidence, *on_reduced, *w.canonical[b], ground.reduced, w.inflation);
-    if (w.moment) {
-      w.white_moment = *w.moment / w.inflation;
-    }
-    if (seen.correlated) {
-      const auto coherent =
-          coherent_moment(*on_reduced, ground.reduced, stated, arcs.sigma, arcs.smooth.chi2);
-      if (coherent) {
-        w.coherent_deviation = std::sqrt(coherent->probability) * coherent->deviation;
-        w.moment =
-            with_coherence(*coherent, w.moment, bound, w.inflation, stated.coherent_variance);
-      }
-    }
-  }
-  w.starts = starts_of(sided, contenders, arcs);
+  w.best_evidence = std::move(contenders.evidences.classes[b]);
+  w.best_on_reduced = std::move(contenders.evidences.on_reduced[b]);
+  w.stated = stated;
+  w.correlated = seen.correlated;
+  w.starts = starts_of(sided, contenders);
   w.fits = std::move(contenders.fits);
   w.coarse = std::move(contenders.coarse);
-  w.sides = std::move(sided.sides);
-  w.reduced = std::move(sided.reduced);
+  w.sides = std::move(sided.ways[sided.taken].sides);
+  w.reduced = std::move(sided.ways[sided.taken].reduced);
   w.sides_margin = sided.margin;
   w.sigma = arcs.sigma;
   w.data = std::move(arcs.data);
@@ -207,28 +173,35 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
                                                     : out_of_reach(arcs, stated, of_paths);
   SidedFits sided =
       fit_over_sides(patches, {arcs, stated, of_paths, options.classes, hopeless}, starts);
-  Ground ground{arcs, sided.reduced, stated, hopeless};
-  Contenders contenders =
-      contending(std::move(sided.fits), no_conic(starts, sided.sides), ground, options, of_paths);
-  std::optional<Placed> best_placed = best_on_all(contenders, ground);
+  const auto contending_way = [&](const Ground& ground, const Evidences& paths) {
+    Way& way = sided.ways[sided.taken];
+    // Where there are several they may have to be judged again.
+    ClassFits fits = sided.ways.size() > 1 ? way.fits : std::move(way.fits);
+    return contending(std::move(fits), no_conic(starts, way.sides), ground, options, paths);
+  };
+  const Ground at_first{arcs, sided.way().reduced, stated, hopeless};
+  Contenders contenders = contending_way(at_first, of_paths);
+  std::optional<Placed> best_placed = best_on_all(contenders, at_first);
   SeenDeviation seen = best_placed
                            ? seen_deviation(arcs, stated, best_placed->chi2, best_placed->canonical,
-                                            most_probable(probabilities_of(contenders, ground)) ==
+                                            most_probable(probabilities_of(contenders, at_first)) ==
                                                 CurveClass::Unclassified)
                            : SeenDeviation{};
   seen.correlated = seen.correlated || options.unqualified_probe;
-  if (seen.likelihood) {
-    ground.likelihood = *seen.likelihood;
-    if (lie_otherwise(patches, {arcs, ground.likelihood, {}, options.classes},
-                      starts_of(sided, contenders, arcs), &sided)) {
-      contenders =
-          contending(std::move(sided.fits), no_conic(starts, sided.sides), ground, options);
-      best_placed.reset();
-    } else {
-      contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
-    }
-  }
-  if (seen.correlated && !seen.likelihood) {
+  const Likelihood likelihood = seen.likelihood.value_or(stated);
+  const Evidences of_seen_paths =
+      seen.likelihood ? evidences_of_paths(arcs.smooth, likelihood) : Evidences{};
+  const bool otherwise =
+      seen.likelihood &&
+      lie_otherwise({arcs, likelihood, of_seen_paths, options.classes, hopeless}, &sided);
+  const Ground ground{arcs, sided.way().reduced, likelihood, hopeless};
+  if (otherwise) {
+    contenders = contending_way(ground, of_seen_paths);
+    best_placed.reset();
+  } else if (seen.likelihood) {
+    contenders.evidences = of_seen_paths;
+    contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
+  } else if (seen.correlated) {
     contenders = with_shared_deviations(std::move(contenders), ground, options.unqualified_probe,
                                         margin_of(options));
   }

@@ -37,11 +37,12 @@ struct Weighing {
   double margin_of_unclassified = 0.0;
   /// Of the spline's posterior, that its mode on the other side of c = 0 has.
   double rival_share = 0.0;
-  /// Of the best class about its estimate, where a covariance linear about it does not hold it, or
-  /// where neighbours err together.
-  std::optional<ShapePoseCovariance> moment;
-  /// The same for white noise of `inflation` times the stated variance, over `inflation`.
-  std::optional<ShapePoseCovariance> white_moment;
+  /// Of the best class on the reduced points, if it has any: what its moments are taken from
+  /// (best_moments.h).
+  std::optional<ClassEvidence> best_evidence;
+  std::optional<CanonicalFit> best_on_reduced;
+  Likelihood stated;        ///< before any deviation was seen
+  bool correlated = false;  ///< neighbours may err together
   /// For the next weighing; the first is that of `sides`.
   std::vector<SidedStart> starts;
   /// Per patch the side of travel on which the tip centres were taken to lie (tip_sides.h).
@@ -57,9 +58,6 @@ struct Weighing {
   double white_variance = 1.0;      ///< of the noise, in units of sigma^2
   double counted_chi2 = 0.0;        ///< of `best`, with what may be stated form error tempered
   double correlation_length = 0.0;  ///< normalised; 0 = white
-  /// Root mean square of what neighbours share at a point, as far as residuals tell of it;
-  /// normalised.
-  double coherent_deviation = 0.0;
 };
 
 /// `data` from make_fit_data. Follows core/README.md, "Refinement and the bound" and "Evidence".

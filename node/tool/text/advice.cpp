@@ -95,7 +95,7 @@ std::string ambiguous(const v1::Recognition& answer) {
              "and "
              "the recognition tree's path where it stays so.";
     case v1::RECOGNITION_DOUBT_FEW_PLACES:
-      return "So few touches fit by chance: touch it at eight places at least.";
+      return "So few touches fit by chance: touch it at eight places, or state their noise.";
     default:
       return "Not certain yet: touch further round.";
   }

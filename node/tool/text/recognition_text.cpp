@@ -209,7 +209,7 @@ std::string_view sentence_of(v1::RecognitionDoubt doubt) {
     case v1::RECOGNITION_DOUBT_TREE_REJECTS:
       return "the recognition tree rejects the class that all samples together are";
     case v1::RECOGNITION_DOUBT_FEW_PLACES:
-      return "touched at fewer than eight places: they may fit by chance";
+      return "touched at so few places that they may fit by chance";
     default:
       return "no reason given";
   }

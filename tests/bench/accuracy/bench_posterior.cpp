@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/accuracy/calibration_table.h"
 #include "tests/bench/options/bench_options.h"
 #include "tests/bench/options/thread_time.h"
 #include "tests/support/calibration.h"
@@ -146,26 +147,6 @@ void print_classes(const std::vector<Row>& rows) {
   }
 }
 
-/// Returns how many bins are beside their band.
-int print_calibration(const std::string& title, const test::Calibration& calibration) {
-  int beside = 0;
-  bool first = true;
-  for (std::size_t b = 0; b < test::kProbabilityBins; ++b) {
-    const auto& bin = calibration.bins()[b];
-    if (bin.count() == 0) continue;
-    const test::Band band = bin.band(kCoverage);
-    const bool within = bin.right >= band.least && bin.right <= band.most;
-    beside += within ? 0 : 1;
-    const double n = bin.count();
-    std::printf("%-24s %5.3f-%-5.3f %7d %9.4f %9.4f   %.4f-%.4f %s\n", first ? title.c_str() : "",
-                test::kProbabilityBounds[b], test::kProbabilityBounds[b + 1], bin.count(),
-                bin.mean_stated(), bin.right / n, band.least / n, band.most / n,
-                within ? "" : "BESIDE");
-    first = false;
-  }
-  return beside;
-}
-
 void print_calibrations(const std::vector<Row>& rows) {
   std::printf("\nProbability of the most probable hypothesis against how often it is the truth\n");
   std::printf("%-24s %-11s %7s %9s %9s   %s\n", "answer", "bin", "scenes", "stated", "observed",
@@ -177,9 +158,9 @@ void print_calibrations(const std::vector<Row>& rows) {
     pooled.add(row.stated(), row.right());
     by_class[static_cast<std::size_t>(row.answer.shape.curve_class)].add(row.stated(), row.right());
   }
-  int beside = print_calibration("all", pooled);
+  int beside = bench::print_calibration("all", pooled);
   for (std::size_t i = 0; i < by_class.size(); ++i) {
-    beside += print_calibration(name(static_cast<CurveClass>(i)), by_class[i]);
+    beside += bench::print_calibration(name(static_cast<CurveClass>(i)), by_class[i]);
   }
   std::printf("bins beside their band: %d\n", beside);
 }

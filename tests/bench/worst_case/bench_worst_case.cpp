@@ -2,9 +2,9 @@
 // searched for by random restarts and local changes, over any shape or none, noise, tips, patches
 // and spikes; or measured for CSV files. Prints the worst found, writes it as a CSV file, and says
 // how to count its instructions.
-//   bench_worst_case [--seconds S] [--tries N] [--seed S] [--most-samples N] [--save FILE]
-//   bench_worst_case FILE.csv ...       costs of these
-//   bench_worst_case --once FILE.csv    one recognize() of the file and nothing else, for callgrind
+//   bench_worst_case [--seconds S] [--tries N] [--seed S] [--most-samples N] [--kind KIND] [--save
+//   FILE] bench_worst_case FILE.csv ...       costs of these bench_worst_case --once FILE.csv one
+//   recognize() of the file and nothing else, for callgrind
 // Costs are processor times of this thread, the least of three: a busy neighbour matters little.
 #include <algorithm>
 #include <chrono>
@@ -138,10 +138,11 @@ struct Options {
   int tries = std::numeric_limits<int>::max();
   std::uint64_t seed = 1;
   int most_samples = 2000;
+  std::string kind = "any";
   std::string save = "worst_case.csv";
 };
 
-int search(const Options& options, const std::string& program) {
+int search(const Options& options, bench::InputKind kind, const std::string& program) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
@@ -161,8 +162,9 @@ int search(const Options& options, const std::string& program) {
       idle = 0;
     }
     const bool climbs = starts >= kStarts;
-    const InputRecipe recipe = climbs ? bench::mutated(current.recipe, rng, options.most_samples)
-                                      : bench::random_recipe(rng, options.most_samples);
+    const InputRecipe recipe = climbs
+                                   ? bench::mutated(current.recipe, rng, kind, options.most_samples)
+                                   : bench::random_recipe(rng, kind, options.most_samples);
     starts += climbs ? 0 : 1;
     const auto found = measured(recipe, climbs ? current.ratio : 0.0);
     if (!climbs && found) ratios_of_starts.push_back(found->ratio);
@@ -220,6 +222,8 @@ int main(int argc, char** argv) {
               .number("--tries", options.tries, "Most inputs that are tried")
               .seed(options.seed)
               .number("--most-samples", options.most_samples, "Most samples of an input")
+              .text("--kind", options.kind,
+                    "Of input: any, plain, tips, sides, spikes, unstated, few or patches")
               .text("--save", options.save, "Where the worst input goes")
               .parse(argc, argv)) {
     return *end;
@@ -230,5 +234,10 @@ int main(int argc, char** argv) {
     std::printf("%.0f us\n", cost_once_us(*input));
     return 0;
   }
-  return files.empty() ? search(options, argv[0]) : run_files(files);
+  const auto kind = bench::input_kind(options.kind);
+  if (!kind) {
+    std::fprintf(stderr, "bench_worst_case: no kind is called %s\n", options.kind.c_str());
+    return 2;
+  }
+  return files.empty() ? search(options, *kind, argv[0]) : run_files(files);
 }

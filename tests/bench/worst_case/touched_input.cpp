@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <utility>
 
 #include "tests/support/test_rng.h"
 
@@ -91,8 +92,33 @@ void draw(int which, std::mt19937_64& rng, InputRecipe* r) {
   }
 }
 
+/// Members that the kind does not leave open.
+InputRecipe confined(InputRecipe r, InputKind kind) {
+  if (kind == InputKind::Any) {
+    return r;
+  }
+  if (kind == InputKind::Few || kind == InputKind::Patches) {
+    constexpr int kMany = 16;
+    r.patches = kind == InputKind::Patches ? std::max(r.patches, kMany) : r.patches;
+    return r;
+  }
+  constexpr double kTip = 0.1;
+  constexpr double kSpikes = 0.05;
+  const bool tips = kind == InputKind::Tips || kind == InputKind::Sides;
+  r.tip = tips ? (r.tip > 0.0 ? r.tip : kTip) : 0.0;
+  r.sides_told = kind == InputKind::Sides ? 0.0 : 1.0;
+  r.spikes = kind == InputKind::Spikes ? std::max(r.spikes, kSpikes) : 0.0;
+  r.stated_over_true = kind == InputKind::Unstated ? 0.0
+                       : r.stated_over_true > 0.0  ? r.stated_over_true
+                                                   : 1.0;
+  return r;
+}
+
 /// Fewer samples a patch, then fewer patches, until the whole is within `most_samples`.
-InputRecipe bounded(InputRecipe r, std::size_t most_samples) {
+InputRecipe bounded(InputRecipe recipe, InputKind kind, std::size_t most_samples) {
+  InputRecipe r = confined(std::move(recipe), kind);
+  constexpr std::size_t kFew = 32;
+  most_samples = kind == InputKind::Few ? std::min(most_samples, kFew) : most_samples;
   r.patches = std::clamp(r.patches, 1, kMostPatches);
   r.patches = std::min(r.patches, std::max(1, static_cast<int>(most_samples) / kFewestSamples));
   r.samples = std::clamp(r.samples, kFewestSamples, kMostSamples);
@@ -244,15 +270,28 @@ std::size_t sample_count(const TouchedInput& input) {
   return count;
 }
 
-InputRecipe random_recipe(std::mt19937_64& rng, std::size_t most_samples) {
+std::optional<InputKind> input_kind(std::string_view name) {
+  constexpr std::array kKinds = {
+      std::pair("any", InputKind::Any),       std::pair("plain", InputKind::Plain),
+      std::pair("tips", InputKind::Tips),     std::pair("sides", InputKind::Sides),
+      std::pair("spikes", InputKind::Spikes), std::pair("unstated", InputKind::Unstated),
+      std::pair("few", InputKind::Few),       std::pair("patches", InputKind::Patches),
+  };
+  const auto* found = std::find_if(kKinds.begin(), kKinds.end(),
+                                   [&](const auto& kind) { return kind.first == name; });
+  return found == kKinds.end() ? std::nullopt : std::optional(found->second);
+}
+
+InputRecipe random_recipe(std::mt19937_64& rng, InputKind kind, std::size_t most_samples) {
   InputRecipe recipe;
   for (int k = 0; k < kMembers; ++k) {
     draw(k, rng, &recipe);
   }
-  return bounded(recipe, most_samples);
+  return bounded(recipe, kind, most_samples);
 }
 
-InputRecipe mutated(InputRecipe recipe, std::mt19937_64& rng, std::size_t most_samples) {
+InputRecipe mutated(InputRecipe recipe, std::mt19937_64& rng, InputKind kind,
+                    std::size_t most_samples) {
   const int changes = std::uniform_int_distribution<int>(1, 3)(rng);
   for (int i = 0; i < changes; ++i) {
     const int which = std::uniform_int_distribution<int>(0, kMembers - 1)(rng);
@@ -297,7 +336,7 @@ InputRecipe mutated(InputRecipe recipe, std::mt19937_64& rng, std::size_t most_s
         break;
     }
   }
-  return bounded(recipe, most_samples);
+  return bounded(recipe, kind, most_samples);
 }
 
 TouchedInput input_of(const InputRecipe& r) {

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/recognition/recognizer.h"
@@ -61,11 +63,27 @@ struct InputRecipe {
   double offset = 0.0;        ///< of the part from the origin
 };
 
+/// What a search keeps to, so that the dearest input of each kind is known.
+enum class InputKind {
+  Any,
+  Plain,     ///< no tips, no spikes, noise stated
+  Tips,      ///< plain, but tips whose sides are told
+  Sides,     ///< plain, but tips whose sides are not told
+  Spikes,    ///< plain, but spikes
+  Unstated,  ///< plain, but the noise is not stated
+  Few,       ///< 32 samples at most
+  Patches,   ///< 16 patches and more
+};
+
+/// Its name on a command line; nullopt where there is no such kind.
+std::optional<InputKind> input_kind(std::string_view name);
+
 /// Within the bounds stated at each member.
-InputRecipe random_recipe(std::mt19937_64& rng, std::size_t most_samples);
+InputRecipe random_recipe(std::mt19937_64& rng, InputKind kind, std::size_t most_samples);
 
 /// One to three members of the recipe drawn again or changed by a little.
-InputRecipe mutated(InputRecipe recipe, std::mt19937_64& rng, std::size_t most_samples);
+InputRecipe mutated(InputRecipe recipe, std::mt19937_64& rng, InputKind kind,
+                    std::size_t most_samples);
 
 TouchedInput input_of(const InputRecipe& recipe);
 

@@ -68,9 +68,10 @@ void expect_true(const test::Calibration& calibration, const std::string& title,
 }
 
 void expect_true(const Calibrations& calibrations) {
-  // The prior of sizes and places is not that of the scenes, which shows where the data leave much
-  // to it: below these bounds.
-  constexpr double kPooledFrom = 0.8;
+  // Below these bounds several classes fit, and their prior masses decide: there the places of the
+  // scenes, which end where their parts do, are not those of the prior, which has tails, and the
+  // integral of a class that the data leave wide in two directions is short of its mass.
+  constexpr double kPooledFrom = 0.6;
   constexpr double kClassesFrom = 0.95;
   expect_true(calibrations.pooled, "all", kPooledFrom);
   // No scene is of no class here: what is stated of "unclassified" is true under another prior.

@@ -20,23 +20,26 @@ TEST(TouchReference, WhatTouchesDetermineIsRecognised) {
   test::BesideReference all;
   for (const CurveClass curve_class : kCurveClasses) {
     test::BesideReference of_class;
-    for (const int count : {8, 12, 20, 40, 100}) {
+    for (const int count : {6, 7, 8, 12, 20, 40, 100}) {
       std::mt19937_64 rng = test::test_rng();
       for (int i = 0; i < scenes; ++i) {
         of_class.add(test::lone_touches(curve_class, count, 1e-4, 0.0, rng));
       }
     }
     std::printf(
-        "%-22s scenes %d, determined %d, of these P >= 0.95 %d, RECOGNIZED %d, as another "
-        "%d; optimum missed %d\n",
+        "%-22s scenes %d, determined %d, of these P >= 0.95 %d, RECOGNIZED %d (not for few places "
+        "%d, two shapes %d, a shape unknown %d, another reason %d), as another %d; optimum missed "
+        "%d\n",
         std::string(name_of(curve_class)).c_str(), of_class.scenes, of_class.determined,
-        of_class.sure, of_class.recognized, of_class.mistaken, of_class.missed);
+        of_class.sure, of_class.recognized, of_class.few_places, of_class.two_shapes,
+        of_class.shape_unknown, of_class.other_doubt, of_class.mistaken, of_class.missed);
     all += of_class;
   }
   if (test::counts_tell()) {
     // RECOGNIZED's own level: beyond it the reference may be mistaken one time in twenty.
     EXPECT_GE(20 * all.sure, 19 * all.determined) << "of " << all.determined;
-    EXPECT_GE(10 * all.recognized, 9 * all.determined);
+    EXPECT_LE(20 * all.other_doubt, all.determined);
+    EXPECT_GE(10 * all.recognized, 9 * (all.determined - all.few_places));
     EXPECT_GE(2 * all.determined, all.scenes);
   }
   EXPECT_LE(20 * all.mistaken, all.determined);

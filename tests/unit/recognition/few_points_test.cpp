@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "core/recognition/fit/class_fits.h"
 
@@ -55,6 +57,75 @@ TEST(FewPoints, AreBoundedInNumberAndKeepPatchesAndTheirOrder) {
       }
       ASSERT_LT(at, all.points.size()) << "none of all, or not in their order";
     }
+  }
+}
+
+TEST(FewPoints, AreJoinedByAsManyThatAreMissedMost) {
+  const FitData all = around_a_circle(5, 240);
+  const FitData few = *few_of(all);
+  std::vector<double> squares(all.points.size(), 0.0);
+  std::vector<Vec2> missed;
+  for (std::size_t i = 700; i < 720; ++i) {
+    squares[i] = 1.0;
+    missed.push_back(all.points[i].position);
+  }
+  const FitData more = few_and_missed(all, squares);
+  EXPECT_EQ(more.points.size(), few.points.size() + 64);
+  const auto has = [&](const Vec2& place) {
+    return std::any_of(more.points.begin(), more.points.end(),
+                       [&](const FitPoint& point) { return point.position == place; });
+  };
+  for (const FitPoint& point : few.points) {
+    EXPECT_TRUE(has(point.position));
+  }
+  for (const Vec2& place : missed) {
+    EXPECT_TRUE(has(place));
+  }
+}
+
+/// The exact points of a spline whose arms lie beside one another next to a sharp bend, as seen by
+/// noise that none of them has.
+FitData along_a_sharp_spline(std::size_t points) {
+  FitData data;
+  for (std::size_t i = 0; i < points; ++i) {
+    const double t = 2.0 * static_cast<double>(i) / static_cast<double>(points - 1) - 1.0;
+    FitPoint point;
+    point.position = {2.0 * t * t - 1.0, 0.8 * t * t * t + 0.05 * t * t + 1e-3 * t};
+    point.tangent = Vec2(4.0 * t, 2.4 * t * t + 0.1 * t + 1e-3).normalized();
+    point.inverse_sigma = 1e9;
+    data.points.push_back(point);
+  }
+  data.patches.push_back({0, points});
+  return data;
+}
+
+TEST(FewPoints, LeadToBothArmsOfASharpBend) {
+  const FitData all = along_a_sharp_spline(600);
+  const ClassFits fits = fit_classes(all);
+  const auto& spline = fits[static_cast<std::size_t>(CurveClass::CubicSpline)];
+  ASSERT_TRUE(spline);
+  EXPECT_TRUE(fits_well(spline->chi2, all.points.size())) << spline->chi2;
+}
+
+TEST(FewPoints, OfNoClassAreOnlyPlacedOnAll) {
+  // Five petals: no class comes near.
+  FitData all;
+  for (int i = 0; i < 500; ++i) {
+    const double angle = 2.0 * kPi * i / 500;
+    FitPoint point;
+    point.position = (0.7 + 0.3 * std::cos(5.0 * angle)) * Vec2(std::cos(angle), std::sin(angle));
+    point.inverse_sigma = 1e4;
+    all.points.push_back(point);
+  }
+  all.patches.push_back({0, all.points.size()});
+  const ClassFits fits = fit_classes(all);
+  for (const auto& fit : fits) {
+    if (!fit) {
+      continue;
+    }
+    EXPECT_GT(fit->chi2, most_chi2_of_noise(all.points));
+    const std::size_t feet = fit->implicit ? fit->implicit->feet.size() : fit->polynomial->t.size();
+    EXPECT_EQ(feet, all.points.size());
   }
 }
 

@@ -47,6 +47,23 @@ TEST(PolynomialFoot, DistancesErrByLittleBesideTheNoise) {
   }
 }
 
+TEST(PolynomialFoot, NearestPlaceIsNoFartherThanAnyOther) {
+  std::mt19937_64 rng = test::test_rng();
+  std::uniform_real_distribution<double> within(-1.0, 1.0);
+  for (int i = 0; i < 300; ++i) {
+    PolynomialCoefficients c;
+    for (Eigen::Index k = 0; k < 4; ++k) {
+      // Parabolas and lines among them.
+      c.col(k) = k > 0 && k % 4 == i % 4 ? Vec2::Zero() : Vec2(within(rng), within(rng));
+    }
+    const Vec2 point(within(rng), within(rng));
+    const double nearest = (position_at(c, nearest_parameter(c, point)) - point).norm();
+    for (double t = -5.0; t <= 5.0; t += 1e-2) {
+      ASSERT_LE(nearest, (position_at(c, t) - point).norm() + 1e-12);
+    }
+  }
+}
+
 TEST(PolynomialFoot, ReachesTheFootPointFromAfar) {
   // The parabola y = x^2 and the point (0, 1 / 4): its foot is the vertex, wherever one starts.
   PolynomialCoefficients c = PolynomialCoefficients::Zero();

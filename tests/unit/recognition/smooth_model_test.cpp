@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/smooth/turning_sections.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 
@@ -71,6 +72,63 @@ TEST(SmoothModel, TangentsFollowTravel) {
       const Vec2 chord = data.points[i + 5].position - data.points[i - 5].position;
       EXPECT_GT(data.points[i].tangent.dot(chord.normalized()), 0.9);
     }
+  }
+}
+
+/// One patch of samples along an arc of the unit circle, noise in both coordinates.
+FitData circular_arc(double turn, std::size_t count, double sigma, std::mt19937_64& rng) {
+  std::normal_distribution<double> noise(0.0, sigma);
+  FitData data;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t = turn * static_cast<double>(i) / static_cast<double>(count);
+    FitPoint point;
+    const double dx = noise(rng);
+    point.position = {std::cos(t) + dx, std::sin(t) + noise(rng)};
+    point.inverse_sigma = 1.0 / sigma;
+    data.points.push_back(point);
+  }
+  data.patches.push_back({0, count});
+  return data;
+}
+
+TEST(SmoothModel, NoiseCutsNoPatch) {
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < 50; ++i) {
+    // No longer than its noise: its chords lead anywhere.
+    const FitData cloud = circular_arc(0.01, 1000, 0.01, rng);
+    EXPECT_EQ(sections_of(cloud, cloud.patches.front(), false).size(), 1U);
+    // Samples that stay at a place show no noise, but it is stated.
+    FitData dwelling = cloud;
+    for (std::size_t k = 0; k < dwelling.points.size(); ++k) {
+      dwelling.points[k].position = cloud.points[k - k % 8].position;
+    }
+    EXPECT_LT(2 * sections_of(dwelling, dwelling.patches.front(), true).size(),
+              sections_of(dwelling, dwelling.patches.front(), false).size());
+    // All the way round is cut about every radian, however large the noise.
+    for (const double sigma : {1e-6, 0.01, 0.1}) {
+      const FitData circle = circular_arc(6.28, 1000, sigma, rng);
+      const auto sections = sections_of(circle, circle.patches.front(), true);
+      EXPECT_GE(sections.size(), 4U) << sigma;
+      EXPECT_LE(sections.size(), 7U) << sigma;
+    }
+  }
+}
+
+TEST(SmoothModel, NoiseThatIsStatedTooLowIsNotFollowed) {
+  std::mt19937_64 rng = test::test_rng();
+  constexpr double kTooLow = 1e-3;
+  for (int i = 0; i < 50; ++i) {
+    FitData honest = circular_arc(1.5, 400, 1e-4, rng);
+    FitData bold = honest;
+    for (FitPoint& point : bold.points) {
+      point.inverse_sigma /= kTooLow;
+    }
+    const SmoothModel by_honest = fit_smooth_model(&honest, true);
+    const SmoothModel by_bold = fit_smooth_model(&bold, true);
+    // The quietest sections tell less noise than there is, and the criterion then takes some
+    // degrees more; followed to what is stated it were ten times as many points.
+    EXPECT_LE(by_bold.reduced.points.size(), 2 * by_honest.reduced.points.size());
+    EXPECT_NEAR(by_bold.noise_ratio() * kTooLow, by_honest.noise_ratio(), 0.05);
   }
 }
 

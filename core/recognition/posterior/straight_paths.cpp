@@ -1,0 +1,255 @@
+#include "core/recognition/posterior/straight_paths.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/curves/curve.h"
+#include "core/recognition/posterior/touched_coordinates.h"
+
+namespace palpate {
+namespace {
+
+/// Points of a lattice rule in the unit cube, i -> ((i + 1/2) / n) (1, a, a^2 mod n): a of least
+/// error for these integrals among all of so many points. [1]
+struct Lattice {
+  int points = 1;
+  int generator = 1;
+};
+
+/// As many as leave an error of about a tenth, at any noise.
+Lattice lattice_of(int dimensions) {
+  switch (dimensions) {
+    case 0:
+      return {1, 1};
+    case 1:
+      return {12, 1};
+    case 2:
+      return {34, 9};
+    default:
+      return {127, 81};
+  }
+}
+
+/// A coordinate's value and how fast the unit interval's runs there.
+struct Mapped {
+  double value = 0.0;
+  double rate = 1.0;
+};
+
+/// [0, 1] to itself, slow at both ends: what is periodic so, a lattice integrates well (I. Sloan
+/// and S. Joe, "Lattice methods for multiple integration", 1994).
+Mapped slow_at_ends(double u) { return {u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u)}; }
+
+/// [0, 1] to angles in [from, to], and those to their tangents.
+Mapped tangent(double u, double from, double to, double scale) {
+  const Mapped part = slow_at_ends(u);
+  const double value = std::tan(from + (to - from) * part.value);
+  return {scale * value, scale * (to - from) * (1.0 + value * value) * part.rate};
+}
+/// Everywhere; one side of 0, where the other is its image in a mirror.
+Mapped everywhere(double u, double scale) { return tangent(u, -0.5 * kPi, 0.5 * kPi, scale); }
+Mapped one_side(double u, double scale) { return tangent(u, 0.0, 0.5 * kPi, scale); }
+
+/// The coordinates of a shape but its size, and what of the cube one of the space about it takes.
+struct Place {
+  TouchedVector z = TouchedVector::Zero();
+  double rate = 1.0;
+};
+
+/// Of a point of the unit cube. Dense where curvature passes through 0.
+Place place_at(CurveClass curve_class, const std::array<double, 3>& u) {
+  Place place;
+  place.z = prior_centre(curve_class);
+  // Twice the width of a normal law as high is where the tails begin.
+  const TouchedVector scale = 2.0 * prior_widths(curve_class, place.z);
+  const auto set = [&](int k, const Mapped& mapped) {
+    place.z[k] = mapped.value;
+    place.rate *= mapped.rate;
+  };
+  switch (curve_class) {
+    case CurveClass::Ellipse: {
+      const Mapped part = slow_at_ends(u[1]);
+      set(1, slow_at_ends(u[0]));
+      set(2, {0.5 * kPi * part.value, 0.5 * kPi * part.rate});
+      break;
+    }
+    case CurveClass::Hyperbola: {
+      const Mapped away = tangent(u[0], -0.25 * kPi, 0.5 * kPi, 1.0);  // of m from 1, m > 0
+      set(1, {1.0 + away.value, away.rate});
+      set(2, one_side(u[1], scale[2]));
+      break;
+    }
+    case CurveClass::Parabola:
+      set(1, one_side(u[0], scale[1]));
+      break;
+    case CurveClass::CubicalParabola:
+    case CurveClass::SemiCubicalParabola:
+      set(1, everywhere(u[0], scale[1]));
+      set(2, one_side(u[1], scale[2]));
+      break;
+    case CurveClass::CubicSpline: {
+      set(1, everywhere(u[0], scale[1]));
+      set(2, one_side(u[1], scale[2]));
+      // On either side of the inflection, 3 (a t)^2 = a c.
+      const double inflection = 3.0 * place.z[2] * place.z[2];
+      const double side = u[2] < 0.5 ? -1.0 : 1.0;
+      const Mapped away = one_side(std::abs(2.0 * u[2] - 1.0), std::hypot(scale[3], inflection));
+      set(3, {inflection + side * away.value, away.rate});
+      break;
+    }
+    default:
+      break;
+  }
+  return place;
+}
+
+/// A shape of the prior: curvature and its rate where it was touched, the length of its size being
+/// that of the prior's centre, and the part of the prior that it stands for.
+struct Shape {
+  double curvature = 0.0;
+  double rate = 0.0;
+  double weight = 0.0;
+};
+
+std::vector<Shape> shapes_of(CurveClass curve_class) {
+  const int own = shape_coordinates(curve_class);
+  const Lattice lattice = lattice_of(own - 1);
+  const TouchedShape like{Eigen::Vector3d::Ones(), 0.0};
+  std::vector<Shape> shapes;
+  double sum = 0.0;
+  for (int i = 0; i < lattice.points; ++i) {
+    std::array<double, 3> u{};
+    double at = (i + 0.5) / lattice.points;
+    for (double& part : u) {
+      part = at - std::floor(at);
+      at = lattice.generator * part;
+    }
+    const Place place = place_at(curve_class, u);
+    const auto shape = shape_at(curve_class, place.z, like);
+    const auto curve = shape ? make_curve(curve_class, shape->values) : std::nullopt;
+    if (!curve || !(place.rate > 0.0)) {
+      continue;  // an end of the cube
+    }
+    const LocalGeometry local = geometry(*curve, shape->t);
+    const TouchedVector widths = prior_widths(curve_class, place.z);
+    const double weight =
+        place.rate * std::exp(log_prior(curve_class, place.z)) / widths.segment(1, own - 1).prod();
+    if (std::isfinite(local.kappa) && std::isfinite(local.kappa_s)) {
+      shapes.push_back({std::abs(local.kappa), std::abs(local.kappa_s), weight});
+      sum += weight;
+    }
+  }
+  for (Shape& shape : shapes) {
+    shape.weight /= sum;
+  }
+  return shapes;
+}
+
+const std::vector<Shape>& shapes(CurveClass curve_class) {
+  static const auto all = [] {
+    std::array<std::vector<Shape>, 9> result;
+    for (const CurveClass each : kCurveClasses) {
+      if (each != CurveClass::Line) {
+        result[static_cast<std::size_t>(each)] = shapes_of(each);
+      }
+    }
+    return result;
+  }();
+  return all[static_cast<std::size_t>(curve_class)];
+}
+
+/// Gauss and Legendre's rule of ten points over [0, 1].
+constexpr int kRule = 10;
+using Rule = Eigen::Array<double, kRule, 1>;
+Rule rule_places() {
+  Rule places;
+  places << 0.013046735741414, 0.067468316655507, 0.160295215850488, 0.283302302935376,
+      0.425562830509184, 0.574437169490816, 0.716697697064624, 0.839704784149512, 0.932531683344493,
+      0.986953264258586;
+  return places;
+}
+Rule rule_weights() {
+  Rule weights;
+  weights << 0.033335672154344, 0.074725674575290, 0.109543181257991, 0.134633359654998,
+      0.147762112357376, 0.147762112357376, 0.134633359654998, 0.109543181257991, 0.074725674575290,
+      0.033335672154344;
+  return weights;
+}
+
+/// The likelihood of what is `x` deviations from straight over that of the line, either side of it
+/// alike probable, where it is highest `best` deviations away.
+Rule over_line(const Rule& x, double best) {
+  const Rule fall = -0.5 * x.square();
+  return 0.5 * ((fall + best * x).exp() + (fall - best * x).exp());
+}
+
+}  // namespace
+
+std::optional<BendOfLine> bend_of_line(const ClassEvidence& line, const FitData& data) {
+  if (residual_count(data) > data.points.size()) {
+    return std::nullopt;
+  }
+  const TouchedCurve& curve = line.nodes[line.mode].curve;
+  const double middle = curve.t[curve.t.size() / 2];
+  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d pull = Eigen::Vector4d::Zero();
+  for (const FitPoint& point : data.points) {
+    const Vec2 local = curve.frame_T_curve.to_local(point.position);
+    const double x = local.x() - middle;
+    const double weight = line.touch.weight * point.inverse_sigma;
+    const Eigen::Vector4d row = weight * Eigen::Vector4d(1.0, x, x * x / 2.0, x * x * x / 6.0);
+    information += row * row.transpose();
+    pull += weight * local.y() * row;
+  }
+  const Eigen::Matrix2d of_touch = information.topLeftCorner<2, 2>();
+  const double determinant = of_touch.determinant();
+  if (!(determinant > 0.0)) {
+    return std::nullopt;
+  }
+  const Eigen::Matrix2d solved = of_touch.inverse() * information.topRightCorner<2, 2>();
+  Eigen::Matrix2d bend =
+      information.bottomRightCorner<2, 2>() - information.bottomLeftCorner<2, 2>() * solved;
+  Eigen::Vector2d bend_pull = pull.tail<2>() - solved.transpose() * pull.head<2>();
+  // To the place where both are told independently.
+  const double moved = bend(0, 1) / bend(0, 0);
+  const double of_rate = bend(1, 1) - moved * bend(0, 1);
+  bend_pull[1] -= moved * bend_pull[0];
+  if (!(bend(0, 0) > 0.0 && of_rate > 0.0)) {
+    return std::nullopt;
+  }
+  BendOfLine result;
+  result.curvature_sigma = 1.0 / std::sqrt(bend(0, 0));
+  result.rate_sigma = 1.0 / std::sqrt(of_rate);
+  result.curvature = bend_pull[0] * result.curvature_sigma;
+  result.rate = bend_pull[1] * result.rate_sigma;
+  return result;
+}
+
+// With the size s over its centre's, curvature is k / s and its rate q / s^2. The prior of s is
+// such that v = 1 / (1 + s^2) is uniform in [0, 1], and the likelihood is one of sqrt(v / (1 - v)).
+double log_evidence_over_line(CurveClass curve_class, const BendOfLine& bend) {
+  static const Rule places = rule_places();
+  static const Rule weights = rule_weights();
+  constexpr double kDeviations = 4.5;  // beyond the highest: 4e-5 of it is left
+  const double farthest_curvature = kDeviations + std::abs(bend.curvature);
+  const double farthest_rate = kDeviations + std::abs(bend.rate);
+  double sum = 0.0;
+  for (const Shape& shape : shapes(curve_class)) {
+    const double k = shape.curvature / bend.curvature_sigma;
+    const double q = shape.rate / bend.rate_sigma;
+    const double by_curvature = farthest_curvature / k;
+    const double most = std::min(by_curvature * by_curvature, farthest_rate / q);
+    const double end = std::isfinite(most) ? most / (1.0 + most) : 1.0;
+    const Rule v = end * places;
+    const Rule inverse_square = v / (1.0 - v);
+    const Rule likelihood = over_line(k * inverse_square.sqrt(), bend.curvature) *
+                            over_line(q * inverse_square, bend.rate);
+    sum += shape.weight * end * (weights * likelihood).sum();
+  }
+  return std::log(sum);
+}
+
+}  // namespace palpate

@@ -1,0 +1,124 @@
+#include "core/recognition/smooth/turning_sections.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace palpate {
+namespace {
+
+/// So that a section is a graph over its chord. [rad]
+constexpr double kLongestTurn = 1.0;
+
+/// The mean of some samples in a row.
+struct Block {
+  PatchSpan points;
+  Vec2 mean = Vec2::Zero();
+};
+
+Block block_of(const FitData& data, const PatchSpan& points) {
+  Block block{points, Vec2::Zero()};
+  for (std::size_t i = points.begin; i < points.end; ++i) {
+    block.mean += data.points[i].position;
+  }
+  block.mean /= static_cast<double>(points.size());
+  return block;
+}
+
+/// Variance across the line that fits the block's samples best, of which two degrees are its own.
+double scatter_of(const FitData& data, const Block& block) {
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  for (std::size_t i = block.points.begin; i < block.points.end; ++i) {
+    const Vec2 off = data.points[i].position - block.mean;
+    squares += off * off.transpose();
+  }
+  const double least =
+      0.5 * squares.trace() - std::hypot(0.5 * (squares(0, 0) - squares(1, 1)), squares(0, 1));
+  return std::max(least, 0.0) / std::max(static_cast<double>(block.points.size()) - 2.0, 1.0);
+}
+
+/// Noise of the samples: as the typical block shows it, which a few bends do not change; or as it
+/// is stated, where that is more: samples that stay at a place show none.
+double typical_variance(const FitData& data, const PatchSpan& patch,
+                        const std::vector<Block>& blocks, bool sigma_known) {
+  std::vector<double> scatters;
+  scatters.reserve(blocks.size());
+  for (const Block& block : blocks) {
+    scatters.push_back(scatter_of(data, block));
+  }
+  const auto middle = scatters.begin() + static_cast<std::ptrdiff_t>(scatters.size() / 2);
+  std::nth_element(scatters.begin(), middle, scatters.end());
+  double least_stated = std::numeric_limits<double>::infinity();
+  for (std::size_t i = patch.begin; sigma_known && i < patch.end; ++i) {
+    const double inverse = data.points[i].inverse_sigma;
+    least_stated = std::min(least_stated, 1.0 / (inverse * inverse));
+  }
+  return sigma_known ? std::max(*middle, std::min(least_stated, kLargestNoise * kLargestNoise))
+                     : *middle;
+}
+
+/// Cut by the turning of chords whose squares are more than `least_square` for a mean of one sample
+/// at one end, and less by their numbers for more.
+std::vector<PatchSpan> cut_by_chords(const PatchSpan& patch, const std::vector<Block>& blocks,
+                                     double least_square) {
+  std::vector<PatchSpan> sections;
+  std::size_t begin = patch.begin;
+  double angle = 0.0;
+  double least = 0.0;
+  double most = 0.0;
+  const Block* last = &blocks.front();
+  std::optional<Vec2> before;
+  for (const Block& block : blocks) {
+    const Vec2 chord = block.mean - last->mean;
+    const double of_means = 1.0 / static_cast<double>(block.points.size()) +
+                            1.0 / static_cast<double>(last->points.size());
+    if (!(chord.squaredNorm() > least_square * of_means)) {
+      continue;
+    }
+    if (before) {
+      angle += std::atan2(cross(*before, chord), before->dot(chord));
+      least = std::min(least, angle);
+      most = std::max(most, angle);
+    }
+    if (most - least > kLongestTurn && block.points.begin - begin >= kFewestOfSection &&
+        patch.end - block.points.begin >= kFewestOfSection) {
+      sections.push_back({begin, block.points.begin});
+      begin = block.points.begin;
+      angle = least = most = 0.0;
+    }
+    before = chord;
+    last = &block;
+  }
+  sections.push_back({begin, patch.end});
+  return sections;
+}
+
+}  // namespace
+
+std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch, bool sigma_known) {
+  // Of four samples at least, whose mean has half of their noise; so many that a radian of a patch
+  // that goes all the way round has seven.
+  constexpr std::size_t kMostBlocks = 48;
+  // Six deviations of a distance between means: a chord's direction is off by a sixth of a radian,
+  // two of them differ by a radian once in 30,000 times.
+  constexpr double kFewestDeviations = 6.0;
+  const std::size_t n = patch.size();
+  const std::size_t count = std::clamp<std::size_t>(n / 4, 1, kMostBlocks);
+  std::vector<Block> blocks;
+  blocks.reserve(count);
+  for (std::size_t b = 0; b < count; ++b) {
+    blocks.push_back(
+        block_of(data, {patch.begin + b * n / count, patch.begin + (b + 1) * n / count}));
+  }
+  std::vector<PatchSpan> sections = cut_by_chords(patch, blocks, 0.0);
+  // A longer chord is a sum of shorter ones, and turns no farther: what these leave whole stays so.
+  if (sections.size() > 1) {
+    sections = cut_by_chords(
+        patch, blocks,
+        kFewestDeviations * kFewestDeviations * typical_variance(data, patch, blocks, sigma_known));
+  }
+  return sections;
+}
+
+}  // namespace palpate

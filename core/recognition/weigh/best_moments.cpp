@@ -1,0 +1,64 @@
+#include "core/recognition/weigh/best_moments.h"
+
+#include <cmath>
+
+#include "core/recognition/coherent/coherent_moment.h"
+#include "core/recognition/posterior/moments.h"
+
+namespace palpate {
+namespace {
+
+/// The covariance of a class where one that is linear about its estimate does not hold its valley.
+std::optional<ShapePoseCovariance> covariance_of_valley(const ClassEvidence& evidence,
+                                                        const CanonicalFit& on_reduced,
+                                                        const CanonicalFit& best,
+                                                        const FitData& reduced, double inflation) {
+  const auto valley = by_slices(evidence, reduced, inflation, Slices::ForMoment);
+  if (!valley || valley->widest < 0) {
+    return std::nullopt;
+  }
+  return with_bend(inflation * best.covariance, inflation * on_reduced.covariance,
+                   second_moment(on_reduced, *valley, reduced));
+}
+
+/// The moment where neighbours may err together: what such deviations leave unknown, with what the
+/// valley's bend adds, as far as there are any. `valley`: covariance_of_valley, if there is one;
+/// `bound`: of the noise alone; `inflation`: that of `valley`; `stated`: of it, for stated form
+/// error.
+ShapePoseCovariance with_coherence(const CoherentMoment& coherent,
+                                   const std::optional<ShapePoseCovariance>& valley,
+                                   const ShapePoseCovariance& bound, double inflation,
+                                   double stated) {
+  const ShapePoseCovariance linear = inflation * bound;
+  const ShapePoseCovariance shared = coherent.moment + stated * bound;
+  const ShapePoseCovariance bent =
+      valley ? bend_added(shared, linear, *valley).value_or(shared) : shared;
+  return coherent.probability * bent + (1.0 - coherent.probability) * (valley ? *valley : linear);
+}
+
+}  // namespace
+
+BestMoments moments_of_best(const Weighing& w) {
+  BestMoments result;
+  const auto& best = w.canonical[static_cast<std::size_t>(w.best)];
+  if (!w.best_evidence || !w.best_on_reduced || !best) {
+    return result;
+  }
+  result.moment =
+      covariance_of_valley(*w.best_evidence, *w.best_on_reduced, *best, w.reduced, w.inflation);
+  if (result.moment) {
+    result.white_moment = *result.moment / w.inflation;
+  }
+  if (w.correlated) {
+    const auto coherent =
+        coherent_moment(*w.best_on_reduced, w.reduced, w.stated, w.sigma, w.smooth.chi2);
+    if (coherent) {
+      result.coherent_deviation = std::sqrt(coherent->probability) * coherent->deviation;
+      result.moment = with_coherence(*coherent, result.moment, best->covariance, w.inflation,
+                                     w.stated.coherent_variance);
+    }
+  }
+  return result;
+}
+
+}  // namespace palpate
