@@ -19,7 +19,7 @@ struct Lattice {
   int generator = 1;
 };
 
-/// As many as leave an error of about a tenth, at any noise.
+/// As many as leave an error of about a tenth, at any noise; a fifth of the spline's evidence.
 Lattice lattice_of(int dimensions) {
   switch (dimensions) {
     case 0:
