@@ -52,6 +52,8 @@ SetupSpread spread_of(const SetupConstants& constants, double expected_m) {
   // The law leaves a hundredth below, and above a few thousandths of its mean square.
   const double low = std::log(0.01 * scale);
   const double high = std::log(std::max(1000.0 * scale, 10.0 * values.cwiseAbs().maxCoeff()));
+  // Of the logarithm less than 0.1 each, whatever the set-ups: n of them leave 1 / sqrt(2 n) of it
+  // open, and a trapezoid whose steps are no wider than a normal law's deviation errs by 1e-8.
   constexpr int kSteps = 160;
   struct Cell {
     double log_weight = 0.0;

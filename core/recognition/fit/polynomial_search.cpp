@@ -22,7 +22,8 @@ RefineEffort coarse(double out_of_reach) {
   return effort;
 }
 
-/// refine_axis, the arms reassigned until they stay.
+/// refine_axis, the arms reassigned until they stay. Each lowers chi-square, so that none comes
+/// back; what still changes after so many lies where the arms cross, as near to one as to another.
 AxisFit refine_axis_and_arms(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
                              AxisFit fit, int max_iterations) {
   constexpr int kMostReassignments = 5;
@@ -44,9 +45,11 @@ bool is_same_valley(const AxisFit& a, const AxisFit& b) {
          std::abs(std::remainder(a.theta - b.theta, 2.0 * kPi)) <= kSameAngle;
 }
 
+/// Of a walk in a valley. It need only tell which is the deepest: `refined` goes on from there.
+constexpr int kMostIterations = 15;
+
 /// Walks the valleys of all seeds on the reduced points; best first.
 std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& reduced) {
-  constexpr int kMostIterations = 15;
   std::vector<AxisFit> walked;
   for (const AxisFit& seed : seeds) {
     AxisFit fit = refine_axis_and_arms(reduced.points, reduced.patches, seed, kMostIterations);
@@ -75,7 +78,6 @@ std::optional<PolynomialFit> best_of(std::vector<AxisFit>* seeds, const FitData&
 
 /// The spline on the other side of c = 0.
 PolynomialFit refined_twin(const AxisFit& walked, const FitData& reduced, double out_of_reach) {
-  constexpr int kMostIterations = 15;
   return refined(refine_axis_and_arms(reduced.points, reduced.patches,
                                       twin_of(walked, reduced.points), kMostIterations),
                  reduced, out_of_reach);

@@ -137,7 +137,9 @@ class ArmSearch {
   }
 
  private:
-  /// Patches whose arms are tried in all ways; the others get those that suit them.
+  /// Patches whose arms are tried in all ways; the others get those that suit them. A cubic model
+  /// has four coefficients at most, so that four patches apart place it and show the others'; each
+  /// more would double the time.
   static constexpr std::size_t kMostEnumerated = 4;
   static constexpr double kNone = std::numeric_limits<double>::infinity();
   /// A spline is a semi-cubical parabola and a linear term.

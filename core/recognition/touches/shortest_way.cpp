@@ -177,6 +177,7 @@ std::pair<OnWay, double> foot_on(const Polygon& way, std::size_t nearest, const 
 }  // namespace
 
 std::optional<std::vector<OnWay>> shortest_way(std::span<const Vec2> places, double least_step) {
+  // Of a full turn, a twentieth of a radian from each to the next; one radian would do (kMostOff).
   constexpr std::size_t kMostVertices = 128;
   // Of all places, so that of neighbours that chance has put close together one is left out.
   constexpr std::size_t kThinned = 2;
