@@ -1,0 +1,39 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <cstddef>
+
+#include "core/recognition/samples/sample_detail.h"
+
+namespace palpate {
+
+using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
+
+/// Throws std::invalid_argument unless of shape (n, 2).
+std::size_t count_of_points(const Array& points);
+
+/// What is said of the points beside where they are, read where numpy has it.
+class PointDetails {
+ public:
+  /// Each empty where nothing is said. `normals`: (n, 2), of unit length, (0, 0) where none was
+  /// measured; `normal_sigmas`: 1 or n, radians; `covariances`: (2, 2) or (n, 2, 2). Throws
+  /// std::invalid_argument that names what is not so.
+  PointDetails(const Array& normals, const Array& normal_sigmas, const Array& covariances,
+               std::size_t points);
+
+  bool say_anything() const { return normals_ != nullptr || covariances_ != nullptr; }
+
+  SampleDetail of(std::size_t i) const;
+
+ private:
+  void check(std::size_t i) const;
+
+  const double* normals_;
+  const double* normal_sigmas_;
+  const double* covariances_;
+  bool one_sigma_;
+  bool one_covariance_;
+};
+
+}  // namespace palpate
