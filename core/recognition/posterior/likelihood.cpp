@@ -15,15 +15,20 @@ double Likelihood::counted(double chi2) const {
   return chi2 / tempering;
 }
 
+double Likelihood::left(double chi2) const {
+  return std::max(counted(chi2) + chi2_floor, std::numeric_limits<double>::min());
+}
+
+double Likelihood::freedom(double determined) const { return std::max(samples - determined, 1.0); }
+
 double Likelihood::log_evidence(double chi2, double log_occam, double determined) const {
   if (sigma_known) {
     return log_occam - 0.5 * counted(chi2);
   }
   // Integral of sigma^-(n - d) exp(-chi2 / (2 sigma^2)) d(log sigma): each determined coordinate
   // narrows as sigma does.
-  const double left = std::max(counted(chi2) + chi2_floor, std::numeric_limits<double>::min());
-  const double half = 0.5 * std::max(samples - determined, 1.0);
-  return log_occam - half * std::log(0.5 * left) + log_gamma(half);
+  const double half = 0.5 * freedom(determined);
+  return log_occam - half * std::log(0.5 * left(chi2)) + log_gamma(half);
 }
 
 double misfit_of(double chi2, const Likelihood& likelihood) {

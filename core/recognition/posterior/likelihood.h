@@ -25,6 +25,11 @@ struct Likelihood {
   /// Chi-square as it counts.
   double counted(double chi2) const;
 
+  /// Where the residuals tell the noise: what they tell it by, above 0, and how many they are
+  /// beyond so many coordinates.
+  double left(double chi2) const;
+  double freedom(double determined) const;
+
   /// log of the evidence of a model, up to what all models share: chi-square at its optimum, log of
   /// what its prior leaves of that likelihood, and how many coordinates the data determine.
   double log_evidence(double chi2, double log_occam, double determined) const;

@@ -73,14 +73,19 @@ double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
 namespace {
 
 /// What a class has in paths that are nearly straight, where the line is in question: all that
-/// counts of it, or more than lies about its fit.
-void add_straight_paths(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
-                        Evidences* evidences) {
+/// counts of it, or more than lies about its fit. Whether it is.
+bool add_straight_paths(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
+                        double best, Evidences* evidences) {
   constexpr auto kLine = static_cast<std::size_t>(CurveClass::Line);
   const auto& line = evidences->classes[kLine];
-  const auto bend = line ? bend_of_line(*line, reduced) : std::nullopt;
+  if (!line || !fits[kLine] ||
+      !(log_evidence(likelihood, *evidences, CurveClass::Line, fits[kLine]->chi2) >
+        best - kNegligibleLogOdds)) {
+    return false;
+  }
+  const auto bend = bend_of_line(*line, fits[kLine]->chi2, reduced, likelihood);
   if (!bend) {
-    return;
+    return false;
   }
   const double of_line =
       likelihood.log_evidence(fits[kLine]->chi2, line->log_occam, line->determined);
@@ -97,6 +102,7 @@ void add_straight_paths(const ClassFits& fits, const FitData& reduced, const Lik
     evidence->log_occam =
         std::max(evidence->log_occam_of_mode, of_line + *evidence->log_over_line - of_fit);
   }
+  return true;
 }
 
 /// Of eight classes, so much less than the best, less than a thousandth is left: no probability
@@ -194,13 +200,7 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
     }
     best = std::max(best, log_evidence(likelihood, evidences, curve_class, fits[i]->chi2));
   }
-  constexpr auto kLine = static_cast<std::size_t>(CurveClass::Line);
-  const double of_line =
-      fits[kLine] ? log_evidence(likelihood, evidences, CurveClass::Line, fits[kLine]->chi2)
-                  : kNone;
-  if (of_line > best - kNegligibleLogOdds) {
-    add_straight_paths(fits, reduced, likelihood, &evidences);
-  } else {
+  if (!add_straight_paths(fits, reduced, likelihood, best, &evidences)) {
     for (auto& evidence : evidences.classes) {
       if (evidence && evidence->log_over_line) {
         evidence->log_over_line.reset();

@@ -179,16 +179,47 @@ Rule rule_weights() {
   return weights;
 }
 
-/// The likelihood of what is `x` deviations from straight over that of the line, either side of it
-/// alike probable, where it is highest `best` deviations away.
-Rule over_line(const Rule& x, double best) {
-  const Rule fall = -0.5 * x.square();
-  return 0.5 * ((fall + best * x).exp() + (fall - best * x).exp());
+/// log of the likelihood where chi-square, as it counts, is lower by `rise` at its least: a normal
+/// law where the noise is stated, otherwise what is left of it without its scale
+/// (Likelihood::log_evidence).
+Rule log_fall(const Rule& rise, const BendOfLine& bend) {
+  return std::isfinite(bend.freedom) ? Rule(-0.5 * bend.freedom * (rise / bend.chi2).log1p())
+                                     : Rule(-0.5 * rise);
+}
+
+/// log of the highest likelihood over that of the line.
+double log_highest(const BendOfLine& bend) {
+  const double fall = bend.curvature * bend.curvature + bend.rate * bend.rate;
+  return std::isfinite(bend.freedom) ? 0.5 * bend.freedom * std::log1p(fall / bend.chi2)
+                                     : 0.5 * fall;
+}
+
+/// How far from where it is highest 4e-5 of the likelihood is left: 4.5 deviations of a normal law.
+double reach(const BendOfLine& bend) {
+  constexpr double kFall = 4.5 * 4.5;
+  return std::sqrt(std::isfinite(bend.freedom) ? bend.chi2 * std::expm1(kFall / bend.freedom)
+                                               : kFall);
+}
+
+/// The likelihood of what is `curvature` and `rate` deviations from straight over the highest,
+/// either side of the line alike probable.
+Rule over_highest(const Rule& curvature, const Rule& rate, const BendOfLine& bend) {
+  Rule sum = Rule::Zero();
+  for (const double side : {-1.0, 1.0}) {
+    for (const double rate_side : {-1.0, 1.0}) {
+      sum += log_fall((curvature - side * bend.curvature).square() +
+                          (rate - rate_side * bend.rate).square(),
+                      bend)
+                 .exp();
+    }
+  }
+  return 0.25 * sum;
 }
 
 }  // namespace
 
-std::optional<BendOfLine> bend_of_line(const ClassEvidence& line, const FitData& data) {
+std::optional<BendOfLine> bend_of_line(const ClassEvidence& line, double chi2, const FitData& data,
+                                       const Likelihood& likelihood) {
   if (residual_count(data) > data.points.size()) {
     return std::nullopt;
   }
@@ -204,6 +235,7 @@ std::optional<BendOfLine> bend_of_line(const ClassEvidence& line, const FitData&
     information += row * row.transpose();
     pull += weight * local.y() * row;
   }
+  constexpr double kRounding = 1e-14;  // of a difference of chi-squares, of either
   const Eigen::Matrix2d of_touch = information.topLeftCorner<2, 2>();
   const double determinant = of_touch.determinant();
   if (!(determinant > 0.0)) {
@@ -225,6 +257,17 @@ std::optional<BendOfLine> bend_of_line(const ClassEvidence& line, const FitData&
   result.rate_sigma = 1.0 / std::sqrt(of_rate);
   result.curvature = bend_pull[0] * result.curvature_sigma;
   result.rate = bend_pull[1] * result.rate_sigma;
+  const double fall = result.curvature * result.curvature + result.rate * result.rate;
+  if (!likelihood.sigma_known) {
+    result.freedom = likelihood.freedom(line.determined);
+    const double left = likelihood.left(chi2);
+    result.chi2 = std::max(left - fall, kRounding * left);
+  }
+  // Twice as far as the likelihood reaches: even of a normal law e^-40 is left of the line.
+  constexpr double kFar = 2.0;
+  if (!(std::sqrt(fall) <= kFar * reach(result))) {
+    return std::nullopt;
+  }
   return result;
 }
 
@@ -233,9 +276,9 @@ std::optional<BendOfLine> bend_of_line(const ClassEvidence& line, const FitData&
 double log_evidence_over_line(CurveClass curve_class, const BendOfLine& bend) {
   static const Rule places = rule_places();
   static const Rule weights = rule_weights();
-  constexpr double kDeviations = 4.5;  // beyond the highest: 4e-5 of it is left
-  const double farthest_curvature = kDeviations + std::abs(bend.curvature);
-  const double farthest_rate = kDeviations + std::abs(bend.rate);
+  const double beyond = reach(bend);
+  const double farthest_curvature = beyond + std::abs(bend.curvature);
+  const double farthest_rate = beyond + std::abs(bend.rate);
   double sum = 0.0;
   for (const Shape& shape : shapes(curve_class)) {
     const double k = shape.curvature / bend.curvature_sigma;
@@ -245,11 +288,10 @@ double log_evidence_over_line(CurveClass curve_class, const BendOfLine& bend) {
     const double end = std::isfinite(most) ? most / (1.0 + most) : 1.0;
     const Rule v = end * places;
     const Rule inverse_square = v / (1.0 - v);
-    const Rule likelihood = over_line(k * inverse_square.sqrt(), bend.curvature) *
-                            over_line(q * inverse_square, bend.rate);
-    sum += shape.weight * end * (weights * likelihood).sum();
+    sum += shape.weight * end *
+           (weights * over_highest(k * inverse_square.sqrt(), q * inverse_square, bend)).sum();
   }
-  return std::log(sum);
+  return log_highest(bend) + std::log(sum);
 }
 
 }  // namespace palpate

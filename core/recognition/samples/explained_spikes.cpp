@@ -20,10 +20,10 @@ struct Gap {
   double length_m = 0.0;  ///< to the place after; negative against the parameter
 };
 
-/// What was lost before sample `next` of those kept. Beyond the first and the last of them the
-/// stroke may have gone on as far as between any two.
-Gap gap_before(std::size_t next, std::span<const StoredSample> kept, const Curve& curve,
-               const Pose2& world_T_curve) {
+/// The `lost` samples before sample `next` of those kept. Beyond the first and the last of these
+/// the stroke may have gone on from each to the next as far as between any two.
+Gap gap_before(std::size_t next, std::size_t lost, std::span<const StoredSample> kept,
+               const Curve& curve, const Pose2& world_T_curve) {
   const auto parameter_of = [&](std::size_t i) {
     return foot_point(curve, world_T_curve.to_local(kept[i].position_m)).t;
   };
@@ -38,7 +38,19 @@ Gap gap_before(std::size_t next, std::span<const StoredSample> kept, const Curve
   const std::size_t end = next == 0 ? 0 : kept.size() - 1;
   const std::size_t inner = next == 0 ? 1 : kept.size() - 2;
   const double from = parameter_of(end);
-  return {from, std::copysign(longest_m, arc_between(curve, parameter_of(inner), from))};
+  return {from, std::copysign(static_cast<double>(lost) * longest_m,
+                              arc_between(curve, parameter_of(inner), from))};
+}
+
+/// How many samples were lost in a row from number `from` on, before sample `next` of those kept.
+std::size_t lost_from(std::size_t from, std::size_t next, std::span<const StoredSample> all,
+                      std::span<const StoredSample> kept) {
+  std::size_t end = from;
+  while (end < all.size() &&
+         (next == kept.size() || all[end].position_m != kept[next].position_m)) {
+    ++end;
+  }
+  return end - from;
 }
 
 /// Whether the stroke passed the place on its way over the gap, but for noise along the curve.
@@ -71,6 +83,7 @@ std::optional<std::vector<StoredPatch>> with_explained_spikes(std::span<const St
       if (!all[p].details.empty()) taken.details.push_back(all[p].details[i]);
     };
     std::size_t next = 0;
+    std::size_t first_lost = 0;
     Gap gap;
     bool is_gap_known = false;
     for (std::size_t i = 0; i < all[p].samples.size(); ++i) {
@@ -78,6 +91,7 @@ std::optional<std::vector<StoredPatch>> with_explained_spikes(std::span<const St
       if (next < kept.size() && kept[next].position_m == sample.position_m) {
         take(i);
         ++next;
+        first_lost = i + 1;
         is_gap_known = false;
         continue;
       }
@@ -88,7 +102,8 @@ std::optional<std::vector<StoredPatch>> with_explained_spikes(std::span<const St
         continue;
       }
       if (!is_gap_known) {
-        gap = gap_before(next, kept, curve, world_T_curve);
+        const std::size_t lost = lost_from(first_lost, next, all[p].samples, kept);
+        gap = gap_before(next, lost, kept, curve, world_T_curve);
         is_gap_known = true;
       }
       if (passes(gap, curve, foot.t, std::numbers::sqrt2 * limit * sigma)) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "core/curves/curve.h"
@@ -56,6 +57,15 @@ TouchedVector drawn(CurveClass curve_class, std::mt19937_64& rng) {
   return z;
 }
 
+/// The likelihood over that of the line, so many deviations from where it is highest.
+double over_line(const BendOfLine& bend, double curvature_off, double rate_off) {
+  const double off = curvature_off * curvature_off + rate_off * rate_off;
+  const double of_line = bend.curvature * bend.curvature + bend.rate * bend.rate;
+  return std::isfinite(bend.freedom)
+             ? std::pow((bend.chi2 + off) / (bend.chi2 + of_line), -0.5 * bend.freedom)
+             : std::exp(0.5 * (of_line - off));
+}
+
 struct Mean {
   double value = 0.0;
   double error = 0.0;  ///< its standard error
@@ -82,11 +92,12 @@ Mean mean_over_prior(CurveClass curve_class, const BendOfLine& bend, std::mt1993
       const double size = std::exp(log_size);
       const double k = local.kappa / size / bend.curvature_sigma;
       const double q = local.kappa_s / (size * size) / bend.rate_sigma;
-      const auto over_line = [](double x, double best) {
-        return 0.5 * (std::exp(-0.5 * x * x + best * x) + std::exp(-0.5 * x * x - best * x));
-      };
-      over_sizes +=
-          0.5 * secant * secant * kStep * over_line(k, bend.curvature) * over_line(q, bend.rate);
+      for (const double side : {-1.0, 1.0}) {
+        for (const double rate_side : {-1.0, 1.0}) {
+          over_sizes += 0.125 * secant * secant * kStep *
+                        over_line(bend, k - side * bend.curvature, q - rate_side * bend.rate);
+        }
+      }
     }
     sum += over_sizes;
     squares += over_sizes * over_sizes;
@@ -102,7 +113,9 @@ TEST(StraightPaths, AreThoseOfThePrior) {
   std::mt19937_64 rng = test::test_rng();
   for (const BendOfLine& bend :
        {BendOfLine{1e-2, 5e-2, 0.0, 0.0}, BendOfLine{3e-2, 0.15, 1.0, -2.0},
-        BendOfLine{0.3, 1.5, 3.0, 1.0}}) {
+        BendOfLine{0.3, 1.5, 3.0, 1.0},
+        // Noise that five residuals are to tell, and a hundred.
+        BendOfLine{1e-2, 5e-2, 1.0, 1.0, 4.0, 5.0}, BendOfLine{0.3, 1.5, 3.0, 1.0, 90.0, 100.0}}) {
     for (const CurveClass curve_class : kCurveClasses) {
       if (curve_class == CurveClass::Line) {
         continue;
@@ -110,7 +123,25 @@ TEST(StraightPaths, AreThoseOfThePrior) {
       const Mean mean = mean_over_prior(curve_class, bend, rng);
       EXPECT_NEAR(log_evidence_over_line(curve_class, bend), std::log(mean.value),
                   kLatticeError + 5.0 * mean.error / mean.value)
-          << name_of(curve_class) << ", " << bend.curvature_sigma;
+          << name_of(curve_class) << ", " << bend.curvature_sigma << ", " << bend.freedom;
+    }
+  }
+}
+
+TEST(StraightPaths, AreNumbersAsFarAsTheyAreAskedFor) {
+  for (const double freedom : {1.0, 3.0, 1000.0, std::numeric_limits<double>::infinity()}) {
+    for (const double away : {9.0, 1e3, 1e6}) {
+      const BendOfLine bend{1e-3, 5e-3, away, 0.0, 1e-6, freedom};
+      for (const CurveClass curve_class : kCurveClasses) {
+        if (curve_class == CurveClass::Line) {
+          continue;
+        }
+        // What is told to bend so has at most the likelihood where it is highest.
+        const double most = std::isfinite(freedom) ? 0.5 * freedom * std::log1p(away * away / 1e-6)
+                                                   : 0.5 * away * away;
+        EXPECT_LE(log_evidence_over_line(curve_class, bend), most)
+            << name_of(curve_class) << ", " << away << ", " << freedom;
+      }
     }
   }
 }

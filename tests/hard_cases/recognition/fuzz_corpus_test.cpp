@@ -1,0 +1,32 @@
+// Each input that fuzzing has kept, once: a finding aborts with the invariant that is broken.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <string>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+namespace palpate {
+namespace {
+
+TEST(FuzzCorpus, OfTheRecognizerBreaksNoInvariant) {
+  const auto folder =
+      std::filesystem::path(PALPATE_TEST_DATA).parent_path() / "fuzz/corpus/recognizer";
+  int inputs = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::cout << entry.path().filename().string() << std::endl;  // the last one is the finding
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+    LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    ++inputs;
+  }
+  EXPECT_GT(inputs, 0);
+}
+
+}  // namespace
+}  // namespace palpate
