@@ -214,15 +214,16 @@ Eigen::Matrix<double, 6, 1> turn_by_pose_and_shape(const Curve& curve, double t,
 
 }  // namespace
 
+ShapePoseCovariance untold_covariance(Eigen::Index n) {
+  ShapePoseCovariance untold = ShapePoseCovariance::Zero(n, n);
+  untold.diagonal().setConstant(std::numeric_limits<double>::infinity());
+  return untold;
+}
+
 InverseInformation inverse_information(const ShapePoseCovariance& information, int rank) {
   const Eigen::Index n = information.rows();
   if (!information.allFinite()) {  // units in which a square is beyond a double: nothing is told
-    constexpr double kInfinite = std::numeric_limits<double>::infinity();
-    InverseInformation untold;
-    untold.covariance = ShapePoseCovariance::Zero(n, n);
-    untold.covariance.diagonal().setConstant(kInfinite);
-    untold.log_determinant = kInfinite;
-    return untold;
+    return {untold_covariance(n), std::numeric_limits<double>::infinity()};
   }
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 6, 1> scale(n);
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -30,6 +30,9 @@ struct CanonicalFit {
   std::vector<FittedPoint> points;
 };
 
+/// Of n components of which nothing is known: infinite variances, no covariances.
+ShapePoseCovariance untold_covariance(Eigen::Index n);
+
 /// Inverse of an information matrix of known rank; null directions have variance 0.
 struct InverseInformation {
   ShapePoseCovariance covariance;

@@ -138,7 +138,9 @@ ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvide
     moment.row(letters + 2).setZero();
     moment.col(letters + 2).setZero();
   }
-  return moment.topLeftCorner(n, n);
+  // The valley runs on to where a double ends: it tells nothing.
+  return moment.allFinite() ? ShapePoseCovariance(moment.topLeftCorner(n, n))
+                            : untold_covariance(n);
 }
 
 Eigen::Matrix<double, 6, 6> shape_pose_by_coordinates(const ClassEvidence& evidence,

@@ -11,6 +11,7 @@ namespace palpate {
 /// E[(x - estimate)(x - estimate)^T] of x = [shape; x; y; theta] over the slices of `evidence`:
 /// what a covariance linear about the estimate leaves out where the valley is wide and bent. By the
 /// likelihood alone: an uncertainty must hold whatever the prior.
+/// Infinite where the valley goes on beyond what a double holds.
 /// `data` as `evidence` was taken from. Metres and radians, world frame.
 ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvidence& evidence,
                                   const FitData& data);

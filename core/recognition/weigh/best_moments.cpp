@@ -29,6 +29,9 @@ ShapePoseCovariance with_coherence(const CoherentMoment& coherent,
                                    const std::optional<ShapePoseCovariance>& valley,
                                    const ShapePoseCovariance& bound, double inflation,
                                    double stated) {
+  if (valley && !valley->allFinite()) {
+    return *valley;
+  }
   const ShapePoseCovariance linear = inflation * bound;
   const ShapePoseCovariance shared = coherent.moment + stated * bound;
   const ShapePoseCovariance bent =
