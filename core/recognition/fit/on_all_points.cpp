@@ -207,7 +207,7 @@ ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const Refi
   if (fit.polynomial) {
     const auto refine = [&](PolynomialFit& part) {
       const int side = part.side;
-      part = refine_polynomial(polynomial_model(fit), points, std::move(part), side, effort);
+      part = refine_polynomial(polynomial_model(fit), points, part, side, effort);
     };
     refine(*fit.polynomial);
     if (fit.rival &&

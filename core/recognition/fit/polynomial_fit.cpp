@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include "core/numerics/levenberg_marquardt.h"
 #include "core/recognition/fit/polynomial_problem.h"
@@ -10,14 +12,12 @@
 namespace palpate {
 namespace {
 
+/// Takes `x` to the optimum that the problem's feet lead to. Chi-square there and the iterations go
+/// to `fit`.
 template <PolynomialModel kModel>
-PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int side,
-                     const RefineEffort& effort) {
-  using Problem = PolynomialProblem<kModel>;
-  Problem problem(points, start.t, side);
-  typename Problem::Vector x = Problem::parameters(start.coefficients);
-  PolynomialFit fit;
-  fit.chi2 = std::numeric_limits<double>::infinity();
+void minimise_from(typename PolynomialProblem<kModel>::Vector* x,
+                   PolynomialProblem<kModel>* problem, std::span<const FitPoint> points,
+                   const RefineEffort& effort, PolynomialFit* fit) {
   // The solver also stops where a step is refused for next to nothing, as happens along the
   // directions that affine changes of t leave free. Starting afresh, with the damping of the new
   // place, tells a stop from an optimum.
@@ -29,31 +29,59 @@ PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int 
   constexpr int kMoreStarts = 2;
   const std::size_t normals = count_normals(points);
   const double n = static_cast<double>(points.size() + normals);
-  const auto is_exact = [&] { return fit.chi2 < kExact * n; };
+  const auto is_exact = [&] { return fit->chi2 < kExact * n; };
   for (int start_number = 0;
        start_number < effort.starts || (is_exact() && start_number < effort.starts + kMoreStarts);
        ++start_number) {
     if (normals > 0) {
-      problem.weigh_normals(x);
+      problem->weigh_normals(*x);
     }
-    const double left = start_number > 0 && is_exact() ? fit.chi2 / n : 1.0;
-    const MinimiseSummary summary = minimise(&problem, &x,
+    const double left = start_number > 0 && is_exact() ? fit->chi2 / n : 1.0;
+    const MinimiseSummary summary = minimise(problem, x,
                                              {.iterations = effort.iterations,
                                               .chi2_tolerance = left * effort.chi2_tolerance,
                                               .relative_tolerance = effort.relative_tolerance(n),
                                               .coarse_above = most_chi2_of_noise(points),
                                               .out_of_reach = effort.out_of_reach});
     if (start_number == 0) {
-      fit.chi2 = summary.initial_chi2;
+      fit->chi2 = summary.initial_chi2;
     }
-    fit.iterations += summary.iterations;
-    const bool nothing_left = summary.converged || !(summary.chi2 < fit.chi2 - left * kSettled);
+    fit->iterations += summary.iterations;
+    const bool nothing_left = summary.converged || !(summary.chi2 < fit->chi2 - left * kSettled);
     const bool settled = nothing_left && (start_number > 0 || !(summary.chi2 < kExact * n));
-    fit.chi2 = std::min(fit.chi2, summary.chi2);
+    fit->chi2 = std::min(fit->chi2, summary.chi2);
     // What has not arrived by then runs along a valley that is as good as flat.
     const bool too_far = summary.iterations >= effort.iterations;
     if (settled || too_far || !std::isfinite(summary.chi2)) {
-      break;
+      return;
+    }
+  }
+}
+
+template <PolynomialModel kModel>
+PolynomialFit refine(std::span<const FitPoint> points, const PolynomialFit& start, int side,
+                     const RefineEffort& effort) {
+  using Problem = PolynomialProblem<kModel>;
+  constexpr double kWorthASearch = 1.0;  // of chi-square: odds change by 1.6
+  Problem problem(points, start.t, side);
+  typename Problem::Vector x = Problem::parameters(start.coefficients);
+  PolynomialFit fit;
+  fit.chi2 = std::numeric_limits<double>::infinity();
+  minimise_from<kModel>(&x, &problem, points, effort, &fit);
+  if (const std::vector<std::size_t> far = problem.far_points(); !far.empty()) {
+    std::vector<bool> doubtful(points.size(), false);
+    for (const std::size_t i : far) {
+      doubtful[i] = true;
+    }
+    if (problem.seek_feet(far, doubtful) > kWorthASearch) {
+      minimise_from<kModel>(&x, &problem, points, effort, &fit);
+      // Beside them others are on the wrong arm by less.
+      std::vector<std::size_t> all(points.size());
+      std::iota(all.begin(), all.end(), std::size_t{0});
+      doubtful.assign(points.size(), false);
+      if (problem.seek_feet(all, doubtful) > kWorthASearch) {
+        minimise_from<kModel>(&x, &problem, points, effort, &fit);
+      }
     }
   }
   fit.coefficients = Problem::coefficients(x);
@@ -65,16 +93,16 @@ PolynomialFit refine(std::span<const FitPoint> points, PolynomialFit start, int 
 }  // namespace
 
 PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
-                                PolynomialFit start, int side, const RefineEffort& effort) {
+                                const PolynomialFit& start, int side, const RefineEffort& effort) {
   switch (model) {
     case PolynomialModel::Parabola:
-      return refine<PolynomialModel::Parabola>(points, std::move(start), side, effort);
+      return refine<PolynomialModel::Parabola>(points, start, side, effort);
     case PolynomialModel::CubicalParabola:
-      return refine<PolynomialModel::CubicalParabola>(points, std::move(start), side, effort);
+      return refine<PolynomialModel::CubicalParabola>(points, start, side, effort);
     case PolynomialModel::SemiCubicalParabola:
-      return refine<PolynomialModel::SemiCubicalParabola>(points, std::move(start), side, effort);
+      return refine<PolynomialModel::SemiCubicalParabola>(points, start, side, effort);
     case PolynomialModel::CubicSpline:
-      return refine<PolynomialModel::CubicSpline>(points, std::move(start), side, effort);
+      return refine<PolynomialModel::CubicSpline>(points, start, side, effort);
   }
   return start;
 }

@@ -25,7 +25,8 @@ struct PolynomialFit {
 /// of t leave the curve as it is; the damping takes care of them. `start.t` must hold a parameter
 /// near each point's foot point. O(points) per iteration.
 PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
-                                PolynomialFit start, int side, const RefineEffort& effort = {});
+                                const PolynomialFit& start, int side,
+                                const RefineEffort& effort = {});
 
 /// Whether two fits to the same points ended in the same optimum: chi-squares alike and directions
 /// of the cubic axis alike, as far as the optimiser's tolerance goes.

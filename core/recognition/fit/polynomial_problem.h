@@ -129,6 +129,45 @@ class PolynomialProblem {
     feet_.swap(tried_feet_);
   }
 
+  /// Where a point lies farther off than noise takes it, its foot may have been followed to the
+  /// wrong arm of a bend or of a cusp, where steps end however the curve moves. Those points; none
+  /// where they are many: the curve is another one.
+  std::vector<std::size_t> far_points() const {
+    constexpr double kFar = 3.0;  // deviations: of honest points one in 370
+    constexpr std::size_t kOneIn = 10;
+    std::vector<std::size_t> far;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (std::abs(residual_at(feet_[i], i)) > kFar) {
+        far.push_back(i);
+        if (kOneIn * far.size() > points_.size() + kOneIn) {
+          return {};
+        }
+      }
+    }
+    return far;
+  }
+
+  /// Takes the feet of these points to the nearest place of the whole curve, where that is nearer
+  /// to the feet of the points touched before and after, too: a stroke does not leap from arm to
+  /// arm. By how much that lowers chi-square. `doubtful`: one flag per point, its foot tells no
+  /// other's.
+  double seek_feet(std::span<const std::size_t> of_points, const std::vector<bool>& doubtful) {
+    double lowered = 0.0;
+    for (const std::size_t i : of_points) {
+      const double t = nearest_parameter(coefficients_, points_[i].position);
+      const PlacedPoint foot = follow_foot_point(coefficients_, points_[i].position, t, last_step_);
+      const double before = residual_at(feet_[i], i);
+      const double after = residual_at(foot, i);
+      const double beside = parameter_beside(i, doubtful);
+      if (after * after < before * before &&
+          std::abs(foot.t - beside) < std::abs(feet_[i].t - beside)) {
+        feet_[i] = foot;
+        lowered += before * before - after * after;
+      }
+    }
+    return lowered;
+  }
+
   /// By the envelope theorem a residual changes by -n . (1, t, t^2, t^3): sums over the points of
   /// n n^T t^k hold all of J^T J.
   void linearise(Matrix* information, Vector* gradient) const {
@@ -211,6 +250,21 @@ class PolynomialProblem {
 
  private:
   static constexpr int exponent(int k) { return kExponents[static_cast<std::size_t>(k)]; }
+
+  /// Between the feet before and after that are not doubtful; that of point `i` where none is.
+  double parameter_beside(std::size_t i, const std::vector<bool>& doubtful) const {
+    std::size_t before = i;
+    while (before > 0 && (before == i || doubtful[before])) {
+      --before;
+    }
+    std::size_t after = i;
+    while (after + 1 < feet_.size() && (after == i || doubtful[after])) {
+      ++after;
+    }
+    if (before == i || doubtful[before]) before = after;
+    if (after == i || doubtful[after]) after = before;
+    return 0.5 * (feet_[before].t + feet_[after].t);
+  }
 
   double residual_at(const PlacedPoint& foot, std::size_t i) const {
     return (foot.signed_distance - side_ * points_[i].offset) * points_[i].inverse_sigma;
