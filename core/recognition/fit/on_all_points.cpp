@@ -205,14 +205,16 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
 ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const RefineEffort& effort,
                       RivalOf rival = RivalOf::Best) {
   if (fit.polynomial) {
-    const auto refine = [&](PolynomialFit& part) {
+    const auto refine = [&](PolynomialFit& part, const RefineEffort& with) {
       const int side = part.side;
-      part = refine_polynomial(polynomial_model(fit), points, part, side, effort);
+      part = refine_polynomial(polynomial_model(fit), points, part, side, with);
     };
-    refine(*fit.polynomial);
+    refine(*fit.polynomial, effort);
     if (fit.rival &&
         (rival == RivalOf::Best || fit.rival->chi2 < fit.polynomial->chi2 + kHopeless)) {
-      refine(*fit.rival);
+      RefineEffort followed = effort;
+      followed.seek_feet = false;
+      refine(*fit.rival, followed);
       if (fit.rival->chi2 < fit.polynomial->chi2) {
         std::swap(*fit.polynomial, *fit.rival);
       }

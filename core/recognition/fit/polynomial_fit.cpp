@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include "core/numerics/levenberg_marquardt.h"
@@ -68,21 +67,8 @@ PolynomialFit refine(std::span<const FitPoint> points, const PolynomialFit& star
   PolynomialFit fit;
   fit.chi2 = std::numeric_limits<double>::infinity();
   minimise_from<kModel>(&x, &problem, points, effort, &fit);
-  if (const std::vector<std::size_t> far = problem.far_points(); !far.empty()) {
-    std::vector<bool> doubtful(points.size(), false);
-    for (const std::size_t i : far) {
-      doubtful[i] = true;
-    }
-    if (problem.seek_feet(far, doubtful) > kWorthASearch) {
-      minimise_from<kModel>(&x, &problem, points, effort, &fit);
-      // Beside them others are on the wrong arm by less.
-      std::vector<std::size_t> all(points.size());
-      std::iota(all.begin(), all.end(), std::size_t{0});
-      doubtful.assign(points.size(), false);
-      if (problem.seek_feet(all, doubtful) > kWorthASearch) {
-        minimise_from<kModel>(&x, &problem, points, effort, &fit);
-      }
-    }
+  if (effort.seek_feet && std::isfinite(fit.chi2) && problem.seek_feet() > kWorthASearch) {
+    minimise_from<kModel>(&x, &problem, points, effort, &fit);
   }
   fit.coefficients = Problem::coefficients(x);
   fit.side = side;

@@ -147,22 +147,27 @@ class PolynomialProblem {
     return far;
   }
 
-  /// Takes the feet of these points to the nearest place of the whole curve, where that is nearer
-  /// to the feet of the points touched before and after, too: a stroke does not leap from arm to
-  /// arm. By how much that lowers chi-square. `doubtful`: one flag per point, its foot tells no
-  /// other's.
-  double seek_feet(std::span<const std::size_t> of_points, const std::vector<bool>& doubtful) {
+  /// Follows the feet of far points, and of those beside them, from those of the points touched
+  /// before and after: a stroke does not leap from arm to arm. By how much that lowers chi-square.
+  double seek_feet() {
+    const std::vector<std::size_t> far = far_points();
+    std::vector<bool> doubtful(far.empty() ? 0 : points_.size(), false);
+    for (const std::size_t i : far) {
+      doubtful[i] = true;
+    }
     double lowered = 0.0;
-    for (const std::size_t i : of_points) {
-      const double t = nearest_parameter(coefficients_, points_[i].position);
-      const PlacedPoint foot = follow_foot_point(coefficients_, points_[i].position, t, last_step_);
-      const double before = residual_at(feet_[i], i);
-      const double after = residual_at(foot, i);
-      const double beside = parameter_beside(i, doubtful);
-      if (after * after < before * before &&
-          std::abs(foot.t - beside) < std::abs(feet_[i].t - beside)) {
-        feet_[i] = foot;
-        lowered += before * before - after * after;
+    for (const std::size_t i : far) {
+      double by = seek_foot(i, doubtful);
+      doubtful[i] = !(by > 0.0);
+      lowered += by;
+      // Those beside it are on the wrong arm by less.
+      for (std::size_t k = i; by > 0.0 && k > 0; lowered += by) {
+        by = seek_foot(--k, doubtful);
+      }
+      by = doubtful[i] ? 0.0 : 1.0;
+      for (std::size_t k = i + 1; by > 0.0 && k < points_.size(); ++k) {
+        by = seek_foot(k, doubtful);
+        lowered += by;
       }
     }
     return lowered;
@@ -264,6 +269,20 @@ class PolynomialProblem {
     if (before == i || doubtful[before]) before = after;
     if (after == i || doubtful[after]) after = before;
     return 0.5 * (feet_[before].t + feet_[after].t);
+  }
+
+  /// seek_feet of one point.
+  double seek_foot(std::size_t i, const std::vector<bool>& doubtful) {
+    const PlacedPoint foot = follow_foot_point(coefficients_, points_[i].position,
+                                               parameter_beside(i, doubtful), last_step_);
+    const double before = residual_at(feet_[i], i);
+    const double after = residual_at(foot, i);
+    constexpr double kSame = 1e-2;  // of chi-square: a tenth of a deviation
+    if (!(after * after < before * before - kSame)) {
+      return 0.0;
+    }
+    feet_[i] = foot;
+    return before * before - after * after;
   }
 
   double residual_at(const PlacedPoint& foot, std::size_t i) const {

@@ -134,7 +134,7 @@ void start_from_limits(const FitData& reduced, double highest_chi2, double out_o
       PolynomialFit start = **limit;
       normalise_parameter(PolynomialModel::CubicSpline, &start);
       keep_better(&fits->cubic_spline,
-                  refine_polynomial(PolynomialModel::CubicSpline, reduced.points, std::move(start),
+                  refine_polynomial(PolynomialModel::CubicSpline, reduced.points, start,
                                     kSurfacePoints, coarse(out_of_reach)));
     }
   }

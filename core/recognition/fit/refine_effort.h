@@ -17,6 +17,8 @@ struct RefineEffort {
   double chi2_tolerance = 1e-7;
   /// Of chi-square: a start of which the linear model leaves more is given up.
   double out_of_reach = std::numeric_limits<double>::infinity();
+  /// Feet on the wrong arm are taken back (polynomial models).
+  bool seek_feet = true;
 
   /// Of chi-square, where so many residuals leave more than any noise. Noise as large as they are
   /// is then what counts, and a curve that is not the one that was touched need be no nearer to its
