@@ -40,21 +40,8 @@ struct ClassEvidence {
   int widest = -1;       ///< that coordinate; -1 with one node
 };
 
-/// What slices are for.
-enum class Slices {
-  ForMass,    ///< where it is not that of a normal law
-  ForMoment,  ///< also where only the valley's bend shows, beside how narrow it is
-};
-
-/// The curve's root with coordinate `fixed` (or -1) not moving.
-TouchedMatrix root_of(const TouchedCurve& curve, int fixed);
-
-/// The mode of likelihood times prior that lies downhill from a curve; nullopt where none comes
-/// near the points, and where `start` is no curve of its class in double precision. Arguments as of
-/// evidence_of, but `start` need not be an optimum. `least_chi2`: no curve of the class leaves
-/// less.
-std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
-                                           double inflation, double least_chi2);
+/// A prior cannot leave more than all of the likelihood: with that, the fit was no optimum.
+bool is_of_optimum(const ClassEvidence& evidence);
 
 /// By Laplace's formula: a normal law about the optimum. `fit` is at its optimum on `data`, the
 /// reduced points as surface points, and has a point for each. Noise variances count `inflation`
@@ -72,11 +59,5 @@ ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, doubl
 /// The same at the mode of `before`, where that holds more: another fit of the class to the same
 /// data, at the same inflation.
 ClassEvidence at_better_mode(ClassEvidence evidence, const ClassEvidence& before);
-
-/// The same, integrated by slices along the coordinate that is left the widest, where that takes
-/// any; by Laplace's formula where not. `evidence`: of the same data, at any inflation. nullopt
-/// where it turns out to be that of no optimum. At most some forty slices.
-std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& data,
-                                       double inflation, Slices slices);
 
 }  // namespace palpate

@@ -6,6 +6,7 @@
 
 #include "core/curves/curve.h"
 #include "core/numerics/small_cholesky.h"
+#include "core/recognition/posterior/mode_search.h"
 
 namespace palpate {
 namespace {

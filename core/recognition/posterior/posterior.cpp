@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/numerics/negligible.h"
+#include "core/recognition/posterior/slices.h"
 #include "core/recognition/posterior/straight_paths.h"
 
 namespace palpate {

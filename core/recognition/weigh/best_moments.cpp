@@ -4,6 +4,7 @@
 
 #include "core/recognition/coherent/coherent_moment.h"
 #include "core/recognition/posterior/moments.h"
+#include "core/recognition/posterior/slices.h"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/curves/algebraic/canonical_conic.h"
 #include "core/recognition/fit/touchable.h"
-#include "core/recognition/posterior/class_evidence.h"
+#include "core/recognition/posterior/mode_search.h"
 #include "core/recognition/smooth/arcs.h"
 
 namespace palpate {

@@ -1,5 +1,6 @@
 // The evidence against integrals by brute force, and what follows from it.
 #include "core/recognition/posterior/posterior.h"
+#include "core/recognition/posterior/slices.h"
 
 #include <gtest/gtest.h>
 

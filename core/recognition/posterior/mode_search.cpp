@@ -1,0 +1,157 @@
+#include "core/recognition/posterior/mode_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/numerics/small_cholesky.h"
+#include "core/numerics/triangular_root.h"
+
+namespace palpate {
+namespace {
+
+/// By the coordinates in units of the widths.
+TouchedVector prior_gradient(const Touch& touch, const TouchedCurve& curve) {
+  return log_prior_gradient(touch.curve_class, curve.z).cwiseProduct(curve.widths);
+}
+
+/// The root for a step down the potential, with the curvature that the prior's tails have. From
+/// three quarters of a normal law's on, a step by that is nearly as long.
+TouchedMatrix step_root(const Touch& touch, const TouchedCurve& curve) {
+  const TouchedVector less = TouchedVector::Ones() - tail_weights(touch.curve_class, curve.z);
+  if (less.maxCoeff() < 0.25) {
+    return curve.root;
+  }
+  TouchedMatrix curvature = curve.root * curve.root.transpose();
+  curvature.diagonal() -= less;
+  TouchedMatrix tailed;
+  return cholesky(curvature, &tailed) ? tailed : curve.root;
+}
+
+/// The same curve with residuals that count `ratio` times; nullopt where rounding hides its root.
+std::optional<TouchedCurve> counted(TouchedCurve curve, double ratio) {
+  TouchedMatrix curvature = curve.root * curve.root.transpose();
+  curvature.diagonal().array() -= 1.0;
+  curvature *= ratio * ratio;
+  curvature.diagonal().array() += 1.0;
+  curve.chi2 *= ratio * ratio;
+  curve.gradient *= ratio * ratio;
+  return cholesky(TouchedMatrix(curvature), &curve.root) ? std::optional(std::move(curve))
+                                                         : std::nullopt;
+}
+
+}  // namespace
+
+double potential(const TouchedCurve& curve) { return 0.5 * curve.chi2 - curve.log_prior; }
+
+double log_determinant(const TouchedMatrix& root) {
+  return 2.0 * root.diagonal().array().log().sum();
+}
+
+double log_mass(const TouchedCurve& mode) {
+  return -potential(mode) - 0.5 * log_determinant(mode.root);
+}
+
+TouchedMatrix root_of(const TouchedCurve& curve, int fixed) {
+  return fixed < 0 ? curve.root : root_without(curve.root, fixed);
+}
+
+TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed,
+                     int most_steps, double settled) {
+  double halving = 1.0;
+  for (int i = 0; i < most_steps; ++i) {
+    // From slice to slice the way is short.
+    const TouchedMatrix root = fixed < 0 ? step_root(touch, curve) : root_of(curve, fixed);
+    TouchedVector slope = curve.gradient - prior_gradient(touch, curve);
+    if (fixed >= 0) {
+      slope[fixed] = 0.0;
+    }
+    const TouchedVector step = solve_cholesky(root, slope);
+    if (!(0.5 * halving * slope.dot(step) > settled)) {
+      break;
+    }
+    auto there = curve_at(touch, curve.z - halving * step.cwiseProduct(curve.widths), curve, data);
+    if (there && potential(*there) < potential(curve)) {
+      curve = std::move(*there);
+      halving = std::min(1.0, 2.0 * halving);
+    } else {
+      halving *= 0.25;
+    }
+  }
+  return curve;
+}
+
+std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
+                                           double inflation, double least_chi2) {
+  // The noise is lowered from what the start leaves to what it is: at each level the valley is wide
+  // enough to be walked along.
+  constexpr int kStepsPerLevel = 12;
+  constexpr double kLevel = 0.5;  // of the deviation
+  // At the first level chi-square is the number of points, and where a valley leads to the noise it
+  // stays about that. Three levels at which the curve did not come nearer: there is none.
+  constexpr double kLost = 64.0;
+  const double n = static_cast<double>(residual_count(data));
+  // The last level before all of the noise's weight has at least this much of it: what is lost
+  // there need not be walked to.
+  if (kLevel * kLevel * least_chi2 > kLost * n * inflation) {
+    return std::nullopt;
+  }
+  auto touch = touch_of(start, data);
+  if (!touch) {
+    return std::nullopt;
+  }
+  touch->weight = 1.0 / std::sqrt(inflation);
+  auto curve = curve_at(*touch, start, data);
+  if (!curve) {
+    return std::nullopt;
+  }
+  const double full = touch->weight;
+  double weight = full * std::min(1.0, std::sqrt(n / curve->chi2));
+  while (weight < full) {
+    touch->weight = weight;
+    curve = curve_at(*touch, curve->z, *curve, data);
+    if (!curve) {
+      return std::nullopt;
+    }
+    curve = descend(*touch, data, *std::move(curve), -1, kStepsPerLevel);
+    if (curve->chi2 > kLost * n) {
+      return std::nullopt;
+    }
+    weight /= kLevel;
+  }
+  touch->weight = full;
+  curve = curve_at(*touch, curve->z, *curve, data);
+  return curve ? std::optional(descend(*touch, data, *std::move(curve), -1, kMostSteps))
+               : std::nullopt;
+}
+
+std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data,
+                                                const TouchedCurve& start, double log_least) {
+  constexpr double kHidden = 0.1;  // half extents
+  // Of the deviation, from level to level: what settles to within half a unit of the potential at
+  // one is within four deviations of the next one's valley.
+  constexpr double kLevel = 0.25;
+  constexpr double kOnTheWay = 0.5;
+  constexpr int kStepsPerLevel = 3;  // bounds the time
+  const double full = touch.weight;
+  touch.weight = std::min(full, rms_sigma(data) / kHidden);
+  std::optional<TouchedCurve> curve = curve_at(touch, start.z, start, data);
+  while (curve) {
+    const bool last = !(touch.weight < full);
+    curve = descend(touch, data, *std::move(curve), -1, last ? kMostSteps : kStepsPerLevel,
+                    last ? kSettled : kOnTheWay);
+    // Less noise leaves no more of it.
+    if (!(log_mass(*curve) > log_least)) {
+      return std::nullopt;
+    }
+    if (last) {
+      return curve;
+    }
+    const double before = touch.weight;
+    touch.weight = std::min(full, before / kLevel);
+    curve = counted(*std::move(curve), touch.weight / before);
+  }
+  return std::nullopt;
+}
+
+}  // namespace palpate

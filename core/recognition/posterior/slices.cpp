@@ -1,0 +1,218 @@
+#include "core/recognition/posterior/slices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "core/numerics/negligible.h"
+#include "core/numerics/small_cholesky.h"
+#include "core/recognition/posterior/mode_search.h"
+
+namespace palpate {
+namespace {
+
+/// The curve with coordinate k moved to `value`, the others at their best.
+std::optional<TouchedCurve> slice(const Touch& touch, const FitData& data, const TouchedCurve& from,
+                                  int k, double value) {
+  // The others follow as the linear model says.
+  const double moved = (value - from.z[k]) / from.widths[k];
+  TouchedVector pull = from.root * from.root.row(k).transpose();
+  pull[k] = 0.0;
+  TouchedVector step = -moved * solve_cholesky(root_of(from, k), pull);
+  step[k] = 0.0;
+  for (const double part : {1.0, 0.0}) {
+    TouchedVector z = from.z + part * step.cwiseProduct(from.widths);
+    z[k] = value;
+    if (auto curve = curve_at(touch, z, from, data)) {
+      return descend(touch, data, std::move(*curve), k);
+    }
+  }
+  return std::nullopt;
+}
+
+/// log of the density at a slice: the others integrated by Laplace's formula, coordinate k in units
+/// of its width at the optimum.
+double log_density(const TouchedCurve& curve, int k) {
+  return -potential(curve) - 0.5 * log_determinant(root_of(curve, k)) - std::log(curve.widths[k]);
+}
+
+struct Slice {
+  TouchedCurve curve;
+  double log_density = 0.0;
+};
+
+/// How far a coordinate may be walked: half a turn for directions that come round again.
+double longest_walk(CurveClass curve_class, int k) {
+  return curve_class == CurveClass::Ellipse && k == 2 ? 0.5 * std::numbers::pi
+                                                      : std::numeric_limits<double>::infinity();
+}
+
+/// How slices are laid.
+struct Walk {
+  double step = 0.0;             ///< the first
+  double smallest_change = 0.0;  ///< of the log density: after a smaller one the step is doubled
+};
+
+/// Slices from `start` (not included) in one direction, until nothing of the `highest` log density
+/// seen is left or the class ends.
+std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& start, int k,
+                        double direction, const Walk& how, double* highest) {
+  // A normal law ends after four steps of its deviation; a loose coordinate's are doubled.
+  constexpr std::size_t kMostSlices = 14;
+  constexpr int kMostTries = 20;
+  // Of it, from slice to slice: beyond it a shoulder of the density may lie between.
+  constexpr double kLargestChange = 2.0;
+  const double longest = longest_walk(touch.curve_class, k);
+  std::vector<Slice> slices;
+  slices.reserve(kMostSlices);
+  const Slice* last = &start;
+  double& top = *highest;
+  double step = direction * how.step;
+  for (int tried = 0; tried < kMostTries && slices.size() < kMostSlices; ++tried) {
+    const double room = longest - std::abs(last->curve.z[k] - start.curve.z[k]);
+    if (!(room > 0.0)) {
+      break;
+    }
+    const double length = std::copysign(std::min(std::abs(step), room), step);
+    auto curve = slice(touch, data, last->curve, k, last->curve.z[k] + length);
+    if (!curve) {
+      step *= 0.5;  // towards the end of the class
+      continue;
+    }
+    const double density = log_density(*curve, k);
+    const double change = std::abs(density - last->log_density);
+    if (change > kLargestChange && last->log_density > top - 0.5 * kTailOfDensity) {
+      step *= 0.5;
+      continue;
+    }
+    slices.push_back({std::move(*curve), density});
+    last = &slices.back();
+    top = std::max(top, density);
+    if (density < top - kTailOfDensity) {
+      break;
+    }
+    if (change < how.smallest_change) {
+      step *= 2.0;
+    }
+  }
+  return slices;
+}
+
+/// The coordinate of the shape that the data leave the widest, where that is too wide for a normal
+/// law; -1 where none is.
+int widest_coordinate(const Touch& touch, const TouchedCurve& best, const TouchedMatrix& covariance,
+                      const FitData& data, Slices slices) {
+  // Coordinates are logarithms, slopes and angles: over a tenth of their unit, the second-order
+  // term of a residual is a twentieth of the first.
+  constexpr double kLinear = 0.1;
+  // A deviation of d bends the curve by some d^2 / 2 of the extent; over the noise of the mean of
+  // all points that is how many deviations the narrow coordinates move. A tenth adds a hundredth to
+  // their variance.
+  constexpr double kLeastBend = 0.1;
+  double information = 0.0;
+  for (const FitPoint& point : data.points) {
+    information += point.inverse_sigma * point.inverse_sigma;
+  }
+  const double narrow = touch.weight * std::sqrt(information);
+  const CurveClass curve_class = touch.curve_class;
+  int widest = -1;
+  double most = 1.0;
+  for (int k = 0; k < shape_coordinates(curve_class); ++k) {
+    const double deviation = std::sqrt(covariance(k, k)) * best.widths[k];
+    const bool conic = curve_class == CurveClass::Ellipse || curve_class == CurveClass::Hyperbola;
+    const bool ends_at_zero =
+        (curve_class == CurveClass::CubicSpline && k == 3) || (conic && k == 1);
+    double nonlinear = deviation / kLinear;
+    // A class ends there (m = 0), or the data resolve the square alone (c of the spline): slices,
+    // as far as they go, would come to it.
+    if (ends_at_zero && best.z[k] * best.z[k] < 2.0 * kTailOfDensity * deviation * deviation) {
+      nonlinear = std::max(nonlinear, 1.0);
+    }
+    if (slices == Slices::ForMoment) {
+      nonlinear = std::max(nonlinear, deviation * deviation * narrow / kLeastBend);
+    }
+    if (nonlinear >= most) {
+      most = nonlinear;
+      widest = k;
+    }
+  }
+  return widest;
+}
+
+/// log of the integral over the widest coordinate, by trapezoids between slices, which become the
+/// nodes. nullopt where the class is a single slice wide.
+std::optional<double> integrate(const FitData& data, const Walk& how, ClassEvidence* evidence) {
+  const int k = evidence->widest;
+  TouchedCurve mode = evidence->nodes[evidence->mode].curve;
+  const double density = log_density(mode, k);
+  std::vector<Slice> slices;
+  slices.push_back({std::move(mode), density});
+  const Slice start = slices.front();
+  double top = density;
+  std::vector<Slice> behind = walk(evidence->touch, data, start, k, -1.0, how, &top);
+  std::vector<Slice> ahead = walk(evidence->touch, data, start, k, 1.0, how, &top);
+  const std::size_t middle = behind.size();
+  slices.insert(slices.begin(), std::make_move_iterator(behind.rbegin()),
+                std::make_move_iterator(behind.rend()));
+  slices.insert(slices.end(), std::make_move_iterator(ahead.begin()),
+                std::make_move_iterator(ahead.end()));
+  const std::size_t n = slices.size();
+  std::vector<double> shares(n);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double low = slices[i == 0 ? 0 : i - 1].curve.z[k];
+    const double high = slices[i + 1 == n ? i : i + 1].curve.z[k];
+    shares[i] = 0.5 * (high - low) * std::exp(slices[i].log_density - top);
+    sum += shares[i];
+  }
+  if (!(sum > 0.0)) {
+    return std::nullopt;
+  }
+  evidence->nodes.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i == middle) {
+      evidence->mode = evidence->nodes.size();
+    }
+    if (shares[i] > 0.0 || i == middle) {
+      evidence->nodes.push_back({std::move(slices[i].curve), shares[i] / sum});
+    }
+  }
+  return top + std::log(sum) - 0.5 * std::log(2.0 * std::numbers::pi);
+}
+
+}  // namespace
+
+std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& data,
+                                       double inflation, Slices slices) {
+  TouchedCurve mode = std::move(evidence.nodes[evidence.mode].curve);
+  const double weight = 1.0 / std::sqrt(inflation);
+  if (const double ratio = weight / evidence.touch.weight; ratio != 1.0) {
+    evidence.touch.weight = weight;
+    evidence.fitted_chi2 *= ratio * ratio;
+    auto counted = curve_at(evidence.touch, mode.z, mode, data);
+    if (!counted) {
+      return std::nullopt;
+    }
+    mode = descend(evidence.touch, data, *std::move(counted), -1, kMostSteps);
+  }
+  const TouchedMatrix covariance = inverse_cholesky(mode.root);
+  const int k = widest_coordinate(evidence.touch, mode, covariance, data, slices);
+  double log_integral = log_mass(mode);
+  evidence.widest = k;
+  evidence.mode = 0;
+  evidence.nodes = {{mode, 1.0}};
+  if (k >= 0) {
+    // A second moment needs finer slices than a mass.
+    const double deviation = std::sqrt(covariance(k, k)) * mode.widths[k];
+    const Walk how =
+        slices == Slices::ForMoment ? Walk{0.5 * deviation, 0.05} : Walk{deviation, 0.5};
+    log_integral = integrate(data, how, &evidence).value_or(log_integral);
+  }
+  evidence.log_occam = log_integral + 0.5 * evidence.fitted_chi2;
+  return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
+}
+
+}  // namespace palpate
