@@ -81,6 +81,7 @@ measure "certainty, calibration and time on scenes of a stated prior" posterior.
 measure "the same where scenes come from another prior" posterior_other.txt "$bench/accuracy/bench_posterior" \
   --scenes $posterior --other-prior
 measure "what makes a recognition dearer" factors.txt "$bench/worst_case/bench_factors" --scenes $posterior
+measure "what habits of a probe do to answers" habits.txt "$bench/worst_case/bench_habits" --scenes $posterior
 measure "inputs found to cost the most" hostile.txt "$bench/worst_case/bench_worst_case" tests/data/hostile/*.csv
 measure "search for the worst case" worst_case.txt "$bench/worst_case/bench_worst_case" --seconds $worst \
   --save "$out/worst_case.csv"

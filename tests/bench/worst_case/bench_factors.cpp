@@ -12,6 +12,7 @@
 
 #include "tests/bench/options/bench_options.h"
 #include "tests/bench/options/thread_time.h"
+#include "tests/bench/worst_case/plain_recipe.h"
 #include "tests/bench/worst_case/touched_input.h"
 
 namespace {
@@ -40,24 +41,6 @@ double cost_us(const TouchedInput& input) {
     least = std::min(least, recognize_us(recognizer));
   }
   return least;
-}
-
-/// A part of one of the eight classes or of none: 1 to 4 patches of 111 samples, honest noise,
-/// round tips whose side is told.
-InputRecipe plain_recipe(std::mt19937_64& rng) {
-  const auto uniform = [&](double least, double most) {
-    return std::uniform_real_distribution<double>(least, most)(rng);
-  };
-  constexpr int kWithFormula = 12;  // the shapes up to Quartic
-  InputRecipe recipe;
-  recipe.shape =
-      static_cast<bench::Shape>(std::uniform_int_distribution<int>(0, kWithFormula - 1)(rng));
-  recipe.seed = rng();
-  recipe.patches = std::uniform_int_distribution<int>(1, 4)(rng);
-  recipe.arc = std::pow(10.0, uniform(-1.0, 0.3));
-  recipe.sigma = std::pow(10.0, uniform(-5.0, -2.7));
-  recipe.tip = 0.1;
-  return recipe;
 }
 
 void print(const std::string& what, std::vector<double> values) {
@@ -103,7 +86,8 @@ int main(int argc, char** argv) {
   std::mt19937_64 rng(seed);
   std::vector<double> plain, sides, spikes, both, updates;
   for (int i = 0; i < scenes; ++i) {
-    const InputRecipe recipe = plain_recipe(rng);
+    InputRecipe recipe = bench::plain_recipe(rng);
+    recipe.tip = 0.1;
     const TouchedInput input = bench::input_of(recipe);
     const double us = cost_us(input);
     plain.push_back(us);
