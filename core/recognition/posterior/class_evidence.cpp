@@ -69,7 +69,7 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
   ClassEvidence evidence;
   evidence.touch = *touch;
   evidence.fitted_chi2 = first->chi2;
-  set_mode(descend(*touch, data, std::move(*first), -1, kMostSteps), &evidence);
+  set_mode(descend(*touch, data, std::move(*first), -1, kStepsFromFit), &evidence);
   return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
 }
 

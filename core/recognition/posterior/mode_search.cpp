@@ -121,7 +121,7 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
   }
   touch->weight = full;
   curve = curve_at(*touch, curve->z, *curve, data);
-  return curve ? std::optional(descend(*touch, data, *std::move(curve), -1, kMostSteps))
+  return curve ? std::optional(descend(*touch, data, *std::move(curve), -1, kStepsFromFit))
                : std::nullopt;
 }
 
@@ -138,8 +138,8 @@ std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data
   std::optional<TouchedCurve> curve = curve_at(touch, start.z, start, data);
   while (curve) {
     const bool last = !(touch.weight < full);
-    curve = descend(touch, data, *std::move(curve), -1, last ? kMostSteps : kStepsPerLevel,
-                    last ? kSettled : kOnTheWay);
+    curve = descend(touch, data, *std::move(curve), -1, last ? kStepsFromFit : kStepsPerLevel,
+                    last ? kSettledPotential : kOnTheWay);
     // Less noise leaves no more of it.
     if (!(log_mass(*curve) > log_least)) {
       return std::nullopt;

@@ -22,15 +22,15 @@ TouchedMatrix root_of(const TouchedCurve& curve, int fixed);
 /// From the slice beside, the mode is near; from the optimum of the likelihood it may be far, where
 /// the data determine little. Bounds of the time: steps end by themselves where the potential is
 /// settled, and what is too far for so many is sought from the prior (followed_from_prior).
-inline constexpr int kFewSteps = 4;
-inline constexpr int kMostSteps = 8;
+inline constexpr int kStepsFromBeside = 4;
+inline constexpr int kStepsFromFit = 8;
 
 /// Of the potential, where steps end: odds right to a fiftieth.
-inline constexpr double kSettled = 2e-2;
+inline constexpr double kSettledPotential = 2e-2;
 
 /// Gauss-Newton steps down the potential, coordinate `fixed` (or -1) staying.
 TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed,
-                     int most_steps = kFewSteps, double settled = kSettled);
+                     int most_steps = kStepsFromBeside, double settled = kSettledPotential);
 
 /// The mode of likelihood times prior that lies downhill from a curve; nullopt where none comes
 /// near the points, and where `start` is no curve of its class in double precision. Noise variances

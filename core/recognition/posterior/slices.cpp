@@ -196,7 +196,7 @@ std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& da
     if (!counted) {
       return std::nullopt;
     }
-    mode = descend(evidence.touch, data, *std::move(counted), -1, kMostSteps);
+    mode = descend(evidence.touch, data, *std::move(counted), -1, kStepsFromFit);
   }
   const TouchedMatrix covariance = inverse_cholesky(mode.root);
   const int k = widest_coordinate(evidence.touch, mode, covariance, data, slices);
