@@ -68,8 +68,11 @@ struct Recognition {
   /// What the tree asked about, pooled over the contacts `pooled_contacts` (indices).
   std::vector<NamedInvariant> invariants;
   std::vector<std::size_t> pooled_contacts;
-  std::size_t sample_count = 0;     ///< samples that the answer rests on
-  std::size_t outlier_count = 0;    ///< samples set aside as spikes
+  std::size_t sample_count = 0;   ///< samples that the answer rests on
+  std::size_t outlier_count = 0;  ///< samples set aside as spikes
+  /// Samples that repeat a place where the probe stood still, beyond the one, their mean, that
+  /// stands for them.
+  std::size_t dwelling_count = 0;
   std::size_t forgotten_count = 0;  ///< samples of this object that had to make room for others
   /// Samples of this object with a normal or a covariance of which the answer does not use all: of
   /// a covariance the mean noise counts; a normal counts in full at a touch by itself where every

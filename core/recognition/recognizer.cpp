@@ -178,6 +178,7 @@ class Recognizer::Impl {
     in_full_ = 0;
     Recognition answer = look();
     answer.sample_count = memory_.sample_count();
+    answer.dwelling_count = memory_.stored_count() - clean_.moved_count();
     answer.forgotten_count = forgotten_;
     answer.simplified_count = simplified_ - in_full_;
     return answer;
@@ -187,8 +188,8 @@ class Recognizer::Impl {
   /// All but what the memory counts.
   Recognition look() {
     Recognition answer;
-    const std::vector<StoredPatch>& clean =
-        clean_.of(memory_.patches(), options_.false_outlier_probability);
+    clean_.look_at(memory_.patches(), options_.sigma_m, options_.false_outlier_probability);
+    const std::vector<StoredPatch>& clean = clean_.clean();
     bool sigma_known = false;
     FitData data = make_fit_data(clean, options_.sigma_m, &sigma_known);
     const std::size_t fewest =
@@ -238,7 +239,7 @@ class Recognizer::Impl {
                             std::span<const SidedStart> sought,
                             std::span<const StoredPatch> clean) {
     Weighed weighed = weigh_once_more(data, sigma_known, patches, sought);
-    const std::size_t stored = memory_.stored_count();
+    const std::size_t stored = clean_.moved_count();
     if (stored > data.points.size()) {
       weighed = with_explained(std::move(weighed), clean);
     }
@@ -260,7 +261,7 @@ class Recognizer::Impl {
   }
 
   Recognition by_tree(FitData data, bool sigma_known, std::span<const StoredPatch> patches) {
-    const std::size_t outliers = memory_.stored_count() - data.points.size();
+    const std::size_t outliers = clean_.moved_count() - data.points.size();
     const FitData reduced = fit_smooth_model(&data, sigma_known).reduced;
     const auto contacts_of = [&](const std::vector<int>& sides) {
       return contacts_.of(patches, sides, {}, contact_options());
@@ -344,9 +345,9 @@ class Recognizer::Impl {
     }
     const double noise_m = residual_noise_m(w);
     const double limit = two_sided_normal_quantile(options_.false_outlier_probability /
-                                                   static_cast<double>(memory_.stored_count()));
-    auto more = with_explained_spikes(memory_.patches(), clean, *curve, best->world_T_curve,
-                                      noise_m, limit);
+                                                   static_cast<double>(clean_.moved_count()));
+    auto more =
+        with_explained_spikes(clean_.moved(), clean, *curve, best->world_T_curve, noise_m, limit);
     if (!more) {
       return weighed;
     }

@@ -324,6 +324,7 @@ PYBIND11_MODULE(_core, module) {
   add_property(answer, "covariance", [](const auto& r) -> Eigen::MatrixXd { return r.covariance; });
   add_property(answer, "sample_count", [](const auto& r) { return r.sample_count; });
   add_property(answer, "outlier_count", [](const auto& r) { return r.outlier_count; });
+  add_property(answer, "dwelling_count", [](const auto& r) { return r.dwelling_count; });
   add_property(answer, "forgotten_count", [](const auto& r) { return r.forgotten_count; });
   add_property(answer, "simplified_count", [](const auto& r) { return r.simplified_count; });
   add_property(answer, "sigma_m", [](const auto& r) { return r.sigma_m; });

@@ -169,6 +169,7 @@ void to_wire(const Recognition& recognition, const ContactSourceOf& source_of,
   }
   out.set_sample_count(recognition.sample_count);
   out.set_outlier_count(recognition.outlier_count);
+  out.set_dwelling_count(recognition.dwelling_count);
   out.set_forgotten_count(recognition.forgotten_count);
   out.set_simplified_count(recognition.simplified_count);
   out.set_sigma_m(recognition.sigma_m);

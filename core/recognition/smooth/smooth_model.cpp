@@ -195,19 +195,16 @@ bool is_no_noise(double chi2, int dof, double variance) {
                                        2.0 * kNegligibleLogOdds);
 }
 
-/// What the quieter sections leave: those of the lowest variances that have a share of all degrees
-/// of freedom.
+/// What the quieter sections leave: those of the lowest variances that have a quarter of all
+/// degrees of freedom. Neither a few sections that are not followed raise it nor noise that is
+/// stated too low.
 struct QuietSections {
   double highest = 1.0;  ///< variance of any of them, in units of the stated one
   double chi2 = 0.0;     ///< of all of them
   int dof = 0;
 };
 
-/// Neither a few sections that are not followed raise the variance of so many nor noise that is
-/// stated too low.
-constexpr double kQuietShare = 0.25;
-
-QuietSections quiet_of(const std::vector<Section>& sections, double share) {
+QuietSections quiet_of(const std::vector<Section>& sections) {
   std::vector<std::pair<double, int>> ratios;
   int whole = 0;
   for (const Section& section : sections) {
@@ -222,7 +219,7 @@ QuietSections quiet_of(const std::vector<Section>& sections, double share) {
     quiet.highest = ratio;
     quiet.chi2 += ratio * dof;
     quiet.dof += dof;
-    if (quiet.dof >= share * whole) {
+    if (4 * quiet.dof >= whole) {
       break;
     }
   }
@@ -253,45 +250,17 @@ void cut_until_followed(const FitData& data, Section section, const Noise& noise
   }
 }
 
-/// The sections, those that are not followed at that variance cut into halves until what remains
-/// is, or is too short to be smoothed.
-std::vector<Section> cut(const FitData& data, const std::vector<Section>& sections,
-                         const Noise& noise, double variance) {
-  std::vector<Section> result;
-  for (const Section& section : sections) {
-    cut_until_followed(data, section, noise, variance, &result);
-  }
-  return result;
-}
-
-/// Of the points in sections that can be smoothed, whether more than half would stand for
-/// themselves: no curve of a class bends between most of its samples. The quiet sections then do
-/// not tell the noise: a probe that stands still repeats itself.
-bool are_mostly_kept(const std::vector<Section>& before, const std::vector<Section>& after) {
-  const auto smoothed_points = [](const std::vector<Section>& sections) {
-    std::size_t points = 0;
-    for (const Section& section : sections) {
-      points += section.fit ? section.points.size() : 0;
-    }
-    return points;
-  };
-  return 2 * smoothed_points(after) < smoothed_points(before);
-}
-
-/// The sections as they will stand: followed at the noise that the quieter ones tell, or that is
-/// stated, if that is more.
+/// The sections, those that are not followed cut into halves until what remains is, or is too short
+/// to be smoothed.
 std::vector<Section> followed(const FitData& data, std::vector<Section> sections,
-                              const Noise& noise) {
-  constexpr double kMostShare = 0.75;  // all but as few as may not be followed
-  const double quiet = quiet_of(sections, kQuietShare).highest;
-  const double variance = noise.known ? std::max(quiet, 1.0) : quiet;
+                              const Noise& noise, double variance) {
   if (std::none_of(sections.begin(), sections.end(),
                    [&](const Section& section) { return is_not_followed(section, variance); })) {
     return sections;
   }
-  std::vector<Section> result = cut(data, sections, noise, variance);
-  if (!noise.known && are_mostly_kept(sections, result)) {
-    result = cut(data, sections, noise, quiet_of(sections, kMostShare).highest);
+  std::vector<Section> result;
+  for (Section& section : sections) {
+    cut_until_followed(data, std::move(section), noise, variance, &result);
   }
   return result;
 }
@@ -332,13 +301,15 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known) {
   model.reduced.scale = data->scale;
   Noise noise{sigma_known, 1.0};
   std::vector<Section> sections = smoothed(*data, noise);
-  const QuietSections quiet = quiet_of(sections, kQuietShare);
+  QuietSections quiet = quiet_of(sections);
   if (sigma_known && is_no_noise(quiet.chi2, quiet.dof, 1.0)) {
     // Stated too low everywhere: by it every bend of the noise would be followed.
     noise.variance = quiet.chi2 / quiet.dof;
     sections = smoothed(*data, noise);
+    quiet = quiet_of(sections);
   }
-  sections = followed(*data, std::move(sections), noise);
+  sections = followed(*data, std::move(sections), noise,
+                      sigma_known ? std::max(quiet.highest, 1.0) : quiet.highest);
 
   auto section = sections.begin();
   for (const PatchSpan& patch : data->patches) {

@@ -27,8 +27,9 @@ class Result:
     curve_class; params: {"a": ...}; pose: (x, y, theta); covariance: of [params; x; y; theta]. Where no curve was
     found (unclassified, collecting, or a class at its limit to another), params is empty and the pose not a number.
     probabilities: {class: posterior}. contacts: local geometry of the touched places, in metres.
-    sigma: the noise, given or estimated. sample_count, outlier_count, forgotten_count; simplified_count: of samples with
-    a normal or a covariance that do not count in full.
+    sigma: the noise, given or estimated. sample_count, outlier_count, forgotten_count; dwelling_count: of samples that
+    repeat a place where the probe stood still; simplified_count: of samples with a normal or a covariance that do not
+    count in full.
     compute_s: what the recognition took since the answer before, without the way from Python and back."""
 
     def __init__(self, core: _core.Answer, unit: str, touched: np.ndarray, tip_radius: float) -> None:
@@ -49,6 +50,7 @@ class Result:
         self.compute_s = core.compute_s
         self.sample_count = core.sample_count
         self.outlier_count = core.outlier_count
+        self.dwelling_count = core.dwelling_count
         self.forgotten_count = core.forgotten_count
         self.simplified_count = core.simplified_count
 

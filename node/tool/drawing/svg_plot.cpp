@@ -265,6 +265,9 @@ void add_answer(const ContactGroup& group, const v1::Recognition& answer, SvgTab
   if (answer.outlier_count() > 0) {
     samples += ", " + std::to_string(answer.outlier_count()) + " set aside as spikes";
   }
+  if (answer.dwelling_count() > 0) {
+    samples += ", " + std::to_string(answer.dwelling_count()) + " while standing still";
+  }
   table.row("samples", samples);
   const LengthUnit unit = length_unit_for(answer.sigma_m());
   table.row("noise", number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name));

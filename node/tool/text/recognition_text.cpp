@@ -291,6 +291,10 @@ std::string report_text(const v1::Recognition& answer, bool noise_is_known) {
   if (answer.outlier_count() > 0) {
     samples += ", of which " + std::to_string(answer.outlier_count()) + " set aside as spikes";
   }
+  if (answer.dwelling_count() > 0) {
+    samples += "; " + std::to_string(answer.dwelling_count()) +
+               " repeat a place where the probe stood still";
+  }
   if (answer.forgotten_count() > 0) {
     samples += "; " + std::to_string(answer.forgotten_count()) + " older ones forgotten";
   }

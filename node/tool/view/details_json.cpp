@@ -225,6 +225,7 @@ void write_details(LiveGroup& group, const Drawing& drawing, SteadyTime now, Jso
   write_charts(drawing, json);
   json.member("sampleCount", answer.sample_count());
   json.member("outlierCount", answer.outlier_count());
+  json.member("dwellingCount", answer.dwelling_count());
   json.member("noise",
               number(answer.sigma_m() * noise_unit.per_m) + " " + std::string(noise_unit.name));
   json.member("noiseCorrelationMm", 1e3 * answer.noise_correlation_m(), 4);

@@ -107,6 +107,14 @@ constexpr Habit kHabits[] = {
        r->dwelling = 0.8;
        r->stated_over_true = 0.0;
      }},
+    {"half the samples from one place", [](InputRecipe* r) { r->standing = 0.5; }},
+    {"90 % of ten times as many, not stated",
+     [](InputRecipe* r) {
+       r->samples *= 10;
+       r->standing = 0.9;
+       r->stated_over_true = 0.0;
+     }},
+    {"three passes, there and back", [](InputRecipe* r) { r->passes = 3; }},
     {"spikes in 5 % of the samples", [](InputRecipe* r) { r->spikes = 0.05; }},
     {"spikes in 30 % of the samples", [](InputRecipe* r) { r->spikes = 0.3; }},
     {"strokes shifted by 3 deviations", [](InputRecipe* r) { r->misplacement = 3.0 * r->sigma; }},

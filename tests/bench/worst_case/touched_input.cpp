@@ -339,6 +339,22 @@ InputRecipe mutated(InputRecipe recipe, std::mt19937_64& rng, InputKind kind,
   return bounded(recipe, kind, most_samples);
 }
 
+namespace {
+
+/// How far along its patch sample i lies, 0 to 1.
+double share_at(const InputRecipe& r, int i) {
+  const int standing = static_cast<int>(r.standing * r.samples);
+  const int moving = r.samples - standing;
+  const int middle = moving / 2;
+  const int step = i < middle ? i : std::max(i - standing, middle);
+  const double way = moving > 1 ? r.passes * static_cast<double>(step) / (moving - 1) : 0.0;
+  const double done = std::min(std::floor(way), r.passes - 1.0);
+  const bool back = static_cast<int>(done) % 2 == 1;
+  return back ? 1.0 - (way - done) : way - done;
+}
+
+}  // namespace
+
 TouchedInput input_of(const InputRecipe& r) {
   std::seed_seq sequence{static_cast<std::uint32_t>(r.seed),
                          static_cast<std::uint32_t>(r.seed >> 32)};
@@ -364,7 +380,7 @@ TouchedInput input_of(const InputRecipe& r) {
     const Vec2 shift(shift_x, r.misplacement * normal(rng));
     Vec2 before = Vec2::Zero();
     for (int i = 0; i < r.samples; ++i) {
-      const double share = r.samples > 1 ? static_cast<double>(i) / (r.samples - 1) : 0.0;
+      const double share = share_at(r, i);
       const double place = start + arc * (forward ? share : 1.0 - share);
       const double u = table.parameter_at(place);
       constexpr double kStep = 1e-5;

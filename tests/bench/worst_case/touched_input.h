@@ -60,6 +60,8 @@ struct InputRecipe {
   double misplacement = 0.0;  ///< standard deviation of each patch's shift
   double wave = 0.0;          ///< amplitude of a form deviation, smooth along the arc
   double dwelling = 0.0;      ///< share of samples that stay at the place of the one before
+  double standing = 0.0;      ///< share of a patch's samples at one place, each with its own noise
+  int passes = 1;             ///< over each patch, there and back
   double offset = 0.0;        ///< of the part from the origin
 };
 

@@ -22,6 +22,7 @@ Recognition spline_recognition() {
   }
   recognition.sample_count = 120;
   recognition.outlier_count = 3;
+  recognition.dwelling_count = 4;
   recognition.sigma_m = 1e-5;
   recognition.noise_correlation_m = 2e-3;
   return recognition;
@@ -127,6 +128,7 @@ TEST(Convert, ARecognitionArrivesWhole) {
   EXPECT_EQ(out.invariants(0).contacts(0), 0U);
   EXPECT_EQ(out.sample_count(), 120U);
   EXPECT_EQ(out.outlier_count(), 3U);
+  EXPECT_EQ(out.dwelling_count(), 4U);
   EXPECT_EQ(out.sigma_m(), 1e-5);
   EXPECT_EQ(out.noise_correlation_m(), 2e-3);
 }

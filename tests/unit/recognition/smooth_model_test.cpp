@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/smooth/turning_sections.h"
@@ -130,38 +129,6 @@ TEST(SmoothModel, NoiseThatIsStatedTooLowIsNotFollowed) {
     // degrees more; followed to what is stated it were ten times as many points.
     EXPECT_LE(by_bold.reduced.points.size(), 2 * by_honest.reduced.points.size());
     EXPECT_NEAR(by_bold.noise_ratio() * kTooLow, by_honest.noise_ratio(), 0.05);
-  }
-}
-
-TEST(SmoothModel, AProbeThatStandsStillDoesNotTellTheNoise) {
-  // Three of eight patches repeat one place each to a millionth of the noise of the others. Their
-  // residuals are the quietest quarter, by which every bend of the others' noise would be followed.
-  std::mt19937_64 rng = test::test_rng();
-  std::normal_distribution<double> noise;
-  constexpr int kPatches = 8;
-  constexpr int kStill = 3;
-  constexpr int kSamples = 60;
-  constexpr double kSigma = 1e-3;
-  for (int i = 0; i < 20; ++i) {
-    FitData honest;
-    FitData still;
-    for (int k = 0; k < kPatches; ++k) {
-      const FitData arc = circular_arc(0.5, kSamples, kSigma, rng);
-      for (FitData* data : {&honest, &still}) {
-        const std::size_t begin = data->points.size();
-        data->points.insert(data->points.end(), arc.points.begin(), arc.points.end());
-        data->patches.push_back({begin, data->points.size()});
-      }
-      for (int j = 0; k < kStill && j < kSamples; ++j) {
-        FitPoint& point = still.points[still.patches.back().begin + static_cast<std::size_t>(j)];
-        const double dx = noise(rng);
-        point.position = arc.points.front().position + 1e-6 * kSigma * Vec2(dx, noise(rng));
-      }
-    }
-    const SmoothModel by_honest = fit_smooth_model(&honest, false);
-    const SmoothModel by_still = fit_smooth_model(&still, false);
-    // One section more may be cut, and it has as many points as its samples.
-    EXPECT_LE(by_still.reduced.points.size(), by_honest.reduced.points.size() + kSamples);
   }
 }
 

@@ -67,7 +67,8 @@ export class Panels {
     });
     if (details?.hasAnswer) {
       const spikes = details.outlierCount > 0 ? `, of which ${details.outlierCount} set aside as spikes` : "";
-      const samples = data(details.sampleCount, `${details.sampleCount}${spikes}`);
+      const dwelling = details.dwellingCount > 0 ? `, ${details.dwellingCount} while the probe stood still` : "";
+      const samples = data(details.sampleCount, `${details.sampleCount}${spikes}${dwelling}`);
       samples.id = "sample-count";
       rows.push(row(["samples", samples]));
       const correlated = details.noiseCorrelationMm > 0 ?

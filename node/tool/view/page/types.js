@@ -28,7 +28,7 @@
  *   invariants: {name: string, class: string, text: string}[],
  *   charts: {contacts: ContactChart[], rivals: CurveChart[], curve?: CurveChart}, bandWidth?: string,
  *   step?: number, residuals?: {gain: number, lines: number[]}, far?: number[], sampleCount: number,
- *   outlierCount: number, noise: string, noiseCorrelationMm: number, computeMs: number,
+ *   outlierCount: number, dwellingCount: number, noise: string, noiseCorrelationMm: number, computeMs: number,
  *   answersPerS: number, touchMs: number, answerMs: number}} Details */
 
 /** @typedef {{group: string, object: string, generation: number, anew: boolean, received: number,

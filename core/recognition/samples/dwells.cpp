@@ -1,0 +1,287 @@
+#include "core/recognition/samples/dwells.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/recognition/samples/merged_samples.h"
+
+namespace palpate {
+namespace {
+
+/// Samples in a row.
+struct Block {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  Vec2 mean = Vec2::Zero();
+  double square = 0.0;  ///< mean square distance from it
+};
+
+Vec2 place_of(const StoredSample& sample) { return sample.position_m; }
+Vec2 place_of(const Block& block) { return block.mean; }
+
+/// Mean and mean square distance from it. In two passes: far from the origin squares of coordinates
+/// have no digits left for a scatter.
+template <typename Places>
+Block block_of(const Places& places, std::size_t begin, std::size_t end) {
+  Block block{begin, end};
+  const Vec2 any = place_of(places[begin]);
+  for (std::size_t i = begin; i < end; ++i) {
+    block.mean += place_of(places[i]) - any;
+  }
+  const double n = static_cast<double>(end - begin);
+  block.mean = any + block.mean / n;
+  for (std::size_t i = begin; i < end; ++i) {
+    block.square += (place_of(places[i]) - block.mean).squaredNorm();
+  }
+  block.square /= n;
+  return block;
+}
+
+/// J. von Neumann's ratio (1941) of the mean square step to twice the mean square distance from the
+/// mean: 1 where places come in no order, 6 / n^2 of n at even distances along a line.
+template <typename Places>
+double step_ratio(const Places& places, const Block& of) {
+  double steps = 0.0;
+  for (std::size_t i = of.begin + 1; i < of.end; ++i) {
+    steps += (place_of(places[i]) - place_of(places[i - 1])).squaredNorm();
+  }
+  const double n = static_cast<double>(of.end - of.begin);
+  return of.square > 0.0 ? steps / (n - 1.0) / (2.0 * of.square) : 1.0;
+}
+
+/// A way of length l at noise s has the ratio 2 s^2 / (2 s^2 + l^2 / 12): this is six deviations,
+/// over which a curve lies nearer to its mean than that is known.
+constexpr double kLeastRatio = 0.4;
+
+constexpr std::size_t kBlock = 8;
+
+/// Fewer means of blocks show no order: of six at even distances the ratio is 6 / 36.
+constexpr std::size_t kFewestMeans = 6;
+
+/// Blocks of a stroke in which it goes on slowly.
+class SlowStretch {
+ public:
+  SlowStretch(std::span<const StoredSample> samples, std::span<const Block> blocks)
+      : samples_(samples), blocks_(blocks) {}
+
+  /// The dwells in it: all of it, or those in its parts before and after the longest step.
+  void add_to(std::vector<PatchSpan>* dwells) const {
+    if (blocks_.size() < 2) {
+      return;
+    }
+    if (is_still()) {
+      dwells->push_back(trimmed());
+      return;
+    }
+    std::size_t after = 1;
+    double longest = 0.0;
+    for (std::size_t b = 1; b < blocks_.size(); ++b) {
+      const double step = (blocks_[b].mean - blocks_[b - 1].mean).squaredNorm();
+      if (step > longest) {
+        longest = step;
+        after = b;
+      }
+    }
+    SlowStretch(samples_, blocks_.first(after)).add_to(dwells);
+    SlowStretch(samples_, blocks_.subspan(after)).add_to(dwells);
+  }
+
+ private:
+  Block whole() const { return block_of(samples_, blocks_.front().begin, blocks_.back().end); }
+
+  /// Samples that jitter together show no order from block to block.
+  bool is_still() const {
+    return step_ratio(samples_, whole()) > kLeastRatio ||
+           (blocks_.size() >= kFewestMeans &&
+            step_ratio(blocks_, block_of(blocks_, 0, blocks_.size())) > kLeastRatio);
+  }
+
+  /// Without the samples at its ends that lie farther off than its others, and with the neighbours
+  /// that do not: a block's edge is not the dwell's.
+  PatchSpan trimmed() const {
+    PatchSpan span{blocks_.front().begin, blocks_.back().end};
+    const auto lies_by = [&](std::size_t i, std::size_t begin, std::size_t end) {
+      constexpr double kFarthest = 3.0;  // root mean squares: noise is beyond once in 8,000 times
+      const Block others = block_of(samples_, begin, end);
+      return (samples_[i].position_m - others.mean).squaredNorm() <=
+             kFarthest * kFarthest * others.square;
+    };
+    while (span.size() > 2 && !lies_by(span.begin, span.begin + 1, span.end)) {
+      ++span.begin;
+    }
+    while (span.size() > 2 && !lies_by(span.end - 1, span.begin, span.end - 1)) {
+      --span.end;
+    }
+    while (span.begin > 0 && span.begin + kBlock > blocks_.front().begin &&
+           lies_by(span.begin - 1, span.begin, span.end)) {
+      --span.begin;
+    }
+    while (span.end < samples_.size() && span.end < blocks_.back().end + kBlock &&
+           lies_by(span.end, span.begin, span.end)) {
+      ++span.end;
+    }
+    return span;
+  }
+
+  std::span<const StoredSample> samples_;
+  std::span<const Block> blocks_;
+};
+
+double sigma_of(const StoredSample& sample, double default_sigma_m) {
+  return sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+}
+
+/// How many contacts the mean of `dwell` says as much as, `of_all` being what they weigh together.
+double effective_weight(std::span<const StoredSample> samples, const PatchSpan& dwell,
+                        double of_all, double default_sigma_m) {
+  const Block block = block_of(samples, dwell.begin, dwell.end);
+  double stated = 0.0;   // variance of one contact
+  double scatter = 0.0;  // likewise, as they show it
+  double most = 0.0;
+  for (std::size_t i = dwell.begin; i < dwell.end; ++i) {
+    const StoredSample& sample = samples[i];
+    const double sigma_m = sigma_of(sample, default_sigma_m);
+    if (!(sigma_m > 0.0)) {
+      stated = 0.0;
+      break;
+    }
+    stated += sigma_m * sigma_m;
+    scatter += 0.5 * sample.weight * (sample.position_m - block.mean).squaredNorm();
+  }
+  for (std::size_t i = dwell.begin; i < dwell.end; ++i) {
+    most = std::max(most, samples[i].weight);
+  }
+  if (!(stated > 0.0)) {
+    return most;
+  }
+  const double n = static_cast<double>(dwell.size());
+  stated /= n;
+  scatter /= n - 1.0;
+  // What they do not show of the noise is the same in all of them; a scatter is known to 1 in
+  // sqrt(n).
+  constexpr double kDeviations = 3.0;
+  const double same = std::max(stated - scatter * (1.0 + kDeviations / std::sqrt(n)), 0.0);
+  // Neighbours that share a part 1 - r of their error count as r / (2 - r) of so many.
+  const double ratio = std::min(step_ratio(samples, block), 1.0);
+  const double of_mean = same + stated / of_all * (2.0 - ratio) / ratio;
+  return std::clamp(stated / of_mean, most, of_all);
+}
+
+}  // namespace
+
+std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples) {
+  // Of what a block covers at the mean speed: at even speed, without noise, it scatters by 0.29 of
+  // that about its mean. What is slower is worth a look.
+  constexpr double kSlow = 0.25;
+  std::vector<PatchSpan> dwells;
+  const std::size_t count = samples.size() / kBlock;
+  if (count < 2) {
+    return dwells;
+  }
+  std::vector<Block> blocks;
+  blocks.reserve(count);
+  double way = 0.0;
+  for (std::size_t b = 0; b < count; ++b) {
+    blocks.push_back(
+        block_of(samples, b * samples.size() / count, (b + 1) * samples.size() / count));
+    way += b > 0 ? (blocks[b].mean - blocks[b - 1].mean).norm() : 0.0;
+  }
+  const double slow = kSlow * way / static_cast<double>(count);
+  for (std::size_t b = 0; b < count;) {
+    std::size_t end = b;
+    while (end < count && blocks[end].square < slow * slow) {
+      ++end;
+    }
+    SlowStretch(samples, std::span(blocks).subspan(b, end - b)).add_to(&dwells);
+    b = std::max(end, b + 1);
+  }
+  // Widened ones may meet.
+  for (std::size_t i = 1; i < dwells.size(); ++i) {
+    dwells[i].begin = std::max(dwells[i].begin, dwells[i - 1].end);
+  }
+  return dwells;
+}
+
+std::vector<PatchSpan> repeats_of(std::span<const StoredSample> samples) {
+  // Steps that noise makes are as short once in 8,000 times.
+  constexpr double kRepeated = 1e-2;  // of the mean step
+  std::vector<PatchSpan> repeats;
+  double way = 0.0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    way += (samples[i].position_m - samples[i - 1].position_m).norm();
+  }
+  const double farthest = kRepeated * way / static_cast<double>(samples.size());
+  for (std::size_t i = 0; i < samples.size();) {
+    std::size_t end = i + 1;
+    while (end < samples.size() &&
+           (samples[end].position_m - samples[i].position_m).squaredNorm() < farthest * farthest) {
+      ++end;
+    }
+    if (end - i > 1) {
+      repeats.push_back({i, end});
+    }
+    i = end;
+  }
+  return repeats;
+}
+
+bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
+                  double half_extent_m) {
+  constexpr std::size_t kFewest = 4;  // at even distances their ratio is 0.3
+  constexpr double kSmall = 1e-2;
+  // Of noise alone; a way of six deviations makes it as much.
+  constexpr double kSpread = 1.6;
+  if (samples.size() < kFewest) {
+    return false;
+  }
+  const Block all = block_of(samples, 0, samples.size());
+  double stated = 0.0;
+  bool is_stated = true;
+  for (const StoredSample& sample : samples) {
+    const double sigma_m = sigma_of(sample, default_sigma_m);
+    is_stated = is_stated && sigma_m > 0.0;
+    stated += sigma_m * sigma_m / sample.weight;
+  }
+  stated /= static_cast<double>(samples.size());
+  if (is_stated && 0.5 * all.square <= kSpread * kSpread * stated) {
+    return true;
+  }
+  return all.square <= kSmall * kSmall * half_extent_m * half_extent_m &&
+         step_ratio(samples, all) > kLeastRatio;
+}
+
+StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwells,
+                       double default_sigma_m) {
+  StoredPatch result = patch;
+  result.samples.clear();
+  result.details.clear();
+  const auto copy = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      result.samples.push_back(patch.samples[i]);
+      if (!patch.details.empty()) result.details.push_back(patch.details[i]);
+    }
+  };
+  std::size_t from = 0;
+  for (const PatchSpan& dwell : dwells) {
+    copy(from, dwell.begin);
+    from = dwell.end;
+    StoredSample mean = patch.samples[dwell.begin];
+    SampleDetail detail;
+    if (!patch.details.empty()) detail = patch.details[dwell.begin];
+    for (std::size_t i = dwell.begin + 1; i < dwell.end; ++i) {
+      if (!patch.details.empty()) {
+        detail = merged(mean, detail, patch.samples[i], patch.details[i]);
+      }
+      mean = merged(mean, patch.samples[i]);
+    }
+    const double of_all = mean.weight;
+    mean.weight = effective_weight(patch.samples, dwell, of_all, default_sigma_m);
+    detail.normal_sigma_rad *= std::sqrt(of_all / mean.weight);
+    result.samples.push_back(mean);
+    if (!patch.details.empty()) result.details.push_back(detail);
+  }
+  copy(from, patch.samples.size());
+  return result;
+}
+
+}  // namespace palpate

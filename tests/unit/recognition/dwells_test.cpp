@@ -1,0 +1,171 @@
+#include "core/recognition/samples/dwells.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+constexpr double kNoise = 1e-5;
+constexpr double kPart = 0.05;  // radius of the circle
+constexpr std::size_t kMoving = 300;
+
+/// A stroke along two radians of a circle, in which the probe stands still for so many samples.
+/// `fresh`: the share of the noise, as a deviation, that each sample of a dwell has of its own.
+struct DwellingStroke {
+  std::vector<StoredSample> samples;
+  std::size_t begin = 0;  ///< of the dwell
+};
+
+Vec2 on_circle(double angle) { return kPart * Vec2(std::cos(angle), std::sin(angle)); }
+
+class Dwells : public ::testing::Test {
+ protected:
+  Vec2 noise(double sigma = kNoise) {
+    std::normal_distribution<double> normal(0.0, sigma);
+    const double x = normal(rng_);
+    return {x, normal(rng_)};
+  }
+
+  StoredSample sample_at(const Vec2& place) {
+    StoredSample sample;
+    sample.position_m = place;
+    sample.sigma_m = kNoise;
+    return sample;
+  }
+
+  DwellingStroke stroke(std::size_t standing, double fresh, std::size_t at = 137) {
+    DwellingStroke result;
+    for (std::size_t i = 0; i < kMoving; ++i) {
+      const Vec2 place = on_circle(2.0 * static_cast<double>(i) / kMoving);
+      result.samples.push_back(sample_at(place + noise()));
+      if (i == at) {
+        result.begin = i;
+        const Vec2 shared = place + std::sqrt(1.0 - fresh * fresh) * noise();
+        result.samples.back().position_m = shared + noise(fresh * kNoise);
+        for (std::size_t k = 1; k < standing; ++k) {
+          result.samples.push_back(sample_at(shared + noise(fresh * kNoise)));
+        }
+      }
+    }
+    return result;
+  }
+
+  std::mt19937_64 rng_{7};
+};
+
+TEST_F(Dwells, AStrokeAtEvenSpeedHasNone) {
+  for (int seed = 0; seed < 200; ++seed) {
+    EXPECT_TRUE(dwells_of(stroke(1, 1.0).samples).empty()) << seed;
+  }
+}
+
+TEST_F(Dwells, AStrokeThatSlowsDownHasNone) {
+  // A tenth of the way at a twentieth of the speed: 1/30 of a step is a hundred times the noise.
+  std::vector<StoredSample> samples;
+  for (double u = 0.0; u < 1.0; u += (u > 0.4 && u < 0.5 ? 0.05 : 1.0) / 200.0) {
+    samples.push_back(sample_at(on_circle(2.0 * u) + 0.01 * noise()));
+  }
+  EXPECT_TRUE(dwells_of(samples).empty());
+}
+
+TEST_F(Dwells, AreFoundToASampleOrTwoWhateverTheirNoise) {
+  for (const double fresh : {1.0, 0.1, 1e-3, 1e-9}) {
+    for (const std::size_t standing : {40U, 200U, 2000U}) {
+      const DwellingStroke found = stroke(standing, fresh);
+      const auto dwells = dwells_of(found.samples);
+      ASSERT_EQ(dwells.size(), 1U) << fresh << " " << standing;
+      // Within three deviations of the mean there are seven samples in eight at least (Chebyshev);
+      // beside it a step is 33 deviations of the noise.
+      EXPECT_GE(dwells[0].begin, found.begin) << fresh;
+      EXPECT_LE(dwells[0].end, found.begin + standing) << fresh;
+      EXPECT_GE(8 * dwells[0].size(), 7 * standing - 8 * 2) << fresh << " " << standing;
+    }
+  }
+}
+
+TEST_F(Dwells, OfSamplesThatJitterTogetherAreFoundToo) {
+  DwellingStroke found = stroke(400, 1e-3);
+  constexpr double kShared = 0.9;  // of the error before
+  Vec2 error = noise();
+  for (std::size_t i = found.begin; i < found.begin + 400; ++i) {
+    error = kShared * error + std::sqrt(1.0 - kShared * kShared) * noise();
+    found.samples[i].position_m += error;
+  }
+  const auto dwells = dwells_of(found.samples);
+  ASSERT_GE(dwells.size(), 1U);
+  const std::size_t of_dwells =
+      std::accumulate(dwells.begin(), dwells.end(), std::size_t{0},
+                      [](std::size_t sum, const PatchSpan& span) { return sum + span.size(); });
+  EXPECT_GE(of_dwells, 300U);
+}
+
+TEST_F(Dwells, WeighWhatTheirNoiseLetsThem) {
+  // Fresh noise averages out, shared noise does not, and what nobody states weighs as one.
+  constexpr std::size_t kStanding = 400;
+  const auto weight_of = [&](double fresh, bool stated) {
+    StoredPatch patch;
+    patch.samples = stroke(kStanding, fresh).samples;
+    for (StoredSample& sample : patch.samples) {
+      sample.sigma_m = stated ? kNoise : 0.0;
+    }
+    const auto dwells = dwells_of(patch.samples);
+    EXPECT_EQ(dwells.size(), 1U);
+    const StoredPatch means = with_means(patch, dwells, 0.0);
+    EXPECT_EQ(means.samples.size(), patch.samples.size() - dwells[0].size() + 1);
+    return means.samples[dwells[0].begin].weight;
+  };
+  // The steps of 400 samples tell how fresh they are to 1 in 20.
+  EXPECT_GE(weight_of(1.0, true), 0.7 * kStanding);
+  EXPECT_LE(weight_of(1.0, true), kStanding);
+  // Half of the variance is shared: two samples' worth, and the scatter is known to 3 in 20.
+  const double half = weight_of(std::sqrt(0.5), true);
+  EXPECT_GE(half, 1.7);
+  EXPECT_LE(half, 2.5);
+  EXPECT_NEAR(weight_of(1e-3, true), 1.0, 1e-5);
+  EXPECT_EQ(weight_of(1.0, false), 1.0);
+}
+
+TEST_F(Dwells, OfATouchThatIsHeldAreTheWholePatch) {
+  for (int seed = 0; seed < 50; ++seed) {
+    std::vector<StoredSample> held;
+    for (int i = 0; i < 40; ++i) {
+      held.push_back(sample_at(on_circle(1.0) + noise()));
+    }
+    EXPECT_TRUE(is_one_place(held, 0.0, kPart));
+    for (StoredSample& sample : held) {
+      sample.sigma_m = 0.0;
+    }
+    EXPECT_TRUE(is_one_place(held, 0.0, kPart));          // a thousandth of the part
+    EXPECT_FALSE(is_one_place(held, 0.0, 2.0 * kNoise));  // it is the part
+  }
+}
+
+TEST_F(Dwells, AShortStrokeIsNoHeldTouch) {
+  // 50 deviations long, a hundredth of the part.
+  for (int seed = 0; seed < 50; ++seed) {
+    std::vector<StoredSample> samples;
+    for (int i = 0; i < 40; ++i) {
+      samples.push_back(sample_at(on_circle(1.0 + 50.0 * kNoise / kPart * i / 40.0) + noise()));
+    }
+    EXPECT_FALSE(is_one_place(samples, 0.0, kPart)) << seed;
+  }
+}
+
+TEST_F(Dwells, APatchInNoOrderIsNoHeldTouch) {
+  // Touches of a part one by one, in one patch and in no order.
+  std::uniform_real_distribution<double> angle(0.0, 2.0 * kPi);
+  std::vector<StoredSample> samples;
+  for (int i = 0; i < 60; ++i) {
+    samples.push_back(sample_at(on_circle(angle(rng_)) + noise()));
+  }
+  EXPECT_FALSE(is_one_place(samples, 0.0, kPart));
+  EXPECT_TRUE(dwells_of(samples).empty());
+}
+
+}  // namespace
+}  // namespace palpate
