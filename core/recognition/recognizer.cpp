@@ -206,7 +206,7 @@ class Recognizer::Impl {
         strung ? std::span<const SidedStart>(strung->starts) : std::span<const SidedStart>();
     answer = options_.method == RecognitionMethod::Tree
                  ? by_tree(data, sigma_known, patches)
-                 : by_likelihood(data, sigma_known, patches, sought, clean);
+                 : by_likelihood(data, sigma_known, patches, sought);
     if (options_.method == RecognitionMethod::MaximumLikelihood && sigma_known) {
       in_full_ = counted_in_full(patches);
     }
@@ -232,16 +232,14 @@ class Recognizer::Impl {
     std::optional<std::vector<StoredPatch>> patches;
   };
 
-  /// `patches`: those that the data are of; `sought`: what stringing them has found; `clean`: as
-  /// they were touched.
+  /// `patches`: those that the data are of; `sought`: what stringing them has found.
   Recognition by_likelihood(const FitData& data, bool sigma_known,
                             std::span<const StoredPatch> patches,
-                            std::span<const SidedStart> sought,
-                            std::span<const StoredPatch> clean) {
+                            std::span<const SidedStart> sought) {
     Weighed weighed = weigh_once_more(data, sigma_known, patches, sought);
     const std::size_t stored = clean_.moved_count();
     if (stored > data.points.size()) {
-      weighed = with_explained(std::move(weighed), clean);
+      weighed = with_explained(std::move(weighed));
     }
     const Weighing& w = weighed.w;
     const BestMoments moments = moments_of_best(w);
@@ -336,7 +334,7 @@ class Recognizer::Impl {
   }
 
   /// Weighed again with the spikes that the best class explains, where the class stands then.
-  Weighed with_explained(Weighed weighed, std::span<const StoredPatch> clean) const {
+  Weighed with_explained(Weighed weighed) const {
     const Weighing& w = weighed.w;
     const auto& best = w.canonical[static_cast<std::size_t>(w.best)];
     const auto curve = best ? make_curve(w.best, best->shape.values) : std::nullopt;
@@ -346,8 +344,8 @@ class Recognizer::Impl {
     const double noise_m = residual_noise_m(w);
     const double limit = two_sided_normal_quantile(options_.false_outlier_probability /
                                                    static_cast<double>(clean_.moved_count()));
-    auto more =
-        with_explained_spikes(clean_.moved(), clean, *curve, best->world_T_curve, noise_m, limit);
+    auto more = with_explained_spikes(clean_.moved(), clean_.clean(), *curve, best->world_T_curve,
+                                      noise_m, limit);
     if (!more) {
       return weighed;
     }

@@ -2,8 +2,10 @@
 
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "core/recognition/samples/dwells.h"
+#include "core/recognition/samples/passes.h"
 #include "core/recognition/samples/stored_spikes.h"
 
 namespace palpate {
@@ -42,23 +44,52 @@ StoredPatch moving(const StoredPatch& patch, bool is_one_place, double default_s
   return dwells.empty() ? result : with_means(result, dwells, default_sigma_m);
 }
 
+/// The passes of a patch, and the same without spikes. A spike turns back too: passes are told by
+/// the other samples. And where a stroke turns back, no polynomial follows it, and samples are
+/// taken for spikes that are none: each pass is looked at by itself.
+void clean_passes(StoredPatch patch, double false_alarm, std::vector<StoredPatch>* passes,
+                  std::vector<StoredPatch>* clean) {
+  const std::vector<bool> is_spike = spikes_of(patch.samples, false_alarm);
+  StoredPatch rest = without_spikes(patch, is_spike);
+  std::vector<std::size_t> returns = returns_of(rest.samples);
+  if (returns.empty()) {
+    passes->push_back(std::move(patch));
+    clean->push_back(std::move(rest));
+    return;
+  }
+  std::size_t kept = 0;
+  auto next = returns.begin();
+  for (std::size_t i = 0; i < is_spike.size() && next != returns.end(); ++i) {
+    if (!is_spike[i] && kept++ == *next) {
+      *next++ = i;
+    }
+  }
+  *passes = passes_of(patch, returns);
+  for (const StoredPatch& pass : *passes) {
+    clean->push_back(without_spikes(pass, spikes_of(pass.samples, false_alarm)));
+  }
+}
+
 }  // namespace
 
 void CleanPatches::look_at(const std::vector<StoredPatch>& patches, double default_sigma_m,
                            double false_alarm) {
-  moved_.resize(patches.size());
-  clean_.resize(patches.size());
   seen_.resize(patches.size());
+  moved_.clear();
+  clean_.clear();
   const double half_extent_m = half_extent_of(patches);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const StoredPatch& patch = patches[p];
     // Asked each time: whether a patch is small depends on all.
-    const Seen now{version_of(patch), is_one_place(patch.samples, default_sigma_m, half_extent_m)};
-    if (!(seen_[p] == now)) {
-      moved_[p] = moving(patch, now.is_one_place, default_sigma_m);
-      clean_[p] = without_spikes(moved_[p], spikes_of(moved_[p].samples, false_alarm));
-      seen_[p] = now;
+    Seen now{version_of(patch), is_one_place(patch.samples, default_sigma_m, half_extent_m)};
+    Seen& seen = seen_[p];
+    if (!(seen.version == now.version) || seen.is_one_place != now.is_one_place) {
+      clean_passes(moving(patch, now.is_one_place, default_sigma_m), false_alarm, &now.moved,
+                   &now.clean);
+      seen = std::move(now);
     }
+    moved_.insert(moved_.end(), seen.moved.begin(), seen.moved.end());
+    clean_.insert(clean_.end(), seen.clean.begin(), seen.clean.end());
   }
 }
 

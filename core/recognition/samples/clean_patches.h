@@ -1,5 +1,5 @@
-// The patches in memory as they are fitted: dwells at their means, without spikes. Looked at again
-// only where they have changed.
+// The patches in memory as they are fitted: dwells at their means, one way each, without spikes.
+// Looked at again only where they have changed.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,8 @@ class CleanPatches {
   /// known. `false_alarm`: as spikes_of().
   void look_at(const std::vector<StoredPatch>& patches, double default_sigma_m, double false_alarm);
 
-  /// The patches looked at, the samples of each dwell at their mean (dwells.h).
+  /// The patches looked at, the samples of each dwell at their mean (dwells.h), and each patch cut
+  /// where it turns back over itself (passes.h).
   const std::vector<StoredPatch>& moved() const { return moved_; }
   std::size_t moved_count() const;  ///< of their samples
 
@@ -25,17 +26,17 @@ class CleanPatches {
   void clear();
 
  private:
-  /// What a patch was looked at as.
+  /// A patch, what it was looked at as, and its passes.
   struct Seen {
     PatchVersion version;
     bool is_one_place = false;
-
-    bool operator==(const Seen&) const = default;
+    std::vector<StoredPatch> moved = {};
+    std::vector<StoredPatch> clean = {};
   };
 
+  std::vector<Seen> seen_;
   std::vector<StoredPatch> moved_;
   std::vector<StoredPatch> clean_;
-  std::vector<Seen> seen_;
 };
 
 }  // namespace palpate

@@ -234,7 +234,6 @@ bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
   if (samples.size() < kFewest) {
     return false;
   }
-  const Block all = block_of(samples, 0, samples.size());
   double stated = 0.0;
   bool is_stated = true;
   for (const StoredSample& sample : samples) {
@@ -242,12 +241,17 @@ bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
     is_stated = is_stated && sigma_m > 0.0;
     stated += sigma_m * sigma_m / sample.weight;
   }
-  stated /= static_cast<double>(samples.size());
-  if (is_stated && 0.5 * all.square <= kSpread * kSpread * stated) {
-    return true;
+  const double n = static_cast<double>(samples.size());
+  const double of_noise = is_stated ? 2.0 * kSpread * kSpread * stated / n : 0.0;
+  const double small = kSmall * kSmall * half_extent_m * half_extent_m;
+  // Two samples alone so far apart make the mean square as large.
+  const Vec2 across = samples[samples.size() / 2].position_m - samples.front().position_m;
+  if (across.squaredNorm() > 2.0 * n * std::max(of_noise, small)) {
+    return false;
   }
-  return all.square <= kSmall * kSmall * half_extent_m * half_extent_m &&
-         step_ratio(samples, all) > kLeastRatio;
+  const Block all = block_of(samples, 0, samples.size());
+  return (is_stated && all.square <= of_noise) ||
+         (all.square <= small && step_ratio(samples, all) > kLeastRatio);
 }
 
 StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwells,

@@ -1,0 +1,117 @@
+#include "core/recognition/samples/passes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+namespace palpate {
+namespace {
+
+constexpr double kDeviation = 1e-5;  // of the samples
+
+using Way = std::function<Vec2(double)>;
+
+Vec2 circle(double u) { return 0.05 * Vec2(std::cos(3.0 * u), std::sin(3.0 * u)); }
+
+Vec2 ellipse(double u) { return {0.04 * std::cos(2.5 * u + 0.5), 0.02 * std::sin(2.5 * u + 0.5)}; }
+
+/// y^2 = x^3 in units of 5 cm, over its cusp.
+Vec2 over_a_cusp(double u) {
+  const double t = 2.0 * u - 1.0;
+  return 0.05 * Vec2(t * t, t * t * t);
+}
+
+/// The end of a needle, round by two deviations of the noise.
+Vec2 round_a_needle(double u) {
+  const double t = kPi * (u - 0.5);
+  return {0.05 * std::cos(t), 1e-3 * std::sin(t)};
+}
+
+/// So many passes of `each` samples, there and back.
+std::vector<StoredSample> strokes(const Way& way, int passes, int each, std::mt19937_64& rng,
+                                  double sigma_m = kDeviation) {
+  std::normal_distribution<double> normal(0.0, sigma_m);
+  std::vector<StoredSample> samples;
+  for (int p = 0; p < passes; ++p) {
+    for (int i = 0; i < each; ++i) {
+      const double u = static_cast<double>(i) / each;
+      StoredSample sample;
+      const double x = normal(rng);
+      sample.position_m = way(p % 2 == 0 ? u : 1.0 - u) + Vec2(x, normal(rng));
+      samples.push_back(sample);
+    }
+  }
+  return samples;
+}
+
+TEST(Passes, AreCutWhereAStrokeTurnsBackOverItself) {
+  std::mt19937_64 rng(3);
+  for (const Way& way : {Way(circle), Way(ellipse)}) {
+    for (const double sigma_m : {1e-9, 1e-6, 1e-5, 1e-4}) {
+      for (const auto& [passes, each] : {std::pair(2, 16), {2, 60}, {6, 60}, {3, 300}}) {
+        for (int seed = 0; seed < 20; ++seed) {
+          const auto samples = strokes(way, passes, each, rng, sigma_m);
+          const auto returns = returns_of(samples);
+          ASSERT_EQ(returns.size(), static_cast<std::size_t>(passes - 1))
+              << sigma_m << " " << passes << " " << each;
+          for (std::size_t k = 0; k < returns.size(); ++k) {
+            // The farthest on its way is one of those that noise puts there.
+            const double turn = static_cast<double>(k + 1) * each;
+            const double step = (way(1.0) - way(0.99)).norm() * 100.0 / each;
+            EXPECT_NEAR(static_cast<double>(returns[k]), turn, 1.0 + 8.0 * sigma_m / step);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Passes, AStrokeThatOnlyBendsIsOne) {
+  std::mt19937_64 rng(4);
+  for (const Way& way : {Way(circle), Way(over_a_cusp), Way(round_a_needle)}) {
+    for (const double sigma_m : {1e-9, 1e-6, 1e-5}) {
+      for (const int each : {12, 60, 300, 3000}) {
+        EXPECT_TRUE(returns_of(strokes(way, 1, each, rng, sigma_m)).empty())
+            << sigma_m << " " << each;
+      }
+    }
+  }
+}
+
+TEST(Passes, AStrokeShorterThanItsNoiseIsOne) {
+  std::mt19937_64 rng(5);
+  const Way short_way = [](double u) { return Vec2(10.0 * kDeviation * u, 0.0); };
+  for (int seed = 0; seed < 50; ++seed) {
+    EXPECT_TRUE(returns_of(strokes(short_way, 1, 500, rng)).empty()) << seed;
+  }
+}
+
+TEST(Passes, HaveAllSamplesInTheDirectionOfTheFirst) {
+  std::mt19937_64 rng(6);
+  StoredPatch patch;
+  patch.samples = strokes(ellipse, 3, 40, rng);
+  patch.details.resize(patch.samples.size());
+  for (std::size_t i = 0; i < patch.details.size(); ++i) {
+    patch.details[i].normal_sigma_rad = static_cast<double>(i);
+  }
+  const std::vector<StoredPatch> passes = passes_of(patch, returns_of(patch.samples));
+  ASSERT_EQ(passes.size(), 3U);
+  std::size_t before = 0;
+  for (std::size_t p = 0; p < passes.size(); ++p) {
+    const std::size_t n = passes[p].samples.size();
+    ASSERT_EQ(n, passes[p].details.size());
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t of = before + (p % 2 == 0 ? i : n - 1 - i);
+      EXPECT_EQ(passes[p].samples[i].position_m, patch.samples[of].position_m);
+      EXPECT_EQ(passes[p].details[i].normal_sigma_rad, static_cast<double>(of));
+    }
+    before += n;
+  }
+  EXPECT_EQ(before, patch.samples.size());
+}
+
+}  // namespace
+}  // namespace palpate
