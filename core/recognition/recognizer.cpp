@@ -178,7 +178,7 @@ class Recognizer::Impl {
     in_full_ = 0;
     Recognition answer = look();
     answer.sample_count = memory_.sample_count();
-    answer.dwelling_count = memory_.stored_count() - clean_.moved_count();
+    answer.dwelling_count = clean_.dwelling_count();
     answer.forgotten_count = forgotten_;
     answer.simplified_count = simplified_ - in_full_;
     return answer;

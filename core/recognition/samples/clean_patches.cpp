@@ -1,5 +1,6 @@
 #include "core/recognition/samples/clean_patches.h"
 
+#include <algorithm>
 #include <limits>
 #include <span>
 #include <utility>
@@ -26,22 +27,9 @@ double half_extent_of(const std::vector<StoredPatch>& patches) {
 
 /// The patch without its repeats and dwells.
 StoredPatch moving(const StoredPatch& patch, bool is_one_place, double default_sigma_m) {
-  if (is_one_place) {
-    const PatchSpan all{0, patch.samples.size()};
-    return with_means(patch, std::span(&all, 1), default_sigma_m);
-  }
-  // The mean step grows as repeats leave: of nine in ten to ten times what it was, then once more.
-  constexpr int kMostRounds = 4;
-  StoredPatch result = patch;
-  for (int round = 0; round < kMostRounds; ++round) {
-    const std::vector<PatchSpan> repeats = repeats_of(result.samples);
-    if (repeats.empty()) {
-      break;
-    }
-    result = with_means(result, repeats, default_sigma_m);
-  }
-  const std::vector<PatchSpan> dwells = dwells_of(result.samples);
-  return dwells.empty() ? result : with_means(result, dwells, default_sigma_m);
+  const PatchSpan all{0, patch.samples.size()};
+  return is_one_place ? with_means(patch, std::span(&all, 1), default_sigma_m)
+                      : without_dwells(patch, default_sigma_m);
 }
 
 /// The passes of a patch, and the same without spikes. A spike turns back too: passes are told by
@@ -91,6 +79,16 @@ void CleanPatches::look_at(const std::vector<StoredPatch>& patches, double defau
     moved_.insert(moved_.end(), seen.moved.begin(), seen.moved.end());
     clean_.insert(clean_.end(), seen.clean.begin(), seen.clean.end());
   }
+}
+
+std::size_t CleanPatches::dwelling_count() const {
+  double count = 0.0;
+  for (const StoredPatch& patch : moved_) {
+    for (const StoredSample& sample : patch.samples) {
+      count += std::max(sample.contacts - patch.contacts_per_sample, 0.0);
+    }
+  }
+  return static_cast<std::size_t>(count);
 }
 
 std::size_t CleanPatches::moved_count() const {

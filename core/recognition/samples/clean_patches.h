@@ -18,7 +18,8 @@ class CleanPatches {
   /// The patches looked at, the samples of each dwell at their mean (dwells.h), and each patch cut
   /// where it turns back over itself (passes.h).
   const std::vector<StoredPatch>& moved() const { return moved_; }
-  std::size_t moved_count() const;  ///< of their samples
+  std::size_t moved_count() const;     ///< of their samples
+  std::size_t dwelling_count() const;  ///< of contacts that repeat a place of these
 
   /// The same without spikes_of() each.
   const std::vector<StoredPatch>& clean() const { return clean_; }

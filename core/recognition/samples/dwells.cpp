@@ -288,4 +288,19 @@ StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwel
   return result;
 }
 
+StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m) {
+  // The mean step grows as repeats leave: of nine in ten to ten times what it was, then once more.
+  constexpr int kMostRounds = 4;
+  StoredPatch result = patch;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const std::vector<PatchSpan> repeats = repeats_of(result.samples);
+    if (repeats.empty()) {
+      break;
+    }
+    result = with_means(result, repeats, default_sigma_m);
+  }
+  const std::vector<PatchSpan> dwells = dwells_of(result.samples);
+  return dwells.empty() ? result : with_means(result, dwells, default_sigma_m);
+}
+
 }  // namespace palpate

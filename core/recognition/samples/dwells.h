@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/recognition/samples/fit_data.h"
-#include "core/recognition/samples/sample_memory.h"
+#include "core/recognition/samples/stored_patch.h"
 
 namespace palpate {
 
@@ -29,5 +29,8 @@ bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
 /// they repeat the same error, or where nobody states the noise.
 StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwells,
                        double default_sigma_m);
+
+/// The same for its repeats, then its dwells.
+StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m);
 
 }  // namespace palpate

@@ -25,6 +25,7 @@ double normal_weight(const SampleDetail& detail) {
 StoredSample merged(const StoredSample& a, const StoredSample& b) {
   StoredSample mean;
   mean.weight = a.weight + b.weight;
+  mean.contacts = a.contacts + b.contacts;
   mean.position_m = (a.weight * a.position_m + b.weight * b.position_m) / mean.weight;
   if (a.sigma_m > 0.0 && b.sigma_m > 0.0) {
     mean.sigma_m = std::sqrt(

@@ -1,7 +1,7 @@
 // One sample in place of several neighbours: their mean, and what is known of it.
 #pragma once
 
-#include "core/recognition/samples/sample_memory.h"
+#include "core/recognition/samples/stored_patch.h"
 
 namespace palpate {
 

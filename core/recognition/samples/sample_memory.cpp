@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
+#include "core/recognition/samples/dwells.h"
 #include "core/recognition/samples/merged_samples.h"
 
 namespace palpate {
@@ -47,10 +49,21 @@ void merge_pairs(StoredPatch* patch) {
   }
 }
 
+/// Whether the dwells of a patch make room: a quarter of its samples, so that few looks are for
+/// nothing.
+bool merge_dwells(StoredPatch* patch) {
+  StoredPatch moved = without_dwells(*patch, 0.0);
+  if (4 * moved.samples.size() > 3 * patch->samples.size()) {
+    return false;
+  }
+  *patch = std::move(moved);
+  return true;
+}
+
 std::size_t contacts_of(const StoredPatch& patch) {
   double count = 0.0;
   for (const StoredSample& sample : patch.samples) {
-    count += sample.weight;
+    count += sample.contacts;
   }
   return static_cast<std::size_t>(count);
 }
@@ -93,8 +106,9 @@ AddResult SampleMemory::add(const PatchContext& context, std::span<const Contact
     ++result.accepted;
     const bool detailed = !details.empty() && says_more(details[i]);
     result.detailed += detailed ? 1 : 0;
-    const bool fills_up = !stored.empty() && stored.back().weight < place->contacts_per_sample;
-    if (!fills_up && stored.size() >= options_.most_samples_per_patch) {
+    const bool fills_up = !stored.empty() && stored.back().contacts < place->contacts_per_sample;
+    if (!fills_up && stored.size() >= options_.most_samples_per_patch &&
+        (options_.takes_repeated || !merge_dwells(&*place))) {
       merge_pairs(&*place);
     }
     stored.push_back({sample.position_m, sample.sigma_m, 1.0});

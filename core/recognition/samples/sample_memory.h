@@ -9,62 +9,22 @@
 #include "core/recognition/samples/contact_run.h"
 #include "core/recognition/samples/contact_sample.h"
 #include "core/recognition/samples/sample_detail.h"
+#include "core/recognition/samples/stored_patch.h"
 
 namespace palpate {
 
-/// A sample in memory: one contact, or the mean of several consecutive ones.
-struct StoredSample {
-  Vec2 position_m = Vec2::Zero();
-  double sigma_m = 0.0;  ///< noise of ONE of the contacts that it stands for; 0 = not known
-  double weight = 1.0;   ///< how many contacts it stands for
-};
-
-struct StoredPatch {
-  PatchContext context;
-  std::vector<StoredSample> samples;  ///< in their order along the arc
-  /// Of the samples; empty where none of them says more. Of a mean of several the covariance is
-  /// that of ONE of them, the normal and its deviation those of their mean.
-  std::vector<SampleDetail> details = {};
-  double contacts_per_sample = 1.0;  ///< that each stored sample is the mean of
-  Vec2 newest_m = Vec2::Zero();      ///< last contact taken
-  /// How far a mean of contacts over an arc w lies off the curve: kappa w^2 / 24, the largest [m]
-  double merge_bias_m = 0.0;
-  /// Touches strung into a run (touches/strung_touches.h): it changes anywhere, not only at its
-  /// end.
-  bool strung = false;
-  /// Of a touch alone that lies on the way through such runs: the way's direction, unit, and the
-  /// turn of its step there [rad]; zero where there is none.
-  Vec2 direction = Vec2::Zero();
-  double turn = 0.0;
-};
-
-/// What tells that a patch of a memory, whose samples come at its end, is still the same.
-struct PatchVersion {
-  std::uint32_t probe = 0;
-  std::uint32_t patch = 0;
-  std::size_t samples = 0;
-  double contacts_per_sample = 0.0;
-  Vec2 newest_m = Vec2::Zero();
-
-  bool operator==(const PatchVersion&) const = default;
-};
-
-inline PatchVersion version_of(const StoredPatch& patch) {
-  return {patch.context.probe, patch.context.patch, patch.samples.size(), patch.contacts_per_sample,
-          patch.newest_m};
-}
-
 struct MemoryOptions {
-  /// A patch that grows beyond this many samples has its neighbours merged pairwise, and from then
-  /// on keeps means of twice as many contacts: no information on the noise's scale is lost, and the
-  /// bias is stated (StoredPatch::merge_bias_m).
+  /// A patch that grows beyond this many samples has its dwells merged (dwells.h). Where these are
+  /// less than a quarter of it, its neighbours are merged pairwise, and from then on it keeps means
+  /// of twice as many contacts: no information on the noise's scale is lost, and the bias is stated
+  /// (StoredPatch::merge_bias_m).
   std::size_t most_samples_per_patch = 1024;
   /// Beyond this many patches of two samples or more the oldest of them is forgotten.
   std::size_t most_patches = 64;
   /// Likewise of touches alone in their patch: together as much as one patch holds.
   std::size_t most_lone_touches = 1024;
   /// Whether a sample at exactly the place of the one before is taken, as one of its own. It says
-  /// nothing new of the path, but counts where distances are summed.
+  /// nothing new of the path, but counts where distances are summed. No dwell is merged then.
   bool takes_repeated = false;
 };
 

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -112,6 +114,37 @@ SampleDetail noise_of(double xx, double xy, double yy) {
   SampleDetail detail;
   detail.covariance_m2 = {xx, xy, yy};
   return detail;
+}
+
+TEST(SampleMemory, AProbeThatStandsStillTakesNoRoomFromItsStroke) {
+  // 300 samples on the way, and 30,000 at its middle: those on the way stay as they came.
+  std::mt19937_64 rng(1);
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  SampleMemory memory;
+  std::size_t taken = 0;
+  const auto add = [&](double x) {
+    const double dx = noise(rng);
+    taken += memory.add({}, std::vector{at(x + dx, noise(rng), 1e-5)}).accepted;
+  };
+  for (int i = 0; i < 150; ++i) add(1e-3 * i);
+  for (int i = 0; i < 30000; ++i) add(0.15);
+  for (int i = 151; i < 301; ++i) add(1e-3 * i);
+  const StoredPatch& patch = memory.patches().front();
+  EXPECT_EQ(patch.contacts_per_sample, 1.0);
+  EXPECT_EQ(memory.sample_count(), taken);
+  EXPECT_EQ(patch.samples.front().contacts, 1.0);
+  EXPECT_EQ(patch.samples.back().contacts, 1.0);
+  std::size_t on_the_way = 0;
+  for (const StoredSample& sample : patch.samples) {
+    on_the_way += std::abs(sample.position_m.x() - 0.15) > 5e-4 ? 1 : 0;
+  }
+  EXPECT_EQ(on_the_way, 300U);
+  // Where distances are summed, all samples count alike.
+  MemoryOptions all;
+  all.takes_repeated = true;
+  SampleMemory exact(all);
+  exact.add({}, std::vector<ContactSample>(3000, at(1.0)));
+  EXPECT_EQ(exact.patches().front().contacts_per_sample, 4.0);
 }
 
 TEST(SampleMemory, DetailsStayWithTheirSamples) {
