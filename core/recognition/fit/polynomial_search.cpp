@@ -5,7 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "core/curves/algebraic/polynomial_curve.h"
 #include "core/numerics/negligible.h"
+#include "core/numerics/real_roots.h"
 #include "core/recognition/fit/axis_fit.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/touchable.h"
@@ -140,6 +142,44 @@ void start_from_limits(const FitData& reduced, double highest_chi2, double out_o
   }
 }
 
+/// The semi-cubical parabola that a spline nearly is: its cusp where the spline is slowest.
+PolynomialFit semi_cubical_at(const PolynomialFit& spline, std::span<const FitPoint> points) {
+  const PolynomialCoefficients& c = spline.coefficients;
+  // Half of the squared speed's derivative.
+  const Eigen::Vector4d slope(2.0 * c.col(1).dot(c.col(2)),
+                              4.0 * c.col(2).squaredNorm() + 6.0 * c.col(1).dot(c.col(3)),
+                              18.0 * c.col(2).dot(c.col(3)), 18.0 * c.col(3).squaredNorm());
+  double slowest = 0.0;
+  double least = kInfinity;
+  visit_real_roots<3>(slope, [&](double t) {
+    if (const double speed2 = first_derivative(c, t).squaredNorm(); speed2 < least) {
+      least = speed2;
+      slowest = t;
+    }
+  });
+  PolynomialFit fit = spline;
+  fit.coefficients = PolynomialCurve2{c}.shifted(slowest).coefficients;
+  fit.coefficients.col(1).setZero();
+  for (double& t : fit.t) {
+    t -= slowest;
+  }
+  return placed_on(points, std::move(fit));
+}
+
+/// Nor need a limit be worse than what the class has come to: the valleys of a cusp are narrow, and
+/// the spline, which has one coefficient more, may be through where its limit is not.
+void start_from_spline(const FitData& reduced, double out_of_reach, PolynomialFits* fits) {
+  std::optional<PolynomialFit>& limit = fits->semi_cubical_parabola;
+  if (!limit || !fits->cubic_spline || limit->chi2 <= fits->cubic_spline->chi2) {
+    return;
+  }
+  const PolynomialFit start = semi_cubical_at(*fits->cubic_spline, reduced.points);
+  if (start.chi2 < limit->chi2) {
+    keep_better(&limit, refine_polynomial(PolynomialModel::SemiCubicalParabola, reduced.points,
+                                          start, kSurfacePoints, coarse(out_of_reach)));
+  }
+}
+
 }  // namespace
 
 PolynomialFits search_polynomials(const FitData& reduced, double out_of_reach) {
@@ -155,6 +195,7 @@ PolynomialFits search_polynomials(const FitData& reduced, double out_of_reach) {
   fits.cubic_spline = std::move(pair.best);
   fits.rival = std::move(pair.rival);
   start_from_limits(reduced, kInfinity, out_of_reach, &fits);
+  start_from_spline(reduced, out_of_reach, &fits);
   return fits;
 }
 
@@ -246,6 +287,7 @@ void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFi
   improve(&fits->semi_cubical_parabola, fits->seeds.semi_cubical_parabola);
   start_from_limits(reduced, kInfinity, out_of_reach, fits);
   improve(&fits->cubic_spline, fits->seeds.cubic_spline);
+  start_from_spline(reduced, out_of_reach, fits);
 }
 
 }  // namespace palpate

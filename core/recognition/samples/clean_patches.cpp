@@ -32,6 +32,30 @@ StoredPatch moving(const StoredPatch& patch, bool is_one_place, double default_s
                       : without_dwells(patch, default_sigma_m);
 }
 
+/// Returns among the samples that are no spikes, as those of all samples: a turn is the farthest on
+/// its way, also where that was taken for a spike.
+std::vector<std::size_t> returns_among_all(std::span<const StoredSample> all,
+                                           const std::vector<bool>& is_spike,
+                                           std::span<const std::size_t> returns) {
+  std::vector<std::size_t> kept;
+  kept.reserve(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!is_spike[i]) kept.push_back(i);
+  }
+  constexpr std::size_t kBehind = 4;  // samples, whose way noise does not turn
+  std::vector<std::size_t> result;
+  for (const std::size_t k : returns) {
+    const std::size_t behind = kept[k - 1 - kBehind];
+    const Vec2 way = all[kept[k - 1]].position_m - all[behind].position_m;
+    std::size_t turn = behind;
+    for (std::size_t i = behind + 1; i < kept[k]; ++i) {
+      if ((all[i].position_m - all[turn].position_m).dot(way) > 0.0) turn = i;
+    }
+    result.push_back(turn + 1);
+  }
+  return result;
+}
+
 /// The passes of a patch, and the same without spikes. A spike turns back too: passes are told by
 /// the other samples. And where a stroke turns back, no polynomial follows it, and samples are
 /// taken for spikes that are none: each pass is looked at by itself.
@@ -39,20 +63,13 @@ void clean_passes(StoredPatch patch, double false_alarm, std::vector<StoredPatch
                   std::vector<StoredPatch>* clean) {
   const std::vector<bool> is_spike = spikes_of(patch.samples, false_alarm);
   StoredPatch rest = without_spikes(patch, is_spike);
-  std::vector<std::size_t> returns = returns_of(rest.samples);
+  const std::vector<std::size_t> returns = returns_of(rest.samples);
   if (returns.empty()) {
     passes->push_back(std::move(patch));
     clean->push_back(std::move(rest));
     return;
   }
-  std::size_t kept = 0;
-  auto next = returns.begin();
-  for (std::size_t i = 0; i < is_spike.size() && next != returns.end(); ++i) {
-    if (!is_spike[i] && kept++ == *next) {
-      *next++ = i;
-    }
-  }
-  *passes = passes_of(patch, returns);
+  *passes = passes_of(patch, returns_among_all(patch.samples, is_spike, returns));
   for (const StoredPatch& pass : *passes) {
     clean->push_back(without_spikes(pass, spikes_of(pass.samples, false_alarm)));
   }
