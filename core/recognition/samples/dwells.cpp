@@ -303,4 +303,16 @@ StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m) {
   return dwells.empty() ? result : with_means(result, dwells, default_sigma_m);
 }
 
+std::vector<Vec2> without_dwells(std::span<const Vec2> positions_m) {
+  StoredPatch patch;
+  for (const Vec2& position_m : positions_m) {
+    patch.samples.push_back({position_m});
+  }
+  std::vector<Vec2> moved;
+  for (const StoredSample& sample : without_dwells(patch, 0.0).samples) {
+    moved.push_back(sample.position_m);
+  }
+  return moved;
+}
+
 }  // namespace palpate

@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "core/recognition/samples/fit_data.h"
 #include "core/recognition/samples/stored_patch.h"
 
 namespace palpate {
@@ -32,5 +31,6 @@ StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwel
 
 /// The same for its repeats, then its dwells.
 StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m);
+std::vector<Vec2> without_dwells(std::span<const Vec2> positions_m);
 
 }  // namespace palpate

@@ -33,13 +33,6 @@ struct FitPoint {
   double tangent_sigma = std::numeric_limits<double>::infinity();
 };
 
-/// The run of points of one patch, in their order along the arc: [begin, end).
-struct PatchSpan {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-  std::size_t size() const { return end - begin; }
-};
-
 /// Points of all patches of an object. Normalised to their principal axes and extent, so that
 /// starts, solver tolerances and roundings are the same at every scale and wherever the object
 /// lies.

@@ -38,6 +38,13 @@ struct StoredPatch {
   double turn = 0.0;
 };
 
+/// A run of samples or points of one patch, in their order along the arc: [begin, end).
+struct PatchSpan {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::size_t size() const { return end - begin; }
+};
+
 /// What tells that a patch of a memory, whose samples come at its end, is still the same.
 struct PatchVersion {
   std::uint32_t probe = 0;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/local/noise.h"
+#include "core/recognition/samples/dwells.h"
 #include "node/security/decode_from.h"
 #include "node/tool/commands/normal_check.h"
 #include "node/tool/text/quantity.h"
@@ -202,9 +203,11 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
       high = high.cwiseMax(p);
     }
     extent = std::max(extent, (high - low).norm());
-    std::vector<double> steps = spacings(patch.positions);
-    const auto zero = static_cast<std::size_t>(std::count(steps.begin(), steps.end(), 0.0));
-    repeated += zero;
+    const std::vector<double> all_steps = spacings(patch.positions);
+    repeated += static_cast<std::size_t>(std::count(all_steps.begin(), all_steps.end(), 0.0));
+    // Of a probe that stands still spacings tell nothing.
+    const std::vector<Vec2> moved = without_dwells(patch.positions);
+    std::vector<double> steps = spacings(moved);
     std::erase(steps, 0.0);
     if (steps.empty()) {
       continue;
@@ -213,10 +216,9 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
     unordered += has_no_order(steps, typical, (high - low).norm()) ? 1 : 0;
     // A lift-off is many spacings and of the size of the part; a spike comes back at once.
     constexpr double kJumpSpacings = 20.0;
-    for (std::size_t i = 0; i + 1 < patch.positions.size(); ++i) {
-      const double step = (patch.positions[i + 1] - patch.positions[i]).norm();
-      const bool stays = i + 2 >= patch.positions.size() ||
-                         (patch.positions[i + 2] - patch.positions[i]).norm() > 0.5 * step;
+    for (std::size_t i = 0; i + 1 < moved.size(); ++i) {
+      const double step = (moved[i + 1] - moved[i]).norm();
+      const bool stays = i + 2 >= moved.size() || (moved[i + 2] - moved[i]).norm() > 0.5 * step;
       jumps += step > kJumpSpacings * typical && stays ? 1 : 0;
     }
     // Noise alone widens a spacing too: by three standard deviations of a difference at most.

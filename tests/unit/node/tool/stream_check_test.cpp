@@ -152,6 +152,22 @@ TEST(StreamCheck, AMissingLiftOffIsAJump) {
   EXPECT_TRUE(has(findings, Severity::Error, "1 jumps"));
 }
 
+TEST(StreamCheck, AProbeThatStandsStillDoesNotJumpAfterwards) {
+  // Sixteen batches of twenty at one place; the stroke goes on from there.
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> jitter(0.0, 1e-6);
+  const auto findings = findings_of([&](std::size_t number, v1::ContactBatch& batch) {
+    if (number < 2) return;
+    for (int i = 0; i < batch.samples_size(); ++i) {
+      const double t = number < 18 ? 0.2 : 0.01 * (10.0 * (static_cast<double>(number) - 16.0) + i);
+      v1::ContactSample& sample = *batch.mutable_samples(i);
+      sample.set_x_m(0.02 * std::cos(t) + jitter(rng));
+      sample.set_y_m(0.02 * std::sin(t) + jitter(rng));
+    }
+  });
+  EXPECT_FALSE(has(findings, Severity::Error, "jumps"));
+}
+
 TEST(StreamCheck, NoiseThatIsNotAsStatedIsTold) {
   const auto findings = findings_of([](std::size_t, v1::ContactBatch& batch) {
     for (v1::ContactSample& sample : *batch.mutable_samples()) {
