@@ -64,26 +64,31 @@ class SlowStretch {
   SlowStretch(std::span<const StoredSample> samples, std::span<const Block> blocks)
       : samples_(samples), blocks_(blocks) {}
 
-  /// The dwells in it: all of it, or those in its parts before and after the longest step.
-  void add_to(std::vector<PatchSpan>* dwells) const {
+  /// The dwells in it: all of it, or those in its parts before and after the longest step. Beyond
+  /// so many steps, as of a stroke that slows down, before and after its middle: that bounds the
+  /// time.
+  void add_to(std::vector<PatchSpan>* dwells, int cuts = 0) const {
+    constexpr int kMostByStep = 16;
     if (blocks_.size() < 2) {
       return;
     }
     if (is_still()) {
-      dwells->push_back(trimmed());
+      if (const PatchSpan span = trimmed(); span.size() >= kBlock) {
+        dwells->push_back(span);
+      }
       return;
     }
-    std::size_t after = 1;
+    std::size_t after = std::max<std::size_t>(blocks_.size() / 2, 1);
     double longest = 0.0;
-    for (std::size_t b = 1; b < blocks_.size(); ++b) {
+    for (std::size_t b = 1; b < blocks_.size() && cuts < kMostByStep; ++b) {
       const double step = (blocks_[b].mean - blocks_[b - 1].mean).squaredNorm();
       if (step > longest) {
         longest = step;
         after = b;
       }
     }
-    SlowStretch(samples_, blocks_.first(after)).add_to(dwells);
-    SlowStretch(samples_, blocks_.subspan(after)).add_to(dwells);
+    SlowStretch(samples_, blocks_.first(after)).add_to(dwells, cuts + 1);
+    SlowStretch(samples_, blocks_.subspan(after)).add_to(dwells, cuts + 1);
   }
 
  private:
@@ -106,10 +111,10 @@ class SlowStretch {
       return (samples_[i].position_m - others.mean).squaredNorm() <=
              kFarthest * kFarthest * others.square;
     };
-    while (span.size() > 2 && !lies_by(span.begin, span.begin + 1, span.end)) {
+    for (std::size_t i = 0; i < kBlock && !lies_by(span.begin, span.begin + 1, span.end); ++i) {
       ++span.begin;
     }
-    while (span.size() > 2 && !lies_by(span.end - 1, span.begin, span.end - 1)) {
+    for (std::size_t i = 1; i < kBlock && !lies_by(span.end - 1, span.begin, span.end - 1); ++i) {
       --span.end;
     }
     while (span.begin > 0 && span.begin + kBlock > blocks_.front().begin &&

@@ -145,8 +145,10 @@ std::vector<std::size_t> returns_of(std::span<const StoredSample> samples) {
       ++next;
     }
     const std::size_t end = next < reversals.size() ? reversals[next] + 1 : samples.size();
+    // The way back is compared with four times as many samples at most: that bounds the time.
+    const std::size_t from = turn - std::min(turn - begin, 4 * (end - turn));
     if (turn - begin >= kFewestOfPass && end - turn >= kFewestOfPass &&
-        leads_back(samples.subspan(begin, turn - begin), samples.subspan(turn, end - turn),
+        leads_back(samples.subspan(from, turn - from), samples.subspan(turn, end - turn),
                    *lengths)) {
       returns.push_back(turn);
       begin = turn;
@@ -159,16 +161,19 @@ std::vector<StoredPatch> passes_of(const StoredPatch& patch, std::span<const std
   std::vector<std::size_t> ends(returns.begin(), returns.end());
   ends.push_back(patch.samples.size());
   std::vector<StoredPatch> passes;
+  const auto part = [](const auto& all, std::size_t begin, std::size_t end) {
+    using Distance = std::ptrdiff_t;
+    return std::vector(all.begin() + static_cast<Distance>(begin),
+                       all.begin() + static_cast<Distance>(end));
+  };
+  StoredPatch none = patch;
+  none.samples.clear();
+  none.details.clear();
   std::size_t begin = 0;
   for (const std::size_t end : ends) {
-    StoredPatch pass = patch;
-    const auto part = [&](auto* all) {
-      using Distance = std::ptrdiff_t;
-      all->erase(all->begin() + static_cast<Distance>(end), all->end());
-      all->erase(all->begin(), all->begin() + static_cast<Distance>(begin));
-    };
-    part(&pass.samples);
-    if (!patch.details.empty()) part(&pass.details);
+    StoredPatch pass = none;
+    pass.samples = part(patch.samples, begin, end);
+    if (!patch.details.empty()) pass.details = part(patch.details, begin, end);
     if (end < patch.samples.size()) {
       pass.newest_m = pass.samples.back().position_m;
     }
