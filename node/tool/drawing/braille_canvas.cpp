@@ -43,6 +43,8 @@ void BrailleCanvas::line(double x0, double y0, double x1, double y1, Ink ink) {
   // The part of it that lies within the canvas, after Liang and Barsky.
   const double dx = x1 - x0;
   const double dy = y1 - y0;
+  if (!std::isfinite(dx) || !std::isfinite(dy))
+    return;  // from nowhere, or beyond what doubles hold
   double from = 0.0;
   double to = 1.0;
   for (const auto& [step, room] :
@@ -53,8 +55,9 @@ void BrailleCanvas::line(double x0, double y0, double x1, double y1, Ink ink) {
     if (step > 0.0) to = std::min(to, room / step);
   }
   if (!(from <= to)) return;
-  const auto steps =
-      static_cast<int>(std::ceil((to - from) * std::max(std::abs(dx), std::abs(dy))));
+  // Dots of the part; of a line so long that its ends round, no more than there are.
+  const auto steps = static_cast<int>(
+      std::min(std::ceil((to - from) * std::max(std::abs(dx), std::abs(dy))), width() + height()));
   for (int i = 0; i <= steps; ++i) {
     const double part = from + (to - from) * (steps > 0 ? static_cast<double>(i) / steps : 0.0);
     dot(x0 + part * dx, y0 + part * dy, ink);

@@ -33,7 +33,14 @@ TEST(BrailleCanvas, DrawsOfALineWhatLiesWithinIt) {
   beside.line(-10.0, -1.0, 10.0, -1.0, Ink::CurveInk);
   beside.line(-10.0, 5.0, -1.0, 100.0, Ink::CurveInk);
   beside.dot(std::numeric_limits<double>::quiet_NaN(), 0.0, Ink::CurveInk);
+  for (const double beyond : {std::numeric_limits<double>::quiet_NaN(),
+                              std::numeric_limits<double>::infinity(), 1.7e308}) {
+    beside.line(-beyond, 1.0, beyond, 1.0, Ink::CurveInk);
+    beside.line(1.0, beyond, 1.0, -beyond, Ink::CurveInk);
+  }
   EXPECT_THAT(beside.lines(), ElementsAre(""));
+  beside.line(-1e300, 1.5, 1e300, 1.5, Ink::CurveInk);  // its ends are all one to a double
+  EXPECT_EQ(beside.lines().size(), 1U);
 }
 
 /// Half of a circle of 20 mm, and the answer that it is one.
