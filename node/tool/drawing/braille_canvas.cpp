@@ -43,8 +43,8 @@ void BrailleCanvas::line(double x0, double y0, double x1, double y1, Ink ink) {
   // The part of it that lies within the canvas, after Liang and Barsky.
   const double dx = x1 - x0;
   const double dy = y1 - y0;
-  if (!std::isfinite(dx) || !std::isfinite(dy))
-    return;  // from nowhere, or beyond what doubles hold
+  // From nowhere, or beyond what doubles hold.
+  if (!std::isfinite(dx) || !std::isfinite(dy)) return;
   double from = 0.0;
   double to = 1.0;
   for (const auto& [step, room] :
