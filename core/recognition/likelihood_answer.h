@@ -15,8 +15,8 @@ struct VerdictOptions {
 /// White noise of a typical sample; if estimated, from the best class's residuals. [m]
 double residual_noise_m(const Weighing& weighing);
 
-/// The answer without contacts, tree and counts of samples. `stored`: samples before any was set
-/// aside by the weighing as a spike.
+/// The answer without contacts, tree and counts of samples. `stored`: number of samples, including
+/// those set aside as spikes.
 Recognition answer_by_likelihood(const Weighing& weighing, const BestMoments& moments,
                                  const VerdictOptions& options, std::size_t stored);
 
