@@ -81,10 +81,10 @@ struct Recognition {
   std::size_t simplified_count = 0;
   double sigma_m = 0.0;              ///< noise of a sample, stated or estimated [m]
   double noise_correlation_m = 0.0;  ///< correlation length of the residuals; 0 = white [m]
-  /// Of the most probable hypothesis: the covariance for white noise of the stated size, and the
-  /// factor on it if larger noise, correlated residuals and stated form error are all counted as
-  /// additional white noise.
+  /// Of the most probable hypothesis: its covariance if all noise is white and of the stated size.
   ShapePoseCovariance white_covariance;
+  /// Factor on white_covariance if larger noise, correlated residuals and stated form error are all
+  /// counted as additional white noise.
   double covariance_inflation = 1.0;
 };
 

@@ -20,7 +20,7 @@ enum class RecognitionMethod {
 
 struct RecognizerOptions {
   RecognitionMethod method = RecognitionMethod::MaximumLikelihood;
-  /// Noise (standard deviation of a coordinate) of samples that state none; 0 = not known. Where a
+  /// Noise (standard deviation of a coordinate) of samples that state none; 0 = not known. If any
   /// sample then has no noise, the noise of all samples is estimated from the data. [m]
   double sigma_m = 0.0;
   /// Smallest posterior probability of a RECOGNIZED class.
@@ -36,11 +36,11 @@ struct RecognizerOptions {
   /// parameters can absorb form error into its shape. 0: parts are exactly of their class.
   /// MaximumLikelihood only. [m]
   double form_deviation_m = 0.0;
-  /// True if nobody has measured the probe's systematic deviations. Smooth deviations by the
-  /// direction of the normal (lobes, tip radius) and along a stroke (drift) are then as probable as
-  /// none, of any size that the residuals allow. Covariances and class probabilities include them.
-  /// False: they are included only where the residuals look correlated. MaximumLikelihood only;
-  /// costs a few milliseconds per answer.
+  /// True if nobody has measured the probe's systematic deviations. Smooth deviations with
+  /// the direction of the normal (lobes, tip radius) and along a stroke (drift) are then as
+  /// probable as none, of any size that the residuals allow. Covariances and class probabilities
+  /// include them. False: they are included only where the residuals look correlated.
+  /// MaximumLikelihood only; costs a few milliseconds per answer.
   bool unqualified_probe = false;
   /// Probability that a scene without spikes loses a sample to outlier rejection.
   double false_outlier_probability = 0.01;

@@ -77,7 +77,7 @@ void add_offsets(const ShapeAndLeft& left, const Drift& drift, const OffsetSize&
     if (i % 2 == 1) {
       continue;  // a cosine without its sine
     }
-    // of cosine and sine together, in any direction
+    // Of cosine and sine together, in any direction.
     variance += i > 0 ? size.deviations[i] * size.deviations[i] : 0.0;
     const auto order = static_cast<std::size_t>(i / 2);
     if (mixture->weights.counts(cells->log_weight[order])) {

@@ -79,7 +79,7 @@ class AxisResiduals {
 
   struct Row {
     Columns columns;  ///< w u^k, orthogonalised by `solve`; the last is y's residual
-    /// derivative of the residual; `differentiate` projects it off the columns
+    /// Derivative of the residual; `differentiate` projects it off the columns.
     Vec2 by_parameters;
     double along = 0.0;   ///< coordinate along the axis
     double across = 0.0;  ///< coordinate across the axis
@@ -143,7 +143,7 @@ class AxisResiduals {
       products += row.columns[0] * row.columns;
     }
     any_before_vertex_ = kArms && least <= x0;
-    // column k: its coefficients in the later columns
+    // Column k: its coefficients in the later columns.
     Eigen::Matrix<double, kWidth, kLinear> factors;
     for (int k = 0; k < kLinear; ++k) {
       squares_[k] = products[k];

@@ -83,7 +83,7 @@ SquareMatrix<T> in_unit_moves(SquareMatrix<T> m, std::size_t n,
 struct DescentEffort {
   int most_steps = 0;
   double last_step = 0.0;  ///< converged if a step moves the residuals by less
-  /// a Newton step shorter than this is taken even if rounding hides the gain
+  /// A Newton step shorter than this is taken even if rounding hides the gain.
   double trusted_step = 0.0;
 };
 

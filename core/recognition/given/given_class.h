@@ -15,7 +15,7 @@
 namespace palpate {
 
 struct GivenOptions {
-  /// noise of points that state none; 0 = estimate it from the residuals [m]
+  /// Noise of points that state none; 0 = estimate it from the residuals. [m]
   double sigma_m = 0.0;
 };
 

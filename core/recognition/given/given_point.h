@@ -11,7 +11,7 @@ namespace palpate {
 struct GivenPoint {
   Vec2 position_m = Vec2::Zero();
   double sigma_m = 0.0;  ///< 1-sigma isotropic noise; 0 = not known [m]
-  /// the point is the centre of a round tip of this radius; 0 = surface point [m]
+  /// The point is the centre of a round tip of this radius; 0 = surface point. [m]
   double tip_radius_m = 0.0;
   /// Roughly into the material, of any length; zero = not known. Only tips need it.
   Vec2 into_material = Vec2::Zero();
@@ -22,7 +22,7 @@ struct GivenPoint {
   double normal_sigma_rad = 0.0;  ///< standard deviation of that direction; 0 = not measured [rad]
   /// Covariance [xx, xy, yy] of the position, in place of sigma_m; zeros = not known. [m^2]
   Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();
-  /// an outlier by the caller's decision: gets a residual, but is not fitted
+  /// An outlier by the caller's decision: gets a residual, but is not fitted.
   bool set_aside = false;
 };
 

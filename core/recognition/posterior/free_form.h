@@ -7,9 +7,9 @@ namespace palpate {
 
 /// The result of free-form paths through the reduced points, averaged over their prior.
 struct FreeForm {
-  /// chi-square of the paths, in addition to the smooth model's; divided by `inflation`
+  /// Chi-square of the paths, in addition to the smooth model's; divided by `inflation`.
   double chi2 = 0.0;
-  /// log of what the prior leaves of the likelihood: posterior over prior volume
+  /// log of what the prior leaves of the likelihood: posterior over prior volume.
   double log_occam = 0.0;
   double determined = 0.0;  ///< number of coordinates that the data determine
 };

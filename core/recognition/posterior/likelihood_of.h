@@ -20,7 +20,7 @@ struct SeenDeviation {
   /// The likelihood with this deviation, if it is noise or form error rather than another class.
   std::optional<Likelihood> likelihood;
   double noise_inflation = 1.0;  ///< factor on the variances of residuals
-  /// variance of the white noise in it, in units of the arcs' sigma^2
+  /// Variance of the white noise in it, in units of the arcs' sigma^2.
   double white_variance = 1.0;
   /// Additional factor on covariances: a noise estimated from few residuals may be larger.
   double few_residuals = 1.0;

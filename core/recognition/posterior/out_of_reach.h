@@ -8,9 +8,9 @@ namespace palpate {
 
 /// The chi-square on the reduced points above which a class changes no answer. Free paths are then
 /// a million times more probable whatever its prior leaves, and its residuals are too large to be
-/// noise or form error. Infinite if points may be spikes too far from the curve to be bounded, or
-/// if only the class can show the noise. It allows for spikes among samples kept as they are and
-/// for errors of the directions along which tips are removed. `of_paths`: evidences with that of
+/// noise or form error, spikes among samples kept as they are, or errors of the directions along
+/// which tips are removed. Infinite if only the class can show the noise, or if a patch kept as
+/// samples is too short to bound the distance of a spike. `of_paths`: evidences with that of
 /// free-form paths.
 double out_of_reach(const Arcs& arcs, const Likelihood& likelihood, const Evidences& of_paths);
 

@@ -45,12 +45,13 @@ struct TouchedCurve {
 /// put it.
 Pose2 pose_of(const Touch& touch, const TouchedVector& z, const Curve& curve, double t);
 
-/// touch_of: the touch of a fit. `fit` must have a point for each of `data`, which are surface
+/// The touch of a fit. `fit` must have a point for each of `data`, which are surface
 /// points. nullopt if double precision cannot hold the fit as a curve of its class.
 std::optional<Touch> touch_of(const CanonicalFit& fit, const FitData& data);
 /// The same touch, with the direction of the neighbouring points: a curve that fits short arcs too
 /// well may cross them.
 Touch along_patch(Touch touch, const FitData& data);
+/// The curve of the fit itself; nullopt as for touch_of().
 std::optional<TouchedCurve> curve_at(const Touch& touch, const CanonicalFit& fit,
                                      const FitData& data);
 

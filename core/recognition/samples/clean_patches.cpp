@@ -42,7 +42,7 @@ std::vector<std::size_t> returns_among_all(std::span<const StoredSample> all,
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!is_spike[i]) kept.push_back(i);
   }
-  // samples: over these, noise does not reverse the direction of the way
+  // So many samples farther back, noise does not reverse the direction of the way.
   constexpr std::size_t kBehind = 4;
   std::vector<std::size_t> result;
   for (const std::size_t k : returns) {

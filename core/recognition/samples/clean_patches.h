@@ -19,7 +19,7 @@ class CleanPatches {
   /// themselves (passes.h). Spikes are still in them.
   const std::vector<StoredPatch>& moved() const { return moved_; }
   std::size_t moved_count() const;  ///< number of their samples
-  /// contacts that only repeat the place of one of these samples
+  /// Number of contacts that only repeat the place of one of these samples.
   std::size_t dwelling_count() const;
 
   /// The patches of moved() without the spikes of each.

@@ -12,8 +12,8 @@ enum class MaterialSide { Unspecified, Left, Right };
 
 struct ContactSample {
   Vec2 position_m = Vec2::Zero();
-  double sigma_m = 0.0;  ///< 1-sigma isotropic position noise; 0 = not known [m]
-  std::int64_t stamp_ns = 0;
+  double sigma_m = 0.0;       ///< 1-sigma isotropic position noise; 0 = not known [m]
+  std::int64_t stamp_ns = 0;  ///< time of the sample; core does not use it [ns]
 };
 
 /// Where samples belong: a patch is one unbroken touch of one probe. A patch of a single sample is
@@ -21,7 +21,7 @@ struct ContactSample {
 struct PatchContext {
   std::uint32_t probe = 0;
   std::uint32_t patch = 0;
-  /// samples are centres of a round tip of this radius; 0 = surface points
+  /// The samples are centres of a round tip of this radius; 0 = surface points. [m]
   double tip_radius_m = 0.0;
   MaterialSide material_side = MaterialSide::Unspecified;
 };

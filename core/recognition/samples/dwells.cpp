@@ -106,7 +106,7 @@ class SlowStretch {
   PatchSpan trimmed() const {
     PatchSpan span{blocks_.front().begin, blocks_.back().end};
     const auto lies_by = [&](std::size_t i, std::size_t begin, std::size_t end) {
-      // times the root mean square: noise exceeds it once in 8,000 times
+      // Times the root mean square: noise exceeds it once in 8,000 times.
       constexpr double kFarthest = 3.0;
       const Block others = block_of(samples_, begin, end);
       return (samples_[i].position_m - others.mean).squaredNorm() <=

@@ -28,8 +28,8 @@ bool steps_back(std::span<const StoredSample> samples) {
 
 struct Lengths {
   double noise_m = 0.0;  ///< noise does not move a sample so far off its path
-  /// nor does it put two samples so far apart; at least four median steps, for where the noise is
-  /// as large as a patch its estimate means nothing
+  /// Noise does not put two samples so far apart. At least four median steps, because where the
+  /// noise is as large as a patch, its estimate means nothing.
   double far_m = 0.0;
 };
 

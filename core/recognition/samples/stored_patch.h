@@ -24,7 +24,7 @@ struct StoredPatch {
   /// One per sample; empty if no sample has one. For a mean of several contacts: the covariance of
   /// ONE of them, but the normal and its standard deviation of their mean.
   std::vector<SampleDetail> details = {};
-  /// contacts per stored sample; a dwell's sample stands for more (dwells.h)
+  /// Contacts per stored sample; a dwell's sample stands for more (dwells.h).
   double contacts_per_sample = 1.0;
   Vec2 newest_m = Vec2::Zero();  ///< the last contact added
   /// Largest distance from the curve of a mean of contacts over an arc w: kappa w^2 / 24. [m]

@@ -21,7 +21,7 @@ struct Way {
   FitData reduced;  ///< the arcs' reduced points, moved to the surface
   CurveClass candidate = CurveClass::Unclassified;
   std::optional<ClassFit> settled;  ///< the candidate at its optimum on the reduced points
-  /// the candidate on all points, unless they agree with the reduced points
+  /// The candidate on all points, unless they agree with the reduced points.
   std::optional<ClassFit> refined;
   Evidences evidences;
 };

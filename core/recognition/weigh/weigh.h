@@ -52,7 +52,7 @@ struct Weighing {
   double sigma = 0.0;                          ///< noise of the typical point, normalised
   /// Factor on covariances: correlation, misfit, few residuals and stated form error.
   double inflation = 1.0;
-  /// factor on the variances of residuals, without stated form error and few residuals
+  /// Factor on the variances of residuals, without stated form error and few residuals.
   double noise_inflation = 1.0;
   double white_variance = 1.0;      ///< of the white noise, in units of sigma^2
   double counted_chi2 = 0.0;        ///< chi-square of `best` for the misfit test (misfit_of)
