@@ -9,9 +9,9 @@
 namespace palpate {
 
 /// log of the evidence, comparable with Likelihood::log_evidence, integrated over amplitude and
-/// length of a deviation that is coherent along the curve (Markov's law). No deviation is as
-/// probable a priori as any. A smooth difference between two curves may be such a deviation: the
-/// data then separate them no better than they show the deviation to be small.
+/// length of a deviation that is coherent along the curve (Markov's law). A priori the probability
+/// of no deviation at all is 1/2. A smooth difference between two curves may be such a deviation:
+/// the data then separate them no better than they show the deviation to be small.
 ///
 /// `placed`: the class on `reduced`. `chi2`: its chi-square on all `samples` points; `scatter`: the
 /// part of it that these points have about the reduced ones, the same for every class. `sigma`:

@@ -22,8 +22,8 @@ struct ClassFit {
   CurveClass curve_class = CurveClass::Unclassified;
   double chi2 = 0.0;
   bool weighed = false;  ///< chi2 was computed on all points, not inferred from the reduced points
-  bool on_all =
-      false;  ///< refined on all points; until then its foot points are those of the reduced points
+  /// Refined on all points. Until then its foot points are those of the reduced points.
+  bool on_all = false;
   bool polished = false;  ///< at its exact optimum on all points; so is its rival
   /// The class has no interior optimum: chi2 is that of the neighbouring class to which the fit
   /// runs (e.g. the best ellipse or hyperbola is a parabola). There is no shape to report.

@@ -45,8 +45,8 @@ struct TouchedCurve {
 /// put it.
 Pose2 pose_of(const Touch& touch, const TouchedVector& z, const Curve& curve, double t);
 
-/// The touch of a fit. `fit` must have a point for each of `data`, which are surface
-/// points. nullopt if double precision cannot hold the fit as a curve of its class.
+/// The touch of a fit. `fit` must have a point for each of `data`, which are surface points.
+/// nullopt if double precision cannot hold the fit as a curve of its class.
 std::optional<Touch> touch_of(const CanonicalFit& fit, const FitData& data);
 /// The same touch, with the direction of the neighbouring points: a curve that fits short arcs too
 /// well may cross them.

@@ -19,8 +19,8 @@ struct StrungTouches {
 };
 
 /// `patches`, with single touches (patches of one sample) that lie densely along the curve joined
-/// into runs. The runs are patches at the end of the list, in their order along the curve. Like
-/// strokes, they have local geometry, visible noise and few reduced points.
+/// into runs. The runs are patches at the end of the list, their samples in order along the curve.
+/// Like strokes, they have local geometry, visible noise and few reduced points.
 ///
 /// The order is that of the shortest way through the touches or, if that is in doubt, that along
 /// the curve that explains them best. In a run the curve turns so little from touch to touch that a

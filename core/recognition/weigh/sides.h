@@ -43,8 +43,8 @@ struct Judged {
   const Likelihood& likelihood;
   Evidences of_paths;              ///< with the evidence of free-form paths, for this likelihood
   unsigned classes = kAllClasses;  ///< by bit 1 << CurveClass
-  double out_of_reach =
-      std::numeric_limits<double>::infinity();  ///< as in fit_classes(), for all sides
+  /// As in fit_classes(), for all sides.
+  double out_of_reach = std::numeric_limits<double>::infinity();
 };
 
 /// Fits the classes to the reduced points and chooses the sides of the tips. If sides are not
