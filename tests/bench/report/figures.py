@@ -51,16 +51,19 @@ def save(figure, folder, name):
     plt.close(figure)
 
 
-def mean_over_classes(rows, column):
-    """Geometric mean over the classes that have a value; NaN unless most have one."""
-    values = [row[column] for row in rows if isinstance(row[column], float) and row[column] > 0]
+def mean_over_classes(rows, column, over=None):
+    """Geometric mean over the classes that have a finite value, of `column` or of its ratio to column `over`; NaN unless
+    most have one."""
+    values = [row[column] / (row[over] if over else 1.0) for row in rows
+              if isinstance(row[column], float) and 0.0 < row[column] < math.inf]
     if 2 * len(values) <= len(rows):
         return math.nan
     return math.exp(sum(map(math.log, values)) / len(values))
 
 
 def pareto(rows, folder):
-    """Error of the shape over time, a panel a noise level; the bound is the floor."""
+    """Error of the shape over the bound against time, one panel for each noise. Of exact data the bound is 0: that panel
+    has the error itself."""
     noises = sorted({row["noise_over_size"] for row in rows})
     figure, axes = plt.subplots(2, 3, figsize=(12, 7.5), sharex=True)
     for axis, noise in zip(axes.flat, noises):
@@ -68,24 +71,23 @@ def pareto(rows, folder):
         for (pipeline,), group in group_by(here, "pipeline").items():
             points = []
             for _, cell in group_by(group, "window", "shift").items():
-                error = mean_over_classes(cell, "shape_error")
+                error = mean_over_classes(cell, "shape_error", over="shape_bound" if noise > 0 else None)
                 if math.isfinite(error):
                     points.append((mean_over_classes(cell, "us_per_recognition"), max(error, 1e-15)))
             if points:
                 refined = pipeline.startswith("refined")
                 axis.plot(*zip(*points), "*" if refined else "o", color=COLOURS[pipeline], label=pipeline,
                           markersize=13 if refined else 5, alpha=0.85)
-        bound = mean_over_classes(here, "shape_bound")
-        if bound > 0:
-            axis.axhline(bound, color="black", linestyle="--", linewidth=1, label="Kanatani-Cramer-Rao bound")
-        axis.set(xscale="log", yscale="log", title=f"noise / size {noise:g}")
+        if noise > 0:
+            axis.axhline(1.0, color="black", linestyle="--", linewidth=1, label="Kanatani-Cramer-Rao bound")
+        axis.set(xscale="log", yscale="log", title=f"noise / size {noise:g}" if noise > 0 else "exact data: error itself")
         axis.set_xticks([200, 500, 1000, 2000, 5000], ["200", "500", "1000", "2000", "5000"])
         axis.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
         axis.grid(alpha=0.3, which="both")
     for axis in axes[1]:
         axis.set_xlabel("time of a recognition [us]")
     for axis in axes[:, 0]:
-        axis.set_ylabel("relative error of the shape, median")
+        axis.set_ylabel("median error of the shape over the bound")
     handles = {}
     for axis in axes.flat:
         handles.update(dict(zip(*reversed(axis.get_legend_handles_labels()))))
