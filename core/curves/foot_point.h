@@ -29,8 +29,7 @@ FootPoint foot_point_at(const C& curve, double t, const Vec2& point) {
 /// than rounding.
 template <typename C>
 double polish_foot_point(const C& curve, double t, const Vec2& point) {
-  constexpr int kMostIterations =
-      8;  // the digits double: four steps from the first digit, and as many to spare
+  constexpr int kMostIterations = 8;  // the digits double: four from the first, four to spare
   constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
   double best = t;
   double best_slope = std::numeric_limits<double>::infinity();
