@@ -30,13 +30,13 @@ struct TravelDirections {
 
 /// The posterior of the placement, under the prior that is uniform over all poses of SE(2).
 ///
-/// A pose is described by the place t where the part's normal passes through the reference point,
-/// the height of the reference over the part, and the turn from the reference's tangent. In these
-/// coordinates the prior is ds d(height) d(turn). For every t of a grid, chi-square is minimised
-/// over height and turn, whose integral is Gaussian. The minima over t are the candidates. The
-/// integral over t is numeric; barriers divide it among the candidates. So a long, bent or flat
-/// valley counts by its true mass and not by the curvature at its bottom. `reference` needs a
-/// tangent. O(nodes * points) foot points. Derivation: core/README.md, "A known closed part".
+/// A pose is described by the place t of the part that lies on the reference's normal, its height
+/// over the reference, and its turn from the reference's tangent. In these coordinates the prior is
+/// cos(turn) ds d(height) d(turn). For every t of a grid, chi-square is minimised over height and
+/// turn, whose integral is Gaussian. The minima over t are the candidates. The integral over t is
+/// numeric; barriers divide it among the candidates. So a long, bent or flat valley counts by its
+/// true mass and not by the curvature at its bottom. `reference` needs a tangent. O(nodes * points)
+/// foot points. Derivation: core/README.md, "A known closed part".
 SlidePosterior slide_posterior(const ScaledPart& part, std::span<const FitPoint> points,
                                const FitPoint& reference, const TravelDirections& directions);
 
