@@ -8,7 +8,7 @@ namespace palpate {
 
 /// With lambda1 = tan(phi) the paper's quartic is (1 + lambda1^2)(q2 lambda1^2 + q1 lambda1 + q0),
 /// q2 = d4, q1 = d3, q0 = d0 (or e4, e3, e0). Its only real roots are those of
-///      q2 sin^2(phi) + q1 sin(phi) cos(phi) + q0 cos^2(phi) = 0.
+///     q2 sin^2(phi) + q1 sin(phi) cos(phi) + q0 cos^2(phi) = 0.
 /// This equation is solved for the angle itself, so neither vertical tangents nor a rotation of
 /// +-pi/2 between the tangents are singular.
 template <typename T>

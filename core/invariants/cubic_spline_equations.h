@@ -9,7 +9,7 @@
 namespace palpate {
 
 /// The terms at one point that (49) and the formula for c share. With the paper's L and M:
-///      lambda - b = e / cosine,  L = 2 kappa / cosine^3,  M = jerk cosine / kappa^2.
+///     lambda - b = e / cosine,  L = 2 kappa / cosine^3,  M = jerk cosine / kappa^2.
 /// L is signed for travel with increasing x, so its two signs are the two orientations of the
 /// frame.
 template <typename T>

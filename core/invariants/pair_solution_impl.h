@@ -24,11 +24,11 @@ inline constexpr double kDiscriminantRounding = 64.0 * std::numeric_limits<doubl
 inline constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 /// `Family` has
-///    quadratic(k1, ks1, k2, ks2, rotation),
-///    signed_invariant(CanonicalPoint), which is Icp1 or Iscp1,
-///    parameters(CanonicalPoint), an array of 2, and
-///    accept(solution, unit), which converts angle and parameters to the convention and the units
-///    of the class; false if they lie outside the class.
+///   quadratic(k1, ks1, k2, ks2, rotation),
+///   signed_invariant(CanonicalPoint), which is Icp1 or Iscp1,
+///   parameters(CanonicalPoint), an array of 2, and
+///   accept(solution, unit), which converts angle and parameters to the convention and the units
+///   of the class; false if they lie outside the class.
 template <typename Family>
 PairSolutions solve_pair(const MeasuredGeometry& measured1, const MeasuredGeometry& measured2) {
   PairSolutions result;

@@ -22,7 +22,7 @@ struct SplineSeed {
 /// Two points give six numbers. The unknowns are the five of a spline and its two places, minus the
 /// free parametrisation, so there are finitely many cubics. In the frame of the tangent of point 1,
 /// and with the parameter u that has unit speed there, a cubic with the geometry of point 1 is
-///      alpha'(u) = (1 + p u + q u^2, kappa u + m u^2),  m = (kappa_s + 3 kappa p) / 2.
+///     alpha'(u) = (1 + p u + q u^2, kappa u + m u^2),  m = (kappa_s + 3 kappa p) / 2.
 /// For a given u of point 2, its tangent direction is a linear equation for (p, q) and its kappa a
 /// quadratic one. Then kappa_s has roots along u, which are found by its changes of sign. All
 /// tangents are regular, because neither slopes nor a canonical frame are used.

@@ -10,7 +10,7 @@ namespace palpate {
 
 /// Estimate at the middle of five points p0 ... p4 of the window. kappa is the curvature of the
 /// circle through p1, p2, p3; the tangent is that circle's at p2; and
-///    kappa_s = 3 (kappa_3 - kappa_1) / (2 a + 2 b + d + g),
+///   kappa_s = 3 (kappa_3 - kappa_1) / (2 a + 2 b + d + g),
 /// with kappa_1 from p0 p1 p2 and kappa_3 from p2 p3 p4, a = |p1 p2|, b = |p2 p3|, d = |p0 p1|, g =
 /// |p3 p4|. The curvature of a circle belongs to the mean arc length of its three points, and the
 /// quotient is taken over those means.

@@ -11,8 +11,8 @@ namespace palpate {
 /// curve c = p + d n, where n is the left normal of travel and d = `tip_offset_m` is signed: +
 /// radius if the material lies right of travel, - radius if it lies left. From ds_c = (1 - d kappa)
 /// ds:
-///    kappa   = kappa_c / (1 + d kappa_c)
-///    kappa_s = kappa_cs / (1 + d kappa_c)^3
+///   kappa   = kappa_c / (1 + d kappa_c)
+///   kappa_s = kappa_cs / (1 + d kappa_c)^3
 /// The tangent angle is the same. The covariance is transformed too: an error of the angle turns
 /// the radius and so moves the point along the surface, where angle and kappa are different.
 /// (kappa_s differs there as well, by the second derivative of kappa, which the estimate does not

@@ -10,9 +10,9 @@ namespace palpate {
 
 /// Adapts a residual class to `minimise`. Residuals are in units of their standard deviation. The
 /// class has
-///    enum { NUM_PARAMETERS };
-///    int NumResiduals() const;
-///    bool operator()(const double* x, double* residuals, double* jacobian) const;
+///   enum { NUM_PARAMETERS };
+///   int NumResiduals() const;
+///   bool operator()(const double* x, double* residuals, double* jacobian) const;
 /// `jacobian` is column-major. It is null for a trial step and not null for an accepted one. A
 /// return value of false means that the residuals do not exist at x: a trial step is then rejected,
 /// and a minimisation that starts at such an x does nothing.

@@ -40,12 +40,12 @@ struct MinimiseSummary {
 
 /// Minimises the sum of squares r(x)^T r(x) of `problem`, starting at `*x`. With the residuals r
 /// and their Jacobian J, Problem has
-///    static constexpr int kParameters;
-///    double chi2_at(const Vector& x);   // evaluates a trial x
-///    void accept();                     // makes the last trial x the current one
-///    void linearise(Matrix* information, Vector* gradient) const;  // J^T J and J^T r there
+///   static constexpr int kParameters;
+///   double chi2_at(const Vector& x);   // evaluates a trial x
+///   void accept();                     // makes the last trial x the current one
+///   void linearise(Matrix* information, Vector* gradient) const;  // J^T J and J^T r there
 /// and optionally
-///    Vector bend(const Vector& step) const;  // J^T r'', r'' the second derivatives along `step`
+///   Vector bend(const Vector& step) const;  // J^T r'', r'' the second derivatives along `step`
 /// Without `bend` the steps are those of plain Levenberg-Marquardt. Some directions in the
 /// parameters may change no residual; the damping handles them.
 template <typename Problem>

@@ -36,7 +36,7 @@ std::vector<ContactSample> without_offset(const ProbedPatch& patch, const Curve&
 ProbedPatch as_qualified(ProbedPatch patch);
 
 /// Covariance of [shape; x; y; theta] that the probes' properties add to that of white noise:
-///    (J^T W J)^-1 J^T W (B S B^T + D) W J (J^T W J)^-1.
+///   (J^T W J)^-1 J^T W (B S B^T + D) W J (J^T W J)^-1.
 /// J are the derivatives of the distances and W the inverse variances of the noise. S is the
 /// covariance of the offset's coefficients in another set-up, B their effect on the samples. D is
 /// the covariance of the coherent deviation, deviation^2 exp(-distance / length) within a patch.

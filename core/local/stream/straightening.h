@@ -50,7 +50,7 @@ class Straightening {
 
   /// Converts an estimate in w, with its covariance, into one in the world. With P = g'' / g' of
   /// the inverse map g(w) = w / (1 - i c w), for which P' = P^2 / 2, and the unit tangent tau,
-  ///    kappa_z = (kappa_w + Im(P tau)) / |g'|,   kappa_s,z = kappa_s,w / |g'|^2.
+  ///   kappa_z = (kappa_w + Im(P tau)) / |g'|,   kappa_s,z = kappa_s,w / |g'|^2.
   LocalEstimate to_world(const LocalEstimate& at_w) const;
 
   /// Arc length between two points of the circle, given their abscissae in w. [m]
