@@ -52,7 +52,7 @@ class SlidingWindow {
   RunningNoise noise_;
   std::vector<PathNode> nodes_;
   std::uint64_t first_ = 0;  ///< first sample of the window
-  bool stated_ = true;       ///< every sample so far states its noise
+  bool stated_ = true;       ///< the first sample of the patch states its noise
   double stated_sigma_m_ = 0.0;
 };
 
