@@ -1,6 +1,6 @@
 // Arc length by adaptive Gauss-Legendre quadrature, and its inverse, for any speed function.
-// Quadrature and not a difference of two antiderivatives: that would lose short arcs far from the
-// origin.
+// Quadrature is used because the difference of two antiderivatives would lose the digits of short
+// arcs far from the origin.
 #pragma once
 
 #include <algorithm>
@@ -35,8 +35,8 @@ double gauss(const Speed& speed, double t0, double t1) {
 template <typename Speed>
 double adaptive(const Speed& speed, double t0, double t1, double whole, double tolerance,
                 int depth) {
-  // Each halving at a singularity of the speed next to the arc halves the piece: below 2^-60 of the
-  // arc it no longer counts.
+  // Next to a singularity of the speed every level halves the piece that contains it. A piece below
+  // 2^-60 of the arc no longer matters.
   constexpr int kDeepest = 60;
   const double middle = 0.5 * (t0 + t1);
   const double left = gauss(speed, t0, middle);
@@ -52,8 +52,9 @@ double adaptive(const Speed& speed, double t0, double t1, double whole, double t
 }  // namespace arc_length_detail
 
 /// Integral of the speed (>= 0, smooth on the open interval) from t0 to t1, negative if t1 < t0. A
-/// piece is halved while that changes it by more than 16 epsilon of the whole arc, the rounding of
-/// a sum of 12 terms; the halves are then right to far less, as the rule is of order 24.
+/// piece is halved as long as halving changes it by more than 16 epsilon of the whole arc, which is
+/// the rounding of a sum of 12 terms. The rule is of order 24, so the halves are far more exact
+/// than that.
 template <typename Speed>
 double integrate_speed(const Speed& speed, double t0, double t1) {
   constexpr double kRelative = 16.0 * std::numeric_limits<double>::epsilon();
@@ -61,11 +62,10 @@ double integrate_speed(const Speed& speed, double t0, double t1) {
   return arc_length_detail::adaptive(speed, t0, t1, whole, kRelative * std::abs(whole), 0);
 }
 
-/// The t at signed arc length s from t0, where length(u, v) is the signed arc length and grows at
-/// speed(t)
-/// (> 0 but at isolated points). Newton's method on what remains of the arc, in a bracket that is
-/// open until a step overshoots; no step before that exceeds `first_step` (> 0) or twice the last
-/// one.
+/// The t at signed arc length s from t0. length(u, v) is the signed arc length from u to v;
+/// speed(t) is its derivative by v, > 0 except at isolated points. Newton's method on the remaining
+/// arc, within a bracket whose far side is open until a step overshoots. Until then no step exceeds
+/// `first_step` (> 0) or twice the step before.
 template <typename Length, typename Speed>
 double invert_arc_length(const Length& length, const Speed& speed, double t0, double s,
                          double first_step) {
@@ -80,13 +80,13 @@ double invert_arc_length(const Length& length, const Speed& speed, double t0, do
   double travelled = 0.0;
   for (int i = 0; i < kMostIterations; ++i) {
     const double newton = remaining / speed(t);  // infinite at a cusp
-    // Before the bracket has a say: a step of rounding size may end on its border.
+    // This test comes before the bracket: a step of rounding size may end on the bracket's border.
     if (std::abs(remaining) <= kEpsilon * std::abs(s) ||
         std::abs(newton) <= kEpsilon * std::abs(t)) {
       if (travelled <= 2.0 * std::abs(s)) {
         break;
       }
-      // Long steps to and fro leave their rounding in what remains: once more, straight from t0.
+      // Long steps back and forth leave their rounding in `remaining`: measure it again from t0.
       remaining = s - length(t0, t);
       travelled = 0.0;
       continue;

@@ -29,7 +29,7 @@ FootPoint Circle::foot_point(const Vec2& point) const {
     return no_foot_point(*this);
   }
   const double t = std::atan2(point.y(), point.x());
-  // Left of counterclockwise travel is inside.
+  // The inside is left of counterclockwise travel.
   return {t, position(t), a - point.norm()};
 }
 

@@ -25,19 +25,19 @@ struct Circle {
   /// Derivative of the position by the shape parameters at fixed t; 2 x 1.
   Eigen::Matrix<double, 2, 1> position_by_parameters(double t) const;
 
-  /// Nearest point of the whole curve. The centre has all points nearest: t = 0.
+  /// Nearest point of the whole curve. For the centre, where all points are equally near: t = 0.
   FootPoint foot_point(const Vec2& point) const;
 
   /// Arc length from t0 to t1, negative if t1 < t0. [m]
   double arc_length(double t0, double t1) const;
-  /// The t at signed arc length s from t0.
+  /// The t at signed arc length s [m] from t0.
   double parameter_at_arc_length(double t0, double s) const;
 
   ParameterDomain domain() const;
 
-  /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
-  /// found (section 5.3). Anywhere: t = 0; nullopt if kappa = 0. The canonical tangent angle is not
-  /// used.
+  /// The place and direction of travel with this local geometry, signed by travel (section 5.3).
+  /// All places of a circle are alike: t = 0, with the direction from the sign of kappa. Does not
+  /// use the tangent angle. nullopt if kappa = 0 or if the geometry is not finite.
   std::optional<Localisation> localise(const LocalGeometry& local) const;
 };
 

@@ -63,7 +63,7 @@ double CubicSpline::speed(double t) const {
 
 double CubicSpline::arc_length(double t0, double t1) const {
   const auto speed_at = [this](double u) { return speed(u); };
-  if (t0 * t1 < 0.0) {  // a bend as sharp as c is small lies near t = 0
+  if (t0 * t1 < 0.0) {  // for small c there is a sharp bend near t = 0
     return integrate_speed(speed_at, t0, 0.0) + integrate_speed(speed_at, 0.0, t1);
   }
   return integrate_speed(speed_at, t0, t1);
@@ -86,7 +86,8 @@ std::optional<Localisation> CubicSpline::localise(const LocalGeometry& local) co
     return std::nullopt;
   }
   // (45) in homogeneous form: sin(phi) 2 t = cos(phi) (3 a t^2 + 2 b t + c). At an inflection the
-  // slope is extreme and the discriminant 0, below it by rounding or noise: it is then taken as 0.
+  // slope is extreme and the discriminant is 0. Rounding or noise can make it negative; it then
+  // counts as 0.
   const double cosine = std::cos(local.tangent_angle);
   const double sine = std::sin(local.tangent_angle);
   const double quadratic = 3.0 * a * cosine;

@@ -12,7 +12,7 @@ struct CubicSpline {
   using Parameters = Eigen::Matrix<double, 3, 1>;
 
   double a = 1.0;  ///< [1/sqrt(m)]
-  double b = 0.0;  ///< slope term
+  double b = 0.0;  ///< slope term [1]
   double c = 1.0;  ///< [sqrt(m)]
 
   static CubicSpline from_parameters(const Parameters& p) { return {p[0], p[1], p[2]}; }
@@ -30,19 +30,20 @@ struct CubicSpline {
   /// Nearest point of the whole curve.
   FootPoint foot_point(const Vec2& point) const;
 
-  /// |C'(t)| [m]. Not std::hypot: its care for overflow costs quadrature several times the speed.
+  /// |C'(t)| [m]. Without std::hypot, whose protection from overflow makes quadrature several times
+  /// slower.
   double speed(double t) const;
   /// Arc length from t0 to t1, negative if t1 < t0. [m]
   double arc_length(double t0, double t1) const;
-  /// The t at signed arc length s from t0.
+  /// The t at signed arc length s [m] from t0.
   double parameter_at_arc_length(double t0, double s) const;
 
   ParameterDomain domain() const;
 
-  /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
-  /// found (section 5.3). Needs the tangent angle in the canonical frame, which has two places;
-  /// kappa and kappa_s choose. A slope that the curve does not reach (c > 0) gives the inflection
-  /// next to it.
+  /// The place and direction of travel with this local geometry, signed by travel (section 5.3).
+  /// Needs the tangent angle in the canonical frame. Two places have that slope; kappa and kappa_s
+  /// choose between them. For c > 0 the curve does not reach every slope: such a slope gives the
+  /// nearest inflection. nullopt if the geometry is not finite.
   std::optional<Localisation> localise(const LocalGeometry& local) const;
 };
 

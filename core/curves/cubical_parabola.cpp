@@ -54,7 +54,7 @@ double CubicalParabola::arc_length(double t0, double t1) const {
 
 double CubicalParabola::parameter_at_arc_length(double t0, double s) const {
   const auto speed_at = [this](double u) { return speed(u); };
-  // x = t: no arc is shorter than its step in t.
+  // x = t, so no arc is shorter than its step in t.
   return invert_arc_length([this](double u, double v) { return arc_length(u, v); }, speed_at, t0, s,
                            std::abs(s));
 }

@@ -12,7 +12,7 @@ struct CubicalParabola {
   using Parameters = Eigen::Matrix<double, 2, 1>;
 
   double a = 1.0;  ///< [1/m^2]
-  double c = 0.0;  ///< slope at the inflection
+  double c = 0.0;  ///< slope at the inflection [1]
 
   static CubicalParabola from_parameters(const Parameters& p) { return {p[0], p[1]}; }
   Parameters parameters() const { return {a, c}; }
@@ -29,18 +29,19 @@ struct CubicalParabola {
   /// Nearest point of the whole curve.
   FootPoint foot_point(const Vec2& point) const;
 
-  /// |C'(t)| [m]. Not std::hypot: its care for overflow costs quadrature several times the speed.
+  /// |C'(t)| [m]. Without std::hypot, whose protection from overflow makes quadrature several times
+  /// slower.
   double speed(double t) const;
   /// Arc length from t0 to t1, negative if t1 < t0. [m]
   double arc_length(double t0, double t1) const;
-  /// The t at signed arc length s from t0.
+  /// The t at signed arc length s [m] from t0.
   double parameter_at_arc_length(double t0, double s) const;
 
   ParameterDomain domain() const;
 
-  /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
-  /// found (section 5.3). Needs the tangent angle in the canonical frame; nullopt where that is
-  /// vertical (nowhere on the curve).
+  /// The place and direction of travel with this local geometry, signed by travel (section 5.3).
+  /// Needs the tangent angle in the canonical frame. nullopt if that angle is vertical, which it is
+  /// nowhere on the curve, or if the geometry is not finite.
   std::optional<Localisation> localise(const LocalGeometry& local) const;
 };
 

@@ -1,4 +1,4 @@
-// The classes that palpate recognises, and what each is made of.
+// The curve classes that palpate recognises: names, shape parameters, symmetry.
 #pragma once
 
 #include <array>
@@ -33,7 +33,8 @@ inline constexpr std::array kCurveClasses = {
 /// Lower-case name with underscores ("semi_cubical_parabola").
 std::string_view name_of(CurveClass curve_class);
 
-/// The class of that name, hyphens and spaces read as underscores, case ignored; nullopt if none.
+/// The class with that name; case is ignored, and hyphens and spaces count as underscores. nullopt
+/// if there is none.
 std::optional<CurveClass> curve_class_from_name(std::string_view name);
 
 /// Letters of the shape parameters in their order: "a" (circle, parabola), "ab" (ellipse,
@@ -42,10 +43,10 @@ std::optional<CurveClass> curve_class_from_name(std::string_view name);
 std::string_view parameter_letters(CurveClass curve_class);
 
 /// Order of the rotation symmetry of the pose: 2 for ellipse and cubical parabola, 1 for the other
-/// curves, 0 where it is continuous (circle: free rotation; line: free sliding).
+/// curves, 0 for a continuous symmetry (circle: free rotation; line: free sliding).
 int pose_symmetry(CurveClass curve_class);
 
-/// Free parameters of shape and pose together that points on the curve can determine: line 2,
+/// Number of parameters of shape and pose together that points on the curve can determine: line 2,
 /// circle 3, parabola 4, ellipse, hyperbola, cubical and semi-cubical parabola 5, spline 6.
 int degrees_of_freedom(CurveClass curve_class);
 

@@ -10,24 +10,25 @@
 namespace palpate {
 namespace {
 
-/// The angle t of the foot in the first quadrant, for a point there. The foot is (a^2 x / (l +
-/// a^2), b^2 y / (l + b^2)) with the multiplier l of Lagrange that puts it on the ellipse, the only
-/// one above -b^2 (D. Eberly, "Distance from a point to an ellipse"). With z = 1 + l/b^2 as unknown
-/// nothing cancels: neither next to a circle (e -> 0) nor next to the major axis (z -> 0).
+/// The angle t of the foot, for a point in the first quadrant. The foot is (a^2 x / (l + a^2), b^2
+/// y / (l + b^2)), where l is the Lagrange multiplier that puts it on the ellipse, the only one
+/// above -b^2 (D. Eberly, "Distance from a point to an ellipse"). With z = 1 + l/b^2 as the unknown
+/// nothing cancels, neither near a circle (e -> 0) nor near the major axis (z -> 0).
 double first_quadrant_angle(double a, double b, double x, double y) {
   const double focal2 = (a - b) * (a + b);
   if (y == 0.0) {
-    // The vertex, or off it for a point inside the evolute's cusp at focal2 / a.
+    // The vertex; or, for a point inside the cusp of the evolute at focal2 / a, a foot off the
+    // vertex.
     const double cosine = a * x < focal2 ? a * x / focal2 : 1.0;
     return std::atan2(std::sqrt((1.0 - cosine) * (1.0 + cosine)), cosine);
   }
   const double e = focal2 / (b * b);
   const double nx = a * x / (b * b);
   const double ny = y / b;
-  // (nx / (z + e))^2 + (ny / z)^2 - 1 falls and is convex for z > 0: from a start with a value >= 0
-  // Newton's method climbs to the root and never passes it.
+  // (nx / (z + e))^2 + (ny / z)^2 - 1 is decreasing and convex for z > 0: from a start with a value
+  // >= 0 Newton's method rises to the root and never passes it.
   double z = std::max(ny, nx - e);
-  constexpr int kMostIterations = 100;  // 1.5-fold growth at worst, from rounding to 1
+  constexpr int kMostIterations = 100;  // growth by 1.5 at worst, from rounding to 1
   for (int i = 0; i < kMostIterations; ++i) {
     const double c = nx / (z + e);
     const double s = ny / z;
@@ -47,7 +48,8 @@ double perimeter(double a, double b) {
   double geometric = b;
   double weight = 0.5;
   double sum = a * a - weight * (a - b) * (a + b);
-  constexpr int kMostIterations = 40;  // quadratic once a/b is near 1; it takes its root before
+  // Each step takes the root of a/b, then converges quadratically.
+  constexpr int kMostIterations = 40;
   for (int i = 0; i < kMostIterations; ++i) {
     const double difference = 0.5 * (mean - geometric);
     if (!(difference > std::numeric_limits<double>::epsilon() * mean)) {
@@ -105,8 +107,8 @@ double Ellipse::speed(double t) const {
 }
 
 double Ellipse::arc_length(double t0, double t1) const {
-  // Whole turns in one formula; the rest in pieces that end at the vertices, next to which the
-  // speed of a slender ellipse has its singularities.
+  // Whole turns have a closed form. The rest is integrated in pieces that end at the vertices,
+  // because the speed of a slender ellipse has its singularities near them.
   const double turns = std::trunc((t1 - t0) / (2.0 * kPi));
   const double end = t1 - 2.0 * kPi * turns;
   double length = turns != 0.0 ? turns * perimeter(a, b) : 0.0;
@@ -115,7 +117,7 @@ double Ellipse::arc_length(double t0, double t1) const {
   const auto speed_at = [this](double u) { return speed(u); };
   double sum = 0.0;
   for (double u = low; u < high;) {
-    // The next multiple of pi/2, and at least a step on where rounding sees none.
+    // The next multiple of pi/2; if rounding leaves no step to it, the end of the arc.
     const double vertex = 0.5 * kPi * (std::floor(u / (0.5 * kPi)) + 1.0);
     const double v = vertex > u ? std::min(vertex, high) : high;
     sum += integrate_speed(speed_at, u, v);
@@ -125,7 +127,7 @@ double Ellipse::arc_length(double t0, double t1) const {
 }
 
 double Ellipse::parameter_at_arc_length(double t0, double s) const {
-  // Whole turns first: Newton's method then stays within one.
+  // Whole turns first, so that Newton's method stays within one turn.
   const double turns = std::trunc(s / perimeter(a, b));
   const double rest = s - turns * perimeter(a, b);
   return 2.0 * kPi * turns +

@@ -1,5 +1,5 @@
-// What the foot points of all classes share: the signed result, the choice of the nearest
-// candidate, its last digits, and the search from a near start.
+// Foot points, the parts that all classes share: the signed result, the choice of the nearest
+// candidate, its last digits, and the search from a nearby start.
 #pragma once
 
 #include <cmath>
@@ -9,13 +9,13 @@
 
 namespace palpate {
 
-/// The outcome for a point that is not finite: infinitely far from everywhere.
+/// The result for a point that is not finite: infinitely far away.
 template <typename C>
 FootPoint no_foot_point(const C& curve) {
   return {0.0, curve.position(0.0), std::numeric_limits<double>::infinity()};
 }
 
-/// The signed result at a known foot t.
+/// The foot point at a known t, with its signed distance.
 template <typename C>
 FootPoint foot_point_at(const C& curve, double t, const Vec2& point) {
   const CurveDerivatives d = curve.derivatives(t);
@@ -24,11 +24,12 @@ FootPoint foot_point_at(const C& curve, double t, const Vec2& point) {
   return {t, d.position, cross(d.first, away) < 0.0 ? -distance : distance};
 }
 
-/// Newton's method on (C(t) - p) . C'(t) = 0 from t, while it brings that nearer to 0 and the point
-/// no farther away than rounding: for the last digits of a foot that is known to a few.
+/// Improves a foot that is known to a few digits to full precision: Newton's method on (C(t) - p) .
+/// C'(t) = 0 from t. It stops when the left side no longer shrinks or the distance grows by more
+/// than rounding.
 template <typename C>
 double polish_foot_point(const C& curve, double t, const Vec2& point) {
-  constexpr int kMostIterations = 8;  // digits double: four from the first, and as many to spare
+  constexpr int kMostIterations = 8;  // the digits double: four from the first, four to spare
   constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
   double best = t;
   double best_slope = std::numeric_limits<double>::infinity();
@@ -46,7 +47,7 @@ double polish_foot_point(const C& curve, double t, const Vec2& point) {
     best_distance2 = distance2;
     const double speed2 = d.first.squaredNorm();
     const double second =
-        speed2 + away.dot(d.second);  // half the squared distance's second derivative
+        speed2 + away.dot(d.second);  // half the second derivative of the squared distance
     const double step = -slope / (second > 0.0 ? second : speed2);
     if (!std::isfinite(step) || step == 0.0) {
       break;
@@ -56,8 +57,8 @@ double polish_foot_point(const C& curve, double t, const Vec2& point) {
   return best;
 }
 
-/// The foot at the nearest of the candidates that `visit_candidates(visit)` hands over, polished.
-/// The candidates must include one next to the global minimum of the distance.
+/// The nearest of the candidates that `visit_candidates(visit)` passes to `visit`, improved to full
+/// precision. One candidate must be close to the global minimum of the distance.
 template <typename C, typename VisitCandidates>
 FootPoint nearest_foot_point(const C& curve, const Vec2& point,
                              const VisitCandidates& visit_candidates) {
@@ -73,17 +74,17 @@ FootPoint nearest_foot_point(const C& curve, const Vec2& point,
   return foot_point_at(curve, polish_foot_point(curve, best, point), point);
 }
 
-/// Foot of `point` by Newton's method from `t_start`, for callers that track t from sample to
-/// sample. It is the foot whose basin t_start lies in: a local minimum of the distance, no farther
-/// from the point than t_start is, and t runs on without a jump where the curve closes. Where
-/// Newton's method meets no minimum (t_start beyond the evolute, too far away, not finite), the
-/// global foot, t next to t_start.
+/// The foot of `point` that Newton's method reaches from `t_start`, for callers that track t from
+/// sample to sample. It is a local minimum of the distance and no farther from the point than
+/// t_start is. t is not wrapped where a curve closes. Where Newton's method meets no minimum
+/// (t_start beyond the evolute, too far away or not finite), returns the nearest point of the whole
+/// curve, with the t closest to t_start if the curve is periodic.
 template <typename C>
 FootPoint foot_point_near(const C& curve, const Vec2& point, double t_start) {
-  // Five steps from a start within a tenth of the radius of curvature, and some halvings.
+  // Five steps from a start within a tenth of the radius of curvature, plus some halvings.
   constexpr int kMostIterations = 15;
-  // Newton's step has converged where it moves the foot by no more than rounding moves the points,
-  // or where it is small and shrinks no more: next to the evolute rounding is magnified.
+  // Newton's method has converged if the step moves the foot by no more than the rounding of the
+  // points, or if the step is small and no longer shrinks: near the evolute rounding is magnified.
   constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
   constexpr double kSmall = 1e-10;
   double t = t_start;

@@ -38,8 +38,8 @@ FootPoint Hyperbola::foot_point(const Vec2& point) const {
   if (!point.allFinite()) {
     return no_foot_point(*this);
   }
-  // (C - p) . C' = 0, over (a^2 + b^2) cosh t, with w = sinh t: w - A w / sqrt(1 + w^2) = B, for B
-  // >= 0 by symmetry with one root w > 0 (or w = 0).
+  // (C - p) . C' = 0, divided by (a^2 + b^2) cosh t, with w = sinh t: w - A w / sqrt(1 + w^2) = B.
+  // For B >= 0, by symmetry, it has one root w > 0 (or w = 0).
   const double squares = a * a + b * b;
   const double big_a = a * point.x() / squares;
   const double big_b = b * std::abs(point.y()) / squares;
@@ -47,11 +47,11 @@ FootPoint Hyperbola::foot_point(const Vec2& point) const {
   if (big_b == 0.0) {
     w = big_a > 1.0 ? std::sqrt((big_a - 1.0) * (big_a + 1.0)) : 0.0;
   } else {
-    // A > 0: convex, Newton's method descends from an upper bound; A <= 0: concave, it climbs from
-    // a lower one. In both cases it never passes the root.
+    // A > 0: convex, and Newton's method descends from an upper bound. A <= 0: concave, and it
+    // rises from a lower bound. In both cases it never passes the root.
     const double direction = big_a > 0.0 ? -1.0 : 1.0;
     w = big_a > 0.0 ? big_a + big_b : big_b / (1.0 - big_a);
-    constexpr int kMostIterations = 100;  // 2/3 a step at worst, next to the evolute's cusp
+    constexpr int kMostIterations = 100;  // 2/3 per step at worst, near the evolute's cusp
     for (int i = 0; i < kMostIterations; ++i) {
       const double q = 1.0 + w * w;
       const double root = std::sqrt(q);
@@ -73,7 +73,7 @@ double Hyperbola::speed(double t) const {
 
 double Hyperbola::arc_length(double t0, double t1) const {
   const auto speed_at = [this](double u) { return speed(u); };
-  if (t0 * t1 < 0.0) {  // next to the vertex of a slender branch the speed has its singularities
+  if (t0 * t1 < 0.0) {  // the speed of a slender branch has singularities near the vertex
     return integrate_speed(speed_at, t0, 0.0) + integrate_speed(speed_at, 0.0, t1);
   }
   return integrate_speed(speed_at, t0, t1);

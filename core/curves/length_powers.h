@@ -7,8 +7,7 @@
 
 namespace palpate {
 
-/// Power of the unit of length in each shape parameter's unit, in the order of
-/// parameter_letters(class).
+/// Power of length in the unit of each shape parameter, in the order of parameter_letters(class).
 inline Eigen::Vector3d length_powers(CurveClass curve_class) {
   switch (curve_class) {
     case CurveClass::CubicalParabola:

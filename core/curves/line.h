@@ -28,13 +28,14 @@ struct Line {
 
   /// Arc length from t0 to t1, negative if t1 < t0. [m]
   double arc_length(double t0, double t1) const;
-  /// The t at signed arc length s from t0.
+  /// The t at signed arc length s [m] from t0.
   double parameter_at_arc_length(double t0, double s) const;
 
   ParameterDomain domain() const;
 
-  /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
-  /// found (section 5.3). Anywhere: t = 0, along the line.
+  /// The place and direction of travel with this local geometry, signed by travel (section 5.3).
+  /// All places of a line are alike: t = 0, along increasing t. nullopt if the geometry is not
+  /// finite.
   std::optional<Localisation> localise(const LocalGeometry& local) const;
 };
 

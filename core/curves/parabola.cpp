@@ -31,16 +31,16 @@ FootPoint Parabola::foot_point(const Vec2& point) const {
   if (!point.allFinite()) {
     return no_foot_point(*this);
   }
-  // (C - p) . C' = 0, over 2 a^2: t^3 + p t - q = 0, for q >= 0 by symmetry with one root t > 0 (or
-  // t = 0). There the cubic is convex: from above Newton's method descends to the root and never
-  // passes it.
+  // (C - p) . C' = 0, divided by 2 a^2: t^3 + p t - q = 0. For q >= 0, by symmetry, it has one root
+  // t > 0 (or t = 0). The cubic is convex there: from above Newton's method descends to the root
+  // and never passes it.
   const double p = 2.0 - point.x() / a;
   const double q = std::abs(point.y()) / a;
   double t = std::cbrt(q) + (p < 0.0 ? std::sqrt(-p) : 0.0);
   if (p > 0.0) {
     t = std::min(t, q / p);
   }
-  constexpr int kMostIterations = 100;  // 2/3 a step at worst, next to the evolute's cusp
+  constexpr int kMostIterations = 100;  // 2/3 per step at worst, near the evolute's cusp
   for (int i = 0; i < kMostIterations; ++i) {
     const double slope = 3.0 * t * t + p;
     const double next = slope > 0.0 ? t - ((t * t + p) * t - q) / slope : t;
@@ -53,7 +53,7 @@ FootPoint Parabola::foot_point(const Vec2& point) const {
 }
 
 double Parabola::arc_length(double t0, double t1) const {
-  // a (t sqrt(1 + t^2) + asinh t), its difference taken so that short arcs keep their digits.
+  // a (t sqrt(1 + t^2) + asinh t); the difference is computed so that short arcs keep their digits.
   const double q0 = std::hypot(1.0, t0);
   const double q1 = std::hypot(1.0, t1);
   if (t0 * t1 <= 0.0) {

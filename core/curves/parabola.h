@@ -30,14 +30,14 @@ struct Parabola {
 
   /// Arc length from t0 to t1, negative if t1 < t0. [m]
   double arc_length(double t0, double t1) const;
-  /// The t at signed arc length s from t0.
+  /// The t at signed arc length s [m] from t0.
   double parameter_at_arc_length(double t0, double s) const;
 
   ParameterDomain domain() const;
 
-  /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
-  /// found (section 5.3). t = kappa_s / (3 kappa^2); nullopt if kappa = 0. The tangent angle is not
-  /// used.
+  /// The place and direction of travel with this local geometry, signed by travel (section 5.3): t
+  /// = kappa_s / (3 kappa^2). Does not use the tangent angle. nullopt if kappa = 0 or if the
+  /// geometry is not finite.
   std::optional<Localisation> localise(const LocalGeometry& local) const;
 };
 

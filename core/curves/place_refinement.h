@@ -1,4 +1,4 @@
-// The last digits of a localisation, from all that was measured there.
+// Improves a localisation to full precision, from all measured quantities at the place.
 #pragma once
 
 #include <algorithm>
@@ -10,22 +10,23 @@
 
 namespace palpate {
 
-/// A place and how badly it disagrees with a measurement.
+/// A place on a curve, and how far its geometry is from a measurement.
 struct RefinedPlace {
   double t = 0.0;
-  double disagreement = std::numeric_limits<double>::infinity();  ///< squared, without unit
+  double disagreement = std::numeric_limits<double>::infinity();  ///< squared, dimensionless
 };
 
-/// Gauss-Newton from t on the tangent angle [rad] and on kappa over sqrt(kappa^2 + |kappa_s|), both
-/// for increasing t: the angle alone is blind at an inflection (and coarse next to a cusp), kappa
-/// at a vertex, and no point is both. The disagreement counts kappa_s as well, which tells places
-/// of like angle apart.
+/// Gauss-Newton from t on the tangent angle [rad] and on kappa / sqrt(kappa^2 + |kappa_s|), both
+/// for increasing t. Both are needed: the angle does not change at an inflection (and is inaccurate
+/// next to a cusp), kappa does not change at a vertex, and no point is both. The disagreement also
+/// includes kappa_s, which distinguishes places with equal angles.
 template <typename C>
 RefinedPlace refine_place(const C& curve, double t, const LocalGeometry& measured) {
-  // Of an exact geometry the digits double; of one that no place has exactly, the error falls by a
-  // constant factor, and where twenty steps do not settle it, the disagreement says so.
+  // For an exact geometry the number of digits doubles. For a geometry that no place has exactly,
+  // the error falls by a constant factor; if twenty steps are not enough, the disagreement shows
+  // it.
   constexpr int kMostIterations = 20;
-  // Where the digits end: t moves the position by less than this part of the radius of curvature.
+  // Full precision: t moves the position by less than this fraction of the radius of curvature.
   constexpr double kRounding = 2.0 * std::numeric_limits<double>::epsilon();
   RefinedPlace best;
   for (int i = 0; i < kMostIterations; ++i) {
@@ -44,7 +45,7 @@ RefinedPlace refine_place(const C& curve, double t, const LocalGeometry& measure
       return best;
     }
     best = {t, disagreement};
-    // By arc length the angle changes at kappa, the scaled curvature at kappa_s / scale.
+    // Derivatives by arc length: kappa for the angle, kappa_s / scale for the scaled curvature.
     const double bend_rate = here.kappa_s / scale;
     const double step =
         (angle * here.kappa + bend * bend_rate) / (here.kappa * here.kappa + bend_rate * bend_rate);

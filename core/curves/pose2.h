@@ -1,4 +1,4 @@
-// Rigid motions of the plane, SE(2). No reflection is ever applied: chirality is part of a shape.
+// Rigid motions of the plane, SE(2). Reflections are never applied: chirality is part of a shape.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@ inline constexpr double kPi = std::numbers::pi;
 /// Wraps an angle to (-pi, pi]. [rad]
 inline double wrap_angle(double angle) {
   if (std::abs(angle) < kPi) {
-    return angle;  // as the remainder, which takes a division
+    return angle;  // a shortcut without the division of std::remainder
   }
   const double wrapped = std::remainder(angle, 2.0 * kPi);
   return wrapped <= -kPi ? kPi : wrapped;
@@ -26,7 +26,7 @@ inline Vec2 left_of(const Vec2& v) { return {-v.y(), v.x()}; }
 /// z component of the cross product of two plane vectors.
 inline double cross(const Vec2& u, const Vec2& v) { return u.x() * v.y() - u.y() * v.x(); }
 
-/// A pose A_T_B: takes coordinates in frame B to frame A, p_A = R(theta) p_B + (x, y).
+/// A pose A_T_B. It transforms coordinates from frame B to frame A: p_A = R(theta) p_B + (x, y).
 struct Pose2 {
   double x = 0.0;      ///< [m]
   double y = 0.0;      ///< [m]
@@ -34,7 +34,7 @@ struct Pose2 {
 
   Vec2 translation() const { return {x, y}; }
 
-  /// R(theta) v: for directions and differences.
+  /// R(theta) v, for directions and differences.
   Vec2 rotate(const Vec2& v) const {
     const double c = std::cos(theta);
     const double s = std::sin(theta);
@@ -50,13 +50,13 @@ struct Pose2 {
 
   Vec2 operator*(const Vec2& p) const { return rotate(p) + translation(); }
 
-  /// A_T_C = A_T_B * B_T_C, theta wrapped.
+  /// A_T_C = A_T_B * B_T_C, with theta wrapped.
   Pose2 operator*(const Pose2& other) const {
     const Vec2 t = *this * other.translation();
     return {t.x(), t.y(), wrap_angle(theta + other.theta)};
   }
 
-  /// Coordinates in frame B of a point given in frame A, without forming the inverse pose.
+  /// Coordinates in frame B of a point given in frame A. Does not form the inverse pose.
   Vec2 to_local(const Vec2& p) const { return rotate_back(p - translation()); }
 
   Pose2 inverse() const {
@@ -65,7 +65,7 @@ struct Pose2 {
   }
 };
 
-/// Pose2::to_local for many points: sine and cosine once.
+/// Pose2::to_local for many points: computes sine and cosine once.
 class ToLocal {
  public:
   explicit ToLocal(const Pose2& pose)

@@ -26,10 +26,10 @@ CurveDerivatives SemiCubicalParabola::derivatives(double t) const {
 LocalGeometry SemiCubicalParabola::geometry(double t) const {
   const double slope = 1.5 * a * t + b;
   const double q = 1.0 + slope * slope;
-  // Towards the cusp kappa grows without bound; at it the direction is that of the arm t > 0.
+  // kappa grows without bound towards the cusp. At the cusp the direction is that of the arm t > 0.
   const double direction = t < 0.0 ? -1.0 : 1.0;
   const double kappa = 0.75 * a / (std::abs(t) * q * std::sqrt(q));
-  // d kappa / dt over the speed 2 |t| sqrt(q), brought over one denominator.
+  // d kappa / dt, divided by the speed 2 |t| sqrt(q), over one denominator.
   const double kappa_s =
       -kappa * (q + 4.5 * a * t * slope) / (2.0 * t * std::abs(t) * q * std::sqrt(q));
   return {std::atan2(direction * slope, direction), kappa, kappa_s};
@@ -45,7 +45,7 @@ FootPoint SemiCubicalParabola::foot_point(const Vec2& point) const {
   if (!point.allFinite()) {
     return no_foot_point(*this);
   }
-  // (C - p) . C' / t = 2 (t^2 - x) + (a t^3 + b t^2 - y)(3 a t + 2 b) = 0, and the cusp t = 0.
+  // (C - p) . C' / t = 2 (t^2 - x) + (a t^3 + b t^2 - y)(3 a t + 2 b) = 0; and the cusp t = 0.
   Polynomial<4> condition;
   condition << -2.0 * point.x() - 2.0 * b * point.y(), -3.0 * a * point.y(), 2.0 + 2.0 * b * b,
       5.0 * a * b, 3.0 * a * a;
@@ -62,9 +62,8 @@ FootPoint foot_point_at(const SemiCubicalParabola& curve, double t, const Vec2& 
     const double distance = away.norm();
     return {t, d.position, cross(d.first, away) < 0.0 ? -distance : distance};
   }
-  // The cusp has no normal. Both arms turn left, away from what lies between them, which is to
-  // their right; the rest of the plane, all points whose nearest is the cusp included, is to their
-  // left.
+  // The cusp has no normal. Both arms turn left, so the points between the arms are on the right.
+  // The rest of the plane is on the left, including all points whose nearest point is the cusp.
   const double x = point.x();
   const bool between = x > 0.0 && std::abs(point.y() - curve.b * x) < curve.a * x * std::sqrt(x);
   return {0.0, Vec2::Zero(), between ? -point.norm() : point.norm()};
@@ -85,7 +84,7 @@ double SemiCubicalParabola::arc_length(double t0, double t1) const {
 
 double SemiCubicalParabola::parameter_at_arc_length(double t0, double s) const {
   const auto speed_at = [this](double u) { return speed(u); };
-  // x = t^2: no arc from the cusp is shorter than t^2.
+  // x = t^2, so no arc from the cusp is shorter than t^2.
   return invert_arc_length([this](double u, double v) { return arc_length(u, v); }, speed_at, t0, s,
                            std::sqrt(std::abs(s)));
 }

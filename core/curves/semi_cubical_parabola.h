@@ -12,7 +12,7 @@ struct SemiCubicalParabola {
   using Parameters = Eigen::Matrix<double, 2, 1>;
 
   double a = 1.0;  ///< [1/sqrt(m)]
-  double b = 0.0;  ///< slope at the cusp
+  double b = 0.0;  ///< slope at the cusp [1]
 
   static SemiCubicalParabola from_parameters(const Parameters& p) { return {p[0], p[1]}; }
   Parameters parameters() const { return {a, b}; }
@@ -26,27 +26,29 @@ struct SemiCubicalParabola {
   /// Derivative of the position by the shape parameters at fixed t; 2 x 2.
   Eigen::Matrix<double, 2, 2> position_by_parameters(double t) const;
 
-  /// Nearest point of the whole curve; the cusp has no normal, but is a foot like any other.
-  /// Between the arms the distance is negative, everywhere else positive, continuously through the
-  /// cusp.
+  /// Nearest point of the whole curve. The cusp has no normal, but may be the nearest point like
+  /// any other. The distance is negative between the arms and positive everywhere else; it is
+  /// continuous around the cusp.
   FootPoint foot_point(const Vec2& point) const;
 
-  /// |C'(t)| [m]. Not std::hypot: its care for overflow costs quadrature several times the speed.
+  /// |C'(t)| [m]. Without std::hypot, whose protection from overflow makes quadrature several times
+  /// slower.
   double speed(double t) const;
   /// Arc length from t0 to t1, negative if t1 < t0. [m]
   double arc_length(double t0, double t1) const;
-  /// The t at signed arc length s from t0.
+  /// The t at signed arc length s [m] from t0.
   double parameter_at_arc_length(double t0, double s) const;
 
   ParameterDomain domain() const;
 
-  /// Where on the curve, and in which direction of travel, the local geometry (signed by travel) is
-  /// found (section 5.3). Needs the tangent angle in the canonical frame; its sign of the cosine
-  /// tells the arm, the sign of kappa the direction. nullopt if kappa = 0 (nowhere on the curve).
+  /// The place and direction of travel with this local geometry, signed by travel (section 5.3).
+  /// Needs the tangent angle in the canonical frame. The sign of kappa gives the direction of
+  /// travel; with it, the sign of the angle's cosine gives the arm. nullopt if kappa = 0 or the
+  /// tangent is vertical, or if the geometry is not finite.
   std::optional<Localisation> localise(const LocalGeometry& local) const;
 };
 
-/// The signed result at a known foot t, right at the cusp too.
+/// The foot point at a known t; also correct at the cusp.
 FootPoint foot_point_at(const SemiCubicalParabola& curve, double t, const Vec2& point);
 
 static_assert(PlaneCurve<SemiCubicalParabola>);

@@ -1,4 +1,4 @@
-// The numbers that make one curve of a class, and how well they and its pose are known.
+// The shape parameters of a curve, and the covariance of shape and pose.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@ struct ShapeParameters {
   Eigen::Vector3d values = Eigen::Vector3d::Zero();
 };
 
-/// Covariance of [shape parameters; x; y; theta]; at most 6 x 6, no heap.
+/// Covariance of [shape parameters; x; y; theta]; at most 6 x 6, no heap allocation.
 using ShapePoseCovariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
 
 }  // namespace palpate

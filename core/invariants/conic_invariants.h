@@ -9,15 +9,14 @@
 
 namespace palpate {
 
-/// Ic1 = (ab)^(-2/3) for an ellipse, -(ab)^(-2/3) for a hyperbola, 0 for a parabola [m^(-4/3)].
-/// Ic2 = (a^2 +- b^2) / (ab)^(4/3) for them, (2a)^(-2/3) for a parabola [m^(-2/3)].
-/// Erratum: Ic1 is the affine curvature of the ellipse itself; the factor pi^(2/3) that the paper
-/// puts between them does not belong there.
+/// Ellipse: Ic1 = (ab)^(-2/3); hyperbola: -(ab)^(-2/3); parabola: 0 [m^(-4/3)]. Ellipse and
+/// hyperbola: Ic2 = (a^2 +- b^2) / (ab)^(4/3); parabola: (2a)^(-2/3) [m^(-2/3)]. Erratum: Ic1 is
+/// the affine curvature of the ellipse itself; the paper's factor pi^(2/3) between them is wrong.
 struct ConicInvariants {
   InvariantStatus status = InvariantStatus::TooFewPoints;
   double ic1 = 0.0;
   double ic2 = 0.0;
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of (ic1, ic2), first order
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of (ic1, ic2), to first order
 };
 
 /// (26) and (28). Precondition: kappa1, kappa2 != 0 and |kappa1| != |kappa2|.
@@ -26,9 +25,9 @@ void conic_pair(const T& kappa1, const T& kappa_s1, const T& kappa2, const T& ka
                 T& ic2) {
   using std::abs;
   using std::cbrt;
-  // With k = |kappa|^(2/3) and Ip = k (1 + tau^2), (26) is k1 k2 (1 + (k1 tau1^2 - k2 tau2^2) /
-  // (k1 - k2)). Near a circle Ip1 - Ip2 would cancel what k1 - k2 has left; this form, with the
-  // difference taken from the curvatures themselves, loses only what the data have lost.
+  // With k = |kappa|^(2/3) and Ip = k (1 + tau^2), (26) is k1 k2 (1 + (k1 tau1^2 - k2 tau2^2) / (k1
+  // - k2)). Near a circle, Ip1 - Ip2 would cancel. This form takes the difference from the
+  // curvatures themselves, and loses only digits that the data do not have.
   const T root1 = cbrt(abs(kappa1));
   const T root2 = cbrt(abs(kappa2));
   const T k1 = root1 * root1;
@@ -38,12 +37,12 @@ void conic_pair(const T& kappa1, const T& kappa_s1, const T& kappa2, const T& ka
   const T tau2 = kappa_s2 / (3.0 * kappa2 * kappa2);
   const T ratio = 1.0 + (k1 * tau1 * tau1 - k2 * tau2 * tau2) / difference;
   ic1 = k1 * k2 * ratio;
-  // Ic2 = Ip + Ic1 / k from the point of the larger curvature, where both terms are smaller.
+  // Ic2 = Ip + Ic1 / k, from the point with the larger curvature, where both terms are smaller.
   ic2 = k1 > k2 ? k1 * (1.0 + tau1 * tau1) + k2 * ratio : k2 * (1.0 + tau2 * tau2) + k1 * ratio;
 }
 
-/// Ic1 and Ic2 of two points. PointsTooAlike where the curvatures are equal; SignChange where the
-/// points are of one patch and their curvatures of opposite sign.
+/// Ic1 and Ic2 from two points. PointsTooAlike if the curvatures are equal; SignChange if the
+/// points are of one patch and their curvatures have opposite signs.
 ConicInvariants conic_invariants(const MeasuredGeometry& point1, const MeasuredGeometry& point2);
 
 }  // namespace palpate

@@ -10,25 +10,26 @@
 namespace palpate {
 namespace {
 
-/// Standard deviation that rounding gives u and v, relative to them: a few operations each. It
-/// weights exact data, whose covariance is zero.
+/// Relative standard deviation of u and v due to rounding, a few operations each. It weights exact
+/// data, whose covariance is zero.
 constexpr double kPointRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// A curvature is of a certain sign where it is this many standard deviations from zero: noise has
-/// the other sign there once in 30,000 points.
+/// The sign of a curvature is certain if it is this many standard deviations from zero. By noise it
+/// is then wrong for one in 30,000 points.
 constexpr double kSignSigmas = 4.0;
 
-/// The spread of u counts as more than noise where its chi-square exceeds its mean by this many
-/// standard deviations, by chance one circle in a hundred.
+/// The spread of u exceeds noise if its chi-square exceeds its mean by this many standard
+/// deviations; by chance it does for one circle in a hundred.
 constexpr double kSpreadSigmas = 3.0;
 
-/// Bounds the time; what has not settled by then is judged by the last change (kSlopeAcceptable).
+/// Bounds the time. If the iteration has not converged by then, the last change decides
+/// (kSlopeAcceptable).
 constexpr int kMaxIterations = 100;
 constexpr double kSlopeTolerance = 1e-13;  ///< relative change of the slope: converged if below
 constexpr double kSlopeAcceptable =
-    1e-6;  ///< relative change after kMaxIterations: usable if below
+    1e-6;  ///< usable after kMaxIterations if the relative change is below
 
-/// One point of the (u, v) plane.
+/// A point in the (u, v) plane.
 struct LinePoint {
   double kappa;
   double kappa_s;
@@ -38,20 +39,20 @@ struct LinePoint {
   Eigen::Matrix2d covariance;  ///< of (u, v)
 };
 
-/// v = (1 + kappa_s^2 / (9 kappa^4)) / u: the square's factor in the bracket.
+/// The factor of kappa_s^2 in v = (1 + kappa_s^2 / (9 kappa^4)) / u, within the parentheses.
 double of_square(double kappa) {
   const double square = kappa * kappa;
   return 1.0 / (9.0 * square * square);
 }
 
-/// Covariance of (u, v) where the true kappa_s^2 is `m`. For a Gaussian kappa_s the moments of its
+/// Covariance of (u, v) if the true kappa_s^2 is `m`. For a Gaussian kappa_s the moments of its
 /// square are exact: variance 4 m s^2 + 2 s^4, covariance with kappa 2 sqrt(m) cov.
 void set_covariance(LinePoint& point, double m) {
   const double variance = point.measured(1, 1);
   const double m_variance = 4.0 * m * variance + 2.0 * variance * variance;
   const double cross = 2.0 * std::copysign(std::sqrt(m), point.kappa_s) * point.measured(0, 1);
   const double factor = of_square(point.kappa);
-  // u = |kappa|^(-2/3) and v by kappa and by m.
+  // Derivatives of u = |kappa|^(-2/3) and of v by kappa and by m.
   const double u_by_kappa = -2.0 / 3.0 * point.u / point.kappa;
   const double v_by_kappa = (2.0 - 10.0 * factor * m) / (3.0 * point.u * point.kappa);
   const double v_by_m = factor / point.u;
@@ -108,14 +109,14 @@ bool sign_changes_within_a_patch(std::span<const MeasuredGeometry> points) {
   return false;
 }
 
-/// The model's kappa_s^2 at a point of the line.
+/// kappa_s^2 of the model at a point of the line.
 double model_kappa_s_squared(const LinePoint& point, double ic1, double ic2) {
   const double v = ic2 - ic1 * point.u;
   return std::max(0.0, (v * point.u - 1.0) / of_square(point.kappa));
 }
 
-/// Weighted mean of v: the line of slope zero. Weights come from the model, not from each point's
-/// own noisy kappa_s, which would favour points that happen to lie low.
+/// Weighted mean of v: the line of slope zero. The weights come from the model. Weights from each
+/// point's own noisy kappa_s would favour points that happen to lie low.
 void fit_parabola(std::vector<LinePoint> points, ConicLine& line) {
   double mean = 0.0;
   for (int iteration = 0; iteration < 3; ++iteration) {
@@ -140,7 +141,7 @@ void fit_parabola(std::vector<LinePoint> points, ConicLine& line) {
   }
 }
 
-/// True where the points' abscissae differ by no more than their errors.
+/// True if the abscissae of the points differ by no more than their errors.
 bool too_alike(const std::vector<LinePoint>& points) {
   double weight_sum = 0.0;
   double mean = 0.0;
@@ -181,7 +182,7 @@ WeightedMeans weighted_means(const std::vector<LinePoint>& points, double slope)
   return means;
 }
 
-/// York's beta: the most likely abscissa of the point, from the mean.
+/// York's beta: the most likely abscissa of the point, relative to the mean.
 double adjusted_abscissa(const LinePoint& point, const WeightedMeans& means, double slope) {
   const double du = point.u - means.u;
   const double dv = point.v - means.v;
@@ -230,7 +231,7 @@ ConicLine fit_conic_line(std::span<const MeasuredGeometry> measured) {
 
   double slope = initial_slope(points);
   double change = std::numeric_limits<double>::infinity();
-  const double slope_unit = line.ip_mean / points.front().u;  // v / u: what a slope is compared to
+  const double slope_unit = line.ip_mean / points.front().u;  // v / u, the scale for slopes
   WeightedMeans means;
   for (int iteration = 0; iteration < kMaxIterations && change > kSlopeTolerance; ++iteration) {
     means = weighted_means(points, slope);

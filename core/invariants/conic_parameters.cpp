@@ -10,11 +10,10 @@
 namespace palpate {
 namespace {
 
-/// Semi-axes from the product p = ab and the sum (ellipse) or difference (hyperbola) of squares q:
-/// the larger one from the root that adds, the smaller one from the product, so that neither
-/// loses digits by cancellation (a/b = 100 would cost four).
-/// Erratum: under the inner root (29) and (30) must have Ic2^2 - 4 Ic1, not Ic2^2 - 4 Ic1^2, as
-/// (34) and (35) have.
+/// Semi-axes from the product p = ab and the sum (ellipse) or difference (hyperbola) q of the
+/// squares. The larger one comes from the root that adds, the smaller one from the product, so
+/// neither loses digits by cancellation (a/b = 100 would cost four). Erratum: under the inner root,
+/// (29) and (30) must have Ic2^2 - 4 Ic1 instead of Ic2^2 - 4 Ic1^2, as in (34) and (35).
 template <typename T>
 std::array<T, 2> semi_axes(const T& ic1, const T& ic2, const T& discriminant) {
   using std::abs;
@@ -26,11 +25,11 @@ std::array<T, 2> semi_axes(const T& ic1, const T& ic2, const T& discriminant) {
 }
 
 /// Rounding of Ic2^2 - 4 Ic1 in units of Ic2^2: both terms carry a few roundings from the
-/// invariants' evaluation. A discriminant above minus this is a circle's.
+/// evaluation of the invariants. A discriminant above minus this belongs to a circle.
 constexpr double kDiscriminantRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-/// One-sided: a discriminant this many standard deviations below zero is no ellipse's, but for a
-/// circle in 30,000.
+/// One-sided. A discriminant this many standard deviations below zero excludes an ellipse; by
+/// chance it occurs for one circle in 30,000.
 constexpr double kDiscriminantSigmas = 4.0;
 
 ConicParameters finish(const Eigen::Vector2d& invariants, const Eigen::Matrix2d& covariance,

@@ -15,12 +15,13 @@ struct ConicParameters {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of (a, b), first order [m^2]
 };
 
-/// (29), (30), a >= b. `covariance` is that of (ic1, ic2). Where the data cannot tell a from b (the
-/// squares' difference within its own standard deviation of zero, or below it by rounding) the
-/// covariance is evaluated one standard deviation away from the circle, where it is finite.
+/// (29), (30), a >= b. `covariance` is that of (ic1, ic2). If the data cannot distinguish a from b
+/// (the difference of their squares is within its standard deviation of zero, or negative by
+/// rounding), the covariance is evaluated one standard deviation away from the circle, where it is
+/// finite.
 ConicParameters ellipse_parameters(double ic1, double ic2, const Eigen::Matrix2d& covariance);
 
-/// (34), (35); a and b in either order.
+/// (34), (35); a may be smaller than b.
 ConicParameters hyperbola_parameters(double ic1, double ic2, const Eigen::Matrix2d& covariance);
 
 /// a = 1 / (2 Ip^(3/2)), from (18).

@@ -8,11 +8,11 @@
 namespace palpate {
 namespace {
 
-/// Standard deviation of exact data, of kappa and kappa_s in units of the points' own scale.
+/// Standard deviation of exact data: of kappa and kappa_s, in units of the points' own scale.
 constexpr double kDataRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// Chi-square of "kappa = 0, kappa_s = 0 and all tangents parallel": the common direction is a free
-/// parameter, known up to pi (patches may be travelled either way).
+/// Chi-square of "kappa = 0, kappa_s = 0 and all tangents parallel". The common direction is a free
+/// parameter, known up to pi because patches may be travelled either way.
 double chi2_of_line(std::span<const MeasuredGeometry> points, double scale) {
   const double reference = points.front().tangent_angle;
   double weight_sum = 0.0;
@@ -33,8 +33,8 @@ double chi2_of_line(std::span<const MeasuredGeometry> points, double scale) {
   return chi2 - weighted * weighted / weight_sum;
 }
 
-/// (kappa, kappa_s) of a point travelled so that its patch turns left on the whole, and the inverse
-/// of their covariance; in lengths of 1 / scale.
+/// (kappa, kappa_s) of a point, for the direction of travel in which its patch turns left on the
+/// whole, and the inverse of their covariance. In lengths of 1 / scale.
 struct LeftTurning {
   Eigen::Vector2d z;
   Eigen::Matrix2d weight;
@@ -74,7 +74,7 @@ ConstantCurvature fit_constant_curvature(std::span<const MeasuredGeometry> point
   fit.line_dof = 3 * count - 1;
   const double scale = curvature_scale(points);
   if (scale == 0.0) {
-    // Exactly straight pieces, parallel or not.
+    // Exactly straight pieces, which may or may not be parallel.
     fit.line_chi2 = chi2_of_line(points, 1.0);
     return fit;
   }

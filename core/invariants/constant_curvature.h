@@ -1,4 +1,5 @@
-// Lines and circles, which the paper leaves out: kappa_s = 0 and kappa the same everywhere.
+// Tests for lines and circles, which the paper does not treat: kappa_s = 0 and kappa equal
+// everywhere.
 #pragma once
 
 #include <span>
@@ -10,15 +11,16 @@ namespace palpate {
 
 struct ConstantCurvature {
   InvariantStatus status = InvariantStatus::TooFewPoints;
-  double kappa = 0.0;        ///< weighted mean of the curvature's size, >= 0 [1/m]
+  double kappa = 0.0;        ///< weighted mean of |curvature| [1/m]
   double variance = 0.0;     ///< of kappa [1/m^2]
-  double circle_chi2 = 0.0;  ///< of "kappa constant, kappa_s = 0"
+  double circle_chi2 = 0.0;  ///< of the hypothesis "kappa constant, kappa_s = 0"
   int circle_dof = 0;        ///< 2 points - 1
-  double line_chi2 = 0.0;    ///< of "kappa = 0, kappa_s = 0, tangents parallel"
+  double line_chi2 = 0.0;    ///< of the hypothesis "kappa = 0, kappa_s = 0, tangents parallel"
   int line_dof = 0;          ///< 3 points - 1
 };
 
-/// The direction of travel may differ between patches: within one the sign of kappa must agree.
+/// The direction of travel may differ from patch to patch. Within a patch the sign of kappa must
+/// agree.
 ConstantCurvature fit_constant_curvature(std::span<const MeasuredGeometry> points);
 
 }  // namespace palpate

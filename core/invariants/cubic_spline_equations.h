@@ -1,5 +1,5 @@
-// The cubic spline segment (t^2, a t^3 + b t^2 + c t) without its parameter t: (49) and the closed
-// form of c, free of denominators.
+// Equations for the cubic spline segment (t^2, a t^3 + b t^2 + c t) that do not contain its
+// parameter t: (49) and the closed form of c, without denominators.
 #pragma once
 
 #include <cmath>
@@ -8,9 +8,10 @@
 
 namespace palpate {
 
-/// What (49) and the formula for c share at one point. With the paper's L and M,
-///     lambda - b = e / cosine,  L = 2 kappa / cosine^3 (signed for travel with x increasing, so
-///     that its two signs are the two ways of turning the frame),  M = jerk cosine / kappa^2.
+/// The terms at one point that (49) and the formula for c share. With the paper's L and M:
+///     lambda - b = e / cosine,  L = 2 kappa / cosine^3,  M = jerk cosine / kappa^2.
+/// L is signed for travel with increasing x, so its two signs are the two orientations of the
+/// frame.
 template <typename T>
 struct SplinePoint {
   T e;       ///< (lambda - b) cosine
@@ -26,9 +27,9 @@ SplinePoint<T> spline_point(const CanonicalPoint<T>& p, const T& a, const T& b) 
   return {p.sine - b * p.cosine, p.kappa, p.jerk, p.cosine, a * a * c2 * c2};
 }
 
-/// (49) times cosine^13 kappa^2, a polynomial in everything, divided by the Euclidean norm of its
-/// terms: lies in [-sqrt(6), sqrt(6)] for every argument. The paper divides by 81 M a^4 instead,
-/// which blows up at inflections (jerk = 0 or kappa = 0) and as a -> 0. 0 where all terms are 0.
+/// (49) times cosine^13 kappa^2, which is a polynomial, divided by the Euclidean norm of its terms:
+/// in [-sqrt(6), sqrt(6)] for all arguments, 0 if all terms are 0. The paper divides by 81 M a^4
+/// instead, which diverges at inflections (jerk = 0 or kappa = 0) and for a -> 0.
 template <typename T>
 T spline_residual(const SplinePoint<T>& p) {
   using std::sqrt;
@@ -46,8 +47,8 @@ T spline_residual(const SplinePoint<T>& p) {
   return norm2 > 0.0 ? sum / sqrt(norm2) : sum;
 }
 
-/// The formula for c that follows (50), as numerator and denominator: c = numerator / denominator.
-/// At an inflection or where (45) and (46) coincide both vanish.
+/// The formula for c that follows (50): c = numerator / denominator. Both vanish at an inflection,
+/// and where (45) and (46) coincide.
 struct SplineC {
   double numerator = 0.0;
   double denominator = 0.0;

@@ -1,4 +1,4 @@
-// Why an invariant has, or has not, a value.
+// Why an invariant has a value, or has none.
 #pragma once
 
 #include <string_view>
@@ -7,17 +7,18 @@ namespace palpate {
 
 enum class InvariantStatus {
   Ok,
-  NotFinite,       ///< an input, or the value itself, is not a finite number
+  NotFinite,       ///< an input or the value itself is not finite
   TooFewPoints,    ///< fewer points than unknowns
   ZeroCurvature,   ///< kappa = 0 where the invariant divides by it: an inflection or a line
-  SignChange,      ///< kappa changes sign within a patch: no conic does that
-  PointsTooAlike,  ///< the points carry the same information: the value is undetermined
-  NoRealRoot,      ///< the class's equations have no real solution for these points
-  NotThisClass,    ///< solved, but the values lie outside the class (e.g. a^2 < 0)
-  NotConverged,    ///< the iteration did not reach a minimum
+  SignChange,      ///< kappa changes sign within a patch, which it does on no conic
+  PointsTooAlike,  ///< the points carry the same information, so the value is undetermined
+  NoRealRoot,      ///< the equations of the class have no real solution for these points
+  /// There is a solution, but its values lie outside the class (for example a^2 < 0).
+  NotThisClass,
+  NotConverged,  ///< the iteration did not reach a minimum
 };
 
-/// "ok", "not finite", ...; static storage.
+/// A short text: "ok", "not finite", ...; static storage.
 std::string_view describe(InvariantStatus status);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// First-order propagation of covariance by automatic differentiation (Ceres Jets): no derivative
+// First-order propagation of covariances by automatic differentiation (Ceres Jets). No derivative
 // of an invariant is written by hand.
 #pragma once
 

@@ -1,4 +1,5 @@
-// An invariant as it is reported: by the paper's name, from all points together.
+// An invariant in the form in which answers report it: with the paper's name, from all points
+// together.
 #pragma once
 
 #include <limits>
@@ -9,15 +10,15 @@
 namespace palpate {
 
 struct NamedInvariant {
-  /// Whose invariant it is. Ic1 and Ic2 are of the ellipse and of the hyperbola: of the one that
-  /// the sign of Ic1 names.
+  /// The class that the invariant belongs to. Ic1 and Ic2 belong to both ellipse and hyperbola;
+  /// this is the one that the sign of Ic1 indicates.
   CurveClass curve_class = CurveClass::Unclassified;
   /// Ip (19) [m^(-2/3)]; Ic1 (26) [m^(-4/3)], Ic2 (28) [m^(-2/3)]; Icp1 (39) [1/m^2], Icp2 (40);
-  /// Iscp1 (43) [1/m], Iscp2 (44); a [m^(-1/2)], b, c [m^(1/2)] of the spline (45)-(50); beyond the
+  /// Iscp1 (43) [1/m], Iscp2 (44); a [m^(-1/2)], b, c [m^(1/2)] of the spline (45)-(50); not in the
   /// paper: kappa of the line and the circle [1/m]. Static storage.
   std::string_view name;
   double value = 0.0;
-  /// Standard deviation by propagation from the estimates; infinite where it is not known.
+  /// Standard deviation, propagated from the estimates; infinite if unknown.
   double sigma = std::numeric_limits<double>::infinity();
 };
 

@@ -1,4 +1,5 @@
-// The steps that the two parabolas of third degree share. Included by their source files only.
+// The solution for a pair of points, common to the cubical and the semi-cubical parabola. Included
+// only by their source files.
 #pragma once
 
 #include <cmath>
@@ -11,20 +12,23 @@
 
 namespace palpate::detail {
 
-/// The quadratic's coefficients are sums of about ten products: below this fraction of their terms
-/// nothing but rounding is left of them.
+/// The coefficients of the quadratic are sums of about ten products. Below this fraction of their
+/// terms they consist of rounding.
 inline constexpr double kCoefficientRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-/// A discriminant this close to zero is a double root: its rounding is that of the coefficients.
+/// A discriminant this close to zero counts as a double root; its rounding is that of the
+/// coefficients.
 inline constexpr double kDiscriminantRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-/// Variance of what the data cannot tell.
+/// Variance of a quantity that the data do not determine.
 inline constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-/// `Family`: quadratic(k1, ks1, k2, ks2, rotation), signed_invariant(CanonicalPoint) (Icp1 or
-/// Iscp1), parameters(CanonicalPoint) -> array of 2, and
-/// accept(angle, parameters, unit): brings both to the class's convention and units, false if
-/// they lie outside.
+/// `Family` has
+///   quadratic(k1, ks1, k2, ks2, rotation),
+///   signed_invariant(CanonicalPoint), which is Icp1 or Iscp1,
+///   parameters(CanonicalPoint), an array of 2, and
+///   accept(solution, unit), which converts angle and parameters to the convention and the units
+///   of the class; false if they lie outside the class.
 template <typename Family>
 PairSolutions solve_pair(const MeasuredGeometry& measured1, const MeasuredGeometry& measured2) {
   PairSolutions result;
@@ -90,7 +94,7 @@ PairSolutions solve_pair(const MeasuredGeometry& measured1, const MeasuredGeomet
       value = propagated.value;
       value_covariance = propagated.covariance(covariance);
     }
-    if (double_root || !value_covariance.allFinite()) {  // the first order says nothing
+    if (double_root || !value_covariance.allFinite()) {  // first order is not enough
       value_covariance = Eigen::Vector4d::Constant(kUnknown).asDiagonal();
     }
     solution.angle = value[0];
@@ -99,7 +103,7 @@ PairSolutions solve_pair(const MeasuredGeometry& measured1, const MeasuredGeomet
     solution.mismatch = value[3];
     solution.mismatch_variance = value_covariance(3, 3);
     if (value.allFinite() && Family::accept(solution, unit)) {
-      if (solution.covariance.hasNaN()) {  // 0 times a power of the unit that has overflowed
+      if (solution.covariance.hasNaN()) {  // 0 times a power of the unit that overflowed
         solution.covariance = Eigen::Vector2d::Constant(kUnknown).asDiagonal();
       }
       result.solutions[static_cast<std::size_t>(result.count++)] = solution;

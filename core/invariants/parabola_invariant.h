@@ -5,9 +5,9 @@
 
 namespace palpate {
 
-/// |kappa|^(2/3), the form in which every conic invariant meets the curvature.
-/// Erratum: the paper prints kappa^(2/3) in (14), (18), (26), (28) and (31), where kappa is
-/// negative in its own parametrisations; the absolute value is meant.
+/// |kappa|^(2/3), the form in which the curvature enters every invariant of a conic. Erratum: the
+/// paper prints kappa^(2/3) in (14), (18), (26), (28) and (31), where kappa is negative in its own
+/// parametrisations; the absolute value is meant.
 template <typename T>
 T curvature_two_thirds(const T& kappa) {
   using std::cbrt;
@@ -15,12 +15,12 @@ T curvature_two_thirds(const T& kappa) {
   return root * root;
 }
 
-/// Ip = |kappa|^(2/3) (kappa_s^2 / (9 kappa^4) + 1), (19) [m^(-2/3)]. Constant, (2a)^(-2/3), along
-/// a parabola y^2 = 4 a x. Precondition: kappa != 0.
+/// Ip = |kappa|^(2/3) (kappa_s^2 / (9 kappa^4) + 1), (19) [m^(-2/3)]. Along a parabola y^2 = 4 a x
+/// it has the constant value (2a)^(-2/3). Precondition: kappa != 0.
 template <typename T>
 T parabola_invariant(const T& kappa, const T& kappa_s) {
-  // tau is the canonical parameter t of a parabola's point (section 5.3): of size one, so that
-  // neither kappa^4 nor kappa_s^2 is ever formed.
+  // tau is the canonical parameter t of a point of a parabola (section 5.3). It is of size one, so
+  // neither kappa^4 nor kappa_s^2 is computed.
   const T tau = kappa_s / (3.0 * kappa * kappa);
   return curvature_two_thirds(kappa) * (1.0 + tau * tau);
 }

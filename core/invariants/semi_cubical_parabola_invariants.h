@@ -1,5 +1,5 @@
-// The semi-cubical parabola (t^2, a t^3 + b t^2): invariants Iscp1 = a^2 (43) and Iscp2 = b (44),
-// whose slope two points determine.
+// The semi-cubical parabola (t^2, a t^3 + b t^2): its invariants Iscp1 = a^2 (43) and Iscp2 = b
+// (44). Two points determine the slope that they need.
 #pragma once
 
 #include <cmath>
@@ -10,22 +10,22 @@
 
 namespace palpate {
 
-/// Iscp1 = a^2, (43) [1/m]. The sign of kappa cosine is part of it, so that the direction of travel
-/// does not matter. Negative: the frame must be turned by pi, or the class is another.
+/// Iscp1 = a^2, (43) [1/m]. It contains the sign of kappa cosine, so the direction of travel does
+/// not matter. Negative: the frame must be turned by pi, or the curve is of another class.
 template <typename T>
 T semi_cubical_parabola_a_squared(const CanonicalPoint<T>& p) {
   const T c2 = p.cosine * p.cosine;
   return -8.0 * p.kappa * p.kappa * p.kappa / (9.0 * c2 * c2 * p.jerk);
 }
 
-/// Iscp2 = b, (44).
+/// Iscp2 = b, (44) [1].
 template <typename T>
 T semi_cubical_parabola_b(const CanonicalPoint<T>& p) {
   return (p.sine + p.kappa * p.kappa / p.jerk) / p.cosine;
 }
 
-/// "Iscp2 is the same at both points" for the canonical tangent angle of point 1; see
-/// cubical_parabola_quadratic for the arguments.
+/// The condition that Iscp2 is equal at both points, for the canonical tangent angle of point 1.
+/// Arguments as for cubical_parabola_quadratic.
 template <typename T>
 AngleQuadratic<T> semi_cubical_parabola_quadratic(const T& kappa1, const T& kappa_s1,
                                                   const T& kappa2, const T& kappa_s2,
@@ -43,8 +43,8 @@ AngleQuadratic<T> semi_cubical_parabola_quadratic(const T& kappa1, const T& kapp
           k1 * c * across - kappa_s1 * (kappa_s2 * s * c + k2 * (c * c + 4.0 * s * s))};
 }
 
-/// Up to two (a, b), a > 0, at which the second invariant agrees exactly; the first one, or a third
-/// point, chooses.
+/// Up to two solutions (a, b), a > 0, for which the second invariant agrees exactly. The first
+/// invariant, or a third point, decides between them.
 PairSolutions semi_cubical_parabola_pair(const MeasuredGeometry& point1,
                                          const MeasuredGeometry& point2);
 

@@ -10,15 +10,16 @@
 namespace palpate {
 namespace {
 
-/// Distances u along the cubic, in lengths of the largest curvature radius.
+/// Distances u along the cubic, in units of the largest radius of curvature.
 constexpr double kSmallestDistance = 1e-3;
 constexpr double kLargestDistance = 1e3;
-constexpr int kStepsPerSide = 60;  ///< ten a decade
-/// A local minimum of the misfit, which is 1 where nothing agrees, below this may hide two roots
-/// within one step, a factor of 1.26 of u, or a root that noise has lifted: it is offered too. One
-/// too many costs time.
+constexpr int kStepsPerSide = 60;  ///< ten per decade
+/// A local minimum of the misfit below this (the misfit is 1 where nothing agrees) may hide two
+/// roots within one step, a factor of 1.26 of u, or a root that noise has removed. It is offered
+/// too; one too many only costs time.
 constexpr double kNearRoot = 0.3;
-/// Illinois' order is 1.44: from the tenth that a step is to a double's last digit takes eight.
+/// The Illinois method has order 1.44: eight iterations improve an error of a tenth, that of a
+/// step, to the last digit of a double.
 constexpr int kRootIterations = 12;
 
 /// A cubic by its hodograph alpha'(u) = (1 + p u + q u^2, kappa u + m u^2) at a base point.
@@ -29,7 +30,7 @@ struct BaseCubic {
   double m = 0.0;
 };
 
-/// The other point as seen from the base point's tangent.
+/// The other point, relative to the tangent at the base point.
 struct Other {
   double cosine;
   double sine;
@@ -42,8 +43,8 @@ Other seen_from(const MeasuredGeometry& base, const MeasuredGeometry& point) {
   return {std::cos(rotation), std::sin(rotation), point.kappa, point.kappa_s};
 }
 
-/// Speed v along the other point's tangent, l = cross(tangent, alpha''), and what kappa_s needs. In
-/// either direction of travel kappa = l / v^2 and kappa_s = (v c - 3 l d) / v^4.
+/// Speed v along the tangent of the other point, l = cross(tangent, alpha''), and the terms of
+/// kappa_s. For either direction of travel, kappa = l / v^2 and kappa_s = (v c - 3 l d) / v^4.
 struct AtOther {
   double v;
   double l;
@@ -59,7 +60,7 @@ AtOther at_other(const BaseCubic& cubic, const Other& other, double u) {
           cross(tangent, Vec2(2.0 * cubic.q, 2.0 * cubic.m)), tangent.dot(second)};
 }
 
-/// Left minus right side of the equation for kappa_s, relative to its terms: in [-1, 1].
+/// Left side minus right side of the equation for kappa_s, relative to its terms: in [-1, 1].
 double kappa_s_misfit(const AtOther& at, double kappa_s) {
   const double v2 = at.v * at.v;
   const double left = kappa_s * v2 * v2;
@@ -75,13 +76,14 @@ double kappa_misfit(const AtOther& at, double kappa) {
   return size > 0.0 ? (left - at.l) / size : 0.0;
 }
 
-/// The cubic through base and other with the other at u, by one of the two roots of its kappa.
+/// The cubic through base and other, with the other point at u. `branch` selects one of the two
+/// roots of the equation for its kappa.
 std::optional<BaseCubic> cubic_at(const MeasuredGeometry& base, const Other& other, double u,
                                   double branch) {
   const double u2 = u * u;
   const double m0 = 0.5 * base.kappa_s;
   const double m1 = 1.5 * base.kappa;
-  // cross(alpha'(u), tangent) = 0 is by_p p + by_q q = rest: a line of (p, q), walked by s.
+  // cross(alpha'(u), tangent) = 0 is by_p p + by_q q = rest: a line in (p, q), parametrised by s.
   const double by_p = u * other.sine - m1 * u2 * other.cosine;
   const double by_q = u2 * other.sine;
   const double rest = (base.kappa * u + m0 * u2) * other.cosine - other.sine;
@@ -109,13 +111,13 @@ std::optional<BaseCubic> cubic_at(const MeasuredGeometry& base, const Other& oth
     return std::nullopt;
   }
   const double root = std::sqrt(discriminant);
-  // The branch is the sign of the root, each by the formula that does not cancel.
+  // The branch is the sign of the root. Each root is computed by the formula that does not cancel.
   const double s =
       branch * k1 > 0.0 ? -2.0 * k0 / (k1 + branch * root) : (-k1 + branch * root) / (2.0 * k2);
   return std::isfinite(s) ? std::optional(cubic_of(s)) : std::nullopt;
 }
 
-/// How badly the cubic misses another point: mean of the squared misfits of kappa and kappa_s at
+/// How badly the cubic misses another point: mean of the squared misfits of kappa and kappa_s, at
 /// the better of the two places that have its tangent direction. In [0, 1].
 double disagreement(const BaseCubic& cubic, const Other& other) {
   // cross(alpha'(u), tangent) = 0, a quadratic in u.
@@ -138,7 +140,7 @@ double disagreement(const BaseCubic& cubic, const Other& other) {
   return best;
 }
 
-/// Appendix B: the canonical form of the cubic. None for a parabola or a cubical parabola.
+/// Appendix B: the canonical form of the cubic; nullopt for a parabola or a cubical parabola.
 std::optional<SplineSeed> canonical_seed(const BaseCubic& cubic, double base_angle) {
   const Vec2 third(cubic.q, cubic.m);
   const double size = third.norm();
@@ -169,7 +171,7 @@ std::optional<SplineSeed> canonical_seed(const BaseCubic& cubic, double base_ang
   return seed.parameters.allFinite() ? std::optional(seed) : std::nullopt;
 }
 
-/// The distances that are tried on either side.
+/// The distances to try on either side.
 std::array<double, kStepsPerSide> distances() {
   std::array<double, kStepsPerSide> result;
   const double decades = std::log10(kLargestDistance / kSmallestDistance);
@@ -222,7 +224,7 @@ class SeedSearch {
     return kappa_s_misfit(at_other(*cubic, other, u), other.kappa_s);
   }
 
-  /// Illinois' regula falsi.
+  /// A root by the Illinois variant of regula falsi.
   double root(const Other& other, double branch, double u0, double f0, double u1, double f1) const {
     for (int i = 0; i < kRootIterations && f1 != 0.0 && f0 != f1; ++i) {
       const double u = u1 - f1 * (u1 - u0) / (f1 - f0);
@@ -284,8 +286,8 @@ std::vector<SplineSeed> spline_seeds(std::span<const MeasuredGeometry> points, i
   if (points.size() < 2 || wanted < 1) {
     return {};
   }
-  // The base is the point of the largest size: the others are then at distances of order one or
-  // more, never lost below the smallest one.
+  // The base is the point of the largest size. The others then lie at distances of order one or
+  // more, and none is below the smallest distance.
   const auto size = [](const MeasuredGeometry& p) { return curvature_scale({&p, 1}); };
   std::size_t base = 0;
   for (std::size_t i = 1; i < points.size(); ++i) {

@@ -8,14 +8,14 @@ namespace palpate {
 namespace {
 
 /// backtrack <= kBacktrackSigmas * sqrt(2) * sigma: the difference of two abscissae has the noise
-/// sqrt(2) sigma; at 6 of its standard deviations one in 10^9 neighbours is refused by chance.
+/// sqrt(2) sigma. Six standard deviations reject one in 10^9 neighbours by chance.
 constexpr double kBacktrackSigmas = 6.0;
 
-/// backtrack <= kMaxBacktrack (of the half extent) where the noise is judged by the residuals:
-/// those of a window that turns back on itself are large too, and must not excuse it.
+/// backtrack <= kMaxBacktrack (of the half extent) if the noise is estimated from the residuals: a
+/// window that turns back on itself has large residuals too, and these must not excuse it.
 constexpr double kMaxBacktrack = 0.1;
 
-/// extent > kExtentRounding * rounding: below, rounding alone decides the axis.
+/// extent > kExtentRounding * rounding: below it, rounding alone determines the axis.
 constexpr double kExtentRounding = 16.0;
 
 }  // namespace
@@ -25,8 +25,8 @@ AlignedFrameResult aligned_frame(std::span<const Vec2> samples) {
   if (samples.size() < 2) {
     return result;
   }
-  // Differences to one sample are exact to a rounding of the coordinates, so that an origin far
-  // away costs nothing more than it already cost the samples.
+  // Differences to one sample are exact up to the rounding of the coordinates, so an origin far
+  // away costs no more digits than it cost the samples.
   const Vec2 reference = samples[samples.size() / 2];
   const auto count = static_cast<double>(samples.size());
   Vec2 sum = Vec2::Zero();

@@ -5,8 +5,8 @@
 namespace palpate {
 namespace {
 
-/// Curvature of the circle through three points in their order: twice the sine of the turn of the
-/// chords over the chord that closes the triangle.
+/// Curvature of the circle through three points in order: twice the sine of the angle between the
+/// chords, divided by the chord that closes the triangle.
 template <typename T>
 T circle_curvature(const PlanePoint<T>& p, const PlanePoint<T>& q, const PlanePoint<T>& r) {
   const PlanePoint<T> first = q - p;
@@ -27,7 +27,7 @@ LocalResult circle_estimate(std::span<const Vec2> samples, double sigma_m) {
         const T g = length(p[4] - p[3]);
         const T kappa_before = circle_curvature(p[0], p[1], p[2]);
         const T kappa_after = circle_curvature(p[2], p[3], p[4]);
-        // Tangent at p2: angle(p1 p2) + angle(p2 p3) - angle(p1 p3), by the inscribed angles.
+        // Tangent at p2, by the inscribed angles: angle(p1 p2) + angle(p2 p3) - angle(p1 p3).
         const PlanePoint<T> first = p[2] - p[1];
         const T tangent = atan2(first[1], first[0]) + turn(p[3] - p[1], p[3] - p[2]);
         return std::array<T, 3>{

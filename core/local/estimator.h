@@ -1,4 +1,4 @@
-// All local estimators behind one interface: over a window and over a whole patch.
+// All local estimators behind one interface: for one window, and along a whole patch.
 #pragma once
 
 #include <cstddef>
@@ -14,27 +14,27 @@ namespace palpate {
 
 enum class EstimatorKind { FiniteDifference, Circle, TwoRound, Jet };
 
-/// "finite-difference", "circle", "two-round", "jet".
+/// "finite-difference", "circle", "two-round", "jet"; estimator_kind_from_name is the inverse.
 std::string_view name_of(EstimatorKind kind);
 std::optional<EstimatorKind> estimator_kind_from_name(std::string_view name);
 
 struct EstimatorOptions {
   EstimatorKind kind = EstimatorKind::Jet;
-  /// Samples of a window; the two-round fit: of each of its first-round windows (the paper's n).
+  /// Samples of a window. For the two-round fit: of each first-round window (the paper's n).
   int window = 75;
-  /// Samples from one estimate to the next, and from one first-round window to the next (the
-  /// paper's l).
+  /// Samples from one estimate to the next. For the two-round fit also: from one first-round window
+  /// to the next (the paper's l).
   int shift = 4;
-  double sigma_m = 0.0;     ///< noise; 0 = estimate it from each window [m]
-  int jet_degree = 4;       ///< of the jet's polynomial
+  double sigma_m = 0.0;     ///< noise of a coordinate; 0 = estimate it from each window [m]
+  int jet_degree = 4;       ///< degree of the jet's polynomial
   int two_round_fits = 10;  ///< the paper's m
   FitFrame two_round_frame = FitFrame::Aligned;
 };
 
-/// Samples that one estimate takes: `window`, or n + (m - 1) l of the two-round fit.
+/// Number of samples that one estimate uses: `window`, or n + (m - 1) l for the two-round fit.
 std::size_t samples_per_estimate(const EstimatorOptions& options);
 
-/// One estimate, at the middle of the window. `samples` holds samples_per_estimate(options).
+/// One estimate, at the middle of the window. `samples` must hold samples_per_estimate(options).
 LocalResult estimate_window(std::span<const Vec2> samples, const EstimatorOptions& options);
 
 struct WindowResult {
@@ -42,7 +42,7 @@ struct WindowResult {
   LocalResult result;
 };
 
-/// Estimates along a patch, `shift` samples apart; empty if the patch is shorter than a window.
+/// Estimates along a patch, one every `shift` samples; empty if the patch is shorter than a window.
 std::vector<WindowResult> estimate_all(std::span<const Vec2> samples,
                                        const EstimatorOptions& options);
 

@@ -1,4 +1,4 @@
-// The finite differences (51) of the tangent angle, as in section 5.1.
+// Finite differences (51) of the tangent angle, as in section 5.1.
 #pragma once
 
 #include <span>
@@ -7,11 +7,12 @@
 
 namespace palpate {
 
-/// Five points of the window p0 ... p4; the tangent angle at p1, p2, p3 is that of the chord
-/// between its neighbours, arc lengths are chords, and kappa and kappa_s are the divided
-/// differences of the angle, which are (51) where the points are evenly spaced. With d the
-/// spacing, the bias is d^2 kappa_ss / 3 in kappa and of order d^2 in kappa_s. `sigma_m`: noise, 0
-/// = that of the window's jet. Cost O(1) with the noise given, else O(samples); no allocation.
+/// Estimate at the middle of five points p0 ... p4 of the window. The tangent angle at p1, p2 and
+/// p3 is that of the chord between the two neighbours. Arc lengths are chords. kappa and kappa_s
+/// are divided differences of the angle; for evenly spaced points these are (51). With the spacing
+/// d, the bias is d^2 kappa_ss / 3 for kappa and of order d^2 for kappa_s. `sigma_m`: noise [m]; 0
+/// = the noise of a jet fitted to the window. O(1) if the noise is given, otherwise O(samples).
+/// Does not allocate.
 LocalResult finite_difference_estimate(std::span<const Vec2> samples, double sigma_m = 0.0);
 
 }  // namespace palpate

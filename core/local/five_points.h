@@ -1,5 +1,5 @@
-// What the two estimators from the literature share: five points of a window, spread evenly over
-// its samples, and the propagation of their noise.
+// What the two estimators from the literature share: the choice of five points, spread evenly over
+// the samples of a window, and the propagation of their noise.
 #pragma once
 
 #include <ceres/jet.h>
@@ -37,14 +37,15 @@ T turn(const PlanePoint<T>& u, const PlanePoint<T>& v) {
   return atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
 }
 
-/// Chords must be longer than kMinChordSigmas * sqrt(2) * sigma: then a chord turns by less than a
-/// right angle at six standard deviations of its noise, and its angle is nearly linear in it.
+/// Chords must be longer than kMinChordSigmas * sqrt(2) * sigma. Then a chord turns by less than a
+/// right angle at six standard deviations of its noise, and its angle is nearly linear in the
+/// noise.
 inline constexpr double kMinChordSigmas = 6.0;
 
-/// `geometry` takes std::array<PlanePoint<T>, 5> in units in which they are about one apart, and
-/// returns (tangent angle, kappa, kappa_s) at the middle one, which is also the estimate's
-/// position. Noise not given is that of the window's jet; where the window is too short for one
-/// the covariance's diagonal is infinite.
+/// `geometry` takes std::array<PlanePoint<T>, 5>, in units of about one spacing, and returns
+/// (tangent angle, kappa, kappa_s) at the middle point. That point is also the position of the
+/// estimate. Noise that is not given is that of a jet fitted to the window; if the window is too
+/// short for a jet, the diagonal of the covariance is infinite.
 template <typename Geometry>
 LocalResult five_point_estimate(std::span<const Vec2> samples, double sigma_m,
                                 Geometry&& geometry) {
@@ -53,7 +54,7 @@ LocalResult five_point_estimate(std::span<const Vec2> samples, double sigma_m,
   if (samples.size() < 5) {
     return result;
   }
-  // The same five forwards and backwards.
+  // Chosen so that the reversed window gives the same five points.
   const auto sample = [&](std::size_t i) -> const Vec2& {
     const std::size_t last = samples.size() - 1;
     return i <= 2 ? samples[i * last / 4] : samples[last - (4 - i) * last / 4];
@@ -104,8 +105,8 @@ LocalResult five_point_estimate(std::span<const Vec2> samples, double sigma_m,
   e.tangent_angle = wrap_angle(at[0].a);
   e.kappa = at[1].a / unit;
   e.kappa_s = at[2].a / (unit * unit);
-  // The middle point's own error moves it along the normal (the offset) and along the curve, over
-  // which the true angle and kappa change.
+  // The error of the middle point moves it along the normal (the offset) and along the curve, where
+  // the true angle and kappa are different.
   const Vec2 tangent(std::cos(e.tangent_angle), std::sin(e.tangent_angle));
   Eigen::Matrix<double, 4, 10> jacobian;
   jacobian.setZero();

@@ -1,4 +1,4 @@
-// Differential geometry of a graph v(u), and how errors of its derivatives become errors of it.
+// Differential geometry of a graph v(u), and the propagation of errors of its derivatives.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,11 +9,11 @@ namespace palpate {
 struct GraphGeometry {
   double angle = 0.0;    ///< of the tangent against the u axis, in (-pi/2, pi/2) [rad]
   double kappa = 0.0;    ///< curvature, (1) for the parametrisation (u, v(u))
-  double kappa_s = 0.0;  ///< its derivative by arc length, (2)
-  /// Derivatives of (offset along the normal, angle, kappa, kappa_s) with respect to (v, v', v'',
-  /// v''', v''''), each against the truth at the foot of the point on the true curve: an error dv
-  /// moves the point along the normal by dv cos(angle), and along the curve by dv sin(angle), over
-  /// which the true angle, kappa and kappa_s change.
+  double kappa_s = 0.0;  ///< derivative of the curvature by arc length, (2)
+  /// Derivatives of (offset along the normal, angle, kappa, kappa_s) by (v, v', v'', v''', v'''').
+  /// Errors are relative to the truth at the foot of the point on the true curve: an error dv moves
+  /// the point along the normal by dv cos(angle) and along the curve by dv sin(angle), where the
+  /// true angle, kappa and kappa_s are different.
   Eigen::Matrix<double, 4, 5> jacobian;
 };
 

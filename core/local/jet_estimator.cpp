@@ -12,8 +12,8 @@
 namespace palpate {
 namespace {
 
-/// Residuals beyond the unknowns that an estimate of the noise needs: four leave it a relative
-/// standard deviation of 1/sqrt(2 * 4) = 35 %.
+/// Residuals, in addition to the unknowns, that an estimate of the noise needs: with four its
+/// relative standard deviation is 1/sqrt(2 * 4) = 35 %.
 constexpr std::size_t kSpareResiduals = 4;
 
 /// The polynomial of a window, or why there is none.
@@ -22,7 +22,7 @@ struct JetFit {
   LocalStatus status = LocalStatus::TooFewSamples;
   AlignedFrame frame;
   LegendreFit<Degree> fit;
-  double sigma = 0.0;  ///< noise, given or seen, in units of the half extent
+  double sigma = 0.0;  ///< noise, given or estimated, in units of the half extent
   double window_arc_m = 0.0;
 };
 
@@ -93,7 +93,7 @@ JetFit<Degree> fit_window(std::span<const Vec2> samples, double sigma_given_m) {
   return result;
 }
 
-/// What the polynomial says at one place of the window.
+/// The estimate from the polynomial at one place of the window.
 template <int Degree>
 LocalResult estimate_at(const JetFit<Degree>& window, double place) {
   constexpr int kSize = Degree + 1;

@@ -1,4 +1,4 @@
-// The graph of a polynomial in Legendre's basis: slope and arc length.
+// Slope and arc length of the graph of a polynomial in Legendre's basis.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@ inline constexpr std::array<double, 5> kGaussWeights = {0.236926885056189088, 0.
                                                         0.568888888888888889, 0.478628670499366468,
                                                         0.236926885056189088};
 
-/// Slope of the polynomial with Legendre coefficients c, where P_0 ... P_{Size-2} are the first of
-/// p.
+/// Slope of the polynomial with Legendre coefficients c. p holds P_0 ... P_{Size-2} (and possibly
+/// more) at the abscissa.
 template <int Size, int Terms>
 double slope_of(const LegendreVector<Size>& c, const LegendreVector<Terms>& p) {
   static_assert(Terms + 1 >= Size);
@@ -33,7 +33,7 @@ double slope_of(const LegendreVector<Size>& c, const LegendreVector<Terms>& p) {
   return sum;
 }
 
-/// The same at u.
+/// Slope at the abscissa u.
 template <int Size>
 double slope(const LegendreVector<Size>& c, double u) {
   return slope_of<Size, Size>(c, legendre<Size>(u));

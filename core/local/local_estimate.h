@@ -1,4 +1,4 @@
-// What a local estimator says about one place of the touched curve.
+// The result of a local estimator for one place of the touched curve.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,16 +9,16 @@ namespace palpate {
 
 /// Local differential geometry in the world frame, signed by the direction of travel.
 struct LocalEstimate {
-  Vec2 position = Vec2::Zero();  ///< point of the fitted curve that the estimate is for [m]
+  Vec2 position = Vec2::Zero();  ///< the point of the fitted curve that the estimate belongs to [m]
   double tangent_angle = 0.0;    ///< direction of travel [rad]
   double kappa = 0.0;            ///< curvature [1/m]
-  double kappa_s = 0.0;          ///< its derivative by arc length [1/m^2]
+  double kappa_s = 0.0;          ///< derivative of the curvature by arc length [1/m^2]
   /// Joint covariance of (offset along the left normal [m], tangent angle [rad], kappa, kappa_s).
-  /// Zero where the noise is zero; its diagonal is infinite where the estimator cannot tell.
+  /// Zero if the noise is zero. Its diagonal is infinite if the estimator cannot determine it.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   double window_arc_m = 0.0;  ///< arc length from the first to the last sample of the window [m]
-  int window_samples = 0;     ///< samples that the estimate used
-  double sigma_m = 0.0;       ///< noise used: given, or estimated from the window's residuals [m]
+  int window_samples = 0;     ///< number of samples used
+  double sigma_m = 0.0;       ///< noise used: as given, or estimated from the residuals [m]
 };
 
 }  // namespace palpate

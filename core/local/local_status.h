@@ -1,4 +1,4 @@
-// Why a local estimator could or could not tell.
+// The result of a local estimate, or the reason why there is none.
 #pragma once
 
 #include <string_view>
@@ -9,15 +9,17 @@ namespace palpate {
 
 enum class LocalStatus {
   Ok,
-  TooFewSamples,  ///< fewer than the estimator's unknowns (and, where it must estimate the noise,
-                  ///< its spare residuals)
-  NotFinite,      ///< a sample is NaN or infinite, or so large that its square is
-  NoExtent,       ///< all samples in one place, or the window is no longer than its noise
-  Unresolved,     ///< too few distinct places along the window for the polynomial: dwelling samples
-  DoublesBack,    ///< abscissae run back by more than the noise: samples out of order, or a window
-                  ///< that turns by more than a right angle from its axis
-  TurnsTooFar,    ///< the window turns too far for this test
-  NotFollowed,    ///< residuals larger than the noise: a bend that the polynomial cannot follow
+  /// Fewer than the unknowns of the estimator (plus spare residuals if it must estimate the noise).
+  TooFewSamples,
+  NotFinite,  ///< a sample is NaN or infinite, or its square overflows
+  NoExtent,   ///< all samples at one place, or the window is not longer than its noise
+  /// Too few distinct places along the window for the polynomial: the probe stood still.
+  Unresolved,
+  /// Abscissae run back by more than the noise: samples out of order, or a window that turns by
+  /// more than a right angle from its axis.
+  DoublesBack,
+  TurnsTooFar,  ///< the window turns too far for this fit
+  NotFollowed,  ///< residuals exceed the noise: a bend that the polynomial cannot follow
 };
 
 /// Lower-case name with underscores ("too_few_samples").

@@ -11,15 +11,16 @@
 namespace palpate {
 namespace {
 
-// The quartic's five unknowns and eleven residuals, which tell noise to a fifth, 1 / sqrt(22).
+// The quartic's five unknowns and eleven residuals, which determine the noise to a fifth, 1 /
+// sqrt(22).
 constexpr std::size_t kLongBlock = 16;
 constexpr std::size_t kShortBlock = 8;  // the unknowns and three residuals
 
-/// Residuals with |r| <= kCut * (median / kMedianOfNormal) are kept: 6 in 10^5 of a normal law are
-/// not, nearly all spikes that matter are not.
+/// Residuals with |r| <= kCut * (median / kMedianOfNormal) are kept. Of a normal distribution 6 in
+/// 10^5 are removed; of the spikes that matter, nearly all.
 constexpr double kCut = 4.0;
 
-/// The shorter blocks are used where the longer ones' variance exceeds theirs by more than
+/// The shorter blocks are used if the variance of the longer ones exceeds theirs by more than
 /// kExcess standard deviations of the ratio (one-sided 1 %).
 constexpr double kExcess = 2.33;
 
@@ -28,7 +29,7 @@ struct BlockNoise {
   double mean_extent_m = 0.0;
 };
 
-/// Blocks of at least `block` samples, as even as may be.
+/// Uses blocks of at least `block` samples, of lengths as equal as possible.
 BlockNoise from_blocks(std::span<const Vec2> samples, std::size_t block) {
   BlockNoise result;
   const std::size_t blocks = samples.size() / block;
@@ -62,7 +63,8 @@ BlockNoise from_blocks(std::span<const Vec2> samples, std::size_t block) {
   return result;
 }
 
-/// Blocks of at least `block` samples, longer where these are too short against the noise.
+/// Uses blocks of at least `block` samples, or longer ones if these are too short compared with the
+/// noise.
 NoiseEstimate from_resolved_blocks(std::span<const Vec2> samples, std::size_t block) {
   BlockNoise result = from_blocks(samples, block);
   const auto unresolved = [&] {
@@ -85,7 +87,8 @@ double robust_sigma(std::vector<double>& sizes) {
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
   const double scale = *middle / kMedianOfNormal;
-  // More than half of the residuals exactly zero (quantised samples): no scale to cut by.
+  // If more than half of the residuals are exactly zero (quantised samples), there is no scale for
+  // a cut.
   const double limit = scale > 0.0 ? kCut * scale : std::numeric_limits<double>::infinity();
   double sum = 0.0;
   int kept = 0;

@@ -1,4 +1,4 @@
-// Noise of a patch from its high frequencies, whatever the class of the curve.
+// Noise of a patch, from its high frequencies. Does not need the class of the curve.
 #pragma once
 
 #include <span>
@@ -11,20 +11,24 @@ namespace palpate {
 struct NoiseEstimate {
   LocalStatus status = LocalStatus::TooFewSamples;
   double sigma_m = 0.0;  ///< standard deviation of one coordinate's white noise [m]
-  int dof = 0;           ///< residuals less unknowns; relative sd of sigma_m about 1/sqrt(2 dof)
+  /// Residuals minus unknowns; the relative standard deviation of sigma_m is about 1/sqrt(2 dof).
+  int dof = 0;
 };
 
-/// Residuals of quartics through blocks of 16 samples, pooled: a median first, then the mean square
-/// of what lies within 4 of it, corrected for the cut. sigma_m^2 is unbiased for white Gaussian
-/// noise; a tenth of spikes does little harm. Blocks are longer where 16 samples span less than 20
-/// sigma (dense or dwelling samples), of 8 where the longer ones show the curve's own bending.
-/// Consecutive equal samples count once. Noise that is correlated over more than a block (form
-/// error, drift) is not seen. Samples so coarse that 8 of them turn by a right angle have no
-/// estimate. Needs 8 distinct samples. Cost O(samples log(samples)) at most.
+/// Estimates the noise from the residuals of quartics through blocks of 16 samples: first a median,
+/// then the mean square of the residuals within 4 deviations of it, corrected for that cut. Needs 8
+/// distinct samples. O(samples log(samples)) at most.
+///
+/// For white Gaussian noise sigma_m^2 is unbiased. A tenth of spikes does little harm. Blocks are
+/// longer where 16 samples span less than 20 sigma (dense samples, or a probe at rest), and 8
+/// samples long where longer ones show the bending of the curve. Consecutive equal samples count
+/// once. Noise that is correlated over more than a block (form error, drift) is not included. If
+/// samples are so far apart that 8 of them turn by a right angle, there is no estimate.
 NoiseEstimate estimate_noise(std::span<const Vec2> samples);
 
-/// Standard deviation of residuals of equal variance by their sizes, some of which are spikes': a
-/// median, then the mean square of what lies within 4 of it, corrected for the cut. Reorders them.
+/// Standard deviation of residuals of equal variance from their absolute values, some of which may
+/// be spikes: a median, then the mean square of those within 4 deviations, corrected for that cut.
+/// Reorders `sizes`.
 double robust_sigma(std::vector<double>& sizes);
 
 }  // namespace palpate

@@ -8,20 +8,21 @@
 namespace palpate {
 namespace {
 
-/// 1 - leverage >= kMinFreedom: below, the sample alone fixes the fit and has no residual.
+/// 1 - leverage >= kMinFreedom: below it, the sample alone determines the fit there and has no
+/// residual.
 constexpr double kMinFreedom = 1e-9;
 
-/// Mean square of what the lower degrees leave of the next one, for abscissae in [-1, 1]: below,
-/// rounding decides.
+/// Least mean square of the part of a polynomial that the lower degrees leave, for abscissae in
+/// [-1, 1]. Below it, rounding determines the result.
 constexpr double kMinPivot = 1e4 * std::numeric_limits<double>::epsilon();
 
-/// length > kLengthRounding * rounding: below, rounding alone decides the axis.
+/// length > kLengthRounding * rounding: below it, rounding alone determines the axis.
 constexpr double kLengthRounding = 16.0;
 
 }  // namespace
 
-/// Abscissae and ordinates in a frame along the samples in use, from the mean of the first half to
-/// that of the second: a window that hardly bends has its principal axis there too.
+/// Abscissae and ordinates in a frame along the samples in use, from the mean of their first half
+/// to the mean of their second half. For a window that hardly bends this is the principal axis too.
 LocalStatus ResidualBlock::place(std::span<const Vec2> samples, std::span<const std::uint8_t> use) {
   const auto is_used = [&](std::size_t i) { return use.empty() || use[i] != 0; };
   size_ = samples.size();
@@ -32,7 +33,7 @@ LocalStatus ResidualBlock::place(std::span<const Vec2> samples, std::span<const 
   if (used <= kUnknowns) {
     return LocalStatus::TooFewSamples;
   }
-  // Differences to one sample are exact to a rounding of the coordinates.
+  // Differences to one sample are exact up to the rounding of the coordinates.
   const Vec2& reference = samples[size_ / 2];
   const std::size_t half = used / 2;
   Vec2 first = Vec2::Zero();
@@ -126,7 +127,7 @@ LocalStatus ResidualBlock::fit(std::span<const Vec2> samples, std::span<const st
   double square_before = 0.0;
   for (int k = 0; k <= degree; ++k) {
     const double square = squares.sum();
-    // Negated so that NaN is refused too.
+    // Negated so that NaN is rejected too.
     if (!(square > kMinPivot * square_before)) {
       return LocalStatus::Unresolved;
     }
@@ -161,7 +162,8 @@ LocalStatus ResidualBlock::fit(std::span<const Vec2> samples, std::span<const st
   for (Lane& lane : lanes_) {
     const Pair slope = per_metre * lane.slope;
     lane.residual_m /= (1.0 + slope.square()).sqrt();
-    const Pair freedom = 1.0 + lane.leverage * (1.0 - 2.0 * lane.use);  // 1 - h in use, 1 + h else
+    // 1 - h in use, 1 + h otherwise.
+    const Pair freedom = 1.0 + lane.leverage * (1.0 - 2.0 * lane.use);
     lane.studentised_m =
         (freedom < kMinFreedom).select(0.0, lane.residual_m / freedom.max(kMinFreedom).sqrt());
     lane.studentised_m = (lane.use == 0.0 && lane.leverage > kMaxExtrapolation)

@@ -24,8 +24,8 @@ std::optional<LocalEstimate> moved(const LocalEstimate& from, double d) {
   jacobian(3, 2) = -3.0 * d * to.kappa_s / stretch;
   jacobian(3, 3) = 1.0 / (stretch * stretch * stretch);
   to.covariance = jacobian * from.covariance * jacobian.transpose();
-  // Turned by kappa times the window, the arc is longer or shorter by the same ratio as at the
-  // estimate's place.
+  // The window turns by the same angle, so its arc changes by the ratio at the place of the
+  // estimate.
   to.window_arc_m = from.window_arc_m / stretch;
   return to;
 }

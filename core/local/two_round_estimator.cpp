@@ -14,20 +14,21 @@ namespace {
 using Quadratic = LegendreFit<2>;
 using Coefficients = LegendreVector<3>;
 
-/// First round: one window's parabola.
+/// First round: the parabola of one window.
 struct WindowFit {
   AlignedFrame frame;
   Coefficients c;
   double median_u = 0.0;
-  Eigen::Matrix<double, 5, 1> derivatives;  ///< v, v' ... at the median's abscissa
+  Eigen::Matrix<double, 5, 1> derivatives;  ///< v, v' ... at the abscissa of the median
   GraphGeometry geometry;                   ///< dimensionless
-  /// What an error of sample i does to (offset, angle, kappa): these rows times P(u_i). [world]
+  /// Effect of an error of sample i on (offset, angle, kappa): these rows times P(u_i). World
+  /// units.
   Eigen::Matrix<double, 3, 3> influence;
 };
 
 double slope(const Coefficients& c, double u) { return c[1] + 3.0 * c[2] * u; }
 
-/// The world's x axis, reversed where the travel goes against it.
+/// A frame along the world's x axis, reversed if travel is against it.
 AlignedFrame world_frame(std::span<const Vec2> samples, const AlignedFrame& aligned) {
   AlignedFrame frame = aligned;
   frame.axis = aligned.axis.x() < 0.0 ? Vec2(-Vec2::UnitX()) : Vec2(Vec2::UnitX());
@@ -88,13 +89,13 @@ LocalStatus fit_window(std::span<const Vec2> samples, const TwoRoundOptions& opt
   for (int row = 0; row < 3; ++row) {
     window.influence.row(row) = fit.influence(gradients.row(row).transpose()).transpose();
   }
-  // Rows act on errors in units of the half extent and give offset, angle, kappa in the world's.
+  // The rows take errors in units of the half extent and give offset, angle, kappa in world units.
   window.influence.row(1) /= unit;
   window.influence.row(2) /= unit * unit;
   return LocalStatus::Ok;
 }
 
-/// Arc length of a window's parabola from its median to the next window's, by Simpson's rule.
+/// Arc length of a window's parabola from its median to that of the next window, by Simpson's rule.
 double arc_to(const WindowFit& window, const Vec2& next_median) {
   const double u0 = window.median_u;
   const double u1 = window.frame.to_frame(next_median).x();
@@ -132,7 +133,7 @@ LocalResult two_round_estimate(std::span<const Vec2> all_samples, const TwoRound
 
   // First round.
   std::array<WindowFit, kMaxTwoRoundFits> windows;
-  std::array<double, kMaxTwoRoundFits> arc;  // of each median, from the first window's [m]
+  std::array<double, kMaxTwoRoundFits> arc;  // of each median, from that of the first window [m]
   arc[0] = 0.0;
   double sigma_m = 0.0;
   for (std::size_t j = 0; j < m; ++j) {
@@ -151,7 +152,7 @@ LocalResult two_round_estimate(std::span<const Vec2> all_samples, const TwoRound
     }
   }
 
-  // Second round: kappa = b2 s^2 + b1 s + b0, in arc lengths scaled to [-1, 1].
+  // Second round: kappa = b2 s^2 + b1 s + b0, with arc lengths scaled to [-1, 1].
   const double arc_unit = 0.5 * arc[m - 1];
   if (!(arc_unit > 0.0)) {
     result.status = LocalStatus::DoublesBack;
@@ -179,7 +180,7 @@ LocalResult two_round_estimate(std::span<const Vec2> all_samples, const TwoRound
   e.kappa = at.geometry.kappa / frame.half_extent_m;
   e.kappa_s = slope_row.dot(second.coefficients());
 
-  // Each sample's influence on the four, over all windows that hold it.
+  // The influence of each sample on the four results, over all windows that contain it.
   for (std::size_t i = 0; i < total; ++i) {
     Eigen::Vector4d influence = Eigen::Vector4d::Zero();
     const std::size_t first = i < n ? 0 : (i - n) / l + 1;

@@ -1,5 +1,5 @@
 // The paper's two rounds of quadratic fits (section 6.1): curvature from overlapping windows of
-// samples, its derivative from a second fit of curvature against arc length.
+// samples, and its derivative from a second fit of curvature against arc length.
 #pragma once
 
 #include <span>
@@ -10,31 +10,32 @@ namespace palpate {
 
 enum class FitFrame {
   Aligned,  ///< each window's principal axis
-  World,  ///< the world's x axis, as the paper prints it: fails on steep tangents. For comparison.
+  /// The world's x axis, as printed in the paper: fails on steep tangents. For comparison only.
+  World,
 };
 
 inline constexpr int kMaxTwoRoundFits = 64;
 
 struct TwoRoundOptions {
-  int samples_per_fit = 75;  ///< the paper's n, at least 4
-  int shift = 4;             ///< the paper's l, samples from one window to the next, at least 1
-  int fits = 10;             ///< the paper's m, 3 to kMaxTwoRoundFits
-  double sigma_m = 0.0;      ///< noise; 0 = estimate it from the middle fit's residuals [m]
+  int samples_per_fit = 75;  ///< the paper's n; at least 4
+  int shift = 4;             ///< the paper's l: samples from one window to the next; at least 1
+  int fits = 10;             ///< the paper's m; 3 to kMaxTwoRoundFits
+  double sigma_m = 0.0;      ///< noise; 0 = estimate it from the residuals of the middle fit [m]
   FitFrame frame = FitFrame::Aligned;
 };
 
-/// Samples that one estimate takes: n + (m - 1) l.
+/// Number of samples that one estimate uses: n + (m - 1) l.
 int two_round_samples(const TwoRoundOptions& options);
 
 /// The estimate at the median sample of the middle one of the m windows, from the first
-/// two_round_samples of `samples`. Tangent angle and kappa are the middle window's, kappa_s is the
-/// slope of the quadratic through the m curvatures at that window's arc length; arc lengths by
-/// Simpson's rule between the medians.
+/// two_round_samples of `samples`. Tangent angle and kappa come from the middle window. kappa_s is
+/// the slope, at that window's arc length, of the quadratic through the m curvatures. Arc lengths
+/// are by Simpson's rule between the medians. O(n m); does not allocate.
 ///
-/// The covariance is that of all samples to first order, the overlap of the windows included; the
-/// noise of the arc lengths is left out (relative error sigma / window). Bias of kappa: W^2 / 56
-/// times the fourth derivative of the graph, W the arc of one window (u^4 has 4/7 of P_2 in it); of
-/// kappa_s: that derivative's slope likewise. Cost O(n m); no allocation.
+/// The covariance accounts for the noise of all samples to first order, with the overlap of the
+/// windows. The noise of the arc lengths is omitted (relative error sigma / window). Bias of kappa:
+/// W^2 / 56 times the fourth derivative of the graph, W the arc length of one window (u^4 contains
+/// 4/7 of P_2). Bias of kappa_s: the slope of that bias.
 LocalResult two_round_estimate(std::span<const Vec2> samples, const TwoRoundOptions& options = {});
 
 }  // namespace palpate

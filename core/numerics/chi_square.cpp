@@ -10,11 +10,11 @@
 namespace palpate {
 namespace {
 
-/// n log(n / h) + h - n >= 0, without the cancellation where n and h are near: with v = (n - h) /
-/// (n + h) it is (n - h) v + 2 n (v^3 / 3 + v^5 / 5 + ...).
+/// n log(n / h) + h - n >= 0, without cancellation for n near h: with v = (n - h) / (n + h) it is
+/// (n - h) v + 2 n (v^3 / 3 + v^5 / 5 + ...).
 double log_deviance(double n, double h) {
   const double v = (n - h) / (n + h);
-  constexpr double kNear = 0.1;  // the series gains two digits a term
+  constexpr double kNear = 0.1;  // the series gains two digits per term
   if (std::abs(v) >= kNear) {
     return n * std::log(n / h) + h - n;
   }
@@ -30,9 +30,9 @@ double log_deviance(double n, double h) {
   }
 }
 
-/// log(Gamma(n + 1)) less Stirling's log(sqrt(2 pi n) (n / e)^n).
+/// log(Gamma(n + 1)) minus Stirling's log(sqrt(2 pi n) (n / e)^n).
 double stirling_error(double n) {
-  constexpr double kSeries = 16.0;  // the first term left out is below 1e-16 from here on
+  constexpr double kSeries = 16.0;  // from here on the first omitted term is below 1e-16
   if (n < kSeries) {
     return log_gamma(n + 1.0) - (n + 0.5) * std::log(n) + n -
            0.5 * std::log(2.0 * std::numbers::pi);
@@ -44,8 +44,8 @@ double stirling_error(double n) {
          n;
 }
 
-/// h^n exp(-h) / Gamma(n + 1), n > 0, to a few units in the last place however large n and h are:
-/// the logarithms of its factors would lose the digits of their size.
+/// h^n exp(-h) / Gamma(n + 1), n > 0, to a few units in the last place, for n and h of any size.
+/// The sum of the logarithms of its factors would lose digits.
 double poisson_term(double n, double h) {
   return std::exp(-log_deviance(n, h) - stirling_error(n)) / std::sqrt(2.0 * std::numbers::pi * n);
 }
@@ -56,12 +56,12 @@ struct Tail {
   double density = 0.0;
 };
 
-/// For dof > 0 and a finite x > 0. Q(x; 1) = erfc(sqrt(h)) and Q(x; 2) = exp(-h), h = x / 2, and
-/// Q(x; k + 2) = Q(x; k) + h^n exp(-h) / Gamma(n + 1), n = k / 2, each term h / n times the one
-/// before.
+/// For dof > 0 and a finite x > 0. With h = x / 2: Q(x; 1) = erfc(sqrt(h)), Q(x; 2) = exp(-h) and
+/// Q(x; k + 2) = Q(x; k) + h^n exp(-h) / Gamma(n + 1), n = k / 2, where each term is h / n times
+/// the one before.
 Tail tail_of(double x, int dof) {
-  constexpr int kRenewed = 32;       // products after which a term has lost a digit
-  constexpr double kLeast = 1e-290;  // a product of less may have lost all
+  constexpr int kRenewed = 32;       // after so many products a term has lost a digit
+  constexpr double kLeast = 1e-290;  // a smaller product may have lost all digits
   const double half = 0.5 * x;
   const bool odd = dof % 2 == 1;
   double n = odd ? -0.5 : 0.0;
@@ -80,8 +80,9 @@ Tail tail_of(double x, int dof) {
   return {std::min(survival, 1.0), 0.5 * term};
 }
 
-/// E. B. Wilson, M. M. Hilferty (1931): the cube root of a chi-square over its degrees of freedom
-/// is nearly normal. The normal quantile by C. Hastings' rational approximation (1955), to 5e-4.
+/// E. B. Wilson, M. M. Hilferty (1931): the cube root of chi-square divided by its degrees of
+/// freedom is nearly normal. The normal quantile is C. Hastings' rational approximation (1955), to
+/// 5e-4.
 double approximate_threshold(double significance, int dof) {
   const double upper = std::min(significance, 1.0 - significance);
   const double t = std::sqrt(-2.0 * std::log(upper));
@@ -107,15 +108,16 @@ double chi_square_threshold(double significance, int dof) {
   if (dof <= 0) {
     return 0.0;
   }
-  // Newton's method for log Q(x) = log(significance), below P(chi2 > k + 2 sqrt(k u) + 2 u) <=
-  // exp(-u) (B. Laurent, P. Massart, 2000).
+  // Newton's method for log Q(x) = log(significance), starting below the bound P(chi2 > k + 2
+  // sqrt(k u) + 2 u) <= exp(-u) (B. Laurent, P. Massart, 2000).
   const double k = dof;
   const double log_significance = std::log(significance);
   double low = 0.0;
   double high = k + 2.0 * std::sqrt(-k * log_significance) - 2.0 * log_significance;
   double x = approximate_threshold(significance, dof);
   x = x > low && x < high ? x : high;
-  // The error of a step is about its square: one this small leaves rounding.
+  // The error after a step is about the square of the step: after so small a step only rounding
+  // remains.
   constexpr double kRelativeStep = 1e-8;
   constexpr double kRounding = 1e-14;
   constexpr int kMostIterations = 200;

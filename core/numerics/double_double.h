@@ -1,5 +1,6 @@
-// Sums and products of doubles to twice their precision (error-free transformations of Knuth and
-// Dekker), for the few values here that cancel: a conic at its own centre, nearly parallel vectors.
+// Sums and products of doubles in twice their precision (error-free transformations of Knuth and
+// Dekker). For the few values in this library where digits cancel: a conic at its own centre,
+// nearly parallel vectors.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,8 +8,9 @@
 
 namespace palpate {
 
-/// high + low, |low| <= half a unit in the last place of high. Relative error of a product or of a
-/// sum of like signs a few 2^-104. Not for values that overflow or whose product underflows.
+/// high + low with |low| <= half a unit in the last place of high. The relative error of a product,
+/// or of a sum of numbers with equal sign, is a few 2^-104. Not for values that overflow or whose
+/// product underflows.
 struct DoubleDouble {
   double high = 0.0;
   double low = 0.0;
@@ -43,7 +45,7 @@ struct DoubleDouble {
   }
 };
 
-/// a d - b c with an error of at most 1.5 units in its own last place, however much cancels.
+/// a d - b c, with an error of at most 1.5 units in the last place, however much cancels.
 inline double difference_of_products(double a, double d, double b, double c) {
   // Kahan's algorithm.
   const double bc = b * c;
@@ -51,12 +53,12 @@ inline double difference_of_products(double a, double d, double b, double c) {
   return std::fma(a, d, -bc) + rounding;
 }
 
-/// z component of u x v, to its own last place: tells nearly parallel vectors apart.
+/// z component of u x v, correct to the last place even for nearly parallel vectors.
 inline double accurate_cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
   return difference_of_products(u.x(), v.y(), u.y(), v.x());
 }
 
-/// u . v, to its own last place.
+/// u . v, correct to the last place.
 inline double accurate_dot(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
   return difference_of_products(u.x(), v.x(), -u.y(), v.y());
 }

@@ -1,4 +1,5 @@
-// What algorithms written for double and DoubleDouble alike need beyond sums and products.
+// Division and square root of DoubleDouble, so that one algorithm can be written for double and
+// DoubleDouble.
 #pragma once
 
 #include <cmath>
@@ -7,18 +8,19 @@
 
 namespace palpate {
 
-/// Quotient to twice the precision of a double: the double's quotient, corrected once.
+/// Quotient in twice the precision of a double: the quotient of doubles, corrected once.
 inline DoubleDouble operator/(const DoubleDouble& u, const DoubleDouble& v) {
   const double first = u.high / v.high;
   const DoubleDouble rest = u - v * DoubleDouble(first);
   return DoubleDouble(first) + DoubleDouble(rest.high / v.high);
 }
 
-/// Square root to twice the precision of a double: the double's root, corrected once by Newton.
+/// Square root in twice the precision of a double: the root of the double, with one Newton
+/// correction.
 inline DoubleDouble sqrt(const DoubleDouble& u) {
   const double first = std::sqrt(u.high);
   if (!(first > 0.0)) {
-    return DoubleDouble(first);  // 0, or no root: NaN
+    return DoubleDouble(first);  // 0, or NaN for a negative number
   }
   const DoubleDouble rest = u - DoubleDouble(first) * DoubleDouble(first);
   return DoubleDouble(first) + DoubleDouble(0.5 * rest.high / first);

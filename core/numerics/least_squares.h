@@ -1,4 +1,4 @@
-// Levenberg-Marquardt over residuals that come with their Jacobian.
+// Levenberg-Marquardt for residuals that provide their Jacobian.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,12 +8,14 @@
 
 namespace palpate {
 
-/// Residuals in units of their standard deviation, for `minimise`. A class of Residuals has
+/// Adapts a residual class to `minimise`. Residuals are in units of their standard deviation. The
+/// class has
 ///   enum { NUM_PARAMETERS };
 ///   int NumResiduals() const;
 ///   bool operator()(const double* x, double* residuals, double* jacobian) const;
-/// `jacobian`, column by column, is null at a trial and asked for at what was accepted. False says
-/// that there is nothing at x: a trial is refused, from such a start nothing is done.
+/// `jacobian` is column-major. It is null for a trial step and not null for an accepted one. A
+/// return value of false means that the residuals do not exist at x: a trial step is then rejected,
+/// and a minimisation that starts at such an x does nothing.
 template <typename Residuals>
 class ResidualsProblem {
  public:
@@ -34,8 +36,8 @@ class ResidualsProblem {
 
   void accept() { residuals_(tried_.data(), values_.data(), jacobian_.data()); }
 
-  // Summed column by column: a general product of matrices, whose packing pays for hundreds of
-  // columns, costs several times as much.
+  // Summed column by column: Eigen's general matrix product, optimised for hundreds of columns,
+  // takes several times as long.
   void linearise(Matrix* information, Vector* gradient) {
     for (int i = 0; i < kParameters; ++i) {
       for (int j = 0; j <= i; ++j) {

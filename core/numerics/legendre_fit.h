@@ -1,7 +1,7 @@
 // Weighted least squares of a polynomial on [-1, 1] in Legendre's basis. For samples spread over
-// the interval the normal equations are nearly diagonal, so that nothing is lost by forming them;
-// their Cholesky factor orthonormalises the basis for the samples at hand, and each lower degree's
-// fit is a leading block of it.
+// the interval the normal equations are nearly diagonal, so forming them loses no precision. Their
+// Cholesky factor orthonormalises the basis for the given samples; the fit of each lower degree is
+// a leading block of it.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +24,8 @@ LegendreVector<Size> legendre(double u) {
   if constexpr (Size > 1) {
     p[1] = u;
   }
-  // Term by term, with quotients that the compiler knows: a division each was most of the time.
+  // Unrolled, with quotients that are known at compile time: a division per term took most of the
+  // time.
   [&]<int... K>(std::integer_sequence<int, K...>) {
     ((p[K + 2] = (2.0 * K + 3.0) / (K + 2.0) * u * p[K + 1] - (K + 1.0) / (K + 2.0) * p[K]), ...);
   }
@@ -32,8 +33,8 @@ LegendreVector<Size> legendre(double u) {
   return p;
 }
 
-/// Derivatives 0 ... Orders-1 (rows) of P_0 ... P_{Size-1} (columns) at u, from the derivative of
-/// the recurrence.
+/// Derivatives 0 ... Orders-1 (rows) of P_0 ... P_{Size-1} (columns) at u, by the derivative of the
+/// recurrence.
 template <int Orders, int Size>
 Eigen::Matrix<double, Orders, Size> legendre_derivatives(double u) {
   Eigen::Matrix<double, Orders, Size> d = Eigen::Matrix<double, Orders, Size>::Zero();
@@ -61,7 +62,7 @@ class LegendreFit {
 
   LegendreFit() = default;
 
-  /// Of points that are summed already.
+  /// From points that are already summed.
   template <int Terms>
   explicit LegendreFit(const LegendreSums<Terms, kSize>& sums)
       : gram_(sums.template products<kSize, kSize>()),
@@ -70,7 +71,7 @@ class LegendreFit {
 
   void add(double u, double v, double weight) { add(legendre<kSize>(u), v, weight); }
 
-  /// The same, of P_0(u) ... P_Degree(u).
+  /// Adds a point, given p = P_0(u) ... P_Degree(u).
   void add(const Vector& p, double v, double weight) {
     for (int i = 0; i < kSize; ++i) {
       const double wp = weight * p[i];
@@ -82,10 +83,11 @@ class LegendreFit {
     weight_ += weight;
   }
 
-  /// False where the samples do not determine the polynomial. An error of standard deviation
-  /// `sigma` in the abscissae (units of u) passes for spread of its own: it adds
-  /// sigma^2 k (k + 1) / 2 to the mean square of P_k, and shrinks the coefficient of P_k by that
-  /// relative to what the lower degrees leave of P_k. Refused where any is above kMaxShrinkage.
+  /// Factorises the normal equations; call it before the functions below. False if the samples do
+  /// not determine the polynomial. `sigma` is the standard deviation of errors of the abscissae (in
+  /// units of u). Such errors look like spread of the samples: they add sigma^2 k (k + 1) / 2 to
+  /// the mean square of P_k, and shrink the coefficient of P_k by the ratio of that to the part of
+  /// P_k that the lower degrees leave. False if this ratio exceeds kMaxShrinkage for any k.
   bool factorise(double sigma) {
     if (!cholesky(gram_, &factor_)) {
       return false;
@@ -93,7 +95,7 @@ class LegendreFit {
     for (int k = 1; k < kSize; ++k) {
       const double left = factor_(k, k) * factor_(k, k) / weight_;
       const double blur = sigma * sigma * 0.5 * k * (k + 1);
-      // Negated so that NaN is refused too.
+      // Negated so that NaN is rejected too.
       if (!(left > kMinPivot && blur <= kMaxShrinkage * left)) {
         return false;
       }
@@ -108,8 +110,8 @@ class LegendreFit {
     return solve_lower_transposed<Lower + 1, kSize>(factor_, scores_.template head<Lower + 1>());
   }
 
-  /// J with J^T J = rows * (covariance of the coefficients / sigma^2) * rows^T, for functions of
-  /// the coefficients of the fit of degree Lower whose gradients are `rows`.
+  /// J with J^T J = rows * (covariance of the coefficients / sigma^2) * rows^T. `rows` are the
+  /// gradients of functions of the coefficients of the fit of degree Lower.
   template <int Lower = Degree, int Rows>
   Eigen::Matrix<double, Lower + 1, Rows> whitened(
       const Eigen::Matrix<double, Rows, Lower + 1>& rows) const {
@@ -120,26 +122,27 @@ class LegendreFit {
     return columns;
   }
 
-  /// (normal matrix)^-1 gradient: its product with (P_0(u_i) ... P_Degree(u_i)) w_i is what a unit
-  /// error of v_i does to the function of the coefficients that has this gradient.
+  /// (normal matrix)^-1 gradient. Its product with (P_0(u_i) ... P_Degree(u_i)) w_i is the effect
+  /// of a unit error of v_i on the function of the coefficients that has this gradient.
   Vector influence(const Vector& gradient) const { return solve_cholesky(factor_, gradient); }
 
-  /// The normal matrix, of which the lower triangle is held, and the right hand side.
+  /// The normal matrix (only its lower triangle is set) and the right-hand side.
   const Matrix& normal() const { return gram_; }
   const Vector& moments() const { return moment_; }
 
-  /// The normal matrix's Cholesky factor, lower triangular.
+  /// The Cholesky factor of the normal matrix, lower triangular.
   const Matrix& factor() const { return factor_; }
 
-  /// Coefficients in the orthonormal basis: independent, each with the samples' variance (for
-  /// weights relative to it). Score k is what degree k adds.
+  /// Coefficients in the orthonormal basis. They are independent, each with the variance of the
+  /// samples (for weights relative to it). Score k is the contribution of degree k.
   const Vector& scores() const { return scores_; }
 
  private:
-  /// Mean square of what the lower degrees leave of P_k, relative to the basis' maximum 1: below,
-  /// rounding decides.
+  /// Least mean square of the part of P_k that the lower degrees leave, relative to 1, the maximum
+  /// of the basis. Below it, rounding determines the result.
   static constexpr double kMinPivot = 1e4 * std::numeric_limits<double>::epsilon();
-  /// Of the same by noise along the axis: more of it takes a tenth and more of what P_k tells.
+  /// Largest ratio of noise along the axis to that mean square; see factorise. At a tenth, the
+  /// coefficient of P_k shrinks by about a tenth.
   static constexpr double kMaxShrinkage = 0.1;
 
   Matrix gram_ = Matrix::Zero();

@@ -1,5 +1,5 @@
-// The normal equations of a polynomial in Legendre's basis from one sum a degree: a product of two
-// of Legendre's polynomials is a sum of them.
+// The normal equations of a polynomial in Legendre's basis, from one sum per degree: a product of
+// two Legendre polynomials is a sum of Legendre polynomials.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,9 +12,9 @@
 
 namespace palpate {
 
-/// P_first P_second = sum over r = 0 ... min of product_coefficient(first, second, r)
-/// P_{first + second - 2r} (J. C. Adams, 1878). None is negative and their sum is 1, so that
-/// nothing cancels that does not in the product itself.
+/// P_first P_second = sum over r = 0 ... min(first, second) of product_coefficient(first, second,
+/// r) P_{first + second - 2r} (J. C. Adams, 1878). No coefficient is negative and their sum is 1,
+/// so the sum cancels no more than the product itself does.
 constexpr double product_coefficient(int first, int second, int r) {
   // (2k - 1)!! / k!
   const auto leading = [](int k) {
@@ -29,14 +29,14 @@ constexpr double product_coefficient(int first, int second, int r) {
          (2.0 * sum - 4.0 * r + 1.0) / (2.0 * sum - 2.0 * r + 1.0);
 }
 
-/// Over points (u, v) of weight w: the sums of w P_0(u) ... w P_{Terms-1}(u), and of
-/// w v P_0(u) ... w v P_{Moments-1}(u). A point costs Terms + Moments products where the matrix of
-/// a fit has the square of that.
+/// For points (u, v) with weights w: the sums of w P_0(u) ... w P_{Terms-1}(u), and of w v P_0(u)
+/// ... w v P_{Moments-1}(u). A point costs Terms + Moments products, where the matrix of a fit
+/// needs the square of that.
 template <int Terms, int Moments>
 class LegendreSums {
  public:
   static_assert(Moments <= Terms && Terms >= 2);
-  /// Points that are taken at once: columns have a multiple of that.
+  /// Number of points processed at once. The columns must have a multiple of it.
   static constexpr std::size_t kLanes = 4;
   using Lanes = Eigen::Array<double, static_cast<int>(kLanes), 1>;
 
@@ -71,8 +71,8 @@ class LegendreSums {
   /// Sums of w v P_k.
   const Eigen::Matrix<double, Moments, 1>& moments() const { return moments_; }
 
-  /// Sums of w P_j P_k: rows j = 0 ... Rows - 1, columns k = 0 ... Columns - 1. Of a square one
-  /// only the lower triangle is set.
+  /// Sums of w P_j P_k for rows j = 0 ... Rows - 1 and columns k = FirstColumn ... FirstColumn +
+  /// Columns - 1. If FirstColumn is 0, only the lower triangle is set.
   template <int Rows, int Columns, int FirstColumn = 0>
   Eigen::Matrix<double, Rows, Columns> products() const {
     static_assert(Rows + FirstColumn + Columns - 1 <= Terms);
@@ -86,7 +86,7 @@ class LegendreSums {
   }
 
  private:
-  /// Degree K, and P_{K+1} for the next.
+  /// Adds the terms of degree K, and computes P_{K+1} for the next call.
   template <std::size_t K>
   static void add(const Lanes& weight, const Lanes& product, const Lanes& u, Lanes* before,
                   Lanes* now, std::array<Lanes, Terms>* sums, std::array<Lanes, Moments>* moments) {
@@ -103,7 +103,7 @@ class LegendreSums {
     }
   }
 
-  // Written out, with coefficients that the compiler knows.
+  // Unrolled, with coefficients that are known at compile time.
   template <int Rows, int Degree, int FirstRow>
   void products_of_column(double* column) const {
     [&]<int... J>(std::integer_sequence<int, J...>) {

@@ -1,9 +1,10 @@
-// Least squares along bent valleys: Levenberg-Marquardt with geodesic acceleration.
+// Nonlinear least squares along curved valleys: Levenberg-Marquardt with geodesic acceleration.
 //
-// A short arc leaves combinations of a curve's coefficients nearly free. Chi-square then has a long
-// bent valley, in which plain Levenberg-Marquardt creeps: each of its straight steps leaves the
-// valley's floor. The second-order term of Transtrum and Sethna (2012), "Improvements to the
-// Levenberg-Marquardt algorithm for nonlinear least-squares minimization", follows the bend.
+// A short arc leaves some combinations of a curve's coefficients nearly free. Chi-square then has a
+// long curved valley. Plain Levenberg-Marquardt is slow there, because each of its straight steps
+// leaves the floor of the valley. The second-order term of Transtrum and Sethna (2012),
+// "Improvements to the Levenberg-Marquardt algorithm for nonlinear least-squares minimization",
+// follows the curve.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,15 +17,15 @@
 namespace palpate {
 
 struct MinimiseOptions {
-  int iterations = 100;          ///< steps tried, at most
-  double chi2_tolerance = 1e-7;  ///< change of chi-square by a step at which to end
-  /// The same of chi-square, where that is above `coarse_above`: what no noise can have left need
-  /// not be known as if it had.
+  int iterations = 100;          ///< largest number of steps tried
+  double chi2_tolerance = 1e-7;  ///< stop when a step changes chi-square by less than this
+  /// Above chi-square `coarse_above`: stop when a step changes chi-square by less than this
+  /// fraction of it. A chi-square that no noise can explain need not be known precisely.
   double relative_tolerance = 0.0;
   double coarse_above = std::numeric_limits<double>::infinity();
-  /// Of the diagonal of J^T J. Little: the valleys of short arcs are long.
+  /// Relative to the diagonal of J^T J. Small, because the valleys of short arcs are long.
   double first_damping = 1e-8;
-  /// Ends where the linear model leaves more than this: so far off nothing is to be told.
+  /// Stop if the linear model predicts a chi-square above this: the fit cannot become relevant.
   double out_of_reach = std::numeric_limits<double>::infinity();
 };
 
@@ -32,32 +33,32 @@ struct MinimiseSummary {
   int iterations = 0;
   double initial_chi2 = 0.0;
   double chi2 = 0.0;
-  /// Ended with nothing to gain and no more damping than a fresh start has: that would not go on.
+  /// Stopped because nothing was to be gained, with no more damping than a fresh start has; so a
+  /// restart would not improve it.
   bool converged = false;
 };
 
-/// Minimises `problem`'s sum of squares r(x)^T r(x) from `*x`. With r' the derivatives of the
-/// residuals, J their Jacobian, Problem has
+/// Minimises the sum of squares r(x)^T r(x) of `problem`, starting at `*x`. With the residuals r
+/// and their Jacobian J, Problem has
 ///   static constexpr int kParameters;
-///   double chi2_at(const Vector& x);   // tries x
-///   void accept();                     // the place tried last is where we are
+///   double chi2_at(const Vector& x);   // evaluates a trial x
+///   void accept();                     // makes the last trial x the current one
 ///   void linearise(Matrix* information, Vector* gradient) const;  // J^T J and J^T r there
-/// and may have
+/// and optionally
 ///   Vector bend(const Vector& step) const;  // J^T r'', r'' the second derivatives along `step`
-/// without which the steps are those of Levenberg and Marquardt alone.
-/// Directions that leave the residuals as they are may be among the parameters: the damping takes
-/// care of them.
+/// Without `bend` the steps are those of plain Levenberg-Marquardt. Some directions in the
+/// parameters may change no residual; the damping handles them.
 template <typename Problem>
 MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParameters, 1>* x,
                          const MinimiseOptions& options) {
   using Vector = Eigen::Matrix<double, Problem::kParameters, 1>;
   using Matrix = Eigen::Matrix<double, Problem::kParameters, Problem::kParameters>;
-  // What changes no residual by more than a thousandth of its deviation, for a unit step, is damped
-  // as if it did.
+  // A parameter whose unit step changes no residual by more than a thousandth of its standard
+  // deviation is damped as if it did.
   constexpr double kLeastDiagonal = 1e-6;
-  // Beyond it the second-order term is no correction any more (Transtrum and Sethna).
+  // Above it the second-order term is too large to be a correction (Transtrum and Sethna).
   constexpr double kLargestRatio = 0.75;  // of accelerations to velocities
-  // Where the model promises less than this part of the tolerance, there is no need to try.
+  // If the model predicts a gain below this fraction of the tolerance, the step is not tried.
   constexpr double kNothing = 1e-3;
 
   MinimiseSummary summary;
@@ -85,7 +86,7 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
       growth *= 2.0;
     };
     Matrix factor;
-    if (!cholesky(damped, &factor)) {  // by rounding, where next to nothing is damped
+    if (!cholesky(damped, &factor)) {  // by rounding, if the damping is nearly 0
       refuse();
       continue;
     }

@@ -1,4 +1,4 @@
-// Quantiles and cuts of the standard normal law.
+// Quantiles and truncated moments of the standard normal distribution.
 #pragma once
 
 #include <cmath>
@@ -9,9 +9,9 @@ namespace palpate {
 /// Median of |normal variable|.
 inline constexpr double kMedianOfNormal = 0.6744897501960817;
 
-/// The z that |normal variable| exceeds with `probability` in (0, 1]: Newton's iteration on the
-/// logarithm of erfc, which is concave, from the tail's leading term. Relative error below 1e-12
-/// for probabilities down to 1e-300.
+/// The z that |normal variable| exceeds with `probability` in (0, 1]. Newton's method on the
+/// logarithm of erfc, which is concave, starting from the leading term of the tail. Relative error
+/// below 1e-12 for probabilities down to 1e-300.
 inline double two_sided_normal_quantile(double probability) {
   if (!(probability < 1.0)) {
     return 0.0;

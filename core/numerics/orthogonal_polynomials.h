@@ -8,15 +8,15 @@
 namespace palpate {
 
 /// Weighted least squares by discrete orthogonal polynomials (G. E. Forsythe, "Generation and use
-/// of orthogonal polynomials for data-fitting with a digital computer", 1957): the fits of every
-/// degree in one sweep each, no normal equations. O(points * degree).
+/// of orthogonal polynomials for data-fitting with a digital computer", 1957). One sweep per degree
+/// gives the fits of all degrees, without normal equations. O(points * degree).
 class OrthogonalPolynomials {
  public:
   static constexpr int kMaxDegree = 9;
 
   struct Value {
     double value = 0.0;
-    double derivative = 0.0;  ///< by x
+    double derivative = 0.0;  ///< derivative of the fit by x
   };
 
   struct Node {
@@ -24,7 +24,8 @@ class OrthogonalPolynomials {
     double weight = 0.0;
   };
 
-  /// Fits y(x) with weights w up to `degree`, which must be below the number of distinct x.
+  /// Fits y(x) with weights w, for all degrees up to `degree`, which must be below the number of
+  /// distinct x.
   OrthogonalPolynomials(std::span<const double> x, std::span<const double> w,
                         std::span<const double> y, int degree);
 
@@ -36,16 +37,16 @@ class OrthogonalPolynomials {
   /// The fit of degree d at x.
   Value evaluate(double x, int d) const;
 
-  /// Variance of the derivative by x of the fit of degree d, the weights being inverse variances.
+  /// Variance of the slope of the fit of degree d at x, if the weights are inverse variances.
   double slope_variance(double x, int d) const;
 
   /// The d + 1 nodes and weights that integrate polynomials up to degree 2 d + 1 exactly over the
-  /// weighted abscissae: sum_i w_i p(x_i) = sum_k W_k p(X_k). (G. Golub and J. Welsch, 1969: the
-  /// eigenvalues of the Jacobi matrix of the recurrence.) Ascending x.
+  /// weighted abscissae: sum_i w_i p(x_i) = sum_k W_k p(X_k). They are the eigenvalues of the
+  /// Jacobi matrix of the recurrence (G. Golub and J. Welsch, 1969). Ascending x.
   std::vector<Node> gauss_rule(int d) const;
 
  private:
-  /// visit(k, p_k(x), p_k'(x)) for k = 0 ... d.
+  /// Calls visit(k, p_k(x), p_k'(x)) for k = 0 ... d.
   template <typename Visit>
   void for_each_polynomial(double x, int d, const Visit& visit) const;
 

@@ -1,5 +1,5 @@
-// Real roots of small polynomials, isolated: between neighbouring roots of its derivative a
-// polynomial is monotone, so that each change of sign there brackets exactly one root.
+// Real roots of polynomials of small degree. Between neighbouring roots of its derivative a
+// polynomial is monotone, so each change of sign there encloses exactly one root.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +17,7 @@ using Polynomial = Eigen::Matrix<double, kDegree + 1, 1>;
 
 namespace real_roots_detail {
 
-/// Ascending.
+/// In ascending order.
 template <int kDegree>
 struct Roots {
   std::array<double, static_cast<std::size_t>(kDegree)> x{};
@@ -35,13 +35,13 @@ double value(const Polynomial<kDegree>& c, double x) {
   return sum;
 }
 
-/// Newton's method that never leaves the bracket and bisects where it would be slow. `at_low` is
-/// the value at `low`, of the other sign than at `high`.
+/// Newton's method inside a bracket, with bisection where Newton's method would be slow. `at_low`
+/// is the value at `low`; the value at `high` has the other sign.
 template <int kDegree>
 double bracketed_root(const Polynomial<kDegree>& c, double low, double high, double at_low) {
   double x = 0.5 * (low + high);
   double last_step = high - low;
-  // Newton's steps are quadratic at the end; bisections halve: 120 of the latter reach 2^-120.
+  // Newton's steps converge quadratically; 120 bisections would reach 2^-120.
   constexpr int kMostIterations = 120;
   for (int i = 0; i < kMostIterations; ++i) {
     double f = c[kDegree];
@@ -66,8 +66,8 @@ double bracketed_root(const Polynomial<kDegree>& c, double low, double high, dou
   return x;
 }
 
-/// Of a polynomial whose roots and whose derivatives' roots lie in [-bound, bound]; c[kDegree] !=
-/// 0.
+/// For a polynomial whose roots, and those of its derivatives, lie in [-bound, bound]; c[kDegree]
+/// != 0.
 template <int kDegree>
 Roots<kDegree> roots_within(const Polynomial<kDegree>& c, double bound) {
   Roots<kDegree> roots;
@@ -85,7 +85,7 @@ Roots<kDegree> roots_within(const Polynomial<kDegree>& c, double bound) {
       const double high = i < critical.count ? critical.x[i] : bound;
       const double at_high = value<kDegree>(c, high);
       if (at_high == 0.0) {
-        // A multiple root; the pieces on both sides of it then have no other.
+        // A multiple root; the pieces on either side of it have no other root.
         if (roots.count < roots.x.size()) {
           roots.push(high);
         }
@@ -103,9 +103,9 @@ Roots<kDegree> roots_within(const Polynomial<kDegree>& c, double bound) {
 
 }  // namespace real_roots_detail
 
-/// Calls `visit(root)` with every real root of the polynomial. Two roots closer than rounding lets
-/// tell apart may both be left out; a root of odd multiplicity never is. Leading coefficients that
-/// are 0 beside the largest are dropped. No allocation.
+/// Calls `visit(root)` for every real root of the polynomial. A root of odd multiplicity is never
+/// missed. Two roots that rounding cannot separate may both be missed. Leading coefficients that
+/// are 0 relative to the largest are dropped. Does not allocate.
 template <int kDegree, typename Visit>
 void visit_real_roots(const Polynomial<kDegree>& c, const Visit& visit) {
   const double largest = c.cwiseAbs().maxCoeff();
@@ -118,11 +118,12 @@ void visit_real_roots(const Polynomial<kDegree>& c, const Visit& visit) {
     }
     return;
   }
-  // Fujiwara: all roots within 2 scale; with x in units of scale all coefficients are at most 1.
+  // Fujiwara's bound: all roots lie within 2 scale. With x in units of scale, all coefficients are
+  // at most 1.
   double scale = 0.0;
   for (int k = 1; k <= kDegree; ++k) {
     const double ratio = std::abs(c[kDegree - k] / c[kDegree]);
-    // Square and cube roots by name: the general power is several times as slow.
+    // Explicit square and cube roots: the general power takes several times as long.
     const double root = k == 1   ? ratio
                         : k == 2 ? std::sqrt(ratio)
                         : k == 3 ? std::cbrt(ratio)
@@ -140,7 +141,7 @@ void visit_real_roots(const Polynomial<kDegree>& c, const Visit& visit) {
     balanced[k] = c[k] / c[kDegree] / power;
     power *= scale;
   }
-  constexpr double kBound = 2.0;  // Fujiwara's, above
+  constexpr double kBound = 2.0;  // Fujiwara's bound, above
   const auto roots = real_roots_detail::roots_within<kDegree>(balanced, kBound);
   for (std::size_t i = 0; i < roots.count; ++i) {
     visit(scale * roots.x[i]);

@@ -1,7 +1,7 @@
-// Cholesky's decomposition of small matrices of fixed size, written out as loops.
+// Cholesky decomposition of small matrices of fixed size, written as loops.
 //
-// Eigen's own is compiled through its kernels for large matrices, anew for every size and at
-// seconds each, and calls them at run time; the compiler unrolls these loops.
+// Eigen's version takes seconds to compile for every size, and at run time calls kernels made for
+// large matrices. The compiler unrolls these loops.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// L, lower triangular, with L L^T = the matrix whose lower triangle `symmetric` holds. False where
-/// a pivot is not positive. NaN passes, and shows in L.
+/// L, lower triangular, with L L^T = the matrix whose lower triangle is in `symmetric`. False if a
+/// pivot is not positive. NaN is not detected; it appears in L.
 template <int N>
 bool cholesky(const Eigen::Matrix<double, N, N>& symmetric, Eigen::Matrix<double, N, N>* lower) {
   Eigen::Matrix<double, N, N>& l = *lower;
@@ -35,7 +35,7 @@ bool cholesky(const Eigen::Matrix<double, N, N>& symmetric, Eigen::Matrix<double
   return true;
 }
 
-/// x of L x = b, with the leading Size rows and columns of L.
+/// The x with L x = b, using the leading Size rows and columns of L.
 template <int Size, int N>
 Eigen::Matrix<double, Size, 1> solve_lower(const Eigen::Matrix<double, N, N>& lower,
                                            Eigen::Matrix<double, Size, 1> b) {
@@ -48,7 +48,7 @@ Eigen::Matrix<double, Size, 1> solve_lower(const Eigen::Matrix<double, N, N>& lo
   return b;
 }
 
-/// X of L X = B in place: all columns at once, along the rows.
+/// Replaces B by the X with L X = B, for all columns at once.
 template <int N, int Columns>
 void solve_lower_rows(const Eigen::Matrix<double, N, N>& lower,
                       Eigen::Matrix<double, N, Columns, Eigen::RowMajor>* b) {
@@ -61,7 +61,7 @@ void solve_lower_rows(const Eigen::Matrix<double, N, N>& lower,
   }
 }
 
-/// x of L^T x = b, with the leading Size rows and columns of L.
+/// The x with L^T x = b, using the leading Size rows and columns of L.
 template <int Size, int N>
 Eigen::Matrix<double, Size, 1> solve_lower_transposed(const Eigen::Matrix<double, N, N>& lower,
                                                       Eigen::Matrix<double, Size, 1> b) {
@@ -74,7 +74,7 @@ Eigen::Matrix<double, Size, 1> solve_lower_transposed(const Eigen::Matrix<double
   return b;
 }
 
-/// x of L L^T x = b.
+/// The x with L L^T x = b.
 template <int N>
 Eigen::Matrix<double, N, 1> solve_cholesky(const Eigen::Matrix<double, N, N>& lower,
                                            const Eigen::Matrix<double, N, 1>& b) {

@@ -1,6 +1,6 @@
-// The decomposition L D L^T of small symmetric matrices of fixed size, with pivots from the
-// diagonal: of matrices that rounding may leave without a positive one. Written out as loops, as
-// small_cholesky.h is and for its reasons.
+// Decomposition L D L^T of small symmetric matrices of fixed size, with pivots from the diagonal.
+// It also handles matrices that rounding has left without positive pivots. Written as loops, for
+// the reasons given in small_cholesky.h.
 #pragma once
 
 #include <Eigen/Core>
@@ -49,10 +49,10 @@ class SmallLdlt {
     }
   }
 
-  /// D, its largest first.
+  /// D, its largest element first.
   Vector pivots() const { return l_.diagonal(); }
 
-  /// x with the matrix times x = b; what a pivot of zero leaves free is 0.
+  /// The x with matrix * x = b. Components that a zero pivot leaves free are 0.
   Vector solve(const Vector& b) const {
     Vector x;
     for (int i = 0; i < N; ++i) {
@@ -89,7 +89,7 @@ class SmallLdlt {
 
   int at(int i) const { return order_[static_cast<std::size_t>(i)]; }
 
-  /// Rows and columns of what is left, of which the lower triangle is kept.
+  /// Swaps rows and columns of the remaining matrix, of which only the lower triangle is stored.
   void swap(int k, int p) {
     std::swap(order_[static_cast<std::size_t>(k)], order_[static_cast<std::size_t>(p)]);
     for (int j = 0; j < k; ++j) {
@@ -104,7 +104,7 @@ class SmallLdlt {
     std::swap(l_(k, k), l_(p, p));
   }
 
-  Matrix l_;  ///< below the diagonal L, on it D
+  Matrix l_;  ///< L below the diagonal, D on the diagonal
   std::array<int, N> order_;
 };
 

@@ -1,13 +1,13 @@
 // Eigenvalues and eigenvectors of small symmetric matrices, compiled once for all sizes.
 //
-// Eigen compiles its eigensolvers anew for every fixed size, at ten and more seconds each.
+// Eigen's eigensolvers take ten seconds and more to compile, again for every fixed size.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace palpate {
 
-/// Rows of the largest matrix: shape and pose, six at most.
+/// Rows of the largest matrix: shape and pose, at most six.
 inline constexpr int kLargestSymmetric = 6;
 using SmallSymmetric =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kLargestSymmetric, kLargestSymmetric>;
@@ -19,8 +19,8 @@ struct SymmetricEigen {
 };
 SymmetricEigen symmetric_eigen(const SmallSymmetric& matrix);
 
-/// The v of the least lambda in matrix v = lambda metric v, with v^T metric v = 1; `metric` is
-/// positive definite.
+/// The v for the smallest lambda with matrix v = lambda metric v, scaled to v^T metric v = 1.
+/// `metric` is positive definite.
 SmallVector least_generalised_eigenvector(const SmallSymmetric& matrix,
                                           const SmallSymmetric& metric);
 

@@ -1,7 +1,7 @@
-// A square root of a sum of squares, kept as its rows come in.
+// A square root of a sum of squares, updated row by row.
 //
-// J^T J has only half of the digits that J has: where the rows determine one direction 10^8 times
-// better than another, what its Cholesky decomposition says of the other is rounding.
+// J^T J has only half of the digits of J. If the rows determine one direction 10^8 times better
+// than another, the Cholesky factor of J^T J contains only rounding for that other direction.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,8 +9,9 @@
 
 namespace palpate {
 
-/// Takes `lower`, lower triangular with a positive diagonal, to the L with L L^T = lower lower^T +
-/// rows^T rows, by Householder's reflections; `rows` are used up. NaN and infinity show in L.
+/// Replaces `lower`, lower triangular with a positive diagonal, by the L with L L^T = lower lower^T
+/// + rows^T rows, using Householder reflections. `rows` is overwritten. NaN and infinity appear in
+/// L.
 template <int Rows, int N>
 void absorb_rows(Eigen::Matrix<double, Rows, N>* rows, Eigen::Matrix<double, N, N>* lower) {
   auto& l = *lower;
@@ -30,10 +31,10 @@ void absorb_rows(Eigen::Matrix<double, Rows, N>* rows, Eigen::Matrix<double, N, 
   }
 }
 
-/// The root of the same sum with row and column k those of the identity.
+/// The root of the same sum, with row and column k replaced by those of the identity.
 template <int N>
 Eigen::Matrix<double, N, N> root_without(Eigen::Matrix<double, N, N> lower, int k) {
-  // Without its entry k, column k is one more row for the directions after it.
+  // Without its entry k, column k acts as one more row for the directions after it.
   Eigen::Matrix<double, 1, N> row = Eigen::Matrix<double, 1, N>::Zero();
   for (int j = k + 1; j < N; ++j) {
     row[j] = lower(j, k);

@@ -27,7 +27,7 @@ ClosedSpline::ClosedSpline(std::vector<Vec2> control_points) {
 ClosedSpline::Place ClosedSpline::place_at(double t) const {
   const auto count = static_cast<double>(size());
   double within = t - count * std::floor(t / count);
-  // Rounding can make it the count itself: there the first segment begins, as its u does.
+  // Rounding can make it equal to the count: that is the start of the first segment.
   within = within < count ? within : 0.0;
   const double segment = std::floor(within);
   return {static_cast<std::size_t>(segment), within - segment};
@@ -56,7 +56,7 @@ FootPoint ClosedSpline::foot_point(const Vec2& point) const {
     for (std::size_t i = 0; i < size(); ++i) {
       const auto start = static_cast<double>(i);
       visit(start);
-      // (C(u) - p) . C'(u) by powers of u.
+      // (C(u) - p) . C'(u) as a polynomial in u.
       PolynomialCurve2::Coefficients c = segments_[i].coefficients;
       c.col(0) -= point;
       Polynomial<5> slope = Polynomial<5>::Zero();
@@ -72,7 +72,7 @@ FootPoint ClosedSpline::foot_point(const Vec2& point) const {
       });
     }
   });
-  // Polishing may step over the seam.
+  // The last Newton steps may cross the seam.
   const Place place = place_at(foot.t);
   foot.t = static_cast<double>(place.segment) + place.u;
   return foot;
@@ -84,7 +84,7 @@ double ClosedSpline::arc_length(double t0, double t1) const {
   }
   const auto speed = [&](double t) { return derivatives(t).first.norm(); };
   double sum = 0.0;
-  for (double from = t0; from < t1;) {  // the speed is smooth between joints only
+  for (double from = t0; from < t1;) {  // the speed is smooth only between joints
     const double to = std::min(std::floor(from) + 1.0, t1);
     sum += integrate_speed(speed, from, to);
     from = to;

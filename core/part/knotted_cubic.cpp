@@ -26,11 +26,11 @@ CurveDerivatives derivatives(const KnottedCubic& curve, double t) {
   return d;
 }
 
-/// The foot followed by Newton's method from t, which is near: the points lie on the curve but for
+/// The foot of `point`, by Newton's method from a nearby t. The points lie on the curve up to
 /// noise.
 double follow_foot(const KnottedCubic& curve, const Vec2& point, double t) {
-  constexpr int kMostIterations = 8;     // digits double near the foot
-  constexpr double kLastStep = 1e-8;     // after it the error is its square
+  constexpr int kMostIterations = 8;     // the digits double near the foot
+  constexpr double kLastStep = 1e-8;     // after so short a step the error is its square
   constexpr double kLongestStep = 0.25;  // of the parameter range [-1, 1]
   for (int i = 0; i < kMostIterations; ++i) {
     const CurveDerivatives d = derivatives(curve, t);
@@ -50,7 +50,7 @@ double follow_foot(const KnottedCubic& curve, const Vec2& point, double t) {
   return t;
 }
 
-/// Two coefficients of each power, then the bend; kParameters = 8 leaves the bend as it is.
+/// Parameters: two coefficients of each power, then the bend. kParameters = 8 holds the bend fixed.
 template <int kParameters>
 class KnottedResiduals {
  public:
@@ -121,7 +121,8 @@ template <int kParameters>
 KnottedCubicFit refine(std::span<const FitPoint> points, const KnottedCubicFit& start) {
   using Residuals = KnottedResiduals<kParameters>;
   const Residuals residuals(points, start);
-  // Far below what odds see of chi-square; steps halve the error or better where two cubics fit.
+  // A tolerance of chi-square far below what affects odds. Where two cubics fit, each step at least
+  // halves the error.
   constexpr int kMostIterations = 30;
   constexpr double kChi2Tolerance = 1e-6;
   typename Residuals::Parameters x = residuals.parameters();
@@ -135,7 +136,7 @@ KnottedCubicFit refine(std::span<const FitPoint> points, const KnottedCubicFit& 
   return fit;
 }
 
-/// With the parameter running from -1 to 1 over the points, in their order.
+/// Converts the fit so that t runs from -1 to 1 over the points, in their order.
 KnottedCubicFit rescaled(PolynomialFit fit) {
   normalise_parameter(PolynomialModel::CubicSpline, &fit);
   if (fit.t.back() < fit.t.front()) {
@@ -178,7 +179,8 @@ KnottedCubicFit fit_single_cubic(const FitData& data) {
     PolynomialFit polynomial =
         refined && refined->polynomial ? *refined->polynomial : *coarse->polynomial;
     if (polynomial.t.size() != points.points.size()) {
-      // No such curve fits all the points, as where several segments meet: a start all the same.
+      // No such curve fits all the points, for example because several segments meet. It is used as
+      // a start all the same.
       std::vector<double> t;
       for (const std::uint32_t nearest : smooth.nearest_reduced) {
         t.push_back(polynomial.t[nearest]);

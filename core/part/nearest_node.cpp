@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-/// Nodes in a leaf: looking at one costs about as much as looking at a circle.
+/// Nodes in a leaf. A node costs about as much time as a circle.
 constexpr std::size_t kLeafNodes = 8;
 
 }  // namespace
@@ -52,9 +52,9 @@ std::size_t NearestNode::to(const Vec2& point) const {
   };
   struct Waiting {
     std::size_t circle = 1;
-    double least = 0.0;  ///< distance of anything in it
+    double least = 0.0;  ///< lower bound of the distance to anything in the circle
   };
-  // One waits at each level, and one more at the last.
+  // One circle waits at each level, and one more at the last.
   std::array<Waiting, 64> waiting;
   std::size_t count = 1;
   waiting[0] = {1, -std::numeric_limits<double>::infinity()};
@@ -82,7 +82,7 @@ std::size_t NearestNode::to(const Vec2& point) const {
     if (left.least > right.least) {
       std::swap(left, right);
     }
-    waiting[count++] = right;  // the nearer one is looked at first
+    waiting[count++] = right;  // the nearer child is examined first
     waiting[count++] = left;
   }
   return nearest;

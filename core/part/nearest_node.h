@@ -1,4 +1,4 @@
-// The node of a polyline that is nearest to a point, without looking at all of them.
+// Search for the node of a polyline that is nearest to a point.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,16 @@
 
 namespace palpate {
 
-/// Circles around runs of nodes, and around pairs of these, and so on: nodes that follow each other
-/// lie near each other. O(log nodes) where the polyline does not run over itself.
+/// A binary tree of circles: the leaves enclose short runs of consecutive nodes, every other circle
+/// encloses its two children. Consecutive nodes lie close together, so a search takes O(log nodes)
+/// if the polyline does not overlap itself.
 class NearestNode {
  public:
   explicit NearestNode(std::vector<Vec2> nodes);
 
   std::size_t count() const { return nodes_.size(); }
 
-  /// The nearest; of several, any.
+  /// Index of the nearest node; any one of several equally near.
   std::size_t to(const Vec2& point) const;
 
  private:
@@ -26,8 +27,8 @@ class NearestNode {
   };
 
   std::vector<Vec2> nodes_;
-  /// A heap: around all nodes at 1, around what is in circle i at 2 i and 2 i + 1; the last
-  /// leaf_count_ each around a run of nodes.
+  /// The tree as a heap: circle 1 encloses all nodes, circle i what 2 i and 2 i + 1 enclose. The
+  /// last leaf_count_ circles enclose one run of nodes each.
   std::vector<Circle> circles_;
   std::size_t leaf_count_ = 1;
 };

@@ -67,8 +67,8 @@ PartFit fit(const ScaledPart& part, std::span<const FitPoint> points, const Pose
             const PartMotions& motions, int most_iterations) {
   using Residuals = PartResiduals<kMotions>;
   const Residuals residuals(part, points, start, motions);
-  // The last step is far shorter than this tells: Gauss-Newton converges quadratically where the
-  // part fits.
+  // The last step is far shorter than this tolerance suggests, because Gauss-Newton converges
+  // quadratically where the part fits.
   constexpr double kChi2Tolerance = 1e-9;
   typename Residuals::Parameters x = Residuals::Parameters::Zero();
   minimise_residuals(residuals, {most_iterations, kChi2Tolerance}, &x);

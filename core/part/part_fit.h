@@ -1,4 +1,4 @@
-// A part of known shape against contact points: least orthogonal distances over its pose alone.
+// Fits the pose of a part of known shape to contact points, by least orthogonal distances.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,25 +10,26 @@
 
 namespace palpate {
 
-/// The part in the units of normalised points, ready for foot points. These are sought on the whole
-/// closed curve: points pass from segment to segment as the pose asks.
+/// The part in the units of the normalised points, with fast foot points. Foot points are searched
+/// on the whole closed curve, so a point may change its segment as the pose changes.
 class ScaledPart {
  public:
-  /// Places by which a foot point's neighbourhood is found. A segment is a cubic; between two of 48
-  /// it turns by little.
+  /// Nodes from which a foot point is searched. A segment is a cubic; it turns little between two
+  /// of 48 nodes.
   static constexpr int kNodesPerSegment = 48;
 
   ScaledPart(const ClosedSpline& part, double scale_m);
 
   const ClosedSpline& spline() const { return spline_; }
   int node_count() const { return static_cast<int>(nodes_.count()); }
-  /// The curve parameter of a node (any integer; cyclic).
+  /// The curve parameter of a node; any integer, cyclic.
   static double node_t(int node) { return static_cast<double>(node) / kNodesPerSegment; }
 
-  /// +1 where outside lies left of increasing t, -1 right: where tip centres lie.
+  /// The side of the outside, where tip centres lie: +1 left of increasing t, -1 right.
   double outside() const { return outside_; }
 
-  /// The global foot point's curve parameter, in [0, size()).
+  /// Curve parameter of the nearest point of the whole curve, in [0, size()). `part_point` is in
+  /// the frame and the units of this part.
   double foot_of(const Vec2& part_point) const;
 
  private:
@@ -37,16 +38,16 @@ class ScaledPart {
   double outside_;
 };
 
-/// A point against the placed part.
+/// The foot of a point on the placed part.
 struct PartFoot {
   double t = 0.0;
-  double residual = 0.0;       ///< (signed distance less tip radius) in units of sigma
-  Vec2 normal = Vec2::Zero();  ///< left of increasing t, unit, in the frame of the points
+  double residual = 0.0;       ///< (signed distance - tip offset) / sigma
+  Vec2 normal = Vec2::Zero();  ///< unit normal, left of increasing t, in the frame of the points
 };
 
 PartFoot place_on_part(const ScaledPart& part, const Pose2& data_T_part, const FitPoint& point);
 
-/// The motions of the part that a fit may make: columns are (x, y, turn about `pivot`).
+/// The motions that a fit may use. The columns are combinations of (x, y, turn about `pivot`).
 struct PartMotions {
   Vec2 pivot = Vec2::Zero();
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> columns = Eigen::Matrix3d::Identity();
@@ -55,13 +56,13 @@ struct PartMotions {
 struct PartFit {
   Pose2 data_T_part;
   double chi2 = 0.0;
-  /// Fisher information of the motions at the fit.
+  /// Fisher information of these motions at the fit.
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> information;
 };
 
-/// From a start, over the motions given (2 or 3 of them). Each evaluation takes global foot points,
-/// the Jacobian is that of the envelope theorem: row i = -n_i . d(part's point)/d(motion) /
-/// sigma_i. O(points) per iteration.
+/// Fits the pose from `start`, over 2 or 3 motions. Every evaluation computes the nearest points of
+/// the whole curve. The Jacobian follows from the envelope theorem: row i = -n_i . d(part's
+/// point)/d(motion) / sigma_i. O(points) per iteration.
 PartFit fit_part(const ScaledPart& part, std::span<const FitPoint> points, const Pose2& start,
                  const PartMotions& motions = {}, int most_iterations = 50);
 

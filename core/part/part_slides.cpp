@@ -8,11 +8,12 @@
 namespace palpate {
 namespace {
 
-/// exp(-60 / 2) beside the best: no integral over a part makes up for that.
+/// Excess of chi-square over the best that counts as negligible: no integral over a part makes up
+/// for a factor of exp(-60 / 2).
 constexpr double kNegligible = 60.0;
 
-/// A sum of positive numbers by their logarithms: where a part does not fit, chi-square differs by
-/// more than exp() holds.
+/// A sum of positive numbers, given by their logarithms. Where a part does not fit, chi-square
+/// varies by more than exp() can represent.
 class LogSum {
  public:
   void add(double log_term) {
@@ -28,13 +29,13 @@ class LogSum {
   double log_ = -std::numeric_limits<double>::infinity();
 };
 
-/// The best fit with the reference held at t.
+/// The best fit with the part's place t on the normal of the reference.
 struct Slide {
   double t = 0.0;
   double chi2 = 0.0;
-  double log_volume = 0.0;  ///< of height and turn, times ds/dt
+  double log_volume = 0.0;  ///< log of the integral over height and turn, times ds/dt
   Pose2 data_T_part;
-  int candidate = -1;  ///< that has its optimum here
+  int candidate = -1;  ///< the candidate whose optimum this is; -1 = none
 };
 
 class Scan {
@@ -62,10 +63,10 @@ class Scan {
     return from(t, start);
   }
 
-  /// With the optimum over height and turn that is reached from a pose.
+  /// The fit at place t that is reached from `start`, over height and turn.
   Slide from(double t, const Pose2& start) const {
     const CurveDerivatives d = part_.spline().derivatives(t);
-    // Where the part fits it converges in a few steps; where it does not, nobody waits for it.
+    // Where the part fits, a few steps are enough. Where it does not fit, precision is not needed.
     constexpr int kMostIterations = 10;
     const PartFit fit = fit_part(part_, points_, start, motions_, kMostIterations);
     Slide slide;
@@ -73,8 +74,8 @@ class Scan {
     slide.data_T_part = fit.data_T_part;
     const double across = cross(fit.data_T_part.rotate(d.first), left_);
     const double determinant = Eigen::Matrix2d(fit.information).determinant();
-    // Nor has a part that turned round to the other direction of travel anything to say on this
-    // one, or one whose height and turn the points do not hold.
+    // A placement has no mass if the part has turned to the other direction of travel, or if the
+    // points do not determine height and turn.
     const bool tells = across > 0.0 && determinant > 0.0 && std::isfinite(fit.chi2);
     slide.chi2 = tells ? fit.chi2 : std::numeric_limits<double>::infinity();
     slide.log_volume = tells ? std::log(across) - 0.5 * std::log(determinant) : 0.0;
@@ -87,14 +88,14 @@ class Scan {
   const FitPoint& reference_;
   int direction_;
   Vec2 left_ = Vec2::Zero();     ///< of increasing t, in the frame of the points
-  Vec2 surface_ = Vec2::Zero();  ///< the reference taken back from a tip's centre
+  Vec2 surface_ = Vec2::Zero();  ///< the reference, moved from the tip's centre to the surface
   PartMotions motions_;
 };
 
-/// Adds the mass between two slides to a candidate and to the segment that they bound.
+/// Adds the mass between two neighbouring slides to a candidate and to the segment between them.
 class Integral {
  public:
-  /// `best_chi2`: the least that is known so far.
+  /// `best_chi2`: the smallest chi-square known so far.
   Integral(const Scan& scan, const ScaledPart& part, double best_chi2)
       : scan_(scan), part_(part), best_chi2_(best_chi2) {}
 
@@ -109,15 +110,16 @@ class Integral {
   static double log_density(const Slide& slide) { return -0.5 * slide.chi2 + slide.log_volume; }
 
   void halve(const Slide& a, const Slide& b, int depth, LogSum* mass) {
-    // Where the density changes by a factor of exp(1/2) only, the trapezoid is right to 2 %.
+    // Between two places whose densities differ only by a factor of exp(1/2), the trapezoid is
+    // right to 2 %.
     constexpr double kStep = 1.0;  // of chi-square
-    constexpr int kDeepest = 40;   // halvings: to rounding
+    constexpr int kDeepest = 40;   // at which rounding is reached
     const double least = std::min(a.chi2, b.chi2);
     if (!(least < best_chi2_ + kNegligible)) {
       return;
     }
-    // Where the part does not fit, the valley may be deeper between two places of the grid: what
-    // was thought the best is then nothing beside it, and nobody halves down to it.
+    // Where the part does not fit, the valley may be deeper between two places of the grid. What
+    // seemed best before is then negligible, and needs no further halving.
     best_chi2_ = std::min(best_chi2_, least);
     if (std::abs(a.chi2 - b.chi2) < kStep || depth == kDeepest) {
       const double log_half_step = std::log(0.5 * (b.t - a.t));
@@ -136,8 +138,8 @@ class Integral {
   double best_chi2_;
 };
 
-/// Whether two fits are one optimum: apart by less than a hundredth of a standard deviation, or by
-/// what rounding leaves of the turn and the place.
+/// Whether two fits are the same optimum: less than a hundredth of a standard deviation apart, or
+/// equal up to the rounding of turn and place.
 bool is_same(const PartFit& a, const PartFit& b) {
   constexpr double kSame = 1e-4;
   constexpr double kRounding = 1e-9;
@@ -146,7 +148,7 @@ bool is_same(const PartFit& a, const PartFit& b) {
   return apart.norm() < kRounding || apart.dot(a.information * apart) < kSame;
 }
 
-/// All slides of a direction in a circle, and the optima between them.
+/// All slides of one direction of travel. They are cyclic in t.
 struct Circle {
   Scan scan;
   std::vector<Slide> slides;
@@ -161,7 +163,7 @@ Circle scan_circle(const ScaledPart& part, std::span<const FitPoint> points,
   return circle;
 }
 
-/// Refines the minima of the grid; a new optimum becomes a candidate.
+/// Refines the minima of the grid. Each new optimum becomes a candidate.
 void add_candidates(const ScaledPart& part, std::span<const FitPoint> points,
                     const FitPoint& reference, const Circle& circle,
                     std::vector<PartCandidate>* candidates) {
@@ -178,7 +180,7 @@ void add_candidates(const ScaledPart& part, std::span<const FitPoint> points,
     candidate.fit = fit_part(part, points, circle.slides[i].data_T_part, motions);
     candidate.direction = circle.scan.direction();
     candidate.t = part.foot_of(candidate.fit.data_T_part.to_local(motions.pivot));
-    // A hopeless start may turn round: then it is the other circle that leads there.
+    // A hopeless start may turn round. Its optimum then belongs to the other direction of travel.
     const Vec2 tangent =
         candidate.fit.data_T_part.rotate(part.spline().derivatives(candidate.t).first);
     const bool turned = candidate.direction * tangent.dot(reference.tangent) <= 0.0;
@@ -191,7 +193,7 @@ void add_candidates(const ScaledPart& part, std::span<const FitPoint> points,
   }
 }
 
-/// The masses of one direction's candidates.
+/// The masses of the candidates of one direction of travel.
 void integrate(const ScaledPart& part, Circle circle, double best_chi2,
                std::span<const PartCandidate> candidates, std::vector<LogSum>* masses,
                std::vector<LogSum>* by_segment) {
@@ -273,13 +275,13 @@ SlidePosterior slide_posterior(const ScaledPart& part, std::span<const FitPoint>
     whole.add(mass.log());
   }
   if (!std::isfinite(whole.log())) {
-    candidates.clear();  // the points hold no pose of the part
+    candidates.clear();  // the points determine no pose of the part
     return posterior;
   }
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     candidates[c].probability = std::exp(masses[c].log() - whole.log());
   }
-  // Of their own sum: logarithms of a million million keep few digits.
+  // Normalised by their own sum, because the logarithm of a very large number keeps few digits.
   LogSum of_segments;
   for (const LogSum& mass : by_segment) {
     of_segments.add(mass.log());

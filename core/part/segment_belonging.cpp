@@ -15,14 +15,15 @@ namespace {
 
 constexpr int kCubicDegrees = 6;  // shape and pose of a cubic spline segment
 constexpr int kBendDegrees = 2;
-/// Fewest samples on either side of a joint: a cubic and as many more to speak against it.
+/// Fewest samples on either side of a joint: as many as a cubic needs, and as many again to test
+/// it.
 constexpr std::size_t kFewestSamples = 2 * kCubicDegrees;
-/// Knots tried in a run. A bend one sixteenth of the run away still shows nearly all of another's
-/// effect; more would cost significance.
+/// Knots tried in a run. A bend one sixteenth of the run away from a knot still shows nearly all of
+/// its effect there. More knots would cost significance.
 constexpr std::size_t kKnots = 15;
 
-/// Samples of a patch that joints are sought with: the time is theirs times the joints found, some
-/// seconds at most. A stroke of 100 mm then has a sample each tenth of a millimetre.
+/// Largest number of samples used. The time grows with this times the joints found: some seconds at
+/// most. A stroke of 100 mm then has a sample every tenth of a millimetre.
 constexpr std::size_t kMostTested = 1000;
 
 /// A run of samples and its most likely cubic.
@@ -52,12 +53,12 @@ KnottedCubicFit with_knot(const Run& run, const KnottedCubicFit& start, double k
   return refine_knotted(run.data.points, trial, true);
 }
 
-/// The knot of the least chi-square between two others, by golden section.
+/// The knot with the smallest chi-square between two others, by golden section.
 KnottedCubicFit best_between(const Run& run, const KnottedCubicFit& best, double low, double high) {
   const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
-  constexpr double kNarrow = 1e-7;  // of the run, whose parameter goes from -1 to 1
-  // To there from the whole run. Where no cubic fits, feet may be so far out that no two numbers
-  // are that near.
+  constexpr double kNarrow = 1e-7;  // of the parameter, which runs from -1 to 1
+  // Enough from the whole run down to kNarrow. Where no cubic fits, feet may be so far out that no
+  // two doubles are that close.
   constexpr int kMostSteps = 35;
   double a = high - ratio * (high - low);
   double b = low + ratio * (high - low);
@@ -82,7 +83,8 @@ KnottedCubicFit best_between(const Run& run, const KnottedCubicFit& best, double
   return better.chi2 < best.chi2 ? better : best;
 }
 
-/// Finds the joint of a run of samples [begin, end); indices count from the patch's first sample.
+/// Finds the joint of a run of samples [begin, end). Indices count from the first sample of the
+/// patch.
 class JointTest {
  public:
   JointTest(std::span<const StoredSample> samples, const PatchContext& context, double sigma_m,
@@ -112,7 +114,7 @@ class JointTest {
     if (!(run->single.chi2 - best.chi2 > limit)) {
       return std::nullopt;
     }
-    // What the bend gained may be a better optimum of the single cubic instead.
+    // The gain of the bend may come from a better optimum of the single cubic; try it.
     KnottedCubicFit unbent = best;
     unbent.curve.bend = Vec2::Zero();
     unbent = refine_knotted(run->data.points, unbent, false);
@@ -125,8 +127,8 @@ class JointTest {
     best = best_between(*run, best, knot_t(best_knot > 0 ? best_knot - 1 : 0),
                         knot_t(best_knot < last ? best_knot + 1 : last));
     SegmentJoint joint = located(*run, best);
-    // Where the fit does not follow the samples in their order, the knot may come out before or
-    // behind all of them: then it parts nothing, and neither side could be tested again.
+    // If the fit does not follow the samples in their order, the knot may come out before or behind
+    // all of them. Then it splits nothing, and neither side could be tested again.
     if (joint.index < kCubicDegrees || joint.index + kCubicDegrees > end - begin) {
       return std::nullopt;
     }
@@ -148,9 +150,10 @@ class JointTest {
     return indices;
   }
 
-  /// Where the knot is, in the run's units: the curve's place between the samples on either side.
-  /// Where the patch is no two smooth cubics, as at a corner, the curve may swing far out between
-  /// them; nothing was touched there, and the place is on the straight line between the two.
+  /// Position of the knot, in the units of the run: a place of the curve between the samples on
+  /// either side. If the patch is not two smooth cubics, as at a corner, the curve may swing far
+  /// out between them, where nothing was touched. Then the position is on the straight line between
+  /// the two samples.
   static Vec2 place_of(const Run& run, const KnottedCubicFit& best, std::size_t index) {
     const std::size_t after = std::clamp<std::size_t>(index, 1, best.t.size() - 1);
     const auto touched = [&](std::size_t i) -> Vec2 {
@@ -160,8 +163,8 @@ class JointTest {
     const Vec2 from = touched(after - 1);
     const Vec2 to = touched(after);
     Vec2 place = best.curve.position(best.curve.knot);
-    // An arc that turns by less than half a circle stays within the circle over its chord; and
-    // noise within five deviations.
+    // An arc that turns by less than half a circle stays within the circle over its chord; noise
+    // adds five standard deviations.
     constexpr double kFarSigmas = 5.0;
     const double within = 0.5 * (to - from).norm() + kFarSigmas * rms_sigma(run.data);
     if ((place - 0.5 * (from + to)).norm() <= within) {
@@ -172,7 +175,7 @@ class JointTest {
     return from + (part >= 0.0 && part <= 1.0 ? part : 0.5) * (to - from);
   }
 
-  /// The joint among the run's samples, and how far it may lie to either side.
+  /// The joint among the samples of the run, and the interval in which it may lie.
   SegmentJoint located(const Run& run, const KnottedCubicFit& best) const {
     const std::size_t n = best.t.size();
     SegmentJoint joint;
@@ -182,7 +185,7 @@ class JointTest {
     joint.position_m = run.data.frame * (run.data.scale * place_of(run, best, joint.index));
     constexpr double kOutside = 0.05;  // earliest to latest: a 95 % interval
     const double limit = chi_square_threshold(kOutside, 1);
-    // All along the run: where the bend is weak, what is possible may have gaps.
+    // Along the whole run, because for a weak bend the possible places may have gaps.
     constexpr std::size_t kMostPlaces = 80;
     const std::size_t stride = n / kMostPlaces + 1;
     joint.earliest = joint.latest = joint.index;
@@ -201,8 +204,8 @@ class JointTest {
   double significance_;
 };
 
-/// Parts a run at its joint, and again what certainly lies on either side: a few samples of the
-/// neighbour would be found to be one.
+/// Splits a run at its joint, and then the parts that certainly lie on either side. If a part
+/// contained a few samples of its neighbour, another joint would be found there.
 void part_run(const JointTest& test, std::size_t begin, std::size_t end,
               std::vector<SegmentJoint>* joints) {
   const auto joint = test.joint_of(begin, end);
@@ -214,9 +217,9 @@ void part_run(const JointTest& test, std::size_t begin, std::size_t end,
   part_run(test, joint->latest, end, joints);
 }
 
-/// Each joint again, between its neighbours: the first ones were found with others still in the
-/// run, and where they lie askew, others were found beside them. What is no joint between its
-/// neighbours goes.
+/// Tests each joint again between its neighbours. The first joints were found with others still in
+/// the run; if these were misplaced, further joints were found next to them. A joint that the test
+/// does not confirm is removed.
 void settle(const JointTest& test, std::size_t count, std::vector<SegmentJoint>* joints) {
   constexpr int kPasses = 2;
   for (int pass = 0; pass < kPasses && joints->size() > 1; ++pass) {
@@ -228,13 +231,13 @@ void settle(const JointTest& test, std::size_t count, std::vector<SegmentJoint>*
       } else if (end >= begin + 2 * kFewestSamples) {
         joints->erase(joints->begin() + static_cast<std::ptrdiff_t>(j));
       } else {
-        ++j;  // too near its neighbours to be tested
+        ++j;  // too close to its neighbours to be tested
       }
     }
   }
 }
 
-/// The numbers of at most kMostTested of so many samples, evenly spread.
+/// Indices of at most kMostTested of `count` samples, evenly spread.
 std::vector<std::size_t> tested_of(std::size_t count) {
   const std::size_t tested = std::min(count, kMostTested);
   std::vector<std::size_t> numbers;
@@ -244,8 +247,8 @@ std::vector<std::size_t> tested_of(std::size_t count) {
   return numbers;
 }
 
-/// A joint among the tested samples as one among all `count`: those between two of them may lie on
-/// either side.
+/// Converts a joint among the tested samples to one among all `count` samples. Samples between two
+/// tested ones may lie on either side.
 SegmentJoint among_all(SegmentJoint joint, const std::vector<std::size_t>& tested,
                        std::size_t count) {
   const auto first_after = [&](std::size_t i) { return i > 0 ? tested[i - 1] + 1 : 0; };
@@ -256,7 +259,7 @@ SegmentJoint among_all(SegmentJoint joint, const std::vector<std::size_t>& teste
   return joint;
 }
 
-/// The noise of samples that bring none: the residuals of a smooth model of no class. [m]
+/// The noise of samples that state none: from the residuals of a smooth model without a class. [m]
 double noise_of(const StoredPatch& patch, double sigma_m) {
   bool sigma_known = false;
   FitData data = make_fit_data(std::span(&patch, 1), sigma_m, &sigma_known);
@@ -305,7 +308,8 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, doubl
     joint = among_all(joint, tested, kept.samples.size());
   }
 
-  // Between one joint and the next; `core` without the samples that may lie on either side.
+  // The longest run between two joints. `core` excludes the samples that may lie on either side of
+  // a joint.
   std::size_t longest = 0;
   const auto begin_of = [&](std::size_t j) { return j > 0 ? result.joints[j - 1].index : 0; };
   const auto end_of = [&](std::size_t j) {
@@ -329,7 +333,7 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, doubl
     result.dof = static_cast<int>(core_end - core_begin) - kCubicDegrees;
     result.sigma_m = run->data.scale * rms_sigma(run->data);
   }
-  // Back to the numbers of the samples as given.
+  // Converts to the indices of the given samples.
   const auto given = [&](std::size_t i) {
     return i < numbers.size() ? numbers[i] : patch.samples.size();
   };

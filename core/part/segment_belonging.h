@@ -1,4 +1,5 @@
-// Which samples of a patch one cubic explains, without any part model: where segments join.
+// Which samples of a patch belong to one cubic, and where the segments join, without a model of the
+// part.
 #pragma once
 
 #include <cstddef>
@@ -8,36 +9,37 @@
 
 namespace palpate {
 
-/// A place where the patch leaves one cubic for another.
+/// A place where the patch changes from one cubic to another.
 struct SegmentJoint {
-  std::size_t index = 0;  ///< the first sample beyond it
-  /// Samples between which it lies by the likelihood ratio, 95 %: the data do not say to which side
-  /// those in [earliest, latest) belong.
+  std::size_t index = 0;  ///< the first sample beyond the joint
+  /// 95 % interval of the joint, by the likelihood ratio. The data do not show on which side the
+  /// samples in [earliest, latest) lie.
   std::size_t earliest = 0;
   std::size_t latest = 0;
-  double chi2_drop = 0.0;  ///< of the second cubic, 2 degrees of freedom
+  double chi2_drop = 0.0;  ///< what the second cubic reduces chi-square by; 2 degrees of freedom
   Vec2 position_m = Vec2::Zero();
 };
 
 struct SegmentBelonging {
-  bool was_tested = false;  ///< enough samples for a cubic and a joint
-  /// The longest run of samples between joints, [begin, end).
+  bool was_tested = false;  ///< whether there were enough samples for a cubic and a joint
+  /// The longest run of samples between two joints: [begin, end).
   std::size_t begin = 0;
   std::size_t end = 0;
-  std::vector<SegmentJoint> joints;  ///< rising
-  /// Samples that do not belong to that run's cubic: those outside it, and spikes.
+  std::vector<SegmentJoint> joints;  ///< in increasing order
+  /// Samples that do not belong to the cubic of that run: those outside the run, and spikes.
   std::vector<std::size_t> outside;
-  double chi2 = 0.0;     ///< of the run's own cubic, on what certainly lies between the joints
-  int dof = 0;           ///< 0 where that is too little for a cubic
-  double sigma_m = 0.0;  ///< noise used, root mean square [m]
+  /// of the run's cubic, over the samples that certainly lie between the joints
+  double chi2 = 0.0;
+  int dof = 0;           ///< 0 if there are too few of them for a cubic
+  double sigma_m = 0.0;  ///< root mean square of the noise used [m]
 };
 
-/// Tests the patch, then both sides of what it finds, against a cubic that becomes another one at a
-/// knot: likelihood ratio of the bend at each of some knots, chi-square with 2 degrees of freedom,
-/// at `significance` over their number. So a patch of one cubic is parted with probability at most
-/// `significance` (core/README.md, "Joints without a model"). `sigma_m`: noise of samples that
-/// bring none; 0 = from the data. Of a patch of more than 1,000 samples, so many that are evenly
-/// spread: what is sought in is bounded, whatever has been recorded.
+/// Searches for joints in a patch, then again on both sides of each joint found. The test compares
+/// one cubic with two cubics that join at a knot, for a number of knots: a likelihood ratio with 2
+/// degrees of freedom, at `significance` divided by that number. So a patch of one cubic is split
+/// with at most the probability `significance` (core/README.md, "Joints without a model").
+/// `sigma_m`: noise of samples that state none; 0 = estimate it from the data. A patch of more than
+/// 1,000 samples is tested on 1,000 of them, evenly spread; this bounds the time.
 SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m = 0.0,
                                  double significance = 0.01);
 

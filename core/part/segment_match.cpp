@@ -15,11 +15,11 @@ namespace palpate {
 namespace {
 
 constexpr int kPoseDegrees = 3;
-/// Fewest degrees of freedom that noise is estimated from: its relative standard deviation is then
-/// 1/3.
+/// Fewest degrees of freedom for an estimate of the noise: its relative standard deviation is then
+/// about 1/3.
 constexpr int kFewestNoiseDegrees = 4;
 
-/// The patches without spikes, and which samples of the given ones these were.
+/// The patches without spikes, and a flag per given sample that says whether it was a spike.
 struct CleanPatches {
   std::vector<StoredPatch> patches;
   std::vector<std::vector<bool>> is_spike;
@@ -34,7 +34,7 @@ CleanPatches clean_patches(std::span<const StoredPatch> patches, double false_al
   return clean;
 }
 
-/// The patch of the longest chord, among those that have samples.
+/// The patch with the longest chord, among those that have samples.
 std::size_t longest_patch(const FitData& data) {
   std::size_t longest = 0;
   double length = -1.0;
@@ -49,13 +49,13 @@ std::size_t longest_patch(const FitData& data) {
   return longest;
 }
 
-/// The middle of a patch with its tangent; nullopt where the patch has no direction.
+/// The middle of a patch with its tangent; nullopt if the patch has no direction.
 std::optional<FitPoint> reference_of(std::span<const FitPoint> patch) {
   const FitPoint& middle = patch[patch.size() / 2];
   return middle.tangent.squaredNorm() > 0.0 ? std::optional(middle) : std::nullopt;
 }
 
-/// Material lies left of increasing t where outside lies right.
+/// Material lies left of increasing t if the outside lies right.
 TravelDirections directions_of(MaterialSide side, const ScaledPart& part) {
   if (side == MaterialSide::Unspecified) {
     return {};
@@ -64,7 +64,7 @@ TravelDirections directions_of(MaterialSide side, const ScaledPart& part) {
   return {along, !along};
 }
 
-/// Whether t runs up over the samples of a patch, joints and seam included.
+/// Whether t increases over the samples of a patch, across joints and the seam.
 bool runs_up(std::span<const SamplePlace> places, std::size_t segments) {
   const auto period = static_cast<double>(segments);
   double run = 0.0;
@@ -137,7 +137,7 @@ class Match {
            static_cast<double>(std::max<std::size_t>(patches.size(), 1));
   }
 
-  /// The number of a patch of data_ among those given: empty ones are left out there.
+  /// Index of a patch of data_ among the given patches; data_ has no empty patches.
   std::size_t given_number(std::size_t patch) const {
     std::size_t number = 0;
     for (std::size_t left = patch;; ++number) {
@@ -147,7 +147,7 @@ class Match {
     }
   }
 
-  /// On all points, with the places of all samples.
+  /// The placement refined on all points, with the places of all samples.
   PartPlacement place(const ScaledPart& part, const PartCandidate& candidate,
                       const FitPoint& reference) const {
     const PartFit fit = fit_part(part, data_.points, candidate.fit.data_T_part);
@@ -160,7 +160,7 @@ class Match {
     const Pose2& pose = fit.data_T_part;
     placement.world_T_part =
         data_.frame * Pose2{data_.scale * pose.x, data_.scale * pose.y, pose.theta};
-    // The motions turn about the data's origin, the pose about the part's.
+    // The motions turn about the origin of the data, the pose about that of the part.
     Eigen::Matrix3d by_motion = Eigen::Matrix3d::Identity();
     by_motion.col(2).head<2>() = left_of(pose.translation());
     const Eigen::Matrix3d covariance =
@@ -174,8 +174,8 @@ class Match {
     return placement;
   }
 
-  /// How far the reference may slide along the part, and whether chi-square rises there as the
-  /// covariance of the pose, in the data's frame, says.
+  /// How far the reference can slide along the part, and whether chi-square rises there as the
+  /// covariance of the pose (in the frame of the data) predicts.
   void judge_slide(const ScaledPart& part, const PartFit& fit, const Eigen::Matrix3d& covariance,
                    const FitPoint& reference, PartPlacement* placement) const {
     const Pose2& pose = fit.data_T_part;
@@ -188,7 +188,7 @@ class Match {
       return;
     }
     placement->slide_sd_m = data_.scale * std::sqrt(variance);
-    constexpr double kDeviations = 2.0;  // where 95 % of placements end
+    constexpr double kDeviations = 2.0;  // about 95 % of placements lie within
     const Eigen::Vector3d step = kDeviations / std::sqrt(variance) * (covariance * slide);
     for (const double sign : {1.0, -1.0}) {
       const Eigen::Vector3d moved = Eigen::Vector3d(pose.x, pose.y, pose.theta) + sign * step;
@@ -204,7 +204,7 @@ class Match {
   }
 
   void place_samples(const ScaledPart& part, const Pose2& pose, PartPlacement* placement) const {
-    std::size_t next = 0;  // point of data_
+    std::size_t next = 0;  // index of the next point of data_
     for (std::size_t p = 0; p < given_.size(); ++p) {
       const StoredPatch& patch = given_[p];
       PatchOnPart place;

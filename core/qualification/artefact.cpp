@@ -7,13 +7,13 @@
 namespace palpate {
 namespace {
 
-/// Arc length of a closed curve; 0 where it is open.
+/// Arc length of a closed curve; 0 for an open one.
 double length_around(const Curve& artefact) {
   const ParameterDomain range = domain(artefact);
   return range.period > 0.0 ? std::abs(arc_length(artefact, 0.0, range.period)) : 0.0;
 }
 
-/// Places one after the other, running on where the curve closes.
+/// Places of consecutive samples; not wrapped where the curve closes.
 struct Run {
   std::vector<double> arc_m;
   int travel = 0;
@@ -37,7 +37,7 @@ Run run_of(const Curve& artefact, const ArtefactStroke& stroke, const Pose2& pos
     run.arc_m.push_back(arc);
     last = around > 0.0 ? std::remainder(arc, around) : arc;
   }
-  // Noise along the path makes dense samples step back and forth; a stroke still gets on.
+  // Noise along the path makes dense samples step back and forth, but a stroke still advances.
   constexpr double kLeastProgress = 0.05;
   if (way > 0.0 && std::abs(forth) > kLeastProgress * way) run.travel = forth > 0.0 ? 1 : -1;
   return run;
@@ -66,7 +66,7 @@ SampleOnArtefact beside(const Curve& artefact, MaterialSign material, const Pose
   beside.normal = {std::cos(beside.normal_angle), std::sin(beside.normal_angle)};
   beside.turn_per_m =
       sample.travel * local.kappa / (1.0 + material * sample.tip_radius_m * local.kappa);
-  // Envelope theorem: the foot's own motion does not change the distance.
+  // By the envelope theorem the motion of the foot does not change the distance.
   beside.by_angle = -beside.normal.dot(left_of(sample.position_m - world_T_artefact.translation()));
   return beside;
 }

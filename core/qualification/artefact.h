@@ -1,4 +1,4 @@
-// A known artefact, what touched it, and how far the samples lie from it.
+// A known artefact: its touches, and the distance of the samples from it.
 #pragma once
 
 #include <cstddef>
@@ -14,46 +14,48 @@
 
 namespace palpate {
 
-/// One unbroken touch, in the order of time.
+/// One unbroken touch, samples in the order of time.
 struct ArtefactStroke {
   std::vector<ContactSample> samples;
   double tip_radius_m = 0.0;  ///< nominal [m]
 };
 
-/// Touches of one artefact that lay still: one pose.
+/// Touches of one artefact that did not move: one pose.
 struct ArtefactRecording {
   std::vector<ArtefactStroke> strokes;
 };
 
-/// A sample as the fit needs it, sorted by place within its stroke.
+/// A sample in the form that the fit needs. The samples of a stroke are sorted by place.
 struct ArtefactSample {
   Vec2 position_m = Vec2::Zero();
   double tip_radius_m = 0.0;
-  double arc_m = 0.0;  ///< place along the stroke, rising
-  int travel = 0;      ///< +1 along increasing curve parameter, -1 against it, 0 not known
+  double arc_m = 0.0;  ///< place along the stroke, increasing
+  int travel = 0;      ///< +1 along increasing curve parameter, -1 against it, 0 unknown
   std::size_t recording = 0;
-  std::size_t stroke = 0;  ///< of the recording
-  std::size_t number = 0;  ///< in the stroke, as it came
+  std::size_t stroke = 0;  ///< within the recording
+  std::size_t number = 0;  ///< within the stroke, as given
 };
 
-/// +1: the material lies left of increasing curve parameter (within a ring's outer side), -1: right
-/// (round a bore).
+/// +1: the material lies left of increasing curve parameter (the outside of a ring is touched), -1:
+/// right (a bore is touched).
 using MaterialSign = int;
 
-/// A sample beside the artefact at a pose.
+/// Distance of a sample from the artefact at a pose, and how it changes.
 struct SampleOnArtefact {
-  double distance_m = 0.0;      ///< out of the material, less the nominal tip radius
-  double normal_angle = 0.0;    ///< of the normal out of the material, in the samples' frame [rad]
-  Vec2 normal = Vec2::UnitX();  ///< the same
-  double turn_per_m = 0.0;      ///< of the normal along travel, on the path of the tip [rad/m]
-  double by_angle = 0.0;        ///< derivative of the distance by the pose's angle [m]
+  double distance_m = 0.0;  ///< out of the material, minus the nominal tip radius
+  /// of the normal out of the material, in the frame of the samples [rad]
+  double normal_angle = 0.0;
+  Vec2 normal = Vec2::UnitX();  ///< the unit vector of normal_angle
+  double turn_per_m = 0.0;  ///< how the normal turns with travel along the path of the tip [rad/m]
+  double by_angle = 0.0;    ///< derivative of the distance by the angle of the pose [m]
 };
 
 SampleOnArtefact beside(const Curve& artefact, MaterialSign material, const Pose2& world_T_artefact,
                         const ArtefactSample& sample);
 
-/// Samples in the order of their places, strokes one after the other. Touches alone in their stroke
-/// are taken together, and strokes whose samples do not run one way: by place, without direction.
+/// The samples of a recording ordered by place, one stroke after another. Strokes of a single touch
+/// form one common stroke. That stroke, and strokes whose samples run in no clear direction, are
+/// ordered by place and have no direction of travel.
 struct PlacedSamples {
   std::vector<ArtefactSample> samples;
   std::vector<StrokePlaces> strokes;

@@ -11,7 +11,7 @@ double whiten(const Coherence& coherence, std::span<const StrokePlaces> strokes,
   Eigen::RowVectorXd expected(columns.cols());
   for (const StrokePlaces& stroke : strokes) {
     expected.setZero();
-    double known = variance;  // variance of the coherent part, given what came before
+    double known = variance;  // variance of the coherent part, given the samples before
     for (Eigen::Index i = stroke.begin; i < stroke.end; ++i) {
       const auto k = static_cast<std::size_t>(i);
       if (i > stroke.begin) {

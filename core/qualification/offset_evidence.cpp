@@ -17,19 +17,19 @@ struct Cell {
   double log_ratio = 0.0;
   double log_length = 0.0;
   double log_evidence = -std::numeric_limits<double>::infinity();
-  double variance = 0.0;  ///< mean of the white noise's, given the cell [m^2]
-  double harmonic = 0.0;  ///< over the noise
+  double variance = 0.0;  ///< mean variance of the white noise, given the cell [m^2]
+  double harmonic = 0.0;  ///< standard deviation of the harmonics over that of the noise
   double degrees = 0.0;
   Eigen::VectorXd coefficients;
 };
 
-/// Evenly spaced values; their ends are the range of the prior.
+/// Ends of the range of a prior; values are evenly spaced in it.
 struct Range {
   double low = 0.0;
   double high = 0.0;
 };
 
-/// Sums that the evidence of all orders needs, for one coherence.
+/// Sums for one coherence that the evidences of all orders share.
 struct NormalEquations {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd right;
@@ -50,19 +50,19 @@ NormalEquations normal_equations(const OffsetModel& model, const Coherence& cohe
   return sums;
 }
 
-/// Standard deviation of the harmonics over that of the noise, alike probable in its logarithm:
-/// from what no number of samples shows to what everybody sees at a single one.
+/// Ratios of the standard deviation of the harmonics to that of the noise, uniform in the
+/// logarithm: from a size that no number of samples shows to one that a single sample shows.
 std::vector<double> harmonic_sizes() {
   std::vector<double> sizes;
   for (double size = 0.01; size < 200.0; size *= 2.0) sizes.push_back(size);
   return sizes;
 }
 
-/// Size of a harmonic over that of the second: an offset that bends nowhere sharply has overtones
-/// that fall off with the square of their order.
+/// Size of a harmonic relative to that of order 2. The overtones of an offset without sharp bends
+/// fall off with the square of their order.
 double overtone(int order) { return 4.0 / (order * order); }
 
-/// Cells of all orders for one coherence.
+/// Adds the cells of all orders for one coherence.
 void add_cells(const OffsetModel& model, int highest, double log_ratio, double log_length,
                std::vector<Cell>& cells) {
   const double ratio = std::exp(log_ratio);
@@ -89,7 +89,8 @@ void add_cells(const OffsetModel& model, int highest, double log_ratio, double l
       cell.log_evidence = -0.5 * sums.log_determinant -
                           0.5 * factor.vectorD().array().abs().log().sum() - log_sizes -
                           0.5 * degrees * std::log(0.5 * squares) + log_gamma(0.5 * degrees) -
-                          // Without harmonics their size says nothing: one cell for all of them.
+                          // Without harmonics their size has no effect: one cell stands for all
+                          // sizes.
                           (order == 0 ? 0.0 : std::log(static_cast<double>(sizes.size())));
       cell.coefficients = solution.tail(offset_coefficients(order));
       if (std::isfinite(cell.log_evidence)) cells.push_back(std::move(cell));
@@ -116,7 +117,7 @@ double highest_evidence(const std::vector<Cell>& cells) {
   return highest;
 }
 
-/// The part of a range where anything is left of the evidence, and a step beyond.
+/// The part of a range where the evidence is not negligible, plus one step on either side.
 Range where_told(const std::vector<Cell>& cells, Range range, int steps, double Cell::*field) {
   constexpr double kNothing = 12.0;  // e^-12
   const double highest = highest_evidence(cells);
@@ -131,7 +132,7 @@ Range where_told(const std::vector<Cell>& cells, Range range, int steps, double 
   return {std::max(told.low - step, range.low), std::min(told.high + step, range.high)};
 }
 
-/// The lowest order that no higher one beats by what counts as substantial evidence (H. Jeffreys).
+/// The lowest order that no higher one beats by substantial evidence (H. Jeffreys).
 int fewest_asked_for(const std::vector<double>& by_order) {
   constexpr double kSubstantial = 3.0;
   for (auto order = by_order.begin(); order != by_order.end(); ++order) {
@@ -143,7 +144,7 @@ int fewest_asked_for(const std::vector<double>& by_order) {
   return 0;
 }
 
-/// Mean and deviation over cells with weights that sum to 1.
+/// Mean and standard deviation over cells; the weights sum to 1.
 template <typename Value>
 Estimate estimate_over(const std::vector<Cell>& cells, const std::vector<double>& weights,
                        const Value& value) {
@@ -162,8 +163,8 @@ Estimate sigma_of(const Cell& cell) {
   return {sigma, sigma / std::sqrt(2.0 * cell.degrees)};
 }
 
-/// From a few of the samples' distances to a part of the longest stroke: what is shorter counts as
-/// noise, what is longer cannot be told from a constant.
+/// From a few sample spacings to a part of the longest stroke. A shorter deviation counts as noise;
+/// a longer one cannot be distinguished from a constant.
 Range lengths_of(const OffsetModel& model) {
   std::vector<double> steps;
   double longest = 0.0;
@@ -177,8 +178,8 @@ Range lengths_of(const OffsetModel& model) {
                                       model.arc_m[static_cast<std::size_t>(stroke.begin)]);
     }
   }
-  constexpr double kFewestSteps = 4.0;  // drift over fewer looks as noise does
-  constexpr double kShare = 0.5;        // of a stroke: beyond it the constant takes it up
+  constexpr double kFewestSteps = 4.0;  // drift over fewer steps looks like noise
+  constexpr double kShare = 0.5;  // of a stroke; a longer deviation is absorbed by the constant
   if (steps.empty() || !(longest > 0.0)) return {0.0, 0.0};
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
@@ -189,16 +190,17 @@ Range lengths_of(const OffsetModel& model) {
 }  // namespace
 
 std::optional<OffsetEvidence> weigh_offsets(const OffsetModel& model) {
-  // Nearly an e-fold of either each: it shows where the evidence lies, and where_told keeps a step
-  // beyond, so that a peak between two steps is not lost.
+  // Steps of nearly an e-fold. They show where the evidence lies; where_told keeps a step beyond,
+  // so a peak between two steps is not lost.
   constexpr int kCoarse = 9;
-  // Of what is left, two coarse steps at least: an eighth of an e-fold each. A trapezoid errs by a
-  // hundredth of a normal peak whose deviation is half a step, and by far less of a wider one.
+  // Over what remains, which is at least two coarse steps: an eighth of an e-fold each. The
+  // trapezoid rule errs by a hundredth for a normal peak whose deviation is half a step, and by far
+  // less for a wider one.
   constexpr int kFine = 15;
   const int columns = static_cast<int>(model.basis.cols());
   const int highest = columns == 1 ? 0 : (columns + 1) / 2;
-  // Alike probable in the logarithm, as the noise is: no size is preferred. Below a hundredth no
-  // number of samples shows it.
+  // Uniform in the logarithm, as for the noise: no size is preferred. Below a hundredth no number
+  // of samples shows the deviation.
   const Range ratios{std::log(0.01), std::log(30.0)};
   const Range lengths = lengths_of(model);
   const std::vector<Cell> coarse = grid(model, highest, ratios, lengths, kCoarse);

@@ -1,4 +1,4 @@
-// How many harmonics, how much noise and how coherent: weighed by their evidence.
+// How many harmonics the offset has, how large the noise is and how coherent: weighed by evidence.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,35 +11,36 @@
 
 namespace palpate {
 
-/// A linear model of the residuals about a place: residual = flat * x + offset basis * c + noise.
-/// Nothing is expected of x; the harmonics of c (not its constant) are normal about 0, of a
-/// standard deviation that is sought along.
+/// A linear model of the residuals about a starting point: residual = flat * x + basis * c + noise.
+/// x has a flat prior. The harmonics in c (not its constant) have a normal prior about 0, whose
+/// standard deviation is estimated too.
 struct OffsetModel {
   Eigen::VectorXd residual_m;
-  Eigen::MatrixXd flat;   ///< poses, and the lag where it is sought
-  Eigen::MatrixXd basis;  ///< offset_basis of the highest order
+  Eigen::MatrixXd flat;   ///< columns of the poses, and of the lag if it is estimated
+  Eigen::MatrixXd basis;  ///< offset_basis up to the highest order
   std::vector<StrokePlaces> strokes;
   std::vector<double> arc_m;
   std::vector<char> used;
-  double least_noise_m = 0.0;  ///< what rounding leaves of samples without noise [m]
+  double least_noise_m = 0.0;  ///< rounding error of samples without noise [m]
 };
 
 struct OffsetEvidence {
-  int order = 0;                      ///< the lowest that no higher one beats by a factor of 3
-  std::vector<double> probabilities;  ///< of order 0 (with 1, which is none), 2, 3, ...
-  /// Given that order, means over all else and their deviations:
+  int order = 0;  ///< the lowest order that no higher one beats by a factor of 3
+  std::vector<double> probabilities;  ///< of order 0 (or 1, which adds nothing), 2, 3, ...
+  /// Given that order: means and standard deviations over everything else.
   Estimate sigma_m;
   Estimate deviation_m;
   Estimate deviation_length_m;
-  double harmonic_m = 0.0;  ///< standard deviation that the harmonics are expected to have [m]
-  Coherence coherence;      ///< of the most probable noise
-  /// Of the coefficients: what not knowing noise and coherence adds to the covariance.
+  double harmonic_m = 0.0;  ///< prior standard deviation of the harmonics [m]
+  Coherence coherence;      ///< the most probable one
+  /// Covariance that the uncertainty of noise and coherence adds to that of the coefficients.
   Eigen::MatrixXd spread_m2;
 };
 
-/// Exact but for the grid: given noise, coherence and the harmonics' size, all integrals are normal
-/// ones, and that over the noise is Student's. Needs more used samples than columns and two;
-/// nullopt where the numbers leave a double's range all the same.
+/// The evidence of each order. Exact except for the grid: given noise, coherence and the size of
+/// the harmonics, all integrals are Gaussian; the integral over the noise leads to Student's law.
+/// The number of used samples must exceed the number of columns by more than two. nullopt if
+/// numbers leave the range of a double nevertheless.
 std::optional<OffsetEvidence> weigh_offsets(const OffsetModel& model);
 
 }  // namespace palpate

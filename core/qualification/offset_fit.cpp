@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-/// The unknowns as Ceres moves them.
+/// The unknowns in the form in which Ceres changes them.
 struct Blocks {
   std::vector<Eigen::Vector2d> translation;
   std::vector<double> angle;
@@ -36,9 +36,9 @@ void take(const Blocks& blocks, OffsetUnknowns& unknowns) {
   if (unknowns.lag_m) unknowns.lag_m = blocks.lag;
 }
 
-/// A sample's residual. What a motion of the pose adds by turning the normal under the offset is
-/// left out of the derivatives: it is the offset's slope over the radius of curvature, some
-/// thousandths, and only slows the last steps.
+/// Residual of a sample and its derivatives. One effect is omitted from the derivatives: a motion
+/// of the pose turns the normal and so changes the offset. It is the slope of the offset over the
+/// radius of curvature, some thousandths, and only slows the last steps.
 struct Row {
   double residual = 0.0;
   Eigen::RowVectorXd by_translation;
@@ -46,7 +46,7 @@ struct Row {
   Eigen::RowVectorXd by_coefficients;
   double by_lag = 0.0;
   double normal_angle = 0.0;
-  double offset_angle = 0.0;  ///< direction that the offset belongs to: with the lag
+  double offset_angle = 0.0;  ///< direction that the offset belongs to, lag included
 };
 
 Row row_of(const Curve& artefact, MaterialSign material, const ArtefactSample& sample,
@@ -64,12 +64,12 @@ Row row_of(const Curve& artefact, MaterialSign material, const ArtefactSample& s
   return row;
 }
 
-/// Order of the harmonics that so many coefficients are.
+/// Order of an offset with so many coefficients.
 int order_of(Eigen::Index coefficients) {
   return coefficients == 1 ? 0 : static_cast<int>(coefficients + 1) / 2;
 }
 
-/// One sample over its noise.
+/// One sample, divided by its noise.
 class SampleCost : public ceres::CostFunction {
  public:
   SampleCost(const Curve& artefact, MaterialSign material, const ArtefactSample& sample,
@@ -112,7 +112,7 @@ class SampleCost : public ceres::CostFunction {
   double scale_m_;
 };
 
-/// All samples, made white. Blocks: translation and angle of each recording, coefficients, lag.
+/// All samples, whitened. Blocks: translation and angle of each recording, coefficients, lag.
 class WhiteCost : public ceres::CostFunction {
  public:
   WhiteCost(const Curve& artefact, MaterialSign material, std::span<const ArtefactSample> samples,
@@ -181,7 +181,7 @@ class WhiteCost : public ceres::CostFunction {
   std::vector<double> setup_m_;  ///< by sample
 };
 
-/// The harmonics over what they are expected to have.
+/// The harmonics, divided by their prior standard deviation.
 class PriorCost : public ceres::CostFunction {
  public:
   PriorCost(int coefficients, double deviation_m) : deviation_m_(deviation_m) {
@@ -208,7 +208,7 @@ ceres::Solver::Options solver_options() {
   options.linear_solver_type = ceres::DENSE_QR;
   options.logging_type = ceres::SILENT;
   options.max_num_iterations = 100;
-  // Costs are of the order of the samples: what gains less than 1e-10 of that moves nothing.
+  // Costs are about the number of samples: a gain below 1e-10 of that changes nothing.
   options.function_tolerance = 1e-10;
   options.parameter_tolerance = 1e-12;
   options.gradient_tolerance = 1e-10;
@@ -217,7 +217,7 @@ ceres::Solver::Options solver_options() {
 
 bool is_circle(const Curve& artefact) { return class_of(artefact) == CurveClass::Circle; }
 
-/// Adds the pose blocks; a circle has no angle, and a line none to slide along.
+/// Adds the pose blocks. The angle of a circle is held constant.
 void add_poses(const Curve& artefact, Blocks& blocks, ceres::Problem& problem) {
   for (std::size_t i = 0; i < blocks.translation.size(); ++i) {
     problem.AddParameterBlock(blocks.translation[i].data(), 2);
@@ -275,7 +275,7 @@ bool fit_robustly(const Curve& artefact, MaterialSign material,
                   std::span<const ArtefactSample> samples, double scale_m,
                   const HarmonicPrior& prior, OffsetUnknowns& unknowns) {
   Blocks blocks = blocks_of(unknowns);
-  constexpr double kWidth = 2.0;  // beyond it Cauchy's loss falls behind the square by half
+  constexpr double kWidth = 2.0;  // Cauchy's loss has half the slope of the square there
   ceres::Problem problem;
   add_poses(artefact, blocks, problem);
   const int count = static_cast<int>(blocks.coefficients.size());
@@ -320,7 +320,7 @@ std::optional<double> fit_under_noise(const Curve& artefact, MaterialSign materi
   take(blocks, unknowns);
 
   ceres::Covariance::Options covariance_options;
-  covariance_options.algorithm_type = ceres::DENSE_SVD;  // no rank is taken for granted
+  covariance_options.algorithm_type = ceres::DENSE_SVD;  // does not assume full rank
   ceres::Covariance covariance(covariance_options);
   std::vector<std::pair<const double*, const double*>> wanted = {
       {blocks.coefficients.data(), blocks.coefficients.data()}};

@@ -1,4 +1,4 @@
-// Poses, offset by direction and lag, fitted together to all samples on an artefact.
+// Joint fit of poses, direction-dependent offset and lag to all samples on an artefact.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,44 +10,46 @@
 
 namespace palpate {
 
-/// Everything that is fitted.
+/// All quantities that are fitted.
 struct OffsetUnknowns {
-  std::vector<Pose2> poses;  ///< of the recordings
+  std::vector<Pose2> poses;  ///< of the artefact, one per recording
   NormalOffset offset;
-  /// What a recording's constant differs by from the offset's: a set-up of its own. Empty = all are
-  /// alike. The fits below hold it as it is.
+  /// Difference between a recording's constant and that of `offset`: every recording may be a
+  /// set-up of its own. Empty = all recordings have the same constant. The fits below do not change
+  /// it.
   std::vector<double> setup_m;
-  std::optional<double> lag_m;  ///< nullopt = not sought, 0
+  std::optional<double> lag_m;  ///< nullopt = not estimated, 0
 };
 
-/// What a sample lies farther out for its recording's set-up. [m]
+/// The set-up constant of the sample's recording; 0 if there are none. [m]
 double setup_of(const OffsetUnknowns& unknowns, const ArtefactSample& sample);
 
-/// Residuals of all samples about the unknowns, and how they change: columns as in OffsetModel.
+/// Residuals of all samples at the unknowns, and their derivatives; columns as in OffsetModel.
 struct OffsetResiduals {
-  Eigen::VectorXd residual_m;  ///< distance less offset
-  Eigen::MatrixXd flat;        ///< constant of each recording but the first, where they have their
-                               ///< own; x, y (and angle, where the artefact is no circle) of each
-                               ///< recording; the lag; a column's negative derivative
-  Eigen::MatrixXd basis;       ///< of `order`
+  Eigen::VectorXd residual_m;  ///< distance minus offset
+  /// Constant of each recording but the first, if recordings have their own; x, y (and the angle
+  /// unless the artefact is a circle) of each recording; the lag. Each column is minus the
+  /// derivative of the residual.
+  Eigen::MatrixXd flat;
+  Eigen::MatrixXd basis;  ///< offset_basis up to `order`
   std::vector<double> normal_angle;
 };
 OffsetResiduals residuals_about(const Curve& artefact, MaterialSign material,
                                 std::span<const ArtefactSample> samples,
                                 const OffsetUnknowns& unknowns, int order);
 
-/// What holds the harmonics, where the samples do not: a normal law about 0.
+/// A normal prior about 0 for the harmonics, for what the samples leave open.
 struct HarmonicPrior {
   double deviation_m = 0.0;
 };
 
-/// Least absolute-like residuals (Cauchy's loss of width 2 `scale_m`): spikes have little say.
-/// Returns whether it converged.
+/// Fit with Cauchy's loss of width 2 `scale_m`, under which spikes have little influence. Returns
+/// whether it converged.
 bool fit_robustly(const Curve& artefact, MaterialSign material,
                   std::span<const ArtefactSample> samples, double scale_m,
                   const HarmonicPrior& prior, OffsetUnknowns& unknowns);
 
-/// Noise as it has been weighed.
+/// The noise that the evidence has chosen.
 struct KnownNoise {
   double sigma_m = 0.0;
   Coherence coherence;
@@ -56,9 +58,9 @@ struct KnownNoise {
   std::span<const char> used;
 };
 
-/// Most probable unknowns under that noise. Fills the offset's covariance; returns the lag's
-/// variance too (0 where it is not sought), or nullopt where it did not converge or the samples
-/// leave something open altogether.
+/// The most probable unknowns under that noise. Fills the covariance of the offset. Returns the
+/// variance of the lag (0 if it is not estimated); nullopt if the fit did not converge or the
+/// samples leave an unknown undetermined.
 std::optional<double> fit_under_noise(const Curve& artefact, MaterialSign material,
                                       std::span<const ArtefactSample> samples,
                                       const KnownNoise& noise, const HarmonicPrior& prior,

@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-/// Derivative by shape and pose.
+/// Derivative of a distance by shape and pose.
 using Slope = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kLargestSymmetric>;
 
 /// +1: the patch runs along increasing parameter, -1: against it, 0: neither.
@@ -28,7 +28,7 @@ int travel_of(const Curve& curve, const Pose2& pose, std::span<const ContactSamp
 
 int majority(int votes) { return votes > 0 ? 1 : (votes < 0 ? -1 : 0); }
 
-/// Columns of the orthogonal distance's derivative, out of the material, by shape, x, y and theta.
+/// Derivatives of the orthogonal distance, positive out of the material, by shape, x, y and theta.
 Slope distance_slope(const Curve& curve, const Pose2& pose, const Vec2& normal,
                      const FootPoint& foot) {
   const auto shape = static_cast<Eigen::Index>(parameter_letters(class_of(curve)).size());
@@ -41,13 +41,13 @@ Slope distance_slope(const Curve& curve, const Pose2& pose, const Vec2& normal,
   return slope;
 }
 
-/// Of a quantity known as well as that.
+/// E[x^2] of the estimated quantity.
 double mean_square(const Estimate& estimate) {
   return estimate.value * estimate.value + estimate.deviation * estimate.deviation;
 }
 
-/// Where a sample touches, and how the normal out of the material lies there (to the right of
-/// increasing parameter where the side is not known).
+/// Where a sample touches, and the normal out of the material there (to the right of increasing
+/// parameter if the side is not known).
 struct Touch {
   FootPoint foot;
   Vec2 normal;
@@ -78,7 +78,7 @@ AddResult add_all(std::span<const ProbedPatch> patches, Recognizer& recognizer) 
   return sum;
 }
 
-/// The curve that the answer thinks the most probable; nullopt where that is none.
+/// The curve of the most probable class; nullopt if there is none.
 std::optional<Curve> curve_of(const Recognition& answer) {
   return answer.hypotheses.empty() || answer.hypotheses.front().at_limit
              ? std::nullopt
@@ -143,7 +143,8 @@ ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& pose,
   for (const ProbedPatch& patch : patches) {
     const int material = material_sign(curve, pose, patch);
     const int travel = has_lag(patch) ? travel_of(curve, pose, patch.samples) : 0;
-    // With D_ij = d^2 exp(-|s_i - s_j| / length) the sum over all pairs runs along the patch.
+    // With D_ij = d^2 exp(-|s_i - s_j| / length), the sum over all pairs is a recursion along the
+    // patch.
     SmallVector before = SmallVector::Zero(size);
     Vec2 last = Vec2::Zero();
     for (const ContactSample& sample : patch.samples) {
@@ -168,13 +169,14 @@ ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& pose,
       sum += weight * slope.transpose() * basis;
     }
   }
-  // In units of what each unknown moves the samples by; what its symmetry leaves free stays out.
+  // In units of the effect of each unknown on the samples. Directions that a symmetry leaves free
+  // are omitted.
   const SmallVector moves =
       information.diagonal().cwiseSqrt().unaryExpr([](double v) { return v > 0.0 ? v : 1.0; });
   const SmallSymmetric scaled =
       moves.cwiseInverse().asDiagonal() * information * moves.cwiseInverse().asDiagonal();
   const SymmetricEigen eigen = symmetric_eigen(scaled);
-  constexpr double kFree = 1e-12;  // rounding of a matrix of unit diagonal, and some digits
+  constexpr double kFree = 1e-12;  // rounding of a matrix with unit diagonal, with some margin
   const SmallVector inverse =
       eigen.values.unaryExpr([](double v) { return v > kFree ? 1.0 / v : 0.0; });
   const SmallSymmetric solve = moves.cwiseInverse().asDiagonal() * eigen.vectors *
@@ -196,7 +198,7 @@ double inflation_of_probes(std::span<const ProbedPatch> patches) {
     count += patch.samples.size();
     if (patch.probe == nullptr) continue;
     double before = 0.0;  // sum of D_ij / deviation^2 over the samples before
-    double pairs = 0.0;   // of 1 / sigma^2 times that, both ways, and with itself
+    double pairs = 0.0;   // sum of (D_ij / deviation^2) / sigma_i^2 over all pairs, i = j included
     for (std::size_t i = 0; i < patch.samples.size(); ++i) {
       const ContactSample& sample = patch.samples[i];
       if (i > 0) {
@@ -237,7 +239,7 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
     if (!curve) return result;
     if (round == kRounds) break;
     for (std::size_t i = 0; i < raw.size(); ++i) {
-      // Always off the samples as they came: what changes is where the curve has its normals.
+      // Always from the original samples: only the normals change from round to round.
       corrected[i].samples = without_offset(raw[i], *curve, result.recognition.world_T_curve);
     }
     result.corrected = true;
@@ -250,14 +252,14 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
   const bool same = curve_of(plain) && plain.shape.curve_class == answer.shape.curve_class &&
                     plain.covariance.size() > 0;
   Hypothesis& best = answer.hypotheses.front();
-  // Where the two differ the cautious covariance holds the coherent deviation twice.
+  // If the two recognitions differ, the cautious covariance contains the coherent deviation twice.
   if (same) {
     answer.shape = best.shape = plain.shape;
     answer.world_T_curve = best.world_T_curve = plain.world_T_curve;
     answer.covariance = plain.covariance;
     best.covariance = plain.hypotheses.front().covariance;
-    // Neighbours that err together: so do the files' deviations, which are added below. (Beside a
-    // stated form deviation the two are not told apart, and count both.)
+    // If neighbours err together, the deviations of the files explain part of it; these are added
+    // below. (With a stated form deviation the two cannot be separated, and both count.)
     const bool has_file = std::any_of(patches.begin(), patches.end(), [](const ProbedPatch& patch) {
       return patch.probe != nullptr;
     });
@@ -292,7 +294,7 @@ ProbedRecognition recognise_probed(const SampleMemory& memory,
     const ProbeCharacter* const probe = probes[stored.context.probe];
     ContactRun run = as_contacts(stored);
     for (std::size_t i = 0; probe != nullptr && i < run.samples.size(); ++i) {
-      // Before its weight counts: what the probe says is the noise of one contact.
+      // Before the weight applies: the probe's noise is that of one contact.
       ContactSample& sample = run.samples[i];
       if (!(sample.sigma_m > 0.0)) {
         sample.sigma_m = probe->sigma_m.value / std::sqrt(stored.samples[i].weight);
@@ -302,7 +304,7 @@ ProbedRecognition recognise_probed(const SampleMemory& memory,
     merge_bias_m = std::max(merge_bias_m, stored.merge_bias_m);
   }
   options.form_deviation_m = std::hypot(options.form_deviation_m, merge_bias_m);
-  // As many as are there: what had to make room has done so.
+  // No limit below the number present: the memory has already dropped what had to make room.
   options.memory.most_patches = std::max<std::size_t>(patches.size(), 1);
   options.memory.most_lone_touches = std::max<std::size_t>(patches.size(), 1);
   ProbedRecognition result = recognise_probed(patches, options);

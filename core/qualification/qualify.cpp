@@ -14,11 +14,11 @@
 namespace palpate {
 namespace {
 
-/// Lobes of a stylus' bending and of a triggering sensor's three legs are 2, 3 and 6 a turn; their
-/// overtones fall off.
+/// The bending of a stylus and the three legs of a trigger sensor cause lobes of order 2, 3 and 6;
+/// their overtones fall off.
 constexpr int kHighestOrder = 8;
-/// Of normals, beyond which a direction counts as not touched: twelve touches evenly around leave
-/// no gap, whatever their noise. [rad]
+/// Gap between normals beyond which a direction counts as not touched. Twelve touches evenly around
+/// leave no gap, whatever their noise. [rad]
 constexpr double kGap = 1.01 * kPi / 6.0;
 
 double median_of(std::vector<double> values) {
@@ -45,7 +45,7 @@ bool is_usable(std::span<const ArtefactRecording> recordings) {
   return true;
 }
 
-/// A recording's samples, at most so many, evenly taken.
+/// The samples of a recording, at most `most` of them, evenly selected.
 std::vector<ArtefactSample> thinned(const ArtefactRecording& recording, std::size_t most) {
   std::vector<ArtefactSample> all;
   for (const ArtefactStroke& stroke : recording.strokes) {
@@ -61,7 +61,7 @@ std::vector<ArtefactSample> thinned(const ArtefactRecording& recording, std::siz
   return some;
 }
 
-/// Distances of the samples from the artefact, beyond their middle one: how badly a pose fits.
+/// Median deviation of the samples' distances from their median: how badly a pose fits.
 double scatter(const Curve& artefact, MaterialSign material, const Pose2& pose,
                const std::vector<ArtefactSample>& samples) {
   std::vector<double> distances;
@@ -74,8 +74,8 @@ double scatter(const Curve& artefact, MaterialSign material, const Pose2& pose,
   return median_of(std::move(distances));
 }
 
-/// Where the artefact lies, roughly: the class of its shape fitted freely, laid on the samples in
-/// the way that its symmetries leave open.
+/// Rough pose of the artefact: its class is fitted with a free shape; of the orientations that the
+/// symmetries leave open, the one that fits the samples best.
 std::optional<Pose2> rough_pose(const Curve& artefact, const std::vector<ArtefactSample>& samples) {
   std::vector<GivenPoint> points;
   for (const ArtefactSample& sample : samples) {
@@ -99,7 +99,7 @@ std::optional<Pose2> rough_pose(const Curve& artefact, const std::vector<Artefac
   return best;
 }
 
-/// The side that the tips' centres lie on, by where the nominal radius leaves less.
+/// The side of the tips' centres: the one where the nominal radius leaves smaller residuals.
 MaterialSign side_of(const Curve& artefact, const Pose2& pose,
                      const std::vector<ArtefactSample>& samples, bool bore) {
   std::vector<double> outside;
@@ -114,7 +114,7 @@ MaterialSign side_of(const Curve& artefact, const Pose2& pose,
   return median_of(std::move(outside)) <= median_of(std::move(inside)) ? 1 : -1;
 }
 
-/// All recordings' samples in one row.
+/// The samples of all recordings in one sequence.
 struct Ground {
   std::vector<ArtefactSample> samples;
   std::vector<StrokePlaces> strokes;
@@ -145,7 +145,8 @@ void set_order(OffsetUnknowns& unknowns, int order) {
   unknowns.offset.coefficients_m.head(kept) = before.head(kept);
 }
 
-/// Samples beyond what normal noise of the middle residuals' size leaves.
+/// One flag per sample: 1 unless its residual exceeds normal noise with the size of the median
+/// residual.
 std::vector<char> within_noise(const Eigen::VectorXd& residuals, double least_scale,
                                double false_probability) {
   const double scale = std::max(median_size(residuals) / kMedianOfNormal, least_scale);
@@ -157,7 +158,8 @@ std::vector<char> within_noise(const Eigen::VectorXd& residuals, double least_sc
 }
 
 bool runs_both_ways(const std::vector<ArtefactSample>& samples) {
-  constexpr double kLeastShare = 0.1;  // an even share tells the lag to 0.6 of what this one does
+  // An even share determines the lag to 0.6 of the error of this one.
+  constexpr double kLeastShare = 0.1;
   double forth = 0.0;
   double back = 0.0;
   for (const ArtefactSample& sample : samples) {
@@ -167,7 +169,7 @@ bool runs_both_ways(const std::vector<ArtefactSample>& samples) {
   return std::min(forth, back) > kLeastShare * static_cast<double>(samples.size());
 }
 
-/// [from, to] of every gap between neighbouring directions.
+/// [from, to] of every gap between neighbouring directions that is wider than kGap.
 std::vector<std::pair<double, double>> gaps_between(std::vector<double> angles) {
   std::vector<std::pair<double, double>> gaps;
   std::sort(angles.begin(), angles.end());
@@ -178,7 +180,7 @@ std::vector<std::pair<double, double>> gaps_between(std::vector<double> angles) 
   return gaps;
 }
 
-/// Of each recording, what its samples' middle residual says: a first guess of its set-up.
+/// First guess of the set-up of each recording: its median residual.
 void guess_setups(const Ground& ground, const Eigen::VectorXd& residual_m,
                   OffsetUnknowns& unknowns) {
   for (std::size_t r = 0; r < unknowns.setup_m.size(); ++r) {
@@ -192,7 +194,7 @@ void guess_setups(const Ground& ground, const Eigen::VectorXd& residual_m,
   }
 }
 
-/// Takes what is common to all recordings' constants as the offset's.
+/// Moves the common part of all recordings' constants into the offset.
 void settle_setups(const Eigen::VectorXd& constants_m, double common_m, OffsetUnknowns& unknowns) {
   for (std::size_t r = 0; r < unknowns.setup_m.size(); ++r) {
     unknowns.setup_m[r] = constants_m[static_cast<Eigen::Index>(r)] - common_m;
@@ -200,7 +202,7 @@ void settle_setups(const Eigen::VectorXd& constants_m, double common_m, OffsetUn
   unknowns.offset.coefficients_m[0] = common_m;
 }
 
-/// Radius of curvature of the artefact where it was touched, the middle one.
+/// Median radius of curvature of the artefact over the touches.
 double radius_of(const Curve& artefact, const Ground& ground, const std::vector<Pose2>& poses) {
   std::vector<double> bends;
   for (const ArtefactSample& sample : ground.samples) {
@@ -212,7 +214,7 @@ double radius_of(const Curve& artefact, const Ground& ground, const std::vector<
 }
 
 Estimate rate_of(std::size_t count, std::size_t of) {
-  // Jeffreys' prior: a recording without any does not say that there are none.
+  // Jeffreys' prior: a recording without spikes does not show that there are none.
   const double mean = (static_cast<double>(count) + 0.5) / (static_cast<double>(of) + 1.0);
   return {mean, std::sqrt(mean * (1.0 - mean) / (static_cast<double>(of) + 2.0))};
 }
@@ -256,11 +258,11 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
                       const QualificationOptions& options) {
   if (!is_usable(recordings)) return failed(QualificationStatus::NotFinite);
   if (class_of(artefact) == CurveClass::Line) return failed(QualificationStatus::BadArtefact);
-  // Three of a pose, the constant, noise, and as many again to see anything by.
+  // Three of a pose, the constant, the noise, and about as many again to test them.
   constexpr std::size_t kFewest = 12;
   std::vector<std::vector<ArtefactSample>> thin;
   for (const ArtefactRecording& recording : recordings) {
-    constexpr std::size_t kEnoughForPose = 1000;  // a thirtieth of the noise
+    constexpr std::size_t kEnoughForPose = 1000;  // leaves a thirtieth of the noise
     thin.push_back(thinned(recording, kEnoughForPose));
     if (thin.back().size() < kFewest) return failed(QualificationStatus::TooFewSamples);
   }
@@ -275,7 +277,7 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   const MaterialSign material =
       side_of(artefact, unknowns.poses.front(), thin.front(), options.bore);
 
-  // Spikes: as many harmonics as there may be, so that none of them is taken for spikes.
+  // Spikes: with as many harmonics as possible, so that no harmonic is taken for spikes.
   Ground ground = ground_of(artefact, recordings, unknowns.poses);
   const auto count = static_cast<int>(ground.samples.size());
   const int highest =
@@ -284,7 +286,7 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   for (std::size_t i = 0; i < thin.size(); ++i) {
     scale = std::max(scale, scatter(artefact, material, unknowns.poses[i], thin[i]));
   }
-  // Samples without any noise: what rounding leaves of positions of that size.
+  // For samples without any noise: the rounding of positions of that size.
   double size = 0.0;
   for (const ArtefactSample& sample : ground.samples) {
     size = std::max(size, sample.position_m.cwiseAbs().maxCoeff());
@@ -293,7 +295,8 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   set_order(unknowns, highest);
   if (!options.same_setup) unknowns.setup_m.assign(recordings.size(), 0.0);
   OffsetResiduals about;
-  // The scale of the first is that of what the start leaves; the second has the noise's.
+  // The scale of the first round is that of the residuals at the start; the second round has that
+  // of the noise.
   constexpr int kRobustRounds = 3;
   for (int round = 0; round < kRobustRounds; ++round) {
     scale = std::max(scale, least_scale);
@@ -315,10 +318,10 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   result.both_directions = runs_both_ways(ground.samples);
   OffsetEvidence evidence;
   double lag_variance = 0.0;
-  // The size that served to weigh the orders must not draw the answer to 0: ten times as wide, a
-  // harmonic of that size loses at most a tenth of its deviation to it.
+  // The prior that served to compare the orders must not pull the result towards 0. Ten times as
+  // wide, it reduces a harmonic of that size by at most a tenth of its standard deviation.
   constexpr double kWide = 10.0;
-  constexpr int kRounds = 2;  // the second one with a lag, once there are harmonics to see it by
+  constexpr int kRounds = 2;  // the second has a lag, if there are harmonics to show it
   for (int round = 0; round < kRounds; ++round) {
     about = residuals_about(artefact, material, ground.samples, unknowns, highest);
     const Eigen::Index known = offset_coefficients(unknowns.offset.order);
@@ -343,8 +346,8 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
                       least_scale},
                      evidence.coherence, evidence.sigma_m.value, unknowns.offset.coefficients_m,
                      unknowns.setup_m, kWide * evidence.harmonic_m);
-    // What a constant differs by between set-ups is expected to be as large as what the offset
-    // differs by between directions and along a stroke: nothing else is known of it beforehand.
+    // The constants of set-ups are expected to differ by as much as the offset does between
+    // directions and along a stroke: nothing else is known beforehand.
     const SetupSpread setups =
         spread_of(constants, std::hypot(evidence.harmonic_m, evidence.deviation_m.value));
     settle_setups(constants.value_m, setups.constant_m, unknowns);
@@ -352,8 +355,8 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   }
   unknowns.offset.covariance_m2 += evidence.spread_m2;
   about = residuals_about(artefact, material, ground.samples, unknowns, unknowns.offset.order);
-  // A ring of another size, a wrong unit or no curve at all can be laid on anything with an offset
-  // and a noise of their own size: no probe is as bad as a tenth of that.
+  // With an offset and a noise of its own size, a ring of another size, a wrong unit or no curve at
+  // all fits anything. No probe is as bad as a tenth of that.
   constexpr double kMostOff = 0.1;
   const double most = kMostOff * radius_of(artefact, ground, unknowns.poses);
   if (std::abs(unknowns.offset.coefficients_m[0]) > most || evidence.sigma_m.value > most) {

@@ -1,5 +1,5 @@
-// Qualifies a probe on an artefact of known shape: what it does to positions, and how well the
-// samples tell.
+// Qualifies a probe on an artefact of known shape: estimates what the probe does to positions, and
+// how well the samples determine that.
 #pragma once
 
 #include <array>
@@ -15,53 +15,56 @@
 namespace palpate {
 
 enum class QualificationStatus {
-  Sufficient,      ///< the offset is known to less than the noise of a sample, in every direction
-  Partial,         ///< the same, but in the directions that were touched only
-  Insufficient,    ///< the samples leave the offset open by more than their noise
-  NotFinite,       ///< a position or tip radius is no finite number, or a radius is negative
-  BadArtefact,     ///< a line or no class: its offset is its place
+  Sufficient,      ///< the offset is known to less than a sample's noise in every direction
+  Partial,         ///< the same, but some directions were not touched
+  Insufficient,    ///< the offset is less well known than that
+  NotFinite,       ///< a position or tip radius is not finite, or a radius is negative
+  BadArtefact,     ///< a line: its offset cannot be distinguished from its place
   TooFewSamples,   ///< fewer than the unknowns need
-  NotTheArtefact,  ///< the artefact cannot be laid on the samples
+  NotTheArtefact,  ///< the artefact does not fit the samples
 };
 
-/// Lower-case words ("too few samples").
+/// Lower-case words, for example "too few samples".
 std::string_view name_of(QualificationStatus status);
 
 struct QualificationOptions {
-  bool bore = false;  ///< the material lies outside the curve; only asked where no tip radius tells
-  /// Parts will be touched in the very set-up of these recordings, so that the offset's constant is
-  /// the same. Otherwise it is another in each recording.
+  /// The material lies outside the curve; used only if no tip radius shows the side.
+  bool bore = false;
+  /// True: parts will be touched in the same set-up as these recordings, so the offset's constant
+  /// is the same. False: the constant differs from recording to recording.
   bool same_setup = false;
-  /// Probability that a recording without spikes loses a sample as one.
+  /// Probability that a recording without spikes loses a sample to spike detection.
   double false_spike_probability = 0.01;
 };
 
 struct QualifiedSample {
   std::size_t recording = 0;
   std::size_t stroke = 0;
-  std::size_t number = 0;     ///< in its stroke
+  std::size_t number = 0;     ///< within the stroke
   double normal_angle = 0.0;  ///< of the normal out of the material [rad]
-  double distance_m = 0.0;    ///< out of the material, less the nominal tip radius
-  double residual_m = 0.0;    ///< the same, less the offset
+  double distance_m = 0.0;    ///< out of the material, minus the nominal tip radius
+  double residual_m = 0.0;    ///< distance minus the offset
   bool spike = false;
 };
 
 struct Qualification {
   QualificationStatus status = QualificationStatus::NotFinite;
-  ProbeCharacter probe;      ///< meaningful where Sufficient, Partial or Insufficient, as all below
-  std::vector<Pose2> poses;  ///< of the artefact, by recording
+  /// Valid if Sufficient, Partial or Insufficient; this holds for all that follows.
+  ProbeCharacter probe;
+  std::vector<Pose2> poses;  ///< of the artefact, one per recording
   std::vector<QualifiedSample> samples;
-  std::vector<double> order_probabilities;  ///< of no harmonics, of those to 2, to 3, ...
-  /// Ranges of normal directions, counter-clockwise, wider than 30 degrees that no sample has.
-  /// [rad]
+  std::vector<double> order_probabilities;  ///< of no harmonics, of harmonics up to 2, up to 3, ...
+  /// Ranges of normal directions wider than 30 degrees without a sample, counter-clockwise. [rad]
   std::vector<std::pair<double, double>> untouched;
-  double worst_offset_deviation_m = 0.0;  ///< over the touched directions
-  bool both_directions = false;           ///< strokes ran both ways: the lag may be told
-  bool bore = false;                      ///< as stated, or as the tips tell
+  /// Largest standard deviation of the offset over the touched directions. [m]
+  double worst_offset_deviation_m = 0.0;
+  bool both_directions = false;  ///< strokes ran both ways, so the lag can be determined
+  bool bore = false;             ///< as stated, or as the tips show
 };
 
-/// Spikes are set aside by a robust fit; order, noise and coherence are weighed by their evidence;
-/// offset, lag and poses are fitted under that noise. Linear in the samples, some hundred passes.
+/// Qualifies a probe from recordings on `artefact`. A robust fit removes spikes; evidence weighs
+/// order, noise and coherence; then offset, lag and poses are fitted under that noise. Time is
+/// linear in the samples: some hundred passes.
 Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> recordings,
                       const QualificationOptions& options = {});
 

@@ -41,19 +41,20 @@ SetupConstants constants_of(const OffsetModel& model, const Coherence& coherence
 }
 
 SetupSpread spread_of(const SetupConstants& constants, double expected_m) {
-  // Student's law, cut at 0: flat below its scale, so that set-ups that agree may say so, with a
-  // tail of a power, so that those that differ by far more may too. Of three degrees of freedom,
-  // the fewest that have a mean square: three times that of the scale.
+  // Student's law, cut at 0. It is flat below its scale, so that set-ups may agree, and has a
+  // power-law tail, so that they may differ by far more than expected. Three degrees of freedom are
+  // the fewest for which the mean square exists; it is three times that of the scale.
   constexpr double kDegrees = 3.0;
   const double scale = expected_m / std::sqrt(kDegrees);
   const Eigen::Index count = constants.value_m.size();
   const double middle = constants.value_m.mean();
   const Eigen::VectorXd values = (constants.value_m.array() - middle).matrix();
-  // The law leaves a hundredth below, and above a few thousandths of its mean square.
+  // Below this range the law has a hundredth of its mass, above it a few thousandths of its mean
+  // square.
   const double low = std::log(0.01 * scale);
   const double high = std::log(std::max(1000.0 * scale, 10.0 * values.cwiseAbs().maxCoeff()));
-  // Of the logarithm less than 0.1 each, whatever the set-ups: n of them leave 1 / sqrt(2 n) of it
-  // open, and a trapezoid whose steps are no wider than a normal law's deviation errs by 1e-8.
+  // Steps of less than 0.1 in the logarithm. n set-ups determine the logarithm to 1 / sqrt(2 n),
+  // and a trapezoid rule with steps no wider than the deviation of a normal law errs by 1e-8.
   constexpr int kSteps = 160;
   struct Cell {
     double log_weight = 0.0;
@@ -76,7 +77,7 @@ SetupSpread spread_of(const SetupConstants& constants, double expected_m) {
     cell.constant = cell.variance * weights.dot(values);
     const Eigen::VectorXd off = (values.array() - cell.constant).matrix();
     const double over = cell.between / scale;
-    // The constant itself is alike probable everywhere.
+    // The constant itself has a flat prior.
     cell.log_weight = -0.5 * factor.vectorD().array().log().sum() + 0.5 * std::log(cell.variance) -
                       0.5 * off.dot(factor.solve(off)) -
                       0.5 * (kDegrees + 1.0) * std::log1p(over * over / kDegrees) + log_between;
@@ -98,7 +99,7 @@ SetupSpread spread_of(const SetupConstants& constants, double expected_m) {
   }
   constant /= total;
   square /= total;
-  // What the noise leaves open of the mean stands in the offset's covariance already.
+  // The offset's covariance already contains the uncertainty of the mean due to noise.
   const double noise = 1.0 / constants.covariance_m2.ldlt().solve(ones).sum();
   const double more = elsewhere / total - constant * constant - noise;
   const double root = std::sqrt(std::max(0.0, more));

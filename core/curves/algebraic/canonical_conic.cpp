@@ -10,8 +10,8 @@
 namespace palpate {
 namespace {
 
-/// A coefficient that one rotation and one translation have gone through is wrong by up to 16 *
-/// 2^-53 of its terms' sizes, and two such coefficients meet in a term.
+/// A coefficient after one rotation and one translation has an error of up to 16 * 2^-53 of its
+/// terms' sizes, and two such coefficients occur in a term.
 constexpr double kConicRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// u v - x y, rounded once.
@@ -48,7 +48,7 @@ struct PrincipalForm {
   /// The left side where u is -linear_u / (2 large), without the terms in v.
   double constant_at_u0() const { return constant - 0.25 * linear_u * (linear_u / large); }
 
-  /// The left side at the centre, and the size of the terms that it is made of.
+  /// The left side at the centre. `size`: the sum of the absolute values of its terms.
   double at_centre(double* size) const {
     const double u_term = 0.25 * linear_u * (linear_u / large);
     const double v_term = 0.25 * linear_v * (linear_v / small);
@@ -64,7 +64,7 @@ Pose2 pose_at(const Vec2& origin, const Vec2& x_axis) {
   return {origin.x(), origin.y(), std::atan2(x_axis.y(), x_axis.x())};
 }
 
-/// Of two poses that are the same up to half a turn, the one nearer to the world's axes.
+/// Of two poses that differ by half a turn and are equivalent, the one nearer to the world's axes.
 Pose2 nearer_half(Pose2 pose) {
   if (std::abs(pose.theta) > 0.5 * kPi) {
     pose.theta = wrap_angle(pose.theta + kPi);
@@ -86,7 +86,7 @@ std::optional<CanonicalConic> as_line(const ConicCoefficients& q) {
   if (!(norm > 0.0)) {
     return std::nullopt;
   }
-  // Where the line lies nearest to the origin.
+  // The origin is the point of the line nearest to the world's origin.
   const Vec2 unit = normal / norm;
   return finished({CurveClass::Line, Eigen::Vector3d::Zero(),
                    nearer_half(pose_at(-q[5] / norm * unit, -left_of(unit)))},
@@ -118,8 +118,8 @@ std::optional<CanonicalConic> as_central(CurveClass curve_class, const Principal
   const double at_centre = form.at_centre(&size);
   const double square_u = -at_centre / form.large;
   const double square_v = -at_centre / form.small;
-  // The long axis of an ellipse belongs to the small eigenvalue, the real one of a hyperbola to the
-  // square that is positive.
+  // The major axis of an ellipse belongs to the smaller eigenvalue, the real axis of a hyperbola to
+  // the positive square.
   const bool along_u = curve_class == CurveClass::Hyperbola && square_u > 0.0;
   const double sign = curve_class == CurveClass::Hyperbola ? -1.0 : 1.0;
   const double a2 = along_u ? square_u : square_v;
@@ -143,7 +143,7 @@ ConicCanonicalisation in_range(const std::optional<CanonicalConic>& curve) {
 ConicCanonicalisation parabolic(const PrincipalForm& form) {
   const double u_term = 0.25 * form.linear_u * (form.linear_u / form.large);
   const double size = std::abs(form.constant) + std::abs(u_term);
-  // v counts where it is worth more than rounding of the linear part, which was rotated as a whole.
+  // linear_v counts if it exceeds the rounding of the linear part, which was rotated as a whole.
   if (std::abs(form.linear_v) >
           kConicRounding * (std::abs(form.linear_u) + std::abs(form.linear_v)) &&
       form.linear_v != 0.0) {
@@ -188,7 +188,7 @@ ConicCanonicalisation canonicalise(const ConicCoefficients& coefficients) {
   if (coefficients.head<5>().isZero(0.0)) {
     return degenerate(ConicDegeneracy::NoEquation);
   }
-  // No product of coefficients over- or underflows that did not so before.
+  // Scaled, so that products of coefficients do not overflow or underflow.
   const ConicCoefficients q = coefficients / coefficients.head<5>().cwiseAbs().maxCoeff();
   if (q.head<3>().isZero(0.0)) {
     return in_range(as_line(q));

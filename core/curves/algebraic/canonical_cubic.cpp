@@ -10,9 +10,9 @@
 namespace palpate {
 namespace {
 
-/// A coefficient that was rotated once (two products, a sum, sine and cosine) and reparametrised
-/// once (at most five roundings) is wrong by up to 16 * 2^-53 of its terms' sizes, and two such
-/// coefficients meet in a component.
+/// A coefficient after one rotation (two products, a sum, sine and cosine) and one change of
+/// parameter (at most five roundings) has an error of up to 16 * 2^-53 of its terms' sizes, and two
+/// such coefficients occur in a component.
 constexpr double kCubicRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 Pose2 pose_along(const Vec2& origin, const Vec2& x_axis) {
@@ -28,7 +28,7 @@ CubicCanonicalisation finished(const CanonicalCubic& curve) {
   const bool finite = curve.values.allFinite() && std::isfinite(pose.x) && std::isfinite(pose.y) &&
                       std::isfinite(curve.canonical_t.scale) &&
                       std::isfinite(curve.canonical_t.shift) && curve.canonical_t.scale != 0.0;
-  // A leading parameter below the range of a double is no canonical form either.
+  // A leading parameter that underflows is not a canonical form either.
   const bool in_range = curve.curve_class == CurveClass::Line || curve.values[0] != 0.0;
   if (!finite || !in_range) {
     return degenerate(CubicDegeneracy::OutOfRange);
@@ -48,13 +48,13 @@ CubicCanonicalisation as_line(const PolynomialCurve2& curve) {
   return finished(line);
 }
 
-/// Of c0 + c1 t + c2 t^2, c2 not 0.
+/// Frame of c0 + c1 t + c2 t^2, c2 not 0.
 struct QuadraticFrame {
   double opening;  ///< |c2|
   Vec2 x_axis;     ///< along c2
   double along;    ///< component of c1 along it
-  double across;   ///< and to its left: 0 for a half-line
-  double vertex;   ///< t there
+  double across;   ///< component of c1 to its left: 0 for a half-line
+  double vertex;   ///< t at the vertex
   Vec2 vertex_position;
 
   explicit QuadraticFrame(const PolynomialCurve2& curve) {
@@ -86,8 +86,8 @@ CubicCanonicalisation as_parabola(const PolynomialCurve2& curve) {
   return finished(parabola);
 }
 
-/// (54): x axis normal to c3, so that x = c2 t^2 + c1 t and y = d3 t^3 + d2 t^2 + d1 t.
-/// x and y stand for components along the axes, the numbers for the power of t.
+/// (54): the x axis is normal to c3, so x = c2 t^2 + c1 t and y = d3 t^3 + d2 t^2 + d1 t. Member
+/// names: x and y for the component, the digit for the power of t.
 struct CubicFrame {
   double y3;  ///< |c3|: the y axis is along c3
   Vec2 x_axis;
@@ -131,8 +131,8 @@ CubicCanonicalisation as_cubical(const PolynomialCurve2& curve) {
 /// The vertex x' = 0 of a cubic with x2 != 0, and y' there.
 struct SplineVertex {
   double t;
-  double slope_y;  ///< y1 + 2 y2 t + 3 y3 t^2: 0 for a cusp
-  double size;     ///< what the relative errors of the coefficients act on, t's own error included
+  double slope_y;  ///< y1 + 2 y2 t + 3 y3 t^2; 0 for a cusp
+  double size;  ///< size of the terms whose relative errors enter, including the error of t itself
 
   explicit SplineVertex(const CubicFrame& frame)
       : t(-frame.x1 / (2.0 * frame.x2)),
@@ -153,7 +153,8 @@ CubicCanonicalisation as_spline(CurveClass curve_class, const PolynomialCurve2& 
     return degenerate(CubicDegeneracy::OutsideClass);
   }
   const SplineVertex vertex(frame);
-  // c2 < 0: turned by pi, which changes the sign of both axes. a > 0 by the direction of u.
+  // For c2 < 0 the frame is turned by pi, which changes the sign of both axes. The direction of u
+  // is chosen so that a > 0.
   const double turn = std::copysign(1.0, frame.x2);
   const double quadratic = std::abs(frame.x2);
   const double root = turn * std::sqrt(quadratic);  // du/dt
@@ -172,7 +173,8 @@ CubicCanonicalisation as_spline(CurveClass curve_class, const PolynomialCurve2& 
   return finished(spline);
 }
 
-/// Polynomials along one line, the highest power `degree` (2 or 3) not 0.
+/// Polynomials along one line; `degree` (2 or 3) is the highest power with a coefficient other than
+/// 0.
 CubicCanonicalisation straight(const PolynomialCurve2& curve, int degree) {
   const Vec2 direction = curve.coefficients.col(degree);
   if (degree == 2) {
@@ -182,7 +184,8 @@ CubicCanonicalisation straight(const PolynomialCurve2& curve, int degree) {
   return degenerate(CubicDegeneracy::UnevenLine, pose_along(curve.coefficients.col(0), direction));
 }
 
-/// About the middle of the range of t; `half` its half length.
+/// Chooses the class. t is measured from the middle of its range; `half` is half the length of the
+/// range.
 CubicCanonicalisation decide(const PolynomialCurve2& curve, double half, double distance) {
   const auto& c = curve.coefficients;
   const auto absent = [&](int power) {

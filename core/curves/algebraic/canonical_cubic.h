@@ -1,5 +1,6 @@
-// Appendix B: any polynomial cubic to its canonical form by a rigid motion and an affine change of
-// parameter, degenerate cases included, and back. No reflection: chirality is kept.
+// Appendix B: canonical form of a curve whose coordinates are cubic polynomials, by a rigid motion
+// and an affine change of parameter, with names for the degenerate cases; and the way back. There
+// is no reflection: chirality is kept.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,7 @@
 
 namespace palpate {
 
-/// t_canonical = scale * t + shift; scale < 0 where the two run in opposite directions.
+/// t_canonical = scale * t + shift; scale < 0 if the two parameters run in opposite directions.
 struct Reparametrisation {
   double scale = 1.0;
   double shift = 0.0;
@@ -19,7 +20,7 @@ struct Reparametrisation {
   double operator()(double t) const { return scale * t + shift; }
 };
 
-/// world_T_curve * canonical(canonical_t(t)) is the point that the polynomials had at t.
+/// The point of the polynomials at t is world_T_curve * canonical(canonical_t(t)).
 struct CanonicalCubic {
   CurveClass curve_class = CurveClass::Unclassified;
   Eigen::Vector3d values = Eigen::Vector3d::Zero();  ///< in the order of parameter_letters
@@ -27,51 +28,52 @@ struct CanonicalCubic {
   Reparametrisation canonical_t;
 };
 
-/// Why polynomials are no curve of a class.
+/// Why the polynomials are not a curve of any class.
 enum class CubicDegeneracy {
   None,
   NotFinite,     ///< a coefficient is not finite
   OutOfRange,    ///< the canonical parameters leave the range of a double
-  Point,         ///< constant
-  HalfLine,      ///< a half-line covered twice, such as (t^2, 0)
-  UnevenLine,    ///< a line, but with t^3 along it: no affine change of t makes that (t, 0)
-  OutsideClass,  ///< the class asked for has no such curve
+  Point,         ///< a constant
+  HalfLine,      ///< a half-line, covered twice, such as (t^2, 0)
+  UnevenLine,    ///< a line with t^3 along it: no affine change of t makes it (t, 0)
+  OutsideClass,  ///< the requested class has no such curve
 };
 
-/// "none", "a constant", ...; static storage.
+/// A short text: "none", "a point", ...; static storage.
 std::string_view describe(CubicDegeneracy degeneracy);
 
 struct CubicCanonicalisation {
-  std::optional<CanonicalCubic> curve;  ///< none where degenerate
+  std::optional<CanonicalCubic> curve;  ///< none if degenerate
   CubicDegeneracy degeneracy = CubicDegeneracy::None;
-  /// For HalfLine: its end, x axis along it. For UnevenLine: a point of it, x axis along it with
-  /// t -> infinity. For Point: the point. Else that of `curve`, if there is one.
+  /// For HalfLine: its end, x axis along the line. For UnevenLine: a point of the line, x axis
+  /// along it towards t -> infinity. For Point: the point. Otherwise the pose of `curve`, if there
+  /// is one.
   Pose2 world_T_curve;
 };
 
 struct CanonicalCubicOptions {
-  /// A term that moves no point of [t_lower, t_upper] by more than this is taken as 0, so that the
-  /// simpler class wins. [m] 0: only what the rounding of the coefficients explains, at any t.
+  /// A term counts as 0, so that the simpler class wins, if it moves no point of [t_lower, t_upper]
+  /// by more than this. 0: only what the rounding of the coefficients explains, at any t. [m]
   double distance_m = 0.0;
   double t_lower = -1.0;
   double t_upper = 1.0;
 };
 
-/// The class among line, parabola, cubical and semi-cubical parabola and cubic spline, and its
-/// form. A difference of terms counts as 0 up to 16 epsilon of their sizes: the rounding of
-/// coefficients which one rotation and one change of parameter have gone through. A term
-/// c_3 t^3 or c_2 t^2 that is alone counts as 0 only if it is: without a range of t nothing says
-/// what it may be compared with.
+/// Chooses the class among line, parabola, cubical parabola, semi-cubical parabola and cubic
+/// spline, and computes the canonical form. A difference of terms counts as 0 up to 16 epsilon of
+/// their sizes: the rounding of coefficients to which one rotation and one change of parameter have
+/// been applied. A single term c_3 t^3 or c_2 t^2 counts as 0 only if it is exactly 0: without a
+/// range of t there is nothing to compare it with.
 CubicCanonicalisation canonicalise(const PolynomialCurve2& curve,
                                    const CanonicalCubicOptions& options = {});
 
-/// The same where the class is known (after a fit within it): terms that it has no room for are
-/// left out, about t = 0 for line, parabola and cubical parabola, about the cusp for the
-/// semi-cubical one. OutsideClass where what remains is not a curve of that class.
+/// The canonical form for a known class, for example after a fit within that class. Terms that the
+/// class does not have are dropped: about t = 0 for line, parabola and cubical parabola, about the
+/// cusp for the semi-cubical one. OutsideClass if the rest is not a curve of that class.
 /// Precondition: one of the five classes above.
 CubicCanonicalisation canonicalise_as(CurveClass curve_class, const PolynomialCurve2& curve);
 
-/// The curve at that pose as polynomials in its canonical parameter. `values` in the order of
+/// The curve at that pose, as polynomials in its canonical parameter. `values` in the order of
 /// parameter_letters. Precondition: one of the five classes above.
 PolynomialCurve2 polynomial_curve_of(CurveClass curve_class, const Eigen::Vector3d& values,
                                      const Pose2& world_T_curve);

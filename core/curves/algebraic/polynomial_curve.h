@@ -10,7 +10,7 @@ namespace palpate {
 /// Column k holds the coefficients of t^k.
 using PolynomialCoefficients = Eigen::Matrix<double, 2, 4>;
 
-// Inlined always: the foot points of all fits take a good part of a recognition's time.
+// Always inlined: the foot points of all fits take a large share of a recognition's time.
 [[gnu::always_inline]] inline Vec2 position_at(const PolynomialCoefficients& c, double t) {
   return c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3)));
 }

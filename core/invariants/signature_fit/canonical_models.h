@@ -1,5 +1,5 @@
-// The canonical curves as templates, for automatic differentiation by shape and parameter. The
-// classes of core/curves/ are the reference; these carry only what fits on local geometry need.
+// The canonical curves as templates, for automatic differentiation by shape and parameter. They
+// contain only what the fits to local geometry need; the reference is core/curves/.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct PlanePoint {
   T y;
 };
 
-/// First three derivatives of a curve with respect to its parameter.
+/// First three derivatives of a curve by its parameter.
 template <typename T>
 struct ModelDerivatives {
   PlanePoint<T> first;
@@ -170,7 +170,7 @@ struct SemiCubicalParabolaModel {
   }
 };
 
-/// Calls `use` with the model of the class, which must have one.
+/// Calls `use` with the model of the class. Not for lines, circles and Unclassified.
 template <typename Use>
 void with_model(CurveClass curve_class, const Use& use) {
   switch (curve_class) {

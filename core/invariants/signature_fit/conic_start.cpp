@@ -11,9 +11,9 @@
 namespace palpate {
 namespace {
 
-/// sin 2t = -2 kappa_s D^3 / (3 a b (a^2 - b^2)), cos 2t = (a^2 + b^2 - 2 D) / (a^2 - b^2) with
-/// D = (a b / |kappa|)^(2/3): well conditioned at the vertices, where the paper's arcsine is not.
-/// The common denominator is left out: near a circle both are noise and so is t.
+/// sin 2t = -2 kappa_s D^3 / (3 a b (a^2 - b^2)), cos 2t = (a^2 + b^2 - 2 D) / (a^2 - b^2) with D =
+/// (a b / |kappa|)^(2/3). Well conditioned at the vertices, unlike the paper's arcsine. The common
+/// denominator is omitted: near a circle both are noise, and so is t.
 double ellipse_t(double a, double b, double kappa, double kappa_s) {
   const double ratio = a * b / kappa;
   const double root = std::cbrt(std::abs(ratio));
@@ -43,7 +43,7 @@ double conic_orientation(CurveClass curve_class, const Eigen::Vector3d& p,
                     HyperbolaModel::derivatives(
                         p.data(), hyperbola_parameter(p[0], p[1], point.kappa, point.kappa_s)))
                     .tangent_angle;
-      // Both bend to the right with t increasing.
+      // Both curves bend to the right for increasing t.
       angle = forward + (point.kappa > 0.0 ? kPi : 0.0);
     }
     const double multiple = symmetry * (point.tangent_angle - angle);
@@ -55,8 +55,8 @@ double conic_orientation(CurveClass curve_class, const Eigen::Vector3d& p,
 std::vector<CurveStart> conic_starts(CurveClass curve_class,
                                      std::span<const Eigen::Vector3d> shapes,
                                      std::span<const MeasuredGeometry> points) {
-  // 30 degrees apart, 15 for the ellipse: half a step is within what Gauss-Newton turns in one.
-  // Those kept bound the time.
+  // 30 degrees apart, 15 for the ellipse: Gauss-Newton covers half a step in one iteration. The
+  // number of starts kept bounds the time.
   constexpr int kOrientations = 12;
   constexpr std::size_t kKept = 4;
   std::vector<CurveStart> starts;

@@ -1,4 +1,4 @@
-// Where a conic lies, for a shape that its invariants have given: the start of a fit.
+// Orientation of a conic whose shape is known from its invariants: the start of a fit.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,15 +11,15 @@
 
 namespace palpate {
 
-/// Orientation of the canonical x axis in the frame of the tangent angles [rad], from each point's
-/// t (section 5.3, sign-safe) and tangent angle, averaged over the points on the circle of
-/// directions modulo the class's symmetry. For ellipse, parabola and hyperbola; points with kappa
-/// != 0.
+/// Orientation of the canonical x axis in the frame of the tangent angles [rad]. Each point gives
+/// one, from its t (section 5.3, in a form that is safe for either sign) and its tangent angle.
+/// They are averaged on the circle of directions, modulo the symmetry of the class. For ellipse,
+/// parabola and hyperbola, and for points with kappa != 0.
 double conic_orientation(CurveClass curve_class, const Eigen::Vector3d& parameters,
                          std::span<const MeasuredGeometry> points);
 
-/// The best of the shapes in every orientation, conic_orientation's and others around it: where
-/// kappa_s is noise its own is off by anything.
+/// The best combinations of the given shapes with orientations: that of conic_orientation, and
+/// others around it, because conic_orientation can be completely wrong if kappa_s is noise.
 std::vector<CurveStart> conic_starts(CurveClass curve_class,
                                      std::span<const Eigen::Vector3d> shapes,
                                      std::span<const MeasuredGeometry> points);

@@ -14,20 +14,20 @@ ParameterCandidates ellipse_candidates(const Eigen::Vector3d& p, double c, doubl
   ParameterCandidates candidates;
   const double t = std::atan2(-c * p[1], s * p[0]);
   candidates.add(t);
-  candidates.add(t + kPi);  // travelled the other way
+  candidates.add(t + kPi);  // for the opposite direction of travel
   return candidates;
 }
 
 ParameterCandidates hyperbola_candidates(const Eigen::Vector3d& p, double c, double s, double kappa,
                                          double kappa_s) {
   ParameterCandidates candidates;
-  // tan(angle) = b cosh t / (a sinh t); beyond the asymptotes' angle there is no point.
+  // tan(angle) = b cosh t / (a sinh t); beyond the angle of the asymptotes there is no point.
   const double tanh_t = p[1] * c / (p[0] * s);
   if (std::abs(tanh_t) < 1.0) {
     candidates.add(std::atanh(tanh_t));
   }
   candidates.add(hyperbola_parameter(p[0], p[1], kappa, kappa_s));
-  // |t| by the size of kappa alone: a^2 sinh^2 t + b^2 cosh^2 t = (a b / |kappa|)^(2/3).
+  // |t| from |kappa| alone: a^2 sinh^2 t + b^2 cosh^2 t = (a b / |kappa|)^(2/3).
   const double root = std::cbrt(p[0] * p[1] / std::abs(kappa));
   const double sum = p[0] * p[0] + p[1] * p[1];
   const double cosh_2t = (2.0 * root * root + p[0] * p[0] - p[1] * p[1]) / sum;
@@ -38,7 +38,7 @@ ParameterCandidates hyperbola_candidates(const Eigen::Vector3d& p, double c, dou
 ParameterCandidates cubical_candidates(const Eigen::Vector3d& p, double c, double s, double kappa) {
   ParameterCandidates candidates;
   candidates.add(kappa / (6.0 * p[0] * c * c * c));
-  // tan(angle) = 3 a t^2 + c, on either side of the inflection.
+  // tan(angle) = 3 a t^2 + c, on both sides of the inflection.
   const double t = std::sqrt(std::max(0.0, (s / c - p[1]) / (3.0 * p[0])));
   candidates.add(t);
   candidates.add(-t);
@@ -53,18 +53,18 @@ ParameterCandidates semi_cubical_candidates(const Eigen::Vector3d& p, double c, 
   return candidates;
 }
 
-/// What (45) and (46) offer.
+/// The candidates from (45) and (46).
 ParameterCandidates cubic_spline_candidates(const Eigen::Vector3d& p, double angle, double kappa,
                                             double kappa_s) {
   ParameterCandidates candidates;
   const CanonicalPoint<double> point = canonical_point(angle, kappa, kappa_s);
   const double c2 = point.cosine * point.cosine;
   const double e = point.sine - p[1] * point.cosine;  // (lambda - b) cosine
-  // (45) and (46) without t^2.
+  // (45) and (46), with t^2 eliminated.
   const double numerator = point.cosine * (3.0 * p[0] * e * c2 - 2.0 * p[2] * kappa);
   const double denominator = 9.0 * p[0] * p[0] * c2 * c2 - 4.0 * e * kappa;
   candidates.add(numerator / denominator);
-  // (45) times the cosine: 3 a t^2 cosine - 2 e t + c cosine = 0, by the stable formula.
+  // (45) times the cosine: 3 a t^2 cosine - 2 e t + c cosine = 0, solved by the stable formula.
   const double discriminant = std::max(0.0, e * e - 3.0 * p[0] * p[2] * c2);
   const double half = e + std::copysign(std::sqrt(discriminant), e);
   candidates.add(half / (3.0 * p[0] * point.cosine));
@@ -75,7 +75,7 @@ ParameterCandidates cubic_spline_candidates(const Eigen::Vector3d& p, double ang
 }  // namespace
 
 void ParameterCandidates::add(double t) {
-  constexpr double kLargest = 1e6;  // beyond it powers of t leave nothing of a double
+  constexpr double kLargest = 1e6;  // beyond it powers of t leave the range of a double
   values_[count_++] = std::isfinite(t) ? std::clamp(t, -kLargest, kLargest) : 0.0;
 }
 

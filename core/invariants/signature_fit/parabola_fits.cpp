@@ -12,8 +12,8 @@
 namespace palpate {
 namespace {
 
-/// Bounds of the time: 15 pairs of points, of which one well apart is enough for a start, and the
-/// two roots that such a pair's quadratic has.
+/// Bounds of the time. Of 15 pairs of points, one whose points are well apart is enough for a
+/// start; its quadratic has two roots.
 constexpr std::size_t kSeedPoints = 6;
 constexpr std::size_t kRefined = 2;
 
@@ -29,7 +29,7 @@ double disagreement(double p, double q) {
   return size > 0.0 ? std::pow((p - q) / size, 2) : 0.0;
 }
 
-/// y''' and (y'')^2 of y = a x^3 + c x, times powers of the cosine.
+/// Misfit of y''' and (y'')^2 of y = a x^3 + c x, multiplied by powers of the cosine.
 double cubical_misfit(const CanonicalPoint<double>& p, const Eigen::Vector3d& parameters) {
   const double c2 = p.cosine * p.cosine;
   const double third = 6.0 * parameters[0] * c2 * c2 * p.cosine;
@@ -37,8 +37,8 @@ double cubical_misfit(const CanonicalPoint<double>& p, const Eigen::Vector3d& pa
          disagreement(p.kappa * p.kappa, 2.0 * third * (p.sine - parameters[1] * p.cosine));
 }
 
-/// (43) and (44) without denominators, with e = (lambda - b) cosine: kappa e = (9/8) a^2 cosine^4
-/// and jerk e = -kappa^2.
+/// Misfit of (43) and (44) without denominators, with e = (lambda - b) cosine: kappa e = (9/8) a^2
+/// cosine^4 and jerk e = -kappa^2.
 double semi_cubical_misfit(const CanonicalPoint<double>& p, const Eigen::Vector3d& parameters) {
   const double c2 = p.cosine * p.cosine;
   const double e = p.sine - parameters[1] * p.cosine;
@@ -123,7 +123,7 @@ SemiSignatureFit fit_family(const ParabolaFamily& family,
     best.status = InvariantStatus::ZeroCurvature;
     return best;
   }
-  // In lengths of 1 / scale the misfits are pure numbers; the parameters are scaled back below.
+  // In lengths of 1 / scale the misfits are dimensionless. The parameters are scaled back below.
   std::vector<MeasuredGeometry> points;
   const std::size_t count = std::min(measured.size(), kSeedPoints);
   for (std::size_t i = 0; i < count; ++i) {

@@ -1,5 +1,5 @@
-// Cubical and semi-cubical parabolas from any number of points: pairs give the starts, all points
-// the answer.
+// Cubical and semi-cubical parabolas from any number of points: pairs of points give the starts,
+// all points the fit.
 #pragma once
 
 #include <span>
@@ -9,9 +9,10 @@
 
 namespace palpate {
 
-/// Two points or more. Pairs of at most six of them, spread evenly over those given, name
-/// candidates (both roots; where noise has removed the roots, the nearest angle); the two that
-/// agree best with these points are refined on all points and the one of least chi-square is kept.
+/// Needs two points or more. Pairs of at most six points, spread evenly over those given, give
+/// candidates: both roots, or the nearest angle if noise has removed the roots. The two candidates
+/// that agree best with these points are refined on all points; the one with the smaller chi-square
+/// is returned.
 SemiSignatureFit fit_cubical_parabola(std::span<const MeasuredGeometry> points,
                                       const SemiSignatureOptions& options = {});
 

@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-/// Power of the length unit by which the curve parameter scales.
+/// The power of length with which the curve parameter scales.
 double parameter_power(CurveClass curve_class) {
   switch (curve_class) {
     case CurveClass::CubicalParabola:
@@ -27,7 +27,8 @@ double parameter_power(CurveClass curve_class) {
   }
 }
 
-/// Brings a fit to the class's conventions: a >= b, a > 0; the t and the orientation follow.
+/// Converts a fit to the conventions of the class: a >= b, a > 0. The t and the orientation change
+/// with it.
 void canonicalise(SemiSignatureFit& fit) {
   Eigen::Vector3d& p = fit.parameters;
   const auto flip = [&](int i) {
@@ -78,7 +79,7 @@ bool in_class(CurveClass curve_class, const Eigen::Vector3d& p) {
   }
 }
 
-/// A point on a shape at the place that explains it best, and what is left of it.
+/// The place on a shape that explains a point best, and the chi-square that remains.
 struct PlacedPoint {
   LocalParameter place;
   double chi2 = std::numeric_limits<double>::infinity();
@@ -108,13 +109,14 @@ PlacedPoint best_place(CurveClass curve_class, const detail::WhitePoint& point,
   return best;
 }
 
-/// Factors from a class's parameters to those in lengths of `unit`.
+/// Factors that convert a class's parameters to lengths of `unit`.
 Eigen::Vector3d to_units_of(CurveClass curve_class, double unit) {
   const Eigen::Vector3d powers = length_powers(curve_class);
   return {std::pow(unit, -powers[0]), std::pow(unit, -powers[1]), std::pow(unit, -powers[2])};
 }
 
-/// In lengths of `unit`; nothing where a covariance is none.
+/// The points in lengths of `unit` with their whitening matrices; empty if a covariance is not
+/// positive definite.
 std::vector<detail::WhitePoint> whitened(std::span<const MeasuredGeometry> measured, double unit,
                                          double relative_floor) {
   std::vector<detail::WhitePoint> points;
@@ -155,8 +157,8 @@ void fit_model(const std::vector<detail::WhitePoint>& points, double unit,
   if (fit.status == InvariantStatus::NotFinite) {
     return;
   }
-  // At infinity every curve but an ellipse is straight: such a fit has no place and no pose.
-  constexpr double kInfinitelyFar = 1e6;  // normalised: its powers leave nothing of a double
+  // At infinity every curve except an ellipse is straight: such a fit has no place and no pose.
+  constexpr double kInfinitelyFar = 1e6;  // normalised; its powers exhaust the digits of a double
   const bool somewhere =
       std::all_of(fit.places.begin(), fit.places.end(),
                   [](const LocalParameter& place) { return std::abs(place.t) <= kInfinitelyFar; });
@@ -176,7 +178,7 @@ void fit_model(const std::vector<detail::WhitePoint>& points, double unit,
       fit.covariance(i, j) = covariance(i, j) * (back[i] * back[j]);
     }
   }
-  if (fit.covariance.hasNaN()) {  // 0 times a power of the unit that has overflowed
+  if (fit.covariance.hasNaN()) {  // 0 times a power of the unit that overflowed
     fit.covariance.setZero();
     fit.covariance.diagonal().head<kShape + 1>().setConstant(
         std::numeric_limits<double>::infinity());

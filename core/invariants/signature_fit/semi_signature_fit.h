@@ -1,5 +1,5 @@
-// The most likely curve of a class for tangent angles, kappa and kappa_s of any number of points:
-// the semi-signature curve (section 2.3) of the class laid through the measurements.
+// The most likely curve of a class for tangent angles, kappa and kappa_s of any number of points.
+// It fits the semi-signature curve (section 2.3) of the class to the measurements.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,53 +15,55 @@
 namespace palpate {
 
 struct SemiSignatureOptions {
-  /// Standard deviation added in quadrature to each measurement: of the angle in radians, of kappa
-  /// and kappa_s relative to the point's own size max(|kappa|, sqrt|kappa_s|) and its square. The
-  /// default is what exact values in doubles carry; estimates with a known bias ask for more.
+  /// Standard deviation that is added in quadrature to each measurement: in radians for the angle;
+  /// for kappa and kappa_s relative to the point's size max(|kappa|, sqrt|kappa_s|) and to its
+  /// square. The default suits exact values in doubles; estimates with a known bias need more.
   double relative_floor = 1e-12;
   int max_iterations = 60;
-  /// A fit ends where the next step would take less than this part of chi-square off it. The
-  /// default is what doubles resolve.
+  /// The fit stops when the next step would reduce chi-square by less than this fraction. The
+  /// default is the resolution of doubles.
   double relative_decrease = 1e-13;
-  double absolute_decrease = 0.0;  ///< or less than this
-  /// It ends, too, where the iterations that are left, each as good as the next one promises to be,
-  /// would leave chi-square above this: the class does not explain the points, and by how little is
-  /// not asked.
+  double absolute_decrease = 0.0;  ///< ... or by less than this
+  /// The fit also stops if the remaining iterations, each as good as the next one promises to be,
+  /// would leave chi-square above this. The class then does not explain the points, and the exact
+  /// value is not needed.
   double hopeless_chi2 = std::numeric_limits<double>::infinity();
 };
 
-/// Where a fit begins.
+/// Starting values of a fit.
 struct CurveStart {
-  Eigen::Vector3d parameters = Eigen::Vector3d::Zero();  ///< order of parameter_letters(class)
+  /// In the order of parameter_letters(class).
+  Eigen::Vector3d parameters = Eigen::Vector3d::Zero();
   double orientation = 0.0;  ///< of the canonical x axis in the frame of the tangent angles [rad]
 };
 
 struct SemiSignatureFit {
   InvariantStatus status = InvariantStatus::TooFewPoints;
   CurveClass curve_class = CurveClass::Unclassified;
-  Eigen::Vector3d parameters = Eigen::Vector3d::Zero();  ///< order of parameter_letters(class)
+  /// In the order of parameter_letters(class).
+  Eigen::Vector3d parameters = Eigen::Vector3d::Zero();
   double orientation = 0.0;  ///< of the canonical x axis in the frame of the tangent angles [rad]
   /// Of [parameters; orientation]: the leading (count + 1) rows and columns.
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   double chi2 = 0.0;
-  int dof = 0;  ///< 3 per point, less one parameter t per point, the shape and the orientation
+  int dof = 0;  ///< 3 per point, minus one parameter t per point, the shape and the orientation
   std::vector<LocalParameter> places;  ///< one per point
 };
 
 /// Minimises the sum over the points of the squared, whitened differences of (angle, kappa,
-/// kappa_s) over shape, orientation and one curve parameter a point, from the given start. For
-/// ellipse, parabola, hyperbola, cubical and semi-cubical parabola and cubic spline. Regular at
-/// inflections, vertices and vertical canonical tangents. Each step costs O(points); the t are
-/// eliminated.
+/// kappa_s) over shape, orientation and one curve parameter per point. For ellipse, parabola,
+/// hyperbola, cubical and semi-cubical parabola and cubic spline. Inflections, vertices and
+/// vertical canonical tangents are regular. The curve parameters are eliminated, so a step costs
+/// O(points).
 SemiSignatureFit fit_semi_signature(CurveClass curve_class,
                                     std::span<const MeasuredGeometry> points,
                                     const Eigen::Vector3d& start_parameters,
                                     double start_orientation,
                                     const SemiSignatureOptions& options = {});
 
-/// The `keep` of the starts that leave least unexplained where each point lies at the best of its
-/// candidate_parameters, the best first. A point counts by the logarithm of its chi-square: at a
-/// start the points that fit tell more than those that do not.
+/// The `keep` best starts, best first. Each point is placed at the best of its
+/// candidate_parameters; a start is better if it leaves less unexplained. A point counts by the
+/// logarithm of its chi-square: at a start, the points that fit say more than those that do not.
 std::vector<CurveStart> best_starts(CurveClass curve_class,
                                     std::span<const MeasuredGeometry> points,
                                     std::vector<CurveStart> starts, std::size_t keep,

@@ -1,8 +1,8 @@
-// The iteration behind fit_semi_signature: Levenberg-Marquardt over shape and orientation, with
-// each point's t eliminated. Included by its source file only.
+// The iteration of fit_semi_signature: Levenberg-Marquardt over shape and orientation, with the
+// parameter t of each point eliminated. Included only by its source file.
 //
-// Ceres' TinySolver has no elimination: with one unknown a point its cost would be cubic in the
-// points.
+// Ceres' TinySolver cannot eliminate unknowns: with one unknown per point its cost would be cubic
+// in the points.
 #pragma once
 
 #include <ceres/jet.h>
@@ -25,14 +25,13 @@
 
 namespace palpate::detail {
 
-/// Of the diagonal: nearly the whole step of Gauss and Newton.
+/// Relative to the diagonal: nearly a full Gauss-Newton step.
 inline constexpr double kInitialDamping = 1e-3;
-inline constexpr double kLargestDamping =
-    1e12;  ///< a step this short that still does not help: stop
-/// Roundings in a difference between a measurement and the model.
+inline constexpr double kLargestDamping = 1e12;  ///< stop if so short a step still does not help
+/// Rounding of the difference between a measurement and the model, in total.
 inline constexpr double kResidualRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-/// A point in normalised lengths with its whitening matrix.
+/// A point in normalised lengths, with its whitening matrix.
 struct WhitePoint {
   MeasuredGeometry measured;
   Eigen::Matrix3d whitening;  ///< inverse Cholesky factor of the covariance
@@ -52,7 +51,7 @@ Eigen::Matrix<double, 3, N> whitened_columns(const Eigen::Matrix3d& whitening,
   return white;
 }
 
-/// Rows: the derivatives of angle, kappa and kappa_s, (1) and (2), by what the jets count.
+/// Derivatives of angle, kappa and kappa_s ((1), (2); one row each) by the variables of the jets.
 template <int N>
 Eigen::Matrix<double, 3, N> geometry_jacobian(const ModelDerivatives<ceres::Jet<double, N>>& d) {
   using Row = Eigen::Matrix<double, N, 1>;
@@ -147,7 +146,7 @@ class SemiSignatureFitter {
         damping *= growth;
         growth *= 2.0;
         if (damping > kLargestDamping) {
-          // No descent along the gradient itself: the rounding of chi-square has been reached.
+          // No descent even along the gradient: chi-square cannot be resolved any further.
           return gradient_is_small() ? InvariantStatus::Ok : InvariantStatus::NotConverged;
         }
       }
@@ -155,7 +154,7 @@ class SemiSignatureFitter {
     return InvariantStatus::NotConverged;
   }
 
-  /// Inverse of the undamped reduced Hessian; infinite on the diagonal where it is singular.
+  /// Inverse of the undamped reduced Hessian; its diagonal is infinite if it is singular.
   Hessian covariance() {
     if (!is_linearised_) {
       linearise();
@@ -181,8 +180,8 @@ class SemiSignatureFitter {
  private:
   static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-  /// Linearisation of one point: the residual and its derivatives by the globals and by its own t,
-  /// and the products that eliminating t needs. Of symmetric matrices the lower triangle is kept.
+  /// Linearisation of one point: the residual, its derivatives by the globals and by its own t, and
+  /// the products needed to eliminate t. Of symmetric matrices only the lower triangle is stored.
   struct Block {
     Eigen::Vector3d residual;
     Eigen::Matrix<double, 3, kGlobal> by_global;
@@ -192,15 +191,15 @@ class SemiSignatureFitter {
     double t_residual;  ///< by_t^T residual
   };
 
-  /// What was asked for, or below what rounding makes of chi-square: errors r of the residuals
-  /// change it by r^2 and by twice their product with it.
+  /// The requested decrease, or what rounding can do to chi-square: errors r of the residuals
+  /// change it by r^2 and by twice their product with the residuals.
   double negligible_decrease() const {
     return std::max(options_.absolute_decrease, options_.relative_decrease * chi2_) + rounding_ +
            std::sqrt(rounding_ * chi2_);
   }
 
-  /// A step that is held back promises less than there is to be had: what counts is all that the
-  /// linearisation has, dearer to tell and asked only where the step itself promises too little.
+  /// A damped step promises less than is possible. The full decrease of the linear model counts; it
+  /// is expensive, and therefore computed only if the step itself promises too little.
   bool is_hopeless(double predicted, int iteration) const {
     const double left = options_.max_iterations - iteration;
     const auto remains = [&](double decrease) {
@@ -217,7 +216,7 @@ class SemiSignatureFitter {
     return remains(linear);
   }
 
-  /// Chi-square, and the differences between measurements and model that it is made of.
+  /// Chi-square, and the differences between measurements and model.
   double evaluate(const Global& global, const std::vector<LocalParameter>& places,
                   std::vector<Eigen::Vector3d>* differences) const {
     const double axis_x = std::cos(global[kShape]);
@@ -228,12 +227,12 @@ class SemiSignatureFitter {
       const int direction = places[i].direction;
       const ModelDerivatives<double> model = Model::derivatives(global.data(), places[i].t);
       const ModelCurvatures<double> curvatures = curvatures_of(model);
-      // The angle from the model's tangent to the one touched, in the frame of the curve.
+      // The angle from the model's tangent to the measured one, in the frame of the curve.
       const double x = direction * (tangents_[i].x * axis_x + tangents_[i].y * axis_y);
       const double y = direction * (tangents_[i].y * axis_x - tangents_[i].x * axis_y);
       const double sine = model.first.x * y - model.first.y * x;
       const double cosine = model.first.x * x + model.first.y * y;
-      // Both up to a length. The arc tangent of a quotient costs half as much.
+      // Both up to a common factor. The arc tangent of a quotient costs half as much as atan2.
       const double angle = cosine > 0.0 ? std::atan(sine / cosine) : std::atan2(sine, cosine);
       Eigen::Vector3d& difference = (*differences)[i];
       difference = {angle, measured.kappa - direction * curvatures.kappa,
@@ -277,7 +276,7 @@ class SemiSignatureFitter {
     }
   }
 
-  /// Hessian and gradient of the globals after each t is eliminated, with Marquardt's damping.
+  /// Hessian and gradient of the globals after elimination of each t, with Marquardt's damping.
   std::pair<Hessian, Global> reduced_hessian(double damping) const {
     Hessian hessian = hessian_;
     Global gradient = gradient_;
@@ -341,7 +340,7 @@ class SemiSignatureFitter {
   std::vector<PlanePoint<double>> tangents_;  ///< measured, of length one
   Global global_;
   std::vector<LocalParameter>& places_;
-  std::vector<Eigen::Vector3d> differences_;  ///< of measurements and model, at places_
+  std::vector<Eigen::Vector3d> differences_;  ///< measurements minus model, at places_
   std::vector<Eigen::Vector3d> trial_differences_;
   std::vector<double> steps_;
   std::vector<Block> blocks_;
@@ -349,8 +348,8 @@ class SemiSignatureFitter {
   Global gradient_ = Global::Zero();   ///< likewise
   std::vector<LocalParameter> trial_;
   double chi2_ = 0.0;
-  bool is_linearised_ = false;  ///< at the globals and places as they are
-  double rounding_ = 0.0;       ///< chi-square of the residuals' rounding
+  bool is_linearised_ = false;  ///< at the current globals and places
+  double rounding_ = 0.0;       ///< chi-square that the rounding of the residuals causes
 };
 
 }  // namespace palpate::detail

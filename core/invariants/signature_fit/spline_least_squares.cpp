@@ -14,22 +14,21 @@
 namespace palpate {
 namespace {
 
-/// Twice as many as determine orientation, a and b.
+/// Twice as many points as determine orientation, a and b.
 constexpr int kLargestPointCount = 6;
 
-/// TinySolver compares the ABSOLUTE change of the cost with function_tolerance, whatever its
-/// comment says. The residuals are pure numbers of size one by construction, so that these are
-/// relative.
+/// TinySolver compares the ABSOLUTE change of the cost with function_tolerance, contrary to its own
+/// comment. The residuals are dimensionless and of size one, so the tolerances are relative.
 constexpr double kCostTolerance = 1e-26;
 constexpr double kGradientTolerance = 1e-15;
 constexpr double kStepTolerance = 1e-13;
 constexpr int kMaxIterations = 30;
 
-/// A fit whose chi-square exceeds its mean by more than this many standard deviations is suspected
-/// of a wrong minimum: more starts are tried, by chance for one in a hundred.
+/// If chi-square exceeds its mean by more than this many standard deviations, the minimum may be a
+/// wrong one, and more starts are tried. This happens by chance for one fit in a hundred.
 constexpr double kPlausibleSigmas = 3.0;
-/// Starts from pairs of points, refined one after the other while no fit explains the points. As
-/// many as there are pairs of the points taken, and one. Bounds the time.
+/// Starts from pairs of points, refined one after another until a fit explains the points. One more
+/// than there are pairs of the points used. Bounds the time.
 constexpr int kFallbackStarts = 16;
 
 /// The points of (50), at most kLargestPointCount, in normalised lengths.
@@ -40,7 +39,7 @@ struct SplineData {
   std::array<double, kLargestPointCount> kappa_s;
 };
 
-/// Residuals of (50) by x = (orientation, ln a, arctan b). Points that are not there give 0.
+/// Residuals of (50) as a function of x = (orientation, ln a, arctan b); 0 for unused entries.
 struct SplineResiduals {
   const SplineData* data;
 
@@ -65,8 +64,8 @@ struct SplineResiduals {
 
 using SplineFunction = ceres::TinySolverAutoDiffFunction<SplineResiduals, kLargestPointCount, 3>;
 
-/// c: the median of the points' own closed forms; c_spread: by how much they disagree, each form
-/// relative to the size of its two sides.
+/// Sets c to the median of the closed forms of the points, and c_spread to their disagreement, each
+/// form relative to the size of its two sides.
 void solve_c(const SplineData& data, SplineSolution& solution) {
   std::vector<SplineC> forms;
   std::vector<double> own;
@@ -136,7 +135,7 @@ std::vector<SplineSolution> spline_least_squares(std::span<const MeasuredGeometr
   const double unit = 1.0 / scale;
   const std::vector<MeasuredGeometry> selected = selected_points(points, unit);
   const SplineData data = spline_data(selected);
-  const SplineResiduals residuals{&data};  // TinySolver's adaptor keeps a reference
+  const SplineResiduals residuals{&data};  // TinySolver's adaptor stores a reference
   const SplineFunction function(residuals);
   ceres::TinySolver<SplineFunction> solver;
   solver.options.function_tolerance = kCostTolerance;
@@ -166,7 +165,7 @@ std::vector<SplineSolution> spline_least_squares(std::span<const MeasuredGeometr
   std::sort(
       solutions.begin(), solutions.end(),
       [&](const SplineSolution& p, const SplineSolution& q) { return badness(p) < badness(q); });
-  // Starts that met in one minimum count once.
+  // Starts that converged to the same minimum count once.
   const auto same = [](const SplineSolution& p, const SplineSolution& q) {
     return std::abs(wrap_angle(p.orientation - q.orientation)) < 1e-6 &&
            std::abs(p.parameters[0] - q.parameters[0]) < 1e-6 * p.parameters[0];
@@ -207,8 +206,8 @@ SemiSignatureFit fit_cubic_spline(std::span<const MeasuredGeometry> points,
   for (std::size_t i = 0; i < refined; ++i) {
     refine(solutions[i].parameters, solutions[i].orientation);
   }
-  // (50) weighs all residuals alike: noise can carry it away from the curve. The cubics through
-  // single pairs of points are then the better starts.
+  // (50) gives all residuals the same weight, so noise can lead it away from the curve. The cubics
+  // through single pairs of points are then the better starts.
   const double scale = curvature_scale(points);
   if (!explained() && scale > 0.0) {
     const double unit = 1.0 / scale;

@@ -9,21 +9,23 @@
 namespace palpate {
 namespace {
 
-/// Half of it determines a quartic with three samples to spare.
+/// Half of the samples determine a quartic with three samples to spare.
 constexpr std::size_t kBlock = 16;
 
-/// Noise is taken as at least kFormFactor * slope^4 * extent, which is what a quartic leaves of a
-/// curve that turns by `slope` either way and whose curvature doubles along it: the fifth-degree
-/// term 15 kappa^2 kappa_s / 5! has 8/63 of P_5 in it, that is 0.8 % of slope^4 extents.
+/// The noise counts as at least kFormFactor * slope^4 * extent. This is what a quartic leaves of a
+/// curve that turns by `slope` either way and whose curvature doubles along the block: its
+/// fifth-degree term 15 kappa^2 kappa_s / 5! contains 8/63 of P_5, which is 0.8 % of slope^4
+/// extents.
 constexpr double kFormFactor = 0.01;
-/// ... and as this part of the extent: no touched part is truer to a quartic.
+/// ... and as at least this fraction of the extent: no touched part follows a quartic more
+/// precisely.
 constexpr double kFormResolution = 1e-5;
 
 /// backtrack <= kBacktrackSigmas * sqrt(2) * sigma: the difference of two abscissae has the noise
-/// sqrt(2) sigma; at 6 of its standard deviations one in 10^9 neighbours is refused by chance.
+/// sqrt(2) sigma. Six standard deviations reject one in 10^9 neighbours by chance.
 constexpr double kBacktrackSigmas = 6.0;
 
-/// What form leaves of a quartic, taken for noise. [m]
+/// What form leaves of a quartic, counted as noise. [m]
 double noise_floor(const ResidualBlock& block) {
   const double slope = std::min(block.steepest(), 1.0);
   return (kFormResolution + kFormFactor * slope * slope * slope * slope) * block.extent_m();
@@ -36,13 +38,13 @@ double quantile(std::vector<double>& values, double fraction) {
   return *place;
 }
 
-/// Noise by the third differences across travel, of which a sample spoils four: with a third of
-/// spikes a fifth of them, (2/3)^4, are clean, and their quantile of a fifth is at most the largest
-/// of the clean ones. [m]
+/// Noise from the third differences across travel. One sample spoils four of them: with a third of
+/// the samples spikes, a fifth of the differences, (2/3)^4, are clean, and their 20 % quantile is
+/// at most the largest clean one. [m]
 double low_noise_of(std::span<const Vec2> samples, std::vector<double>& sizes) {
   constexpr double kQuantile = 0.2;
   constexpr double kQuantileOfNormal = 0.2533471031357997;  // of |normal variable|
-  constexpr double kNorm = 4.47213595499958;                // sqrt(1 + 9 + 9 + 1)
+  constexpr double kNorm = 4.47213595499958;  // norm of the coefficients: sqrt(1 + 9 + 9 + 1)
   sizes.clear();
   for (std::size_t i = 0; i + 3 < samples.size(); ++i) {
     const Vec2 chord = samples[i + 3] - samples[i];
@@ -53,8 +55,8 @@ double low_noise_of(std::span<const Vec2> samples, std::vector<double>& sizes) {
   return quantile(sizes, kQuantile) / (kQuantileOfNormal * kNorm);
 }
 
-/// The length of blocks for that noise, by their chords' lower quartile: spikes at their ends
-/// lengthen them.
+/// The length of blocks for that noise, from the lower quartile of their chords, because spikes at
+/// the ends lengthen chords.
 std::size_t block_length(std::span<const Vec2> samples, double sigma_m) {
   std::vector<double> chords;
   std::size_t length = kBlock;
@@ -75,7 +77,7 @@ struct Blocks {
   LocalStatus status = LocalStatus::TooFewSamples;
   double sigma_m = 0.0;
   double mean_extent_m = 0.0;
-  double largest = 0.0;  ///< residual, in its own block's noise
+  double largest = 0.0;  ///< residual, in units of the noise of its own block
   double backtrack_m = 0.0;
   double end_gap = 0.0;
 };
@@ -116,11 +118,12 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigm
   return result;
 }
 
-/// Median over at most eight blocks of how far their nearer halves lie from a parabola, as a
-/// standard deviation; 0 where there is none. [m]
+/// How far the nearer halves of the blocks lie from a parabola, as a standard deviation: the median
+/// over at most eight blocks; 0 if no block has a parabola. [m]
 double parabola_scale_m(std::span<const Vec2> samples, std::size_t length,
                         std::vector<double>& sizes) {
-  constexpr std::size_t kMostBlocks = 8;  // bounds the time; their median is enough (kAboveScale)
+  // Bounds the time; the median of so many is good enough (kAboveScale).
+  constexpr std::size_t kMostBlocks = 8;
   LeastMedianParabola parabola;
   sizes.clear();
   for_each_block(samples.size(), length, std::max(length, samples.size() / kMostBlocks),
@@ -132,25 +135,26 @@ double parabola_scale_m(std::span<const Vec2> samples, std::size_t length,
   return sizes.empty() ? 0.0 : quantile(sizes, 0.5);
 }
 
-/// Whether spikes pass for noise: then half of each block lies much nearer to a parabola. That is
-/// looked for only where a residual is larger than noise leaves any in 19 of 20 patches, or
-/// where the noise is above that of the third differences.
+/// Checks whether spikes have enlarged the noise. Then half of each block lies much nearer to a
+/// parabola. The check is made only if a residual is larger than the largest one that noise leaves
+/// in 19 of 20 patches, or if the noise exceeds that of the third differences.
 void look_for_spiked_noise(std::span<const Vec2> samples, double largest, double threshold,
                            BlockSurvey* survey) {
-  constexpr double kAlarms = 0.05;  // of patches, which then cost a look
-  // Three standard deviations of the quantile for 111 samples: sqrt(q (1 - q) / m) over its density
-  // and itself is 2.0 / sqrt(m), and what neighbouring differences share makes it 2.3 / sqrt(m).
-  // Beyond it a patch costs a look.
+  constexpr double kAlarms = 0.05;  // of the clean patches, which then cost this check
+  // Three standard deviations of the quantile for 111 samples. sqrt(q (1 - q) / m), divided by its
+  // density and by itself, is 2.0 / sqrt(m); the correlation of neighbouring differences makes it
+  // 2.3 / sqrt(m). Above it the check is made.
   constexpr double kAboveDifferences = 1.7;
-  // Three of the median of seven blocks' scales: one of 16 samples tells it to 0.36 of itself.
+  // Three standard deviations of the median of seven blocks' scales; a scale from 16 samples has a
+  // relative error of 0.36.
   constexpr double kAboveScale = 1.5;
   std::vector<double> sizes;
   const double quiet = two_sided_normal_quantile(kAlarms / static_cast<double>(samples.size()));
   if (largest <= quiet && survey->sigma_m <= kAboveDifferences * low_noise_of(samples, sizes)) {
     return;
   }
-  // Spikes lengthen the chords and what is taken for noise: the shortest blocks that resolve their
-  // own scale.
+  // Spikes lengthen the chords and enlarge the estimated noise. Therefore: the shortest blocks that
+  // are long compared with their own scale.
   double scale_m = 0.0;
   for (std::size_t length = std::min(kBlock, survey->length);; length *= 2) {
     length = std::min(length, survey->length);
@@ -164,8 +168,8 @@ void look_for_spiked_noise(std::span<const Vec2> samples, double largest, double
   }
   survey->is_noise_spiked = survey->sigma_m > kAboveScale * scale_m;
   if (survey->is_noise_spiked) {
-    // A start so tight that the spikes next to the noise stay outside, but no tighter than that
-    // noise loses one sample of a block. The search widens it.
+    // A starting value so small that spikes close to the noise stay outside, but not so small that
+    // noise removes more than one sample of a block. The search enlarges it.
     constexpr double kLost = 1.0 / static_cast<double>(kBlock);
     survey->sigma_m = two_sided_normal_quantile(kLost) / threshold * scale_m;
     survey->length = std::min(survey->length, block_length(samples, scale_m));
@@ -200,8 +204,8 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
     return survey;
   }
   if (!is_resolved() && !(sigma_m > 0.0)) {
-    // Noise as large as the patch, or spikes that pass for it: then the third differences tell how
-    // long blocks must be, and half of each lies near a parabola.
+    // The noise is as large as the patch, or spikes pass for noise. Then the third differences
+    // determine how long blocks must be, and half of each block lies near a parabola.
     std::vector<double> sizes;
     survey.length = block_length(samples, low_noise_of(samples, sizes));
     look_for_spiked_noise(samples, blocks.largest, threshold, &survey);
@@ -211,7 +215,7 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
     }
     return survey;
   }
-  // Where noise scatters samples along the axis as well, their order there tells nothing.
+  // Where noise scatters samples along the axis too, their order on it says nothing.
   const bool is_out_of_order =
       blocks.end_gap > kLonelyGap ||
       blocks.backtrack_m > kBacktrackSigmas * std::sqrt(2.0) * survey.sigma_m;

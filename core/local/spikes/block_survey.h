@@ -1,5 +1,5 @@
-// What least squares in overlapping blocks says about a patch: its noise, and whether anything in
-// it is unusual at all.
+// Least-squares fits in overlapping blocks of a patch. They give the noise, and show whether the
+// patch may contain spikes.
 #pragma once
 
 #include <algorithm>
@@ -14,30 +14,32 @@ namespace palpate {
 
 struct BlockSurvey {
   LocalStatus status = LocalStatus::TooFewSamples;
-  std::size_t length = 0;   ///< samples of a block
-  double sigma_m = 0.0;     ///< noise: the one given, or that of the blocks' residuals [m]; ...
-  bool is_any_off = false;  ///< a sample is off its block's quartic, or behind earlier ones
-  bool is_noise_spiked = false;  ///< ... which spikes pass for: sigma_m is then a low start
+  std::size_t length = 0;   ///< number of samples of a block
+  double sigma_m = 0.0;     ///< noise, as given or from the residuals of the blocks [m]
+  bool is_any_off = false;  ///< a sample is off the quartic of its block, or behind earlier samples
+  /// Spikes may have enlarged the noise; sigma_m is then a deliberately low starting value.
+  bool is_noise_spiked = false;
 };
 
-/// Blocks of 16 samples, or twice that and so on where those span less than 20 sigma. `sigma_m`: 0
-/// = not known. `threshold`: standard deviations beyond which a sample is off.
+/// Fits blocks of 16 samples, or of 32, 64 ... if those span less than 20 sigma. `sigma_m`: 0 =
+/// unknown. A sample whose residual exceeds `threshold` standard deviations is off.
 BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold);
 
-/// Residual beyond which a sample is off the block's quartic: noise, or form that no quartic has.
-/// [m]
+/// The residual beyond which a sample is off its block's quartic. It allows for noise, and for form
+/// that no quartic can follow. [m]
 double residual_limit(const ResidualBlock& block, double sigma_m, double threshold);
 
-/// Whether a sample in use lies farther behind an earlier one than noise takes it.
+/// Whether a sample in use lies farther behind an earlier one than noise explains.
 bool turns_back(const ResidualBlock& block, double sigma_m);
 
-/// A patch's first or last sample in use is alone where it is this part of the block's extent away
-/// from the next: the quartic bends to it wherever it is, so that no residual tells. (Fifteen
-/// samples evenly apart predict the place of one so far beyond with 15 times their own noise.)
+/// The first or last sample in use of a patch is lonely if its distance to the next is at least
+/// this fraction of the block's extent. The quartic bends to such a sample wherever it is, so its
+/// residual shows nothing. (Fifteen evenly spaced samples predict the place of one so far beyond
+/// with 15 times their own noise.)
 inline constexpr double kLonelyGap = 0.25;
 
-/// function(start) for blocks of `length` samples, `stride` from one to the next; the last one ends
-/// with the patch.
+/// Calls function(start) for blocks of `length` samples that start `stride` samples apart. The last
+/// block ends with the patch.
 template <typename Function>
 void for_each_block(std::size_t samples, std::size_t length, std::size_t stride,
                     const Function& function) {

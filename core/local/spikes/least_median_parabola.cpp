@@ -9,25 +9,27 @@
 namespace palpate {
 namespace {
 
-/// Samples tried of each third, evenly spaced: with three tenths of spikes a third of the 150 or so
-/// triples are all good.
+/// Samples tried in each third, evenly spaced. With three tenths of spikes, a third of the 150 or
+/// so triples contain no spike.
 constexpr std::size_t kTriedPerThird = 6;
 
-/// The middle sample's abscissa as a part of the outer ones' distance: nearer to an end, its noise
-/// is that many times the parabola's.
+/// Least distance of the middle sample's abscissa from either outer one, as a fraction of their
+/// distance. Nearer to an end, the noise of that sample is multiplied by the inverse in the
+/// parabola.
 constexpr double kLeastShare = 0.15;
 
-/// Slope of the parabola at its ends against its chord: 45 degrees.
+/// Largest slope of the parabola at its ends against its chord: 45 degrees.
 constexpr double kMaxSlope = 1.0;
 
-/// The best of so many parabolas is nearer than the true one, by 1 - kFew / samples: a tenth off at
-/// most for 16 to 64 samples (local_hard_cases_test prints it). Below kFewest it would vanish.
+/// The best of so many parabolas is nearer to the samples than the true one, by 1 - kFew / samples;
+/// for 16 to 64 samples this is right to a tenth (local_hard_cases_test prints it). Below kFewest
+/// the factor would vanish.
 constexpr double kFew = 9.0;
 constexpr double kFewest = 12.0;
 
 }  // namespace
 
-/// Takes the parabola where its nearer half is nearer than that of the best so far.
+/// Takes the parabola if its nearer half is nearer than that of the best so far.
 void LeastMedianParabola::try_curve(double curve, std::size_t half, double* best) {
   const std::size_t n = distances_.size();
   std::size_t farther = 0;
@@ -44,8 +46,8 @@ void LeastMedianParabola::try_curve(double curve, std::size_t half, double* best
   *best = *median;
 }
 
-/// In the frame of the chord from sample a to sample c, the parabola through them and b is
-/// y = curve * x (x - length), and each sample's distance to it |y - curve * x (x - length)|.
+/// In the frame of the chord from sample a to sample c, the parabola through them and b is y =
+/// curve * x (x - length). The distance of a sample from it is |y - curve * x (x - length)|.
 bool LeastMedianParabola::fit(std::span<const Vec2> samples) {
   const std::size_t n = samples.size();
   const std::size_t half = n / 2;

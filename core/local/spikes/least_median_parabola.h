@@ -1,4 +1,5 @@
-// The parabola that half of a block's samples lie nearest to: a start that spikes cannot bend.
+// A parabola through a block of samples that spikes cannot bend: the start of the search for
+// spikes.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +10,21 @@
 
 namespace palpate {
 
-/// Least median of squares (P. J. Rousseeuw, "Least median of squares regression", 1984): of the
-/// parabolas through three samples, one from each third of the block, that one whose distance to
-/// the nearer half of the samples is least. Up to half of the samples may be anywhere.
+/// Least median of squares (P. J. Rousseeuw, "Least median of squares regression", 1984). The
+/// candidates are parabolas through three samples, one from each third of the block. The chosen one
+/// has the smallest distance to the nearer half of the samples. Up to half of the samples may be
+/// anywhere.
 class LeastMedianParabola {
  public:
-  /// False where no three samples follow each other in their order within 45 degrees. O(samples).
+  /// Returns false if no three samples follow each other in order within 45 degrees. O(samples).
   bool fit(std::span<const Vec2> samples);
 
-  /// Standard deviation of the noise by the nearer half's largest distance: for 16 samples within a
-  /// factor of two, and too large where more than a few are spikes. [m]
+  /// Standard deviation of the noise, from the largest distance within the nearer half. For 16
+  /// samples it is right to a factor of two; it is too large if more than a few samples are spikes.
+  /// [m]
   double scale_m() const { return scale_m_; }
 
-  /// One flag per sample: whether it is of the nearer half.
+  /// One flag per sample: 1 if it belongs to the half that is nearer to the parabola.
   std::span<const std::uint8_t> nearer_half() const { return nearer_; }
 
  private:

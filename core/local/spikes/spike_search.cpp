@@ -10,15 +10,17 @@
 namespace palpate {
 namespace {
 
-/// Standard deviation of normal variables by the sizes of those within `limit`; at most the limit.
+/// Standard deviation of normal variables, from the absolute values of those within `limit`; at
+/// most the limit.
 double sigma_within(const std::vector<double>& sizes, double limit) {
   double sum = 0.0;
   for (const double size : sizes) {
     sum += size * size;
   }
   const double kept = std::sqrt(sum / static_cast<double>(sizes.size()));
-  // A step leaves 0.08, 0.43 or 0.85 of the error where the limit is 3, 2 or 1 deviations; where it
-  // is less, what lies within tells no deviation, and the limit is returned.
+  // Each step reduces the error to 0.08, 0.43 or 0.85 of itself if the limit is 3, 2 or 1 standard
+  // deviations. If the limit is smaller, the values within it determine no standard deviation, and
+  // the limit is returned.
   constexpr int kIterations = 20;
   double sigma = kept;
   for (int i = 0; i < kIterations && sigma > 0.0 && sigma < limit; ++i) {
@@ -30,7 +32,7 @@ double sigma_within(const std::vector<double>& sizes, double limit) {
 struct Block {
   std::size_t start = 0;
   std::vector<std::uint8_t> use;   ///< one flag per sample: whether it belongs to the fit
-  std::vector<std::uint8_t> half;  ///< nearest to a parabola; empty where not needed so far
+  std::vector<std::uint8_t> half;  ///< the half nearest to a parabola; empty if not needed so far
   std::size_t used = 0;
   bool is_settled = false;
 };
@@ -49,7 +51,7 @@ class Search {
 
   double sigma_m() const { return sigma_m_; }
 
-  /// Noise by what joined, and all again with it.
+  /// Estimates the noise from the samples that joined, and repeats the search with it.
   void refine_noise() {
     std::vector<double> sizes;
     for (const Block& block : blocks_) {
@@ -93,8 +95,8 @@ class Search {
     return samples_.subspan(block.start, length_);
   }
 
-  /// A quartic; a cubic where more than a quarter is lost: fewer samples do not hold the quartic's
-  /// ends, which then bend to a spike.
+  /// A quartic; a cubic if more than a quarter is removed: too few samples do not hold the ends of
+  /// a quartic, which then bend to a spike.
   LocalStatus fit(const Block& block) {
     constexpr int kDegreeOfFew = 3;
     const auto used = static_cast<std::size_t>(std::ranges::count(block.use, 1));
@@ -102,7 +104,8 @@ class Search {
     return residuals_.fit(part(block), block.use, degree);
   }
 
-  /// From all samples where few leave, else from the half that lies nearest to a parabola.
+  /// Starts from all samples; if too many would leave, from the half that lies nearest to a
+  /// parabola.
   void settle_blocks() {
     for (Block& block : blocks_) {
       block.use.assign(length_, 1);
@@ -121,11 +124,11 @@ class Search {
     }
   }
 
-  /// The worst sample leaves until none is off; then those that are not off join. False where more
-  /// than `most_leave` would leave, or where no quartic within 45 degrees is left that explains
-  /// more than half of the block.
+  /// The worst sample leaves until none is off; then those that are not off join. Returns false if
+  /// more than `most_leave` would leave, or if no quartic within 45 degrees explains more than half
+  /// of the block.
   bool settle(Block* block, std::size_t most_leave) {
-    constexpr int kMostReturns = 6;  // a sample may leave and join in turn
+    constexpr int kMostReturns = 6;  // a sample may leave and join alternately
     std::size_t left = 0;
     int returns = 0;
     bool may_be_lonely[] = {block->start == 0, block->start + length_ == samples_.size()};
@@ -159,7 +162,7 @@ class Search {
       } else if (may_be_lonely[0] && residuals_.first_gap() > kLonelyGap) {
         may_be_lonely[0] = false;
         block->use[first_of(*block)] = 0;
-        returns = kMostReturns;  // or it would join again
+        returns = kMostReturns;  // otherwise it would join again
         ++left;
       } else if (may_be_lonely[1] && residuals_.last_gap() > kLonelyGap) {
         may_be_lonely[1] = false;
@@ -186,8 +189,8 @@ class Search {
     return last;
   }
 
-  /// Of the blocks that lose more than an eighth, the one that loses least judges a sample; of
-  /// others the one in whose middle it is.
+  /// Among the blocks that remove more than an eighth of their samples, the one that removes fewest
+  /// judges a sample. Among the others, the one that has the sample nearest to its middle.
   void judge_by(const Block& block, std::vector<Verdict>* verdicts) const {
     const std::size_t lost = length_ - block.used;
     const std::size_t counted = lost > length_ / 8 ? lost : 0;

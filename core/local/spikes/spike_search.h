@@ -1,4 +1,5 @@
-// The search for spikes in a patch that has any: a start that they cannot bend, then a sharp test.
+// The search for spikes in a patch that may have some: a start that they cannot bend, then a sharp
+// test.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +15,15 @@ struct SpikeSearch {
   double sigma_m = 0.0;                ///< noise used [m]
 };
 
-/// In blocks that overlap by three quarters: a quartic (a cubic where more than a quarter is lost)
-/// that samples within the threshold join and others leave until none does either, first from all
-/// samples, and where more than an eighth would leave, from the half nearest to a common parabola.
-/// A block in which no more than half join, or which turns by more than 45 degrees, says nothing.
-/// No block condemns what goes on beyond its own samples, a bend or a step; each sample is judged
-/// by the block that loses least. `sigma_m`: 0 = by the residuals of samples that joined.
+/// Fits a quartic in each of the blocks, which overlap by three quarters (a cubic if more than a
+/// quarter of the block is removed). Samples within the threshold join the fit and others leave it
+/// until nothing changes. The fit starts from all samples; if more than an eighth would leave, it
+/// starts from the half that lies nearest to a common parabola.
+///
+/// A block makes no decision if at most half of its samples join or if it turns by more than 45
+/// degrees. A block does not decide on samples beyond the ends of its fit: these may be a bend or a
+/// step. Each sample is judged by the block that removes fewest samples. `sigma_m`: 0 = estimate it
+/// from the residuals of the samples that joined.
 SpikeSearch search_spikes(std::span<const Vec2> samples, const BlockSurvey& survey, double sigma_m,
                           double threshold);
 

@@ -13,7 +13,7 @@ namespace {
 // The unknowns of a quartic and three residuals.
 constexpr std::size_t kFewestSamples = 8;
 
-/// Samples that are no spikes so far, and their numbers as given.
+/// The samples that are not spikes so far, and their indices in the input.
 struct Kept {
   std::vector<Vec2> samples;
   std::vector<std::size_t> numbers;
@@ -33,7 +33,7 @@ struct Kept {
   }
 };
 
-/// So many neighbours and more are form: no short block would have condemned them.
+/// A run of at least `shortest` neighbours is form: no short block would have condemned them.
 void spare_runs(std::size_t shortest, std::vector<std::uint8_t>* is_spike) {
   for (auto begin = is_spike->begin(); begin != is_spike->end();) {
     const auto end =
@@ -66,8 +66,9 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
   }
   result.threshold = two_sided_normal_quantile(options.false_alarms_per_patch /
                                                static_cast<double>(kept.samples.size()));
-  // Each pass without the spikes found before, which take places in the blocks; where none is found
-  // and samples are off all the same, in longer blocks: spikes may be most of a short one.
+  // Each pass leaves out the spikes found before, which occupied places in the blocks. If it finds
+  // none although samples are off, the next pass uses longer blocks: spikes may be the majority of
+  // a short one.
   constexpr int kMostPasses = 8;
   constexpr int kMostDoublings = 2;
   int doublings = 0;

@@ -1,4 +1,4 @@
-// Spikes: single samples off the curve by more than noise explains, whatever the class.
+// Spikes: single samples that lie farther from the curve than noise explains, whatever its class.
 #pragma once
 
 #include <span>
@@ -9,36 +9,37 @@
 namespace palpate {
 
 struct SpikeOptions {
-  /// Noise, one standard deviation of a coordinate; 0 = by the patch itself. [m]
+  /// Noise of a coordinate, one standard deviation; 0 = estimate it from the patch. [m]
   double sigma_m = 0.0;
-  /// Probability that a patch of white Gaussian noise loses any sample. A sample is a spike where
-  /// |residual| > z * its standard deviation, z the two-sided normal quantile of this rate over
-  /// the number of samples: 3.9 for 111 samples.
+  /// Probability that a patch with white Gaussian noise loses any sample. A sample is a spike if
+  /// |residual| > z * its standard deviation, where z is the two-sided normal quantile of this
+  /// probability divided by the number of samples: 3.9 for 111 samples.
   double false_alarms_per_patch = 0.01;
 };
 
 struct Spikes {
-  LocalStatus status = LocalStatus::TooFewSamples;  ///< Ok, or why no noise could be estimated
-  std::vector<std::size_t> indices;                 ///< rising
+  LocalStatus status = LocalStatus::TooFewSamples;  ///< Ok, or why the noise could not be estimated
+  std::vector<std::size_t> indices;                 ///< of the spikes, in increasing order
   double sigma_m = 0.0;                             ///< noise used [m]
-  double threshold = 0.0;                           ///< z, in standard deviations
+  double threshold = 0.0;                           ///< z, as defined above
 };
 
-/// Tests each sample against a quartic (a cubic where spikes are many) through those of the block
-/// around it that are no spikes. Three
-/// steps, each only where the one before asks for it:
-/// 1. Least squares in all blocks of 16 (longer where 16 samples span less than 20 sigma), which
-///    overlap by half. Nothing beyond the threshold, nothing behind an earlier sample and the noise
-///    not suspicious: no spikes (block_survey.h). O(samples), and all that a clean patch costs.
-/// 2. In blocks that overlap by three quarters, a start that spikes in up to half of the block
-///    cannot bend (least_median_parabola.h).
-/// 3. From it the quartic's own inliers, and the test (spike_search.h): the deletion residual
-///    against z, for those within the fit and those outside alike. 1 to 3 are repeated without the
-///    spikes found.
-/// A corner, a step or a bend is form and no spike: a block does not judge what goes on beyond its
-/// own inliers, and blocks that turn by more than 45 degrees judge nothing. Samples that are not
-/// finite are spikes; so is a patch's last (first) sample alone beyond a gap of a quarter of its
-/// block. Needs 8 finite samples.
+/// Tests each sample against a quartic (a cubic if there are many spikes) through the samples of
+/// its block that are not spikes. Three steps, each only if the one before finds something unusual:
+/// 1. Least squares in blocks of 16 (longer if 16 samples span less than 20 sigma) that overlap by
+///    half. If nothing exceeds the threshold, no sample lies behind an earlier one and the noise is
+///    not suspicious, there are no spikes (block_survey.h). O(samples); a clean patch costs no more
+///    than this.
+/// 2. In blocks that overlap by three quarters: a start that cannot be bent by spikes in up to half
+///    of the block (least_median_parabola.h).
+/// 3. From this start: the inliers of the quartic, and the test (spike_search.h) of the deletion
+///    residual against z, for samples inside and outside the fit. Steps 1 to 3 are repeated without
+///    the spikes found.
+///
+/// A corner, a step or a bend is form and not a spike: a block does not judge samples beyond its
+/// own inliers, and a block that turns by more than 45 degrees judges nothing. Samples that are not
+/// finite are spikes. So is the first or last sample of a patch if a gap of a quarter of its block
+/// separates it from the rest. Needs 8 finite samples.
 Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options = {});
 
 }  // namespace palpate

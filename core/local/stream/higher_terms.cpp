@@ -8,29 +8,28 @@
 namespace palpate {
 namespace {
 
-// Curvature and its derivative tell the size of the terms beyond; place and direction do not.
+// Curvature and its derivative show the size of the higher terms; place and direction do not.
 constexpr int kFirstEvidence = 2;
 using Terms = Eigen::Matrix<double, kWindowSize, 1>;
 
-/// Grid of the prior: A in units of the size of c_2 and c_3, rho of the fall-off. Where noise makes
-/// up that size, the terms may be much smaller.
+/// Grid of the prior: the amplitude A in units of the size of c_2 and c_3, and the fall-off rho. If
+/// noise makes up that size, the terms may be much smaller.
 constexpr std::array<double, 3> kAmplitudes = {0.0625, 0.25, 1.0};
 constexpr std::array<double, 10> kFallOffs = {0.012, 0.021, 0.036, 0.06, 0.1,
                                               0.15,  0.22,  0.3,   0.45, 0.65};
-/// What speaks for a fall-off before the window's terms do. Windows end where the highest terms are
-/// noise, so that slower ones than 0.3 are the exception: beside bends, about one window in a
-/// hundred.
+/// Prior odds of the fall-offs. Windows end where their highest terms are noise, so fall-offs
+/// slower than 0.3 are an exception: next to bends, about one window in a hundred.
 constexpr std::array<double, 10> kPriorOdds = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.01, 0.01};
-/// Odd terms over even ones, squared: anywhere on a curve and near a place where it is its own
-/// mirror image; at one (the third case) they are 0. A circle is everywhere, and its odd terms,
-/// which vanish, say nothing of its even ones.
+/// Squared ratio of odd to even terms: anywhere on a curve, and near a place where the curve is its
+/// own mirror image. At such a place (the third case) odd terms are 0. Every place of a circle is
+/// one: its odd terms vanish and say nothing about its even terms.
 constexpr std::array<double, 2> kOdd2 = {1.0, 0.01};
 
 constexpr int kFallOffCount = static_cast<int>(kFallOffs.size());
 constexpr int kPairs = static_cast<int>(kAmplitudes.size()) * kFallOffCount;
 using Pairs = Eigen::Array<double, kPairs, 1>;
 
-/// A^2, powers of rho and the odds of each point of the grid.
+/// A^2, powers of rho and prior odds of each grid point.
 struct GridPoints {
   Pairs amplitude2, fall_off2, fall_off4, ninth, odds;
   GridPoints() {
@@ -45,12 +44,12 @@ struct GridPoints {
   }
 };
 
-/// The free fit's terms of one parity, at every point of the grid. A term of variance v and prior
-/// variance s2 is kept by the share s2 / (s2 + v).
+/// The terms of one parity of the free fit, at every grid point. A term of variance v and prior
+/// variance s2 keeps the share s2 / (s2 + v) of itself.
 struct ParityTerms {
   std::array<Pairs, kWindowSize> kept;
   std::array<Pairs, kWindowSize> inverse;  ///< 1 / (s2 + v)
-  Pairs exponent = Pairs::Zero();          ///< of the evidence, and what stands before it, squared
+  Pairs exponent = Pairs::Zero();          ///< of the evidence, and the square of its factor
   Pairs factor2 = Pairs::Ones();
 
   ParityTerms(int first, const Terms& c, const Terms& variance, double size2, Pairs s2,
@@ -60,13 +59,13 @@ struct ParityTerms {
       inverse[i] = (s2 + variance[k]).inverse();
       kept[i] = s2 * inverse[i];
       exponent += c[k] * c[k] * inverse[i];
-      factor2 *= size2 * inverse[i];  // relative to the size, so that the product stays a number
+      factor2 *= size2 * inverse[i];  // relative to the size, to stay in the range of a double
       s2 *= fall_off4;
     }
   }
 };
 
-/// Odd terms that vanish: nothing is kept of them, whatever the point of the grid.
+/// Odd terms that vanish: nothing of them is kept, at any grid point.
 struct NoTerms {
   double exponent = 0.0;
   double factor2 = 1.0;
@@ -109,7 +108,8 @@ HigherTerms higher_terms(const Terms& c, const Terms& variance) {
   const double total = pairs.sum();
   const double total_of_none = share_of_none.sum();
 
-  // By terms: what the points keep, times their shares, and its products with what they keep.
+  // For each term: the kept shares, weighted with the posterior, and their products with those of
+  // the other terms.
   std::array<Pairs, kPriorTerms> weighted;
   Eigen::Matrix<double, kPriorTerms, kPriorTerms> both;
   HigherTerms found;
@@ -149,7 +149,7 @@ HigherTerms higher_terms(const Terms& c, const Terms& variance) {
       found.apart(k, j) = found.apart(j, k) = both(k, j) / total - kept[k] * kept[j];
     }
   }
-  // No sample says anything of the terms that the polynomial lacks but through A and rho.
+  // Samples say something about the terms that the polynomial lacks only through A and rho.
   found.tail_variances[0] =
       size2 * ((kOdd2[0] * shares[0] + kOdd2[1] * shares[1]) * points.ninth).sum() / total;
   found.tail_variances[1] = size2 * (pairs * points.ninth * points.fall_off2).sum() / total;

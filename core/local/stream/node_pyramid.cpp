@@ -26,7 +26,8 @@ std::array<PathNode, 2> two_nodes(std::span<const PathNode> nodes) {
     xy += node.weight * d.x() * d.y();
     yy += node.weight * d.y() * d.y();
   }
-  // Eigenvector of the larger eigenvalue, by the half angle's cosine and sine without cancellation.
+  // Eigenvector of the larger eigenvalue, from cosine and sine of the half angle, without
+  // cancellation.
   const double half = 0.5 * (xx - yy);
   const double root = std::hypot(half, xy);
   const Vec2 direction = half >= 0.0 ? Vec2(half + root, xy) : Vec2(xy, root - half);
@@ -49,7 +50,7 @@ std::array<PathNode, 2> two_nodes(std::span<const PathNode> nodes) {
     third += node.weight * u * u * u;
     product += node.weight * u * cross(axis, d);
   }
-  // Nodes x of two points with the moments 0, m2, m3: x^2 - (m3 / m2) x - m2 = 0.
+  // The two nodes x with the moments 0, m2, m3: x^2 - (m3 / m2) x - m2 = 0.
   const double skew = third / second;
   const double spread = std::sqrt(skew * skew + 4.0 * second / weight);
   const double early = 0.5 * (skew - spread);
@@ -64,7 +65,7 @@ NodePyramid::NodePyramid() : levels_(kLevels) {}
 void NodePyramid::clear() { count_ = 0; }
 
 void NodePyramid::add(const Vec2& position_m, double weight) {
-  // A single sample is a block of one point and one of no weight.
+  // A single sample is a block of two points, one of which has no weight.
   levels_[0][count_ % kHeld] = {PathNode{position_m, weight}, PathNode{position_m, 0.0}};
   ++count_;
   for (std::size_t level = 1; level < kLevels && count_ % (1ULL << level) == 0; ++level) {
@@ -96,7 +97,7 @@ std::uint64_t NodePyramid::window(std::uint64_t first, std::vector<PathNode>* no
   const std::uint64_t block_samples = 1ULL << level;
   const std::uint64_t start = (first + block_samples - 1) >> level << level;
   std::uint64_t next = start;
-  // Whole blocks of the scale, then of ever finer ones up to the newest sample.
+  // Whole blocks of this scale, then of ever finer scales up to the newest sample.
   for (std::size_t scale = level + 1; scale-- > 0;) {
     while (next + (1ULL << scale) <= count_) {
       for (const PathNode& node : block(scale, next >> scale)) {

@@ -41,7 +41,7 @@ std::optional<double> RunningNoise::sigma_m() const {
     dof = noise.dof;
     squares = dof * noise.sigma_m * noise.sigma_m;
   }
-  // A Student variable of so many degrees of freedom has the variance dof / (dof - 2).
+  // A Student variable with this many degrees of freedom has the variance dof / (dof - 2).
   constexpr double kFewestDof = 3.0;
   return dof < kFewestDof ? std::nullopt : std::optional(std::sqrt(squares / (dof - 2.0)));
 }

@@ -1,4 +1,4 @@
-// The noise of a path whose samples do not state it, while they arrive.
+// Estimates the noise of a path while its samples arrive, for samples that do not state it.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,15 @@
 
 namespace palpate {
 
-/// estimate_noise (core/local/noise.h) of one chunk of samples after another, pooled: a spike harms
-/// a chunk and not the answer. Bounded memory, O(1) a sample in the mean.
+/// Pools estimate_noise (core/local/noise.h) over consecutive chunks of samples. A spike spoils its
+/// chunk only. Bounded memory; O(1) per sample on average.
 class RunningNoise {
  public:
-  /// Samples of a chunk: some 20 degrees of freedom, so that a chunk's own scatter is 16 %.
+  /// Samples per chunk: about 20 degrees of freedom, so a single chunk has a relative error of 16
+  /// %.
   static constexpr std::size_t kChunk = 32;
-  /// Degrees of freedom that are remembered: 2,000 of them know sigma to 1.6 %, and a noise that
-  /// changes is followed.
+  /// Degrees of freedom that count. 2,000 determine sigma to 1.6 %, and a change of the noise is
+  /// still followed.
   static constexpr double kMostDof = 2000.0;
 
   RunningNoise() { chunk_.reserve(kChunk); }
@@ -24,13 +25,13 @@ class RunningNoise {
   void add(const Vec2& position_m);
   void clear();
 
-  /// One coordinate's standard deviation, enlarged by what so few residuals leave unknown of it
-  /// (the variance of a Student variable); nullopt where nothing can be said yet. [m]
+  /// Standard deviation of one coordinate, enlarged for the uncertainty of so few residuals (by the
+  /// variance of a Student variable); nullopt if nothing is known yet. [m]
   std::optional<double> sigma_m() const;
 
  private:
   std::vector<Vec2> chunk_;
-  double squares_ = 0.0;  ///< dof * variance of whole chunks
+  double squares_ = 0.0;  ///< dof * variance, summed over chunks
   double dof_ = 0.0;
 };
 

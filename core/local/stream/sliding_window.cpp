@@ -8,8 +8,8 @@
 namespace palpate {
 namespace {
 
-/// What is left of a window that is too long. 0.9: in the mean a window is 5 % shorter than it
-/// might be, and a window that must be halved takes seven steps, once.
+/// The fraction that a window that is too long is shortened to. 0.9: on average a window is 5 %
+/// shorter than necessary, and a window that must be halved takes seven steps, once.
 constexpr double kShrink = 0.9;
 
 }  // namespace
@@ -34,8 +34,8 @@ std::optional<WindowEstimate> SlidingWindow::add(const Vec2& position_m, double 
     stated_ = sigma > 0.0;
     stated_sigma_m_ = sigma;
   }
-  // Weights are relative to the first sample's noise, and 1 where it is not known: only ratios
-  // count until the noise is estimated.
+  // Weights are relative to the noise of the first sample; 1 if it is unknown. Only ratios matter
+  // until the noise is estimated.
   const double relative = stated_ && sigma > 0.0 ? sigma / stated_sigma_m_ : 1.0;
   pyramid_.add(position_m, 1.0 / (relative * relative));
   const auto shift = static_cast<std::uint64_t>(std::max(options_.shift, 1));

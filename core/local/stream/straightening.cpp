@@ -12,7 +12,7 @@ Straightening::Straightening(std::span<const PathNode> nodes) {
   const Vec2 chord = last - first;
   const PathNode* nearest = &nodes[nodes.size() / 2];
   double least = std::abs(chord.dot(nearest->position_m - first - 0.5 * chord));
-  // Nodes stand for like stretches: the middle is not in the outer quarters.
+  // Nodes stand for stretches of similar length, so the middle is not in the outer quarters.
   for (const PathNode& node : nodes.subspan(nodes.size() / 4, nodes.size() / 2)) {
     const double off = std::abs(chord.dot(node.position_m - first - 0.5 * chord));
     if (off < least) {
@@ -28,7 +28,8 @@ Straightening::Straightening(std::span<const PathNode> nodes) {
   if (!(lengths > 0.0 && across > 0.0) || !std::isfinite(lengths)) {
     return;
   }
-  // The tangent makes with either chord the angle that the other one makes with the long chord.
+  // The angle between the tangent and either chord equals the angle between the other chord and the
+  // long chord.
   const double sine = cross(before, after) / lengths;
   const Vec2 along = chord / across;
   const std::complex<double> a(along.dot(before), cross(along, before));
@@ -60,7 +61,7 @@ LocalEstimate Straightening::to_world(const LocalEstimate& at_w) const {
       wrap_angle(at_w.tangent_angle + 2.0 * std::arg(q) + std::atan2(tangent_.y(), tangent_.x()));
   e.kappa = (at_w.kappa + p_tau.imag()) / shrink;
   e.kappa_s = at_w.kappa_s / (shrink * shrink);
-  // Errors against the truth at the foot, which moves along the normal with the offset.
+  // Errors are relative to the truth at the foot; an offset moves the point along the normal.
   Eigen::Matrix4d jacobian = Eigen::Matrix4d::Zero();
   jacobian(0, 0) = shrink;
   jacobian(1, 0) = p_tau.real();

@@ -1,4 +1,4 @@
-// A window's nodes in columns, as the sums of a fit take them: several at once.
+// The nodes of a window in columns, the layout in which the sums of a fit process several at once.
 #pragma once
 
 #include <array>
@@ -12,7 +12,8 @@
 
 namespace palpate {
 
-/// Positions, coordinates in a frame and weights. Nothing is allocated for a pyramid's window.
+/// Positions, frame coordinates and weights of the nodes. Does not allocate for a window of a
+/// NodePyramid.
 class WindowColumns {
  public:
   explicit WindowColumns(std::size_t nodes)
@@ -29,7 +30,7 @@ class WindowColumns {
   WindowColumns(const WindowColumns&) = delete;
   WindowColumns& operator=(const WindowColumns&) = delete;
 
-  /// Once all nodes are set: what is beyond them to whole lanes weighs nothing.
+  /// Call after all nodes are set: fills the padding up to whole lanes with nodes of weight 0.
   void close() {
     for (std::size_t i = count_; i < u.size(); ++i) {
       u[i] = u[count_ - 1];
@@ -38,8 +39,8 @@ class WindowColumns {
     }
   }
 
-  /// Noise alike in all directions shows as 1 + slope^2 of it along v: weights over that, the slope
-  /// that of the polynomial with Legendre's coefficients c. Its largest amount.
+  /// Divides the weights by 1 + slope^2, because isotropic noise has that variance along v. The
+  /// slope is that of the polynomial with Legendre coefficients c. Returns the largest |slope|.
   double weigh_by_slope(const Eigen::Matrix<double, 5, 1>& c) {
     // P_1' ... P_4' = 1, 3 u, (15 u^2 - 3) / 2, (35 u^3 - 15 u) / 2
     const std::array<double, 4> power = {c[1] - 1.5 * c[3], 3.0 * c[2] - 7.5 * c[4], 7.5 * c[3],

@@ -21,38 +21,39 @@ constexpr int kAllTerms = kSize + kTailTerms;
 using Fit = LegendreFit<kWindowDegree>;
 using Vector = LegendreVector<kSize>;
 using Matrix = Eigen::Matrix<double, kSize, kSize>;
-/// Right hand sides beside each other.
+/// Several right-hand sides, one per column.
 template <int Columns>
 using Sides = Eigen::Matrix<double, kSize, Columns, Eigen::RowMajor>;
 
-/// Squares of the two highest orthonormal terms, chi-square of two degrees of freedom: its upper
-/// 1e-4. A window is asked at every estimate, 400 times along a stroke of 1,600 samples, and what
-/// chance has cut it must grow again, kappa_s worse by the power 3.5 of its length meanwhile: one
-/// in 25 such strokes is cut. The upper 1 % would cut four times a stroke, and would make windows
-/// shorter by the sixteenth root of the two thresholds' ratio, 4 %, only.
+/// Upper 1e-4 point of chi-square with two degrees of freedom, for the squares of the two highest
+/// orthonormal terms. Every estimate makes this test, 400 times along a stroke of 1,600 samples. A
+/// window that chance has shortened must grow again, and until then kappa_s is worse by the power
+/// 3.5 of its length; this happens in one of 25 such strokes. The upper 1 % point would shorten
+/// windows four times per stroke, and the other windows only by the sixteenth root of the ratio of
+/// the two thresholds, 4 %.
 constexpr double kAdequate = 18.42;
-/// The same of all five terms beyond the third, where the window is straightened.
+/// The same for all five terms beyond the third, in a straightened window.
 constexpr double kCircular = 25.74;
-/// half extent > kMinHalfExtentSigmas * sigma: shorter, and noise along the axis is no small
-/// perturbation of the places of the samples.
+/// half extent > kMinHalfExtentSigmas * sigma: in a shorter window noise along the axis is not a
+/// small perturbation of the places of the samples.
 constexpr double kMinHalfExtentSigmas = 10.0;
-/// rounding < kMostRounding, of the half extent: else rounding alone decides the axis.
+/// rounding < kMostRounding, of the half extent: above it, rounding alone determines the axis.
 constexpr double kMostRounding = 1.0 / 16.0;
 /// |slope| <= kMaxSlope over the window: 45 degrees.
 constexpr double kMaxSlope = 1.0;
 /// Windows that turn farther from their middle are straightened.
 constexpr double kMostTurnOfAGraph = 0.25 * kPi;
-/// Of less the polynomial takes a circle for one to 1e-9 of the radius, and straightening changes
-/// nothing: its term of degree 8 is 5 / 128 of the 8th power of the half extent over the radius,
-/// over 50 in Legendre's basis.
+/// If a window turns by less, the polynomial fits a circle to 1e-9 of the radius, and straightening
+/// changes nothing: its term of degree 8 is 5 / 128 of the 8th power of (half extent / radius),
+/// divided by 50 in Legendre's basis.
 constexpr double kLeastTurn = 0.2;
-/// cos^2(phi / 2) >= kLeastShrink, phi what the window turns by from its middle: 120 degrees to
-/// either side. Beyond, samples count less than a sixteenth.
+/// cos^2(phi / 2) >= kLeastShrink, where phi is the turn of the window from its middle: at most 120
+/// degrees to either side. Beyond, samples would count less than a sixteenth.
 constexpr double kLeastShrink = 0.25;
 
 double squared(double x) { return x * x; }
 
-/// Of the coordinates of the nodes. [m]
+/// Rounding of the coordinates of the nodes. [m]
 double rounding_of(std::span<const PathNode> nodes) {
   return std::numeric_limits<double>::epsilon() *
          std::max(nodes.front().position_m.cwiseAbs().maxCoeff(),
@@ -65,7 +66,8 @@ const Eigen::Matrix<double, 5, kAllTerms>& basis_at_middle() {
   return basis;
 }
 
-/// With `is_circular` only what is a circle but for kappa_s, to the noise: else TurnsTooFar.
+/// With `is_circular`, accepts only a path that is a circle up to kappa_s and noise; otherwise
+/// TurnsTooFar.
 LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<const PathNode> nodes,
                    double noise, double form_deviation_m, bool may_enlarge_noise) {
   LocalResult result;
@@ -91,13 +93,13 @@ LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<co
     return result;
   }
   const double unit = frame.half_extent_m;
-  // Of the coordinates as they came: those of the frame are counted from the window's middle.
+  // Of the original coordinates: those of the frame are measured from the window's middle.
   frame.rounding = std::max(frame.rounding, rounding_of(nodes) / unit);
   if (frame.rounding >= kMostRounding) {
     result.status = LocalStatus::NoExtent;
     return result;
   }
-  // Noise of the lightest node, which may run back the farthest.
+  // Noise of an average node, which bounds how far nodes may run back.
   const double mean_weight = weight_sum / static_cast<double>(nodes.size());
   const double node_noise = std::max(noise / std::sqrt(mean_weight) / unit, frame.rounding);
   result.status = check_backtrack(frame, 2.0 * node_noise, 0.0);
@@ -124,13 +126,13 @@ LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<co
   if (!smooth.factorise(0.0)) {
     return result;
   }
-  // Most windows that are no circle show it here, at a third of the cost.
+  // Most windows that are not a circle show it here, at a third of the cost.
   if (is_circular && squared(smooth.scores()[4]) > kCircular * squared(node_noise)) {
     result.status = LocalStatus::TurnsTooFar;
     return result;
   }
-  // The tangent's slope from the quartic: the full polynomial's own swings with the noise.
-  // The tangent's slope from the quartic: the full polynomial's own swings with the noise.
+  // The slope of the tangent comes from the quartic, because that of the full polynomial varies
+  // with the noise.
   if (columns.weigh_by_slope(smooth.coefficients()) > kMaxSlope) {
     result.status = LocalStatus::TurnsTooFar;
     return result;
@@ -152,13 +154,13 @@ LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<co
       result.status = LocalStatus::NotFollowed;
       return result;
     }
-    variance_of_unit = 0.5 * highest;  // the mean square of two
+    variance_of_unit = 0.5 * highest;  // the mean square of the two terms
   }
 
   Sides<kSize - 1> units_but_first = Sides<kSize - 1>::Zero();
   units_but_first.bottomRows<kSize - 1>().setIdentity();
   solve_lower_rows(fit.factor(), &units_but_first);
-  Vector variance = Vector::Zero();  // nobody asks for that of c_0
+  Vector variance = Vector::Zero();  // that of c_0 is not needed
   variance.tail<kSize - 1>() =
       variance_of_unit * units_but_first.colwise().squaredNorm().transpose();
   const Vector free = fit.coefficients();
@@ -169,9 +171,9 @@ LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<co
   if (!cholesky(information, &factor)) {
     return result;
   }
-  // With L the factor: L^-1 of the gradients of v and its derivatives at the middle, of the
-  // products with the terms that the polynomial lacks, and of the moments. All that is asked of the
-  // fit is products of these columns.
+  // Columns, multiplied by L^-1 (L is the factor): the gradients of v and its derivatives at the
+  // middle, the products with the terms that the polynomial lacks, and the moments. All results of
+  // the fit are products of these columns.
   const auto& basis = basis_at_middle();
   const auto inner = basis.leftCols<kSize>();
   constexpr int kLacking = 5;
@@ -185,7 +187,7 @@ LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<co
   const Eigen::Matrix<double, 5, kMoments + 1, Eigen::RowMajor> products =
       white.leftCols<kLacking>().transpose().lazyProduct(white);
 
-  // Of the frame, along the straightened circle.
+  // The abscissa along the straightened circle.
   const auto abscissa_at = [&, frame = frame](double u) { return frame.to_world({u, 0.0}).x(); };
   const Eigen::Matrix<double, 5, 1> derivatives = products.col(kMoments);
   const GraphGeometry geometry = graph_geometry(derivatives);
@@ -195,13 +197,13 @@ LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<co
   e.kappa = geometry.kappa / unit;
   e.kappa_s = geometry.kappa_s / (unit * unit);
   Eigen::Matrix<double, 5, 5> covariance = variance_of_unit * products.leftCols<kLacking>();
-  // A term that the polynomial lacks goes partly into those that it has: few samples cannot tell
-  // them apart.
+  // A term that the polynomial lacks goes partly into the terms that it has, because few samples
+  // cannot distinguish them.
   for (int k = 0; k < kTailTerms; ++k) {
     const Eigen::Matrix<double, 5, 1> missing = basis.col(kSize + k) - products.col(kLacking + k);
     covariance += prior.tail_variances[k] * missing * missing.transpose();
   }
-  // The grid's points differ in how much of the terms they keep.
+  // The grid points differ in how much of each term they keep.
   const Eigen::Matrix<double, 5, kPriorTerms> terms =
       inner.rightCols<kPriorTerms>() * free.tail<kPriorTerms>().asDiagonal();
   covariance += terms.lazyProduct(prior.apart).eval().lazyProduct(terms.transpose());
@@ -233,7 +235,7 @@ LocalResult fit_window(std::span<const PathNode> nodes, double noise, double for
   const auto graph_of = [&] {
     return fit_in(straight.left_bent(), false, nodes, noise, form_deviation_m, may_enlarge_noise);
   };
-  // Form deviation hides whether the path is a circle: such windows are as long as a graph.
+  // Form deviation hides whether the path is a circle. Such windows are as long as a graph allows.
   if (form_deviation_m > 0.0) {
     return graph_of();
   }

@@ -1,5 +1,5 @@
-// One window of a path: tangent angle, kappa and kappa_s at its middle, with the noise and what the
-// window's length costs in bias in one covariance.
+// Fit of one window of a path: tangent angle, kappa and kappa_s at its middle. The covariance
+// contains both the noise and the bias that the length of the window causes.
 #pragma once
 
 #include <span>
@@ -11,22 +11,22 @@
 
 namespace palpate {
 
-/// `nodes` in order of travel. `noise` is the standard deviation of a node of weight 1: with
-/// weights 1/sigma_i^2 it is 1, with weights 1 the samples' sigma. [m] sqrt(weight)
-/// `form_deviation_m`: smooth deviations of the part from its curve, one standard deviation.
+/// `nodes`: in the order of travel. `noise`: standard deviation of a node of weight 1 [m
+/// sqrt(weight)]; this is 1 for weights 1/sigma_i^2 and the samples' sigma for weights 1.
+/// `form_deviation_m`: smooth deviation of the part from its curve, one standard deviation.
 ///
-/// A polynomial of degree 8 in the window's own frame; its terms beyond the third have a prior that
-/// falls off geometrically, with size and rate by the evidence of the terms themselves, and the
-/// first terms that the polynomial lacks stand in the covariance with the prior's variance.
-/// core/README.md, "The sliding window".
+/// The fit is a polynomial of degree 8 in the frame of the window. Its terms beyond the third have
+/// a prior that falls off geometrically; the evidence of the terms determines its size and its
+/// fall-off. The first terms that the polynomial lacks enter the covariance with the variance of
+/// the prior. core/README.md, "The sliding window".
 ///
-/// NotFollowed where the polynomial's two highest terms are more than noise: a shorter window may
-/// be followed. With `may_enlarge_noise`, where nobody stated it and no shorter window is left,
-/// they are noise as large as they say.
+/// NotFollowed: the two highest terms of the polynomial exceed the noise; a shorter window may
+/// succeed. With `may_enlarge_noise`, for windows that cannot be shortened and whose noise nobody
+/// stated, the noise is taken to be as large as those terms.
 LocalResult fit_window(std::span<const PathNode> nodes, double noise, double form_deviation_m,
                        bool may_enlarge_noise = false);
 
-/// Fewest nodes of such a window; below, there is no estimate.
+/// Fewest nodes of a window; with fewer there is no estimate.
 inline constexpr std::size_t kFewestWindowNodes = 16;
 
 }  // namespace palpate
