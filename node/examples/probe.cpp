@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   batch.set_object(1);  // a new number = a new object
   batch.set_patch(0);   // add 1 at each lift-off
   for (int i = 0; i < 240; ++i) {
-    // A 40 x 25 mm ellipse, one point about every 0.5 mm.
+    // An ellipse with half axes of 40 mm and 25 mm, one point about every 0.5 mm.
     const double t = 0.4 + 0.012 * i;
     palpate::v1::ContactSample& sample = *batch.add_samples();
     sample.set_x_m(0.3 + 0.040 * std::cos(t));
