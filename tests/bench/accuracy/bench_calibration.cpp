@@ -1,6 +1,6 @@
-// Whether the published uncertainties are true: probability of the best class against how often it
-// is the class, and squared errors in units of the published covariance against their chi-square
-// law. Prints CSV.
+// Checks the published uncertainties: the probability of the best class against how often it is
+// right, and squared errors in units of the published covariance against their chi-square law.
+// Prints CSV.
 //   bench_calibration [--scenes N]
 #include <Eigen/Cholesky>
 #include <array>

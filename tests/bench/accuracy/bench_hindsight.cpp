@@ -1,8 +1,9 @@
-// What choosing the window costs: errors of the sliding window beside those of the best window of
-// one length and degree, chosen with the truth at hand. Prints markdown.
+// Measures the cost of choosing the window from the data: errors of the sliding window compared
+// with those of the best window of one length and degree, chosen with knowledge of the truth.
+// Prints markdown.
 //     bench_hindsight [--strokes N] [--curve NAME] [--length-mm L]
-// Exits with 1 where a cell is beyond the limit of any rule and neither few strokes nor a fixed
-// window that the samples refute explain it.
+// Exits with 1 if the ratio of a cell exceeds the limit and neither few strokes nor a fixed window
+// that the samples refute explain it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>

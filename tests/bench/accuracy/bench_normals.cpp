@@ -1,8 +1,9 @@
-// How many touches of an ellipse a measured normal saves: the fewest after which both axes are
-// known to a part of themselves in 95 % of scenes. Touches lie anywhere on the ellipse, in no
-// order, and the class is given; with --sought it is not, and the ellipse has to be recognised.
-// Beside each number, the mean square of the axes' errors over their published deviations (law: 1),
-// and how many scenes were recognised as something else. Prints a table.
+// Measures how many touches of an ellipse a measured normal saves: the fewest touches after which
+// both axes are known to a given relative accuracy in 95 % of scenes. Touches lie anywhere on the
+// ellipse, in no order. The class is given; with --sought the ellipse has to be recognised. For
+// each number of touches it also prints the mean square of the axes' errors in units of their
+// published deviations (expected: 1) and how many scenes were recognised as another class. Prints a
+// table.
 //   bench_normals [--sought] [--scenes N] [--accuracy PART] [--most N] [--seed S]
 #include <Eigen/Geometry>
 #include <cmath>

@@ -1,6 +1,6 @@
-// Speed against error: every local estimator by window and shift, alone (the recognition tree on
-// its estimates, as in the paper), the tree on the default contacts (palpate fit --method tree),
-// and the refinement on all points. Prints CSV, a row a class, noise and pipeline.
+// Speed against error of three pipelines: the recognition tree on every local estimator, window and
+// shift (as in the paper), the tree on the default contacts (palpate fit --method tree), and the
+// refinement on all points. Prints CSV, one row per class, noise and pipeline.
 //   bench_pareto [--scenes N]
 #include <algorithm>
 #include <chrono>

@@ -1,8 +1,9 @@
-// What the posterior is worth on scenes drawn from a stated prior (tests/support/scene_prior.h):
-// how often the class that the data determine is told, whether stated probabilities are true,
-// errors beside their covariance and beside the bound, and the time of recognize(). Prints tables.
+// Measures the quality of the posterior on scenes drawn from a stated prior
+// (tests/support/scene_prior.h): how often the answer names the class that the data determine,
+// whether stated probabilities are true, errors compared with their covariance and with the bound,
+// and the time of recognize(). Prints tables.
 //   bench_posterior [--scenes N] [--seed S] [--noise stated|unknown] [--classes-only]
-//   [--other-prior] [--csv FILE]
+//                   [--other-prior] [--csv FILE]
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,10 +1,10 @@
-// Whether probabilities are true where the parts are drawn from the very prior that is assumed
-// (core/README.md, "The prior"): what is left there is the integrals' own error. One stroke of 111
-// samples, noise stated; shape and place as the prior has them, so long that half of its extent is
-// the unit of the prior. A draw that cannot be touched so far (a circle that is too small, a cusp
-// within the stroke) is left out, and so is its class's share: the odds of the others are as they
-// were. Prints, by bin of the stated probability, how often the answer is right, and the stated
-// mass of every class beside how often it is the truth.
+// Checks the stated probabilities on parts that are drawn from the very prior that the recognizer
+// assumes (core/README.md, "The prior"); remaining errors are those of the integrals. Each scene
+// has one stroke of 111 samples with stated noise, and shape and place from the prior; half of the
+// stroke's extent is the prior's unit of length. A draw that cannot be touched that far (a circle
+// that is too small, a cusp within the stroke) is left out together with its class's share, so that
+// the odds of the others do not change. Prints, by bin of the stated probability, how often the
+// answer is right, and for every class its stated mass and how often it is the truth.
 //   bench_prior [--scenes N] [--seed S]
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
-// How often the search for a class's optimum misses it: beside the optimum that the truth leads to
-// (tests/support/search_outcome.h). Prints tables by class, patches and noise.
+// Counts how often the search for a class's optimum misses it, compared with the optimum reached
+// from the truth (tests/support/search_outcome.h). Prints tables by class, patches and noise.
 //   bench_search [--touches] [--scenes N] [--seed S] [--list]
 #include <array>
 #include <cmath>

@@ -1,8 +1,8 @@
-// The paper's figures 2 to 5, 9 and 10: signature curves (curvature, its derivative by arc length),
-// semi-signature curves (with the slope lambda besides), and local estimates from noisy strokes
-// beside them: by circles through three samples (figure 9), by the two-round fit (figure 10) and by
-// the sliding window. Shapes are the paper's where it gives them. Prints CSV, in units of the
-// part's size; values of invariants stand in the labels of figures 4 and 5.
+// Data of the paper's figures 2 to 5, 9 and 10: signature curves (curvature and its derivative by
+// arc length), semi-signature curves (with the slope lambda as well), and for comparison local
+// estimates from noisy strokes: by circles through three samples (figure 9), by the two-round fit
+// (figure 10) and by the sliding window. Shapes are the paper's where it gives them. Prints CSV in
+// units of the part's size; the labels of figures 4 and 5 hold the values of the invariants.
 #include <cmath>
 #include <cstdio>
 #include <random>

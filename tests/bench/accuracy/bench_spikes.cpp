@@ -1,6 +1,6 @@
-// What hard decisions about spikes cost an answer, beside one that is told which samples they are:
-// the error of taking samples out where the likelihood is a mixture. Prints a table by share of
-// spikes, noise stated and not.
+// Measures what hard decisions about spikes cost: the error of an answer that removes samples,
+// compared with one that knows which samples are spikes. (The exact likelihood would be a mixture.)
+// Prints a table by share of spikes, with noise stated and not stated.
 //   bench_spikes [--scenes N] [--seed S]
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
-// What normals measured along strokes would add to their places: the Kanatani-Cramer-Rao bound of
-// both kinds of residual over that of the places alone, at the true curve, as a geometric mean of
-// the shape parameters' deviations, median of the scenes. Each sample has a normal of its own with
-// an error of its own, so that this is the most that they can add. Prints a table.
+// Bound on the gain from normals measured along strokes: the Kanatani-Cramer-Rao bound of places
+// and normals together over that of the places alone, at the true curve; geometric mean over the
+// deviations of the shape parameters, median over the scenes. Each sample has its own normal with
+// an independent error, so this is the largest possible gain. Prints a table.
 //   bench_stroke_normals [--degrees D] [--scenes N] [--curve NAME] [--seed S]
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-// Hard cases in numbers: one-parameter sweeps towards each degeneracy. Prints CSV: how often the
-// class is right, recognised and recognised wrongly, errors beside the Kanatani-Cramer-Rao bound,
-// the condition number, the time.
+// One-parameter sweeps towards each degeneracy. Prints CSV: how often the class is right,
+// recognised and recognised wrongly, errors compared with the Kanatani-Cramer-Rao bound, the
+// condition number, and the time.
 //   bench_sweeps [--scenes N]
 #include <Eigen/Eigenvalues>
 #include <algorithm>

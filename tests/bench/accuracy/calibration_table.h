@@ -1,4 +1,4 @@
-// Stated probabilities beside how often they are the truth, a row a bin.
+// A table of stated probabilities and how often they are true, one row per bin.
 #pragma once
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Cost of each question to a curve, by class: bench_curves
+// Time of each function of a curve, by class: bench_curves
 #include <benchmark/benchmark.h>
 
 #include <array>

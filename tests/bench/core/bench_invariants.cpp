@@ -1,4 +1,4 @@
-// Cost of each invariant and fit: bench_invariants
+// Time of each invariant and fit: bench_invariants
 #include <benchmark/benchmark.h>
 
 #include <random>

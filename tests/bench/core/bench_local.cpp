@@ -1,4 +1,4 @@
-// Cost of the local estimators: per estimate over 111 samples, and per sample along a stroke.
+// Time of the local estimators: per estimate over 111 samples, and per sample along a stroke.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

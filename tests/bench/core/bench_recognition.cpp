@@ -1,8 +1,8 @@
-// Cost of a full recognition, all classes considered: bench_recognition
+// Time of a full recognition, with all classes considered: bench_recognition
 //   cold: a new recognizer for every scene. Over 64 random scenes of each class, two patches.
-//   warm: ten samples more for a recognizer that has answered before them.
+//   warm: ten more samples for a recognizer that has answered before.
 //   stream: whole scenes, ten samples at a time.
-//   live_tree: of an answer, the invariants and the tree. The label is the contacts' mean number.
+//   live_tree: invariants and tree of an answer. The label is the mean number of contacts.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

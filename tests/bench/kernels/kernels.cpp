@@ -1,7 +1,8 @@
-// Each piece of the library on fixed, seeded data, by name, for compare.sh to count instructions:
-//   kernels --list    one "NAME CALLS" a line: CALLS goes through all of the kernel's data once
+// Runs each piece of the library on fixed, seeded data, by name, so that compare.sh can count its
+// instructions:
+//   kernels --list    prints "NAME CALLS" per line; CALLS goes once through all of its data
 //   kernels NAME N    runs the kernel N times; without N: CALLS times
-// What belongs to a call passes through `palpate_kernel_call`; what only prepares it does not.
+// Only what runs inside `palpate_kernel_call` is counted; preparation is outside of it.
 #include <charconv>
 #include <cmath>
 #include <cstring>

@@ -1,5 +1,5 @@
-// The command line of a benchmark: CLI11 behind a few calls, since whoever includes CLI11 compiles
-// it.
+// The command line of a benchmark: a small interface to CLI11, because every file that includes
+// CLI11 compiles it.
 #pragma once
 
 #include <cstdint>

@@ -1,11 +1,11 @@
-// Scenes for palpate and its peers, and what palpate says to them: peer_scenes FOLDER
-//   points.csv   the samples, every scene
-//   truth.csv    what was touched
+// Writes scenes for palpate and its peers, and palpate's answers to them: peer_scenes FOLDER
+//   points.csv   the samples of all scenes
+//   truth.csv    the true curves
 //   palpate.csv  the answer to each scene, all classes considered (cold), and with the class given
-// Letters of the shape: parameter_letters(class). Ellipse arcs are one stretch of that many degrees
-// of the eccentric angle; the other scenes are two patches that lie anywhere, as a probe touches a
-// part. With the class given (RecognizerOptions::classes) the other classes are still fitted to the
-// reduced points, and left out of the rest.
+// Letters of the shape: parameter_letters(class). A scene of an ellipse arc is one stretch of that
+// many degrees of the eccentric angle; the other scenes are two patches anywhere on the part.
+// "Class given" means RecognizerOptions::classes: the other classes are still fitted to the reduced
+// points, but take no further part.
 #include <algorithm>
 #include <charconv>
 #include <chrono>

@@ -1,8 +1,8 @@
-// Latency from publishing a batch to receiving the recognition that contains it, less the
-// computation, beside a bare two-hop ZeroMQ relay of equal message sizes in the same run, and
-// beside one that keeps its core and its cache busy for as long as the node computed. Turns are
-// taken message by message, so that all see the same machine. Prints CSV: transport, what,
-// quantiles in microseconds.
+// Latency from publishing a batch to receiving the recognition that contains it, without the
+// computing time. For comparison, in the same run: a bare two-hop ZeroMQ relay with equal message
+// sizes, and a relay that keeps its core and cache busy for as long as the node computed. They take
+// turns message by message, so that all see the same state of the machine. Prints CSV: transport,
+// what, quantiles in microseconds.
 #include <benchmark/benchmark.h>
 #include <signal.h>
 #include <sys/prctl.h>

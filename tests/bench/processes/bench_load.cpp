@@ -1,7 +1,7 @@
-// What the node does under load: batches of 50 samples from 1 to 64 probes, at rates up to and
-// beyond what it takes; by one node, or two that share the probes by the beginning of their names.
-// Prints CSV: what was offered, taken and missing, how many recognitions, and the nodes' CPU time
-// and memory.
+// The node under load: batches of 50 samples from 1 to 64 probes, at rates up to and beyond what it
+// can process; with one node, or with two that share the probes by name prefix. Prints CSV:
+// messages offered, accepted and missing, number of recognitions, and CPU time and memory of the
+// nodes.
 #include <cstdio>
 #include <memory>
 #include <string>

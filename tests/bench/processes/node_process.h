@@ -1,4 +1,4 @@
-// A palpate-node as a child process, as the benchmarks of the running system start and watch it.
+// A palpate-node as a child process, started and observed by the benchmarks of the running system.
 #pragma once
 
 #include <sys/types.h>

@@ -1,4 +1,5 @@
-// Whether a qualification finds what the probe does, and says how well: simulated, in markdown.
+// Checks on simulated probes whether a qualification finds the probe's errors and states its own
+// accuracy correctly. Prints markdown.
 #include <CLI/CLI.hpp>
 #include <Eigen/LU>
 #include <chrono>

@@ -1,4 +1,4 @@
-// Figures on real recordings, in markdown.
+// Results on real recordings, printed as markdown.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>

@@ -1,4 +1,4 @@
-// A designed curve laid on a measured profile: shape fixed, pose fitted.
+// Fits a designed curve to a measured profile: the shape is fixed, the pose is fitted.
 #pragma once
 
 #include <optional>

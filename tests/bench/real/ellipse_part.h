@@ -1,4 +1,5 @@
-// Arcs of a closed elliptic part of known size: how far off, how often certain, how often wrongly.
+// Arcs of a closed elliptic part of known size: errors, how often the answer is certain, and how
+// often it is wrong.
 #pragma once
 
 #include <filesystem>

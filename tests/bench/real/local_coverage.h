@@ -1,4 +1,5 @@
-// How often the sliding window's deviations hold along a closed elliptic part of known size.
+// Checks the deviations of the sliding window along a closed elliptic part of known size: how often
+// they contain the error.
 #pragma once
 
 #include <ostream>

@@ -1,4 +1,4 @@
-// X-ray mirrors: what palpate says beside what they were designed to be.
+// X-ray mirrors: palpate's answers compared with their designs.
 #pragma once
 
 #include <filesystem>

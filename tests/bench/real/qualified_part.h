@@ -1,4 +1,4 @@
-// A probe qualified on a ring, and an elliptic part touched by it: with and without the
+// Qualifies a probe on a ring and measures an elliptic part with it, with and without the
 // qualification.
 #pragma once
 

@@ -1,4 +1,4 @@
-// A recording of one touch, and what palpate says to it.
+// A recording of one touch, and palpate's answer to it.
 #pragma once
 
 #include <filesystem>

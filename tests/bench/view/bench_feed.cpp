@@ -1,5 +1,6 @@
-// What palpate view computes for its browsers: 16 groups at 30 updates a second, eight browsers
-// each at another group, on a clock of its own. The machine does not matter to instructions:
+// The work of `palpate view` for its browsers: 16 groups with 30 updates a second, and eight
+// browsers each showing another group, on a simulated clock. Count instructions, which do not
+// depend on the load of the machine:
 //   valgrind --tool=callgrind --toggle-collect=palpate_feed_call
 //   build/strict/tests/bench/view/bench_feed
 // Prints what the browsers were sent.

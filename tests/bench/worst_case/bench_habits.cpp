@@ -1,6 +1,7 @@
-// What habits of a probe do to answers, over random scenes that are otherwise the same: noise that
-// is not stated or stated wrong, a probe that stands still, spikes, strokes that do not meet, a
-// wavy part. Which answers are right, which are sure and wrong, and which scenes lose samples.
+// The effect of a probe's habits on answers, over random scenes that are otherwise the same: noise
+// that is not stated or stated wrongly, a probe that stands still, spikes, strokes that do not
+// meet, a wavy part. Prints which answers are right, which are sure and wrong, and which scenes
+// lose samples.
 //   bench_habits [--scenes N] [--seed S]
 #include <cstdio>
 #include <random>

@@ -1,11 +1,13 @@
-// The input whose recognize() costs the most beside a clean ellipse of as many samples and patches:
-// searched for by random restarts and local changes, over any shape or none, noise, tips, patches
-// and spikes; or measured for CSV files. Prints the worst found, writes it as a CSV file, and says
-// how to count its instructions.
-//   bench_worst_case [--seconds S] [--tries N] [--seed S] [--most-samples N] [--kind KIND] [--save
-//   FILE] bench_worst_case FILE.csv ...       costs of these bench_worst_case --once FILE.csv one
-//   recognize() of the file and nothing else, for callgrind
-// Costs are processor times of this thread, the least of three: a busy neighbour matters little.
+// Searches for the input whose recognize() costs most compared with a clean ellipse of as many
+// samples and patches. It uses random restarts and local changes over any shape or none, noise,
+// tips, patches and spikes. Prints the worst input found, writes it as a CSV file, and says how to
+// count its instructions. Or it measures given CSV files.
+//   bench_worst_case [--seconds S] [--tries N] [--seed S] [--most-samples N] [--kind KIND]
+//                    [--save FILE]
+//   bench_worst_case FILE.csv ...        costs of these files
+//   bench_worst_case --once FILE.csv     only one recognize() of the file, for callgrind
+// Costs are processor times of this thread, the least of three runs, so that a busy machine matters
+// little.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// An ordinary scene, which other conditions are compared with.
+// An ordinary scene, as the reference for other conditions.
 #pragma once
 
 #include <random>

@@ -1,5 +1,5 @@
-// Inputs of the recogniser by a few numbers that a search can change: any shape or none, noise,
-// tips, patches, spikes.
+// Inputs of the recognizer, described by a few numbers that a search can change: any shape or none,
+// noise, tips, patches, spikes.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// No function of a curve allocates.
+// The functions of a curve must not allocate memory.
 #include <gtest/gtest.h>
 
 #include <atomic>

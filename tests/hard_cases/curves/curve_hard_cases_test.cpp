@@ -1,4 +1,4 @@
-// Each hard case of the curves by name, with its defined outcome.
+// Hard cases of the curves, each with a name and a defined outcome.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Foot points where they are hard: evolutes, far away, at every size, next to a cusp, slender
+// Foot points in hard cases: on evolutes, far away, at every size, next to a cusp, on slender
 // ellipses.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// NaN, infinities and numbers at the ends of the range: each has a defined outcome, and none is
-// NaN.
+// NaN, infinities and numbers at the ends of the range: each must have a defined outcome, and none
+// may be NaN.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The hard cases of the invariants: each has a name and a defined outcome, and none gives a NaN.
+// Hard cases of the invariants: each has a name and a defined outcome, and none may be NaN.
 #include <gtest/gtest.h>
 
 #include <array>

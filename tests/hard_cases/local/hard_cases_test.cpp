@@ -1,4 +1,5 @@
-// What real samples do: each case has a named outcome, a value or a reason, and never NaN.
+// Hard cases of local estimates, as real samples contain them: each has a defined outcome, a value
+// or a reason, and never NaN.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Inputs that hold no curve, or one at the limits of a double: certain of nothing, probabilities
-// still probabilities.
+// Inputs that contain no curve, or a curve at the limits of a double: no answer may be certain, and
+// probabilities must remain valid.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// Each input that fuzzing has kept, once: a finding aborts with the invariant that is broken.
+// Runs each input of the fuzzing corpus once. A failure aborts and names the invariant that is
+// broken.
 #include <gtest/gtest.h>
 
 #include <cstddef>

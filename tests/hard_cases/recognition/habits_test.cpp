@@ -1,5 +1,5 @@
-// What probes do beside stroking once at an even speed: hold a touch, stand still, go there and
-// back, turn round and round, and give few samples beside a cusp.
+// Habits of probes other than one even stroke: holding a touch, standing still, going back and
+// forth, going round several times, and few samples near a cusp.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What a single patch can tell: data that are precise enough buy certainty.
+// What a single patch can determine: precise data must make the answer certain.
 #include <gtest/gtest.h>
 
 #include <cmath>

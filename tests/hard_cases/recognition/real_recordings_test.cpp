@@ -1,4 +1,5 @@
-// Real mirrors: what they are designed to be, and form error that no white noise explains.
+// Real mirrors: no answer may be certain of another class than the design's, and form error that
+// white noise cannot explain must be reported.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Hard cases end to end, each with its defined outcome.
+// Hard cases of the whole recognition, each with a defined outcome.
 #include <gtest/gtest.h>
 
 #include <algorithm>

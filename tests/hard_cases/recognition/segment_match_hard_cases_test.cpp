@@ -1,5 +1,5 @@
-// Parts that look alike from several places, patches that say little, and parts that are not the
-// model.
+// Parts that look alike from several places, patches that determine little, and parts that are not
+// the model.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Thousands of random conics at random poses and sizes: there and back.
+// Thousands of random conics at random poses and sizes: conversion to the canonical form and back.
 #include "core/curves/algebraic/canonical_conic.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Laws that every curve class obeys, over random curves and several magnitudes of size.
+// Properties that every curve class must have, over random curves of very different sizes.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Foot points of random curves against brute force.
+// Foot points of random curves, compared with brute force.
 #include "core/curves/foot_point.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Places and poses found again from local geometry, over random curves, poses and directions of
+// Recovers places and poses from local geometry, over random curves, poses and directions of
 // travel.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Random curves of every class, of size about 1 m, and the same curve at another size.
+// Random curves of every class with a size of about 1 m, and the same curve at another size.
 #pragma once
 
 #include <random>

@@ -1,4 +1,4 @@
-// Reported covariances and chi-squares against Monte Carlo: what is published must be true.
+// Checks the reported covariances and chi-squares of the invariants by Monte Carlo.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>

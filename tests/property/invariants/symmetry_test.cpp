@@ -1,4 +1,4 @@
-// Laws that every invariant and fit obeys on thousands of random curves.
+// Properties that every invariant and fit must have, on thousands of random curves.
 #include <gtest/gtest.h>
 
 #include <algorithm>

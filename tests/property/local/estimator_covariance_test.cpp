@@ -1,5 +1,5 @@
-// Every estimator's reported standard deviations against 2,000 trials with Gaussian noise, on every
-// class, and the jet's accuracy against the two-round fit's over the same samples.
+// Checks every estimator's reported standard deviations against 2,000 trials with Gaussian noise on
+// every class, and the jet's accuracy against the two-round fit's over the same samples.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// The jet estimator's reported covariance against 2,000 trials with Gaussian noise, every class.
+// Checks the jet estimator's reported covariance against 2,000 trials with Gaussian noise on every
+// class.
 #include <gtest/gtest.h>
 
 #include <cmath>

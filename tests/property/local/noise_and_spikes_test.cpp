@@ -1,4 +1,4 @@
-// Noise estimate and spike test against Gaussian noise, on every class.
+// Checks the noise estimate and the spike test against Gaussian noise on every class.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // The sliding window along strokes of 2 to 300 mm, of every class and of none, from the first
-// window to the last: its published deviations hold its errors, noise and bias together.
+// window to the last: its published deviations must cover its errors, noise and bias together.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// SE(2) equivariance, scale, reversal and far-away origins, for every estimator and class.
+// Every estimator on every class: SE(2) equivariance, scaling, reversal of travel, and origins far
+// away.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// The fit of one window: honest about bias and noise together, and more accurate than fixed fits.
+// The fit of one window: its stated errors cover bias and noise together, and it is more accurate
+// than fixed fits.
 #include "core/local/stream/window_fit.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// The first samples of an object: few, on short patches, most of their curvature still noise.
+// The first samples of an object: few samples on short patches, whose estimated curvature is mostly
+// noise.
 #include <gtest/gtest.h>
 
 #include <cmath>

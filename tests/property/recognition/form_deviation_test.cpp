@@ -1,5 +1,5 @@
-// Ellipses as they are made, not as they are drawn: what RECOGNIZED answers are worth where the
-// form error is stated, beside where it is not.
+// Ellipses with form error: how reliable RECOGNIZED answers are if the form error is stated, and if
+// it is not.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>

@@ -1,5 +1,5 @@
-// Whether what RECOGNIZED answers publish is true of shape and pose together: thousands of random
-// scenes, the squared Mahalanobis distance of the truth against its chi-square law.
+// Checks the published joint covariance of shape and pose of RECOGNIZED answers: over thousands of
+// random scenes, the squared Mahalanobis distance of the truth against its chi-square law.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Whether a class's optimum is found among touches one at a time, in no order.
+// Single touches in no order: the search must find the optimum of each class.
 #include <gtest/gtest.h>
 
 #include <cmath>

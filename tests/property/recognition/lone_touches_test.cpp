@@ -1,4 +1,5 @@
-// Touches one at a time, in no order, by points and by round tips whose side nobody tells.
+// Recognition from single touches in no order, by points and by round tips whose side is not
+// stated.
 #include "tests/support/lone_touches.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Stated probabilities are true: of the answers that are given with a probability, so many are
+// Stated probabilities must be true: of the answers stated with probability p, a fraction p must be
 // right.
 #include <gtest/gtest.h>
 

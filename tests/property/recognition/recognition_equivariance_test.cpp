@@ -1,4 +1,4 @@
-// The answer moves, scales and forgets order as it must.
+// The answer must move and scale with the samples and must not depend on their order.
 #include <gtest/gtest.h>
 
 #include <algorithm>

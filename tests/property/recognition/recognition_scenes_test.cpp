@@ -1,5 +1,5 @@
-// Thousands of random scenes: the class, the bound, and whether the published uncertainties are
-// true.
+// Thousands of random scenes: the class, the errors compared with the bound, and whether the
+// published uncertainties are true.
 #include <gtest/gtest.h>
 
 #include <cmath>

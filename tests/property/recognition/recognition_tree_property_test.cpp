@@ -1,4 +1,4 @@
-// Laws of the recognition tree over random curves of every class.
+// Properties of the recognition tree over random curves of every class.
 #include <gtest/gtest.h>
 
 #include <algorithm>

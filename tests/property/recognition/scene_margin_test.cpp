@@ -1,5 +1,5 @@
-// What calibration and certainty are judged by: scenes, margins and bands that are themselves
-// right.
+// Tests of the test support itself: the scenes, margins and confidence bands that calibration tests
+// rely on.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Placements on a known part under motions, reversal and order, and against their own
+// Placements on a known part under motions, reversal and reordering, and against their stated
 // probabilities.
 #include <gtest/gtest.h>
 

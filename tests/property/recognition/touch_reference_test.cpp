@@ -1,4 +1,5 @@
-// Touches one at a time beside a search that leaves nothing out: what they determine is recognised.
+// Single touches compared with an exhaustive search: the recognizer must recognise the classes that
+// the touches determine.
 #include "tests/support/touch_reference.h"
 
 #include <gtest/gtest.h>

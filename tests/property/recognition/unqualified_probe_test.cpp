@@ -1,5 +1,5 @@
-// Parts touched by probes that deviate by the law of core/README.md, "Deviations that neighbours
-// share", or not at all, one as often as the other: what is stated of class and shape is true.
+// Parts touched by probes of which half deviate by the law of core/README.md, "Deviations that
+// neighbours share": stated classes and shapes must be as reliable as stated.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
