@@ -14,18 +14,18 @@
 namespace palpate {
 namespace {
 
-/// What is left of a window that is too long: as of the stream's (sliding_window.h).
+/// Factor by which a window that is too long is shortened: as in the stream (sliding_window.h).
 constexpr double kShrink = 0.9;
 
-/// Noise of one of a sample's contacts; 0 where it is not known. [m]
+/// Noise of one contact of a sample; 0 if unknown. [m]
 double sigma_of(const StoredSample& sample, double default_sigma_m) {
   return sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
 }
 
-/// The samples of a patch with their weights, and the noise of one of weight 1.
+/// The samples of a patch with their weights, and the noise of a sample of weight 1.
 struct WeightedPath {
   std::vector<PathNode> nodes;
-  std::optional<double> noise;  ///< nullopt = not known
+  std::optional<double> noise;  ///< nullopt = unknown
   bool stated = true;           ///< by the samples or as a default, not estimated
   double sigma_m = 0.0;         ///< of a typical contact
 };
@@ -53,7 +53,7 @@ WeightedPath weighted_path(const StoredPatch& patch, double default_sigma_m) {
     weights += path.nodes[i].weight;
     positions.push_back(path.nodes[i].position_m);
   }
-  // Of the stored samples as they are, each the mean of several.
+  // Noise of the stored samples, each a mean of several contacts.
   const NoiseEstimate noise = estimate_noise(positions);
   if (noise.status == LocalStatus::Ok) {
     path.noise = noise.sigma_m * std::sqrt(weights / static_cast<double>(positions.size()));
@@ -62,7 +62,7 @@ WeightedPath weighted_path(const StoredPatch& patch, double default_sigma_m) {
   return path;
 }
 
-/// A window of any length as the nodes that the fit takes.
+/// Reduces a window of any length to the nodes that the fit takes.
 std::vector<PathNode> reduced(std::span<const PathNode> window) {
   const std::size_t block =
       (window.size() + NodePyramid::kBlocksPerWindow - 1) / NodePyramid::kBlocksPerWindow;
@@ -84,7 +84,7 @@ std::vector<PathNode> reduced(std::span<const PathNode> window) {
   return nodes;
 }
 
-/// Leaves kMostContactsOfAPatch at most, of equally informative ones the first.
+/// Keeps at most kMostContactsOfAPatch; of equally informative ones, the first.
 void keep_most_informative(std::vector<LocalizedContact>* found) {
   if (found->size() <= kMostContactsOfAPatch) {
     return;
@@ -104,7 +104,7 @@ void keep_most_informative(std::vector<LocalizedContact>* found) {
   std::erase_if(*found, [&](const LocalizedContact&) { return !kept[i++]; });
 }
 
-/// Noise of the stored samples, each the mean of several contacts; 0 where it is not known. [m]
+/// Noise of the stored samples, each a mean of several contacts; 0 if unknown. [m]
 double sigma_of_samples(const StoredPatch& patch, double default_sigma_m) {
   double squares = 0.0;
   for (const StoredSample& sample : patch.samples) {
@@ -117,7 +117,7 @@ double sigma_of_samples(const StoredPatch& patch, double default_sigma_m) {
   return std::sqrt(squares / static_cast<double>(patch.samples.size()));
 }
 
-/// Windows side by side, as many as the patch has room for, in its middle.
+/// Windows side by side, as many as fit, in the middle of the patch.
 std::vector<LocalizedContact> fixed_windows(const StoredPatch& patch, EstimatorOptions estimator,
                                             double default_sigma_m, double signed_radius) {
   estimator.sigma_m = sigma_of_samples(patch, default_sigma_m);
@@ -166,8 +166,7 @@ void add_contacts(const StoredPatch& patch, std::size_t least_windows, int side,
   if (!path.noise) {
     return;
   }
-  // Means of several contacts lie off the curve by as much as stated, which is smooth along the
-  // arc.
+  // Means of several contacts deviate from the curve by merge_bias_m, smoothly along the arc.
   const double form_m = std::hypot(options.form_deviation_m, patch.merge_bias_m);
   const std::size_t fewest = std::max(options.window_samples, kFewestWindowNodes);
   const std::size_t windows = std::clamp<std::size_t>(n / fewest, 1, least_windows);

@@ -1,4 +1,4 @@
-// The sliding windows of all probes: every estimate once, in order, taken back to the surface.
+// The sliding windows of all probes: each estimate is given once, in order, at a surface point.
 #pragma once
 
 #include <cstdint>
@@ -13,27 +13,28 @@
 
 namespace palpate {
 
-/// One window a probe, over its newest patch: another patch begins another window. Estimates wait
-/// until they are taken, those of a round tip until it is known on which side of it the material
-/// lies; of those that wait too long the oldest go.
+/// Each probe has one window, on its newest patch; a new patch begins a new window. Estimates wait
+/// until they are taken, those of a round tip until the material's side is known. If too many wait,
+/// the oldest are dropped.
 class EstimateStream {
  public:
   explicit EstimateStream(const SlidingOptions& options) : options_(options) {}
 
-  /// Samples that are not finite, have a negative noise or repeat the place of the one before are
-  /// left out, as SampleMemory refuses them.
+  /// Leaves out samples that are not finite, have negative noise or repeat the place of the one
+  /// before, as SampleMemory does.
   void add(const PatchContext& context, std::span<const ContactSample> samples);
 
-  /// +1: the tip's centre lies left of travel, -1: right, 0: not known.
+  /// Side of travel on which the tip's centre lies: +1 left, -1 right, 0 not known.
   using SideOf = std::function<int(std::uint32_t probe, std::uint32_t patch)>;
 
-  /// What has come since the last call, in order for each probe; t is 0. `side_of` is asked where
-  /// the probe does not say.
+  /// Estimates since the last call, in order for each probe; t is 0. Calls `side_of` where the
+  /// probe does not state the side.
   std::vector<LocalizedContact> take(const SideOf& side_of);
 
   void clear() { probes_.clear(); }
 
-  /// Estimates of a probe that may wait: a second of a fast probe's (1 kHz, one every 4 samples).
+  /// Most waiting estimates of a probe: a second of a fast probe (1 kHz, one estimate per 4
+  /// samples).
   static constexpr std::size_t kMostWaiting = 256;
 
  private:

@@ -30,10 +30,10 @@ Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
   return hypothesis;
 }
 
-/// What speaks against a class that is more probable than all others.
+/// The first doubt about the most probable class.
 Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOptions& options,
                   std::size_t stored_samples) {
-  // A misfit that is no noise may be form error, or another class: the data cannot tell.
+  // A misfit that is not noise may be form error or another class: the data cannot tell which.
   if (w.correlation_length > 0.0) {
     return Doubt::FormError;
   }
@@ -41,9 +41,10 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
     return Doubt::SeveralClasses;
   }
   const CurveClass curve_class = best.shape.curve_class;
-  // Up to this part of spikes a block of 16 samples, which the search for them tells as long as
-  // half of it is good, holds nine or more once in 10^5 (binomial law, 5e-6), and so a patch of 111
-  // samples once in ten thousand. Beyond it what fits badly may be spikes that were not found.
+  // Share of spikes beyond which some may be missed. The spike search needs half of a block of 16
+  // samples to be good. With a tenth of spikes, a block has nine or more once in 10^5 (binomial
+  // law, 5e-6), and a patch of 111 samples once in ten thousand. With more, a bad fit may be due to
+  // spikes that were not found.
   constexpr double kManySpikes = 0.1;
   const auto stored = static_cast<double>(stored_samples);
   const bool many_spikes =
@@ -55,7 +56,7 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
     if (!(w.margin_of_unclassified >= log_odds(options.recognized_probability))) {
       return Doubt::SeveralClasses;
     }
-    // What not even the smooth model follows says nothing about classes.
+    // If not even the smooth model follows the samples, they say nothing about classes.
     return many_spikes || !can_be_noise(best.chi2, best.dof) ? Doubt::Misfit : Doubt::None;
   }
   if (best.at_limit || best.covariance.size() == 0) {
@@ -64,7 +65,7 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
   if (best.dof > 0 && !can_be_noise(w.counted_chi2 / w.noise_inflation, best.dof)) {
     return Doubt::Misfit;
   }
-  // A second mode that has more than what RECOGNIZED leaves to doubt.
+  // A second mode with more probability than RECOGNIZED may leave to doubt.
   const double odds = log_odds(options.recognized_probability);
   const bool has_rival = curve_class == CurveClass::CubicSpline &&
                          w.rival_share > 1.0 - options.recognized_probability;

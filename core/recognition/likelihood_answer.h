@@ -1,4 +1,4 @@
-// From weighed hypotheses to the answer: the most probable class, and what speaks against it.
+// From weighed hypotheses to the answer: the most probable class, and the doubt about it.
 #pragma once
 
 #include "core/recognition/recognition.h"
@@ -9,14 +9,14 @@ namespace palpate {
 
 struct VerdictOptions {
   double recognized_probability;  ///< as RecognizerOptions
-  double determined_fraction;     ///< likewise
+  double determined_fraction;     ///< as RecognizerOptions
 };
 
-/// Noise of the typical sample; where it was estimated, by the best class's residuals. [m]
+/// White noise of a typical sample; if estimated, from the best class's residuals. [m]
 double residual_noise_m(const Weighing& weighing);
 
-/// All of the answer but contacts, tree and counts of samples. `stored`: samples in memory, of
-/// which those that the weighing has not were set aside as spikes.
+/// The answer without contacts, tree and counts of samples. `stored`: number of samples, including
+/// those set aside as spikes.
 Recognition answer_by_likelihood(const Weighing& weighing, const BestMoments& moments,
                                  const VerdictOptions& options, std::size_t stored);
 

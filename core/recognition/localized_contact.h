@@ -1,4 +1,4 @@
-// Where on the recognised curve the part was touched.
+// A place where the part was touched, on the recognised curve.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace palpate {
 struct LocalizedContact {
   std::uint32_t probe = 0;
   std::uint32_t patch = 0;
-  double t = 0.0;  ///< curve parameter; 0 when nothing is recognised
+  double t = 0.0;  ///< curve parameter; 0 if nothing is recognised
   LocalEstimate estimate;
 };
 

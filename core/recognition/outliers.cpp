@@ -10,9 +10,10 @@
 namespace palpate {
 namespace {
 
-/// The quantile of Student's law of `dof` that a normal one z stands for: D. Wallace, "Bounds on
-/// normal approximations to Student's and the chi-square distributions", 1959. From five degrees of
-/// freedom on right to 4 % down to a probability of 1e-4; below that too wide, which keeps samples.
+/// Quantile of Student's law with `dof` degrees of freedom for a normal quantile z: D. Wallace,
+/// "Bounds on normal approximations to Student's and the chi-square distributions", 1959. From five
+/// degrees of freedom on it is right to 4 % down to a probability of 1e-4. Below that it is too
+/// wide, which keeps samples.
 double student_quantile(double z, double dof) {
   const double widened = z * (8.0 * dof + 3.0) / (8.0 * dof + 1.0);
   return std::sqrt(dof * std::expm1(widened * widened / dof));
@@ -42,8 +43,8 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   std::vector<double> sorted = magnitude;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n / 2),
                    sorted.end());
-  // The fit has taken part of the noise; and what a median tells of a scale is worth 0.37 of the
-  // degrees of freedom (its efficiency beside the root mean square).
+  // The fit absorbs part of the noise. And a median knows a scale only as well as a root mean
+  // square of 0.37 times the degrees of freedom (its efficiency).
   constexpr double kEfficiencyOfMedian = 0.37;
   const double dof = static_cast<double>(n) - degrees_of_freedom(fit->shape.curve_class);
   const double taken = std::sqrt(static_cast<double>(n) / std::max(dof, 1.0));
@@ -61,9 +62,9 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   if (std::none_of(magnitude.begin(), magnitude.end(), [&](double m) { return m > limit; })) {
     return std::nullopt;
   }
-  // What sets aside more than one in 20 is another curve, for spikes that are more frequent were
-  // found before any class was known (samples/clean_patches.h). Two may leave however few there
-  // are: of the fewest places that are RECOGNIZED, eight, a spline's unknowns are left.
+  // If more than one in 20 is set aside, the curve is wrong: more frequent spikes were found before
+  // any class was known (samples/clean_patches.h). Two may be set aside however few there are: of
+  // the fewest places for RECOGNIZED, eight, as many remain as a spline has unknowns.
   constexpr std::size_t kOneIn = 20;
   constexpr std::size_t kMost = 2;
   FitData kept = data;
@@ -91,9 +92,9 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
     }
     kept.patches.push_back({begin, kept.points.size()});
   }
-  // Of the chi-square that an outlier brings into a fit it leaves itself 1 - h, h its leverage:
-  // more than half, unless it alone determines the curve. What the others leave beyond any noise is
-  // not its doing.
+  // An outlier that brings a chi-square into a fit leaves itself 1 - h of it, h its leverage: more
+  // than half, unless it alone determines the curve. So a larger misfit of the other points is not
+  // its doing.
   const bool misfits =
       squares_of_kept > most_chi2_of_noise(kept.points) && squares_of_kept > squares_of_dropped;
   if (misfits || dropped > kMost + n / kOneIn) {

@@ -1,4 +1,4 @@
-// Spikes of the sensor, told by the fit that explains all the other points.
+// Sensor spikes, found by the fit that explains all other points.
 #pragma once
 
 #include <optional>
@@ -7,12 +7,12 @@
 
 namespace palpate {
 
-/// `data` without the points whose residual from the best class exceeds what Gaussian noise reaches
-/// in any point of a scene with probability `false_outlier_probability`. Runs of more than
-/// three such points, or more than two and a twentieth of all, are no leftovers of the spike
-/// detection but a curve that does not fit: nullopt, as when there are none.
-/// `sigma_known`: as make_fit_data says; a noise that the residuals themselves must tell is known
-/// by so many of them only.
+/// `data` without the outliers of the best class: points whose residual exceeds a limit. Gaussian
+/// noise exceeds it anywhere in a scene with probability `false_outlier_probability`. nullopt if
+/// there are none. Also nullopt if the curve itself does not fit: runs of more than three such
+/// points, more than two plus a twentieth of all points, or a misfit of the other points.
+/// `sigma_known`: as given by make_fit_data; if false, the limit is Student's quantile, because
+/// the residuals themselves determine the noise.
 std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,
                                         bool sigma_known, double false_outlier_probability);
 

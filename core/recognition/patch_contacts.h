@@ -1,4 +1,4 @@
-// Local estimates along the patches, made again only where a patch has changed.
+// Local estimates along the patches, computed again only for patches that changed.
 #pragma once
 
 #include <cstdint>
@@ -11,24 +11,22 @@ namespace palpate {
 
 class PatchContacts {
  public:
-  /// add_contacts() of each patch, with the tips on these `sides` (one per patch with samples, or
-  /// none at all). Samples flagged in `outliers` (one flag per sample of the patches, or none at
-  /// all) are left out.
+  /// add_contacts() of each patch. `sides`: the tips' side for each patch with samples, or empty.
+  /// `outliers`: one flag per sample of all patches, or empty; flagged samples are left out.
   std::vector<LocalizedContact> of(std::span<const StoredPatch> patches,
                                    const std::vector<int>& sides, const std::vector<bool>& outliers,
                                    const ContactOptions& options);
 
-  /// The side that a stroke's tips were taken to lie on by the last call of of(); 0 where it was
-  /// not among the patches.
+  /// The tips' side of a stroke in the last call of of(); 0 if it was not among the patches.
   int side_of(std::uint32_t probe, std::uint32_t patch) const;
 
   void clear() { known_.clear(); }
 
  private:
-  /// What the contacts of a patch were made of, and they.
+  /// The contacts of a patch, and the inputs they were computed from.
   struct Known {
     PatchVersion version;
-    std::vector<Vec2> touches;  ///< of a run, which may change anywhere
+    std::vector<Vec2> touches;  ///< positions of a run of touches, which may change anywhere
     std::size_t windows = 0;
     int side = 0;
     double form_deviation_m = 0.0;

@@ -14,76 +14,77 @@
 namespace palpate {
 
 enum class RecognitionStatus {
-  Collecting,  ///< too little data yet
-  Ambiguous,   ///< several classes remain plausible, or the shape is not determined
-  Recognized,  ///< one class stands out and its shape is determined
+  Collecting,  ///< too few data for an answer
+  Ambiguous,   ///< there is an answer, and a doubt about it
+  Recognized,  ///< one class is probable enough and its shape is determined
 };
 
-/// Why an answer is AMBIGUOUS; the first that applies, in this order.
+/// Why an answer is AMBIGUOUS: the first reason that applies, in this order. (Misfit comes before
+/// AtLimit if more than a tenth of the samples were set aside as spikes.)
 enum class Doubt {
   None,
   FormError,  ///< residuals are correlated along the arc: form error, or a class not known here
   SeveralClasses,  ///< no class is probable enough
-  AtLimit,         ///< the class fits best where it turns into another
+  AtLimit,         ///< the best fit lies where the class turns into another one
   Misfit,          ///< the residuals are larger than the noise can be
-  TwoShapes,       ///< two shapes fit alike (a spline and its rival; tips on either side)
-  Undetermined,  ///< the shape's standard deviations are too large, or no covariance describes them
+  TwoShapes,     ///< two shapes fit about equally well (a spline's two shapes; tips on either side)
+  Undetermined,  ///< a shape parameter's standard deviation is too large, or not known
   TreeRejects,   ///< the recognition tree's tests on the local estimates reject the class
-  FewPlaces,     ///< touched at so few places that they fit by chance
+  FewPlaces,     ///< so few places were touched that a class may fit them by chance
 };
 
 /// Lower-case name with underscores ("several_classes").
 std::string_view name_of(Doubt doubt);
 
-/// One class, whether it won or not. The most probable one is refined on all samples; the others on
-/// what stands for them (core/README.md, "Refinement and the bound"), those that evidence has ruled
-/// out only roughly.
+/// One class and its fit. The most probable class is refined on all samples, the others on the
+/// reduced points (core/README.md, "Refinement and the bound"), and classes that the evidence has
+/// ruled out only roughly.
 struct Hypothesis {
   ShapeParameters shape;
   Pose2 world_T_curve;
-  /// The Kanatani-Cramer-Rao bound; of the most probable hypothesis of RecognitionMethod::
-  /// MaximumLikelihood with what the bend of its valley adds (core/README.md, "The posterior") and,
-  /// where neighbours err together, what such deviations hide in the shape ("Deviations that
-  /// neighbours share").
+  /// Of [shape; x; y; theta]. The Kanatani-Cramer-Rao bound. For the most probable hypothesis of
+  /// RecognitionMethod::MaximumLikelihood it also includes the curvature of the chi-square valley
+  /// (core/README.md, "The posterior") and, where residuals are correlated, what such deviations
+  /// may hide in the shape ("Deviations that neighbours share").
   ShapePoseCovariance covariance;
-  double probability = 0.0;  ///< posterior among all hypotheses, "unclassified" included
+  double probability = 0.0;  ///< posterior; all hypotheses with "unclassified" sum to 1
   double chi2 = 0.0;         ///< sum of squared normalised residuals of the samples in use
   int dof = 0;
-  /// The class has no interior optimum (an ellipse that wants to be a parabola): no shape is given.
+  /// The class has no interior optimum (e.g. the best ellipse is a parabola): no shape is given.
   bool at_limit = false;
 };
 
 struct Recognition {
   RecognitionStatus status = RecognitionStatus::Collecting;
-  Doubt doubt = Doubt::None;  ///< unless AMBIGUOUS
+  Doubt doubt = Doubt::None;  ///< None unless AMBIGUOUS
   ShapeParameters shape;
   Pose2 world_T_curve;
   ShapePoseCovariance covariance;      ///< of the most probable hypothesis
   std::vector<Hypothesis> hypotheses;  ///< most probable first
   std::vector<LocalizedContact> contacts;
-  std::vector<Decision> decisions;                   ///< the recognition tree's path
-  CurveClass tree_class = CurveClass::Unclassified;  ///< where the tree ended
-  /// By class, the least p-value of the tree's tests that it must pass; NaN where none was made.
+  std::vector<Decision> decisions;                   ///< path through the recognition tree
+  CurveClass tree_class = CurveClass::Unclassified;  ///< where that path ended
+  /// By class: smallest p-value of the tests that the class must pass; NaN without a test.
   ClassPValues tree_p_values = no_p_values();
-  /// What the tree asked about, pooled over the contacts `pooled_contacts` (indices).
+  /// Invariants that the tree computed, from all of the contacts `pooled_contacts` (indices).
   std::vector<NamedInvariant> invariants;
   std::vector<std::size_t> pooled_contacts;
-  std::size_t sample_count = 0;   ///< samples that the answer rests on
+  std::size_t sample_count = 0;   ///< samples in memory, outliers included
   std::size_t outlier_count = 0;  ///< samples set aside as spikes
-  /// Samples that repeat a place where the probe stood still, beyond the one, their mean, that
-  /// stands for them.
+  /// Samples that only repeat a place where the probe stood still. One sample, their mean, stands
+  /// for them; it is not counted here.
   std::size_t dwelling_count = 0;
-  std::size_t forgotten_count = 0;  ///< samples of this object that had to make room for others
-  /// Samples of this object with a normal or a covariance of which the answer does not use all: of
-  /// a covariance the mean noise counts; a normal counts in full at a touch by itself where every
-  /// noise is known, elsewhere the side of a round tip that it shows.
+  std::size_t forgotten_count = 0;  ///< samples of this object dropped to make room for others
+  /// Samples of this object whose normal or covariance is used only in part. Of a covariance only
+  /// the mean noise is used. A normal is used fully at a single touch if the noise of every sample
+  /// is known; elsewhere it only shows the side of a round tip.
   std::size_t simplified_count = 0;
-  double sigma_m = 0.0;              ///< noise of a sample, given or estimated [m]
+  double sigma_m = 0.0;              ///< noise of a sample, stated or estimated [m]
   double noise_correlation_m = 0.0;  ///< correlation length of the residuals; 0 = white [m]
-  /// Of the most probable hypothesis: the covariance that white noise of the stated size leaves,
-  /// and what it would be multiplied by were noise that the residuals tell, neighbours that err
-  /// together and stated form error so much more white noise.
+  /// Of the most probable hypothesis: its covariance if all noise is white and of the stated size.
   ShapePoseCovariance white_covariance;
+  /// Factor on white_covariance if larger noise, correlated residuals and stated form error are all
+  /// counted as additional white noise.
   double covariance_inflation = 1.0;
 };
 

@@ -1,4 +1,4 @@
-// The facade: add contact samples, ask for a recognition.
+// The main entry point: add contact samples, then ask for a recognition.
 #pragma once
 
 #include <memory>
@@ -14,42 +14,45 @@
 namespace palpate {
 
 enum class RecognitionMethod {
-  MaximumLikelihood,  ///< all classes fitted and weighed; the tree reports its path
-  Tree,               ///< the recognition tree on local estimates alone, as in the paper
+  MaximumLikelihood,  ///< fits and compares all classes; the tree's path is reported too
+  Tree,               ///< only the recognition tree on local estimates, as in the paper
 };
 
 struct RecognizerOptions {
   RecognitionMethod method = RecognitionMethod::MaximumLikelihood;
-  /// Noise of samples that bring no sigma of their own; 0 = estimate it from the data. [m]
+  /// Noise (standard deviation of a coordinate) of samples that state none; 0 = not known. If any
+  /// sample then has no noise, the noise of all samples is estimated from the data. [m]
   double sigma_m = 0.0;
-  /// RECOGNIZED needs posterior >= this.
+  /// Smallest posterior probability of a RECOGNIZED class.
   double recognized_probability = 0.95;
-  /// RECOGNIZED needs every shape parameter's standard deviation <= this fraction of the parameter
-  /// (of 1 for the dimensionless b and c of the cubics): beyond it the linearised covariance means
+  /// Largest standard deviation of a shape parameter in a RECOGNIZED answer, as a fraction of the
+  /// parameter's natural size (verdict/determined.h). Beyond it the linearised covariance means
   /// little.
   double determined_fraction = 0.3;
-  /// What is known of the part's making: the standard deviation of its surface from its ideal
-  /// curve, smooth along the arc in whatever way (half of a drawing's +- tolerance); drift of the
-  /// probe counts the same. Classes that differ by no more are not told apart, however many the
-  /// samples, and covariances hold it. Residuals cannot show form error that a class of more
-  /// parameters takes for shape: 0 says that parts are exactly of their class. Maximum likelihood
-  /// only. [m]
+  /// Form error of the part: standard deviation of its surface from the ideal curve, smooth along
+  /// the arc (any correlation). Half of a drawing's +- tolerance. Smooth drift of the probe may be
+  /// included. Classes that differ by no more than this are not told apart, however many samples
+  /// there are, and covariances include it. The residuals cannot show it: a class with more
+  /// parameters can absorb form error into its shape. 0: parts are exactly of their class.
+  /// MaximumLikelihood only. [m]
   double form_deviation_m = 0.0;
-  /// Nobody has measured how the probe deviates, and it may do so smoothly: by the direction of the
-  /// normal (lobes, its radius) and along a stroke (drift), as probable as not, in whatever size
-  /// residuals leave possible. Covariances and the odds of the classes hold it. Otherwise it counts
-  /// only where residuals look so. Maximum likelihood only; costs a few milliseconds an answer.
+  /// True if nobody has measured the probe's systematic deviations. Smooth deviations with
+  /// the direction of the normal (lobes, tip radius) and along a stroke (drift) are then as
+  /// probable as none, of any size that the residuals allow. Covariances and class probabilities
+  /// include them. False: they are included only where the residuals look correlated.
+  /// MaximumLikelihood only; costs a few milliseconds per answer.
   bool unqualified_probe = false;
   /// Probability that a scene without spikes loses a sample to outlier rejection.
   double false_outlier_probability = 0.01;
-  /// Classes to consider, by bit 1 << CurveClass; all by default.
+  /// Classes to consider: bit 1 << CurveClass of each. Default: all.
   unsigned classes = ~0U;
   MemoryOptions memory;
   ContactOptions contacts;
   RecognitionTreeOptions tree;
 };
 
-/// Recognises one object from the patches of all probes of a group. Not thread-safe; one per group.
+/// Recognises one object from the patches of all probes of a group. Use one recogniser per group.
+/// Not thread-safe.
 class Recognizer {
  public:
   explicit Recognizer(const RecognizerOptions& options = {});
@@ -57,30 +60,34 @@ class Recognizer {
   Recognizer(Recognizer&&) noexcept;
   Recognizer& operator=(Recognizer&&) noexcept;
 
-  /// Appends samples of one patch in their order along the arc. `details`: normals and covariances
-  /// of the samples, or nothing. A normal tells on which side of a round tip the surface lies, and
-  /// of a touch alone in its patch, where every noise is known, the curve's direction there; the
-  /// noise that counts is the samples' sigma_m, which is a covariance's mean (mean_sigma_m).
+  /// Appends samples of one patch, in their order along the arc. `details`: normal and covariance
+  /// of each sample; empty, or as many as samples. A normal shows on which side of a round tip the
+  /// surface lies. At a single touch (a patch of one sample) it also measures the curve's
+  /// direction, if the noise of every sample is known. The recognition uses a sample's sigma_m as
+  /// its noise; for a sample with a covariance it must be mean_sigma_m of the covariance.
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples,
                 std::span<const SampleDetail> details = {});
 
-  /// The answer for all samples in memory. Linear in the samples, beside a search of bounded cost.
-  /// Touches alone in their patch need no order; where they lie densely they are taken together,
-  /// and their local estimates bear the name of the first of them. From four patches on there is an
-  /// answer; it is not RECOGNIZED before eight places have been touched.
+  /// The answer for all samples in memory. The time is linear in the samples, plus a search of
+  /// bounded cost. Single touches need no order. Where they lie densely they are joined into runs,
+  /// and the local estimates of a run carry the probe and patch number of its first touch. The
+  /// status is Collecting until four different places are touched, eight where there are fewer than
+  /// four patches. RECOGNIZED needs eight places. With MaximumLikelihood and known noise it needs
+  /// two more than the class has unknowns (shape and pose), at least six, and one more for each
+  /// outlier.
   Recognition recognize();
 
-  /// From now on the sliding windows run along with the samples (core/local/stream), or no longer.
-  /// They are off at first: nothing in recognize() needs them. Switched on in the middle of a
-  /// stroke, they begin there.
+  /// Starts or stops the sliding windows (core/local/stream), which make estimates while samples
+  /// arrive. They are off at first; recognize() does not need them. If started during a stroke,
+  /// they begin with the next sample.
   void stream_estimates(bool on);
 
-  /// The windows' estimates that no call before has given, in order for each probe, on the surface.
-  /// Those of a round tip wait for the first answer where the probe does not tell the side that the
-  /// material is on. t is 0.
+  /// Estimates of the sliding windows since the last call, at surface points, in order for each
+  /// probe. Estimates of a round tip wait for the first answer if the probe does not state the
+  /// material's side. t is 0.
   std::vector<LocalizedContact> take_estimates();
 
-  /// Forgets everything: a new object.
+  /// Forgets all samples: a new object begins.
   void reset();
 
  private:

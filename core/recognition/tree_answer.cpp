@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-/// That chance alone makes the leaf's test as bad.
+/// p-value of the leaf's test.
 double tail_probability(const TreeResult& tree) { return chi_square_survival(tree.chi2, tree.dof); }
 
 double rms_sigma_m(std::span<const LocalizedContact> contacts) {
@@ -67,7 +67,7 @@ Recognition answer_by_tree(
     }
   }
   if (best != nullptr && best != &ways.back()) {
-    answer.contacts = contacts_of(*best);  // the last asked for are those that stay
+    answer.contacts = contacts_of(*best);  // the last call must be that for the answer
   }
   answer.sigma_m = rms_sigma_m(answer.contacts);
   Hypothesis only;

@@ -1,4 +1,4 @@
-// The paper's way: nothing but the tree on local estimates.
+// The paper's method: an answer from the recognition tree and local estimates alone.
 #pragma once
 
 #include <functional>
@@ -11,16 +11,17 @@
 
 namespace palpate {
 
-/// The contacts as the tree takes them: their windows share no sample.
+/// The contacts as points of the tree: one number per patch. Their windows share no samples.
 std::vector<TreePoint> tree_points(std::span<const LocalizedContact> contacts);
 
-/// The path, the invariants and where the tree ended, in the answer.
+/// Copies the tree's path, invariants and final class to the answer.
 void add_path(TreeResult tree, Recognition* answer);
 
-/// The answer by the tree alone. `ways`: in which round tips may lie, the sides of the patches each
-/// (samples/tip_sides.h); a second one that ends in a class leaves a doubt. `contacts_of`: contacts
-/// with the tips so, the last call being that of the answer. `extent_m`: half extent of the
-/// samples; `determined_fraction`: as RecognizerOptions. Counts of samples are the caller's.
+/// The answer by the tree alone. `ways`: possible sides of round tips, one side per patch each
+/// (samples/tip_sides.h); if more than one leads to a class, the answer is in doubt (TwoShapes).
+/// `contacts_of`: computes the contacts for given sides; its last call is that for the answer.
+/// `extent_m`: half extent of the samples. `determined_fraction`: as RecognizerOptions. The caller
+/// sets the counts of samples.
 Recognition answer_by_tree(
     const std::vector<std::vector<int>>& ways,
     const std::function<std::vector<LocalizedContact>(const std::vector<int>&)>& contacts_of,

@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-/// Where a class's fit on the samples lies.
+/// The curve of a class's fit to the samples; nullopt if it has none.
 std::optional<CurveStart> curve_of(const Weighing& w, CurveClass curve_class) {
   const auto i = static_cast<std::size_t>(curve_class);
   if (const auto& canonical = w.canonical[i]) {
@@ -22,13 +22,13 @@ std::optional<CurveStart> curve_of(const Weighing& w, CurveClass curve_class) {
                : std::nullopt;
 }
 
-/// Contacts that the tree is walked on: one more than its tests need, three and one that verifies.
-/// Each costs some 4 us in the dearest classes, and all that the tree adds to an answer is to stay
-/// below 30 us however many patches there are.
+/// Most contacts used: one more than the tests need, which is three and one to verify. Each costs
+/// about 4 us in the most expensive classes, and the tree should add less than 30 us to an answer,
+/// however many patches there are.
 constexpr std::size_t kMostPoints = 5;
 
-/// Of as many stretches of the contacts in their order the best known one each: all around the part
-/// and never the same patch first.
+/// Divides the contacts, in order, into as many stretches and takes the best known one of each. So
+/// the points lie all around the part, not on the first patches only.
 std::vector<std::size_t> spread_out(std::span<const LocalizedContact> contacts) {
   const std::size_t count = std::min(contacts.size(), kMostPoints);
   std::vector<std::size_t> chosen;
@@ -54,9 +54,9 @@ TreeResult tree_beside(const Weighing& w, std::span<const LocalizedContact> cont
                        const RecognitionTreeOptions& options) {
   TreeEffort effort;
   effort.known = [&w](CurveClass curve_class) { return curve_of(w, curve_class); };
-  // The logarithm of the chi-square law's tail falls by at most a half per unit: by this a p-value
-  // changes by at most a twentieth of its own, as a significance of 0.001 by one of 0.00095. Less
-  // would follow classes on their way to a neighbour, whose valleys fall by a tenth a step.
+  // The logarithm of the chi-square tail falls by at most 1/2 per unit, so this changes a p-value
+  // by at most a twentieth (a significance of 0.001 to 0.00095). A smaller limit would follow
+  // classes on their way to a neighbour, whose valleys fall by a tenth per step.
   effort.fit.absolute_decrease = 0.1;
   effort.fit.relative_decrease = 1e-3;  // far above every threshold
   effort.fit.max_iterations = 20;

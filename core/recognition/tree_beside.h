@@ -1,4 +1,4 @@
-// The tree beside an answer by likelihood, at every answer.
+// The recognition tree, walked in addition to each answer by likelihood.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace palpate {
 
-/// The path on the contacts of a weighing, a few of them where they are many. It is reported only:
-/// curves are not searched for, their fits begin where the samples laid them. `places` are those of
-/// the contacts `pooled`.
+/// The tree's path on the contacts of a weighing, at most five of them. It is only reported. It
+/// does not search: each fit starts from the class's fit to the samples. `places` of the result
+/// belong to the contacts `pooled`.
 TreeResult tree_beside(const Weighing& w, std::span<const LocalizedContact> contacts,
                        const RecognitionTreeOptions& options);
 

@@ -17,6 +17,7 @@ Needs the palpate module, python3-protobuf with the generated package, and pytho
 """
 import argparse
 import array
+import contextlib
 import csv
 import hashlib
 import io
@@ -222,13 +223,13 @@ def main():
     parts.mkdir(parents=True, exist_ok=True)
     files = [path.resolve() for path in options.files]
     tasks = tasks_of(files, options.sigma)
-    if options.scheduler:
-        client = Client(options.scheduler)
-    else:
-        client = Client(LocalCluster(n_workers=options.workers, threads_per_worker=1, processes=True,
-                                     dashboard_address=None))
-    failed = compute(client, tasks, parts, options.retries, not options.quiet)
-    client.shutdown()
+    with contextlib.ExitStack() as open_until_done:
+        # A scheduler that somebody else started goes on after us. Ours ends after its client: the other way round,
+        # Dask prints a traceback for each connection that it finds closed.
+        cluster = options.scheduler or open_until_done.enter_context(
+            LocalCluster(n_workers=options.workers, threads_per_worker=1, processes=True, dashboard_address=None))
+        client = open_until_done.enter_context(Client(cluster))
+        failed = compute(client, tasks, parts, options.retries, not options.quiet)
     if failed:
         print("\n".join(sorted(set(failed.values()))), file=sys.stderr)
         return 1

@@ -1,4 +1,5 @@
-# Writes the node's options with their defaults, commented out: cmake -DPROGRAM=palpate-node -DOUT=FILE -P this.
+# Writes the node's options with their defaults, each as a comment:
+#   cmake -DPROGRAM=palpate-node -DOUT=FILE -P configuration.cmake
 execute_process(COMMAND ${PROGRAM} --print-config OUTPUT_VARIABLE options
                 COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX REPLACE "\n$" "" options "${options}")

@@ -1,6 +1,6 @@
-# Installs what belongs to the programs: manual pages, completions, the service and its configuration.
+# Installs what comes with the programs: manual pages, completions, the services and their configurations.
 
-# All of it is generated from the programs' own --help and --print-config.
+# Manual pages, completions and node.textproto are generated from the programs' own --help and --print-config.
 set(programs palpate palpate-node)
 if(TARGET palpate-sim)
   list(APPEND programs palpate-sim)
@@ -24,7 +24,6 @@ if(NOT PALPATE_PYTHON)
   message(STATUS "palpate: no python3, so no manual pages and no completions")
   return()
 endif()
-# node.textproto is a configuration in which every option is commented out.
 add_custom_command(OUTPUT ${files}
   COMMAND ${PALPATE_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/manual.py ${folder} ${paths}
   COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:palpate-node> -DOUT=${folder}/node.textproto
@@ -33,7 +32,7 @@ add_custom_command(OUTPUT ${files}
   COMMENT "Manual pages and completions" VERBATIM)
 add_custom_target(palpate_manual ALL DEPENDS ${files})
 
-# The gateway has its own package, because nothing else needs NATS.
+# The gateway has a package of its own, so that nobody else needs NATS.
 foreach(component runtime gateway)
   set(whose REGEX "palpate-gateway" EXCLUDE)
   if(component STREQUAL gateway)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Manual pages and completions of the programs, from what their own --help says.
+"""Makes manual pages and shell completions of the programs from their own --help.
 
     manual.py FOLDER PROGRAM...
 
@@ -13,10 +13,10 @@ import re
 import subprocess
 import sys
 
-COLUMN = 30  # CLI11 begins the text beside a name here; a longer name has a line to itself
+COLUMN = 30  # CLI11 starts an option's text in this column; a longer name has a line of its own
 CHECKS = {"POSITIVE": "above 0", "NONNEGATIVE": "not below 0"}
 
-# What no --help says.
+# What --help does not say.
 FILES = {"palpate-node": [("/etc/palpate/node.textproto", "Options of the system's service, palpate-node.service. "
                            "palpate-node --print-config prints all of them.")],
          "palpate-gateway": [("/etc/palpate/gateway-NAME.conf", "Options of palpate-gateway@NAME.service."),
@@ -88,7 +88,7 @@ def command_of(call: list[str]) -> Command:
         elif line.startswith(COLUMN * " "):
             entries[-1].text = (entries[-1].text + " " + line.strip()).strip()
         elif line.startswith("  "):
-            # An option's text is one line, however long: what goes on is a name with a line to itself.
+            # An option's text is always one line. If more text follows, this line is a name alone.
             whole = line.startswith("  -") and following.startswith(COLUMN * " ")
             head, text = (line.strip(), "") if whole else (line[:COLUMN].strip(), line[COLUMN:].strip())
             entry = option_of(head) if head.startswith("-") else Entry([head.split()[0]])

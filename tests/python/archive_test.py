@@ -9,6 +9,7 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 import numpy as np
 from google.protobuf import json_format
@@ -80,6 +81,7 @@ class Archive(unittest.TestCase):
             said = whole.communicate(timeout=120)[1]
             self.assertEqual(whole.returncode, 0, said)
             self.assertIn(f"{FILES + 2} of {FILES + 2} tasks", said)
+            self.assertNotIn("Traceback", said)
             rows = self.rows(folder / "whole.csv")
             self.assertEqual(len(rows), FILES * STROKES + 80)
             self.assertEqual(len({(row["file"], row["group"], row["object"]) for row in rows}), len(rows))
@@ -138,6 +140,21 @@ class Archive(unittest.TestCase):
                 rows[pathlib.Path(row.pop("file")).name].append(row)
             self.assertEqual(rows["long.csv"], rows["turns.csv"])
             self.assertEqual([int(row["object"]) for row in rows["long.csv"]], list(range(600)))
+
+    def test_a_cluster_of_somebody_else_goes_on(self):
+        from distributed import Client, LocalCluster
+        path = [str(BUILD / "node/python"), *sys.path]  # its workers take it over
+        with tempfile.TemporaryDirectory() as name, unittest.mock.patch.object(sys, "path", path), \
+                LocalCluster(n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None) as cluster, \
+                Client(cluster) as client:
+            folder = pathlib.Path(name)
+            write_csv(folder / "night.csv", 20)
+            process = self.start(folder, "out.csv", [folder / "night.csv"], "--scheduler", cluster.scheduler_address)
+            said = process.communicate(timeout=60)[1]
+            self.assertEqual(process.returncode, 0, said)
+            self.assertNotIn("Traceback", said)
+            self.assertEqual(len(self.rows(folder / "out.csv")), 20)
+            self.assertEqual(client.submit(sum, (1, 2)).result(timeout=30), 3)
 
     def test_a_file_that_cannot_be_read_is_named(self):
         with tempfile.TemporaryDirectory() as name:

@@ -8,12 +8,12 @@
 namespace palpate {
 namespace {
 
-/// Size of a harmonic over that of the second: a deviation that bends nowhere sharply has overtones
-/// that fall off with the square of their order.
+/// Size of a harmonic relative to the second: a deviation without sharp bends has harmonics that
+/// fall off with the square of their order.
 constexpr double overtone(int order) { return order == 0 ? 1.0 : 4.0 / (order * order); }
 
-/// The offset's size that a drift lets expect, by the same law: a deviation of length L takes 1 / L
-/// half extents for a radian, as the harmonic of that order does.
+/// Expected offset for a drift, by the same law: a drift of length L corresponds to the harmonic of
+/// order 1 / L (L in half extents).
 double expected_offset(const Drift& drift) {
   const double order = std::clamp(1.0 / drift.length, 2.0, static_cast<double>(kHighestOrder));
   return drift.deviation / overtone(static_cast<int>(std::lround(order)));
@@ -30,8 +30,8 @@ OffsetSize offset_size(const Drift& drift, int power) {
   const double ratio = std::ldexp(1.0, power);
   const double deviation = ratio * expected_offset(drift);
   OffsetSize size;
-  // Student's density with three degrees of freedom, of a positive size: flat where sizes are as
-  // expected, with a tail of a power.
+  // Student's density of a positive size, three degrees of freedom: flat near the expected size,
+  // with a power-law tail.
   size.log_prior = std::log(ratio) - 2.0 * std::log1p(ratio * ratio / 3.0);
   size.deviations[0] = deviation;
   for (int k = 2; k <= kHighestOrder; ++k) {

@@ -1,4 +1,4 @@
-// What one size of drift and offset makes of residuals: a cell of the integral over all sizes.
+// One cell of the integral over all sizes of drift and offset: its evidence and what it leaves.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,16 +21,16 @@ using OffsetMatrix = Eigen::Matrix<double, offsets_to(Highest), offsets_to(Highe
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using UnknownsMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-/// Lengths of drifts: from half of the longest run, beyond which they are a constant, by halves to
-/// a thirty-second.
+/// Drift lengths: half of the longest run (a longer drift is a constant), then halved down to a
+/// thirty-second.
 inline constexpr int kMostHalvings = 5;
 
-/// Offsets over what is expected of them, as powers of 2: from where they are nothing beside the
-/// drift to where Student's law has one in a thousand left.
+/// Sizes of the offset relative to its expected size, as powers of 2: from negligible next to the
+/// drift to where Student's law has four in a thousand left.
 inline constexpr int kLeastOffset = -3;
 inline constexpr int kLargestOffset = 3;
 
-/// Evidence by chi-square, and what variances count times: the noise is known or integrated out.
+/// Evidence by chi-square, and the scale of variances, for noise that is known or integrated out.
 struct NoiseLaw {
   NoiseLaw(const Likelihood& likelihood, int rank)
       : known(likelihood.sigma_known), degrees(likelihood.samples - rank) {}
@@ -42,18 +42,18 @@ struct NoiseLaw {
   double scale(double chi2) const { return known ? 1.0 : chi2 / (degrees - 2.0); }
 };
 
-/// A sum of weights that come as logarithms, over the exponential of `top`.
+/// Sum of weights given as logarithms, divided by exp(top).
 struct LogSum {
   double top = -std::numeric_limits<double>::infinity();
   double total = 0.0;
 
-  /// Whether anything of a weight would be seen beside those before.
+  /// True if a weight is large enough to change the sum.
   bool counts(double log_weight) const {
-    constexpr double kNothing = 20.0;  // e^-20 of the highest, over some thousand cells
+    constexpr double kNothing = 20.0;  // e^-20 of the largest weight, over about a thousand cells
     return log_weight > top - kNothing;
   }
   struct Added {
-    double before = 1.0;  ///< what all before are to be multiplied with
+    double before = 1.0;  ///< factor on the sums so far
     double weight = 0.0;
   };
   Added add(double log_weight) {
@@ -68,40 +68,41 @@ struct LogSum {
   }
 };
 
-/// Whether so many points tell a variance; measured normals are beside this model.
+/// True if there are enough points to estimate a variance and no measured normals, which this model
+/// does not cover.
 bool can_tell_deviations(const FitData& reduced, const NoiseLaw& noise, int rank);
 
-/// What a drift leaves of residuals once shape and pose have taken up what they can, linear in the
+/// The residuals under a drift after shape and pose have been eliminated, as a function of the
 /// offset's coefficients c.
 template <int Highest>
 struct LeftByDrift {
-  OffsetMatrix<Highest> information;  ///< of c
-  Offsets<Highest> right;             ///< that times the best c
+  OffsetMatrix<Highest> information;  ///< information of c
+  Offsets<Highest> right;             ///< information times the best c
   double chi2 = 0.0;                  ///< without an offset
   double log_determinant = 0.0;
 };
 
-/// An offset by direction of one size.
+/// The size of an offset by direction.
 struct OffsetSize {
   Offsets<kHighestOrder> deviations;  ///< prior standard deviation of each coefficient
-  /// By its logarithm, of each highest order that it may have.
+  /// Prior density by the logarithm of the size, the same for each highest order.
   double log_prior = 0.0;
 };
 
-/// 2^`power` times the offset that such a drift lets expect.
+/// 2^`power` times the offset that is expected for this drift.
 OffsetSize offset_size(const Drift& drift, int power);
 
-/// All highest orders of one size: the leading rows of a triangular root are those of the lower
-/// orders alone.
+/// Results for all highest orders of one size. The leading rows of a triangular root are the root
+/// for the lower orders alone.
 template <int Highest>
 struct OffsetCells {
   OffsetMatrix<Highest> lower;
   Offsets<Highest> told;
-  std::array<double, Highest> chi2{};        ///< as many orders: 0, 2, 3 ...
-  std::array<double, Highest> log_weight{};  ///< of evidence and prior
+  std::array<double, Highest> chi2{};        ///< by highest order: 0, 2, 3 ...
+  std::array<double, Highest> log_weight{};  ///< evidence times prior, by highest order
 };
 
-/// `scatter`: chi-square beside that of the rows. nullopt where rounding leaves no root.
+/// `scatter`: chi-square in addition to that of the rows. nullopt if rounding leaves no root.
 template <int Highest>
 std::optional<OffsetCells<Highest>> offset_cells(const LeftByDrift<Highest>& left,
                                                  const OffsetSize& size, const NoiseLaw& noise,

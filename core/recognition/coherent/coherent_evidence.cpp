@@ -9,10 +9,10 @@
 namespace palpate {
 namespace {
 
-/// What a coherent deviation makes of residuals.
+/// The residuals made white under a coherent deviation.
 struct Whitened {
   double chi2 = 0.0;
-  double log_determinant = 0.0;  ///< of their covariance over that of the noise alone
+  double log_determinant = 0.0;  ///< of their covariance, relative to noise alone
 };
 
 Whitened whitened(const std::vector<DriftStep>& steps, const Drift& drift) {
@@ -47,10 +47,10 @@ double log_coherent_evidence(const Likelihood& likelihood, const ClassEvidence& 
                                    evidence.log_occam, evidence.determined) -
            0.5 * residuals.log_determinant;
   };
-  // Variances, in units of the noise's, from where the mean of all samples hides the deviation to
-  // where it is to the noise what that is to the mean: alike probable on the scale of logarithms.
-  // A factor of 4 is one of 2 in amplitude. Lengths halve from the whole way on to a sixteenth of
-  // it: the waves of parts and probes run a few times around.
+  // Variances in units of the noise's, uniform in the logarithm: from where the mean of all samples
+  // hides the deviation (1 / n) to n. A factor of 4 is a factor of 2 in amplitude. Lengths: the
+  // whole path, then halved down to a sixteenth, because the waves of parts and probes run a few
+  // times around.
   constexpr double kFactor = 4.0;
   constexpr int kLengths = 5;
   std::vector<double> logs;

@@ -1,4 +1,4 @@
-// The evidence of a class where what it leaves may be coherent deviation as well as noise.
+// Evidence of a class if its residuals may be a coherent deviation as well as noise.
 #pragma once
 
 #include "core/recognition/fit/canonical_fit.h"
@@ -8,12 +8,14 @@
 
 namespace palpate {
 
-/// Integral over amplitude and length of a deviation that is coherent along the curve (Markov's
-/// law), none being as probable beforehand as any: log of the evidence, as Likelihood::log_evidence
-/// has it without such. `placed`: the class on `reduced`; `chi2`: its chi-square on all `samples`
-/// points, `scatter` what these leave about the reduced ones whatever the class. `sigma`: of the
-/// typical point. What two curves differ by smoothly, such a deviation may
-/// be: data then tell them apart no better than they tell the deviation to be small. O(points).
+/// log of the evidence, comparable with Likelihood::log_evidence, integrated over amplitude and
+/// length of a deviation that is coherent along the curve (Markov's law). A priori the probability
+/// of no deviation at all is 1/2. A smooth difference between two curves may be such a deviation:
+/// the data then separate them no better than they show the deviation to be small.
+///
+/// `placed`: the class on `reduced`. `chi2`: its chi-square on all `samples` points; `scatter`: the
+/// part of it that these points have about the reduced ones, the same for every class. `sigma`:
+/// noise of the typical point, normalised. O(points).
 double log_coherent_evidence(const Likelihood& likelihood, const ClassEvidence& evidence,
                              const CanonicalFit& placed, const FitData& reduced, double sigma,
                              double samples, double chi2, double scatter);

@@ -14,7 +14,7 @@ namespace {
 
 using Left = LeftByDrift<kHighestOfClasses>;
 
-/// What a drift leaves where the coordinates have normal laws of width 1 beforehand.
+/// The residuals under a drift, with normal priors of width 1 for the coordinates.
 std::optional<Left> left_by(const std::vector<CoherentStep>& steps, const Drift& drift) {
   const auto white = white_rows<kHighestOfClasses>(steps, drift);
   UnknownsMatrix lower;
@@ -70,7 +70,7 @@ std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassE
     for (int halvings = 1; halvings <= kMostHalvings; ++halvings) {
       const Drift drift{deviation, std::ldexp(longest, -halvings)};
       const auto left = left_by(steps, drift);
-      // The largest offsets leave the least.
+      // The largest offsets leave the smallest chi-square.
       double least = scatter;
       for (int power = kLargestOffset; power >= kLeastOffset; --power) {
         const OffsetSize size = offset_size(drift, power);

@@ -1,4 +1,4 @@
-// What deviations that neighbours share add to the evidence of a class.
+// How much shared deviations of neighbouring points add to the evidence of a class.
 #pragma once
 
 #include <optional>
@@ -10,11 +10,11 @@
 
 namespace palpate {
 
-/// log of the evidence where such deviations are as probable as none beforehand, over that of noise
-/// alone. Arguments as coherent_moment()'s; but of shape and pose that is expected which the prior
-/// of the class says about `evidence`, and of a drift's deviation that it is any alike, in its
-/// logarithm, from where the mean of all samples hides it to where it is to the noise what that is
-/// to the mean: the same for all classes. nullopt where coherent_moment() has none.
+/// log of (evidence if such deviations are as probable a priori as none) / (evidence with noise
+/// alone). Arguments as coherent_moment(), with two differences: shape and pose have the prior of
+/// their class, linear about `evidence`, and the drift's deviation is uniform in its logarithm from
+/// sigma / sqrt(n) to sigma sqrt(n), n samples, the same for all classes. nullopt if
+/// coherent_moment() has none.
 std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassEvidence& evidence,
                                         const FitData& reduced, const Likelihood& likelihood,
                                         double sigma, double scatter);

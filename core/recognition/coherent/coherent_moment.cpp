@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kOffsets = offsets_to(kHighestOrder);
 
-/// What a drift leaves, and shape and pose, of which nothing is expected: about the estimate, and
-/// linear in the offset's coefficients c.
+/// The residuals under a drift, with shape and pose (flat prior) as linear functions of the
+/// offset's coefficients c, about the estimate.
 struct ShapeAndLeft : LeftByDrift<kHighestOrder> {
   UnknownsMatrix covariance = UnknownsMatrix::Zero();  ///< of shape and pose, given c
   Unknowns away = Unknowns::Zero();
@@ -42,7 +42,7 @@ ShapeAndLeft left_by(const WhiteRows<kHighestOrder>& white, Eigen::Index unknown
   return left;
 }
 
-/// A mean over cells.
+/// A weighted mean over cells.
 struct Mixture {
   LogSum weights;
   UnknownsMatrix moment = UnknownsMatrix::Zero();
@@ -77,7 +77,8 @@ void add_offsets(const ShapeAndLeft& left, const Drift& drift, const OffsetSize&
     if (i % 2 == 1) {
       continue;  // a cosine without its sine
     }
-    variance += i > 0 ? size.deviations[i] * size.deviations[i] : 0.0;  // of both, any direction
+    // Of cosine and sine together, in any direction.
+    variance += i > 0 ? size.deviations[i] * size.deviations[i] : 0.0;
     const auto order = static_cast<std::size_t>(i / 2);
     if (mixture->weights.counts(cells->log_weight[order])) {
       const double scale = noise.scale(cells->chi2[order]);
@@ -87,7 +88,7 @@ void add_offsets(const ShapeAndLeft& left, const Drift& drift, const OffsetSize&
   }
 }
 
-/// The mean over all sizes, and log of what the weights of the prior alone come to.
+/// The mean over all sizes, and the logarithm of the sum of the prior's weights.
 struct OverSizes {
   Mixture mixture;
   double log_prior = 0.0;
@@ -99,8 +100,8 @@ OverSizes over_all_sizes(const std::vector<CoherentStep>& steps, Eigen::Index un
   for (const CoherentStep& step : steps) {
     squares += step.at.residual * step.at.residual;
   }
-  // Deviations: from where the mean of all samples hides them to where the shape would have taken
-  // up all but a sixteenth, by factors of 2, at most eight.
+  // Deviations: from 16 times the residuals (the shape would have absorbed all but a sixteenth)
+  // down by factors of 2, at most eight, to where the mean of all samples hides them.
   constexpr double kTakenUp = 16.0;
   constexpr int kDeviations = 9;
   const double longest = longest_run(steps);

@@ -1,4 +1,4 @@
-// What deviations that neighbours share leave unknown of shape and pose.
+// The uncertainty of shape and pose that shared deviations of neighbouring points cause.
 #pragma once
 
 #include <optional>
@@ -10,22 +10,23 @@
 namespace palpate {
 
 struct CoherentMoment {
-  /// That there are such deviations, as probable as none before anything is touched.
+  /// Posterior probability of such deviations; 1/2 a priori.
   double probability = 0.0;
-  /// E[(x - estimate)(x - estimate)^T] of x = [shape; x; y; theta], given that there are.
+  /// Second moment E[(x - estimate)(x - estimate)^T] of x = [shape; x; y; theta] if there are such
+  /// deviations.
   ShapePoseCovariance moment;
-  /// Root mean square of them at a point, but for the offset's constant, which bends no path;
-  /// normalised.
+  /// Their root mean square at a point, normalised, without the offset's constant, which bends no
+  /// path.
   double deviation = 0.0;
 };
 
-/// Residuals are noise, a drift along each patch and an offset by the direction of the normal, none
-/// of whose sizes is known (core/README.md, "Deviations that neighbours share"): what of these the
-/// shape takes up is as large as what it leaves over tells. Given the sizes all is linear about
-/// `placed`, the class on `reduced`. `sigma`: noise of the typical point, normalised; `scatter`:
-/// chi-square that all samples leave about the reduced points, whatever the class. nullopt where
-/// there are too few points for a variance, and where touches have normals. Metres and radians,
-/// world frame. O(points) some eighty times over.
+/// Models residuals as noise, a drift along each patch and an offset by the direction of the
+/// normal, all of unknown size (core/README.md, "Deviations that neighbours share"). The visible
+/// part of such deviations shows how large the part is that the shape has absorbed. For given sizes
+/// the model is linear about `placed`, the class on `reduced`. `sigma`: noise of the typical point,
+/// normalised. `scatter`: chi-square of all samples about the reduced points, the same for every
+/// class. The result is in metres and radians, world frame. nullopt if there are too few points for
+/// a variance, or normals at touches. O(points), in at most 46 passes.
 std::optional<CoherentMoment> coherent_moment(const CanonicalFit& placed, const FitData& reduced,
                                               const Likelihood& likelihood, double sigma,
                                               double scatter);

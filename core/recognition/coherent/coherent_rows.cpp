@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-/// 1, cos 2 phi, sin 2 phi, cos 3 phi ... of the normal's direction phi.
+/// 1, cos 2 phi, sin 2 phi, cos 3 phi ... for the normal's direction phi.
 Eigen::Matrix<double, offsets_to(kHighestOrder), 1> offset_row(const Vec2& normal) {
   Eigen::Matrix<double, offsets_to(kHighestOrder), 1> row;
   row[0] = 1.0;
@@ -50,7 +50,7 @@ std::vector<CoherentStep> coherent_steps(const CanonicalFit& placed, const FitDa
         position_by_parameters(curve, fitted.t).leftCols(letters).transpose() * normal;
     step.row.segment<2>(letters) = fitted.normal;
     step.row[letters + 2] = placed.shape.curve_class == CurveClass::Circle
-                                ? 0.0  // a circle turns into itself
+                                ? 0.0  // turning a circle does not change it
                                 : normal.dot(left_of(position(curve, fitted.t)));
     step.row.head<kUnknowns>() /= sigma * reduced.scale;
     step.row[kResidualColumn] = at.residual;

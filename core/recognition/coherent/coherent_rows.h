@@ -1,4 +1,4 @@
-// The residuals of a class as a linear model of deviations that neighbours share.
+// The residuals of a class as a linear model with deviations that neighbours share.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,24 +11,24 @@
 
 namespace palpate {
 
-/// Orders of the offset by direction are 0, the constant, and 2 to a highest one. (The first is a
-/// shift.) The lobes of probes run to this order,
+/// Orders of the offset, a Fourier series of the normal's direction: 0 (the constant) and 2 to a
+/// highest one. Order 1 is a shift of the frame. Probes have lobes up to this order.
 inline constexpr int kHighestOrder = 8;
-/// and to this one they look like the difference of two classes: it bends as a conic's own lobes
-/// do, twice around, or a cubic's.
+/// Up to this order lobes look like the difference of two classes, which bends twice around like a
+/// conic's own lobes, or as a cubic does.
 inline constexpr int kHighestOfClasses = 4;
 
-/// Coefficients up to an order.
+/// Number of coefficients up to an order.
 constexpr int offsets_to(int highest) { return 2 * highest - 1; }
 
-/// A row has derivatives by shape and pose, the residual, derivatives by the offset's coefficients:
-/// lower orders are its head.
+/// A row holds: derivatives by shape and pose, the residual, derivatives by the offset's
+/// coefficients. Lower orders are a prefix of the row.
 inline constexpr int kUnknowns = 6;
 inline constexpr int kResidualColumn = kUnknowns;
 constexpr int columns_to(int highest) { return kUnknowns + 1 + offsets_to(highest); }
 using CoherentRow = Eigen::Matrix<double, columns_to(kHighestOrder), 1>;
 
-/// Coefficients of one order have this index and, but for the constant, the next.
+/// Index of the first coefficient of an order (cosine); the sine follows. The constant has one.
 constexpr int first_offset_of(int order) { return order == 0 ? 0 : 2 * order - 3; }
 
 struct CoherentStep {
@@ -36,20 +36,21 @@ struct CoherentStep {
   CoherentRow row = CoherentRow::Zero();
 };
 
-/// Of each reduced point in the order of drift_steps(), in units of the typical noise; by [shape;
-/// x; y; theta] in metres and radians, world frame. `curve`: that of `placed`.
+/// One step for each reduced point, in the order of drift_steps(), in units of the typical noise.
+/// Derivatives are by [shape; x; y; theta] in metres and radians, world frame. `curve`: that of
+/// `placed`.
 std::vector<CoherentStep> coherent_steps(const CanonicalFit& placed, const FitData& reduced,
                                          const Curve& curve, double sigma);
 
-/// The way along the longest run, normalised.
+/// Path length of the longest run, normalised.
 double longest_run(const std::vector<CoherentStep>& steps);
 
-/// The rows' products, up to an order, once a drift is made white by Kalman's recursion.
+/// Sums of products of the rows up to an order, after Kalman's recursion has made the drift white.
 template <int Highest>
 struct WhiteRows {
   using Sums = Eigen::Matrix<double, columns_to(Highest), columns_to(Highest)>;
   Sums sums = Sums::Zero();
-  double log_determinant = 0.0;  ///< of their covariance over that of the noise alone
+  double log_determinant = 0.0;  ///< of their covariance, relative to noise alone
 };
 
 /// `Highest`: kHighestOrder or kHighestOfClasses.

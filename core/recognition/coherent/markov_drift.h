@@ -1,4 +1,4 @@
-// A deviation that neighbours along a run share: Markov's law, correlation exp(-distance / length).
+// A drift that neighbours along a run share: Markov's law, correlation exp(-distance / length).
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@ struct DriftStep {
   std::size_t point = 0;
   double residual = 0.0;
   double variance = 1.0;  ///< of its noise
-  /// Distance from the point before, normalised; infinite where a run begins.
+  /// Distance from the point before, normalised; infinite at the beginning of a run.
   double from_last = std::numeric_limits<double>::infinity();
 };
 
@@ -24,20 +24,20 @@ std::vector<DriftStep> drift_steps(const CanonicalFit& placed, const FitData& re
                                    double sigma);
 
 struct Drift {
-  double deviation = 0.0;  ///< in units of the typical noise
-  double length = 1.0;     ///< normalised
+  double deviation = 0.0;  ///< standard deviation, in units of the typical noise
+  double length = 1.0;     ///< correlation length, normalised
 };
 
-/// Kalman's recursion, which makes what lies beside such a drift white.
+/// Kalman's recursion, which makes residuals white that contain such a drift.
 class DriftFilter {
  public:
   explicit DriftFilter(const Drift& drift)
       : variance_(drift.deviation * drift.deviation), length_(drift.length), spread_(variance_) {}
 
   struct Gain {
-    double kept = 0.0;      ///< of the drift expected at the point before
-    double variance = 1.0;  ///< of the residual about what is then expected
-    double share = 0.0;     ///< of the surprise, that is the drift's
+    double kept = 0.0;      ///< factor on the drift expected at the point before
+    double variance = 1.0;  ///< of the residual about its expectation
+    double share = 0.0;     ///< share of the innovation that is due to drift
   };
   Gain next(const DriftStep& step) {
     const double kept = std::exp(-step.from_last / length_);

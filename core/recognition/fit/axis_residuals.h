@@ -1,4 +1,4 @@
-// Residuals across a trial axis, as the walk along a valley asks for them.
+// Residuals across a trial axis and their derivatives, for refine_axis().
 #pragma once
 
 #include <Eigen/Core>
@@ -19,8 +19,8 @@ constexpr bool has_arms() {
   return kModel == PolynomialModel::SemiCubicalParabola || kModel == PolynomialModel::CubicSpline;
 }
 
-/// Powers of x (graph models) or t (arm models) that y is made of. A cubical parabola's inflection
-/// may lie anywhere along the axis: its graph has all.
+/// Powers of x (graph models) or t (arm models) in y. A cubical parabola's inflection may lie
+/// anywhere along the axis, so that its graph has all powers.
 template <PolynomialModel kModel>
 constexpr auto powers() {
   return exponents_of_model < kModel == PolynomialModel::CubicalParabola
@@ -28,10 +28,10 @@ constexpr auto powers() {
              : kModel > ();
 }
 
-/// Residuals across the axis at the best coefficients of y, for minimise_residuals. The few
-/// linear unknowns are eliminated by modified Gram-Schmidt, the right side as one more column,
-/// which is as stable as Householder's QR (A. Bjorck, 1967), and a row a point keeps its columns
-/// side by side.
+/// Residuals across the axis at the best coefficients of y, for minimise_residuals. The few linear
+/// unknowns are eliminated by modified Gram-Schmidt with the right side as one more column, which
+/// is as stable as Householder's QR (A. Bjorck, 1967). Each point is a row, so that its columns are
+/// adjacent in memory.
 template <PolynomialModel kModel>
 class AxisResiduals {
  public:
@@ -51,14 +51,14 @@ class AxisResiduals {
 
   bool operator()(const double* x, double* residuals, double* jacobian) const {
     const std::size_t n = points_.size();
-    // The Jacobian is asked for at an accepted trial: everything else is there already.
+    // The Jacobian is requested at an accepted trial: all else is already computed for it.
     const bool same = jacobian != nullptr && std::equal(x, x + NUM_PARAMETERS, at_.begin());
     if (!same) {
       std::copy(x, x + NUM_PARAMETERS, at_.begin());
       solved_ = solve();
     }
     if (!solved_) {
-      return false;  // all points alike, as when the vertex passes beyond them: no curve
+      return false;  // all points alike, e.g. the vertex lies beyond them: no curve
     }
     for (std::size_t i = 0; i < n; ++i) {
       residuals[i] = rows_[i].columns[kLinear];
@@ -73,22 +73,23 @@ class AxisResiduals {
   }
 
  private:
-  /// The columns and the right side, an even number: two doubles are one operation.
+  /// Columns and right side, padded to an even number: two doubles are processed at once.
   static constexpr int kWidth = kLinear + 1 + (kLinear + 1) % 2;
   using Columns = Eigen::Matrix<double, kWidth, 1>;
 
   struct Row {
-    Columns columns;      ///< w u^k, orthogonal to one another after `solve`; then y's residual
-    Vec2 by_parameters;   ///< of the residual; after `differentiate` off the columns
-    double along = 0.0;   ///< the axis
-    double across = 0.0;  ///< the axis
+    Columns columns;  ///< w u^k, orthogonalised by `solve`; the last is y's residual
+    /// Derivative of the residual; `differentiate` projects it off the columns.
+    Vec2 by_parameters;
+    double along = 0.0;   ///< coordinate along the axis
+    double across = 0.0;  ///< coordinate across the axis
     double weight = 0.0;
     double u = 0.0;
   };
 
-  /// What lies before the vertex is as far off as the vertex is. Without that, a vertex in the
-  /// midst of the points would leave those before it free, and beat the curve that they were
-  /// touched on.
+  /// A point before the vertex is as far from the curve as from the vertex. Without that, a vertex
+  /// in the midst of the points would free the points before it, and the fit would beat the true
+  /// curve.
   double residual_of(std::size_t i) const {
     const Row& row = rows_[i];
     return row.u == 0.0 ? std::sqrt(row.columns[kLinear] * row.columns[kLinear] +
@@ -96,12 +97,12 @@ class AxisResiduals {
                         : row.columns[kLinear];
   }
 
-  /// How far a point that has no u lies before the vertex, over its noise.
+  /// Distance over noise by which a point without u lies before the vertex.
   double before_vertex(std::size_t i) const {
     return (at_[1] - rows_[i].along) * points_[i].inverse_sigma;
   }
 
-  /// The Jacobian's rows of points before the vertex, their residuals' share across found already.
+  /// Adds the distance to the vertex to the Jacobian's rows of points before it.
   void add_distances_to_vertex() const {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       Row& row = rows_[i];
@@ -114,7 +115,7 @@ class AxisResiduals {
     }
   }
 
-  /// Fills and orthogonalises the columns. False where they are dependent.
+  /// Fills and orthogonalises the columns. False if they are dependent.
   bool solve() const {
     const Vec2 axis(std::cos(at_[0]), std::sin(at_[0]));
     const double x0 = at_[1];
@@ -142,7 +143,8 @@ class AxisResiduals {
       products += row.columns[0] * row.columns;
     }
     any_before_vertex_ = kArms && least <= x0;
-    Eigen::Matrix<double, kWidth, kLinear> factors;  // column k: of column k in the later ones
+    // Column k: its coefficients in the later columns.
+    Eigen::Matrix<double, kWidth, kLinear> factors;
     for (int k = 0; k < kLinear; ++k) {
       squares_[k] = products[k];
       if (!(products[k] > 0.0)) {
@@ -181,7 +183,7 @@ class AxisResiduals {
         }
         slope += wanted > 0 ? wanted * coefficients_[k] * power * u_by_x : 0.0;
       }
-      // Turning the axis by d: across falls by along d, along grows by across d.
+      // Turning the axis by d changes across by -along d, and along by across d.
       row.by_parameters = row.weight * Vec2(-row.along - slope * row.across, slope);
       products += row.columns[0] * row.by_parameters;
     }
@@ -206,7 +208,7 @@ class AxisResiduals {
 
   std::span<const FitPoint> points_;
   std::span<const double> arms_;
-  // At the last evaluation:
+  // State of the last evaluation:
   mutable std::array<double, 2> at_ = {std::numeric_limits<double>::quiet_NaN(), 0.0};
   mutable bool solved_ = false;
   mutable bool any_before_vertex_ = false;

@@ -1,4 +1,4 @@
-// From the coordinates of the fit to canonical shape, pose, contacts and their covariance.
+// From a class's fit to canonical shape, pose, contacts and their covariance.
 #pragma once
 
 #include <optional>
@@ -9,13 +9,14 @@
 
 namespace palpate {
 
-/// A contact point's place on the fitted curve.
+/// The place of a contact point on the fitted curve.
 struct FittedPoint {
   double t = 0.0;              ///< canonical curve parameter
-  double residual = 0.0;       ///< signed distance less tip radius, in units of sigma
+  double residual = 0.0;       ///< (signed distance - tip radius) / sigma
   Vec2 normal = Vec2::Zero();  ///< unit normal at the foot point, world frame
-  /// Of a measured normal: how far the curve's is turned from it, in deviations, and the inverse of
-  /// that deviation, which holds that of the foot's place. 0 without. [1/rad]
+  /// For a measured normal: the angle to the curve's normal in standard deviations, and 1 / that
+  /// standard deviation, which includes the uncertainty of the foot's place. 0 without a normal.
+  /// [1; 1/rad]
   double normal_residual = 0.0;
   double normal_weight = 0.0;
 };
@@ -23,20 +24,20 @@ struct FittedPoint {
 struct CanonicalFit {
   ShapeParameters shape;
   Pose2 world_T_curve;
-  /// Inverse of the Fisher information of [shape; x; y; theta] at the fit, for the points' stated
-  /// sigmas: the Kanatani-Cramer-Rao bound. What the pose symmetry leaves free (a circle's theta, a
+  /// The Kanatani-Cramer-Rao bound: inverse of the Fisher information of [shape; x; y; theta] at
+  /// the fit, for the points' sigmas. What the pose symmetry leaves free (a circle's theta, a
   /// line's position along itself) is fixed by convention and has variance 0.
   ShapePoseCovariance covariance;
   std::vector<FittedPoint> points;
 };
 
-/// Of n components of which nothing is known: infinite variances, no covariances.
+/// Covariance of n unknown components: infinite variances, no covariances.
 ShapePoseCovariance untold_covariance(Eigen::Index n);
 
-/// Inverse of an information matrix of known rank; null directions have variance 0.
+/// Inverse of an information matrix of known rank; its null directions get variance 0.
 struct InverseInformation {
   ShapePoseCovariance covariance;
-  double log_determinant = 0.0;  ///< of the information, but for its null directions
+  double log_determinant = 0.0;  ///< of the information, without its null directions
 };
 InverseInformation inverse_information(const ShapePoseCovariance& information, int rank);
 
@@ -46,12 +47,12 @@ struct CanonicalPlace {
   Pose2 world_T_curve;
 };
 
-/// Those of to_canonical(), where there is such a curve.
+/// Shape and pose as to_canonical() gives them; nullopt if there is no such curve.
 std::optional<CanonicalPlace> canonical_place(const ClassFit& fit, const FitData& data);
 
-/// `data`: all points where `fit` is refined on all, otherwise the reduced ones, which carry the
-/// same information. nullopt where there is no such curve: a class at its limit, a circle as flat
-/// as a line, a parabola or cubic without extent across its axis.
+/// `data`: all points if `fit` is refined on all, otherwise the reduced points, which carry the
+/// same information. nullopt if there is no such curve: a class at its limit, a circle as flat as a
+/// line, a parabola or cubic without extent across its axis.
 std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& data);
 
 }  // namespace palpate

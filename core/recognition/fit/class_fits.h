@@ -1,4 +1,4 @@
-// Every class fitted to the reduced points: the material that evidence is weighed on.
+// Fits of every class to the reduced points; the posterior compares them.
 #pragma once
 
 #include <array>
@@ -17,21 +17,21 @@
 
 namespace palpate {
 
-/// A class at its best, in normalised coordinates.
+/// The best fit of a class, in normalised coordinates.
 struct ClassFit {
   CurveClass curve_class = CurveClass::Unclassified;
   double chi2 = 0.0;
-  bool weighed = false;  ///< chi2 is that of all points, not what the reduced ones tell
-  bool on_all =
-      false;  ///< refined on all points; until then it has foot points of the reduced ones
-  bool polished = false;  ///< at its very optimum there, and so is its rival
-  /// The class has no interior optimum: chi2 is that of the neighbour it runs away to (an ellipse
-  /// or hyperbola that wants to be a parabola), and there is no shape to report.
+  bool weighed = false;  ///< chi2 was computed on all points, not inferred from the reduced points
+  /// Refined on all points. Until then its foot points are those of the reduced points.
+  bool on_all = false;
+  bool polished = false;  ///< at its exact optimum on all points; so is its rival
+  /// The class has no interior optimum: chi2 is that of the neighbouring class to which the fit
+  /// runs (e.g. the best ellipse or hyperbola is a parabola). There is no shape to report.
   bool at_limit = false;
-  double least_chi2 = 0.0;  ///< where it is known that no curve of a class at its limit leaves less
+  double least_chi2 = 0.0;  ///< lower bound on chi2 of any curve of a class at its limit, if known
   std::optional<ImplicitFit> implicit;      ///< line, circle, ellipse, hyperbola
   std::optional<PolynomialFit> polynomial;  ///< parabola and the cubics
-  /// A spline's optimum on the other side of c = 0: where it fits as well, the shape is not known.
+  /// A spline's optimum on the other side of c = 0. If it fits as well, the shape is not known.
   std::optional<PolynomialFit> rival;
 };
 
@@ -41,12 +41,12 @@ using ClassFits = std::array<std::optional<ClassFit>, 9>;
 /// The implicit form of a parabola's polynomials, of unit norm.
 ConicCoefficients conic_of_parabola(const PolynomialFit& fit);
 
-/// Whether a fit to reduced points that leaves that many residuals is as good as noise allows.
+/// True if noise alone can leave this chi-square on reduced points with that many residuals.
 inline bool fits_well(double chi2, std::size_t residuals) {
   return can_be_noise(chi2, static_cast<double>(residuals));
 }
 
-/// Sets of classes, a bit each.
+/// Sets of classes, one bit per class.
 constexpr unsigned class_bit(CurveClass curve_class) { return 1U << static_cast<int>(curve_class); }
 inline constexpr unsigned kAllClasses = ~0U;
 inline constexpr unsigned kCubics = class_bit(CurveClass::CubicalParabola) |
@@ -55,12 +55,12 @@ inline constexpr unsigned kCubics = class_bit(CurveClass::CubicalParabola) |
 
 struct WarmStart;
 
-/// Fits every class to the smooth model's reduced points, taken as surface points: seeds by
-/// exhaustive coarse search, or `start` where given and anything then fits;
-/// least orthogonal distances, as far as telling plausible classes from others takes. What
-/// `classes` leaves out may be missing. `out_of_reach`: beyond this chi-square it is not
-/// asked how well a class fits. Where points are many, searches go through few of them, twice at
-/// most: beside them each point costs a bounded number of steps.
+/// Fits every class to the smooth model's reduced points, taken as surface points, by least
+/// orthogonal distances. The fits are accurate enough to decide which classes stay in the running.
+/// They start from `start` if one is given and anything then fits, else from an exhaustive coarse
+/// search. Classes not in `classes` may be missing. A fit whose chi-square is above `out_of_reach`
+/// is not refined. If there are many points, the searches use only a few of them, in at most two
+/// rounds; apart from that each point costs a bounded number of steps.
 ClassFits fit_classes(const FitData& reduced, const WarmStart* start = nullptr,
                       unsigned classes = kAllClasses,
                       double out_of_reach = std::numeric_limits<double>::infinity());

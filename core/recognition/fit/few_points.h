@@ -1,4 +1,4 @@
-// So few of many points that a search through them takes bounded time.
+// Chooses a few of many points, so that a search through them takes bounded time.
 #pragma once
 
 #include <optional>
@@ -8,12 +8,14 @@
 
 namespace palpate {
 
-/// About 64 of the points, where they are more than twice as many: patches that lie far apart, each
-/// with points from end to end, in their order. A class leaves no more chi-square on them than on
-/// all: what misfits them misfits all. nullopt where there are no more. O(patches + points).
+/// About 64 of the points if there are more than twice as many: patches that lie far apart, each
+/// with points from end to end, in their order. A class has no larger chi-square on them than on
+/// all points: what does not fit these does not fit all. nullopt if there are fewer points.
+/// O(patches + points).
 std::optional<FitData> few_of(const FitData& reduced);
 
-/// Those, which there have to be, and as many more that have the largest of `squares`, one a point.
+/// The points of few_of(), which must exist, plus as many other points with the largest `squares`
+/// (squared residuals, one per point).
 FitData few_and_missed(const FitData& reduced, std::span<const double> squares);
 
 }  // namespace palpate

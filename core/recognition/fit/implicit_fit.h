@@ -1,4 +1,4 @@
-// Least orthogonal distances of an implicit curve of second degree at most: conic, circle, line.
+// Fits of implicit curves (conic, circle, line) by least orthogonal distances.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,15 +19,15 @@ struct ImplicitFit {
   std::vector<Vec2> feet;  ///< foot point of every point
 };
 
-/// Starts without a previous fit, from the algebraic fit of G. Taubin ("Estimation of planar
-/// curves, surfaces and nonplanar space curves defined by implicit equations", 1991): gradient
-/// weights, hence no bias towards small ellipses, one 5 x 5 eigenproblem.
+/// Starts without a previous fit: the algebraic fit of G. Taubin ("Estimation of planar curves,
+/// surfaces and nonplanar space curves defined by implicit equations", 1991). It weights by
+/// gradients, so that it has no bias towards small ellipses, and costs one 5 x 5 eigenproblem.
 ConicCoefficients algebraic_conic(std::span<const FitPoint> points);
 ConicCoefficients algebraic_circle(std::span<const FitPoint> points);
 ConicCoefficients algebraic_line(std::span<const FitPoint> points);
 
-/// Refines over all conics (5 degrees of freedom), all circles and lines (3), or all lines (2):
-/// the coefficients move on the unit sphere of the model's subspace, so that passing from ellipse
+/// Refines over all conics (5 degrees of freedom), all circles and lines (3), or all lines (2). The
+/// coefficients move on the unit sphere of the model's subspace, so that the passage from ellipse
 /// through parabola to hyperbola, or from circle to line, is smooth.
 ImplicitFit refine_conic(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
                          const RefineEffort& effort = {});
@@ -36,20 +36,19 @@ ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficie
 ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
                         const RefineEffort& effort = {});
 
-/// The fit as it is, with the foot points and the chi-square of these surface points.
+/// The unchanged fit with the foot points and chi-square of these surface points.
 ImplicitFit placed_on(std::span<const FitPoint> points, ImplicitFit fit);
 
-/// Signed distance of a point to the conic near it, positive where the polynomial is. The foot
-/// point is found by Newton's method from the point itself: the nearest one wherever the distance
-/// is small beside the radius of curvature. `foot` receives it.
+/// Signed distance of a point to a nearby conic, positive where the polynomial is. `foot` receives
+/// the foot point, found by Newton's method from the point itself. It is the nearest one if the
+/// distance is small compared with the radius of curvature.
 double signed_distance(const ConicCoefficients& coefficients, const Vec2& point, Vec2* foot);
 
-/// The same where the foot point is known.
+/// The same for a known foot point.
 double signed_distance_from(const Vec2& foot, const ConicCoefficients& coefficients,
                             const Vec2& point);
 
-/// Weight of a point's measured normal where the conic is the curve; 0 where its foot cannot be
-/// followed.
+/// Weight of a point's measured normal for this conic; 0 if its foot cannot be followed.
 double weight_of_normal(const ConicCoefficients& coefficients, const Vec2& foot,
                         const FitPoint& point);
 

@@ -1,4 +1,4 @@
-// Class fits found on the reduced points, against all points: tip radii and all.
+// Takes class fits from the reduced points to all points, tip radii included.
 #pragma once
 
 #include <optional>
@@ -7,28 +7,28 @@
 
 namespace palpate {
 
-/// Whether a fit to `data` is still the curve that it is called, and one that can be touched so.
+/// True if a fit to `data` is still a curve of its class, and one that a probe could have touched.
 bool is_what_it_says(const ClassFit& fit, const FitData& data);
 
-/// A spline's rival far behind it may still come near: that makes the shape doubtful, which matters
-/// to the best class alone.
+/// Whether the fit is the best class. A spline's rival that is far worse may still come near in the
+/// refinement; the doubtful shape then matters only for the best class.
 enum class RivalOf { Best, Other };
 
-/// Takes a fit on the reduced points to its optimum there.
+/// Refines a fit to its optimum on the reduced points.
 ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival = RivalOf::Best);
 
-/// Chi-square of all points about a fit on the reduced ones as it is. O(points).
+/// Chi-square of all points for an unchanged fit to the reduced points. O(points).
 double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data);
 
-/// Refines a fit on the reduced points, best a settled one, on all; nullopt if its optimum there is
-/// no such curve (an ellipse that turned into a hyperbola or into a needle around straight points).
-/// O(points) per iteration.
+/// Refines a fit to the reduced points, preferably a settled one, on all points. nullopt if its
+/// optimum there is not such a curve (an ellipse that turned into a hyperbola, or into a needle
+/// around straight points). O(points) per iteration.
 std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& smooth,
                                       const FitData& data,
                                       const RefineEffort& effort = kOnAllEffort);
 
-/// Takes a fit on all points to its optimum as far as rounding goes; nullopt as above. O(points)
-/// per iteration.
+/// Refines a fit on all points to its optimum, up to rounding; nullopt as above. O(points) per
+/// iteration.
 std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// Least orthogonal distances of a polynomial parametric curve: parabola, the cubics and the line.
+// Fits of polynomial parametric curves (parabola and the cubics) by least orthogonal distances.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,24 +20,25 @@ struct PolynomialFit {
   int side = 0;  ///< where tip centres lie: +1 left of increasing t, -1 right
 };
 
-/// Refines coefficients and foot points together: the foot points are eliminated (each evaluation
-/// follows them from where they were), the Jacobian is that of the envelope theorem. Affine changes
-/// of t leave the curve as it is; the damping takes care of them. `start.t` must hold a parameter
+/// Refines the coefficients, with the foot points eliminated: each evaluation follows them from
+/// where they were, and the Jacobian is that of the envelope theorem. Affine changes of t do not
+/// change the curve; the damping handles these free directions. `start.t` must hold a parameter
 /// near each point's foot point. O(points) per iteration.
 PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
                                 const PolynomialFit& start, int side,
                                 const RefineEffort& effort = {});
 
-/// Whether two fits to the same points ended in the same optimum: chi-squares alike and directions
-/// of the cubic axis alike, as far as the optimiser's tolerance goes.
+/// True if two fits to the same points ended in the same optimum: chi-square and the direction of
+/// the cubic axis agree within the optimiser's tolerance.
 bool is_same_curve(const PolynomialFit& a, const PolynomialFit& b);
 
-/// A point against the fit, its foot point followed from `t` until a step is shorter than
+/// The foot point and distance of a point, followed from `t` until a step is shorter than
 /// `last_step`.
 PlacedPoint place_on(const PolynomialFit& fit, double t, const Vec2& point,
                      double last_step = kExactFootStep);
 
-/// The fit as it is, with the foot points and the chi-square of surface points: `fit.t` near them.
+/// The unchanged fit with the foot points and chi-square of surface points. `fit.t` must be near
+/// the feet.
 PolynomialFit placed_on(std::span<const FitPoint> points, PolynomialFit fit);
 
 }  // namespace palpate

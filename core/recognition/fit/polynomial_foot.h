@@ -1,4 +1,4 @@
-// A point against a polynomial curve: the foot point near a given parameter.
+// The foot point of a point on a polynomial curve, near a given parameter.
 #pragma once
 
 #include <algorithm>
@@ -11,30 +11,30 @@
 
 namespace palpate {
 
-/// A point against the curve at its foot point parameter.
+/// A point's foot point and distance.
 struct PlacedPoint {
-  double t = 0.0;                ///< followed from the given one to the foot point
+  double t = 0.0;                ///< parameter of the foot point
   double signed_distance = 0.0;  ///< positive to the left of increasing t
-  Vec2 normal = Vec2::Zero();    ///< unit, along the distance: left of increasing t but at a cusp
+  Vec2 normal = Vec2::Zero();    ///< unit, left of increasing t; at a cusp along the distance
 };
 
-/// The step after which a foot point is good enough where noise is of standard deviation `sigma`,
-/// normalised: the parameter's error is then the step's cube times a factor that sharp bends make
-/// large, and the distance's error, which is of second order, a small part of the noise.
+/// Size of the last step for which a foot point is accurate enough for noise of standard deviation
+/// `sigma`, normalised. After it the parameter's error is the cube of the step times a factor that
+/// sharp bends make large. The distance's error is of second order: a small part of the noise.
 inline double last_foot_step(double sigma) {
   constexpr double kSharpest = 1e5;  // features of 1 / 300 of the half extent, squared
   constexpr double kPart = 1e-3;
   return std::cbrt(std::sqrt(kPart * sigma) / kSharpest);
 }
 
-/// For exact points: as far as rounding goes.
+/// For exact points: the foot is accurate to rounding.
 inline constexpr double kExactFootStep = 1e-5;
 
-/// Follows the foot point of `p` by Halley's method on (C(t) - p) . C'(t) = 0 from `t`, until a
+/// Follows the foot point of `p` from `t` by Halley's method on (C(t) - p) . C'(t) = 0, until a
 /// step is shorter than `last_step`.
 inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, double t,
                                      double last_step = kExactFootStep) {
-  constexpr int kMaxIterations = 5;     // digits treble: four steps from half a digit to all
+  constexpr int kMaxIterations = 5;  // each step trebles the digits: four from half a digit to all
   constexpr double kLongestStep = 0.5;  // of the data's parameter range, about [-1, 1]
   Vec2 away;
   Vec2 first;
@@ -54,7 +54,7 @@ inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2
     if (slope < kLeastFootSlope * speed2) {
       step = along / speed2;  // a Gauss-Newton step is safe
     } else {
-      // With the bend of (C - p) . C' where it is no more than a correction.
+      // Includes the second derivative of (C - p) . C' if that is only a correction.
       const double bend = along * (3.0 * first.dot(second) - 6.0 * away.dot(c.col(3)));
       const double halley = 2.0 * slope * slope + bend;
       step = halley > slope * slope ? 2.0 * along * slope / halley : along / slope;
@@ -69,8 +69,8 @@ inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2
     placed.normal = left_of(first) / std::sqrt(speed2);
     placed.signed_distance = away.dot(placed.normal);
   }
-  // At a cusp, or where the foot point is not stationary, the normal does not point along the
-  // distance: take the distance itself. (Next to the curve a small error along it looks the same.)
+  // At a cusp, or if the foot point is not stationary, the normal does not point along the
+  // distance: uses the distance itself. (Next to the curve a small error along it looks the same.)
   constexpr double kPerpendicular = 0.9;
   const double square = away.squaredNorm();
   const bool stationary = std::abs(away.dot(first)) < last_step * speed2;
@@ -82,7 +82,7 @@ inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2
   return placed;
 }
 
-/// The parameter of the curve's place nearest to `p`, wherever that is; 0 where the curve is a
+/// The parameter of the curve's nearest place to `p`, anywhere on the curve; 0 if the curve is a
 /// point.
 inline double nearest_parameter(const PolynomialCoefficients& c, const Vec2& p) {
   // (C(t) - p) . C'(t) = 0.

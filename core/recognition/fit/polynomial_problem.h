@@ -1,4 +1,4 @@
-// Orthogonal distances from a polynomial curve, as levenberg_marquardt.h asks for them.
+// Orthogonal distances from a polynomial curve, as a problem for levenberg_marquardt.h.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,9 +14,9 @@
 
 namespace palpate {
 
-/// Which powers of t a model has. Up to SE(2) and an affine change of t these are exactly the
-/// canonical classes (core/README.md, "Refinement and the bound"): no class has a singular limit
-/// in these coefficients.
+/// The powers of t of a model. Up to SE(2) and an affine change of t these are exactly the
+/// canonical classes (core/README.md, "Refinement and the bound"): no class has a singular limit in
+/// these coefficients.
 enum class PolynomialModel {
   Parabola,             ///< 1, t, t^2
   CubicalParabola,      ///< 1, t, t^3
@@ -37,7 +37,7 @@ constexpr auto exponents_of_model() {
   }
 }
 
-/// The curve at a foot found.
+/// The curve at a foot point.
 inline NormalAtFoot normal_at(const PolynomialCoefficients& c, const PlacedPoint& foot) {
   NormalAtFoot at;
   at.first = first_derivative(c, foot.t);
@@ -48,15 +48,14 @@ inline NormalAtFoot normal_at(const PolynomialCoefficients& c, const PlacedPoint
   return at;
 }
 
-/// Weight of a point's measured normal where this is the curve; 0 where its foot cannot be
-/// followed.
+/// Weight of a point's measured normal for this curve; 0 if its foot cannot be followed.
 inline double weight_of_normal(const PolynomialCoefficients& c, const PlacedPoint& foot,
                                const FitPoint& point) {
   const NormalAtFoot at = normal_at(c, foot);
   return at.is_followed() ? normal_weight(point, at.turn_along()) : 0.0;
 }
 
-/// Orthogonal distances over the model's coefficients, as `minimise` asks.
+/// Orthogonal distances as functions of the model's coefficients, for `minimise`.
 template <PolynomialModel kModel>
 class PolynomialProblem {
  public:
@@ -94,8 +93,8 @@ class PolynomialProblem {
     return x;
   }
 
-  /// Sets the weights of measured normals by this curve: as found, not as sought. Without, none
-  /// counts.
+  /// Sets the weights of measured normals from this curve; they stay fixed for trial curves.
+  /// Without this call normals do not count.
   void weigh_normals(const Vector& x) {
     normals_.clear();
     const PolynomialCoefficients c = coefficients(x);
@@ -123,17 +122,18 @@ class PolynomialProblem {
     return chi2;
   }
 
-  /// A place that is not accepted must not move the foot points that the next one starts from.
+  /// Makes the last trial the current state. A rejected trial must not move the foot points from
+  /// which the next one starts.
   void accept() {
     coefficients_ = tried_;
     feet_.swap(tried_feet_);
   }
 
-  /// Where a point lies farther off than noise takes it, its foot may have been followed to the
-  /// wrong arm of a bend or of a cusp, where steps end however the curve moves. Those points; none
-  /// where they are many: the curve is another one.
+  /// Points farther from the curve than noise. Their feet may have been followed to the wrong arm
+  /// of a bend or cusp, where the steps end whatever the curve does. Empty if there are many: the
+  /// curve itself is wrong.
   std::vector<std::size_t> far_points() const {
-    constexpr double kFar = 3.0;  // deviations: of honest points one in 370
+    constexpr double kFar = 3.0;  // standard deviations: good points exceed it once in 370
     constexpr std::size_t kOneIn = 10;
     std::vector<std::size_t> far;
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -147,8 +147,9 @@ class PolynomialProblem {
     return far;
   }
 
-  /// Follows the feet of far points, and of those beside them, from those of the points touched
-  /// before and after: a stroke does not leap from arm to arm. By how much that lowers chi-square.
+  /// Follows the feet of far points, and of their neighbours, again from the feet of the points
+  /// touched before and after: a stroke does not leap from arm to arm. Returns by how much that
+  /// lowers chi-square.
   double seek_feet() {
     const std::vector<std::size_t> far = far_points();
     std::vector<bool> doubtful(far.empty() ? 0 : points_.size(), false);
@@ -160,7 +161,7 @@ class PolynomialProblem {
       double by = seek_foot(i, doubtful);
       doubtful[i] = !(by > 0.0);
       lowered += by;
-      // Those beside it are on the wrong arm by less.
+      // Its neighbours may be on the wrong arm too, by less.
       for (std::size_t k = i; by > 0.0 && k > 0; lowered += by) {
         by = seek_foot(--k, doubtful);
       }
@@ -173,8 +174,8 @@ class PolynomialProblem {
     return lowered;
   }
 
-  /// By the envelope theorem a residual changes by -n . (1, t, t^2, t^3): sums over the points of
-  /// n n^T t^k hold all of J^T J.
+  /// By the envelope theorem a residual changes by -n . (1, t, t^2, t^3). So all of J^T J follows
+  /// from the sums of n n^T t^k over the points.
   void linearise(Matrix* information, Vector* gradient) const {
     constexpr int kSums = 2 * kExponents.back() + 1;
     Eigen::Matrix<double, 3, kSums> squares = Eigen::Matrix<double, 3, kSums>::Zero();
@@ -207,8 +208,8 @@ class PolynomialProblem {
     }
   }
 
-  /// The foot point moves with the curve, which turns the normal: r'' of core/README.md,
-  /// "Refinement and the bound", step 4.
+  /// J^T r'' for a step. The foot point moves with the curve and the normal turns: r'' of
+  /// core/README.md, "Refinement and the bound", step 4.
   Vector bend(const Vector& step) const {
     const PolynomialCoefficients v = coefficients(step);
     Eigen::Matrix<double, 2, kExponents.back() + 1> sums;
@@ -256,7 +257,8 @@ class PolynomialProblem {
  private:
   static constexpr int exponent(int k) { return kExponents[static_cast<std::size_t>(k)]; }
 
-  /// Between the feet before and after that are not doubtful; that of point `i` where none is.
+  /// Mean parameter of the nearest feet before and after that are not doubtful; that of point `i`
+  /// if there are none.
   double parameter_beside(std::size_t i, const std::vector<bool>& doubtful) const {
     std::size_t before = i;
     while (before > 0 && (before == i || doubtful[before])) {
@@ -271,13 +273,13 @@ class PolynomialProblem {
     return 0.5 * (feet_[before].t + feet_[after].t);
   }
 
-  /// seek_feet of one point.
+  /// seek_feet for one point.
   double seek_foot(std::size_t i, const std::vector<bool>& doubtful) {
     const PlacedPoint foot = follow_foot_point(coefficients_, points_[i].position,
                                                parameter_beside(i, doubtful), last_step_);
     const double before = residual_at(feet_[i], i);
     const double after = residual_at(foot, i);
-    constexpr double kSame = 1e-2;  // of chi-square: a tenth of a deviation
+    constexpr double kSame = 1e-2;  // of chi-square: a tenth of a standard deviation
     if (!(after * after < before * before - kSame)) {
       return 0.0;
     }
@@ -318,9 +320,9 @@ class PolynomialProblem {
   std::span<const FitPoint> points_;
   std::vector<WeighedNormal> normals_;
   int side_;
-  PolynomialCoefficients coefficients_;  ///< where we are
+  PolynomialCoefficients coefficients_;  ///< current state
   std::vector<PlacedPoint> feet_;
-  PolynomialCoefficients tried_;  ///< the place tried last
+  PolynomialCoefficients tried_;  ///< last trial
   std::vector<PlacedPoint> tried_feet_;
   double last_step_;  ///< of foot points
 };

@@ -1,4 +1,4 @@
-// The polynomial classes on the reduced points: searched for, or followed from earlier ones.
+// The polynomial classes on the reduced points: found by a search, or followed from earlier fits.
 #pragma once
 
 #include <limits>
@@ -18,31 +18,31 @@ struct PolynomialFits {
   std::optional<PolynomialFit> cubic_spline;
   /// The spline's optimum on the other side of c = 0, if there is one.
   std::optional<PolynomialFit> rival;
-  /// Of few of the points: the conic nearest to them, the one start.
+  /// For a few of the points: the nearest conic, the only start.
   std::optional<ConicCoefficients> conic;
-  PolynomialSeeds seeds;    ///< that the search started from
-  bool every_seed = false;  ///< refined, as nothing fitted
-  /// Of all classes, conics included, on the points of these fits: what is far above it is not
-  /// followed.
+  PolynomialSeeds seeds;    ///< starts of the search
+  bool every_seed = false;  ///< every seed was refined, because nothing fitted
+  /// Lowest chi-square of all classes, conics included, on the points of these fits: fits far above
+  /// it are not followed.
   double lowest_chi2 = std::numeric_limits<double>::infinity();
 };
 
-/// Exhaustive coarse search, valleys walked, the best of each refined with coarse effort; of the
-/// cubics, unless it is `out_of_reach` (as fit_classes).
+/// Exhaustive coarse search; then walks the valleys and refines the best of each class with coarse
+/// effort. The cubics are left out if they are `out_of_reach` (as fit_classes).
 PolynomialFits search_polynomials(const FitData& reduced,
                                   double out_of_reach = std::numeric_limits<double>::infinity());
 
 /// The parabola alone, which the conics need at their limit.
 PolynomialFits search_parabola(const FitData& reduced);
 
-/// The same from earlier fits, whose t must be those of `reduced` (warm_start.h): no search. Fits
-/// that were out by far stay as they are, their chi2 that of the new points. `out_of_reach`: as
-/// above, of all of them.
+/// Follows earlier fits without a search. Their t must be those of `reduced` (warm_start.h). Fits
+/// that are far worse than the best stay as they are, with chi2 for the new points. `out_of_reach`:
+/// as above, for all of them.
 PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts,
                                   double out_of_reach = std::numeric_limits<double>::infinity());
 
-/// The last resort where nothing fits: refines thoroughly every seed of the models with arms, whose
-/// sharp bends make narrow valleys, and the best of the others.
+/// The last resort if nothing fits: refines thoroughly every seed of the arm models, whose sharp
+/// bends make narrow valleys, and the best seeds of the others.
 void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFits* fits);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
-// Starting points for the polynomial classes: an exhaustive coarse search that needs neither
-// kappa_s nor the order of the patches nor their directions of travel.
+// Starting points for the polynomial classes: an exhaustive coarse search. It needs neither kappa_s
+// nor the order of the patches nor their directions of travel.
 #pragma once
 
 #include <span>
@@ -10,12 +10,12 @@
 
 namespace palpate {
 
-/// Per model the local minima of the coarse search, best first, to be refined by refine_axis.
+/// For each model the local minima of the coarse search, best first, to be refined by refine_axis.
 struct PolynomialSeeds {
-  static constexpr std::size_t kGraphSeeds = 3;  ///< at most, for the models without arms
-  static constexpr std::size_t kArmSeeds = 5;    ///< at most, for the models with arms
-  /// The same where points are touches of their own: what may lie on either arm has about as many
-  /// minima again as strokes have, which hold their points on one.
+  static constexpr std::size_t kGraphSeeds = 3;  ///< most seeds of a graph model
+  static constexpr std::size_t kArmSeeds = 5;    ///< most seeds of an arm model
+  /// The same if the points are single touches. Each may lie on either arm, so that there are about
+  /// twice as many minima as with strokes, whose points lie on one arm.
   static constexpr std::size_t kLoneArmSeeds = 10;
   std::vector<AxisFit> parabola;
   std::vector<AxisFit> cubical_parabola;
@@ -23,14 +23,14 @@ struct PolynomialSeeds {
   std::vector<AxisFit> cubic_spline;
 };
 
-/// For a trial direction of the axis the parabola and the cubical parabola are graphs y(x) with
-/// linear coefficients. O(directions * points).
+/// Seeds of parabola and cubical parabola. For a trial direction of the axis they are graphs y(x)
+/// with linear coefficients. O(directions * points).
 void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds);
 
-/// For a trial direction and vertex abscissa x0, semi-cubical parabola and spline are linear in
-/// t = +-sqrt(x - x0), given the arm (the sign of t) of each patch:
-/// O(directions * vertices * (points + 2^patches)), with at most 2^3 arm patterns; patches beyond
-/// the four longest take the arm that fits the curve through these better.
+/// Seeds of semi-cubical parabola and spline. For a trial direction and vertex abscissa x0 they are
+/// linear in t = +-sqrt(x - x0), given the arm (the sign of t) of each patch. O(directions *
+/// vertices * (points + 2^patches)), with at most 2^3 patterns of arms: patches beyond the four
+/// longest take the arm that fits the curve through these better.
 void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
                    PolynomialSeeds* seeds);
 

@@ -9,47 +9,48 @@
 namespace palpate {
 
 struct RefineEffort {
-  int iterations = 100;  ///< of one start, at most
-  /// Afresh from where the last one stopped, until nothing changes (polynomial models).
+  int iterations = 100;  ///< most iterations of one start
+  /// Most starts: each begins where the last one stopped, until nothing changes (polynomial
+  /// models).
   int starts = 6;
-  /// Change of chi-square at which a start ends: its root is the distance from the optimum, in
-  /// standard deviations, that may be left.
+  /// Change of chi-square at which a start ends. Its square root is the remaining distance from the
+  /// optimum, in standard deviations.
   double chi2_tolerance = 1e-7;
-  /// Of chi-square: a start of which the linear model leaves more is given up.
+  /// A start is given up if its linear model leaves a larger chi-square than this.
   double out_of_reach = std::numeric_limits<double>::infinity();
-  /// Feet on the wrong arm are taken back (polynomial models).
+  /// Corrects feet on the wrong arm (polynomial models).
   bool seek_feet = true;
 
-  /// Of chi-square, where so many residuals leave more than any noise. Noise as large as they are
-  /// is then what counts, and a curve that is not the one that was touched need be no nearer to its
-  /// optimum than a third of a standard deviation, a tenth of chi-square: what all steps gain
-  /// together that each gain less.
+  /// Relative tolerance of chi-square if the residuals are larger than any noise. The actual noise
+  /// is then as large as the residuals, and a curve that is not the touched one only needs to come
+  /// within a third of a standard deviation of its optimum: a tenth of chi-square, for all
+  /// iterations together.
   double relative_tolerance(double residuals) const {
     constexpr double kThirdOfDeviation = 0.1;
     return kThirdOfDeviation / (iterations * most_of_noise(residuals));
   }
 };
 
-// Iterations bound the time: a well determined shape converges before, and what
-// wanders on along a valley is not determined.
+// Iterations bound the time. A well determined shape converges before; a fit that wanders on along
+// a valley is not determined.
 
-/// Tells classes that cannot be from those that may.
+/// Separates impossible classes from possible ones.
 inline constexpr RefineEffort kCoarseEffort{20, 1, 1e-3};
 
-/// For the plausible ones on the reduced points, and on all where these disagree: to a tenth of a
-/// standard deviation of the optimum.
+/// For the plausible classes on the reduced points, and on all points if these disagree: to a tenth
+/// of a standard deviation of the optimum.
 inline constexpr RefineEffort kOnReducedEffort{80, 1, 1e-2};
 inline constexpr RefineEffort kOnAllEffort{8, 1, 1e-2};
 
-/// For the best class on the reduced points: these are few, so that long valleys are walked here.
+/// For the best class on the reduced points: these are few, so long valleys are walked here.
 inline constexpr RefineEffort kBestOnReducedEffort{120, 1, 1e-5};
 
-/// For the best class on all points: to its very optimum. What has none within so many steps runs
-/// along a valley that is as good as flat.
+/// For the best class on all points: to its exact optimum. If it is not reached in so many steps,
+/// the fit runs along a valley that is practically flat.
 inline constexpr RefineEffort kPolishEffort{20, 2, 1e-6};
 
-/// For a class that is to be told from all others and has not arrived yet: to a hundredth of a
-/// standard deviation.
+/// For a class that decides between classes and has not converged yet: to a hundredth of a standard
+/// deviation.
 inline RefineEffort thorough(double out_of_reach) { return {50, 1, 1e-4, out_of_reach}; }
 
 }  // namespace palpate

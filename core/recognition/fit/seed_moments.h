@@ -1,4 +1,4 @@
-// Least-squares polynomials by their moments: what the coarse search weighs its trials by.
+// Least-squares polynomials from moments: the coarse search compares its trials by them.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +12,8 @@
 
 namespace palpate {
 
-/// Weighted moments for a least-squares polynomial in u of degree 3: sums of w u^k, w v u^k. An
-/// even and an odd power at a time: two doubles are one operation.
+/// Weighted moments for a least-squares polynomial in u of degree 3: sums of w u^k and w v u^k.
+/// Even and odd powers in pairs: two doubles are processed at once.
 struct SeedMoments {
   using Pair = Eigen::Array2d;
   std::array<Pair, 4> u = {Pair::Zero(), Pair::Zero(), Pair::Zero(), Pair::Zero()};
@@ -35,7 +35,7 @@ struct SeedMoments {
     u[3] += powers;
   }
 
-  /// Adds another patch's moments, taken on the arm of the given sign: u -> sign u.
+  /// Adds another patch's moments, on the arm of the given sign: u -> sign u.
   void add(const SeedMoments& other, double sign) {
     const Pair signs(1.0, sign);
     for (std::size_t k = 0; k < 4; ++k) {
@@ -51,20 +51,19 @@ struct SeedMoments {
   double of_vu(std::size_t k) const { return vu[k / 2][static_cast<Eigen::Index>(k % 2)]; }
 };
 
-/// Near-empty directions (all points alike) must not blow up: a ridge at the level of rounding.
+/// Ridge at the level of rounding, for nearly empty directions (all points alike).
 inline constexpr double kSeedRidge = 1e-12;
 
-/// Sums of squares that two models leave, one of which has a power more.
+/// Residual sums of squares of two models, with three and with four powers.
 struct ResidualSums {
   double of_three = std::numeric_limits<double>::infinity();
   double of_four = std::numeric_limits<double>::infinity();
 };
 
-/// Least squares of v over the first three and over all four of the powers of u, in the order
-/// given.
+/// Least squares of v over the first three and over all four powers of u, in the given order.
 inline ResidualSums residual_sums(const SeedMoments& m, const std::array<std::size_t, 4>& powers) {
   constexpr std::size_t kRight = 4;
-  // Gaussian elimination of the normal equations: each pivot takes its part off the sum of squares.
+  // Gaussian elimination of the normal equations: each pivot reduces the sum of squares.
   std::array<std::array<double, 5>, 4> rows;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = i; j < 4; ++j) {
@@ -97,7 +96,7 @@ inline ResidualSums residual_sums(const SeedMoments& m, const std::array<std::si
   return sums;
 }
 
-/// Least squares of v over all four powers of u, the coefficient of u^k at k.
+/// Least squares of v over all four powers of u; element k is the coefficient of u^k.
 inline std::array<double, 4> coefficients(const SeedMoments& m) {
   Eigen::Matrix4d normal;
   Eigen::Vector4d right;
@@ -117,9 +116,9 @@ inline std::array<double, 4> coefficients(const SeedMoments& m) {
   return {y[0], y[1], y[2], y[3]};
 }
 
-/// By how much of the sum of squares a patch, its moments taken on the positive arm, fits there
-/// better than on the negative one, over 4. With the even part e and the odd part o of y(u) the
-/// residuals are v - e - o and v - e + o: the sum of w o (v - e).
+/// A quarter of the sum of squares by which a patch fits better on the positive arm than on the
+/// negative one; its moments are those of the positive arm. With the even part e and the odd part o
+/// of y(u) the residuals are v - e - o and v - e + o, so this is the sum of w o (v - e).
 inline double advantage_of_positive_arm(const SeedMoments& m, const std::array<double, 4>& y) {
   return y[1] * (m.of_vu(1) - y[0] * m.of_u(1) - y[2] * m.of_u(3)) +
          y[3] * (m.of_vu(3) - y[0] * m.of_u(3) - y[2] * m.of_u(5));

@@ -1,4 +1,4 @@
-// Whether a fitted curve is one that a probe could have touched at the points.
+// Tests whether a probe could have touched a fitted curve at the points.
 #pragma once
 
 #include "core/recognition/fit/implicit_fit.h"
@@ -10,14 +10,14 @@ namespace palpate {
 /// Positive for ellipses, negative for hyperbolas; unit-norm coefficients.
 inline double discriminant(const ConicCoefficients& q) { return 4.0 * q[0] * q[2] - q[1] * q[1]; }
 
-/// Whether a conic is one that a probe could have touched at these points: one branch, each patch
-/// on one side of it. A thin ellipse, or the two branches of a flat hyperbola, "explains" straight
-/// noisy points by letting neighbours lie on opposite sides: its direction of travel then flips
-/// against the patch's own from point to point. The fit must be one to these points.
+/// True if a probe could have touched the conic at these points: one branch, with each patch on one
+/// side of it. A thin ellipse, or the two branches of a flat hyperbola, can "explain" straight
+/// noisy points if neighbours lie on opposite sides. Its direction of travel then flips from point
+/// to point against that of the patch. The fit must be one to these points.
 bool is_touchable(const ImplicitFit& fit, const FitData& data);
 
-/// The same for a polynomial curve: the curve parameter runs one way along a patch. Samples half a
-/// patch apart are compared, whose order noise does not turn round.
+/// The same for a polynomial curve: its parameter must run one way along each patch. Compares
+/// samples half a patch apart, whose order noise does not reverse.
 bool is_touchable(const PolynomialFit& fit, const FitData& data);
 
 }  // namespace palpate

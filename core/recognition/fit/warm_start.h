@@ -1,4 +1,4 @@
-// What one recognition leaves for the next of the same object.
+// What one recognition keeps for the next one of the same object.
 #pragma once
 
 #include <optional>
@@ -9,30 +9,31 @@
 
 namespace palpate {
 
-/// The polynomial classes as they were fitted last: a growing patch moves them little.
+/// Starting values for the polynomial classes: the previous fits. A few new samples change them
+/// little.
 struct WarmStart {
   PolynomialFits polynomials;
-  Pose2 frame;         ///< FitData's, that they were fitted in
-  double scale = 1.0;  ///< likewise
-  /// No conic has an optimum that was touched, and no ellipse was found that comes near all the
-  /// same (weigh/conic_mode.h): not to be looked for again.
+  Pose2 frame;         ///< FitData's frame of these fits
+  double scale = 1.0;  ///< FitData's scale of these fits [m]
+  /// True if no conic has an optimum that a probe could have touched, and no ellipse was found
+  /// nearby instead (weigh/conic_mode.h): it is not searched again.
   bool no_conic = false;
 };
 
-/// One for each way in which the tips were taken to lie beside the patches (tip_sides.h).
+/// A start for one choice of the tips' sides, one per patch (tip_sides.h).
 struct SidedStart {
   std::vector<int> sides;
   WarmStart start;
 };
 
-/// The start for those sides; nullptr where there is none.
+/// The start for those sides; nullptr if there is none.
 const WarmStart* start_for(std::span<const SidedStart> starts, std::span<const int> sides);
 
-/// `fits` on reduced points. Where none of them fits, the next recognition does not search again
-/// either: the search has just been made.
+/// The start from `fits` on reduced points. If none of them fits, the next recognition does not
+/// search again either: this search has just been made.
 WarmStart warm_start_from(const ClassFits& fits, const FitData& reduced);
 
-/// The starts in the frame of `reduced`, each with the parameters of the points' nearest places.
+/// The starts in the frame of `reduced`, with each point's nearest parameter.
 PolynomialFits carried_to(const WarmStart& warm, const FitData& reduced);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
-// A point of a canonical curve with all derivatives that a second-order fit takes, in any
-// arithmetic: no transcendental function, so that double-double has them too.
+// A point of a canonical curve with the derivatives for a second-order fit, in any arithmetic. It
+// uses no transcendental function, so that it works in double-double too.
 #pragma once
 
 #include <cmath>
@@ -33,7 +33,7 @@ PlaneVector<T> left(const PlaneVector<T>& v) {
   return {-v.y, v.x};
 }
 
-/// Turns `v` by the angle 2 atan(h / 2), which is h but for h^3 / 12.
+/// Rotates `v` by the angle 2 atan(h / 2), which is h - h^3 / 12 to third order.
 template <typename T>
 PlaneVector<T> turned(const PlaneVector<T>& v, const T& h) {
   const T half = T(0.5) * h;
@@ -44,8 +44,8 @@ PlaneVector<T> turned(const PlaneVector<T>& v, const T& h) {
   return {c * v.x - s * v.y, s * v.x + c * v.y};
 }
 
-/// Position and derivatives by the curve's parameter and by its shape. The parameter is t, but
-/// (cos t, sin t) for circle and ellipse and sinh t for the hyperbola.
+/// Position and its derivatives by the curve's parameter and by the shape. The parameter is (cos t,
+/// sin t) for circle and ellipse, sinh t for the hyperbola, else t.
 template <typename T>
 struct CanonicalPoint {
   PlaneVector<T> position;

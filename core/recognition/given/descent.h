@@ -1,4 +1,4 @@
-// Down to a stationary point of the squared orthogonal distances: Newton's method, damped.
+// Damped Newton's method for the sum of squared orthogonal distances.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace palpate {
 
-/// L of L L^T = the leading n x n part of `m` with `ridge` added to its diagonal; nullopt where
-/// that is not positive definite to rounding.
+/// Cholesky factor L of the leading n x n part of `m` with `ridge` added to its diagonal; nullopt
+/// if that is not positive definite to rounding.
 template <typename T>
 std::optional<SquareMatrix<T>> lower_factor(const SquareMatrix<T>& m, std::size_t n, double ridge) {
   using std::sqrt;
@@ -56,7 +56,7 @@ std::array<T, kMostUnknowns> solve(const SquareMatrix<T>& l, std::size_t n,
   return b;
 }
 
-/// Root of the information's diagonal: what one unit of each unknown moves the residuals by.
+/// Square root of the information's diagonal: how far one unit of each unknown moves the residuals.
 template <typename T>
 std::array<double, kMostUnknowns> unit_moves(const SquareMatrix<T>& information, std::size_t n) {
   std::array<double, kMostUnknowns> moves;
@@ -68,7 +68,7 @@ std::array<double, kMostUnknowns> unit_moves(const SquareMatrix<T>& information,
   return moves;
 }
 
-/// `m` in units of those moves.
+/// `m` with each unknown scaled to move the residuals by one unit.
 template <typename T>
 SquareMatrix<T> in_unit_moves(SquareMatrix<T> m, std::size_t n,
                               const std::array<double, kMostUnknowns>& moves) {
@@ -82,24 +82,25 @@ SquareMatrix<T> in_unit_moves(SquareMatrix<T> m, std::size_t n,
 
 struct DescentEffort {
   int most_steps = 0;
-  double last_step = 0.0;     ///< moves the residuals by less: nothing is left to gain
-  double trusted_step = 0.0;  ///< below this Newton's step stands, whatever rounding says of it
+  double last_step = 0.0;  ///< converged if a step moves the residuals by less
+  /// A Newton step shorter than this is taken even if rounding hides the gain.
+  double trusted_step = 0.0;
 };
 
 template <typename T>
 struct Descent {
   Squares<T> squares;  ///< at the end
   int steps = 0;
-  bool settled = false;  ///< ended by a step short enough, at a minimum
+  bool settled = false;  ///< converged to a minimum
 };
 
-/// From `curve` downhill. `seat(curve)` puts the feet of a trial place in order and says whether it
-/// is a curve of the class at all.
+/// Minimises from `curve`. `seat(curve)` sets the feet of a trial curve and returns whether it
+/// belongs to the class.
 template <typename T, typename Seat>
 Descent<T> descend(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> points,
                    const DescentEffort& effort, const Seat& seat) {
-  constexpr double kFirstDamping = 1e-3;   // nearly Newton's step
-  constexpr double kLeastDamping = 1e-18;  // none, beside a matrix of unit diagonal
+  constexpr double kFirstDamping = 1e-3;   // almost Newton's step
+  constexpr double kLeastDamping = 1e-18;  // no effect on a matrix with unit diagonal
   constexpr double kMostDamping = 1e12;
   const auto n = static_cast<std::size_t>(Unknowns(curve->curve_class).count);
   Descent<T> descent;
@@ -141,7 +142,7 @@ Descent<T> descend(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> point
         *curve = std::move(trial);
         descent.squares = there;
         damping = damping > kLeastDamping ? 0.1 * damping : 0.0;
-        // A damped step is short without being near.
+        // A damped step can be short far from the minimum.
         if (length <= effort.last_step && damping < 0.1) {
           descent.settled = exact.has_value();
           return descent;

@@ -1,4 +1,4 @@
-// Between the parameters that the fit of a given class walks in and a curve's own.
+// Conversion between a curve's parameter t and the parameter used in the fit of a given class.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,16 @@
 
 namespace palpate {
 
-/// On the circle and ellipse cosine and sine of t, on the hyperbola sinh t, else t.
+/// (cos t, sin t) for circle and ellipse, (sinh t, 0) for the hyperbola, else (t, 0).
 PlaneVector<double> parameter_at(CurveClass curve_class, double t);
 
 double t_at(CurveClass curve_class, const PlaneVector<double>& parameter);
 
-/// nullopt where the class ends.
+/// The curve in double precision; nullopt if the shape is outside its class.
 template <typename T>
 std::optional<Curve> curve_of(const PlacedCurve<T>& placed) {
-  // Beyond so many half extents a conic cannot be told from its limit, nor a circle from a line.
+  // Of the half extent. With larger parameters a conic cannot be told from its limit, nor a circle
+  // from a line.
   constexpr double kFarthest = 1e7;
   Eigen::Vector3d values;
   for (int i = 0; i < 3; ++i) {

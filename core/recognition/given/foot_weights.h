@@ -1,4 +1,4 @@
-// Weights of points and normals whose variance depends on where they lie on the curve.
+// Weights of points and normals whose variance depends on the foot point.
 #pragma once
 
 #include <span>
@@ -8,10 +8,10 @@
 
 namespace palpate {
 
-/// Weighs the points of stated covariance by their variance along the curve's normals at their
-/// feet, and measured normals by their own variance and that of the foot's place: noise along the
-/// curve puts the foot beside the touch, where the curve has turned on. Returns by what part the
-/// weight that changed most did.
+/// Sets the weight of points with a covariance from their variance along the curve's normal at the
+/// foot. Sets the weight of measured normals from their own variance plus that of the foot's place:
+/// position noise along the curve moves the foot to where the curve's normal has turned. Returns
+/// the largest relative change of a weight.
 double weigh_at_feet(const PlacedCurve<DoubleDouble>& placed, const LocalPoints& local,
                      std::span<const GivenPoint> points, double default_sigma_m,
                      std::vector<WeighedPoint<DoubleDouble>>* exact);

@@ -16,7 +16,7 @@ namespace {
 
 using Exact = DoubleDouble;
 
-/// A line slides freely: its origin is where it lies nearest to the points' mean.
+/// A line can slide freely: its origin is set to the place nearest to the mean of the points.
 void slide_to_mean(const LocalPoints& local, PlacedCurve<double>* line) {
   Vec2 sum = Vec2::Zero();
   for (const Vec2& point : local.rough) {
@@ -50,7 +50,7 @@ PlacedCurve<Exact> exact_of(const PlacedCurve<double>& curve) {
   return exact;
 }
 
-/// Residuals no larger than the rounding of the coordinates are as good as none.
+/// Residuals are taken as at least the rounding of the coordinates.
 double stationarity_of(const Squares<Exact>& squares, const LocalPoints& local, std::size_t n) {
   const auto moves = unit_moves(squares.information, n);
   const double least = local.rounding * to_double(local.exact.front().weight);
@@ -94,7 +94,7 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
     stated = stated && (point.set_aside || noise_of(point, options.sigma_m) > 0.0);
   }
   fit.status = GivenStatus::TooFewPoints;
-  // Stated and unstated noise do not mix: the data decide for all.
+  // Stated and unstated noise do not mix: if one is not stated, the noise of all is estimated.
   const auto local = local_points(points, options.sigma_m, stated);
   if (!local || curve_class == CurveClass::Unclassified) {
     return fit;
@@ -104,7 +104,7 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
       static_cast<std::size_t>(degrees_of_freedom(curve_class))) {
     return fit;
   }
-  // Two touches with normals lie on one line and determine a circle.
+  // Two touches with normals lie on one line, but determine a circle.
   if (curve_class != CurveClass::Line && local->normals == 0 && on_one_line(*local)) {
     fit.status = GivenStatus::Collinear;
     return fit;
@@ -122,12 +122,13 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   for (WeighedPoint<Exact>& point : exact) {
     point.offset = Exact(static_cast<double>(found.side)) * point.offset;
   }
-  // Quadratic: what moves residuals by 1e-17 is followed by nothing that a double can hold.
+  // Newton converges quadratically: after a step that moves residuals by 1e-17, the next one is
+  // below the rounding of a double.
   constexpr DescentEffort kToRounding{40, 1e-17, 1e-6};
   const auto seat = [](PlacedCurve<Exact>* trial) { return curve_of(*trial).has_value(); };
   auto descent = descend(&placed, std::span<const WeighedPoint<Exact>>(exact), kToRounding, seat);
   if (stated) {
-    // Each round leaves of the weights' error about the noise over the radius of curvature.
+    // Each round reduces the error of the weights by about noise / radius of curvature.
     constexpr int kMostRounds = 40;
     constexpr double kSame = 1e-14;
     for (int round = 0; round < kMostRounds; ++round) {

@@ -1,4 +1,4 @@
-// A class that is given: its least orthogonal distances to all points, whatever their order.
+// Fits a curve of a given class to all points, in any order, by least orthogonal distances.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,16 +15,17 @@
 namespace palpate {
 
 struct GivenOptions {
-  double sigma_m = 0.0;  ///< noise of points that bring none; 0 = estimate it [m]
+  /// Noise of points that state none; 0 = estimate it from the residuals. [m]
+  double sigma_m = 0.0;
 };
 
 enum class GivenStatus {
   Fitted,
-  NotFinite,      ///< a position, noise, normal or tip radius is not finite, or negative
-  TooFewPoints,   ///< fewer different points, and normals in use, than the class has unknowns
-  Collinear,      ///< all on one straight line: no curve is determined
-  AtLimit,        ///< the squares fall all the way to where the class ends: it has no best curve
-  NotDetermined,  ///< a best curve, but others fit alike: what is told of it is one of many
+  NotFinite,      ///< a number is not finite, or a noise, normal, covariance or radius is invalid
+  TooFewPoints,   ///< fewer different points and used normals than the class has unknowns
+  Collinear,      ///< all points lie on one straight line: no curve is determined
+  AtLimit,        ///< no best curve: the sum of squares falls all the way to the limit of the class
+  NotDetermined,  ///< rounding of the coordinates leaves a shape parameter as uncertain as its size
 };
 
 /// Lower-case words ("too few points").
@@ -32,41 +33,44 @@ std::string_view name_of(GivenStatus status);
 
 struct GivenResidual {
   double t = 0.0;           ///< canonical parameter of the foot point
-  double distance_m = 0.0;  ///< signed, positive left of increasing t; less the tip radius
+  double distance_m = 0.0;  ///< signed, positive left of increasing t; minus the tip radius
   Vec2 foot_m = Vec2::Zero();
-  /// The measured normal's direction less the curve's, either way round, in (-pi/2, pi/2]; NaN
-  /// where none is measured, or the curve has none there. [rad]
+  /// Angle from the curve's normal to the measured one, both taken without sign, in (-pi/2, pi/2];
+  /// NaN if no normal is measured or the curve has none there. [rad]
   double normal_rad = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct GivenFit {
   GivenStatus status = GivenStatus::NotFinite;
-  ShapeParameters shape;  ///< meaningful where Fitted or NotDetermined, as all below
+  ShapeParameters shape;  ///< valid if Fitted or NotDetermined, like all members below
   Pose2 world_T_curve;
-  /// The Kanatani-Cramer-Rao bound for the noise stated or estimated. What the pose symmetry leaves
-  /// free has variance 0; all is infinite where no noise is known and none can be estimated.
+  /// Of [shape; x; y; theta]: the Kanatani-Cramer-Rao bound for the noise stated or estimated. What
+  /// the pose symmetry leaves free has variance 0. All variances are infinite if the noise is
+  /// neither stated nor can be estimated.
   ShapePoseCovariance covariance;
   std::vector<GivenResidual> residuals;  ///< in the order of the points
   double rms_m = 0.0;                    ///< root mean square distance of the points in use
-  double peak_to_valley_m = 0.0;         ///< largest less smallest signed distance of these
-  double chi2 = 0.0;          ///< sum of squares over stated variances; over the estimated one: dof
-  bool sigma_stated = false;  ///< for every point: only then chi2 says whether the class is right
-  double sigma_m = 0.0;       ///< root mean square of the noise stated, or the estimated one
-  int dof = 0;                ///< points and normals in use less unknowns
-  std::size_t used = 0;       ///< points
-  std::size_t normals = 0;    ///< in use; 0 where a point's noise is not known
+  double peak_to_valley_m = 0.0;         ///< largest minus smallest signed distance of these points
+  double chi2 = 0.0;  ///< sum of squares over the stated variances; dof if the noise is estimated
+  bool sigma_stated = false;  ///< for every point: only then does chi2 test the class
+  double sigma_m = 0.0;       ///< root mean square of the stated noise, or the estimated noise
+  int dof = 0;                ///< points and normals in use minus unknowns
+  std::size_t used = 0;       ///< points in use
+  std::size_t normals = 0;    ///< normals in use; 0 unless the noise of every point is known
   int side = 0;  ///< tip centres lie left (+1) or right (-1) of increasing t; 0 without tips
-  /// Largest element of J^T r beside the norms of its column of J and of r: 0 at a stationary
-  /// point.
+  /// Largest |J_k . r| / (|J_k| |r|) over the columns J_k of the Jacobian, r the residuals: 0 at a
+  /// stationary point.
   double stationarity = 0.0;
 };
 
-/// Least squares of the signed orthogonal distances over all curves of the class, to rounding of
-/// the answer. A measured normal adds the square of its angle to the curve's normal over its
-/// deviation, which holds that of the foot's place too (noise along the curve puts the foot where
-/// the curve has turned on); a covariance C weighs its point by 1 / (n . C n), n the curve's normal
-/// at its foot point, as found, not as sought: then the estimate has no bias by the weights' own
-/// slope. Of several minima the lowest that the starts of every class's own search lead to.
+/// Minimises the sum of squared orthogonal distances over all curves of the class, to rounding of
+/// the result. Of several minima it gives the lowest that the starts lead to (given_starts.h).
+///
+/// A measured normal adds a residual: its angle to the curve's normal over its standard deviation.
+/// That deviation includes the position noise along the curve, which puts the foot point where the
+/// curve's normal has turned. A point with covariance C has the weight 1 / (n . C n), n the curve's
+/// normal at its foot point. The weights are those at the solution and are held fixed while the fit
+/// moves: a fit that varied them would be biased towards small weights.
 GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> points,
                          const GivenOptions& options = {});
 

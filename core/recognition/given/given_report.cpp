@@ -14,8 +14,8 @@ namespace {
 
 using Exact = DoubleDouble;
 
-/// (information)^-1 of the unknowns, in their units; a direction that is not determined at all
-/// gets a variance as large as doubles can tell.
+/// Inverse of the information. A direction that is not determined at all gets a variance as large
+/// as the arithmetic allows.
 SquareMatrix<Exact> inverse_of(const SquareMatrix<Exact>& information, std::size_t n) {
   constexpr double kNothing = 1e-30;  // a hundred roundings of an Exact
   const auto moves = unit_moves(information, n);
@@ -59,7 +59,7 @@ void report_curve(const PlacedCurve<Exact>& placed, const Squares<Exact>& square
   fit->world_T_curve.theta =
       placed.curve_class == CurveClass::Circle ? 0.0 : std::atan2(axis.y(), axis.x());
 
-  // [shape; x; y; theta] = this times the unknowns.
+  // [shape; x; y; theta] = by * unknowns
   const Eigen::Index rows = unknowns.shape + 3;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> by(rows,
                                                                     static_cast<Eigen::Index>(n));
@@ -82,7 +82,8 @@ void report_curve(const PlacedCurve<Exact>& placed, const Squares<Exact>& square
       of_unknowns(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
           to_double(inverse[i][j]);
     }
-    // Where the rounding of the coordinates alone leaves a shape parameter open by all of itself.
+    // True if the rounding of the coordinates leaves a shape parameter as uncertain as its own
+    // size.
     const double size = i < 3 && powers[static_cast<Eigen::Index>(i)] == 0.0
                             ? 1.0
                             : std::abs(to_double(placed.shape[i % 3]));
@@ -163,7 +164,7 @@ void report_noise(std::span<const GivenPoint> points, const LocalPoints& local, 
     fit->covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
     return;
   }
-  // The residuals are in units of length here.
+  // Here `squares` is in squared local units.
   const double variance = squares / static_cast<double>(fit->dof);
   fit->chi2 = static_cast<double>(fit->dof);
   fit->sigma_m = local.unit_m * std::sqrt(variance);
@@ -187,7 +188,7 @@ void settle_pose(std::span<const GivenPoint> points, const LocalPoints& local, G
     pose.theta = wrap_angle(pose.theta + kPi);
     const bool closed = fit->shape.curve_class == CurveClass::Ellipse;
     for (GivenResidual& residual : fit->residuals) {
-      // A cubical parabola's other half; there increasing t runs the other way.
+      // Half a turn maps a cubical parabola's t to -t: the direction of increasing t reverses.
       residual.t = closed ? wrap_angle(residual.t + kPi) : -residual.t;
       residual.distance_m = closed ? residual.distance_m : -residual.distance_m;
     }

@@ -1,4 +1,4 @@
-// What is told of a given class's fit, in metres and the world's frame.
+// Fills the public result of a fit: metres, world frame.
 #pragma once
 
 #include <span>
@@ -8,20 +8,23 @@
 
 namespace palpate {
 
-/// Shape, pose and covariance in metres and the world's frame.
+/// Sets shape, pose and covariance, in metres and the world frame. Sets NotDetermined where it
+/// applies.
 void report_curve(const PlacedCurve<DoubleDouble>& placed, const Squares<DoubleDouble>& squares,
                   const LocalPoints& local, GivenFit* fit);
 
-/// Of all points, those set aside included.
+/// Sets the residuals of all points, also of those set aside, and rms_m and peak_to_valley_m.
 void report_residuals(PlacedCurve<DoubleDouble>* placed, const LocalPoints& local,
                       std::span<const GivenPoint> points, GivenFit* fit);
 
-/// `squares`: over the variances where the noise is stated for all, in units of length otherwise.
+/// Sets the noise, chi2 and dof, and scales the covariance by an estimated noise. `squares`: sum of
+/// squared residuals, over the variances if every noise is stated (`stated`), else in squared local
+/// units.
 void report_noise(std::span<const GivenPoint> points, const LocalPoints& local, bool stated,
                   double default_sigma_m, double squares, GivenFit* fit);
 
-/// A line along the order of the points; of two poses that are the same, the one nearer to the
-/// world's axes.
+/// Makes the pose unique: a line runs from the first point to the last; of two equal poses the one
+/// with |theta| <= pi/2 is taken.
 void settle_pose(std::span<const GivenPoint> points, const LocalPoints& local, GivenFit* fit);
 
 }  // namespace palpate

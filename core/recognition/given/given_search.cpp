@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-/// The points that show a start as well as all do, in double precision.
+/// At most `most` points, evenly spaced by index: enough to judge a start.
 std::vector<WeighedPoint<double>> some(std::span<const WeighedPoint<double>> all,
                                        std::size_t most) {
   const std::size_t stride = (all.size() + most - 1) / most;
@@ -24,7 +24,8 @@ std::vector<WeighedPoint<double>> some(std::span<const WeighedPoint<double>> all
   return points;
 }
 
-/// Puts every foot at the nearest point of the whole curve.
+/// Sets every foot to the nearest point of the whole curve. False if the shape is outside the
+/// class.
 bool seat_globally(PlacedCurve<double>* placed, std::span<const WeighedPoint<double>> points) {
   const auto curve = curve_of(*placed);
   if (!curve) {
@@ -42,7 +43,7 @@ bool seat_globally(PlacedCurve<double>* placed, std::span<const WeighedPoint<dou
   return true;
 }
 
-/// Settled before unsettled, then the lower cost.
+/// Settled ones come first, then the lower cost.
 bool is_better(const GivenCandidate& u, const GivenCandidate& v) {
   return u.settled != v.settled ? u.settled : u.cost < v.cost;
 }
@@ -60,7 +61,7 @@ void descend_on(std::span<const WeighedPoint<double>> points, const DescentEffor
   candidate->settled = descent.settled;
 }
 
-/// Tip centres on that side of the curve.
+/// The points in double precision, with tip centres on that side of the curve.
 std::vector<WeighedPoint<double>> on_side(std::span<const WeighedPoint<DoubleDouble>> exact,
                                           int side) {
   std::vector<WeighedPoint<double>> points;
@@ -73,14 +74,14 @@ std::vector<WeighedPoint<double>> on_side(std::span<const WeighedPoint<DoubleDou
   return points;
 }
 
-/// Starts through the points; where normals are measured, through a place on either side of each
-/// along its tangent too, so that fewer points than a class has unknowns have starts.
+/// Starts from the points. If normals are measured, also from two extra places per point, on its
+/// tangent to either side: so there are starts for fewer points than the class has unknowns.
 std::vector<GivenStart> starts_of(CurveClass curve_class, const LocalPoints& local) {
   std::vector<GivenStart> starts = given_starts(curve_class, local.rough);
   if (local.normals == 0) {
     return starts;
   }
-  // Of the points' extent, which is about 1: there a curve has left its tangent by little.
+  // Of the points' extent, which is about 1. So near, a curve has hardly left its tangent.
   constexpr double kAside = 0.1;
   std::vector<Vec2> more = local.rough;
   for (const WeighedPoint<DoubleDouble>& point : local.exact) {
@@ -96,12 +97,12 @@ std::vector<GivenStart> starts_of(CurveClass curve_class, const LocalPoints& loc
   return starts;
 }
 
-/// The lowest minimum that any start leads to; its feet are those of all points.
+/// The lowest minimum that any start leads to. Its feet are those of all points.
 GivenCandidate search(CurveClass curve_class, const LocalPoints& local,
                       std::span<const int> sides) {
   constexpr std::size_t kMostSeedPoints = 64;
   constexpr std::size_t kMostOnAll = 2;
-  // A start that is right settles within ten steps; a valley may take a few dozen.
+  // A good start settles within ten steps; a long valley may take a few dozen.
   constexpr DescentEffort kOnSome{60, 1e-6, 0.0};
   constexpr DescentEffort kOnAll{200, 1e-8, 0.0};
   std::vector<GivenCandidate> found;
@@ -127,7 +128,7 @@ GivenCandidate search(CurveClass curve_class, const LocalPoints& local,
   std::stable_sort(found.begin(), found.end(), is_better);
   GivenCandidate best;
   for (std::size_t i = 0; i < std::min(found.size(), kMostOnAll); ++i) {
-    // What ended where another did is not walked again.
+    // Skips a candidate that ended where the first one did.
     constexpr double kSame = 1e-6;
     if (i > 0 && found[i].side == found[0].side &&
         std::abs(found[i].cost - found[0].cost) <= kSame * found[0].cost) {
@@ -141,7 +142,7 @@ GivenCandidate search(CurveClass curve_class, const LocalPoints& local,
   return best;
 }
 
-/// The sides that tips may lie on: what the points say of their material rules.
+/// The sides of the curve on which tips may lie.
 std::vector<int> sides_of(std::span<const GivenPoint> points) {
   const bool tips = std::any_of(points.begin(), points.end(), [](const GivenPoint& point) {
     return point.tip_radius_m > 0.0 && !point.set_aside;
@@ -149,7 +150,7 @@ std::vector<int> sides_of(std::span<const GivenPoint> points) {
   return tips ? std::vector<int>{1, -1} : std::vector<int>{0};
 }
 
-/// How far the points' word on their material speaks against the side, in points.
+/// Points whose stated material (or normal) contradicts the side, minus those that agree.
 int votes_against(const GivenCandidate& candidate, const LocalPoints& local,
                   std::span<const GivenPoint> points) {
   int votes = 0;
@@ -163,7 +164,7 @@ int votes_against(const GivenCandidate& candidate, const LocalPoints& local,
                                           candidate.curve.feet[k]);
     const PlaneVector<double> local_into{inner(candidate.curve.axis, {into.x(), into.y()}),
                                          inner(left(candidate.curve.axis), {into.x(), into.y()})};
-    // The centre lies opposite the material.
+    // The tip's centre lies opposite the material.
     votes += candidate.side * inner(left(place_of.first), local_into) > 0.0 ? 1 : -1;
   }
   return votes;

@@ -1,4 +1,4 @@
-// The curve of a given class that lies nearest to all points, in double precision.
+// Searches the curve of a given class that is nearest to all points, in double precision.
 #pragma once
 
 #include <limits>
@@ -12,11 +12,11 @@ struct GivenCandidate {
   PlacedCurve<double> curve;
   double cost = std::numeric_limits<double>::infinity();
   bool settled = false;  ///< at a minimum
-  int side = 0;          ///< of the curve on which tip centres lie; 0 without tips
+  int side = 0;  ///< side of the curve on which tip centres lie (+1 left, -1 right); 0 without tips
 };
 
-/// Of both sides that tips may lie on, the one that the points' material tells, else the better
-/// one. Its cost is infinite where no start leads anywhere.
+/// With tips, tries both sides and takes the one that the points' stated material supports, else
+/// the one that fits better. The cost is infinite if no start leads to a curve.
 GivenCandidate search_sides(CurveClass curve_class, const LocalPoints& local,
                             std::span<const GivenPoint> points);
 

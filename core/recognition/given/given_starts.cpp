@@ -16,12 +16,12 @@
 namespace palpate {
 namespace {
 
-/// So many points, evenly taken, show a start as well as all do.
+/// Most points used to find starts, taken evenly: they show a start as well as all do.
 constexpr std::size_t kMostSeedPoints = 64;
 
 enum class Order {
-  None,     ///< every point a patch of its own
-  AsGiven,  ///< one patch
+  None,     ///< every point is a patch of its own
+  AsGiven,  ///< all points are one patch
 };
 
 FitData seed_data(std::span<const Vec2> points, Order order) {
@@ -37,15 +37,15 @@ FitData seed_data(std::span<const Vec2> points, Order order) {
   return make_fit_data(patches, 0.0, &sigma_known);
 }
 
-/// Of the frame of `data`, in the points' frame.
+/// Converts a curve from the frame of `data` to the frame of the points.
 GivenStart in_points_frame(const ShapeParameters& shape, const Pose2& pose, const FitData& data) {
   return {shape, data.frame * pose};
 }
 
-/// The least algebraic distances among the ellipses, or among the hyperbolas: eigenvectors of the
-/// scatter with the discriminant as the norm (A. Fitzgibbon, M. Pilu and R. Fisher, 1999, in the
-/// reduced form of R. Halir and J. Flusser, 1998; for hyperbolas P. O'Leary and P. Zsombor-Murray,
-/// 2004).
+/// Conics of least algebraic distance among the ellipses, or among the hyperbolas: generalised
+/// eigenvectors of the scatter matrix with the discriminant as the constraint. (Ellipses: A.
+/// Fitzgibbon, M. Pilu and R. Fisher, 1999, in the reduced form of R. Halir and J. Flusser, 1998.
+/// Hyperbolas: P. O'Leary and P. Zsombor-Murray, 2004.)
 std::vector<ConicCoefficients> conics_of_class(CurveClass curve_class,
                                                std::span<const FitPoint> points) {
   Eigen::Matrix3d quadratic = Eigen::Matrix3d::Zero();
@@ -61,8 +61,8 @@ std::vector<ConicCoefficients> conics_of_class(CurveClass curve_class,
   }
   const Eigen::Matrix3d to_linear = -SmallLdlt<3>(linear).inverse() * mixed.transpose();
   const Eigen::Matrix3d scatter = quadratic + mixed * to_linear;
-  // scatter v = lambda discriminant v, the other way round: the scatter is positive, but for points
-  // that lie on a conic exactly, whose rounding the ridge stands for.
+  // Solves scatter v = lambda discriminant v with the scatter as the factored matrix: it is
+  // positive definite unless the points lie exactly on a conic. The ridge covers that case.
   constexpr double kRidge = 1e-13;
   Eigen::Matrix3d discriminant;
   discriminant << 0.0, 0.0, 2.0, 0.0, -1.0, 0.0, 2.0, 0.0, 0.0;
@@ -98,7 +98,7 @@ void add_conic(CurveClass curve_class, const ConicCoefficients& q, const FitData
   ShapeParameters shape{curve_class, data.scale * canonical->values};
   Pose2 pose = canonical->world_T_curve;
   if (curve_class == CurveClass::Hyperbola) {
-    // The branch that most points are on.
+    // Takes the branch on which most points lie.
     int votes = 0;
     for (const FitPoint& point : data.points) {
       votes += pose.to_local(point.position).x() > 0.0 ? 1 : -1;
@@ -188,7 +188,7 @@ std::vector<GivenStart> given_starts(CurveClass curve_class, std::span<const Vec
     case CurveClass::Unclassified:
       break;
     case CurveClass::Line:
-      // Through the points' middle, along their longer axis: that is the frame's.
+      // Through the middle of the points, along their longer axis: that is the frame's x axis.
       starts.push_back({{CurveClass::Line, Eigen::Vector3d::Zero()}, data.frame});
       break;
     case CurveClass::Circle: {
@@ -215,8 +215,8 @@ std::vector<GivenStart> given_starts(CurveClass curve_class, std::span<const Vec
       break;
     case CurveClass::SemiCubicalParabola:
     case CurveClass::CubicSpline:
-      // The arms are told apart sooner where points come in their order along the curve; it is not
-      // relied on.
+      // If the points come in their order along the curve, the two arms are separated more easily.
+      // A second search uses the given order, but does not rely on it.
       add_polynomials(curve_class, data, &starts);
       add_polynomials(curve_class, seed_data(points, Order::AsGiven), &starts);
       break;

@@ -1,4 +1,4 @@
-// Where the fit of a given class starts from.
+// Starting curves for the fit of a given class.
 #pragma once
 
 #include <span>
@@ -14,8 +14,8 @@ struct GivenStart {
   Pose2 pose;  ///< in the points' frame
 };
 
-/// Curves of the class near `points`, in any order, whatever their neighbours; the better ones
-/// first. Points of unit extent about the origin.
+/// Curves of the class near `points`; the better ones come first. The points may be in any order,
+/// have unit extent and lie about the origin.
 std::vector<GivenStart> given_starts(CurveClass curve_class, std::span<const Vec2> points);
 
 }  // namespace palpate

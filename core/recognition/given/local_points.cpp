@@ -24,7 +24,7 @@ std::optional<LocalPoints> local_points(std::span<const GivenPoint> points, doub
   }
   local.middle_m = low + 0.5 * (high - low);
   local.unit_m = std::ldexp(1.0, 2 * static_cast<int>(std::lround(0.5 * std::log2(half_extent))));
-  constexpr double kRoundings = 4.0;  // a few half units in the last place meet in a residual
+  constexpr double kRoundings = 4.0;  // a few half units in the last place add up in a residual
   local.rounding = kRoundings * std::numeric_limits<double>::epsilon() *
                    low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff() / local.unit_m;
   const DoubleDouble inverse_unit(1.0 / local.unit_m);

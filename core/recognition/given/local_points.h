@@ -1,4 +1,4 @@
-// Contact points as the fit of a given class sees them: near the origin, of about unit size, exact.
+// Points for the fit of a given class: shifted to the origin, scaled to about unit size, exactly.
 #pragma once
 
 #include <cstddef>
@@ -12,29 +12,29 @@
 
 namespace palpate {
 
-/// The points in use about their middle, in units of about their half extent. Differences are
-/// formed in twice a double's precision, and the unit is a power of 4, whose root scales exactly
-/// too: nothing of the points is lost however far from the origin they lie.
+/// The points in use, relative to their middle, in units of about their half extent. Differences
+/// are computed in double-double, and the unit is a power of 4, so that its square root is exact
+/// too. No digit is lost however far from the origin the points lie.
 struct LocalPoints {
   Vec2 middle_m = Vec2::Zero();
   double unit_m = 1.0;
-  std::vector<std::size_t> index;  ///< of every point in use
+  std::vector<std::size_t> index;  ///< of every point in use, its index among all points
   std::vector<WeighedPoint<DoubleDouble>> exact;
   std::vector<Vec2> rough;
-  std::size_t normals = 0;  ///< that count
-  /// Rounding of the coordinates: no point is known better.
+  std::size_t normals = 0;  ///< number of normals in use
+  /// Rounding error of the coordinates, in local units: no position is known better.
   double rounding = 0.0;
 };
 
-/// The points that are not set aside; nullopt where they are all in one place. `weighted`: every
-/// point's noise is known, and its normal counts.
+/// Takes the points that are not set aside; nullopt if they are all in one place. `weighted`: every
+/// point's noise is known, so that weights and normals count; else all weights are 1.
 std::optional<LocalPoints> local_points(std::span<const GivenPoint> points, double sigma_m,
                                         bool weighted);
 
-/// How many different ones there are.
+/// Number of different points.
 std::size_t different(std::vector<Vec2> points);
 
-/// Whether one straight line holds all points to the rounding of their coordinates.
+/// True if a straight line passes all points within the rounding of their coordinates.
 bool on_one_line(const LocalPoints& local);
 
 }  // namespace palpate

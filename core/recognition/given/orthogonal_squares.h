@@ -15,35 +15,35 @@ namespace palpate {
 template <typename T>
 struct WeighedPoint {
   PlaneVector<T> position;
-  T weight{};               ///< of the residual: inverse of its standard deviation
+  T weight{};               ///< of the residual: 1 / standard deviation
   T offset{};               ///< signed distance that the point should have: side times tip radius
-  PlaneVector<T> normal{};  ///< measured, unit, either way round
-  T normal_weight{};        ///< inverse standard deviation of its direction; 0 = none
+  PlaneVector<T> normal{};  ///< measured, unit; its sign does not matter
+  T normal_weight{};        ///< 1 / standard deviation of its direction; 0 = no normal
 };
 
 template <typename T>
 using SquareMatrix = std::array<std::array<T, kMostUnknowns>, kMostUnknowns>;
 
-/// Half the sum of squares about a place: cost + gradient . d + d . hessian . d / 2.
+/// Half the sum of squares near a curve: cost + gradient . d + d . hessian . d / 2.
 template <typename T>
 struct Squares {
   T cost{};
   std::array<T, kMostUnknowns> gradient{};
-  SquareMatrix<T> hessian{};      ///< exact
-  SquareMatrix<T> information{};  ///< Gauss and Newton's part of it, never indefinite
+  SquareMatrix<T> hessian{};      ///< exact for the distances; Gauss-Newton for the normals
+  SquareMatrix<T> information{};  ///< Gauss-Newton part of it: positive semi-definite
 };
 
-/// A point against the curve, in the curve's frame.
+/// A point relative to the curve, in the curve's frame.
 template <typename T>
 struct Placement {
   CanonicalPoint<T> foot;
-  PlaneVector<T> normal;  ///< unit, left of increasing t but at a cusp
+  PlaneVector<T> normal;  ///< unit, left of increasing t; at a cusp towards the point
   T distance{};           ///< positive along the normal
-  T speed{};              ///< 0 where there is no tangent
+  T speed{};              ///< length of the tangent vector C'; 0 at a cusp
   T slope{};              ///< derivative of (C - p) . C' by the parameter
 };
 
-/// The parameter turned or moved on.
+/// The parameter moved by `step`: rotated on circle and ellipse, else added.
 template <typename T>
 PlaneVector<T> advanced(CurveClass curve_class, const PlaneVector<T>& parameter, const T& step) {
   using std::sqrt;
@@ -54,16 +54,16 @@ PlaneVector<T> advanced(CurveClass curve_class, const PlaneVector<T>& parameter,
   return {parameter.x + step, parameter.y};
 }
 
-/// Follows the foot point of `point` from `parameter` by Newton's method, which doubles the digits
-/// at every step: the one after the last has all.
+/// Follows the foot point of `point` from `parameter` by Newton's method. Each step doubles the
+/// number of correct digits, so that one step after a small one is enough.
 template <typename T>
 Placement<T> place(const PlacedCurve<T>& curve, const PlaneVector<T>& point,
                    PlaneVector<T>* parameter) {
   using std::sqrt;
-  constexpr int kMostSteps = 8;  // digits double: five to an exact type's 32
-  // The square of it is below the rounding of T.
+  constexpr int kMostSteps = 8;  // digits double: five steps to the 32 digits of an exact type
+  // Its square is below the rounding of T.
   constexpr double kLastStep = std::is_same_v<T, double> ? 1e-8 : 1e-16;
-  // A tangent shorter than this part of the curve's acceleration is none: a cusp.
+  // A tangent shorter than this fraction of C'' counts as zero: a cusp.
   constexpr double kCusp = 1e-12;
   Placement<T> placed;
   PlaneVector<T> away;
@@ -95,9 +95,9 @@ Placement<T> place(const PlacedCurve<T>& curve, const PlaneVector<T>& point,
   return placed;
 }
 
-/// The angle from the curve's normal to the measured one, either way round, as h = 2 tan(angle /
-/// 2): that is the angle but for a twelfth of its cube, and takes no transcendental function. It
-/// falls by 1 + h^2 / 4 times what the curve's normal turns by.
+/// Angle from the curve's normal to the measured one, without regard to sign, as h = 2 tan(angle /
+/// 2). It differs from the angle by angle^3 / 12 and needs no transcendental function. Turning the
+/// curve's normal by d changes h by -(1 + h^2 / 4) d.
 template <typename T>
 T normal_miss(const PlacedCurve<T>& curve, const Placement<T>& placed,
               const PlaneVector<T>& measured) {
@@ -108,14 +108,14 @@ T normal_miss(const PlacedCurve<T>& curve, const Placement<T>& placed,
                                  : (across + across) / (along - T(1.0));
 }
 
-/// Whether the point has a normal to be compared, and the curve one there.
+/// True if the point has a normal and the curve has one at the foot.
 template <typename T>
 bool compares_normals(const Placement<T>& placed, const WeighedPoint<T>& point) {
   return to_double(point.normal_weight) > 0.0 && to_double(placed.speed) > 0.0 &&
          to_double(placed.slope) > 0.0;
 }
 
-/// Half the sum of squares; the feet follow.
+/// Half the sum of squares. Moves the feet along.
 template <typename T>
 T half_squares(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> points) {
   T cost(0.0);
@@ -131,12 +131,12 @@ T half_squares(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> points) {
   return T(0.5) * cost;
 }
 
-/// With n the unit normal at the foot point, the distance's derivative by the unknowns q is
-/// -n . C_q (envelope theorem), and its second derivative
-/// T . C_q (n . dC'/dq) / |C'| - n . C_tq dt/dq - n . C_qq, where dt/dq is how the foot moves and
-/// dC'/dq = C_tq + C'' dt/dq. The normals' residuals enter the Hessian by their first derivatives
-/// alone: the third derivatives of the curve, which the second take, are times residuals that are
-/// as likely of either sign.
+/// Half the sum of squares with derivatives by the unknowns q. With n the unit normal and T the
+/// unit tangent at the foot, the derivative of the distance is -n . C_q (envelope theorem). Its
+/// second derivative is T . C_q (n . dC'/dq) / |C'| - n . C_tq dt/dq - n . C_qq. Here dt/dq is the
+/// foot's motion, and dC'/dq = C_tq + C'' dt/dq. The normals' residuals enter the Hessian only by
+/// their first derivatives: the rest needs third derivatives of the curve, times residuals of
+/// either sign, which nearly cancel.
 template <typename T>
 Squares<T> squares_about(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> points) {
   const Unknowns unknowns(curve->curve_class);
@@ -165,9 +165,9 @@ Squares<T> squares_about(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>>
     const bool regular = to_double(placed.speed) > 0.0 && to_double(placed.slope) > 0.0;
     const PlaneVector<T> tangent =
         regular ? T(1.0) / placed.speed * foot.first : PlaneVector<T>{T(0.0), T(0.0)};
-    std::array<T, kMostUnknowns> rate{};   // of the distance
-    std::array<T, kMostUnknowns> slide{};  // of the foot along the curve
-    std::array<T, kMostUnknowns> turn{};   // of the normal
+    std::array<T, kMostUnknowns> rate{};   // derivative of the distance
+    std::array<T, kMostUnknowns> slide{};  // motion of the foot along the curve
+    std::array<T, kMostUnknowns> turn{};   // turn of the normal
     std::array<T, kMostUnknowns> along{};
     for (std::size_t i = 0; i < n; ++i) {
       rate[i] = -inner(placed.normal, by[i]);

@@ -1,4 +1,4 @@
-// A canonical curve at a pose, with the foot points of the fitted points: where the fit is.
+// A canonical curve at a pose, with a foot point for each fitted point: the state of the fit.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace palpate {
 
-inline constexpr int kMostUnknowns = 6;  ///< three of shape, three of pose
+inline constexpr int kMostUnknowns = 6;  ///< three of the shape, three of the pose
 
-/// Which unknowns a class has: shape, then x and y of the pose, then its angle. A line slides and a
-/// circle turns freely: these unknowns are left out.
+/// Index of each unknown of a class: shape, then x and y of the pose, then the angle. -1 if left
+/// out: x of a line, which slides freely, and the angle of a circle.
 struct Unknowns {
   explicit Unknowns(CurveClass curve_class)
       : shape(static_cast<int>(parameter_letters(curve_class).size())),
@@ -33,7 +33,7 @@ struct PlacedCurve {
   CurveClass curve_class = CurveClass::Unclassified;
   T shape[3] = {};
   PlaneVector<T> origin;                  ///< of the curve, in the points' frame
-  PlaneVector<T> axis{T(1.0), T(0.0)};    ///< its x axis there, of unit length
+  PlaneVector<T> axis{T(1.0), T(0.0)};    ///< the curve's x axis there, unit
   std::vector<PlaneVector<T>> feet = {};  ///< parameter of every point's foot point
 
   PlaneVector<T> to_curve(const PlaneVector<T>& point) const {
@@ -41,7 +41,7 @@ struct PlacedCurve {
     return {inner(axis, d), inner(left(axis), d)};
   }
 
-  /// Moved by a step of the unknowns, those of the pose counted in the curve's own frame.
+  /// Moves the curve by a step of the unknowns. The step of the pose is in the curve's own frame.
   void move(const T* step) {
     using std::sqrt;
     const Unknowns unknowns(curve_class);
@@ -69,7 +69,7 @@ struct PlacedCurve {
   }
 };
 
-/// The same in another arithmetic.
+/// Converts to another arithmetic.
 template <typename To, typename From>
 PlaneVector<To> as(const PlaneVector<From>& v) {
   return {To(v.x), To(v.y)};

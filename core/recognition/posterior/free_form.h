@@ -1,18 +1,20 @@
-// "Unclassified": a smooth free-form path, as a model with evidence of its own.
+// "Unclassified": a smooth free-form path, a model with its own evidence.
 #pragma once
 
 #include "core/recognition/smooth/smooth_model.h"
 
 namespace palpate {
 
-/// What free-form paths of the patches leave of the reduced points, averaged over the prior.
+/// The result of free-form paths through the reduced points, averaged over their prior.
 struct FreeForm {
-  double chi2 = 0.0;  ///< left by the paths, beside the smooth model's own and inflated likewise
-  double log_occam = 0.0;   ///< log of prior over posterior volume
-  double determined = 0.0;  ///< coordinates that the data determine
+  /// Chi-square of the paths, in addition to the smooth model's; divided by `inflation`.
+  double chi2 = 0.0;
+  /// log of what the prior leaves of the likelihood: posterior over prior volume.
+  double log_occam = 0.0;
+  double determined = 0.0;  ///< number of coordinates that the data determine
 };
 
-/// Noise variances count `inflation` times. O(reduced points).
+/// Noise variances are multiplied by `inflation`. O(reduced points).
 FreeForm free_form(const SmoothModel& smooth, double inflation);
 
 }  // namespace palpate

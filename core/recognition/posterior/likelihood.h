@@ -1,45 +1,48 @@
-// How chi-squares count: noise known or not, form error stated or seen.
+// How chi-squares count: with known or unknown noise, and with form error stated or seen.
 #pragma once
 
 namespace palpate {
 
 struct Likelihood {
-  bool sigma_known = true;  ///< false: the noise's scale is integrated out, prior 1 / sigma
+  bool sigma_known = true;  ///< false: the noise's scale is integrated out, with prior 1 / sigma
   double samples = 0.0;     ///< effective number of independent samples
-  double tempering = 1.0;   ///< correlation time and misfit: chi-square counts 1 / tempering
-  double chi2_floor = 0.0;  ///< chi-square that rounding alone leaves, where the noise is not known
-  /// What stated form error may add to the variance of any combination of residuals, beside the
-  /// noise's 1: what chi-square differs by from `noise_chi2`, the smooth model's, counts
-  /// 1 / (1 + coherent_variance). The integral over all correlations of the form error, bounded by
-  /// the worst of them (core/README.md, "Stated form error").
+  double tempering = 1.0;   ///< correlation time and misfit: chi-square is divided by it
+  double chi2_floor = 0.0;  ///< chi-square from rounding alone, if the noise is not known
+  /// Upper bound on the variance that stated form error adds to any combination of residuals, in
+  /// units of the noise's. The difference of a chi-square from `noise_chi2`, the smooth model's, is
+  /// divided by 1 + coherent_variance. This stands for the integral over all correlations of the
+  /// form error, bounded by the worst of them (core/README.md, "Stated form error").
   double coherent_variance = 0.0;
   double noise_chi2 = 0.0;
 
-  /// The tempering is for residuals that are correlated along the arc: coherent deviation from a
-  /// class, or another shape, which the data cannot tell apart.
+  /// True if `tempering` is for residuals correlated along the arc. They may be a smooth deviation
+  /// from the class or another shape: the data cannot tell which.
   bool coherent_or_other = false;
 
-  /// What the variances of residuals count times.
+  /// Factor on the variances of residuals.
   double inflation() const { return tempering * (1.0 + coherent_variance); }
 
-  /// Chi-square as it counts.
+  /// Chi-square after tempering and form error.
   double counted(double chi2) const;
 
-  /// Where the residuals tell the noise: what they tell it by, above 0, and how many they are
-  /// beyond so many coordinates.
+  /// For unknown noise: the chi-square that estimates it, above 0, and its degrees of freedom if
+  /// the data determine that many coordinates.
   double left(double chi2) const;
   double freedom(double determined) const;
 
-  /// log of the evidence of a model, up to what all models share: chi-square at its optimum, log of
-  /// what its prior leaves of that likelihood, and how many coordinates the data determine.
+  /// log of the evidence of a model, up to a constant that all models share. Arguments: chi-square
+  /// at its optimum, log of what the prior leaves of that likelihood, number of determined
+  /// coordinates.
   double log_evidence(double chi2, double log_occam, double determined) const;
 };
 
-/// Chi-square as a misfit is judged by it: form error counts, correlation does not. A class that
-/// leaves less than the smooth model (which cannot follow every bend) has no form error in it.
+/// Chi-square for the misfit test: form error counts, correlation does not. It is at most chi2,
+/// because a class with a smaller one than the smooth model (which cannot follow every bend) has no
+/// form error in it.
 double misfit_of(double chi2, const Likelihood& likelihood);
 
-/// The difference of log evidences at which the better of two has this probability, in (0, 1).
+/// log(p / (1 - p)): the difference of log evidences at which the better of two has this
+/// probability, in (0, 1).
 double log_odds(double probability);
 
 }  // namespace palpate

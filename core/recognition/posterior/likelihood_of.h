@@ -1,4 +1,4 @@
-// The law of the residuals: noise as the arcs tell it, and what the part may deviate by.
+// The likelihood of the residuals: noise from the arcs, and deviations of the part.
 #pragma once
 
 #include <optional>
@@ -9,28 +9,28 @@
 
 namespace palpate {
 
-/// Whether the noise is known without any class.
+/// True if the noise is known or the smooth model can estimate it, without any class.
 bool tells_noise(const Arcs& arcs, const Likelihood& likelihood);
 
-/// `form_deviation_m`: the stated standard deviation of parts from their class; 0 = none.
+/// `form_deviation_m`: stated standard deviation of parts from their class; 0 = none [m].
 Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m);
 
-/// What the best class leaves beyond the noise that the law before knew of.
+/// What the residuals of the best class show beyond the noise known before.
 struct SeenDeviation {
-  /// The law with it, where it is noise or form error rather than another class.
+  /// The likelihood with this deviation, if it is noise or form error rather than another class.
   std::optional<Likelihood> likelihood;
-  double noise_inflation = 1.0;  ///< what variances of residuals count times
-  double white_variance = 1.0;   ///< of the noise among it, in units of the arcs' sigma^2
-  /// What covariances are to be multiplied with beside that: a noise that few residuals tell may be
-  /// larger than they say.
+  double noise_inflation = 1.0;  ///< factor on the variances of residuals
+  /// Variance of the white noise in it, in units of the arcs' sigma^2.
+  double white_variance = 1.0;
+  /// Additional factor on covariances: a noise estimated from few residuals may be larger.
   double few_residuals = 1.0;
-  /// Whether neighbours may err together, which the evidence is to say.
+  /// True if neighbours may be correlated; the evidence must decide.
   bool correlated = false;
-  double correlation_length = 0.0;  ///< over which residuals err together, normalised; 0 = white
+  double correlation_length = 0.0;  ///< correlation length of the residuals, normalised; 0 = white
 };
 
-/// `chi2`: of the class on all points; `placed`: the class there; `unclassified`: whether the
-/// posterior has it for none.
+/// `chi2`: of the class on all points. `placed`: the class there. `unclassified`: true if
+/// "unclassified" is the most probable.
 SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, double chi2,
                              const CanonicalFit& placed, bool unclassified);
 

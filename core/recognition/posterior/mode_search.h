@@ -1,4 +1,4 @@
-// The modes of likelihood times prior, by steps downhill.
+// Searches the modes of likelihood times prior by descent.
 #pragma once
 
 #include <optional>
@@ -7,42 +7,44 @@
 
 namespace palpate {
 
-/// -log of likelihood times prior.
+/// -log(likelihood times prior).
 double potential(const TouchedCurve& curve);
 
-/// Of what `root` is the root of.
+/// log of the determinant of root root^T.
 double log_determinant(const TouchedMatrix& root);
 
-/// log of the integral about a mode by Laplace's formula, all coordinates in units of the widths.
+/// log of the integral about a mode by Laplace's formula, with all coordinates in units of the
+/// widths.
 double log_mass(const TouchedCurve& mode);
 
-/// The curve's root with coordinate `fixed` (or -1) not moving.
+/// The curve's root with coordinate `fixed` held (-1: none).
 TouchedMatrix root_of(const TouchedCurve& curve, int fixed);
 
-/// From the slice beside, the mode is near; from the optimum of the likelihood it may be far, where
-/// the data determine little. Bounds of the time: steps end by themselves where the potential is
-/// settled, and what is too far for so many is sought from the prior (followed_from_prior).
+/// Most steps of a descent. From a neighbouring slice the mode is near. From the optimum of the
+/// likelihood it may be far if the data determine little. These limits bound the time: descents end
+/// by themselves once the potential is settled, and a mode that is farther is searched from the
+/// prior (followed_from_prior).
 inline constexpr int kStepsFromBeside = 4;
 inline constexpr int kStepsFromFit = 8;
 
-/// Of the potential, where steps end: odds right to a fiftieth.
+/// Change of the potential at which a descent ends: odds are then right to a fiftieth.
 inline constexpr double kSettledPotential = 2e-2;
 
-/// Gauss-Newton steps down the potential, coordinate `fixed` (or -1) staying.
+/// Gauss-Newton steps down the potential, with coordinate `fixed` held (-1: none).
 TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed,
                      int most_steps = kStepsFromBeside, double settled = kSettledPotential);
 
-/// The mode of likelihood times prior that lies downhill from a curve; nullopt where none comes
-/// near the points, and where `start` is no curve of its class in double precision. Noise variances
-/// count `inflation` times. `start` need not be an optimum. `least_chi2`: no curve of the class
-/// leaves less.
+/// The mode of likelihood times prior downhill from `start`, which need not be an optimum. nullopt
+/// if no mode comes near the points, or if double precision cannot hold `start` as a curve of its
+/// class. Noise variances are multiplied by `inflation`. `least_chi2`: lower bound on chi-square of
+/// any curve of the class.
 std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
                                            double inflation, double least_chi2);
 
-/// The mode that the prior leads to: from a noise that hides the shape, followed as that is lowered
-/// to what it is, as long as it holds more than `log_least`. A fit far out in the prior's tails
-/// lies in a valley too narrow and too bent for its noise to be walked along. `start`: its place
-/// and feet count.
+/// The mode reached from the prior: starts with a noise that hides the shape and follows the mode
+/// while the noise is lowered to its true value, as long as the mode holds more than `log_least`.
+/// Reason: a fit far out in the prior's tails lies in a valley that is too narrow and bent to be
+/// walked along. Of `start` only place and feet are used.
 std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data,
                                                 const TouchedCurve& start, double log_least);
 

@@ -1,4 +1,4 @@
-// Where the search for a class may end: what fits so badly changes no answer.
+// The chi-square above which a class cannot change the answer, so that its search may end.
 #pragma once
 
 #include "core/recognition/posterior/posterior.h"
@@ -6,11 +6,12 @@
 
 namespace palpate {
 
-/// The chi-square on the reduced points above which a class changes no answer: free paths are the
-/// more probable by odds of a million whatever its prior leaves, and what it leaves over is too
-/// large to be noise or form error. Infinite where samples may be none of the curve, where the
-/// class has to tell the noise, or directions along which tips are taken off. `of_paths`: evidences
-/// with that of free-form paths.
+/// The chi-square on the reduced points above which a class changes no answer. Free paths are then
+/// a million times more probable whatever its prior leaves, and its residuals are too large to be
+/// noise or form error, spikes among samples kept as they are, or errors of the directions along
+/// which tips are removed. Infinite if only the class can show the noise, or if a patch kept as
+/// samples is too short to bound the distance of a spike. `of_paths`: evidences with that of
+/// free-form paths.
 double out_of_reach(const Arcs& arcs, const Likelihood& likelihood, const Evidences& of_paths);
 
 }  // namespace palpate

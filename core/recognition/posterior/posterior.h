@@ -1,4 +1,4 @@
-// How probable each class is, given all that was touched.
+// The probability of each class, given all that was touched.
 #pragma once
 
 #include <array>
@@ -14,61 +14,62 @@ namespace palpate {
 /// Indexed by CurveClass; entry 0 is "unclassified".
 using ClassProbabilities = std::array<double, 9>;
 
-/// What every model's prior leaves of its likelihood. A class without has no share in the
-/// posterior.
+/// Evidence of every model. A class without one has no share in the posterior.
 struct Evidences {
   std::array<std::optional<ClassEvidence>, 9> classes;
-  /// Of the spline's optimum on the other side of c = 0, where that is a mode of its own.
+  /// Of the spline's optimum on the other side of c = 0, if that is a separate mode.
   std::optional<ClassEvidence> rival;
   FreeForm free_form;
-  /// What it was taken with: noise variances counted so many times, and each class as placed on the
-  /// reduced points, at this chi-square of theirs.
+  /// What the evidences were computed with: the factor on noise variances, and each class placed on
+  /// the reduced points, with its chi-square there.
   double inflation = 0.0;
   std::array<std::optional<CanonicalFit>, 9> on_reduced;
   std::array<double, 9> on_reduced_chi2{};
-  /// log of what deviations that neighbours share give the classes' evidence, or take
+  /// log of the factor that deviations shared by neighbours put on each class's evidence
   /// (weigh/shared_deviations.h).
   std::array<double, 9> log_shared{};
-  /// With them classes have more than free paths: it is such a deviation, or another shape.
+  /// With them, classes are more probable than free paths: it is such a deviation or another shape,
+  /// at even odds.
   bool shared_or_other = false;
 };
 
-/// Of no class yet, but of free-form paths.
+/// The evidence of free-form paths alone, of no class yet.
 Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood);
 
 /// log of the evidence of free-form paths.
 double log_evidence_of_free_form(const Likelihood& likelihood, const Evidences& evidences,
                                  double smooth_chi2);
 
-/// log of the evidence of a class that was fitted with `chi2`; -infinity where it has none.
+/// log of the evidence of a class that was fitted with `chi2`; -infinity if it has none.
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
                     CurveClass curve_class, double chi2);
 
-/// Evidence of the classes fitted to the reduced points, by Laplace's formula. Those that cannot
-/// come within odds of a millionth of the best have none. `fits`: with chi-squares of all points.
-/// `before`: of the same points; what has not changed since is taken from it.
+/// Evidence of the classes fitted to the reduced points, by Laplace's formula; if a line is
+/// plausible, also by nearly straight paths. Classes less probable than a millionth of the best get
+/// none. `fits`: with chi-squares of all points. `before`: of the same points; what has not changed
+/// is copied.
 Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
                        const Likelihood& likelihood, Evidences before = {});
 
-/// The same with quadrature for the classes whose share is not negligible, where there are several;
-/// and the spline's other mode. `margin`: log odds that keep the best from being RECOGNIZED.
+/// The evidences with quadrature for the classes whose share matters, if there are several, and for
+/// the spline's other mode. `margin`: log odds below which the best is not RECOGNIZED.
 Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits& on_reduced,
                      double smooth_chi2, const FitData& reduced, const Likelihood& likelihood,
                      double margin);
 
-/// Posterior probabilities, all classes alike probable before. A conic that has no optimum on its
-/// own side of the parabola has the mass that the other side's optimum leaves there.
+/// Posterior probabilities, with equal priors for all classes. If a conic has no optimum on its own
+/// side of the parabola, it gets the mass that the optimum on the other side leaves there.
 ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
                                     const Likelihood& likelihood, const Evidences& evidences);
 
-/// log odds of "unclassified" over the class that speaks most against it, if all of that class's
-/// prior were at the shape that fits. Few data leave most of a probability to the priors of shapes;
-/// only beyond this do the data exclude the classes by themselves.
+/// log odds of "unclassified" over the strongest class, if all of that class's prior were at the
+/// shape that fits. With few data a probability depends mostly on the priors of shapes; only if
+/// this margin is large do the data themselves exclude the classes.
 double margin_of_unclassified(const ClassFits& fits, double smooth_chi2,
                               const Likelihood& likelihood, const Evidences& evidences);
 
-/// The share of the spline's posterior that its mode on the other side of c = 0 has.
+/// The share of the spline's posterior in its mode on the other side of c = 0.
 double rival_share(const ClassFits& fits, const Likelihood& likelihood, const Evidences& evidences);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// Points in the order in which they lie along a curve: what errs together are neighbours.
+// Orders points along a curve, so that neighbours with common errors are adjacent.
 #pragma once
 
 #include <span>
@@ -10,12 +10,12 @@
 namespace palpate {
 
 struct Runs {
-  std::vector<PatchSpan> spans;    ///< of `order`
-  std::vector<std::size_t> order;  ///< the points, each once
+  std::vector<PatchSpan> spans;    ///< ranges of `order`
+  std::vector<std::size_t> order;  ///< indices of the points, each once
 };
 
-/// Patches as they were stroked; the touches alone in their patch, which have no order of their
-/// own, as one run by their places on the curve that was fitted to the points.
+/// Each patch is a run, in the order of the stroke. All single touches, which have no order of
+/// their own, are one run, in the order of their places on the fitted curve.
 Runs runs_along(const CanonicalFit& placed, std::span<const PatchSpan> patches);
 
 }  // namespace palpate

@@ -1,5 +1,5 @@
-// The marginal likelihood of a class where the data leave one coordinate of its shape too wide for
-// a normal law: slices along that coordinate, each with the others at their best.
+// The evidence of a class by slices along one shape coordinate, for when the data leave it too wide
+// for a normal law. In each slice the other coordinates are at their best.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,15 @@
 
 namespace palpate {
 
-/// What slices are for.
+/// The purpose of the slices.
 enum class Slices {
-  ForMass,    ///< where it is not that of a normal law
-  ForMoment,  ///< also where only the valley's bend shows, beside how narrow it is
+  ForMass,    ///< only if the mass differs from that of a normal law
+  ForMoment,  ///< also if only the bend of the valley is noticeable compared with its width
 };
 
-/// The same evidence, integrated by slices along the coordinate that is left the widest, where that
-/// takes any; by Laplace's formula where not. `evidence`: of the same data, at any inflation.
-/// nullopt where it turns out to be that of no optimum. At most some forty slices.
+/// The evidence integrated by slices along the widest coordinate if that is needed, else by
+/// Laplace's formula. `evidence`: of the same data, at any inflation. nullopt if it was not at an
+/// optimum. At most about forty slices.
 std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& data,
                                        double inflation, Slices slices);
 

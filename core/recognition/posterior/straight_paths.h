@@ -1,4 +1,4 @@
-// What the prior of each class has of curves that are nearly straight.
+// The share of each class's prior in curves that are nearly straight.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,31 +12,31 @@
 
 namespace palpate {
 
-/// What the points tell of a path beside the straight line that fits them best: of its curvature
-/// and the curvature's rate along the arc in the middle of what was touched, where they tell both
-/// independently. In half extents.
+/// What the points show of a path compared with the best straight line: its curvature and the rate
+/// of curvature along the arc. Both are taken at the place near the middle where the points
+/// determine them independently. In half extents.
 struct BendOfLine {
   double curvature_sigma = 0.0;
   double rate_sigma = 0.0;
-  /// Where the likelihood is highest, in these deviations.
+  /// The maximum of the likelihood, in units of these standard deviations.
   double curvature = 0.0;
   double rate = 0.0;
-  /// Where the residuals are to tell the noise: chi-square as it counts there, and how many they
-  /// are beyond what the line takes.
+  /// For unknown noise: chi-square there after form error, and its degrees of freedom beyond the
+  /// line.
   double chi2 = 1.0;
   double freedom = std::numeric_limits<double>::infinity();
 };
 
-/// The likelihood of y = offset + turn x + curvature x^2 / 2 + rate x^3 / 6, offset and turn
-/// integrated out: exact as long as slopes are small. `line`: the evidence of a line on the same
-/// data, `chi2` what it leaves there. nullopt where the points do not tell it: too few, or with
-/// normals; and where they tell a bend from which nothing of the line is left. O(points).
+/// The likelihood of y = offset + turn x + curvature x^2 / 2 + rate x^3 / 6, with offset and turn
+/// integrated out; exact if slopes are small. `line`: the evidence of a line on the same data;
+/// `chi2`: its chi-square there. nullopt if there are too few points, if points have normals, or if
+/// the points show a bend that excludes the line. O(points).
 std::optional<BendOfLine> bend_of_line(const ClassEvidence& line, double chi2, const FitData& data,
                                        const Likelihood& likelihood);
 
-/// log of a class's evidence over the line's, as far as it lies in paths that are nearly straight:
-/// the mean over its prior of their likelihood over the line's. Right to a tenth. For every class
-/// but the line and Unclassified.
+/// log of (evidence of a class in nearly straight paths / evidence of the line): the mean of the
+/// likelihood ratio over the class's prior. Accurate to a tenth. For every class except line and
+/// Unclassified.
 double log_evidence_over_line(CurveClass curve_class, const BendOfLine& bend);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// A class as seen from where it was touched: the coordinates in which its prior is stated.
+// Coordinates of a class relative to the place that was touched; its prior is defined in them.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,28 +8,30 @@
 
 namespace palpate {
 
-/// At most: four of shape and place, then offset and turn. Classes with fewer leave the rest 0.
+/// Most coordinates: four of shape and place, then offset and turn. Classes with fewer leave the
+/// rest 0.
 inline constexpr int kMostCoordinates = 6;
 using TouchedVector = Eigen::Matrix<double, kMostCoordinates, 1>;
 using TouchedMatrix = Eigen::Matrix<double, kMostCoordinates, kMostCoordinates>;
 
-/// A curve of known class and the place on it that was touched; lengths in touched half extents.
+/// A curve of known class and the touched place on it; lengths in touched half extents.
 struct TouchedShape {
   Eigen::Vector3d values = Eigen::Vector3d::Zero();  ///< in the order of parameter_letters
-  double t = 0.0;                                    ///< of the place
+  double t = 0.0;                                    ///< curve parameter of the place
 };
 
-/// A parameter's value of a curve of size `scale` over that of size 1: `index` in the order of
-/// parameter_letters, or -1 for the curve parameter t.
+/// Ratio of a parameter of a curve of size `scale` to that of the same curve of size 1. `index`: in
+/// the order of parameter_letters, or -1 for the curve parameter t.
 double parameter_scale(CurveClass curve_class, int index, double scale);
 
-/// A curve in metres, in units of `scale`.
+/// Converts a curve from metres to units of `scale`.
 TouchedShape normalised_shape(CurveClass curve_class, const TouchedShape& shape, double scale);
 
-/// Coordinates of shape and place of a class: line 0, circle 1, parabola 2, spline 4, others 3.
+/// Number of coordinates of shape and place: line 0, circle 1, parabola 2, spline 4, others 3.
 int shape_coordinates(CurveClass curve_class);
 
-/// Regular coordinates in which the prior's factors are independent (core/README.md, "The prior"):
+/// Regular coordinates in which the prior is a product of independent factors (core/README.md, "The
+/// prior"):
 ///   circle: log radius
 ///   ellipse, hyperbola: log p and |m| of y^2 = 2 p x + m x^2, tangent's direction at the place
 ///   parabola: log p, tangent's direction
@@ -37,37 +39,38 @@ int shape_coordinates(CurveClass curve_class);
 ///   semi-cubical parabola, spline: log L (a = 1 / sqrt(L)), b, place t / sqrt(L) (and c / sqrt(L))
 TouchedVector coordinates_of(CurveClass curve_class, const TouchedShape& shape);
 
-/// The inverse; `like` tells what the coordinates do not: the sign of a cubical parabola's a, and
-/// the place on a line or circle. nullopt outside of the class.
+/// The inverse. `like` supplies what the coordinates do not contain: the sign of a cubical
+/// parabola's a, and the place on a line or circle. nullopt outside the class.
 std::optional<TouchedShape> shape_at(CurveClass curve_class, const TouchedVector& z,
                                      const TouchedShape& like);
 
-/// Width of each coordinate's prior: that of the normal law with its height at the centre. Offset
-/// and turn, the same for every class, included.
+/// Width of each coordinate's prior: standard deviation of the normal law with the same height at
+/// the centre. Includes offset and turn, which are the same for every class.
 TouchedVector prior_widths(CurveClass curve_class, const TouchedVector& z);
 
-/// Where the prior is highest.
+/// The maximum of the prior.
 TouchedVector prior_centre(CurveClass curve_class);
 
-/// The coordinate that the place is; -1 where all places are alike.
+/// Index of the coordinate of the place; -1 if all places are alike.
 int place_coordinate(CurveClass curve_class);
 
-/// What the prior expects: the size at its centre, the other coordinates as far out as their
-/// scales. `arm`, `bend`: of their signs are the place and the spline's c.
+/// A typical curve of the prior: the size at its centre, the other coordinates at their scales. The
+/// signs of `arm` and `bend` are those of the place and of the spline's c.
 TouchedVector expected_coordinates(CurveClass curve_class, double arm, double bend);
 
-/// log of the length that z[0] is the logarithm of, over the size of the part.
+/// log of (length whose logarithm is z[0] / size of the part).
 double log_length_over_size(CurveClass curve_class);
 
-/// log of the prior's density over that at its centre.
+/// log of (prior density at z / prior density at its centre).
 double log_prior(CurveClass curve_class, const TouchedVector& z);
 
-/// Its derivatives by the coordinates.
+/// Derivatives of log_prior by the coordinates.
 TouchedVector log_prior_gradient(CurveClass curve_class, const TouchedVector& z);
 
-/// Along each coordinate -log_prior lies below a parabola that touches it at z. What that rises by
-/// over what a normal law of the width does, at most 1: little in a heavy tail, where steps by the
-/// law's own curvature would stay.
+/// Weights for steps in a heavy tail. Along each coordinate -log_prior lies below a parabola that
+/// touches it at z. The weight is that parabola's curvature relative to the normal law of the same
+/// width, at most 1. It is small in a heavy tail, where steps with the normal law's curvature would
+/// hardly move.
 TouchedVector tail_weights(CurveClass curve_class, const TouchedVector& z);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// A curve of a class against the reduced points, in touched coordinates.
+// A curve of a class, in touched coordinates, and its fit to the reduced points.
 #pragma once
 
 #include <optional>
@@ -12,20 +12,20 @@
 
 namespace palpate {
 
-/// Where a class was touched: a place of a first fit and the tangent there. Offset and turn are
-/// counted from it, and are 0 at that fit.
+/// Where a class was touched: a place of a first fit, and the tangent there. Offset and turn are
+/// relative to it and are 0 for that fit.
 struct Touch {
   CurveClass curve_class = CurveClass::Unclassified;
   TouchedShape shape;            ///< of that fit
   Vec2 place = Vec2::Zero();     ///< normalised frame
-  Vec2 tangent = Vec2::UnitX();  ///< of increasing t
-  double weight = 1.0;           ///< that residuals are multiplied with, beside their noise's
-  /// Of measured normals, by point; empty where there are none. As of the fit: a curve that is
-  /// tried is weighed with what was found.
+  Vec2 tangent = Vec2::UnitX();  ///< direction of increasing t
+  double weight = 1.0;           ///< factor on the residuals, in addition to 1 / noise
+  /// Weights of measured normals, one per point; empty without normals. They come from the fit and
+  /// stay fixed for trial curves.
   std::vector<double> normal_weights = {};
 };
 
-/// A curve of the class near the touch, the points' feet on it, and the model linear about it.
+/// A curve of the class near the touch, with the points' feet and the linear model about it.
 struct TouchedCurve {
   TouchedVector z = TouchedVector::Zero();
   TouchedShape shape;
@@ -34,26 +34,28 @@ struct TouchedCurve {
   double chi2 = 0.0;
   double log_prior = 0.0;
   TouchedVector widths = TouchedVector::Zero();
-  /// By the coordinates in units of the widths, of the residuals r over their noise: the lower
-  /// triangular root of J^T J and the prior's curvature, that of normal laws as high; J^T r.
+  /// By the coordinates in units of the widths, r being residuals over noise. `root`: lower
+  /// triangular root of J^T J plus the prior's curvature (that of normal laws of the same height).
+  /// `gradient`: J^T r.
   TouchedMatrix root = TouchedMatrix::Identity();
   TouchedVector gradient = TouchedVector::Zero();
 };
 
-/// The pose, in the normalised frame, that puts `place` t of the curve where offset and turn of z
-/// say.
+/// The pose, in the normalised frame, that puts place `t` of the curve where offset and turn of z
+/// put it.
 Pose2 pose_of(const Touch& touch, const TouchedVector& z, const Curve& curve, double t);
 
-/// The touch of a fit, and the curve itself there; `fit` has a point for each of `data`, which are
-/// surface points. nullopt where the fit is no curve of its class in double precision.
+/// The touch of a fit. `fit` must have a point for each of `data`, which are surface points.
+/// nullopt if double precision cannot hold the fit as a curve of its class.
 std::optional<Touch> touch_of(const CanonicalFit& fit, const FitData& data);
-/// The same class touched at that point, in the direction of the points beside it: what fits short
-/// arcs too well may cross them.
+/// The same touch, with the direction of the neighbouring points: a curve that fits short arcs too
+/// well may cross them.
 Touch along_patch(Touch touch, const FitData& data);
+/// The curve of the fit itself; nullopt as for touch_of().
 std::optional<TouchedCurve> curve_at(const Touch& touch, const CanonicalFit& fit,
                                      const FitData& data);
 
-/// The curve at coordinates `z`, the feet followed from those of `from`. nullopt outside of the
+/// The curve at coordinates `z`, with the feet followed from those of `from`. nullopt outside the
 /// class.
 std::optional<TouchedCurve> curve_at(const Touch& touch, const TouchedVector& z,
                                      const TouchedCurve& from, const FitData& data);

@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-/// Half of the longer side of the box that holds all samples. [m]
+/// Half the longer side of the box that holds all samples. [m]
 double half_extent_of(const std::vector<StoredPatch>& patches) {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
   Vec2 high = -low;
@@ -25,15 +25,15 @@ double half_extent_of(const std::vector<StoredPatch>& patches) {
   return 0.5 * (high - low).maxCoeff();
 }
 
-/// The patch without its repeats and dwells.
+/// The patch without repeats and dwells.
 StoredPatch moving(const StoredPatch& patch, bool is_one_place, double default_sigma_m) {
   const PatchSpan all{0, patch.samples.size()};
   return is_one_place ? with_means(patch, std::span(&all, 1), default_sigma_m)
                       : without_dwells(patch, default_sigma_m);
 }
 
-/// Returns among the samples that are no spikes, as those of all samples: a turn is the farthest on
-/// its way, also where that was taken for a spike.
+/// Converts `returns`, found without spikes, to indices among all samples. The turn is the farthest
+/// sample on the way, even if it was taken for a spike.
 std::vector<std::size_t> returns_among_all(std::span<const StoredSample> all,
                                            const std::vector<bool>& is_spike,
                                            std::span<const std::size_t> returns) {
@@ -42,7 +42,8 @@ std::vector<std::size_t> returns_among_all(std::span<const StoredSample> all,
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!is_spike[i]) kept.push_back(i);
   }
-  constexpr std::size_t kBehind = 4;  // samples, whose way noise does not turn
+  // So many samples farther back, noise does not reverse the direction of the way.
+  constexpr std::size_t kBehind = 4;
   std::vector<std::size_t> result;
   for (const std::size_t k : returns) {
     const std::size_t behind = kept[k - 1 - kBehind];
@@ -56,9 +57,9 @@ std::vector<std::size_t> returns_among_all(std::span<const StoredSample> all,
   return result;
 }
 
-/// The passes of a patch, and the same without spikes. A spike turns back too: passes are told by
-/// the other samples. And where a stroke turns back, no polynomial follows it, and samples are
-/// taken for spikes that are none: each pass is looked at by itself.
+/// Cuts a patch into passes, with and without spikes. A spike also turns back, so the passes are
+/// found without spikes. And where a stroke turns back, no polynomial follows it and good samples
+/// look like spikes, so spikes are searched again in each pass.
 void clean_passes(StoredPatch patch, double false_alarm, std::vector<StoredPatch>* passes,
                   std::vector<StoredPatch>* clean) {
   const std::vector<bool> is_spike = spikes_of(patch.samples, false_alarm);
@@ -85,7 +86,7 @@ void CleanPatches::look_at(const std::vector<StoredPatch>& patches, double defau
   const double half_extent_m = half_extent_of(patches);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const StoredPatch& patch = patches[p];
-    // Asked each time: whether a patch is small depends on all.
+    // Computed every time: whether a patch is small depends on all patches.
     Seen now{version_of(patch), is_one_place(patch.samples, default_sigma_m, half_extent_m)};
     Seen& seen = seen_[p];
     if (!(seen.version == now.version) || seen.is_one_place != now.is_one_place) {

@@ -1,5 +1,5 @@
-// The patches in memory as they are fitted: dwells at their means, one way each, without spikes.
-// Looked at again only where they have changed.
+// Prepares the patches in memory for fitting: each dwell replaced by its mean, strokes cut where
+// they turn back, spikes removed. Only patches that changed are processed again.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +11,24 @@ namespace palpate {
 
 class CleanPatches {
  public:
-  /// Looks at the patches of a memory. `default_sigma_m`: noise of samples that state none; 0 = not
-  /// known. `false_alarm`: as spikes_of().
+  /// Processes the patches of a memory. `default_sigma_m`: noise of samples that state none; 0 =
+  /// not known [m]. `false_alarm`: as in spikes_of().
   void look_at(const std::vector<StoredPatch>& patches, double default_sigma_m, double false_alarm);
 
-  /// The patches looked at, the samples of each dwell at their mean (dwells.h), and each patch cut
-  /// where it turns back over itself (passes.h).
+  /// The patches with each dwell replaced by its mean (dwells.h), cut where they turn back over
+  /// themselves (passes.h). Spikes are still in them.
   const std::vector<StoredPatch>& moved() const { return moved_; }
-  std::size_t moved_count() const;     ///< of their samples
-  std::size_t dwelling_count() const;  ///< of contacts that repeat a place of these
+  std::size_t moved_count() const;  ///< number of their samples
+  /// Number of contacts that only repeat the place of one of these samples.
+  std::size_t dwelling_count() const;
 
-  /// The same without spikes_of() each.
+  /// The patches of moved() without the spikes of each.
   const std::vector<StoredPatch>& clean() const { return clean_; }
 
   void clear();
 
  private:
-  /// A patch, what it was looked at as, and its passes.
+  /// A patch of the memory and the results for it.
   struct Seen {
     PatchVersion version;
     bool is_one_place = false;

@@ -1,4 +1,4 @@
-// Samples that follow one another in one patch, with all that their probe says of them.
+// Consecutive samples of one patch, with all that the probe states about them.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace palpate {
 struct ContactRun {
   PatchContext context;
   std::vector<ContactSample> samples;
-  std::vector<SampleDetail> details = {};  ///< of the samples; empty where none says more
+  std::vector<SampleDetail> details = {};  ///< one per sample; empty if no sample has one
 };
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// What a probe delivers, as core sees it.
+// What a probe delivers: contact samples and their patch.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,17 @@ enum class MaterialSide { Unspecified, Left, Right };
 
 struct ContactSample {
   Vec2 position_m = Vec2::Zero();
-  double sigma_m = 0.0;  ///< 1-sigma isotropic position noise; 0 = not known [m]
-  std::int64_t stamp_ns = 0;
+  double sigma_m = 0.0;       ///< 1-sigma isotropic position noise; 0 = not known [m]
+  std::int64_t stamp_ns = 0;  ///< time of the sample; core does not use it [ns]
 };
 
-/// Where a run of samples belongs: one unbroken touch of one probe. A patch of a single sample is a
-/// touch by itself: it has no direction of travel, so that its material side says nothing.
+/// Where samples belong: a patch is one unbroken touch of one probe. A patch of a single sample is
+/// a single touch: it has no direction of travel, so that its material side says nothing.
 struct PatchContext {
   std::uint32_t probe = 0;
   std::uint32_t patch = 0;
-  double tip_radius_m = 0.0;  ///< samples are centres of a round tip of this radius; 0 = surface
+  /// The samples are centres of a round tip of this radius; 0 = surface points. [m]
+  double tip_radius_m = 0.0;
   MaterialSide material_side = MaterialSide::Unspecified;
 };
 

@@ -8,19 +8,19 @@
 namespace palpate {
 namespace {
 
-/// Samples in a row.
+/// Consecutive samples.
 struct Block {
   std::size_t begin = 0;
   std::size_t end = 0;
   Vec2 mean = Vec2::Zero();
-  double square = 0.0;  ///< mean square distance from it
+  double square = 0.0;  ///< mean square distance from the mean
 };
 
 Vec2 place_of(const StoredSample& sample) { return sample.position_m; }
 Vec2 place_of(const Block& block) { return block.mean; }
 
-/// Mean and mean square distance from it. In two passes: far from the origin squares of coordinates
-/// have no digits left for a scatter.
+/// Mean, and mean square distance from it. Two passes: far from the origin, squares of coordinates
+/// have no digits left for the scatter.
 template <typename Places>
 Block block_of(const Places& places, std::size_t begin, std::size_t end) {
   Block block{begin, end};
@@ -37,8 +37,8 @@ Block block_of(const Places& places, std::size_t begin, std::size_t end) {
   return block;
 }
 
-/// J. von Neumann's ratio (1941) of the mean square step to twice the mean square distance from the
-/// mean: 1 where places come in no order, 6 / n^2 of n at even distances along a line.
+/// J. von Neumann's ratio (1941): mean square step over twice the mean square distance from the
+/// mean. It is 1 for places in random order and 6 / n^2 for n places evenly spaced along a line.
 template <typename Places>
 double step_ratio(const Places& places, const Block& of) {
   double steps = 0.0;
@@ -49,24 +49,24 @@ double step_ratio(const Places& places, const Block& of) {
   return of.square > 0.0 ? steps / (n - 1.0) / (2.0 * of.square) : 1.0;
 }
 
-/// A way of length l at noise s has the ratio 2 s^2 / (2 s^2 + l^2 / 12): this is six deviations,
-/// over which a curve lies nearer to its mean than that is known.
+/// Motion over a length l with noise s gives the ratio 2 s^2 / (2 s^2 + l^2 / 12). This limit is l
+/// = 6 s: over such a length a curve deviates from its mean by less than the mean's uncertainty.
 constexpr double kLeastRatio = 0.4;
 
 constexpr std::size_t kBlock = 8;
 
-/// Fewer means of blocks show no order: of six at even distances the ratio is 6 / 36.
+/// Fewer block means show no order. Six evenly spaced ones have the ratio 6 / 36.
 constexpr std::size_t kFewestMeans = 6;
 
-/// Blocks of a stroke in which it goes on slowly.
+/// Consecutive blocks of a stroke in which it moves slowly.
 class SlowStretch {
  public:
   SlowStretch(std::span<const StoredSample> samples, std::span<const Block> blocks)
       : samples_(samples), blocks_(blocks) {}
 
-  /// The dwells in it: all of it, or those in its parts before and after the longest step. Beyond
-  /// so many steps, as of a stroke that slows down, before and after its middle: that bounds the
-  /// time.
+  /// Adds the dwells of this stretch: the whole stretch, or the dwells of its two parts, cut at the
+  /// longest step. After 16 such cuts (a stroke that slows down gradually) it is cut in the middle
+  /// instead: that bounds the time.
   void add_to(std::vector<PatchSpan>* dwells, int cuts = 0) const {
     constexpr int kMostByStep = 16;
     if (blocks_.size() < 2) {
@@ -94,19 +94,20 @@ class SlowStretch {
  private:
   Block whole() const { return block_of(samples_, blocks_.front().begin, blocks_.back().end); }
 
-  /// Samples that jitter together show no order from block to block.
+  /// A jitter that neighbouring samples share shows no order from block to block.
   bool is_still() const {
     return step_ratio(samples_, whole()) > kLeastRatio ||
            (blocks_.size() >= kFewestMeans &&
             step_ratio(blocks_, block_of(blocks_, 0, blocks_.size())) > kLeastRatio);
   }
 
-  /// Without the samples at its ends that lie farther off than its others, and with the neighbours
-  /// that do not: a block's edge is not the dwell's.
+  /// The dwell's exact range: drops samples at the ends that lie farther off than the others, and
+  /// adds neighbours that do not. The ends of the blocks are not the ends of the dwell.
   PatchSpan trimmed() const {
     PatchSpan span{blocks_.front().begin, blocks_.back().end};
     const auto lies_by = [&](std::size_t i, std::size_t begin, std::size_t end) {
-      constexpr double kFarthest = 3.0;  // root mean squares: noise is beyond once in 8,000 times
+      // Times the root mean square: noise exceeds it once in 8,000 times.
+      constexpr double kFarthest = 3.0;
       const Block others = block_of(samples_, begin, end);
       return (samples_[i].position_m - others.mean).squaredNorm() <=
              kFarthest * kFarthest * others.square;
@@ -136,12 +137,13 @@ double sigma_of(const StoredSample& sample, double default_sigma_m) {
   return sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
 }
 
-/// How many contacts the mean of `dwell` says as much as, `of_all` being what they weigh together.
+/// The number of independent contacts that the mean of `dwell` is worth. `of_all`: their total
+/// weight.
 double effective_weight(std::span<const StoredSample> samples, const PatchSpan& dwell,
                         double of_all, double default_sigma_m) {
   const Block block = block_of(samples, dwell.begin, dwell.end);
-  double stated = 0.0;   // variance of one contact
-  double scatter = 0.0;  // likewise, as they show it
+  double stated = 0.0;   // variance of one contact, as stated
+  double scatter = 0.0;  // variance of one contact, as the samples show it
   double most = 0.0;
   for (std::size_t i = dwell.begin; i < dwell.end; ++i) {
     const StoredSample& sample = samples[i];
@@ -162,11 +164,11 @@ double effective_weight(std::span<const StoredSample> samples, const PatchSpan& 
   const double n = static_cast<double>(dwell.size());
   stated /= n;
   scatter /= n - 1.0;
-  // What they do not show of the noise is the same in all of them; a scatter is known to 1 in
-  // sqrt(n).
+  // The part of the stated variance that the samples do not show is a common error of them all. The
+  // scatter itself is known to 1 in sqrt(n).
   constexpr double kDeviations = 3.0;
   const double same = std::max(stated - scatter * (1.0 + kDeviations / std::sqrt(n)), 0.0);
-  // Neighbours that share a part 1 - r of their error count as r / (2 - r) of so many.
+  // If neighbours share a part 1 - r of their error, n of them are worth n r / (2 - r).
   const double ratio = std::min(step_ratio(samples, block), 1.0);
   const double of_mean = same + stated / of_all * (2.0 - ratio) / ratio;
   return std::clamp(stated / of_mean, most, of_all);
@@ -175,8 +177,8 @@ double effective_weight(std::span<const StoredSample> samples, const PatchSpan& 
 }  // namespace
 
 std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples) {
-  // Of what a block covers at the mean speed: at even speed, without noise, it scatters by 0.29 of
-  // that about its mean. What is slower is worth a look.
+  // In units of a block's length at the mean speed. At that speed, without noise, a block scatters
+  // by 0.29 of this length about its mean. Slower blocks are examined further.
   constexpr double kSlow = 0.25;
   std::vector<PatchSpan> dwells;
   const std::size_t count = samples.size() / kBlock;
@@ -200,7 +202,7 @@ std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples) {
     SlowStretch(samples, std::span(blocks).subspan(b, end - b)).add_to(&dwells);
     b = std::max(end, b + 1);
   }
-  // Widened ones may meet.
+  // Ranges that were widened may overlap.
   for (std::size_t i = 1; i < dwells.size(); ++i) {
     dwells[i].begin = std::max(dwells[i].begin, dwells[i - 1].end);
   }
@@ -208,8 +210,8 @@ std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples) {
 }
 
 std::vector<PatchSpan> repeats_of(std::span<const StoredSample> samples) {
-  // Steps that noise makes are as short once in 8,000 times.
-  constexpr double kRepeated = 1e-2;  // of the mean step
+  // Steps of pure noise are as short once in 8,000 times.
+  constexpr double kRepeated = 1e-2;  // in units of the mean step
   std::vector<PatchSpan> repeats;
   double way = 0.0;
   for (std::size_t i = 1; i < samples.size(); ++i) {
@@ -232,9 +234,9 @@ std::vector<PatchSpan> repeats_of(std::span<const StoredSample> samples) {
 
 bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
                   double half_extent_m) {
-  constexpr std::size_t kFewest = 4;  // at even distances their ratio is 0.3
+  constexpr std::size_t kFewest = 4;  // four evenly spaced places have the ratio 0.3
   constexpr double kSmall = 1e-2;
-  // Of noise alone; a way of six deviations makes it as much.
+  // In units of the spread of pure noise. Motion over six standard deviations gives as much.
   constexpr double kSpread = 1.6;
   if (samples.size() < kFewest) {
     return false;
@@ -249,7 +251,7 @@ bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
   const double n = static_cast<double>(samples.size());
   const double of_noise = is_stated ? 2.0 * kSpread * kSpread * stated / n : 0.0;
   const double small = kSmall * kSmall * half_extent_m * half_extent_m;
-  // Two samples alone so far apart make the mean square as large.
+  // Two samples alone, if so far apart, make the mean square as large: a quick test.
   const Vec2 across = samples[samples.size() / 2].position_m - samples.front().position_m;
   if (across.squaredNorm() > 2.0 * n * std::max(of_noise, small)) {
     return false;
@@ -294,7 +296,8 @@ StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwel
 }
 
 StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m) {
-  // The mean step grows as repeats leave: of nine in ten to ten times what it was, then once more.
+  // The mean step grows as repeats are removed: if nine in ten are repeats, ten times. So it takes
+  // several rounds.
   constexpr int kMostRounds = 4;
   StoredPatch result = patch;
   for (int round = 0; round < kMostRounds; ++round) {

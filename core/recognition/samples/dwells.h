@@ -1,4 +1,4 @@
-// Dwells: a probe stands still, and its samples repeat one place.
+// Dwells: the probe stands still, and its samples repeat one place.
 #pragma once
 
 #include <span>
@@ -8,28 +8,29 @@
 
 namespace palpate {
 
-/// The stretches of a stroke, in their order, in which the probe stood still: by its mean speed it
-/// would have gone much farther, and what it went shows no order. Scatter about one place has no
-/// direction, and would be taken for one. Of at least 16 samples. O(samples).
+/// The stretches of a stroke, in order, in which the probe stood still: it moved much less than at
+/// its mean speed, and its steps show no order. Such samples must be merged because the fits would
+/// take their scatter for travel. At least 16 samples each. O(samples).
 std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples);
 
-/// The stretches of a stroke, in their order, in which samples repeat the one before, but for a
-/// hundredth of the mean step: of a probe that is read more often than it moves. O(samples).
+/// The stretches of a stroke, in order, in which samples repeat the one before to a hundredth of
+/// the mean step. This happens if a probe is read more often than it moves. O(samples).
 std::vector<PatchSpan> repeats_of(std::span<const StoredSample> samples);
 
-/// Whether a patch of at least 4 samples is all one place: a touch that was held. Where its noise
-/// is stated, by `default_sigma_m` [m] if not by the samples, that is all they spread; where it is
-/// not, they show no order and lie within a hundredth of `half_extent_m` [m], that of all patches.
+/// True if a patch of at least 4 samples is all one place, a touch that was held. If the noise is
+/// stated (by the samples or `default_sigma_m` [m]): the samples spread no more than the noise. In
+/// any case: they show no order and lie within a hundredth of `half_extent_m` [m], the half extent
+/// of all patches.
 bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
                   double half_extent_m);
 
-/// The patch with one sample, their mean, for each dwell. It weighs what its noise lets it: as all
-/// of them where they scatter as the noise that is stated and each afresh; as one of them where
-/// they repeat the same error, or where nobody states the noise.
+/// Replaces each dwell by one sample, the mean. Its weight depends on the noise. If the samples
+/// scatter as the stated noise and independently, it weighs as all of them. If they repeat the same
+/// error, or the noise is not stated, it weighs as one.
 StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwells,
                        double default_sigma_m);
 
-/// The same for its repeats, then its dwells.
+/// Replaces the repeats, then the dwells, by their means.
 StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m);
 std::vector<Vec2> without_dwells(std::span<const Vec2> positions_m);
 

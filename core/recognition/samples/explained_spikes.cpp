@@ -8,20 +8,21 @@
 namespace palpate {
 namespace {
 
-/// Signed length of the curve from one parameter to another, the short way round. [m]
+/// Signed length of the curve between two parameters, the short way round if it is closed. [m]
 double arc_between(const Curve& curve, double from, double to) {
   const double period = domain(curve).period;
   return arc_length(curve, from, period > 0.0 ? from + std::remainder(to - from, period) : to);
 }
 
-/// Where on the curve a stroke was before and after samples that it lost.
+/// The stretch of the curve that a stroke passed while its samples were lost.
 struct Gap {
   double before = 0.0;
-  double length_m = 0.0;  ///< to the place after; negative against the parameter
+  double length_m = 0.0;  ///< signed length to the sample after it; negative against the parameter
 };
 
-/// The `lost` samples before sample `next` of those kept. Beyond the first and the last of these
-/// the stroke may have gone on from each to the next as far as between any two.
+/// The gap of `lost` samples before sample `next` of those kept. Before the first and after the
+/// last kept sample, each lost one may be as far from its neighbour as the longest step of the
+/// stroke.
 Gap gap_before(std::size_t next, std::size_t lost, std::span<const StoredSample> kept,
                const Curve& curve, const Pose2& world_T_curve) {
   const auto parameter_of = [&](std::size_t i) {
@@ -42,7 +43,7 @@ Gap gap_before(std::size_t next, std::size_t lost, std::span<const StoredSample>
                               arc_between(curve, parameter_of(inner), from))};
 }
 
-/// How many samples were lost in a row from number `from` on, before sample `next` of those kept.
+/// Number of consecutive samples lost from index `from` on, before sample `next` of those kept.
 std::size_t lost_from(std::size_t from, std::size_t next, std::span<const StoredSample> all,
                       std::span<const StoredSample> kept) {
   std::size_t end = from;
@@ -53,7 +54,7 @@ std::size_t lost_from(std::size_t from, std::size_t next, std::span<const Stored
   return end - from;
 }
 
-/// Whether the stroke passed the place on its way over the gap, but for noise along the curve.
+/// True if the stroke passed t within the gap, up to the noise along the curve.
 bool passes(const Gap& gap, const Curve& curve, double t, double noise_m) {
   const double on_m = arc_between(curve, gap.before, t);
   return on_m >= std::min(0.0, gap.length_m) - noise_m &&

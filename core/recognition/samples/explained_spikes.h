@@ -1,5 +1,4 @@
-// Samples that were taken for spikes before any class was known, and are none by the curve that was
-// found.
+// Takes back samples that were removed as spikes before the curve was known but lie on it.
 #pragma once
 
 #include <optional>
@@ -11,12 +10,12 @@
 
 namespace palpate {
 
-/// The patches of `clean` with those of `all` taken back that lie on the curve within `limit`
-/// standard deviations (a tip's centre: within them of its radius away), at a place that the stroke
-/// passed between the samples before and after: a bend sharper than the spacing looks like a spike,
-/// and neighbours of spikes are suspected with them. `noise_m` is that of samples which bring none.
-/// nullopt where there are none to take back. Each patch of `clean` is
-/// a subsequence of its patch in `all`.
+/// The patches of `clean`, with the samples of `all` added that the curve explains. Such a sample
+/// lies on the curve within `limit` standard deviations (a tip's centre: at the tip radius from
+/// it), at a place that the stroke passed between the samples before and after. Reason: a bend
+/// sharper than the sample spacing looks like a spike, and neighbours of spikes are suspected too.
+/// `noise_m`: noise of samples that state none [m]. Each patch of `clean` must be a subsequence of
+/// its patch in `all`. nullopt if there is nothing to add.
 std::optional<std::vector<StoredPatch>> with_explained_spikes(std::span<const StoredPatch> all,
                                                               std::span<const StoredPatch> clean,
                                                               const Curve& curve,

@@ -7,7 +7,8 @@
 namespace palpate {
 namespace {
 
-/// `least_square`: of the distance, which may be -1 for points that lie in one place.
+/// `least_square`: square of the least distance. Negative values also admit points at the same
+/// place.
 Spread spread_by_squares(std::span<const Vec2> points, std::size_t most, double least_square) {
   Spread spread;
   spread.nearest.assign(points.size(), 0);
@@ -18,7 +19,7 @@ Spread spread_by_squares(std::span<const Vec2> points, std::size_t most, double 
   while (spread.chosen.size() < most && squares[next] > least_square) {
     apart = squares[next];
     const Vec2& last = points[next];
-    squares[next] = -1.0;  // chosen: points that lie in one place are all the same distance away
+    squares[next] = -1.0;  // marks it as chosen: points at the same place are all at distance 0
     spread.nearest[next] = spread.chosen.size();
     double farthest = -std::numeric_limits<double>::infinity();
     std::size_t at = next;

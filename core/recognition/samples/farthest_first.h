@@ -1,4 +1,4 @@
-// Points chosen so that few of them show where all lie.
+// Chooses a few points that show where all points lie.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +11,16 @@ namespace palpate {
 
 struct Spread {
   std::vector<std::size_t> chosen;   ///< indices, in the order of choice
-  std::vector<std::size_t> nearest;  ///< of every point: which of `chosen` is the nearest
-  double apart = 0.0;                ///< no two of the chosen are closer; infinite of one
+  std::vector<std::size_t> nearest;  ///< for every point, which element of `chosen` is nearest
+  double apart = 0.0;  ///< smallest distance between chosen points; infinite for one point
 };
 
-/// The first of the points, then each the farthest from those before it, until there are `most` or
-/// none lies farther than `least` away. O(most * points).
+/// Chooses the first point, then each time the point farthest from those chosen, until there are
+/// `most` or none is farther than `least` away. O(most * points).
 Spread spread_widest(std::span<const Vec2> points, std::size_t most, double least);
 
-/// Indices of `most` of the points, or all: the first one, then each the farthest from those before
-/// it. O(most * points).
+/// Indices of `most` points (or all): the first point, then each time the point farthest from those
+/// chosen. O(most * points).
 std::vector<std::size_t> farthest_first(std::span<const Vec2> points, std::size_t most);
 
 }  // namespace palpate

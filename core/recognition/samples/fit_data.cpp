@@ -34,7 +34,7 @@ std::optional<Extents> extents_of(std::span<const StoredPatch> patches) {
   if (!(count > 0.0)) {
     return std::nullopt;
   }
-  Vec2 sum = Vec2::Zero();  // relative to one of the points: no digits are lost far from the origin
+  Vec2 sum = Vec2::Zero();  // relative to one point: keeps the digits far from the origin
   for_each_sample(patches, [&](const StoredSample& sample) {
     sum += sample.weight * (sample.position_m - any);
   });
@@ -58,9 +58,9 @@ std::optional<Extents> extents_of(std::span<const StoredPatch> patches) {
   return Extents{{centre.x(), centre.y(), angle}, 0.5 * (high - low).maxCoeff()};
 }
 
-/// Of touches alone in their patch.
+/// Copies the normals of single touches.
 void set_normals(std::span<const StoredPatch> patches, FitData* data) {
-  // A direction known to rounding would outweigh what a curve's own normal is computed to. [rad]
+  // A direction known to rounding would be more precise than the computed normal of a curve. [rad]
   constexpr double kLeastSigma = 1e-7;
   auto span = data->patches.begin();
   for (const StoredPatch& patch : patches) {
@@ -80,8 +80,7 @@ void set_normals(std::span<const StoredPatch> patches, FitData* data) {
 }  // namespace
 
 bool is_directed_touch(const StoredPatch& patch) {
-  // Deviation of a direction that is anywhere in half a turn, pi / sqrt(12): it tells nothing.
-  // [rad]
+  // Standard deviation of a direction anywhere in half a turn, pi / sqrt(12): no information. [rad]
   constexpr double kAnywhere = 0.9069;
   if (patch.samples.size() != 1 || patch.details.empty()) {
     return false;
@@ -142,7 +141,7 @@ bool has_tips(std::span<const FitPoint> points) {
 }
 
 double rounding_level(const FitData& data) {
-  // A coordinate carries half a unit in the last place; a few such errors meet in a residual.
+  // A coordinate has an error of half a unit in the last place; a few of them add up in a residual.
   constexpr double kRoundings = 4.0;
   const double largest = data.frame.translation().cwiseAbs().maxCoeff() + data.scale;
   return kRoundings * std::numeric_limits<double>::epsilon() * largest / data.scale;
@@ -179,7 +178,7 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
     data.patches.push_back({begin, data.points.size()});
   }
   if (!*sigma_known) {
-    // Stated and unstated noise do not mix: the data decide for all.
+    // Stated and unstated noise do not mix: if one is not stated, the noise of all is estimated.
     std::size_t i = 0;
     for (const StoredPatch& patch : patches) {
       for (const StoredSample& sample : patch.samples) {

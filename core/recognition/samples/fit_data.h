@@ -1,4 +1,4 @@
-// The contact points of one object, made ready for fitting: spikes aside, centred and scaled.
+// The contact points of one object, ready for fitting: centred and scaled.
 #pragma once
 
 #include <cstddef>
@@ -12,72 +12,73 @@
 
 namespace palpate {
 
-/// Of the half extent: beyond this noise nothing is measured. The fewest places that are RECOGNIZED
-/// where nobody states it (recognizer.cpp) are three more than a conic has parameters, so that
-/// points anywhere lie within the noise of some conic with a probability of about its third power:
-/// one in a million.
+/// Largest noise, as a fraction of the half extent, with which anything is measured. If the noise
+/// is not stated, RECOGNIZED needs eight places (recognizer.cpp), three more than a conic has
+/// unknowns. So random points lie within the noise of some conic with a probability of about its
+/// third power: one in a million.
 inline constexpr double kLargestNoise = 0.01;
 
 /// One contact point in normalised coordinates (world = frame * (scale * normalised)).
 struct FitPoint {
   Vec2 position = Vec2::Zero();  ///< normalised
-  Vec2 tangent = Vec2::Zero();   ///< direction of travel, unit; zero where it is not known
+  Vec2 tangent = Vec2::Zero();   ///< direction of travel, unit; zero if unknown
   double inverse_sigma = 1.0;    ///< 1 / (noise in normalised units)
   double offset = 0.0;           ///< tip radius in normalised units; 0 = surface point
-  /// Measured normal of the surface, unit, in the frame: of a touch alone in its patch whose noise
-  /// is known. (Along a stroke the positions tell the direction.)
+  /// Measured surface normal, unit, in the frame. Only for single touches, and only if the noise of
+  /// every point is known. (Along a stroke the positions show the direction.)
   Vec2 normal = Vec2::Zero();
-  double inverse_normal_sigma = 0.0;  ///< 1 / (deviation of its direction [rad]); 0 = none
-  /// Deviation of the tangent, along which a tip is taken off [rad]; infinite where no smooth model
-  /// tells it.
+  double inverse_normal_sigma = 0.0;  ///< 1 / (standard deviation of its direction [rad]); 0 = none
+  /// Standard deviation of the tangent's direction, which matters where a tip is removed; infinite
+  /// if no smooth model gives it. [rad]
   double tangent_sigma = std::numeric_limits<double>::infinity();
 };
 
-/// Points of all patches of an object. Normalised to their principal axes and extent, so that
-/// starts, solver tolerances and roundings are the same at every scale and wherever the object
-/// lies.
+/// Points of all patches of an object, in the frame of their principal axes and in units of their
+/// half extent. So starts, solver tolerances and roundings are the same at every scale and
+/// position.
 struct FitData {
   std::vector<FitPoint> points;
   std::vector<PatchSpan> patches;
-  Pose2 frame;         ///< centre of the points' extents, x along the longer principal axis
-  double scale = 1.0;  ///< half extent of the points [m]
+  Pose2 frame;         ///< centre of the points' box, x along the longer principal axis
+  double scale = 1.0;  ///< half the longer side of that box [m]
 
   std::span<const FitPoint> patch(std::size_t i) const {
     return std::span(points).subspan(patches[i].begin, patches[i].size());
   }
 };
 
-/// The samples in memory as fit points. `default_sigma_m` is the noise of samples that bring none;
-/// `sigma_known` receives whether every point then has one (points without get 1, normalised: only
-/// their ratios count until the noise is estimated). A noise below the rounding of the coordinates
-/// is raised to it. Tip radii become offsets. Empty patches are left out. Normals are those of
-/// patches of a single sample, where every point's noise is known.
+/// Converts stored samples to fit points. `default_sigma_m`: noise of samples that state none; 0 =
+/// not known [m]. `sigma_known` receives whether every point has a noise. If not, all points get
+/// noise 1 (normalised) over the root of their weight: only ratios count until the noise is
+/// estimated. Noise below the rounding of the coordinates is raised to it. Tip radii become
+/// offsets. Empty patches are left out. Normals are kept only for patches of a single sample, and
+/// only if every noise is known.
 FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma_m,
                       bool* sigma_known);
 
-/// Noise of a contact over that of a stored sample, which is the mean of several in a long patch; 1
-/// where none are merged.
+/// Ratio of the noise of a contact to that of a stored sample (a mean of several in long patches);
+/// 1 if none are merged.
 double noise_over_means(std::span<const StoredPatch> patches, double default_sigma_m);
 
-/// Whether a patch is a touch by itself with a measured normal that tells a direction.
+/// True if a patch is a single touch with a measured normal precise enough to show a direction.
 bool is_directed_touch(const StoredPatch& patch);
 
-/// How many measurements a curve leaves residuals of: a place a point, and the normals. O(patches).
+/// Number of residuals: one per point, plus one per normal. O(patches).
 std::size_t residual_count(const FitData& data);
 
-/// Root mean square of the points' noise, in normalised units. At least one point.
+/// Root mean square of the points' noise, normalised. Needs at least one point.
 double rms_sigma(const FitData& data);
 
-/// The least noise of any of the points, normalised; infinite without points.
+/// The smallest noise of any point, normalised; infinite without points.
 double least_sigma(std::span<const FitPoint> points);
 
-/// The chi-square that noise of kLargestNoise leaves.
+/// The chi-square that noise of size kLargestNoise leaves.
 double most_chi2_of_noise(std::span<const FitPoint> points);
 
-/// Whether any of the points is the centre of a tip.
+/// True if any point is the centre of a tip.
 bool has_tips(std::span<const FitPoint> points);
 
-/// Rounding of the data's coordinates, in normalised units: no noise is smaller than that.
+/// Rounding error of the coordinates, normalised: no noise is smaller.
 double rounding_level(const FitData& data);
 
 }  // namespace palpate

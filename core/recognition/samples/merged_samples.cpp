@@ -6,14 +6,15 @@
 namespace palpate {
 namespace {
 
-/// Of one contact; zeros where it is not known. [m^2]
+/// Covariance of one contact; zeros if unknown. [m^2]
 Eigen::Vector3d covariance_of(const StoredSample& sample, const SampleDetail& detail) {
   const double variance = sample.sigma_m * sample.sigma_m;
   return detail.covariance_m2.x() > 0.0 ? detail.covariance_m2
                                         : Eigen::Vector3d(variance, 0.0, variance);
 }
 
-/// Inverse variance of a measured normal; none is better known than a unit vector is rounded.
+/// Inverse variance of a measured normal. The standard deviation is at least a unit vector's
+/// rounding.
 double normal_weight(const SampleDetail& detail) {
   constexpr double kRounding = 1e-16;  // [rad]
   const double sigma = std::max(detail.normal_sigma_rad, kRounding);
@@ -41,7 +42,7 @@ SampleDetail merged(const StoredSample& a, const SampleDetail& of_a, const Store
     const double weight_a = normal_weight(of_a);
     const double weight_b = normal_weight(of_b);
     const Vec2 sum = weight_a * of_a.normal + weight_b * of_b.normal;
-    // Of normals that contradict each other there is no mean.
+    // Normals that contradict each other have no mean.
     constexpr double kLeastAgreement = 0.1;
     if (sum.norm() > kLeastAgreement * (weight_a + weight_b)) {
       mean.normal = sum.normalized();

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kFewestOfPass = 6;
 
-/// Whether there is anything to look at: over a few samples, a step back. Noise makes some too.
+/// True if the stroke steps back anywhere, over a few samples: a quick test. Noise may do so too.
 bool steps_back(std::span<const StoredSample> samples) {
   constexpr std::size_t kFew = 4;
   for (std::size_t i = 2 * kFew; i < samples.size(); ++i) {
@@ -27,15 +27,16 @@ bool steps_back(std::span<const StoredSample> samples) {
 }
 
 struct Lengths {
-  double noise_m = 0.0;  ///< noise does not put a sample so far beside a way
-  double far_m = 0.0;    ///< nor two so far apart, in steps too: where noise is as large as a
-                         ///< patch, its estimate may be any
+  double noise_m = 0.0;  ///< noise does not move a sample so far off its path
+  /// Noise does not put two samples so far apart. At least four median steps, because where the
+  /// noise is as large as a patch, its estimate means nothing.
+  double far_m = 0.0;
 };
 
-/// As the samples tell them; nullopt where they do not.
+/// From the samples themselves; nullopt if these do not show their noise.
 std::optional<Lengths> lengths_of(std::span<const StoredSample> samples) {
   constexpr double kFarDeviations = 10.0;
-  constexpr double kFarSteps = 4.0;  // where they are noise alone, seven deviations of it
+  constexpr double kFarSteps = 4.0;  // if the samples are noise alone, seven standard deviations
   std::vector<Vec2> positions;
   std::vector<double> steps;
   positions.reserve(samples.size());
@@ -54,12 +55,12 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples) {
   return Lengths{noise_m, std::max(noise_m, kFarSteps * *middle)};
 }
 
-/// Where the stroke, having come from afar, goes back the way it came by more than noise: within
-/// half a right angle of it.
+/// Where the stroke turns back: it came from farther than `far_m` and returns by more than `far_m`,
+/// within 45 degrees of the way it came. Gives the index of the farthest sample of each turn.
 std::vector<std::size_t> reversals_of(std::span<const StoredSample> samples, double far_m) {
   std::vector<std::size_t> reversals;
-  std::size_t behind = 0;  // far enough from `head` that the two tell the direction
-  std::size_t head = 0;    // the farthest on its way
+  std::size_t behind = 0;  // far enough from `head` for the two to show the direction
+  std::size_t head = 0;    // the farthest sample on its way
   for (std::size_t i = 1; i < samples.size(); ++i) {
     const Vec2 way = samples[head].position_m - samples[behind].position_m;
     const double length = way.norm();
@@ -83,8 +84,8 @@ std::vector<std::size_t> reversals_of(std::span<const StoredSample> samples, dou
   return reversals;
 }
 
-/// How far a place lies from the nearest step of a way through samples; nullopt where that is where
-/// the way begins. [m]
+/// Distance from a place to the nearest step of a path through samples; nullopt if the nearest
+/// point is the beginning of the path. [m]
 std::optional<double> distance_from(std::span<const StoredSample> way, const Vec2& place) {
   double least = std::numeric_limits<double>::infinity();
   bool at_beginning = false;
@@ -102,12 +103,12 @@ std::optional<double> distance_from(std::span<const StoredSample> way, const Vec
   return at_beginning ? std::nullopt : std::optional(least);
 }
 
-/// Whether the pass after a reversal leads back over the one before: as far as the two go, it lies
-/// within the noise of it, or within what play and drag of a probe put it beside. One place in four
-/// may be a spike's, and half of them must lie so far off that noise did not put them there.
+/// True if the pass after a reversal leads back over the one before. As far as both reach, it must
+/// lie within the noise of it, or within the play and drag of a probe. One compared place in four
+/// may be a spike. At least half of the places must be farther from the turn than noise reaches.
 bool leads_back(std::span<const StoredSample> before, std::span<const StoredSample> after,
                 const Lengths& lengths) {
-  constexpr double kBeside = 0.02;  // of the way from where it turned
+  constexpr double kBeside = 0.02;  // of the distance from the turn
   constexpr std::size_t kPlaces = 8;
   const Vec2 turn = before.back().position_m;
   std::size_t on = 0;
@@ -138,14 +139,14 @@ std::vector<std::size_t> returns_of(std::span<const StoredSample> samples) {
   const std::vector<std::size_t> reversals = reversals_of(samples, lengths->far_m);
   std::size_t begin = 0;
   for (std::size_t r = 0; r < reversals.size(); ++r) {
-    // The sample at the turn ends one pass; the next one begins behind it.
+    // The sample at the turn ends one pass; the next pass begins after it.
     const std::size_t turn = reversals[r] + 1;
     std::size_t next = r + 1;
     while (next < reversals.size() && reversals[next] + 1 < turn + kFewestOfPass) {
       ++next;
     }
     const std::size_t end = next < reversals.size() ? reversals[next] + 1 : samples.size();
-    // The way back is compared with four times as many samples at most: that bounds the time.
+    // Compares the way back with at most four times as many samples: that bounds the time.
     const std::size_t from = turn - std::min(turn - begin, 4 * (end - turn));
     if (turn - begin >= kFewestOfPass && end - turn >= kFewestOfPass &&
         leads_back(samples.subspan(from, turn - from), samples.subspan(turn, end - turn),

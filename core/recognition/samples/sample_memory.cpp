@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-/// Puts the mean of `from` and the sample behind it at `to`, which is not behind `from`.
+/// Replaces sample `to` by the mean of samples `from` and `from` + 1. `to` must be <= `from`.
 void merge_into(StoredPatch* patch, std::size_t to, std::size_t from) {
   std::vector<StoredSample>& samples = patch->samples;
   const StoredSample mean = merged(samples[from], samples[from + 1]);
@@ -25,7 +25,7 @@ void merge_into(StoredPatch* patch, std::size_t to, std::size_t from) {
   }
 }
 
-/// Merges neighbours pairwise; an odd last sample stays to be filled up.
+/// Merges neighbours pairwise. An odd last sample stays alone, to be filled up later.
 void merge_pairs(StoredPatch* patch) {
   std::vector<StoredSample>& samples = patch->samples;
   const std::size_t pairs = samples.size() / 2;
@@ -40,7 +40,8 @@ void merge_pairs(StoredPatch* patch) {
   samples.resize(left);
   if (!patch->details.empty()) patch->details.resize(left);
   patch->contacts_per_sample *= 2.0;
-  // A turn d between chords of length w means kappa = d / w (noise included: rather too much).
+  // A turn d between chords of length w means kappa = d / w. Noise is included, so this is too
+  // large rather than too small.
   for (std::size_t k = 2; k < pairs; ++k) {
     const Vec2 before = samples[k - 1].position_m - samples[k - 2].position_m;
     const Vec2 after = samples[k].position_m - samples[k - 1].position_m;
@@ -49,8 +50,8 @@ void merge_pairs(StoredPatch* patch) {
   }
 }
 
-/// Whether the dwells of a patch make room: a quarter of its samples, so that few looks are for
-/// nothing.
+/// Merges the dwells of a patch if that frees at least a quarter of its samples; otherwise too many
+/// calls would gain too little. Returns whether it did.
 bool merge_dwells(StoredPatch* patch) {
   StoredPatch moved = without_dwells(*patch, 0.0);
   if (4 * moved.samples.size() > 3 * patch->samples.size()) {

@@ -14,29 +14,30 @@
 namespace palpate {
 
 struct MemoryOptions {
-  /// A patch that grows beyond this many samples has its dwells merged (dwells.h). Where these are
-  /// less than a quarter of it, its neighbours are merged pairwise, and from then on it keeps means
-  /// of twice as many contacts: no information on the noise's scale is lost, and the bias is stated
-  /// (StoredPatch::merge_bias_m).
+  /// Most samples of a patch. When a patch is full, its dwells are merged (dwells.h). If that frees
+  /// less than a quarter, neighbours are merged pairwise, and from then on the patch stores means
+  /// of twice as many contacts. The weight of a mean keeps the noise level known; its bias is
+  /// stated (StoredPatch::merge_bias_m).
   std::size_t most_samples_per_patch = 1024;
-  /// Beyond this many patches of two samples or more the oldest of them is forgotten.
+  /// Most patches of two samples or more; beyond it the oldest is forgotten.
   std::size_t most_patches = 64;
-  /// Likewise of touches alone in their patch: together as much as one patch holds.
+  /// The same for single touches (patches of one sample): together as many samples as one patch.
   std::size_t most_lone_touches = 1024;
-  /// Whether a sample at exactly the place of the one before is taken, as one of its own. It says
-  /// nothing new of the path, but counts where distances are summed. No dwell is merged then.
+  /// True: a sample at exactly the place of the one before is stored as a sample of its own. It
+  /// says nothing new about the path, but counts where distances are summed. Dwells are then not
+  /// merged. False: it is only counted (AddResult::repeated).
   bool takes_repeated = false;
 };
 
-/// Samples taken and samples refused, by reason.
+/// Numbers of samples accepted and refused, by reason.
 struct AddResult {
   std::size_t accepted = 0;
   std::size_t rejected_not_finite = 0;
   std::size_t rejected_negative_sigma = 0;
-  std::size_t rejected_detail = 0;  ///< no sound normal or covariance (is_sound)
-  std::size_t detailed = 0;         ///< of those accepted: with a normal or a covariance
-  std::size_t forgotten = 0;        ///< contacts taken before, of patches that had to make room
-  std::size_t repeated = 0;  ///< at exactly the place of the sample before: they say nothing new
+  std::size_t rejected_detail = 0;  ///< normal or covariance not sound (is_sound)
+  std::size_t detailed = 0;         ///< accepted samples with a normal or a covariance
+  std::size_t forgotten = 0;        ///< earlier contacts lost with patches that were forgotten
+  std::size_t repeated = 0;  ///< at exactly the place of the sample before: refused, nothing new
 
   AddResult& operator+=(const AddResult& other) {
     accepted += other.accepted;
@@ -54,8 +55,8 @@ class SampleMemory {
  public:
   explicit SampleMemory(const MemoryOptions& options = {}) : options_(options) {}
 
-  /// Appends to the patch of that probe and number, or begins it. `details`: of the samples, or
-  /// none. Amortised O(samples + patches).
+  /// Appends to the patch of that probe and number, or begins it. `details`: one per sample, or
+  /// empty. Amortised O(samples + patches).
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples,
                 std::span<const SampleDetail> details = {});
 
@@ -64,25 +65,24 @@ class SampleMemory {
   /// In the order in which they were begun.
   const std::vector<StoredPatch>& patches() const { return patches_; }
 
-  /// Contacts taken since the memory was clear, less those of forgotten patches.
+  /// Contacts accepted since clear(), without those of forgotten patches.
   std::size_t sample_count() const;
 
-  /// Samples held, merged ones counted once.
+  /// Samples stored; a mean of several counts once.
   std::size_t stored_count() const;
 
  private:
   using Patch = std::vector<StoredPatch>::iterator;
 
-  /// Forgets the oldest patch of the kind, touches alone or longer ones, but the `growing` one,
-  /// where there are more than `most`, at least 1. Returns how many contacts it stood for.
+  /// If more than `most` patches (at least 1) are of the kind, single touches or longer ones,
+  /// forgets the oldest of them, but not `growing`. Returns how many contacts it stood for.
   std::size_t make_room(bool lone, std::size_t most, Patch* growing);
 
   MemoryOptions options_;
   std::vector<StoredPatch> patches_;
 };
 
-/// The samples of a patch as if each were one contact: a mean of several as one of so much less
-/// noise.
+/// The stored samples of a patch as contacts. The mean of w contacts has noise smaller by sqrt(w).
 ContactRun as_contacts(const StoredPatch& patch);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// What is kept of a patch: its samples, some of them means of several.
+// What is kept of a patch: its samples, some of them means of several contacts.
 #pragma once
 
 #include <cstddef>
@@ -13,39 +13,40 @@ namespace palpate {
 /// A sample in memory: one contact, or the mean of several consecutive ones.
 struct StoredSample {
   Vec2 position_m = Vec2::Zero();
-  double sigma_m = 0.0;   ///< noise of ONE of the contacts that it stands for; 0 = not known
-  double weight = 1.0;    ///< how many contacts with noise of their own it says as much as
-  double contacts = 1.0;  ///< how many it stands for
+  double sigma_m = 0.0;   ///< noise of ONE of its contacts; 0 = not known [m]
+  double weight = 1.0;    ///< number of contacts with independent noise that it is worth
+  double contacts = 1.0;  ///< number of contacts that it stands for
 };
 
 struct StoredPatch {
   PatchContext context;
   std::vector<StoredSample> samples;  ///< in their order along the arc
-  /// Of the samples; empty where none of them says more. Of a mean of several the covariance is
-  /// that of ONE of them, the normal and its deviation those of their mean.
+  /// One per sample; empty if no sample has one. For a mean of several contacts: the covariance of
+  /// ONE of them, but the normal and its standard deviation of their mean.
   std::vector<SampleDetail> details = {};
-  double contacts_per_sample = 1.0;  ///< that a stored sample is the mean of; where the probe stood
-                                     ///< still, of more (dwells.h)
-  Vec2 newest_m = Vec2::Zero();      ///< last contact taken
-  /// How far a mean of contacts over an arc w lies off the curve: kappa w^2 / 24, the largest [m]
+  /// Contacts per stored sample; a dwell's sample stands for more (dwells.h).
+  double contacts_per_sample = 1.0;
+  Vec2 newest_m = Vec2::Zero();  ///< the last contact added
+  /// Largest distance from the curve of a mean of contacts over an arc w: kappa w^2 / 24. [m]
   double merge_bias_m = 0.0;
-  /// Touches strung into a run (touches/strung_touches.h): it changes anywhere, not only at its
-  /// end.
+  /// True for a run of single touches (touches/strung_touches.h). Such a patch may change anywhere,
+  /// other patches only at their end.
   bool strung = false;
-  /// Of a touch alone that lies on the way through such runs: the way's direction, unit, and the
-  /// turn of its step there [rad]; zero where there is none.
+  /// For a single touch that lies on the way through such runs: direction of the way, unit, and the
+  /// turn of the way's step there [rad]. Zero if unknown.
   Vec2 direction = Vec2::Zero();
   double turn = 0.0;
 };
 
-/// A run of samples or points of one patch, in their order along the arc: [begin, end).
+/// A range of samples or points of one patch, in their order along the arc: [begin, end).
 struct PatchSpan {
   std::size_t begin = 0;
   std::size_t end = 0;
   std::size_t size() const { return end - begin; }
 };
 
-/// What tells that a patch of a memory, whose samples come at its end, is still the same.
+/// Identifies a state of a patch in memory, which only grows at its end: equal versions mean an
+/// unchanged patch.
 struct PatchVersion {
   std::uint32_t probe = 0;
   std::uint32_t patch = 0;

@@ -9,20 +9,21 @@
 
 namespace palpate {
 
-/// Four samples in a row off a curve are a bend. At a rate of one in 20 chance has so many in a row
-/// once in 20^4 samples, more than the memory holds.
+/// Longest run of samples that may all be spikes; four in a row off a curve are a bend. If one
+/// sample in 20 is a spike, chance makes four in a row once in 20^4 samples, more than the memory
+/// holds.
 inline constexpr std::size_t kLongestRunOfSpikes = 3;
 
-/// find_spikes (core/local/spikes/spikes.h) on the positions of one patch, noise by the patch
-/// itself: one flag per sample. `false_alarm`: probability that a patch without spikes loses any
-/// sample.
+/// Runs find_spikes (core/local/spikes/spikes.h) on the positions of one patch; the noise comes
+/// from the patch itself. One flag per sample. `false_alarm`: probability that a patch without
+/// spikes loses any sample.
 std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_alarm);
 
-/// The samples that are no spikes; one flag each.
+/// The samples without a flag. One flag per sample.
 std::vector<StoredSample> without_spikes(std::span<const StoredSample> samples,
                                          const std::vector<bool>& is_spike);
 
-/// The patch with these samples alone, and what is known of them.
+/// The patch with only these samples and their details.
 StoredPatch without_spikes(const StoredPatch& patch, const std::vector<bool>& is_spike);
 
 }  // namespace palpate

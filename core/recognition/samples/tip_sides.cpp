@@ -30,15 +30,16 @@ double turn_of(std::span<const FitPoint> patch) {
   return turn;
 }
 
-/// On which side of the patch's travel the measured normals lead away from the material, where they
-/// leave no doubt: that is where the tip's centres are. 0 where they do not tell.
+/// Side of travel to which the measured normals of a patch point, beyond doubt; the tip centres lie
+/// there. 0 if the normals leave a doubt.
 int measured_side(const StoredPatch& patch, const FitData& reduced,
                   std::span<const FitPoint> path) {
-  // Of the direction of travel, one error for the whole patch. Reduced points show theirs to a few
-  // hundredths, touches have it from a curve that may not be the right one yet: a normal within 51
-  // degrees of the path's own is believed, one that lies further aside tells nothing. [rad]
+  // Standard deviation of the direction of travel, one error for the whole patch. Reduced points
+  // know theirs to a few hundredths; touches take it from a curve that may not be the right one
+  // yet. With 0.3 a normal within 51 degrees of the path's normal decides; one farther off decides
+  // nothing. [rad]
   constexpr double kTravelSigma = 0.3;
-  // What is known better says no more beside the travel's error. [rad]
+  // Smaller standard deviations add nothing to the error of travel. [rad]
   constexpr double kLeastSigma = 1e-3;
   if (patch.details.empty() || path.empty()) {
     return 0;
@@ -64,7 +65,7 @@ int measured_side(const StoredPatch& patch, const FitData& reduced,
   if (!(information > 0.0)) {
     return 0;
   }
-  // Of the left over the right, by von Mises' law of this concentration about either.
+  // Log odds of left over right, by von Mises' law of this concentration about either.
   const double concentration = 1.0 / (1.0 / information + kTravelSigma * kTravelSigma);
   const double log_odds = 2.0 * concentration * to_the_left / information;
   return std::abs(log_odds) < kNegligibleLogOdds ? 0 : (log_odds > 0.0 ? 1 : -1);
@@ -80,7 +81,8 @@ std::optional<double> certain_turn(std::span<const FitPoint> patch) {
     length += i > 0 ? (patch[i].position - patch[i - 1].position).norm() : 0.0;
   }
   const double turn = turn_of(patch);
-  // That of a parabola fitted to evenly spread samples: sigma sqrt(720 / n) over the length.
+  // Standard deviation for a parabola fitted to evenly spread samples: sigma sqrt(720 / n) /
+  // length.
   return weight > 0.0 && std::abs(turn) * length > kNegligibleDeviations * std::sqrt(720.0 / weight)
              ? std::optional(turn)
              : std::nullopt;
@@ -106,7 +108,7 @@ std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patche
       continue;
     }
     if (patch.context.tip_radius_m > 0.0) {
-      // A path that bends left has its tips outside, to the right, if the part is convex there.
+      // If the path bends left, the tips lie outside, on the right, if the part is convex there.
       outside_of_bend[p] = bends[p] >= 0.0 ? -1 : 1;
       const bool lone = patch.samples.size() == 1;
       const int measured = measured_side(patch, reduced, reduced.patch(p));

@@ -6,11 +6,11 @@
 namespace palpate {
 namespace {
 
-/// Sets the noise of points that bring none from the smooth model's residuals. Returns whether it
-/// is as good as known: no smaller than rounding.
+/// Sets the noise of all points from the smooth model's residuals. Returns true if it is no larger
+/// than rounding: then it counts as known.
 bool estimate_noise(FitData* data, SmoothModel* smooth) {
-  // With too few degrees of freedom there is no estimate; what fits to a millionth of the extent is
-  // then as good as exact.
+  // With too few degrees of freedom there is no estimate; points that fit to a millionth of the
+  // half extent are then taken as exact.
   constexpr double kNoEstimate = 1e-6;
   const double rounding = rounding_level(*data);
   const double estimate =

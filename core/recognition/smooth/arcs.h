@@ -1,4 +1,4 @@
-// Contact points as what they are before any class is named: smooth arcs under noise.
+// Contact points before any class is known: smooth arcs with noise.
 #pragma once
 
 #include "core/recognition/samples/fit_data.h"
@@ -6,19 +6,20 @@
 
 namespace palpate {
 
-/// With fewer degrees of freedom than this the smooth model's residuals tell no noise: four leave
-/// it a relative standard deviation of 1 / sqrt(2 * 4), 35 %.
+/// Fewest degrees of freedom for which the smooth model's residuals give a noise: four leave it a
+/// relative standard deviation of 1 / sqrt(2 * 4), 35 %.
 inline constexpr int kFewestDegreesOfNoise = 4;
 
 struct Arcs {
-  FitData data;  ///< all points: noise and tangents set
+  FitData data;  ///< all points, with noise and tangents set
   SmoothModel smooth;
-  /// False: the noise is no better known than the smooth model's residuals tell it.
+  /// False if the noise is only estimated, from the smooth model's residuals.
   bool sigma_known = true;
-  double sigma = 0.0;  ///< noise of the typical point, normalised
+  double sigma = 0.0;  ///< root mean square noise of the points, normalised
 };
 
-/// `data` from make_fit_data. Points that bring no noise of their own get it from the residuals.
+/// Fits the smooth model. `data`: from make_fit_data. If the noise is not stated, sets it from the
+/// model's residuals.
 Arcs smooth_arcs(FitData data, bool sigma_known);
 
 }  // namespace palpate

@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-/// Correlation of residuals `lag` samples apart within patches, and the number of pairs.
+/// Correlation of residuals `lag` samples apart in the same patch, and the number of pairs.
 struct LagCorrelation {
   double value = 0.0;
   std::size_t pairs = 0;
@@ -42,14 +42,14 @@ ResidualCorrelation correlation_of(const FitData& data, std::span<const double> 
   if (!(variance > 0.0)) {
     return result;
   }
-  // White residuals look correlated once in a thousand times: the sum is then normal.
+  // White residuals look correlated once in a thousand times: their sum is about normal.
   static const double kOneInThousand = two_sided_normal_quantile(2.0 / 1000.0);
   const LagCorrelation first = at_lag(data, residuals, 1, variance);
   if (first.pairs == 0 ||
       first.value * std::sqrt(static_cast<double>(first.pairs)) < kOneInThousand) {
     return result;
   }
-  // Sum while positive (the initial positive sequence); beyond that there is only noise.
+  // Sums while positive (the initial positive sequence); beyond that there is only noise.
   std::size_t longest = 0;
   double arc = 0.0;
   std::size_t steps = 0;

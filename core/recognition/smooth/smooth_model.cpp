@@ -15,12 +15,12 @@
 namespace palpate {
 namespace {
 
-/// A section too short to be smoothed stands for itself.
+/// Keeps the samples of a section that no polynomial fits as its reduced points.
 void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
   const Vec2 first = data->points[section.begin].position;
   const Vec2 along = data->points[section.end - 1].position - first;
   const double whole = along.norm();
-  const Vec2& told = data->points[section.begin].tangent;  // of a touch alone
+  const Vec2& told = data->points[section.begin].tangent;  // of a single touch
   const Vec2 axis = whole > 0.0 ? Vec2(along / whole) : told.isZero() ? Vec2(1.0, 0.0) : told;
   model->sections.push_back({model->reduced.points.size(),
                              model->reduced.points.size() + section.size(), first + 0.5 * along,
@@ -38,12 +38,12 @@ void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
   }
   model->parameters += static_cast<int>(section.size());
   if (section.size() == 1 && data->points[section.begin].inverse_normal_sigma > 0.0) {
-    ++model->points;  // a direction measured, and as many parameters to take it
+    ++model->points;  // one measured direction, and one parameter for it
     ++model->parameters;
   }
 }
 
-/// The chord frame of a section: abscissa in [-1, 1] from end to end.
+/// The chord frame of a section: the abscissa runs from -1 to 1, from end to end.
 struct ChordFrame {
   Vec2 middle;
   Vec2 axis;
@@ -64,15 +64,15 @@ struct SectionFit {
   OrthogonalPolynomials polynomials;
   int degree = 0;  ///< chosen by the criterion
 
-  /// Two degrees more than describe the arc: what is not yet significant in one patch may tell
-  /// classes apart in several.
+  /// Two degrees more than the criterion chose: terms that are not yet significant in one patch may
+  /// distinguish classes when there are several patches.
   int reduced_degree() const { return std::min(degree + 2, polynomials.degree()); }
 };
 
-/// What a section's degree is chosen by.
+/// The noise used to choose a section's degree.
 struct Noise {
   bool known = true;      ///< otherwise the criterion profiles it
-  double variance = 1.0;  ///< in units of the stated one
+  double variance = 1.0;  ///< in units of the stated variance
 };
 
 std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& section,
@@ -99,7 +99,7 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
   }
   const int highest = std::min<int>(OrthogonalPolynomials::kMaxDegree, static_cast<int>(n) / 2 - 1);
 
-  // A first pass for the slopes: they turn residuals across the chord into distances.
+  // A first fit gives the slopes, which convert residuals across the chord into distances.
   constexpr int kSlopeDegree = 3;
   const OrthogonalPolynomials first(x, w, y, std::min(kSlopeDegree, highest));
   for (std::size_t i = 0; i < n; ++i) {
@@ -130,8 +130,8 @@ void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model) {
   const auto rule = polynomials.gauss_rule(degree);
   const std::size_t begin = model->reduced.points.size();
   const double offset = data->points[fit.section.begin].offset;
-  // No node says more than all samples together: where the polynomial is steeper than the slopes
-  // that weighed them, it says nothing of the noise.
+  // Bound on a node's weight: no node knows more than all samples together. It acts where the
+  // polynomial is steeper than the slopes used for the weights.
   double information = 0.0;
   for (std::size_t i = fit.section.begin; i < fit.section.end; ++i) {
     information += data->points[i].inverse_sigma * data->points[i].inverse_sigma;
@@ -141,14 +141,14 @@ void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model) {
   for (const auto& node : rule) {
     const auto value = polynomials.evaluate(node.x, degree);
     const double slope = value.derivative / fit.frame.half_length;
-    // The direction, along which a tip is taken off, by what is significant: two degrees more swing
-    // with the noise.
+    // The direction, along which a tip is removed, comes from the chosen degree: two degrees more
+    // would swing with the noise.
     const double along = polynomials.evaluate(node.x, fit.degree).derivative;
     model->reduced.points.push_back(
         {fit.frame.at(node.x, value.value), fit.frame.tangent(along),
          std::sqrt(std::min(node.weight * (1.0 + slope * slope), information)), offset});
     if (offset > 0.0) {
-      // Of the higher degree: what the criterion leaves out sways the direction by less.
+      // From the higher degree: the terms that the criterion left out change the direction by less.
       model->reduced.points.back().tangent_sigma =
           std::sqrt(polynomials.slope_variance(node.x, degree)) / fit.frame.half_length;
     }
@@ -164,7 +164,7 @@ void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model) {
   }
 }
 
-/// A section as it will stand: its polynomial, or its samples where there is none.
+/// A section with its polynomial, or without one if its samples stand for themselves.
 struct Section {
   PatchSpan points;
   std::optional<SectionFit> fit;
@@ -173,7 +173,7 @@ struct Section {
   int dof() const { return fit ? static_cast<int>(points.size()) - fit->reduced_degree() - 1 : 0; }
 };
 
-/// Smooths a section, or its halves where even a high degree does not follow it (a sharp bend).
+/// Fits a section, or its two halves if even a high degree does not follow it (a sharp bend).
 void smooth_section(const FitData& data, const PatchSpan& points, const Noise& noise,
                     std::vector<Section>* sections) {
   auto whole = fit_section(data, points, noise);
@@ -187,19 +187,19 @@ void smooth_section(const FitData& data, const PatchSpan& points, const Noise& n
   sections->push_back({points, std::move(whole)});
 }
 
-/// Whether that many residuals are larger than noise of the variance can leave. Chi-square exceeds
-/// dof + 2 sqrt(dof x) + 2 x with probability exp(-x) at most (B. Laurent and P. Massart, 2000,
-/// lemma 1).
+/// True if chi2 is larger than noise of this variance can make it. For white noise chi-square
+/// exceeds dof + 2 sqrt(dof x) + 2 x with probability exp(-x) at most (B. Laurent and P. Massart,
+/// 2000, lemma 1).
 bool is_no_noise(double chi2, int dof, double variance) {
   return dof > 0 && chi2 > variance * (dof + 2.0 * std::sqrt(dof * kNegligibleLogOdds) +
                                        2.0 * kNegligibleLogOdds);
 }
 
-/// What the quieter sections leave: those of the lowest variances that have a quarter of all
-/// degrees of freedom. Neither a few sections that are not followed raise it nor noise that is
-/// stated too low.
+/// The quietest sections: those of lowest variance that have a quarter of all degrees of freedom. A
+/// few badly followed sections do not raise their variance, and it does not depend on the stated
+/// noise, which may be too low.
 struct QuietSections {
-  double highest = 1.0;  ///< variance of any of them, in units of the stated one
+  double highest = 1.0;  ///< largest variance among them, in units of the stated one
   double chi2 = 0.0;     ///< of all of them
   int dof = 0;
 };
@@ -226,8 +226,8 @@ QuietSections quiet_of(const std::vector<Section>& sections) {
   return quiet;
 }
 
-/// Whether no polynomial follows a section: a bend that only some of its samples see. By chance
-/// fewer than one section in a million, which then costs time alone.
+/// True if the polynomial does not follow a section, because only some of its samples lie in a
+/// bend. By chance this happens to fewer than one section in a million, and then costs only time.
 bool is_not_followed(const Section& section, double variance) {
   const int dof = section.dof();
   return dof > 0 && is_no_noise(section.chi2(), dof, variance);
@@ -250,8 +250,7 @@ void cut_until_followed(const FitData& data, Section section, const Noise& noise
   }
 }
 
-/// The sections, those that are not followed cut into halves until what remains is, or is too short
-/// to be smoothed.
+/// Halves the sections that are not followed until all are followed or too short for a polynomial.
 std::vector<Section> followed(const FitData& data, std::vector<Section> sections,
                               const Noise& noise, double variance) {
   if (std::none_of(sections.begin(), sections.end(),
@@ -303,7 +302,7 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known) {
   std::vector<Section> sections = smoothed(*data, noise);
   QuietSections quiet = quiet_of(sections);
   if (sigma_known && is_no_noise(quiet.chi2, quiet.dof, 1.0)) {
-    // Stated too low everywhere: by it every bend of the noise would be followed.
+    // The stated noise is too low everywhere: with it, the fits would follow the noise itself.
     noise.variance = quiet.chi2 / quiet.dof;
     sections = smoothed(*data, noise);
     quiet = quiet_of(sections);

@@ -8,10 +8,10 @@
 namespace palpate {
 namespace {
 
-/// So that a section is a graph over its chord. [rad]
+/// Largest turn of a section, so that it is a graph over its chord. [rad]
 constexpr double kLongestTurn = 1.0;
 
-/// The mean of some samples in a row.
+/// The mean of some consecutive samples.
 struct Block {
   PatchSpan points;
   Vec2 mean = Vec2::Zero();
@@ -26,7 +26,8 @@ Block block_of(const FitData& data, const PatchSpan& points) {
   return block;
 }
 
-/// Variance across the line that fits the block's samples best, of which two degrees are its own.
+/// Variance across the best line through the block's samples; the line takes two degrees of
+/// freedom.
 double scatter_of(const FitData& data, const Block& block) {
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
   for (std::size_t i = block.points.begin; i < block.points.end; ++i) {
@@ -38,8 +39,8 @@ double scatter_of(const FitData& data, const Block& block) {
   return std::max(least, 0.0) / std::max(static_cast<double>(block.points.size()) - 2.0, 1.0);
 }
 
-/// Noise of the samples: as the typical block shows it, which a few bends do not change; or as it
-/// is stated, where that is more: samples that stay at a place show none.
+/// Noise variance of the samples: that of the median block, which a few bends do not change, or the
+/// stated one if that is larger. (Samples that stay at one place show no noise.)
 double typical_variance(const FitData& data, const PatchSpan& patch,
                         const std::vector<Block>& blocks, bool sigma_known) {
   std::vector<double> scatters;
@@ -58,8 +59,8 @@ double typical_variance(const FitData& data, const PatchSpan& patch,
                      : *middle;
 }
 
-/// Cut by the turning of chords whose squares are more than `least_square` for a mean of one sample
-/// at one end, and less by their numbers for more.
+/// Cuts by the turning of the chords whose squared length exceeds `least_square` * (1 / n + 1 / m),
+/// for means of n and m samples.
 std::vector<PatchSpan> cut_by_chords(const PatchSpan& patch, const std::vector<Block>& blocks,
                                      double least_square) {
   std::vector<PatchSpan> sections;
@@ -97,11 +98,11 @@ std::vector<PatchSpan> cut_by_chords(const PatchSpan& patch, const std::vector<B
 }  // namespace
 
 std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch, bool sigma_known) {
-  // Of four samples at least, whose mean has half of their noise; so many that a radian of a patch
-  // that goes all the way round has seven.
+  // A block has at least four samples, so that its mean has half of their noise. With 48 blocks a
+  // patch that goes all the way round has seven per radian.
   constexpr std::size_t kMostBlocks = 48;
-  // Six deviations of a distance between means: a chord's direction is off by a sixth of a radian,
-  // two of them differ by a radian once in 30,000 times.
+  // Shortest chord, in standard deviations of the distance between two means. Its direction is then
+  // known to a sixth of a radian, and two such directions differ by a radian once in 30,000 times.
   constexpr double kFewestDeviations = 6.0;
   const std::size_t n = patch.size();
   const std::size_t count = std::clamp<std::size_t>(n / 4, 1, kMostBlocks);
@@ -112,7 +113,8 @@ std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch, 
         block_of(data, {patch.begin + b * n / count, patch.begin + (b + 1) * n / count}));
   }
   std::vector<PatchSpan> sections = cut_by_chords(patch, blocks, 0.0);
-  // A longer chord is a sum of shorter ones, and turns no farther: what these leave whole stays so.
+  // A long chord is a sum of short ones and turns no more: a patch that these leave whole stays
+  // whole.
   if (sections.size() > 1) {
     sections = cut_by_chords(
         patch, blocks,

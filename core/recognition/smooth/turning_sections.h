@@ -1,4 +1,4 @@
-// A patch cut where it turns: pieces that are graphs over their chords.
+// Cuts a patch where it turns, into sections that are graphs over their chords.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace palpate {
 
-/// A section shorter than this tells nothing about noise: of fewer, a parabola leaves no three
+/// Fewest points of a section that shows noise: with fewer, a parabola leaves less than three
 /// residuals.
 inline constexpr std::size_t kFewestOfSection = 6;
 
-/// Sections of one patch, each of which turns by less than a radian or so, by the chords between
-/// means of a few points. A mean that noise may have put where it is has no chord of its own: noise
-/// would turn it any way, and cut a patch that does not bend. `sigma_known`: the points bring their
-/// noise. O(points).
+/// Sections of one patch, each turning by less than about a radian. The turn is that of chords
+/// between means of a few points. Chords shorter than the noise of the means are not used: noise
+/// would turn them any way and cut a patch that does not bend. `sigma_known`: the noise of the
+/// points is stated. O(points).
 std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch, bool sigma_known);
 
 }  // namespace palpate

@@ -12,10 +12,10 @@ namespace {
 
 using Indices = std::vector<std::size_t>;
 
-/// A spanning tree: each point's parent, the first being its own.
+/// A spanning tree: the parent of each point; the first point is its own parent.
 struct Tree {
   Indices parents;
-  Indices order;  ///< every point after its parent
+  Indices order;  ///< every point comes after its parent
   double length = 0.0;
 };
 
@@ -49,9 +49,10 @@ Tree shortest_tree_of(std::span<const Vec2> points) {
   return tree;
 }
 
-/// The longest way in a tree, and for each point whether it lies on it.
+/// The longest way in a tree.
 Indices longest_way(const Tree& tree, std::span<const Vec2> points) {
-  // Farthest from any point is an end of the longest way, and from that its other end.
+  // The point farthest from any point is an end of the longest way; the point farthest from that is
+  // the other end.
   std::vector<Indices> joined(points.size());
   for (const std::size_t i : tree.order) {
     if (tree.parents[i] != i) {
@@ -87,7 +88,8 @@ Indices longest_way(const Tree& tree, std::span<const Vec2> points) {
   return way;
 }
 
-/// A way through all points: the tree's longest, the others put where they lengthen it least.
+/// A way through all points: the tree's longest way, with each other point inserted where it adds
+/// least length.
 Indices way_through(const Tree& tree, std::span<const Vec2> points) {
   Indices way = longest_way(tree, points);
   std::vector<bool> on_way(points.size(), false);
@@ -99,7 +101,7 @@ Indices way_through(const Tree& tree, std::span<const Vec2> points) {
       continue;
     }
     const auto distance = [&](std::size_t k) { return (points[way[k]] - points[i]).norm(); };
-    std::size_t before = 0;  // of which place
+    std::size_t before = 0;  // index of the place before which it is inserted
     double least = distance(0);
     for (std::size_t k = 1; k <= way.size(); ++k) {
       const double longer = k < way.size() ? distance(k - 1) + distance(k) -
@@ -115,11 +117,11 @@ Indices way_through(const Tree& tree, std::span<const Vec2> points) {
   return way;
 }
 
-/// A way in straight steps, and its directions at the vertices.
+/// A way of straight steps, with its directions at the vertices.
 struct Polygon {
   std::vector<Vec2> vertices;
-  std::vector<double> along;   ///< to each vertex
-  std::vector<double> angles;  ///< at each vertex, without jumps [rad]
+  std::vector<double> along;   ///< length of the way to each vertex
+  std::vector<double> angles;  ///< at each vertex, unwrapped [rad]
 
   std::size_t steps() const { return vertices.size() - 1; }
   Vec2 step(std::size_t k) const { return vertices[k + 1] - vertices[k]; }
@@ -137,7 +139,7 @@ Polygon polygon_of(std::vector<Vec2> vertices) {
                          std::atan2(cross(before, step), before.dot(step)));
     way.along.push_back(way.along.back() + step.norm());
   }
-  // That of the circle through a vertex and its neighbours; at the ends as the circle goes on.
+  // Direction of the circle through a vertex and its neighbours; at the ends that circle continues.
   const std::size_t last = way.steps();
   way.angles.resize(way.vertices.size());
   for (std::size_t k = 1; k < last; ++k) {
@@ -151,13 +153,13 @@ Polygon polygon_of(std::vector<Vec2> vertices) {
   return way;
 }
 
-/// The foot of a place on the steps at its nearest vertex, and how far off it is.
+/// The foot of a place on the two steps at its nearest vertex, and its distance.
 std::pair<OnWay, double> foot_on(const Polygon& way, std::size_t nearest, const Vec2& place) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::pair<OnWay, double> best{{}, kInfinity};
   for (std::size_t k = nearest > 0 ? nearest - 1 : 0; k <= nearest && k < way.steps(); ++k) {
     const Vec2 step = way.step(k);
-    // Beyond its ends the way goes on straight.
+    // Beyond its ends the way continues straight.
     const double low = k > 0 ? 0.0 : -kInfinity;
     const double high = k + 1 < way.steps() ? 1.0 : kInfinity;
     const double share =
@@ -177,9 +179,10 @@ std::pair<OnWay, double> foot_on(const Polygon& way, std::size_t nearest, const 
 }  // namespace
 
 std::optional<std::vector<OnWay>> shortest_way(std::span<const Vec2> places, double least_step) {
-  // Of a full turn, a twentieth of a radian from each to the next; one radian would do (kMostOff).
+  // Enough for a full turn with 0.05 rad per step; one radian would do (kMostOff).
   constexpr std::size_t kMostVertices = 128;
-  // Of all places, so that of neighbours that chance has put close together one is left out.
+  // At most every second place is a vertex, so that of two places close together by chance one is
+  // left out.
   constexpr std::size_t kThinned = 2;
   const Spread spread =
       spread_widest(places, std::min(kMostVertices, places.size() / kThinned), least_step);
@@ -193,7 +196,7 @@ std::optional<std::vector<OnWay>> shortest_way(std::span<const Vec2> places, dou
   }
   const Tree tree = shortest_tree_of(vertices);
   std::vector<Vec2> in_order;
-  Indices turn_of(vertices.size());  // of each vertex
+  Indices turn_of(vertices.size());  // of each vertex, its position on the way
   for (const std::size_t k : way_through(tree, vertices)) {
     turn_of[k] = in_order.size();
     in_order.push_back(vertices[k]);
@@ -202,8 +205,8 @@ std::optional<std::vector<OnWay>> shortest_way(std::span<const Vec2> places, dou
     return std::nullopt;
   }
   const Polygon way = polygon_of(std::move(in_order));
-  // A path that turns by a radian from vertex to vertex lies an eighth of a step off, and arms that
-  // lie closer than this have been taken for one.
+  // A path that turns by a radian from vertex to vertex lies an eighth of a step off. Arms closer
+  // together than this limit have been taken for one.
   constexpr double kMostOff = 0.25;
   std::vector<OnWay> result;
   for (std::size_t i = 0; i < places.size(); ++i) {

@@ -19,14 +19,14 @@
 namespace palpate {
 namespace {
 
-/// As many touches together that turn by no more than this are a run: a polynomial of degree 5, the
-/// highest that the smooth model gives so few, follows a circle over so much to a millionth of its
-/// radius.
+/// A run has at least kRun touches in a row over which the curve turns by at most kTurn. A
+/// polynomial of degree 5, the highest that the smooth model uses for so few, follows a circle over
+/// that turn to a millionth of its radius.
 constexpr std::size_t kRun = 12;
 constexpr double kTurn = 0.6;  // rad
 
-/// Touches that the curve for the order is sought through: four for each of a spline's unknowns.
-/// Where nobody states the noise, so few leave straight edges to needles (bench_touches --unstated
+/// Touches used to fit a curve for the order: four for each unknown of a spline. Twice as many if
+/// the noise is not stated: else straight edges may be taken for needles (bench_touches --unstated
 /// --curve line).
 constexpr std::size_t kSought = 24;
 constexpr std::size_t kSoughtOfUnstated = 48;
@@ -43,7 +43,7 @@ Indices lone_patches(std::span<const StoredPatch> patches) {
   return lone;
 }
 
-/// `most` of the touches, spread widest; all where there are no more.
+/// `most` of the touches, spread widest, or all if there are no more.
 Indices spread(std::span<const StoredPatch> patches, const Indices& lone, std::size_t most) {
   if (lone.size() <= most) {
     return lone;
@@ -59,7 +59,7 @@ Indices spread(std::span<const StoredPatch> patches, const Indices& lone, std::s
   return chosen;
 }
 
-/// Parameters in their order along the curve; on a closed one from behind the largest gap.
+/// Sorts by the parameter along the curve. A closed curve starts after the largest gap.
 template <typename T, typename ParameterOf>
 void sort_along(const Curve& curve, std::vector<T>* things, const ParameterOf& parameter_of) {
   const auto before = [&](const T& a, const T& b) { return parameter_of(a) < parameter_of(b); };
@@ -104,12 +104,12 @@ struct PlacedCurve {
   Curve curve;
   Pose2 world_T_curve;
   double chi2 = 0.0;
-  std::vector<Vec2> touches_m;  ///< in their order along it
+  std::vector<Vec2> touches_m;  ///< in their order along the curve
 };
 
-/// The curve that explains the points best: by the Bayesian information criterion, each touch
-/// anywhere along the curve with the same density. (Without that a needle whose two sides share
-/// the points of a line would explain their noise.)
+/// The curve that explains the points best by the Bayesian information criterion. Each touch may
+/// lie anywhere along the curve with the same density. (Without that, a needle whose two sides
+/// share the points of a line would explain their noise.)
 std::optional<PlacedCurve> best_of(const ClassFits& fits, const Arcs& arcs, unsigned classes) {
   const FitData& reduced = arcs.smooth.reduced;
   const auto n = static_cast<double>(reduced.points.size());
@@ -136,14 +136,14 @@ std::optional<PlacedCurve> best_of(const ClassFits& fits, const Arcs& arcs, unsi
   return best;
 }
 
-/// A curve to order the touches by; `start` receives what was found, if every class was sought and
+/// A curve by which to order the touches. `start` receives the fits if every class was searched and
 /// one fits.
 std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, unsigned classes,
                                          std::optional<WarmStart>* start) {
   const Arcs arcs = smooth_arcs(data, sigma_known);
   const FitData& reduced = arcs.smooth.reduced;
-  // A conic that explains the touches within their noise, and does not go back and forth between
-  // them as the two sides of a needle would, has them in their order, whatever else may.
+  // A conic gives the order, whatever other classes fit, if it explains the touches within their
+  // noise and does not go back and forth between them (as the two sides of a needle would).
   std::optional<PlacedCurve> conic =
       best_of(fit_classes(reduced, nullptr, classes & ~kCubics), arcs, ~kCubics);
   const bool orders = conic && arcs.sigma_known &&
@@ -163,10 +163,10 @@ std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, 
 /// A touch's place in the order of all.
 struct Place {
   std::size_t patch = 0;
-  double along = 0.0;  ///< what they are ordered by
-  /// Between what the path may have turned by up to there. [rad]
+  double along = 0.0;  ///< length or parameter by which they are ordered
+  /// Bounds of the path's direction there, unwrapped. [rad]
   double least_angle = 0.0, most_angle = 0.0;
-  Vec2 direction = Vec2::Zero();  ///< there, if it is known
+  Vec2 direction = Vec2::Zero();  ///< of the path there; zero if unknown
   double turn = 0.0;              ///< as StoredPatch::turn
 };
 
@@ -174,8 +174,8 @@ double angle_between(const Vec2& a, const Vec2& b) {
   return std::abs(std::atan2(cross(a, b), a.dot(b)));
 }
 
-/// By how much the curve turns between two parameters: over the middle, so that more than half a
-/// turn shows.
+/// The curve's turn between two parameters, summed over their middle so that it may exceed half a
+/// turn. [rad]
 double turn_between(const Curve& curve, double a, double b) {
   const double end = b >= a ? b : b + domain(curve).period;
   const auto tangent = [&](double t) { return derivatives(curve, t).first; };
@@ -183,7 +183,7 @@ double turn_between(const Curve& curve, double a, double b) {
   return angle_between(tangent(a), middle) + angle_between(middle, tangent(end));
 }
 
-/// Which of `places`, in their order, are runs: [begin, end).
+/// The ranges [begin, end) of the ordered `places` that are runs.
 std::vector<PatchSpan> runs_of(const std::vector<Place>& places) {
   std::vector<PatchSpan> runs;
   for (std::size_t begin = 0; begin + kRun <= places.size(); ++begin) {
@@ -224,12 +224,12 @@ StoredPatch strung(std::span<const StoredPatch> patches, std::span<const Place> 
   return run;
 }
 
-/// Runs, and which patches they have taken up.
+/// The runs, and the patches they replace.
 struct Strung {
   std::vector<StoredPatch> runs;
   std::vector<bool> taken;
-  std::vector<Place> alone;        ///< whose direction is known
-  std::optional<WarmStart> start;  ///< of the curve that told the order
+  std::vector<Place> alone;        ///< touches not in a run whose direction is known
+  std::optional<WarmStart> start;  ///< of the curve that gave the order
 
   explicit Strung(std::size_t patches) : taken(patches, false) {}
 
@@ -250,18 +250,18 @@ struct Strung {
 };
 
 std::map<double, Indices> by_tip(std::span<const StoredPatch> patches, const Indices& lone) {
-  std::map<double, Indices> of_tip;  // by its radius [m]
+  std::map<double, Indices> of_tip;  // key: tip radius [m]
   for (const std::size_t p : lone) {
     of_tip[patches[p].context.tip_radius_m].push_back(p);
   }
   return of_tip;
 }
 
-/// In the order of the shortest way through them, which needs no curve; nullopt where that leaves a
-/// doubt, and then where a smooth path through the runs leaves more than the noise that is stated.
+/// Joins touches in the order of the shortest way through them, which needs no curve. nullopt if
+/// that order is in doubt, or if a smooth path through the runs leaves more than the stated noise.
 std::optional<Strung> strung_by_way(std::span<const StoredPatch> patches, const Indices& lone,
                                     double default_sigma_m) {
-  // Of the noise: closer together it would have a say in the order.
+  // In units of the noise: if vertices were closer, noise would affect their order.
   constexpr double kLeastStep = 20.0;
   Strung result(patches.size());
   for (const auto& [tip_radius_m, of_tip] : by_tip(patches, lone)) {
@@ -285,7 +285,7 @@ std::optional<Strung> strung_by_way(std::span<const StoredPatch> patches, const 
     }
     std::vector<Place> places;
     for (const OnWay& on_way : *way) {
-      // Where a step turns as far as a run may, its direction is no direction of the touch.
+      // If a step turns by more than a run may, its direction is not that of the touch.
       const bool straight = on_way.most_angle - on_way.least_angle <= kTurn;
       places.push_back(
           {of_tip[on_way.place], on_way.along, on_way.least_angle, on_way.most_angle,
@@ -306,7 +306,7 @@ std::optional<Strung> strung_by_way(std::span<const StoredPatch> patches, const 
                                                              : std::nullopt;
 }
 
-/// In the order of the curve that explains them best; nullopt where there is none.
+/// Joins touches in the order along the curve that explains them best; nullopt if there is none.
 std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, const Indices& lone,
                                       double default_sigma_m, unsigned classes) {
   std::vector<StoredPatch> sought;

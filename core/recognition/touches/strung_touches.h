@@ -1,4 +1,4 @@
-// Touches one at a time, strung into runs along the curve where they lie close enough.
+// Joins single touches that lie densely along the curve into runs.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,21 @@ namespace palpate {
 
 struct StrungTouches {
   std::vector<StoredPatch> patches;
-  /// Every class as it fits the touches that the order was sought through, tips' centres where they
-  /// are round; sides all 0. Empty where no curve was sought, no cubic, or none that fits.
+  /// Fits of every class to the touches that were used to find the order, as starts; positions are
+  /// tip centres, and all sides are 0. Empty unless the order came from a curve, cubics were among
+  /// the classes, the noise is stated and a class fits.
   std::vector<SidedStart> starts;
 };
 
-/// `patches` with those of a single sample that lie densely along the curve taken together, in
-/// their order along it, as patches of their own at the end: from then on they are like strokes,
-/// with local geometry, a noise that shows and few reduced points. The order comes from the curve
-/// that explains the touches best; a run turns so little from touch to touch that a polynomial
-/// follows it. Touches of different tips are not mixed. A run has the name of its first touch, and
-/// no side that a probe could have said. nullopt where there is no run. `default_sigma_m`: of
-/// samples that bring none; `classes`: by bit 1 << CurveClass.
+/// `patches`, with single touches (patches of one sample) that lie densely along the curve joined
+/// into runs. The runs are patches at the end of the list, their samples in order along the curve.
+/// Like strokes, they have local geometry, visible noise and few reduced points.
+///
+/// The order is that of the shortest way through the touches or, if that is in doubt, that along
+/// the curve that explains them best. In a run the curve turns so little from touch to touch that a
+/// polynomial follows it. Touches of different tip radii are not mixed. A run has the probe and
+/// patch number of its first touch and no material side. nullopt if there is no run.
+/// `default_sigma_m`: noise of samples that state none [m]. `classes`: bit 1 << CurveClass of each.
 std::optional<StrungTouches> strung_touches(std::span<const StoredPatch> patches,
                                             double default_sigma_m, unsigned classes);
 

@@ -1,4 +1,4 @@
-// What the recognition tree was asked on its way.
+// The tests of the recognition tree and their results.
 #pragma once
 
 #include <array>
@@ -9,18 +9,17 @@
 
 namespace palpate {
 
-/// One query of the recognition tree (section 5.2).
+/// One test of the recognition tree (section 5.2).
 struct Decision {
   std::string_view test;  ///< e.g. "conic line"; static storage
   double value = 0.0;
   double threshold = 0.0;
   bool passed = false;
-  /// Probability that chance alone makes the value as large where the class is true; NaN where a
-  /// tolerance decides.
+  /// Probability of a value at least as large if the class is true; NaN if a tolerance decides.
   double p_value = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// By class, the least p-value of the tests that it must pass; NaN where none was made.
+/// By class: smallest p-value of the tests that the class must pass; NaN without a test.
 using ClassPValues = std::array<double, kCurveClasses.size() + 1>;
 
 constexpr ClassPValues no_p_values() {

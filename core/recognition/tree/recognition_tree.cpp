@@ -21,7 +21,7 @@
 namespace palpate {
 namespace {
 
-/// The path through the tree with the estimates' uncertainties as thresholds.
+/// The path through the tree, with thresholds from the estimates' uncertainty.
 class SignificanceTree {
  public:
   SignificanceTree(std::span<const TreePoint> points, const RecognitionTreeOptions& options,
@@ -82,7 +82,7 @@ class SignificanceTree {
         record_.passes("circle", fit.circle_chi2, fit.circle_dof, {CurveClass::Circle})) {
       const double radius = 1.0 / fit.kappa;
       const TangentCircle circle = tangent_circle(points_, radius, options_.relative_floor);
-      // Constant curvature within its errors: the places and tangents know better.
+      // The curvatures are equal within their errors; positions and tangents are a sharper test.
       if (!record_.passes("circle through tangents", circle.chi2, circle.dof,
                           {CurveClass::Circle})) {
         return false;
@@ -105,9 +105,9 @@ class SignificanceTree {
     record_.result.world_T_curve = circle.pose;
   }
 
-  /// The points whose errors go into the conic's invariants linearly as far as a test looks. Ip
-  /// goes as kappa^(-10/3): at 3.3 standard deviations (1e-3) it is linear to a third where kappa's
-  /// own is below 3 % of it.
+  /// The points whose errors enter the conic's invariants almost linearly in the range that a test
+  /// uses. Ip goes as kappa^(-10/3): at 3.3 standard deviations (significance 1e-3) it is linear to
+  /// a third if the relative error of kappa is below 3 %.
   std::vector<MeasuredGeometry> of_linear_invariants() const {
     constexpr double kMostRelativeError = 0.03;
     std::vector<MeasuredGeometry> linear;
@@ -123,7 +123,7 @@ class SignificanceTree {
     if (measured_.size() < 3) {
       return false;
     }
-    // All points give the invariants, those of which the law is known test them.
+    // All points give the invariants. Only points whose invariants follow a known law test them.
     const std::vector<MeasuredGeometry> linear = of_linear_invariants();
     const ConicLine all = fit_conic_line(measured_);
     const ConicLine tested = linear.size() == measured_.size() ? all : fit_conic_line(linear);
@@ -152,7 +152,7 @@ class SignificanceTree {
     if (line.status != InvariantStatus::Ok) {
       return alike_ellipse();
     }
-    // The sign of Ic1 is not known: the tangents, which are measured far better, may decide.
+    // The sign of Ic1 is not known. The tangents are measured much better and may decide.
     const double size = std::max(std::abs(line.ic1), std::sqrt(line.covariance(0, 0)));
     return central_conic(CurveClass::Ellipse, size, line) ||
            central_conic(CurveClass::Hyperbola, -size, line);
@@ -162,7 +162,7 @@ class SignificanceTree {
     return line.status == InvariantStatus::Ok || line.status == InvariantStatus::PointsTooAlike;
   }
 
-  /// 0 where it is not known.
+  /// 0 if the sign is not significant.
   int sign_of_ic1(const ConicLine& tested) {
     if (tested.status != InvariantStatus::Ok) {
       return 0;
@@ -178,8 +178,8 @@ class SignificanceTree {
     return !is_signed ? 0 : sign > 0.0 ? 1 : -1;
   }
 
-  /// Where the sign of Ic1 is not known its size is not either: shapes along the line's intercept,
-  /// which is known better.
+  /// If the sign of Ic1 is not known, neither is its size: tries several sizes with the line's
+  /// intercept Ic2, which is known better.
   bool central_conic(CurveClass curve_class, double ic1, const ConicLine& line) {
     const bool ellipse = curve_class == CurveClass::Ellipse;
     std::vector<Eigen::Vector3d> shapes;
@@ -194,9 +194,10 @@ class SignificanceTree {
     return rotation(curve_class, shapes, ellipse ? "ellipse rotation" : "hyperbola rotation");
   }
 
-  /// Curvatures equal within their errors leave the line no slope, hence neither sign nor size; but
-  /// an ellipse has four places of one curvature, a parabola or hyperbola two, and the tangents may
-  /// tell. Shapes of a few axis ratios that have it half way between the vertices.
+  /// If the curvatures are equal within their errors, the line has no slope, so that Ic1 has
+  /// neither sign nor size. But an ellipse has four points of the same curvature, a parabola or
+  /// hyperbola two, and the tangents may decide. Tries ellipses of a few axis ratios that have this
+  /// curvature half way between the vertices.
   bool alike_ellipse() {
     const ConstantCurvature mean = fit_constant_curvature(measured_);
     if (mean.status != InvariantStatus::Ok || !(mean.kappa > 0.0)) {
@@ -223,7 +224,7 @@ class SignificanceTree {
     return rotation(CurveClass::Parabola, shapes, "parabola rotation");
   }
 
-  /// The conic's invariants do not see the tangent angles, which are the best-measured of all: the
+  /// The conic's invariants do not use the tangent angles, which are measured best of all: the
   /// class must explain them too.
   bool rotation(CurveClass curve_class, std::span<const Eigen::Vector3d> shapes,
                 std::string_view name) {
@@ -247,7 +248,7 @@ class SignificanceTree {
         name);
   }
 
-  /// Whether the leaf's test passes.
+  /// True if the leaf's test passes.
   bool explains(const SemiSignatureFit& fit) {
     return fit.status == InvariantStatus::Ok && fit.chi2 <= record_.threshold_of(fit.dof);
   }
@@ -257,7 +258,7 @@ class SignificanceTree {
     return fit.status == InvariantStatus::Ok ? !best_ok || fit.chi2 < best.chi2 : !best_ok;
   }
 
-  /// From where the curve is known to lie, or by `search`.
+  /// Fits from the known curve if there is one, else calls `search`.
   template <typename Search>
   SemiSignatureFit fit_of(CurveClass curve_class, const Search& search) {
     if (!effort_.known) {
@@ -269,8 +270,8 @@ class SignificanceTree {
                  : SemiSignatureFit{};
   }
 
-  /// Of a conic that does not explain the points only that is asked; a cubic's parameters are its
-  /// invariants, and its optimum is sought whatever is left.
+  /// For a conic it only matters whether it explains the points, so that a hopeless fit may stop
+  /// early. A cubic's parameters are its invariants: its optimum is needed in any case.
   SemiSignatureOptions options_of(CurveClass curve_class) const {
     SemiSignatureOptions options = effort_.fit;
     const bool is_conic = curve_class == CurveClass::Ellipse ||
@@ -278,7 +279,7 @@ class SignificanceTree {
                           curve_class == CurveClass::Hyperbola;
     if (is_conic) {
       // P(chi2 > k + 2 sqrt(k u) + 2 u) <= exp(-u) for k degrees of freedom (B. Laurent, P.
-      // Massart, 2000), k the most of any conic's: the parabola's.
+      // Massart, 2000). k is the largest of any conic, the parabola's.
       const double k = 2.0 * static_cast<double>(measured_.size()) - 2.0;
       const double u = std::max(kNegligibleLogOdds, -std::log(options_.significance));
       options.hopeless_chi2 = k + 2.0 * std::sqrt(k * u) + 2.0 * u;
@@ -315,7 +316,7 @@ class SignificanceTree {
     return leaf(fit, name);
   }
 
-  /// The invariants of a cubic are its parameters, Iscp1 the square of one.
+  /// A cubic's invariants are its parameters; Iscp1 is a^2.
   void add_cubic_invariants(const SemiSignatureFit& fit) {
     const Eigen::Matrix3d covariance = shape_covariance(fit);
     const auto add = [&](std::string_view name, Eigen::Index i) {
@@ -349,7 +350,8 @@ class SignificanceTree {
     return true;
   }
 
-  /// A class that explains the points on its way to a neighbour, where there is no optimum.
+  /// Accepts a class that explains the points on its way to a neighbouring class, without an
+  /// optimum.
   bool runs_away(const SemiSignatureFit& fit, std::string_view name) {
     record_.passes(name, fit.chi2, fit.dof, {fit.curve_class});
     record_.reach(fit.curve_class, fit.parameters, fit.chi2, fit.dof);

@@ -17,10 +17,10 @@
 namespace palpate {
 namespace {
 
-/// Points taken, evenly: all pairs of them are 28, of which the paper's tests need one.
+/// Most points used, spread evenly: they have 28 pairs, of which the paper's tests need one.
 constexpr std::size_t kPoints = 8;
 
-/// Smallest and largest of a set of numbers.
+/// Smallest and largest of a set of numbers, and their mean.
 struct Range {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -35,7 +35,7 @@ struct Range {
   }
   double mean() const { return count > 0 ? sum / count : 0.0; }
   double size() const { return std::max(std::abs(low), std::abs(high)); }
-  /// (max - min) / max size; infinite where nothing finite was added.
+  /// (max - min) / max size; infinite if nothing finite was added.
   double spread(double least_size = 0.0) const {
     const double unit = std::max(size(), least_size);
     const double value = count == 0   ? std::numeric_limits<double>::infinity()
@@ -74,12 +74,12 @@ class ToleranceTree {
     return passed;
   }
 
-  /// What a tolerance decides on has no standard deviation.
+  /// An invariant tested by a tolerance has no standard deviation.
   void add_invariant(CurveClass curve_class, std::string_view name, double value) {
     result_.invariants.push_back({curve_class, name, value});
   }
 
-  /// `frame`: orientation of the curve, where its places ask for it.
+  /// `frame`: orientation of the curve, for classes that need it to localise points.
   void reach(CurveClass curve_class, const Eigen::Vector3d& parameters, double frame) {
     result_.shape = {curve_class, parameters};
     result_.world_T_curve = pose_by_places(result_.shape, points_, frame);
@@ -130,7 +130,8 @@ class ToleranceTree {
         if (pair.status == InvariantStatus::SignChange) {
           return passes("conic Ic1", std::numeric_limits<double>::infinity());
         }
-        // Curvatures that are the same by the tolerance say nothing of the slope between them, Ic1.
+        // Curvatures that are equal within the tolerance do not determine the slope between them,
+        // Ic1.
         if (pair.status == InvariantStatus::Ok &&
             std::abs(two_thirds - other) > tolerance_ * std::max(two_thirds, other)) {
           ic1.add(pair.ic1);
@@ -172,8 +173,8 @@ class ToleranceTree {
     return true;
   }
 
-  /// The pair whose other invariant agrees best fixes the frame; all points then give the
-  /// invariants.
+  /// The pair for which the invariants agree best over all points fixes the frame. The mean over
+  /// all points gives the invariants.
   bool parabola_of_third_degree(CurveClass curve_class) {
     const bool cubical = curve_class == CurveClass::CubicalParabola;
     double best = std::numeric_limits<double>::infinity();
@@ -218,12 +219,12 @@ class ToleranceTree {
     return true;
   }
 
-  /// Three points give (a, b, c); a fourth in place of the third must give them again.
+  /// Three points give (a, b, c). Every other point in place of the third must give them again.
   bool spline() {
     if (measured_.size() < 4) {
       return false;
     }
-    // In lengths of 1 / scale (a, b, c) are pure numbers, which one norm may compare.
+    // In units of 1 / scale, (a, b, c) are pure numbers and can be compared by one norm.
     const double scale = curvature_scale(measured_);
     const Eigen::Vector3d to_numbers(1.0 / std::sqrt(scale), 1.0, std::sqrt(scale));
     double frame = 0.0;

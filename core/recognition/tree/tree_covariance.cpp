@@ -24,8 +24,8 @@ std::optional<ShapePose> shape_pose_of(const TreeResult& result, CurveClass curv
   return q;
 }
 
-/// Columns whose squares add up to the covariance: principal axes of the correlations, for the
-/// entries' units differ by many powers of ten.
+/// A root R of the covariance (R R^T): principal axes of the correlation matrix, because the units
+/// of the entries differ by many powers of ten.
 Eigen::Matrix4d root_of(const Eigen::Matrix4d& covariance) {
   const Eigen::Vector4d deviations = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Eigen::Vector4d inverse =
@@ -63,13 +63,13 @@ ShapePoseCovariance propagated_covariance(std::span<const TreePoint> points,
     return by_tolerance ? recognise_by_tolerance(there, options)
                         : solve_leaf(there, answer, options);
   };
-  // Directions modulo what leaves the curve as it is.
+  // Directions are compared modulo the symmetry of the curve.
   const int symmetry = pose_symmetry(curve_class);
   const double period = curve_class == CurveClass::Line || symmetry == 2 ? kPi : 2.0 * kPi;
-  constexpr double kStep = 0.1;  // of a deviation
+  constexpr double kStep = 0.1;  // in standard deviations
   std::vector<TreePoint> there(points.begin(), points.end());
   ShapePoseCovariance covariance = ShapePoseCovariance::Zero(n, n);
-  for (const std::size_t i : answer.pooled) {  // the answer does not depend on the others
+  for (const std::size_t i : answer.pooled) {  // the answer does not depend on other points
     if (!points[i].estimate.covariance.allFinite()) {
       return unknown;
     }

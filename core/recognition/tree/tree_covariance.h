@@ -1,4 +1,4 @@
-// Covariance of shape and pose by propagation from the local estimates.
+// Covariance of shape and pose, propagated from the local estimates.
 #pragma once
 
 #include <span>
@@ -7,11 +7,11 @@
 
 namespace palpate {
 
-/// Of [shape; x; y; theta] of `answer`, the tree's over `points`: the estimates' covariances
-/// through the answer's derivatives by each of them, central differences over a tenth of a
-/// deviation. What the pose symmetry leaves free has variance 0, by convention; all variances are
-/// infinite where there is no pose, and where the tree does not come to the same class beside the
-/// estimates.
+/// Of [shape; x; y; theta] of `answer`, the tree's answer for `points`. The estimates' covariances
+/// are propagated through derivatives of the answer, computed by central differences with steps of
+/// 0.1 standard deviation. What the pose symmetry leaves free has variance 0 by convention. All
+/// variances are infinite if there is no pose, or if a moved estimate leads the tree to another
+/// class.
 ShapePoseCovariance propagated_covariance(std::span<const TreePoint> points,
                                           const TreeResult& answer,
                                           const RecognitionTreeOptions& options);

@@ -19,8 +19,8 @@ Vec2 canonical_position(CurveClass curve_class, const Eigen::Vector3d& p, double
   return {position.x, position.y};
 }
 
-/// The mean curvature of a patch, which turns to one side, in its standard deviations: single
-/// curvatures may be noise.
+/// Weighted mean curvature of a patch over its standard deviation. A patch turns to one side; a
+/// single curvature may be noise.
 double turn_of_patch(std::span<const TreePoint> points, int patch) {
   double sum = 0.0;
   double weights = 0.0;
@@ -65,8 +65,8 @@ std::optional<Pose2> pose_by_places(const ShapeParameters& shape, std::span<cons
   };
   std::vector<Place> places;
   double first_theta = 0.0;
-  double turns = 0.0;  // from the first point's orientation
-  // A curve that half a turn about its centre leaves as it is has every place twice.
+  double turns = 0.0;  // relative to the first point's orientation
+  // A curve with two-fold symmetry has every place twice.
   const double symmetry = pose_symmetry(shape.curve_class) == 2 ? kPi : 2.0 * kPi;
   for (const TreePoint& point : points) {
     const LocalEstimate& estimate = point.estimate;
@@ -101,8 +101,9 @@ std::optional<Pose2> pose_by_places(const ShapeParameters& shape, std::span<cons
 
 TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
                              double relative_floor) {
-  // Unknown are the centre, from the points' mean, and the radius, both in units of `radius`. A
-  // point's offset errs along its normal; its angle displaces the centre along its tangent.
+  // Unknowns: the centre, relative to the points' mean, and the radius, both in units of `radius`.
+  // A point's offset error lies along its normal; an error of its angle moves the centre along its
+  // tangent.
   Vec2 mean = Vec2::Zero();
   for (const TreePoint& point : points) {
     mean += point.estimate.position;
@@ -111,8 +112,8 @@ TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   double sum = 0.0;
-  // On which side of a patch the centre lies, its curvatures must tell from their noise; the best
-  // of them always counts.
+  // The side on which a patch's centre lies is used only if its curvature is significant. The most
+  // significant patch is always used.
   std::vector<double> turns;
   double side_limit = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {

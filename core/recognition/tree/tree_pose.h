@@ -1,4 +1,5 @@
-// Pose seeds from the tree's leaves: orientation and places are known, the position is a mean.
+// Poses from the tree's leaves: the fit gives orientation and curve parameters, the mean of the
+// points gives the position.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,31 +12,31 @@
 
 namespace palpate {
 
-/// Orientation from the fit, position as the mean of (touched point - the curve's point turned).
+/// Orientation from the fit; position as the mean of (touched point - rotated curve point).
 Pose2 pose_of(std::span<const TreePoint> points, const SemiSignatureFit& fit);
 
-/// Where the places that curvatures (and, in the turned `frame` of the classes that ask for it, the
-/// tangent angle) name on a curve of that shape put it: section 5.3, mean over the points. nullopt
-/// where they name none.
+/// Localises each point on a curve of that shape (section 5.3) and takes the mean of the poses. The
+/// place follows from kappa and kappa_s; for classes that also need the tangent angle, it is taken
+/// relative to `frame`, the curve's orientation. nullopt if no point can be localised.
 std::optional<Pose2> pose_by_places(const ShapeParameters& shape, std::span<const TreePoint> points,
                                     double frame);
 
-/// The circle that touched points and tangents say, without their curvatures.
+/// The circle that best fits positions and tangents, without curvatures.
 struct TangentCircle {
-  Pose2 pose;         ///< its centre
-  double chi2 = 0.0;  ///< of "one circle has all these points and tangents"
-  int dof = 0;        ///< 2 points - 3, less one a point whose side is not told
+  Pose2 pose;         ///< position = centre
+  double chi2 = 0.0;  ///< of the hypothesis that one circle has all these points and tangents
+  int dof = 0;        ///< 2 points - 3, minus the points whose side is not known
 };
 
-/// Weighted least squares over centre and radius; `radius` as the curvatures say weighs the
-/// tangents' errors. `relative_floor` as in RecognitionTreeOptions.
+/// Weighted least squares for centre and radius. `radius` [m], from the curvatures, sets the
+/// weights of the tangents. `relative_floor`: as RecognitionTreeOptions.
 TangentCircle tangent_circle(std::span<const TreePoint> points, double radius,
                              double relative_floor);
 
-/// Along the mean tangent direction (modulo pi) through the mean point.
+/// Through the mean point, along the mean tangent direction (modulo pi).
 Pose2 line_pose(std::span<const TreePoint> points);
 
-/// Covariance of the shape parameters within a fit's.
+/// The shape's part of a fit's covariance.
 Eigen::Matrix3d shape_covariance(const SemiSignatureFit& fit);
 
 }  // namespace palpate

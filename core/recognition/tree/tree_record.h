@@ -1,5 +1,4 @@
-// What a path through the recognition tree leaves: its tests, at one significance, and where it
-// ended.
+// Records a path through the recognition tree: its tests, all at one significance, and its end.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +18,7 @@ class TreeRecord {
  public:
   explicit TreeRecord(double significance) : significance_(significance) {}
 
-  /// Records one chi-square test, which each of `classes` must pass.
+  /// Records a chi-square test that each of `classes` must pass. Returns whether it passed.
   bool passes(std::string_view name, double chi2, int dof,
               std::initializer_list<CurveClass> classes) {
     const double p_value = chi_square_survival(chi2, dof);
@@ -31,13 +30,13 @@ class TreeRecord {
     return passed;
   }
 
-  /// What a test that the class must pass says of it.
+  /// Records the p-value of a test that the class must pass.
   void says(CurveClass curve_class, double p_value) {
     double& least = result.p_values[static_cast<std::size_t>(curve_class)];
     least = std::isnan(least) ? p_value : std::min(least, p_value);
   }
 
-  /// Of chi-square. The same few degrees of freedom are asked again and again.
+  /// Chi-square threshold, cached: the same few degrees of freedom occur again and again.
   double threshold_of(int dof) {
     const auto known =
         std::find_if(thresholds_.begin(), thresholds_.end(),
@@ -51,14 +50,14 @@ class TreeRecord {
     result.invariants.push_back({curve_class, name, value, std::sqrt(variance)});
   }
 
-  /// Records a test that could not be made: its chi-square is infinite, and it has no p-value.
+  /// Records a test that could not be computed: infinite chi-square, no p-value. Returns false.
   bool refused(std::string_view name, int dof) {
     result.decisions.push_back(
         {name, std::numeric_limits<double>::infinity(), threshold_of(dof), false});
     return false;
   }
 
-  /// Where the path ends.
+  /// Records the class where the path ends.
   void reach(CurveClass curve_class, const Eigen::Vector3d& parameters, double chi2, int dof) {
     result.shape = {curve_class, parameters};
     result.chi2 = chi2;

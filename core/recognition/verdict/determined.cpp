@@ -6,7 +6,7 @@
 namespace palpate {
 namespace {
 
-/// What a standard deviation of the k-th shape parameter is to be compared with.
+/// Natural size of the k-th shape parameter, to which its standard deviation is compared.
 double natural_size(const ShapeParameters& shape, Eigen::Index k, double extent_m) {
   const char letter = parameter_letters(shape.curve_class)[static_cast<std::size_t>(k)];
   const double size = std::abs(shape.values[k]);

@@ -1,4 +1,4 @@
-// Covariances of the best class that hold more than a bound linear about the estimate.
+// Covariances of the best class beyond the linear bound about the estimate.
 #pragma once
 
 #include <optional>
@@ -8,17 +8,18 @@
 namespace palpate {
 
 struct BestMoments {
-  /// About the estimate, where a covariance linear about it does not hold the class, or where
-  /// neighbours err together.
+  /// Second moment about the estimate, if a linear covariance does not describe the class or if
+  /// neighbours may be correlated.
   std::optional<ShapePoseCovariance> moment;
-  /// The same for white noise of Weighing::inflation times the stated variance, over that.
+  /// The same with all noise taken as white (Weighing::inflation times the stated variance),
+  /// divided by that inflation.
   std::optional<ShapePoseCovariance> white_moment;
-  /// Root mean square of what neighbours share at a point, as far as residuals tell of it;
-  /// normalised.
+  /// Root mean square of the deviation that neighbours share at a point, estimated from the
+  /// residuals; normalised.
   double coherent_deviation = 0.0;
 };
 
-/// Once for an answer: of several weighings only that which it is told from needs them.
+/// To be called once per answer, for the final weighing only.
 BestMoments moments_of_best(const Weighing& weighing);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// The classes side by side: what may win is refined on all points until it is known what does.
+// Refines the classes that may win on all points until the winner is known.
 #pragma once
 
 #include "core/recognition/fit/class_fits.h"
@@ -7,12 +7,12 @@
 
 namespace palpate {
 
-/// By how much chi-square on all points may differ from what the reduced points tell where these
-/// follow them: a term that a section's polynomial does without has less than the logarithm of its
-/// samples (BIC), 4 of 55.
+/// Largest expected difference between chi-square on all points and the one inferred from the
+/// reduced points, if these follow the points. A term left out of a section's polynomial adds less
+/// than the logarithm of the section's samples (BIC): 4 for 55.
 inline constexpr double kLeastError = 4.0;
 
-/// What all classes are judged on.
+/// What all classes are compared on.
 struct Ground {
   const Arcs& arcs;
   const FitData& reduced;  ///< the arcs' reduced points, as surface points
@@ -22,16 +22,16 @@ struct Ground {
 
 struct Contenders {
   ClassFits coarse;  ///< on the reduced points
-  ClassFits fits;    ///< plausible ones weighed on all points, the best refined there
+  ClassFits fits;    ///< plausible ones with chi-square of all points; the best refined on them
   Evidences evidences;
-  bool no_conic = false;  ///< as WarmStart's
+  bool no_conic = false;  ///< as WarmStart::no_conic
 };
 
-/// Fits to the reduced points, as these tell their chi-squares of all points.
+/// Copies the fits to the reduced points, with the chi-square of all points that these imply.
 ClassFits as_told(const ClassFits& coarse, const SmoothModel& smooth);
 
-/// The class of the highest evidence, "unclassified" aside; where none has any, the one that fits
-/// best; Unclassified where there is none.
+/// The class of the highest evidence, without "unclassified". If none has evidence, the one that
+/// fits best; Unclassified if there is none.
 CurveClass best_class(const ClassFits& fits, const Likelihood& likelihood,
                       const Evidences& evidences);
 
@@ -39,12 +39,13 @@ ClassProbabilities probabilities_of(const Contenders& contenders, const Ground& 
 
 CurveClass most_probable(const ClassProbabilities& probabilities);
 
-/// Weighs on all points what the reduced points leave plausible, and polishes the best. The others
-/// keep the chi-square that the reduced points tell. `margin`: log odds that keep the best from
-/// being RECOGNIZED. The coarse fit of whatever it has to do with is settled.
+/// Computes chi-square on all points for the classes that the reduced points leave plausible, and
+/// polishes the best. The others keep the chi-square inferred from the reduced points. Settles the
+/// coarse fit of each class that it touches. `margin`: log odds below which the best is not
+/// RECOGNIZED.
 Contenders refine_plausible(Contenders contenders, const Ground& ground, double margin);
 
-/// With the integrals that matter, and the most probable class at its optimum on all points.
+/// Adds the integrals that matter, and takes the most probable class to its optimum on all points.
 /// `margin`: as above.
 Contenders decided(Contenders contenders, const Ground& ground, double margin);
 

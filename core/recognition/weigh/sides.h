@@ -1,4 +1,4 @@
-// Which side of the patches the material lies on, where round tips touched and no probe says it.
+// Finds the side of the patches on which the material lies, for round tips without a stated side.
 #pragma once
 
 #include <limits>
@@ -13,51 +13,50 @@
 
 namespace palpate {
 
-/// The classes fitted for one way in which the tips may lie.
+/// The classes fitted for one choice of the tips' sides.
 struct Way {
-  /// Per patch the side of travel on which the tip centres lie (tip_sides.h).
+  /// For each patch, the side of travel on which the tip centres lie (tip_sides.h).
   std::vector<int> sides;
   ClassFits fits;   ///< of every class, to `reduced`
-  FitData reduced;  ///< the arcs' reduced points, taken to the surface
+  FitData reduced;  ///< the arcs' reduced points, moved to the surface
   CurveClass candidate = CurveClass::Unclassified;
   std::optional<ClassFit> settled;  ///< the candidate at its optimum on the reduced points
-  std::optional<ClassFit> refined;  ///< on all points, unless these tell what the reduced ones do
+  /// The candidate on all points, unless they agree with the reduced points.
+  std::optional<ClassFit> refined;
   Evidences evidences;
 };
 
 struct SidedFits {
-  std::vector<Way> ways;  ///< the first is from outside the bends, where probes do not tell
-  std::size_t taken = 0;  ///< the most probable of them
-  /// log odds over the next best way for them to lie, priors included; infinite where the probes
-  /// told.
+  std::vector<Way> ways;  ///< if sides are not stated, the first is outside the bends
+  std::size_t taken = 0;  ///< index of the most probable one
+  /// log odds over the next best choice of sides, priors included; infinite if all sides are known.
   double margin = std::numeric_limits<double>::infinity();
-  /// Where the curve of the tips' centres is to be followed from, if it was needed.
+  /// Start for following the curve of the tips' centres, if it was needed.
   std::optional<SidedStart> centres;
 
   const Way& way() const { return ways[taken]; }
 };
 
-/// What the ways are judged by.
+/// What the choices of sides are compared by.
 struct Judged {
   const Arcs& arcs;
   const Likelihood& likelihood;
-  Evidences of_paths;              ///< with that of free-form paths, under this law
+  Evidences of_paths;              ///< with the evidence of free-form paths, for this likelihood
   unsigned classes = kAllClasses;  ///< by bit 1 << CurveClass
-  double out_of_reach =
-      std::numeric_limits<double>::infinity();  ///< as in fit_classes(), whatever the sides
+  /// As in fit_classes(), for all sides.
+  double out_of_reach = std::numeric_limits<double>::infinity();
 };
 
-/// Fits to the reduced points for the way the material lies beside the patches: where the probes do
-/// not say it, the way of the highest evidence, the first (from outside the bends) at the odds of
-/// the prior. `starts`: as in weigh().
+/// Fits the classes to the reduced points and chooses the sides of the tips. If sides are not
+/// known, it takes the choice of highest evidence; the first one (outside the bends) has the odds
+/// of the prior. `starts`: as in weigh().
 SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Judged& by,
                          std::span<const SidedStart> starts);
 
-/// The ways judged once more, where sides are open, under a law that they were not fitted by: what
-/// is seen to be more than noise tells sides no better than it tells classes. The fits stay: least
-/// squares are the same under either law. (What was out of reach under the first stays out: it
-/// leaves more than the largest noise, and the second has none larger.) Returns whether another way
-/// is taken then.
+/// Compares the choices of sides again under another likelihood than they were fitted by, if sides
+/// are open: a deviation that is more than noise also makes sides harder to tell. The fits stay,
+/// because least squares are the same under both. (Classes out of reach under the first likelihood
+/// stay out: their residuals exceed the largest noise of both.) Returns whether the choice changed.
 bool lie_otherwise(const Judged& by, SidedFits* sided);
 
 }  // namespace palpate

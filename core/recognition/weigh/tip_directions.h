@@ -1,4 +1,4 @@
-// Directions and bends where the samples of a round tip do not show them by themselves.
+// Directions and bends for round-tip samples that do not show them themselves.
 #pragma once
 
 #include <vector>
@@ -8,31 +8,31 @@
 
 namespace palpate {
 
-/// Whether any tip's centre is among the points that were too few to be smoothed.
+/// True if any tip centre is among the points that no polynomial fits (ReducedSection::kept).
 bool has_kept_tips(const SmoothModel& smooth);
 
-/// Whether any of these has no direction from elsewhere (StoredPatch::direction).
+/// True if any of these has no known direction (StoredPatch::direction).
 bool has_untold_tips(const SmoothModel& smooth);
 
-/// Whether any patch of tips' centres bends less for certain than noise may bend it, and its bend
-/// is not told either.
+/// True if any patch of tip centres has neither a significant bend (certain_turn) nor a known
+/// direction.
 bool has_uncertain_bends(const SmoothModel& smooth);
 
 enum class DirectionsOf { UntoldPoints, KeptPoints, AllPoints };
 
-/// Gives points of `touches` (the smooth model's reduced points) the tangents of a curve that was
-/// fitted to them, or to a curve parallel to theirs: parallel curves have the same normals. Their
-/// sense is that of the whole patch's travel along the curve; a patch that shows none gets the
-/// curve's. Returns the largest angle by which one has turned. [rad]
+/// Gives points of `touches` (the smooth model's reduced points) the tangents of a curve fitted to
+/// them or to a parallel curve, which has the same normals. The sense is that of the whole patch's
+/// travel along the curve; a patch that shows none gets the curve's sense. Returns the largest turn
+/// of a tangent. [rad]
 double set_directions(DirectionsOf which, const CanonicalFit& curve, const SmoothModel& smooth,
                       FitData* touches);
 
-/// The sides to which the patches bend (tip_sides.h): as they turn by themselves, where that is
-/// certain, else as the curve through the tips' centres bends beside them.
+/// The sides to which the patches bend (tip_sides.h), > 0 for left: from their own turn if it is
+/// significant, else from the curvature of the curve through the tip centres.
 std::vector<double> bends_of(const CanonicalFit& curve, const FitData& touches);
 
-/// Whether the patches travel along the curve as its parameter rises (1) or falls (-1); 0 where
-/// they show no direction.
+/// For each patch: 1 if it travels along the curve with increasing parameter, -1 if against it, 0
+/// if it shows no direction.
 std::vector<double> senses_of(const CanonicalFit& curve, const FitData& touches);
 
 }  // namespace palpate

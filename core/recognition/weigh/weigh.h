@@ -16,52 +16,52 @@
 namespace palpate {
 
 struct WeighOptions {
-  unsigned classes = kAllClasses;  ///< to consider, by bit 1 << CurveClass
-  /// What an answer needs to be RECOGNIZED: what cannot keep it from that is not refined.
+  unsigned classes = kAllClasses;  ///< classes to consider, by bit 1 << CurveClass
+  /// Posterior probability needed for RECOGNIZED: a class that cannot prevent it is not refined.
   double recognized_probability = 0.95;
-  double form_deviation_m = 0.0;   ///< as RecognizerOptions::form_deviation_m
-  bool unqualified_probe = false;  ///< likewise
+  double form_deviation_m = 0.0;   ///< as RecognizerOptions::form_deviation_m [m]
+  bool unqualified_probe = false;  ///< as RecognizerOptions::unqualified_probe
 };
 
 struct Weighing {
-  FitData data;  ///< noise set, tangents set
+  FitData data;  ///< with noise and tangents set
   SmoothModel smooth;
-  FitData reduced;   ///< the smooth model's reduced points, taken to the surface
-  ClassFits coarse;  ///< on them
-  ClassFits fits;    ///< plausible ones weighed on all points, the best refined there
-  /// Of what is not negligible; the points are those of `data` where fits[i]->on_all, otherwise the
-  /// reduced ones.
+  FitData reduced;   ///< the smooth model's reduced points, moved to the surface
+  ClassFits coarse;  ///< on the reduced points
+  ClassFits fits;    ///< plausible ones with chi-square of all points; the best refined on them
+  /// Of the classes that are not negligible, and of the best in any case. The points are those of
+  /// `data` if fits[i]->on_all, else the reduced points.
   std::array<std::optional<CanonicalFit>, 9> canonical;
   ClassProbabilities probabilities{};
-  /// log odds of "unclassified" over all classes, whatever is expected of their shapes.
+  /// log odds of "unclassified" over all classes, whatever their priors of shapes (posterior.h).
   double margin_of_unclassified = 0.0;
-  /// Of the spline's posterior, that its mode on the other side of c = 0 has.
+  /// Share of the spline's posterior in its mode on the other side of c = 0.
   double rival_share = 0.0;
-  /// Of the best class on the reduced points, if it has any: what its moments are taken from
-  /// (best_moments.h).
+  /// Of the best class on the reduced points, if it has any: input of moments_of_best().
   std::optional<ClassEvidence> best_evidence;
   std::optional<CanonicalFit> best_on_reduced;
-  Likelihood stated;        ///< before any deviation was seen
-  bool correlated = false;  ///< neighbours may err together
-  /// For the next weighing; the first is that of `sides`.
+  Likelihood stated;        ///< the likelihood before any deviation was seen
+  bool correlated = false;  ///< neighbours may be correlated
+  /// Starts for the next weighing. The first belongs to `sides`.
   std::vector<SidedStart> starts;
-  /// Per patch the side of travel on which the tip centres were taken to lie (tip_sides.h).
+  /// For each patch, the assumed side of travel on which the tip centres lie (tip_sides.h).
   std::vector<int> sides;
-  /// log odds over the next best way for them to lie, priors included; infinite where the probes
-  /// told.
+  /// log odds over the next best choice of sides, priors included; infinite if all sides are known.
   double sides_margin = 0.0;
-  CurveClass best = CurveClass::Unclassified;  ///< most probable, "unclassified" included
+  CurveClass best = CurveClass::Unclassified;  ///< the most probable, "unclassified" included
   double sigma = 0.0;                          ///< noise of the typical point, normalised
-  /// What covariances are to be multiplied with: correlation, misfit and stated form error.
+  /// Factor on covariances: correlation, misfit, few residuals and stated form error.
   double inflation = 1.0;
-  double noise_inflation = 1.0;     ///< of it, without the stated form error
-  double white_variance = 1.0;      ///< of the noise, in units of sigma^2
-  double counted_chi2 = 0.0;        ///< of `best`, with what may be stated form error tempered
+  /// Factor on the variances of residuals, without stated form error and few residuals.
+  double noise_inflation = 1.0;
+  double white_variance = 1.0;      ///< of the white noise, in units of sigma^2
+  double counted_chi2 = 0.0;        ///< chi-square of `best` for the misfit test (misfit_of)
   double correlation_length = 0.0;  ///< normalised; 0 = white
 };
 
-/// `data` from make_fit_data. Follows core/README.md, "Refinement and the bound" and "Evidence".
-/// `starts`: what an earlier weighing of fewer samples of the same patches left, or nothing.
+/// `data`: from make_fit_data. Follows core/README.md, "Refinement and the bound" and "The
+/// posterior". `starts`: those of an earlier weighing of fewer samples of the same patches, or
+/// empty.
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
                const WeighOptions& options = {}, std::span<const SidedStart> starts = {});
 
