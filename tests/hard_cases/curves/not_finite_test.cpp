@@ -59,7 +59,7 @@ TEST_P(NotFinite, ExtremeGeometryIsAPlaceOrNone) {
 TEST_P(NotFinite, GeometryFarOutIsStillANumber) {
   for (const double t : {1e3, -1e6, 1e20, -1e60}) {
     if (GetParam() == CurveClass::Hyperbola) {
-      continue;  // exp(t): below
+      continue;  // exp(t); see below
     }
     const LocalGeometry g = geometry(curve_, t);
     EXPECT_TRUE(is_finite(g)) << t;

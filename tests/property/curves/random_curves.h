@@ -21,7 +21,7 @@ struct RandomCurve {
 
 RandomCurve random_curve(CurveClass curve_class, std::mt19937_64& rng);
 
-/// The same shape `factor` times as large, and the parameter of the place that was at t.
+/// The same shape `factor` times as large; the parameter of the place that was at t.
 Curve scaled(const RandomCurve& random, double factor);
 double scaled_parameter(CurveClass curve_class, double t, double factor);
 
