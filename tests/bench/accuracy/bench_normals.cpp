@@ -44,12 +44,12 @@ std::vector<GivenPoint> touch(int count, double sigma_m, double normal_sigma_rad
 }
 
 struct Outcome {
-  int known = 0;         ///< scenes in which both axes are
-  double squares = 0.0;  ///< of errors over deviations, of the scenes that were
+  int known = 0;         ///< scenes in which both axes are known to the accuracy
+  double squares = 0.0;  ///< of errors over deviations, in these scenes
   int wrong = 0;         ///< recognised as something else
 };
 
-/// What is told of the curve; covariance of [shape; x; y; theta].
+/// What the answer says about the curve; covariance of [shape; x; y; theta].
 struct Told {
   bool is_ellipse = false;
   bool is_other = false;

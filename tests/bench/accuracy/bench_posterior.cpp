@@ -24,7 +24,7 @@ namespace {
 
 using namespace palpate;
 
-constexpr double kTold = 0.95;       // probability asked for
+constexpr double kTold = 0.95;       // required probability
 constexpr double kCoverage = 0.999;  // of the binomial bands
 constexpr int kRepetitions = 3;      // of each timing; the least counts
 
@@ -74,7 +74,7 @@ Row run(const Options& options, const test::ScenePrior& prior, std::uint32_t num
   return row;
 }
 
-/// A share as "n of m (p %)".
+/// A share in the form "n of m (p %)".
 std::string share(long n, long m) {
   char text[64];
   std::snprintf(text, sizeof(text), "%ld of %ld (%.1f %%)", n, m,

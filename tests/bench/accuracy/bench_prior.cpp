@@ -34,20 +34,20 @@ using test::uniform;
 
 constexpr int kSamples = 111;
 
-/// Draws one coordinate by the inverse of its distribution function, the others at the centre: the
-/// prior's factors are independent, but for an ellipse's direction.
+/// Draws one coordinate by the inverse of its distribution function, with the others at the centre.
+/// The factors of the prior are independent, except for an ellipse's direction.
 class CoordinateLaw {
  public:
   CoordinateLaw(CurveClass curve_class, int k) {
     constexpr int kSteps = 200000;
-    // (Of an ellipse's direction and shape nothing is told at the centre, the parabola's limit.)
+    // (At the centre, the parabola's limit, an ellipse's direction and shape have no effect.)
     const TouchedVector centre = curve_class == CurveClass::Ellipse
                                      ? expected_coordinates(curve_class, 1.0, 1.0)
                                      : prior_centre(curve_class);
     double sum = 0.0;
     double last = 0.0;
     for (int i = 0; i < kSteps; ++i) {
-      // The size's tails are exponential, the others' are powers.
+      // The tails of the size are exponential, those of the others are powers.
       const double part = (i + 0.5) / kSteps;
       TouchedVector z = centre;
       z[k] += k == 0 ? 40.0 * (part - 0.5) : 2.0 * std::tan(kPi * (part - 0.5));
@@ -77,7 +77,7 @@ class CoordinateLaw {
   std::vector<double> sums_;
 };
 
-/// The prior of a class, whose lengths are in half extents of what is touched.
+/// The prior of a class; lengths are in half extents of what is touched.
 class ClassLaw {
  public:
   explicit ClassLaw(CurveClass curve_class) : class_(curve_class) {
@@ -112,7 +112,7 @@ class ClassLaw {
   std::vector<CoordinateLaw> coordinates_;
 };
 
-/// Half of the longer side of the points' box along their principal axes.
+/// Half of the longer side of the points' bounding box along their principal axes.
 double half_extent(const std::vector<Vec2>& points) {
   Vec2 middle = Vec2::Zero();
   for (const Vec2& point : points) middle += point / static_cast<double>(points.size());
@@ -129,8 +129,7 @@ double half_extent(const std::vector<Vec2>& points) {
   return 0.5 * (high - low).maxCoeff();
 }
 
-/// Places evenly along an arc whose middle is at t; nullopt where it goes all around, or over a
-/// cusp.
+/// Points evenly along an arc with its middle at t; nullopt if it goes all around or over a cusp.
 std::optional<std::vector<Vec2>> places_on(const Curve& curve, double t, double length) {
   const double begin = parameter_at_arc_length(curve, t, -0.5 * length);
   const double end = parameter_at_arc_length(curve, t, 0.5 * length);
@@ -151,7 +150,7 @@ std::optional<std::vector<Vec2>> places_on(const Curve& curve, double t, double 
   return places;
 }
 
-/// The stroke about t whose half extent is 1.
+/// The stroke around t with a half extent of 1.
 std::optional<std::vector<Vec2>> stroke_on(const Curve& curve, double t) {
   constexpr double kExact = 1e-6;
   double low = 1.9;

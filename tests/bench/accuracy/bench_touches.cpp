@@ -29,7 +29,7 @@ using test::LoneTouches;
 
 struct Cell {
   int scenes = 0, recognized = 0, wrong = 0, sure = 0;
-  double squares = 0.0;  ///< of shape errors over published deviations
+  double squares = 0.0;  ///< of shape errors divided by published deviations
   int letters = 0;
   std::vector<double> ms;
   std::map<std::string, int> by_wrong;

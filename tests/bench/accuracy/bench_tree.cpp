@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
     for (Cell* cell :
          {&all, &classes[truth], &noises[decade_of(scene.scene.sigma_m / scene.size_m)]}) {
       ++cell->scenes;
-      // What would be RECOGNIZED if the tree were not asked.
+      // RECOGNIZED, or it would be without the tree.
       const bool right =
           answer.shape.curve_class == truth &&
           (answer.status == RecognitionStatus::Recognized || answer.doubt == Doubt::TreeRejects);

@@ -8,7 +8,8 @@
 
 namespace palpate::bench {
 
-/// How many bins lie beside the binomial band that holds them in 99.9 % of runs.
+/// Prints the table. Returns how many bins are outside the binomial band that contains them in 99.9
+/// % of runs.
 inline int print_calibration(const std::string& title, const test::Calibration& calibration) {
   constexpr double kCoverage = 0.999;
   int beside = 0;

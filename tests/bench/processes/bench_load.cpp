@@ -27,7 +27,7 @@ struct Load {
   int nodes;
 };
 
-/// "east" and "west" in turn, so that two nodes have half of the probes each.
+/// Alternately "east" and "west", so that two nodes have half of the probes each.
 std::string name_of(int probe) {
   return (probe % 2 == 0 ? "east" : "west") + std::to_string(probe);
 }
@@ -56,7 +56,7 @@ bool run(const Load& load, double seconds, const std::string& folder) {
     subscription.endpoint = results;
     subscription.status = true;
     sides[i].results = std::make_unique<client::ResultSubscriber>(subscription);
-    // A node's first status says that it is up; its subscription came before.
+    // A node's first status shows that it runs and has subscribed.
     const auto deadline = Clock::now() + std::chrono::seconds(10);
     while (sides[i].results->receive(std::chrono::milliseconds(100)).status == nullptr) {
       if (Clock::now() > deadline) return false;

@@ -13,7 +13,8 @@ struct Ring {
   double radius_m = 0.0;
 };
 
-/// Prints the probe's terms, the full turn's axes and arcs of 60 to 180 degrees in markdown.
+/// Prints the probe's terms, the axes from the full turn, and arcs of 60 to 180 degrees, in
+/// markdown.
 void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostream& out);
 
 }  // namespace palpate::bench

@@ -52,7 +52,7 @@ void print(const std::string& what, std::vector<double> values) {
               at(0.99), at(1.0));
 }
 
-/// Costs of the updates of one stream over their median; the first answer is no update.
+/// Costs of the updates of one stream divided by their median. The first answer is not an update.
 std::vector<double> updates_over_median(const TouchedInput& input) {
   Recognizer recognizer;
   std::vector<double> us;
