@@ -26,7 +26,7 @@ struct SimulatedPatch {
   std::uint32_t number = 0;
   MaterialSide side = MaterialSide::Left;  ///< true side, seen along travel
   bool side_is_reported = true;
-  /// curve parameters of the first and last place, even if these samples were lost
+  /// Curve parameters of the first and last place, even if these samples were lost.
   double start_t = 0.0;
   double end_t = 0.0;
   std::vector<SimulatedSample> samples;

@@ -96,7 +96,7 @@ void ContactConsumer::forget() {
 
 void ContactConsumer::take(const PlantMessage& message) {
   heard_ = now_steady();
-  // a message of the server itself; contacts have their own subjects
+  // A message of the server itself; contacts have their own subjects.
   if (message.subject() == deliver_subject_) {
     if (message.number("Nats-Last-Consumer") > consumer_seq_) {
       events_.failed("contacts were lost on the way");
@@ -106,7 +106,7 @@ void ContactConsumer::take(const PlantMessage& message) {
   const DeliveryNumbers numbers = numbers_of(message.reply());
   const bool is_gap = numbers.consumer_seq > consumer_seq_ + 1;
   consumer_seq_ = numbers.consumer_seq;
-  // delivered again after the consumer's leader changed
+  // Delivered again after the consumer's leader changed.
   if (numbers.stream_seq <= stream_seq_) return;
   if (is_gap) return events_.failed("contacts were lost on the way");
   stream_seq_ = numbers.stream_seq;

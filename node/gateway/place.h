@@ -68,7 +68,7 @@ class Place {
     std::uint64_t last_answer_seq = 0;     // in the stream of recognitions; 0 = none
     std::deque<Answer> answers;
     bool is_storing = false;
-    // the first of `answers` may be stored already, so it must not change
+    // The first of `answers` may be stored already, so it must not change.
     bool is_first_sent = false;
     bool is_ready = false;  // it is in ready_
   };

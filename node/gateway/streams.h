@@ -13,7 +13,7 @@ namespace palpate::gateway {
 struct StreamLimits {
   int replicas = 1;                  ///< servers that hold each stream: 1, or 3 in a cluster
   double contacts_max_age_h = 24.0;  ///< age at which contacts are deleted; 0 = never
-  /// of each stream; beyond it the oldest are deleted; -1 = the server's limit
+  /// Of each stream; beyond it the oldest are deleted; -1 = the server's limit.
   std::int64_t max_bytes = -1;
   /// How long the server remembers message ids, to drop duplicates; about 150 bytes per message.
   double duplicate_window_s = 120.0;

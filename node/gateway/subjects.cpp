@@ -143,7 +143,7 @@ std::optional<Addressed> address(std::string_view cell, std::string_view topic,
       break;
     }
     case TopicKind::Estimate:
-      // not forwarded: ten times as much data as the contacts that it is computed from
+      // Not forwarded: ten times as much data as the contacts that it is computed from.
       return std::nullopt;
   }
   to.epoch = header.epoch();

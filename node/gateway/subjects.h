@@ -24,7 +24,7 @@ std::string make_subject(std::string_view cell, std::string_view kind, std::stri
 
 struct PlaceName {
   std::string cell;
-  /// by the server's subject mapping: "0", "1", ...; empty = all groups of the cell
+  /// By the server's subject mapping: "0", "1", ...; empty = all groups of the cell.
   std::string partition;
 
   /// "press" or "press:0".

@@ -61,7 +61,7 @@ std::shared_ptr<GroupRecognizer> Group::begin_work() {
   assert(!in_work_);
   in_work_ = true;
   in_work_bytes_ = waiting_.bytes();
-  // the recognizer's queue is empty: it has processed its messages
+  // The recognizer's queue is empty: it has processed its messages.
   std::swap(recognizer_->contacts, waiting_);
   return recognizer_;
 }

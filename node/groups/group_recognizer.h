@@ -95,7 +95,7 @@ class GroupRecognizer : public Work {
   /// probes' offsets anew, along the normals of the curve that it finds.
   SampleMemory touched_;
   std::size_t forgotten_ = 0;  ///< samples of this object that touched_ has forgotten
-  /// of this object, samples with more information than a search uses
+  /// Of this object, samples with more information than a search uses.
   std::size_t simplified_ = 0;
   std::string frame_;
   std::uint64_t object_ = 0;

@@ -69,7 +69,7 @@ LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_si
   const std::vector<double> t = touches.scene.t.front();
   double bend = 0.0;
   for (const double at : t) bend += geometry(*curve, at).kappa;
-  // the side of increasing t on which the centres lie
+  // The side of increasing t on which the centres lie.
   const double side = bend >= 0.0 ? -1.0 : 1.0;
   std::vector<std::size_t> order(places.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

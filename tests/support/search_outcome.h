@@ -27,7 +27,7 @@ SearchCase lone_search_case(CurveClass curve_class, std::uint64_t seed, std::uin
 
 struct SearchOutcome {
   bool counted = false;  ///< the truth leads to an optimum of the class; else there is none
-  /// the optimum reached from the truth is rejected as one that cannot have been touched
+  /// The optimum reached from the truth is rejected as one that cannot have been touched.
   bool refused = false;
   bool curve = true;        ///< the search found a curve on which the points can have been touched
   double found_chi2 = 0.0;  ///< infinite if it found none

@@ -33,7 +33,7 @@ struct BesideReference {
   int determined = 0;  ///< the reference gives the true class the probability that RECOGNIZED needs
   int sure = 0;        ///< of these: the recognizer does too
   int recognized = 0;  ///< of these: RECOGNIZED as that class
-  /// of the sure ones, not RECOGNIZED: fewer than two touches more than unknowns
+  /// Of the sure ones, not RECOGNIZED: fewer than two touches more than unknowns.
   int few_places = 0;
   int two_shapes = 0;  ///< likewise: two shapes of the class fit equally well, by the reference too
   int shape_unknown = 0;  ///< likewise: the shape is not known well enough, by the reference too

@@ -181,7 +181,7 @@ std::optional<NearFoot> foot_by_one_step(const Curve& curve, const Vec2& point, 
   const Vec2 tangent = there.first.normalized();
   const double along = tangent.dot(beside);
   const double distance = cross(tangent, beside);
-  // at least the larger of the two
+  // At least the larger of the two.
   const double kappa = curvature_of(before) + curvature_of(there);
   const bool is_near = beside.squaredNorm() <= away.squaredNorm() &&
                        kappa * std::abs(distance) < 0.5 && kappa * along * along <= tolerance;

@@ -60,7 +60,7 @@ Drawing make_drawing(const ContactGroup& group, const v1::Recognition& answer, C
 /// Residual of one sample from the curve.
 struct SampleResidual {
   double t = 0.0;  ///< of the foot point
-  /// positive to the left of the curve; less the radius for a tip's centre
+  /// Positive to the left of the curve; less the radius for a tip's centre.
   double residual_m = 0.0;
   bool is_far = false;  ///< beyond kFarSigmas
 };

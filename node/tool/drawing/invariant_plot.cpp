@@ -46,7 +46,7 @@ Range range_of(const std::vector<double>& values) {
   }
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   constexpr double kMargin = 0.08;
-  // relative to the values: a picture of rounding errors says nothing
+  // Relative to the values: a picture of rounding errors says nothing.
   constexpr double kLeast = 1e-6;
   const double least = kLeast * std::max(std::abs(*low), std::abs(*high)) + 1e-300;
   const double margin = kMargin * (*high - *low) + least;

@@ -96,7 +96,7 @@ class LiveState {
   std::map<std::string, LiveGroup, std::less<>> groups_;
   std::map<std::string, LiveNode, std::less<>> nodes_;
   LiveHistory history_;
-  // shared by all groups, so that a group that comes back does not look like its former self
+  // Shared by all groups, so that a group that comes back does not look like its former self.
   std::uint64_t next_version_ = 0;
   std::uint64_t status_version_ = 0;
 };

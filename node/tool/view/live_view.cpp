@@ -45,7 +45,7 @@ class BusReader {
   /// Waiting for a moment first: waking up for every single message would cost more than the
   /// message.
   void wait() {
-    // a tenth of what the eye perceives as simultaneous
+    // A tenth of what the eye perceives as simultaneous.
     constexpr std::chrono::milliseconds kPause(5);
     pause_.expires_after(kPause);
     pause_.async_wait([this](const boost::system::error_code& stopped) {

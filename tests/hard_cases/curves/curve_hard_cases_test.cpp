@@ -92,7 +92,7 @@ TEST(CurveHardCases, EveryLocalisationNextToACusp) {
   for (const double t : {1e-3, -1e-3, 1e-6, -1e-9, 1e-12, -1e-15}) {
     const auto place = cusp.localise(cusp.geometry(t));
     ASSERT_TRUE(place.has_value());
-    // by kappa, because the slope differs from b by 1.8 t only
+    // By kappa, because the slope differs from b by 1.8 t only.
     EXPECT_NEAR(place->t / t, 1.0, 1e-14);
     EXPECT_TRUE(place->along_increasing_t);
   }

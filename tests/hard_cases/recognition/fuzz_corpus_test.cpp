@@ -20,7 +20,7 @@ TEST(FuzzCorpus, OfTheRecognizerBreaksNoInvariant) {
       std::filesystem::path(PALPATE_TEST_DATA).parent_path() / "fuzz/corpus/recognizer";
   int inputs = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    // if it aborts, the last name printed is the input
+    // If it aborts, the last name printed is the input.
     std::cout << entry.path().filename().string() << std::endl;
     std::ifstream file(entry.path(), std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), {});

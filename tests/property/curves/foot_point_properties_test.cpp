@@ -91,7 +91,7 @@ TEST_P(FootPointProperties, OffsetPointsComeBackWithSideAndDistance) {
     const RandomCurve random = random_curve(GetParam(), rng);
     const double t = random.random_t(rng);
     if (GetParam() == CurveClass::SemiCubicalParabola && std::abs(t) < 0.3) {
-      // next to the cusp such a point is beyond the other arm; the cusp has tests of its own
+      // Next to the cusp such a point is beyond the other arm; the cusp has tests of its own.
       continue;
     }
     const CurveDerivatives d = derivatives(random.curve, t);

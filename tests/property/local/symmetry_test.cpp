@@ -137,7 +137,7 @@ TEST_P(EstimatorSymmetry, Reversal) {
   std::vector<Vec2> reversed(samples_.rbegin(), samples_.rend());
   EstimatorOptions options = options_for(kind_);
   if (kind_ == EstimatorKind::TwoRound) {
-    // an odd number has its middle window in the middle in both directions
+    // An odd number has its middle window in the middle in both directions.
     options.two_round_fits = 11;
     options.window = 71;
     const LocalResult forwards = estimate_window(samples_, options);
