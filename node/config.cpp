@@ -50,7 +50,7 @@ std::string number_text(double value) {
   return text.str();
 }
 
-// Takes one field of the file's message into the options, or says why it cannot.
+// Copies one field of the configuration message into the options and checks its range.
 class Reader {
  public:
   explicit Reader(const v1::NodeConfig& config) : config_(config) {}
@@ -88,7 +88,7 @@ class Reader {
 
  private:
   void check(const OptionInfo& info, double value) {
-    if (value >= info.lowest && value <= info.highest) return;  // a NaN is not
+    if (value >= info.lowest && value <= info.highest) return;  // false for NaN
     error_ = std::string(info.name) + ": " + number_text(value) + " is not within " +
              number_text(info.lowest) + " to " + number_text(info.highest);
   }
@@ -97,7 +97,7 @@ class Reader {
   std::string error_;
 };
 
-// The other way.
+// Copies one option into the configuration message.
 class Writer {
  public:
   explicit Writer(v1::NodeConfig& config) : config_(config) {}
@@ -137,7 +137,7 @@ std::string resolve_given_class(NodeOptions& options) {
   return {};
 }
 
-// What only all options together can say.
+// Checks what involves more than one option.
 std::string check_together(const NodeOptions& options) {
   if (!is_valid_name(options.name)) return "name: expected 1 to 64 of [A-Za-z0-9_.-]";
   for (const std::string& prefix : options.probe_prefixes) {
@@ -239,7 +239,7 @@ Result<v1::NodeConfig> config_from_environment() {
 
 v1::NodeConfig merge(const v1::NodeConfig& under, const v1::NodeConfig& over) {
   v1::NodeConfig merged = under;
-  // MergeFrom appends lists; a list given above replaces the one below.
+  // MergeFrom appends to lists, but a list set in `over` replaces the one in `under`.
   const Reflection& reflection = *v1::NodeConfig::GetReflection();
   std::vector<const FieldDescriptor*> given;
   reflection.ListFields(over, &given);

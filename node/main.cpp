@@ -1,5 +1,5 @@
-// palpate-node: the recognizer node. Exit codes: 0 stopped as asked, 1 failed at run time (an
-// endpoint is taken), 2 usage, 6 configuration.
+// palpate-node: the recognizer node. Exit codes: 0 stopped by a signal, 1 failed at run time (for
+// example an endpoint is in use), 2 usage, 6 configuration.
 #include <spdlog/spdlog.h>
 
 #include <google/protobuf/text_format.h>
@@ -47,7 +47,7 @@ std::string default_text(const NodeConfig& defaults, const std::string& name) {
   return text;
 }
 
-// One flag an option of the table.
+// Adds one flag for each option of the table.
 void add_flags(CLI::App& app, NodeConfig& flags) {
   NodeOptions options;
   const NodeConfig defaults = palpate::to_config(options);
@@ -128,7 +128,7 @@ int serve(const NodeOptions& options, const palpate::NodeKeys& keys,
     return kFailed;
   }
   ::close(stop_fd);
-  // What still computes must not meet the end of static objects.
+  // Workers that still compute must not run into the destruction of static objects.
   if (unfinished) std::quick_exit(kStopped);
   return kStopped;
 }
@@ -137,7 +137,7 @@ int serve(const NodeOptions& options, const palpate::NodeKeys& keys,
 
 int main(int argc, char** argv) {
   palpate::silence_protobuf();
-  // Who reads our log or our output may go: that is an error of a write, no end.
+  // If the reader of our log or output goes away, the write fails; the node must go on.
   std::signal(SIGPIPE, SIG_IGN);
   spdlog::set_default_logger(std::make_shared<spdlog::logger>(
       "palpate-node", std::make_shared<palpate::LogSink>(STDERR_FILENO)));

@@ -22,18 +22,18 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Liveness is looked at this often; with the default timeout a frozen probe shows within 0.6 s.
+// How often liveness is checked. With the default timeout a frozen probe is noticed within 0.6 s.
 constexpr milliseconds kTick{100};
-// Under a flood, answers and all else get their turn after this long.
+// Longest time spent on contacts before answers and everything else get their turn.
 constexpr milliseconds kDrainTime{1};
 constexpr int kSubscriptionsPerTurn = 100;
-// libzmq takes in all that waits before it gives us the first: a few at a time, so that who asks
-// for too much is noticed, and nobody waits, while it asks.
+// libzmq reads all waiting messages before it hands us the first. A small limit makes sure that a
+// peer that subscribes to too much is noticed early and that nobody waits meanwhile.
 constexpr int kSubscriptionsWaiting = 4;
-// Subscriptions are a topic and a byte; libzmq's own commands fit too.
+// Upper limit of a subscription message: a topic plus one byte. libzmq's own commands fit too.
 constexpr std::int64_t kMaxSubscriptionBytes = 1024;
-// What has been received is finished within this, or given up: with the sockets' linger the
-// process ends within half a second, also where others keep the cores busy.
+// Time to finish what has been received; the rest is given up. Together with the sockets' linger,
+// the process ends within half a second, even on busy cores.
 constexpr milliseconds kFinishTime{200};
 constexpr milliseconds kFinishDrainTime{100};
 
@@ -54,8 +54,8 @@ SocketSettings results_settings(const NodeOptions& options, const NodeKeys& keys
   return settings;
 }
 
-// Slow recognitions nobody expected, as those of new groups, that may run beside as many as run at
-// a time anyway without keeping quick ones waiting.
+// Additional workers, so that unexpectedly slow recognitions (such as the first ones of new groups)
+// do not keep quick ones waiting.
 constexpr std::size_t kSpareWorkers = 4;
 
 std::size_t recognitions_at_a_time(const NodeOptions& options) {
@@ -116,8 +116,8 @@ std::unique_ptr<PeerGuard> Node::guard(zmq::socket_t& socket,
     const Result<Endpoint> endpoint = parse_endpoint(text, /*bind_by_default=*/true);
     if (endpoint && !endpoint.value->bind) connected.push_back(endpoint.value->address);
   }
-  // libzmq tells a socket's events to one listener: the peers of one that connects are of its
-  // choice.
+  // libzmq reports a socket's events to one listener only. A socket that connects chooses its peers
+  // itself, so it needs no PeerGuard and its events go to the ReconnectGuard.
   if (connected.empty()) {
     return std::make_unique<PeerGuard>(context_, socket, options_.peers, what);
   }
@@ -149,7 +149,7 @@ void Node::run(int stop_fd, int reload_fd) {
     const SteadyTime before = now_steady();
     const auto until_tick =
         std::chrono::ceil<milliseconds>(std::max(next_tick_ - before, SteadyTime::duration(0)));
-    // Where a quick group waits for a worker, one is freed by time alone: see slow_count().
+    // If a quick group waits for a worker, time alone can free one (see slow_count()).
     const bool waits = intake_.groups().next_waiting() != nullptr;
     const auto timeout = waits ? std::min(until_tick, Group::kQuickCompute) : until_tick;
     poll(items, static_cast<int>(timeout.count()));
@@ -165,7 +165,7 @@ void Node::run(int stop_fd, int reload_fd) {
     give_out_work(now_steady());
     if (now >= next_tick_) {
       tick(now);
-      // Nobody waits for this: a tick's time is soon enough.
+      // Not urgent: once per tick is often enough.
       if (reload_fd >= 0 && reload_requested(reload_fd)) {
         reload_clients();
         reload_probe_files();
@@ -175,7 +175,7 @@ void Node::run(int stop_fd, int reload_fd) {
   finish();
 }
 
-// False where nothing more waits.
+// Returns false if no message is left.
 bool Node::drain_contacts(SteadyTime deadline) {
   SteadyTime now = now_steady();
   bool more = true;
@@ -199,7 +199,8 @@ void Node::forget_evicted() {
   for (const std::string& probe : forgotten.probes) publisher_.forget(TopicKind::Estimate, probe);
 }
 
-// Recognitions that take long, as is expected of them or as they do already.
+// Number of recognitions that are slow: expected to be, or already computing for longer than
+// kQuickCompute.
 std::size_t Node::slow_count(SteadyTime now) const {
   return static_cast<std::size_t>(
       std::count_if(in_work_.begin(), in_work_.end(), [&](const InWork& work) {
@@ -207,8 +208,8 @@ std::size_t Node::slow_count(SteadyTime now) const {
       }));
 }
 
-// As many at a time as there are cores to compute them, and one more for each that is slow: the
-// quick ones go on beside them, and share the cores.
+// Starts as many recognitions as there are cores, and one more for each slow one. Quick
+// recognitions thus continue beside slow ones and share the cores with them.
 void Node::give_out_work(SteadyTime now) {
   while (workers_.has_idle(Workers::Pace::Quick)) {
     const std::size_t slow = slow_count(now);
@@ -273,8 +274,8 @@ std::uint64_t Node::connections_cut() const {
   return count;
 }
 
-// What a peer made libzmq hold until it was cut is in scattered pieces, which the allocator would
-// keep. Asked for in two status periods: libzmq lets go of a peer a while after it has been cut.
+// The memory that libzmq used for a peer until it was cut is fragmented, and the allocator would
+// keep it. Trimmed in two status periods, because libzmq frees a peer some time after it was cut.
 void Node::give_memory_back() {
   const std::uint64_t cuts = connections_cut();
   if (cuts != cuts_before_last_status_) ::malloc_trim(0);
@@ -314,13 +315,14 @@ void Node::reload_clients() {
   const bool somebody_left = !clients.allows_all_of(zap_->clients());
   zap_->allow(std::move(clients));
   spdlog::info("{} allowed clients reread", keys.value->size());
-  // Whose connection is whose cannot be told: who may, is back within 50 ms.
+  // libzmq does not tell which connection belongs to which key, so all are cut; allowed clients are
+  // back within 50 ms.
   for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
     if (somebody_left && peers != nullptr) peers->cut_all("keys have been taken off the list");
   }
 }
 
-// What is being computed ends with the files that it began with.
+// Recognitions in progress finish with the files that they started with.
 void Node::reload_probe_files() {
   if (!probe_files_) return;
   Result<ProbeFiles> files = ProbeFiles::read(options_.probe_files);
@@ -335,7 +337,7 @@ void Node::reload_probe_files() {
 void Node::finish() {
   service_manager_.stopping();
   const SteadyTime deadline = now_steady() + kFinishTime;
-  // What flows on for longer is not what was received when the stop came.
+  // Messages that keep coming after this were sent after the stop.
   const SteadyTime drained = now_steady() + kFinishDrainTime;
   while (now_steady() < drained && drain_contacts(now_steady() + kDrainTime)) {
     give_out_work(now_steady());

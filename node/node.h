@@ -1,5 +1,5 @@
-// The recognizer as a process: contacts in, recognitions out. One thread and one poll for all
-// sockets, workers for what takes long.
+// The recognizer as a process: contacts in, recognitions out. One thread polls and serves all
+// sockets; worker threads compute.
 #pragma once
 
 #include <chrono>
@@ -32,31 +32,31 @@ namespace palpate {
 
 class Node {
  public:
-  /// Opens all sockets. `options` as make_options() has checked them, `probe_files` those that they
-  /// name. Throws std::runtime_error where an endpoint cannot be had.
+  /// Opens all sockets. `options` must come from make_options(); `probe_files` are those that the
+  /// options name. Throws std::runtime_error if an endpoint cannot be opened.
   Node(const NodeOptions& options, const NodeKeys& keys, ProbeFiles probe_files = {});
 
-  /// Serves until `stop_fd` is readable; then takes what has been received, recognises and
-  /// publishes it, as far as that is done within 0.2 s, and returns.
-  /// Where `reload_fd` (take_reload_signal) says so, the list of allowed clients and the probe
-  /// files are read again.
+  /// Serves until `stop_fd` is readable. Then recognises and publishes what has been received, for
+  /// at most 0.2 s, and returns. When `reload_fd` (take_reload_signal) signals, reads the list of
+  /// allowed clients and the probe files again.
   void run(int stop_fd, int reload_fd = -1);
 
   /// The same, until a stop is requested.
   void run(const std::stop_token& stop);
 
-  /// Recognitions that run() has left behind, because they took too long.
+  /// Number of recognitions that still computed when run() gave up waiting for them.
   std::size_t unfinished_count() const { return workers_.busy_count(); }
 
-  /// Addresses bound last: with "tcp://127.0.0.1:*" the port that the system chose.
+  /// Address of the last endpoint bound. For "tcp://127.0.0.1:*" it holds the port that the system
+  /// chose.
   std::string contacts_address() const { return contacts_.get(zmq::sockopt::last_endpoint); }
   std::string results_address() const { return results_.get(zmq::sockopt::last_endpoint); }
 
  private:
-  // What a worker computes; no group where it is idle.
+  // What one worker computes; group is nullptr if it is idle.
   struct InWork {
     Group* group = nullptr;
-    bool is_slow = false;  // as far as its last answer tells
+    bool is_slow = false;  // by its last answer
     SteadyTime since;
   };
 
@@ -86,25 +86,25 @@ class Node {
   zmq::socket_t contacts_;
   zmq::socket_t results_;
   std::vector<std::unique_ptr<ReconnectGuard>> guards_;
-  std::unique_ptr<PeerGuard> contact_peers_;  // nullptr where the socket connects
+  std::unique_ptr<PeerGuard> contact_peers_;  // nullptr if the socket connects
   std::unique_ptr<PeerGuard> result_peers_;
-  std::shared_ptr<const ProbeFiles> probe_files_;  // nullptr where the options name none
+  std::shared_ptr<const ProbeFiles> probe_files_;  // nullptr if the options name none
   Intake intake_;
   ResultPublisher publisher_;
   ComputeTimes compute_times_;
   std::uint64_t recognitions_published_ = 0;
   std::uint64_t cuts_at_last_status_ = 0;
   std::uint64_t cuts_before_last_status_ = 0;
-  std::size_t at_a_time_;  // recognitions, where none is slow
+  std::size_t at_a_time_;  // recognitions computed at the same time, without the slow ones
   Workers workers_;
-  std::vector<InWork> in_work_;  // by worker
+  std::vector<InWork> in_work_;  // indexed by worker
   ServiceManager service_manager_;
   SteadyTime started_;
   SteadyTime next_tick_;
   SteadyTime next_status_;
   OperatorLog operator_log_;
 
-  // Reused: parsing and filling them again allocates nothing.
+  // Kept between messages so that parsing and filling allocate nothing.
   TwoFrames incoming_;
   v1::NodeStatus status_message_;
 };

@@ -1,4 +1,4 @@
-// All options of the node, with their one table.
+// All options of the node, and the one table that describes them.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ struct NodeOptions {
   std::string name = "recognizer";
   std::vector<std::string> contacts{std::string(kDefaultContactsEndpoint)};
   std::vector<std::string> results{std::string(kDefaultResultsEndpoint)};
-  /// Probes to listen to, by the beginning of their names; none = all. Several nodes can so share
-  /// the probes of one endpoint.
+  /// Listen only to probes whose names begin with one of these; empty = all. Lets several nodes
+  /// share the probes of one endpoint.
   std::vector<std::string> probe_prefixes;
   std::vector<std::string> probe_files;  ///< read by ProbeFiles
   std::string curve_secret_key;
@@ -28,7 +28,7 @@ struct NodeOptions {
   std::uint32_t results_high_water_mark = 1000;
   double probe_timeout_s = 0.5;
   double status_period_s = 1.0;
-  std::uint32_t workers = 0;  ///< 0 = as many as there are cores
+  std::uint32_t workers = 0;  ///< 0 = number of cores
   bool publish_estimates = true;
   std::string given_class;  ///< resolved into intake.group.given_class
   std::string log_level = "info";
@@ -37,9 +37,10 @@ struct NodeOptions {
   IntakeOptions intake;
 };
 
-/// The table. Calls visit(OptionInfo, field) for every option, the field being a reference into
-/// `options`: std::string, std::vector<std::string>, bool, std::uint32_t, std::size_t, double or a
-/// duration of double seconds. To add an option: a line here and a field in NodeConfig.
+/// The table of options. Calls visit(OptionInfo, field) for every option; `field` is a reference
+/// into `options` of type std::string, std::vector<std::string>, bool, std::uint32_t, std::size_t,
+/// double, or a duration in seconds (double). To add an option, add a line here and a field in
+/// NodeConfig.
 template <typename Options, typename Visit>
 void for_each_option(Options& options, Visit&& visit) {
   constexpr double kMostMessages = 1e6;

@@ -1,4 +1,4 @@
-// Simulated contacts as the tables and the messages that leave the simulator.
+// Converts simulated contacts to tables and messages.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 
 namespace palpate::sim {
 
-/// Appends the samples to a table, probe by probe, stamped with the time since the scene's start.
+/// Appends the samples to a table, probe by probe. Stamps are times since the start of the scene.
 void append_rows(const Scene& scene, std::span<const SimulatedProbe> probes, std::uint64_t object,
                  ContactTable& table);
 
-/// A message and when it is due: when its last sample has been taken.
+/// A message and the time at which it is due: when its last sample has been taken.
 struct TimedBatch {
-  double time_s = 0.0;  ///< since the scene's start
+  double time_s = 0.0;  ///< since the start of the scene
   std::size_t probe = 0;
-  v1::ContactBatch batch;  ///< all but header; sample stamps are still times since the start [ns]
+  v1::ContactBatch batch;  ///< without header; sample stamps are times since the start [ns]
 };
 
 /// All messages of the scene, in the order in which they are due.

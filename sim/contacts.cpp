@@ -17,13 +17,13 @@ double or_default(double value, double standard) { return value > 0.0 ? value : 
 
 double rate_of(const v1::SceneProbe& probe) { return or_default(probe.rate_hz(), kDefaultRateHz); }
 
-/// Places that a patch touches, at equal arc lengths.
+/// The places that a patch touches, at equal arc lengths.
 class PatchWalk {
  public:
   PatchWalk(const Shape& shape, const v1::SceneProbe& probe, const v1::ScenePatch& patch)
       : shape_(shape), rate_hz_(rate_of(probe)) {
     const double spacing = spacing_of(probe, patch);
-    // A spacing that divides the arc but for rounding reaches its end.
+    // If the spacing divides the arc except for rounding, the last sample is at its end.
     count_ = static_cast<std::size_t>(std::floor(patch.arc_m() / spacing * (1.0 + 1e-12))) + 1;
     step_ = patch.backwards() ? -spacing : spacing;
     t_ = patch.start_case() == v1::ScenePatch::kStartArcM
@@ -35,8 +35,8 @@ class PatchWalk {
   double interval_s() const { return 1.0 / rate_hz_; }
   double t() const { return t_; }
 
-  /// Each step is measured from the place before: over n samples rounding adds up to n units in the
-  /// last place of t, and the cost of a step does not grow.
+  /// Each step starts from the place before. Over n samples the rounding adds up to n units in the
+  /// last place of t, and the cost of a step stays constant.
   void advance() { t_ = parameter_at_arc_length(shape_, t_, step_); }
 
  private:
@@ -47,7 +47,7 @@ class PatchWalk {
   double t_ = 0.0;
 };
 
-/// +1: the material lies left of increasing t.
+/// +1 if the material lies to the left of increasing t, else -1.
 double material_sign(const v1::Scene& scene) {
   return scene.material_side() == v1::MATERIAL_SIDE_RIGHT ? -1.0 : 1.0;
 }
@@ -58,7 +58,7 @@ const v1::SceneNoise& noise_of(const v1::Scene& scene, const v1::SceneProbe& pro
 
 bool has_covariance(const v1::SceneNoise& noise) { return noise.cov_xx_m2() > 0.0; }
 
-/// Noise of a standard normal pair: the pair times sigma, or times the factor of the covariance.
+/// Noise from a standard normal pair: the pair times sigma, or times a factor of the covariance.
 Vec2 coloured(const Vec2& normal, const v1::SceneNoise& noise) {
   if (!has_covariance(noise)) return noise.sigma_m() * normal;
   const double xx = std::sqrt(noise.cov_xx_m2());
@@ -66,8 +66,8 @@ Vec2 coloured(const Vec2& normal, const v1::SceneNoise& noise) {
   return {xx * normal.x(), yx * normal.x() + std::sqrt(noise.cov_yy_m2() - yx * yx) * normal.y()};
 }
 
-/// What the sensor makes of a position. Every sample draws the same numbers whatever the noise, so
-/// that changing one kind of noise leaves the others as they were.
+/// A position as the sensor reports it. Every sample draws the same random numbers whatever the
+/// noise is, so that changing one kind of noise does not change the others.
 struct Sensed {
   Vec2 position;
   bool lost = false;
@@ -89,8 +89,8 @@ Sensed sense(const Vec2& true_position, const v1::SceneNoise& noise, Random& ran
   return sensed;
 }
 
-/// Drift along a patch: exp(-distance / length) is the law of a chain, each value from the one
-/// before.
+/// Drift along a patch. A correlation of exp(-distance / length) is that of a Markov chain: each
+/// value depends on the one before only.
 class Drift {
  public:
   Drift(const v1::SceneProbe& probe, Random& random) : probe_(probe), random_(random) {}
@@ -114,7 +114,7 @@ class Drift {
   double drift_ = 0.0;
 };
 
-/// Out of the material, by the direction of the normal there.
+/// Offset out of the material, by the direction of the normal.
 double offset_of(const v1::SceneProbe& probe, const Vec2& outward) {
   double offset = probe.offset_m();
   const double phi = std::atan2(outward.y(), outward.x());
@@ -125,11 +125,11 @@ double offset_of(const v1::SceneProbe& probe, const Vec2& outward) {
   return offset;
 }
 
-/// A place where a tip is.
+/// A place of the tip.
 struct TipPlace {
   Vec2 centre;           ///< in the shape's frame
-  Vec2 outward;          ///< unit normal out of the material there
-  double stretch = 1.0;  ///< length of the tip's path over that of the surface
+  Vec2 outward;          ///< unit normal out of the material
+  double stretch = 1.0;  ///< length of the tip's path divided by that of the surface
 };
 
 TipPlace tip_at(const Shape& shape, double t, double side, double radius) {
@@ -138,7 +138,7 @@ TipPlace tip_at(const Shape& shape, double t, double side, double radius) {
   return {place.position + radius * outward, outward, 1.0 + side * radius * curvature(place)};
 }
 
-/// What the sensor says beside the position.
+/// What the sensor reports besides the position.
 SampleDetail measured(const Vec2& outward, const v1::SceneNoise& noise, Random& random) {
   SampleDetail detail;
   if (noise.normal_sigma_rad() > 0.0) {
@@ -211,10 +211,10 @@ std::vector<SimulatedProbe> simulate_contacts(const Scene& scene, std::uint64_t 
     const v1::SceneProbe& described = scene.description.probes(i);
     const std::uint64_t stream = (repetition << 16) + static_cast<std::uint64_t>(i);
     Random random(scene.description.seed(), stream);
-    // Of its own, so that a scene without drift has the samples that it always had.
+    // A stream of its own, so that a scene without drift keeps its samples.
     constexpr std::uint64_t kDriftStream = std::uint64_t{1} << 63;
     Random drift_random(scene.description.seed(), stream | kDriftStream);
-    // Likewise of normals.
+    // Likewise for normals.
     constexpr std::uint64_t kNormalStream = std::uint64_t{1} << 62;
     Random normal_random(scene.description.seed(), stream | kNormalStream);
     SimulatedProbe probe;
@@ -240,8 +240,8 @@ std::string tip_trouble(const v1::Scene& scene, const Shape& shape, const v1::Sc
   if (!(probe.tip_radius_m() > 0.0)) {
     return {};
   }
-  // The tip lies on the side without material. Where the surface bends towards it more than it is
-  // round itself, it cannot touch.
+  // The tip is on the side without material. It cannot touch where the surface bends around it more
+  // tightly than its own radius.
   const double side = material_sign(scene);
   PatchWalk walk(shape, probe, patch);
   for (std::size_t i = 0; i < walk.count(); ++i) {

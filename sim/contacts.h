@@ -1,4 +1,4 @@
-// From a scene to the samples of its probes: pure, and the same for the same seed.
+// Computes the samples of a scene's probes. Pure: the same seed gives the same samples.
 #pragma once
 
 #include <cstddef>
@@ -17,16 +17,17 @@ struct SimulatedSample {
   Vec2 position_m = Vec2::Zero();  ///< as the sensor reports it, in the world frame
   double sigma_m = 0.0;            ///< as the sensor reports it; 0 = not known
   double time_s = 0.0;             ///< since the start of the scene
-  double t = 0.0;                  ///< curve parameter of the touched point: the truth
+  double t = 0.0;                  ///< true curve parameter of the touched point
   SampleDetail detail = {};        ///< as the sensor reports it
 };
 
 /// One unbroken touch.
 struct SimulatedPatch {
   std::uint32_t number = 0;
-  MaterialSide side = MaterialSide::Left;  ///< of the direction of travel: the truth
+  MaterialSide side = MaterialSide::Left;  ///< true side, seen along travel
   bool side_is_reported = true;
-  double start_t = 0.0;  ///< curve parameters at the first and last place, dropouts or not
+  /// Curve parameters of the first and last place, even if these samples were lost.
+  double start_t = 0.0;
   double end_t = 0.0;
   std::vector<SimulatedSample> samples;
 };
@@ -39,14 +40,15 @@ struct SimulatedProbe {
 };
 
 /// All contacts of the scene. Sample i of a patch touches the surface at arc length i * spacing
-/// from the patch's start. `repetition` gives the same touches with other noise. O(samples).
+/// from the start of the patch. Another `repetition` gives the same touches with other noise.
+/// O(samples).
 std::vector<SimulatedProbe> simulate_contacts(const Scene& scene, std::uint64_t repetition = 0);
 
 /// Distance between two samples of a patch. [m]
 double spacing_of(const v1::SceneProbe& probe, const v1::ScenePatch& patch);
 
-/// Why a probe's round tip cannot be where the patch wants it (it would cut into the material), or
-/// an empty string. Looked at every sample.
+/// Why the round tip of a probe cannot follow the patch (it would cut into the material); an empty
+/// string if it can. Checked at every sample.
 std::string tip_trouble(const v1::Scene& scene, const Shape& shape, const v1::SceneProbe& probe,
                         const v1::ScenePatch& patch);
 

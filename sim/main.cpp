@@ -1,5 +1,5 @@
 // palpate-sim: plays scenes as the probes of a real cell would. Exit codes: 0 all played, 1 failed
-// at run time (no recognizer listens, a file cannot be written), 2 usage or a bad scene.
+// at run time (no recognizer listens, a file cannot be written), 2 usage or an invalid scene.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -111,7 +111,7 @@ class Output {
   std::ofstream file_;
 };
 
-/// Numbers of the objects, in the order in which they are played.
+/// The numbers of the objects, in the order in which they are played.
 class ObjectNumbers {
  public:
   ObjectNumbers(const CLI::App& app, const CommandLine& options) {
@@ -124,7 +124,7 @@ class ObjectNumbers {
   }
 
   std::uint64_t next(const sim::Scene& scene) {
-    // A scene's own number holds for its first time: after that, it would be the same object.
+    // A scene's own number is used the first time only: after that it would be the same object.
     if (!given_ && scene.description.has_object() &&
         (!started_ || scene.description.object() >= next_)) {
       next_ = scene.description.object();
@@ -152,7 +152,7 @@ struct Player {
   Output truth;
   int stop_fd;
 
-  /// Writes the truth; false where it cannot be written.
+  /// Writes the truth. Returns false if it cannot be written.
   bool tell_truth(const sim::Scene& scene, std::span<const sim::SimulatedProbe> probes,
                   std::uint64_t object) {
     for (const v1::SceneTruth& line : sim::scene_truths(scene, probes, object)) {
@@ -182,7 +182,7 @@ struct Player {
   int publish(const std::vector<sim::Scene>& scenes) {
     client::ContactPublisherOptions publisher_options;
     publisher_options.endpoint = options.contacts;
-    // Room for what "as fast as possible" piles up.
+    // Room for the messages that accumulate when playing as fast as possible.
     publisher_options.high_water_mark = options.fast ? 100000 : 1000;
     if (!options.recognizer_key.empty()) {
       Result<CurveClient> curve =
@@ -211,7 +211,7 @@ struct Player {
     return kPlayed;
   }
 
-  /// In short waits, so that a stop is heard.
+  /// Waits in short steps, so that a stop signal is noticed.
   int wait_for_recognizer(client::ContactPublisher& publisher) const {
     constexpr double kStepS = 0.05;
     for (double waited_s = 0.0;; waited_s += kStepS) {

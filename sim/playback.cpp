@@ -34,7 +34,7 @@ PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProb
   for (TimedBatch& timed : batches) {
     const double wait_s =
         paced ? 1e-9 * static_cast<double>(due_ns(timed.time_s) - unix_time_ns()) : 0.0;
-    // Even without a wait: a stop is heard.
+    // Called even without a wait, to notice a stop.
     if (wait_or_stop(std::max(wait_s, 0.0), stop_fd)) {
       counts.stopped = true;
       break;

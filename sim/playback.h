@@ -1,4 +1,4 @@
-// Publishes a scene's messages at their times.
+// Publishes the messages of a scene in time.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,17 @@ namespace palpate::sim {
 struct PlaybackCounts {
   std::uint64_t messages = 0;
   std::uint64_t samples = 0;
-  std::uint64_t refused = 0;  ///< messages that the socket did not take
+  std::uint64_t refused = 0;  ///< messages that the socket did not accept
   bool stopped = false;       ///< by a signal
 };
 
-/// Publishes the batches in order, each when its last sample is due: `speed` times as fast as the
-/// scene's time, 0 = at once. Samples are stamped with the Unix time at which they are due. Ends
-/// early when `stop_fd` becomes readable. Changes the batches.
+/// Publishes the batches in order, each when its last sample is due, `speed` times as fast as the
+/// scene; 0 = without waiting. Stamps the samples with the Unix time at which they are due. Ends
+/// early when `stop_fd` is readable. Modifies the batches.
 PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProbe> probes,
                     double speed, int stop_fd, client::ContactPublisher& publisher);
 
-/// Waits; true where `stop_fd` became readable.
+/// Waits for the given time. Returns true if `stop_fd` became readable.
 bool wait_or_stop(double seconds, int stop_fd);
 
 }  // namespace palpate::sim

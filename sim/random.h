@@ -1,5 +1,5 @@
-// Random numbers that are the same on every machine: the standard fixes its engines, but not its
-// distributions.
+// Random numbers that are the same on every machine. The C++ standard fixes its engines but not its
+// distributions, so the distributions are our own.
 #pragma once
 
 #include <cmath>
@@ -12,14 +12,14 @@ namespace palpate::sim {
 
 class Random {
  public:
-  /// Different `stream`s of one seed are independent.
+  /// Different streams of one seed are independent.
   Random(std::uint64_t seed, std::uint64_t stream) {
     const auto low = [](std::uint64_t v) { return static_cast<std::uint32_t>(v); };
     std::seed_seq sequence{low(seed), low(seed >> 32), low(stream), low(stream >> 32)};
     engine_.seed(sequence);
   }
 
-  /// Uniform in [0, 1), all 53 bits.
+  /// Uniform in [0, 1), with all 53 bits.
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
 
   /// Two independent standard normal numbers (G. Marsaglia's polar method).

@@ -25,12 +25,12 @@ double number(const Message& message, const char* name) {
 
 }  // namespace
 
-/// A message with its place in the file.
+/// A message and its position in the file.
 struct SceneCheck::Place {
   const Message& message;
-  const ParseInfoTree* tree;  ///< nullptr where the file does not mention it
-  std::string path;           ///< "probes[0].patches[2]", empty for the scene itself
-  int line = 0;               ///< where the message itself begins, from 0
+  const ParseInfoTree* tree;  ///< nullptr if the file does not contain the message
+  std::string path;           ///< "probes[0].patches[2]"; empty for the scene itself
+  int line = 0;               ///< where the message begins, from 0
 
   Place child(const char* name, int index = -1) const {
     const FieldDescriptor* field = field_of(message, name);
@@ -47,10 +47,10 @@ struct SceneCheck::Place {
     return index < 0 ? result : result + "[" + std::to_string(index) + "]";
   }
 
-  /// Of the field, or of the message where the field is not mentioned.
+  /// Line of the field, or of the message if the field is absent.
   int line_of(const char* name, int index = -1) const {
     const FieldDescriptor* field = field_of(message, name);
-    // protobuf aborts where a repeated field is asked for as a whole.
+    // protobuf aborts if GetLocation gets a repeated field without an index.
     if (tree == nullptr || (field->is_repeated() && index < 0)) {
       return line;
     }
@@ -219,7 +219,7 @@ bool SceneCheck::check_pose(const Place& scene) {
 }
 
 bool SceneCheck::check_noise(const Place& noise) {
-  constexpr double kMostNormalSigma = kPi;  // of ContactSample.normal_sigma_rad
+  constexpr double kMostNormalSigma = kPi;  // as for ContactSample.normal_sigma_rad
   const double normal_sigma = number(noise.message, "normal_sigma_rad");
   if (normal_sigma > kMostNormalSigma || (normal_sigma > 0.0 && normal_sigma < kMinNormalSigma)) {
     return fail(noise, "normal_sigma_rad", "must be 0 or 1e-15 to pi");

@@ -1,4 +1,4 @@
-// Finds what is wrong with a scene and where in its file.
+// Checks a scene and finds the place of an error in its file.
 #pragma once
 
 #include <google/protobuf/text_format.h>
@@ -13,13 +13,13 @@ namespace palpate::sim {
 
 using ParseInfoTree = google::protobuf::TextFormat::ParseInfoTree;
 
-/// A message of the scene, where it stands in the file, and the first error found.
+/// Holds the scene, the positions of its fields in the file, and the first error found.
 class SceneCheck {
  public:
   SceneCheck(const v1::Scene& scene, const ParseInfoTree& tree, std::string file)
       : scene_(scene), tree_(tree), file_(std::move(file)) {}
 
-  /// The shape of the scene if all is well; else error() says what is not.
+  /// The shape of the scene if the scene is valid; else nullopt, and error() says why.
   std::optional<Shape> check();
 
   const std::string& error() const { return error_; }

@@ -1,4 +1,4 @@
-// Scene files: read, checked, ready to be touched.
+// Reads and checks scene files.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 namespace palpate::sim {
 
 struct Scene {
-  std::string name;  ///< the file's
+  std::string name;  ///< of the file
   v1::Scene description;
   Shape shape;
   Pose2 world_T_shape;
 };
 
-/// Reads and checks a scene; an error reads "FILE:LINE: FIELD: what is wrong".
+/// Reads and checks a scene. An error reads "FILE:LINE: FIELD: what is wrong".
 Result<Scene> read_scene(const std::string& path);
 
 /// The same from text; `name` stands for the file in errors.

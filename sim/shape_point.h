@@ -1,11 +1,11 @@
-// A place on a shape and how the shape runs there.
+// A point of a shape with its derivatives.
 #pragma once
 
 #include "core/curves/pose2.h"
 
 namespace palpate::sim {
 
-/// Position, first and second derivative with respect to the curve parameter. [m]
+/// Position, first and second derivative by the curve parameter. [m]
 struct ShapePoint {
   Vec2 position;
   Vec2 first;

@@ -9,7 +9,7 @@
 namespace palpate::sim {
 namespace {
 
-/// Fills in class, parameters and pose, which SceneTruth and PatchTruth both have.
+/// Sets class, parameters and pose, which SceneTruth and PatchTruth both have.
 template <typename Truth>
 void describe(const Scene& scene, const std::optional<ClassifiedPiece>& piece, Truth& truth) {
   if (!piece) {
@@ -22,7 +22,7 @@ void describe(const Scene& scene, const std::optional<ClassifiedPiece>& piece, T
   to_wire(scene.world_T_shape * piece->shape_T_curve, *truth.mutable_pose());
 }
 
-/// The range of t that all patches lie in; a piece over it is of one class, or none is.
+/// The piece that contains all patches; nullopt if it is not of one class.
 std::optional<ClassifiedPiece> common_piece(const Scene& scene,
                                             std::span<const SimulatedProbe> probes) {
   double lower = std::numeric_limits<double>::infinity();
@@ -85,7 +85,7 @@ std::string to_json(const v1::SceneTruth& truth) {
   options.preserve_proto_field_names = true;
   options.always_print_primitive_fields = true;
   std::string text;
-  // Cannot fail: the message has no Any.
+  // Cannot fail, because the message has no Any.
   (void)google::protobuf::util::MessageToJsonString(truth, &text, options);
   return text;
 }

@@ -1,4 +1,4 @@
-// What a scene should be recognised as.
+// The truth about a scene: how it should be recognised.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,12 @@
 
 namespace palpate::sim {
 
-/// One for each group: the scene's, or each probe's own. `object`: the number published.
+/// One message per group: the scene's group, or each probe if the scene has none. `object`: the
+/// number published.
 std::vector<v1::SceneTruth> scene_truths(const Scene& scene, std::span<const SimulatedProbe> probes,
                                          std::uint64_t object);
 
-/// In protobuf's JSON, one line, no line end.
+/// protobuf's JSON, one line, without a line feed.
 std::string to_json(const v1::SceneTruth& truth);
 
 }  // namespace palpate::sim

@@ -5,7 +5,7 @@
 namespace palpate::sim {
 namespace {
 
-/// r(t) (cos t, sin t) from the polar radius and its derivatives.
+/// The point r (cos t, sin t) from the polar radius r and its first two derivatives.
 ShapePoint polar_point(double t, double r, double r1, double r2) {
   const Vec2 radial(std::cos(t), std::sin(t));
   const Vec2 across = left_of(radial);

@@ -1,4 +1,4 @@
-// Smooth shapes that are of none of the classes.
+// Smooth shapes of none of the classes.
 #pragma once
 
 #include "sim/shape_point.h"

@@ -1,4 +1,4 @@
-// How a probe or a planner reaches the recognizer.
+// How a client (a probe or a planner) connects to the recognizer.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,8 @@
 
 namespace palpate::client {
 
-/// Keys of a CURVE connection, from files: our secret key file and the recognizer's public one.
+/// Reads the keys of a CURVE connection: the client's own secret key file, and the recognizer's
+/// public one.
 Result<CurveClient> read_curve_client(const std::string& own_secret_path,
                                       const std::string& recognizer_public_path);
 

@@ -20,7 +20,7 @@ SocketSettings settings_of(const ContactPublisherOptions& options) {
 
 ContactPublisher::ContactPublisher(const ContactPublisherOptions& options)
     : context_(1),
-      // XPUB: the recognizer's subscription arrives as a message and says that it listens.
+      // XPUB passes the recognizer's subscription to us as a message: that shows that it listens.
       socket_(make_socket(context_, zmq::socket_type::xpub, settings_of(options))),
       handshakes_(context_, socket_),
       epoch_(random_epoch()) {
@@ -35,7 +35,7 @@ void ContactPublisher::take_subscriptions() {
   TwoFrames message;
   while (receive_now(socket_, message)) {
     if (message.topic.size() == 0) continue;
-    // First byte 1: the first subscriber of a prefix has come; 0: its last one has gone.
+    // First byte 1: a prefix has its first subscriber; 0: it has lost its last one.
     const char kind = *message.topic.data<char>();
     if (kind == 1) ++listeners_;
     if (kind == 0 && listeners_ > 0) --listeners_;

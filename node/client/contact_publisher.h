@@ -1,4 +1,4 @@
-// A probe's side: publishes contact samples.
+// The client of a probe: publishes contact samples.
 #pragma once
 
 #include <chrono>
@@ -17,39 +17,40 @@
 namespace palpate::client {
 
 struct ContactPublisherOptions {
-  /// The recognizer's contacts endpoint; a bare address is connected to.
+  /// The recognizer's contacts endpoint. An address without "bind:" or "connect:" is connected to.
   std::string endpoint{kDefaultContactsEndpoint};
   std::optional<CurveClient> curve;
-  /// Messages that wait for a recognizer that does not keep up before further ones are lost.
+  /// Messages that may wait for a slow recognizer. Further ones are lost.
   int high_water_mark = 1000;
 };
 
-/// Publishes for one probe or several. Never blocks: what nobody takes is lost, and shows as a hole
-/// in seq. Reconnects by itself. Belongs to one thread.
+/// Publishes contacts of one or more probes. Never blocks: messages that cannot be delivered are
+/// lost and leave a gap in seq. Reconnects by itself. Not thread-safe.
 class ContactPublisher {
  public:
-  /// Throws std::invalid_argument on a bad endpoint and zmq::error_t where it cannot be attached.
+  /// Throws std::invalid_argument if the endpoint is malformed and zmq::error_t if it cannot be
+  /// attached.
   explicit ContactPublisher(const ContactPublisherOptions& options = {});
 
-  /// Waits until a recognizer listens; false after `timeout`, or at once where it refuses us: see
-  /// refusal(). Before that, messages are lost.
+  /// Waits until a recognizer listens. Returns false after `timeout`, or at once if the recognizer
+  /// refuses this client (see refusal()). Messages published before a recognizer listens are lost.
   bool wait_for_recognizer(std::chrono::milliseconds timeout);
 
-  /// Why the recognizer refuses this client, to be read after its name: "refuses our key: ...".
-  /// Empty where it does not. libzmq does not try again: only a new publisher can.
+  /// Why the recognizer refuses this client, worded to follow its name: "refuses our key: ...".
+  /// Empty if it does not refuse. libzmq does not try again; create a new publisher.
   const std::string& refusal() { return handshakes_.refusal(); }
 
-  /// Publishes the batch on `contact/<probe>/` after filling in its header's source, epoch, seq and
-  /// stamp; the frame stays as given. Returns false where the probe's name is invalid (nothing is
-  /// sent) or the high-water mark has dropped the message.
+  /// Publishes the batch on `contact/<probe>/`. Sets source, epoch, seq and stamp of its header;
+  /// the frame stays as given. Returns false if the probe's name is invalid (nothing is sent) or if
+  /// the message was dropped at the high-water mark.
   bool publish(std::string_view probe, v1::ContactBatch& batch);
 
-  /// Lets the destructor wait so long at most for what has been published and is not sent yet;
-  /// without it a tenth of a second. A recognizer that is behind gets the rest; one that has gone
-  /// is not waited for longer.
+  /// Longest time that the destructor waits for messages that are published but not sent; 0.1 s if
+  /// never called. A slow recognizer then still gets them; a recognizer that has gone is not waited
+  /// for.
   void finish_within(std::chrono::milliseconds longest = std::chrono::seconds(5));
 
-  /// Random number of this publisher, in every header.
+  /// The random number in the header of every message of this publisher.
   std::uint64_t epoch() const { return epoch_; }
 
  private:

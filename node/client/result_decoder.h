@@ -1,4 +1,4 @@
-// What a recognizer says, as messages: needs no network.
+// Decodes the messages that a recognizer publishes. Needs no network.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,8 @@
 
 namespace palpate::client {
 
-/// What one receive brought: at most one of them, valid until the next call; none = timeout.
+/// What one receive returned: at most one pointer is set, valid until the next call; none is set
+/// after a timeout.
 struct ReceivedResult {
   const v1::Recognition* recognition = nullptr;
   const v1::LocalEstimate* estimate = nullptr;
@@ -29,32 +30,32 @@ struct ReceivedResult {
 };
 
 struct SubscriberCounters {
-  std::uint64_t received = 0;    ///< messages given out
-  std::uint64_t duplicates = 0;  ///< dropped: repeated last values, or from before a restart
-  std::uint64_t gaps = 0;        ///< holes in seq
-  std::uint64_t missing = 0;     ///< messages in the holes
-  std::uint64_t restarts = 0;    ///< of the recognizer, counted on each topic
+  std::uint64_t received = 0;    ///< messages returned
+  std::uint64_t duplicates = 0;  ///< dropped: repeated latest values, or from before a restart
+  std::uint64_t gaps = 0;        ///< gaps in seq
+  std::uint64_t missing = 0;     ///< messages missing in the gaps
+  std::uint64_t restarts = 0;    ///< of the recognizer, counted per topic
   std::uint64_t malformed = 0;   ///< not of this contract
 };
 
-/// Gives each message out once, in order; remembers the latest recognition of every group. Whatever
-/// the bytes are, they are decoded or counted.
+/// Returns each message once, in order, and keeps the latest recognition of every group. Accepts
+/// any bytes: they are decoded or counted as malformed.
 class ResultDecoder {
  public:
   explicit ResultDecoder(std::size_t most_topics) : most_topics_(most_topics) {}
 
-  /// The message if it is news, else nothing.
+  /// Returns the message if it is new, else nothing.
   ReceivedResult take(std::string_view topic, std::string_view payload);
-  /// One that has another number of frames than two.
+  /// Counts a message that does not have two frames.
   void count_malformed() { ++counters_.malformed; }
 
-  /// nullptr where none has come.
+  /// nullptr if none has come.
   const v1::Recognition* latest(std::string_view group) const;
   std::vector<std::string> groups() const;
   const SubscriberCounters& counters() const { return counters_; }
 
  private:
-  // One topic each. Recognitions are kept so that latest() can give them.
+  // One topic. The last recognition is kept for latest().
   struct Feed {
     SequenceTracker sequence;
     v1::Recognition recognition;

@@ -1,4 +1,4 @@
-// A planner's side: receives recognitions, local estimates, the recognizer's status and the
+// The client of a planner: receives recognitions, local estimates, the recognizer's status, and the
 // contacts that it accepts.
 #pragma once
 
@@ -18,51 +18,52 @@
 namespace palpate::client {
 
 struct ResultSubscriberOptions {
-  /// The recognizer's results endpoint; a bare address is connected to.
+  /// The recognizer's results endpoint. An address without "bind:" or "connect:" is connected to.
   std::string endpoint{kDefaultResultsEndpoint};
-  /// Groups whose recognitions to receive; empty = all.
+  /// Groups whose recognitions are received; empty = all.
   std::vector<std::string> groups;
   bool estimates = false;  ///< receive LocalEstimate of every probe
   bool status = false;     ///< receive NodeStatus
-  bool contacts = false;   ///< receive the ContactBatch that the recognizer accepts, of every probe
+  bool contacts = false;   ///< receive the ContactBatches of all probes that the recognizer accepts
   std::optional<CurveClient> curve;
-  /// Messages that wait for a planner that does not read before further ones are lost.
+  /// Messages that may wait for a planner that does not read. Further ones are lost.
   int high_water_mark = 1000;
-  /// Topics remembered; messages of further ones are malformed. A recognizer has at most its groups
-  /// and twice its probes.
+  /// Number of topics remembered. Messages on further topics count as malformed. A recognizer has
+  /// at most as many topics as groups plus twice its probes.
   std::size_t most_topics = 4096;
 };
 
-/// Connects, and reconnects, by itself; on connecting, the latest recognition of every group comes
-/// at once. Each message is given out once, in order. Belongs to one thread.
+/// Connects and reconnects by itself. The latest recognition of every group arrives on connecting.
+/// Returns each message once, in order. Not thread-safe.
 class ResultSubscriber {
  public:
-  /// Throws std::invalid_argument on a bad endpoint or group and std::runtime_error where it cannot
-  /// be attached.
+  /// Throws std::invalid_argument if the endpoint or a group name is malformed and
+  /// std::runtime_error if the endpoint cannot be attached.
   explicit ResultSubscriber(const ResultSubscriberOptions& options = {});
 
-  /// The next message; waits for at most `timeout`.
+  /// Returns the next message; waits for at most `timeout`.
   ReceivedResult receive(std::chrono::milliseconds timeout);
 
-  /// For planners that want the present and not the past: waits for at most `timeout` until a
-  /// recognition comes, takes in all that has arrived, and returns true if there is a newer answer
-  /// for any group. Read it with latest().
+  /// For planners that need only the newest state. Waits at most `timeout` for a recognition, reads
+  /// everything that has arrived, and returns true if any group has a newer answer. Get it with
+  /// latest().
   bool update(std::chrono::milliseconds timeout);
 
-  /// The latest recognition of that group, nullptr where none has come; valid until the next
+  /// The latest recognition of the group, or nullptr if none has come. Valid until the next
   /// receive() or update().
   const v1::Recognition* latest(std::string_view group) const { return decoder_.latest(group); }
 
-  /// Groups that have been heard of.
+  /// Groups with at least one message so far.
   std::vector<std::string> groups() const { return decoder_.groups(); }
 
   const SubscriberCounters& counters() const { return decoder_.counters(); }
 
-  /// Why the recognizer refuses this client, to be read after its name: "refuses our key: ...".
-  /// Empty where it does not. libzmq does not try again: only a new subscriber can.
+  /// Why the recognizer refuses this client, worded to follow its name: "refuses our key: ...".
+  /// Empty if it does not refuse. libzmq does not try again; create a new subscriber.
   const std::string& refusal() { return handshakes_.refusal(); }
 
-  /// ZeroMQ's socket, to be polled beside others: readable where receive() may have news.
+  /// The ZeroMQ socket, to be polled with others. When it is readable, receive() may return a
+  /// message.
   zmq::socket_t& socket() { return socket_; }
 
  private:

@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
-"""Recognises archives of contacts on a Dask cluster: one row an object, in a CSV file.
+"""Recognises archives of contacts on a Dask cluster. Writes a CSV file with one row per object.
 
   PYTHONPATH=... python3 node/examples/archive.py --out rows.csv strokes/*.csv night.recording log.jsonl
 
-Reads recordings (palpate record), CSV files of the contract's columns (a header line with probe, patch, x_m, y_m and
-optionally sigma_m, object, group, tip_radius_m, material_side) and JSON lines (a ContactBatch in protobuf's JSON each).
-Without --scheduler it works on processes of this machine; --workers says how many.
+Input: recordings (palpate record), CSV files with the contract's columns (a header line with probe, patch, x_m, y_m and
+optionally sigma_m, object, group, tip_radius_m, material_side), and files with one ContactBatch per line in protobuf's
+JSON. Without --scheduler it runs on processes of this machine; --workers says how many.
 
-Each file is read once and its objects dealt to tasks, each task's rows are a file in OUT.parts: what is there is not done again, in whatever order
-and however often it is started. When all are there, OUT is written, sorted by file, group and object. Recognition sees
-each object's samples in their order in the file, so the rows do not depend on who computes them. A task that fails is
-tried again (--retries), as is one whose worker dies; a file that cannot be read is named at the end, exit code 1.
+Each file is read once and its objects are dealt to tasks. The rows of each task go to a file in OUT.parts. A part that
+exists is not computed again, so the program can be stopped and restarted at any time. When all parts exist, OUT is
+written, sorted by file, group and object. Each object's samples are used in their order in the file, so the rows do not
+depend on which worker computes them. A task that fails, or whose worker dies, is tried again (--retries). A file that
+cannot be read is named at the end, and the exit code is 1.
 
 Needs the palpate module, python3-protobuf with the generated package, and python3-distributed.
 """
@@ -29,14 +30,14 @@ import sys
 import time
 import zlib
 
-PIECE_BYTES = 1 << 20  # of a file, for one task: seconds of work
+PIECE_BYTES = 1 << 20  # part of a file for one task: seconds of work
 COLUMNS = ["file", "group", "object", "status", "doubt", "curve_class", "probability", "a", "b", "c", "x_m", "y_m",
            "theta_rad", "a_std", "b_std", "c_std", "x_m_std", "y_m_std", "theta_rad_std", "sigma_m", "samples", "patches",
            "outliers", "forgotten"]
 
 
 def batches_of_recording(path):
-    """ContactBatch messages; the format is described in node/files/recording.h."""
+    """Yields the ContactBatch messages of a recording (format: node/files/recording.h)."""
     from palpate.v1 import contact_pb2
     data = path.read_bytes()
     if data[:8] != b"palpate2":
@@ -48,7 +49,7 @@ def batches_of_recording(path):
         body = data[at + head.size:at + head.size + topic + payload]
         if mark != b"\xa7rec" or len(body) < topic + payload or \
                 zlib.crc32(body, zlib.crc32(data[at + 4:at + head.size - 4])) != checksum:
-            at = data.find(b"\xa7rec", at + 1)  # damaged, or broken off: on to the next whole one
+            at = data.find(b"\xa7rec", at + 1)  # damaged or incomplete: skip to the next record
             if at < 0:
                 return
             continue
@@ -83,7 +84,7 @@ def samples_of_csv(path):
         if missing:
             raise ValueError(f"line {rows.line_num}: no column {', '.join(sorted(missing))}")
         names = ("probe", "patch", "x_m", "y_m", "group", "object", "tip_radius_m", "material_side", "sigma_m")
-        # What the file has no column for is the empty field that each row gets at its end.
+        # A column that the file lacks reads the empty field appended to each row.
         probe, patch, x, y, group, number, tip_radius, side, sigma = (
             header.index(name) if name in header else len(header) for name in names)
         for row in rows:
@@ -101,7 +102,7 @@ def samples_of_csv(path):
 
 
 def samples_of(path):
-    """(group, object, patch's key, (x_m, y_m), sigma_m) of each sample."""
+    """Yields (group, object, patch's key, (x_m, y_m), sigma_m) of each sample."""
     with open(path, "rb") as file:
         start = file.read(8)
     if start.startswith(b"palpate2"):
@@ -112,7 +113,7 @@ def samples_of(path):
 
 
 def recognise(patches, sigma_m):
-    """The answer's part of a row."""
+    """The columns of a row that come from the answer."""
     import numpy as np
     import palpate
     recognizer = palpate.Recognizer(sigma=sigma_m or None, most_patches=max(64, len(patches)))
@@ -134,7 +135,8 @@ def recognise(patches, sigma_m):
 
 
 def deal(path, pieces):
-    """Runs on a worker: a file, read once, as `pieces` lists of objects: (group, number, {patch's key: (points, sigmas)})."""
+    """Runs on a worker: reads a file and splits it into `pieces` lists of objects (group, number, {patch's key: (points,
+    sigmas)})."""
     objects = {}
     for group, number, key, point, sigma in samples_of(pathlib.Path(path)):
         points, sigmas = objects.setdefault((group, number), {}).setdefault(key, (array.array("d"), array.array("d")))
@@ -147,7 +149,7 @@ def deal(path, pieces):
 
 
 def rows_of(path, objects, sigma_m):
-    """Runs on a worker: a row for each of the objects, as CSV text."""
+    """Runs on a worker: returns one row per object, as CSV text."""
     out = io.StringIO()
     writer = csv.DictWriter(out, COLUMNS, restval="", lineterminator="\n")
     for group, number, patches in objects:
@@ -156,7 +158,7 @@ def rows_of(path, objects, sigma_m):
 
 
 def tasks_of(files, sigma_m):
-    """{name of its part: arguments}. The name changes with the file and with what is asked."""
+    """Returns {name of the part: arguments}. The name depends on the file and on the options."""
     tasks = {}
     for path in files:
         state = os.stat(path)
@@ -168,14 +170,14 @@ def tasks_of(files, sigma_m):
 
 
 def write_whole(path, text):
-    """Whole or not at all."""
+    """Writes the file completely or not at all."""
     beside = path.with_suffix(".writing")
     beside.write_text(text, encoding="utf-8")
     beside.replace(path)
 
 
 def compute(client, tasks, parts, retries, progress):
-    """Has the tasks done whose parts are not there. Gives {part: error} of those that failed."""
+    """Runs the tasks whose parts do not exist. Returns {part: error} of those that failed."""
     from distributed import as_completed
     futures, dealt = {}, {}
     for name, (path, piece, pieces, sigma_m) in tasks.items():
@@ -185,7 +187,7 @@ def compute(client, tasks, parts, retries, progress):
             dealt[path] = client.submit(deal, path, pieces, retries=retries, pure=False)
         objects = client.submit(operator.getitem, dealt[path], piece, pure=False)
         futures[client.submit(rows_of, path, objects, sigma_m, key=name, retries=retries, pure=False)] = name
-    dealt = objects = None  # each is forgotten as soon as its rows are there
+    dealt = objects = None  # frees each task's data as soon as its rows exist
     done, answers, failed, begin, told = len(tasks) - len(futures), 0, {}, time.monotonic(), 0.0
     for future in as_completed(futures):
         name = futures[future]

@@ -1,4 +1,4 @@
-// A planner: prints what has been recognised, and where it lies.
+// Example of a planner: prints each recognised curve and where it lies.
 #include <chrono>
 #include <cstdio>
 
@@ -8,7 +8,7 @@
 int main(int argc, char** argv) {
   palpate::client::ResultSubscriberOptions options;
   if (argc > 1) options.endpoint = argv[1];
-  if (argc > 3) {  // CURVE: our secret key file, the recognizer's public one
+  if (argc > 3) {  // CURVE: our secret key file, the recognizer's public key file
     const auto keys = palpate::client::read_curve_client(argv[2], argv[3]);
     if (!keys) {
       std::fprintf(stderr, "%s\n", keys.error.c_str());
@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
   palpate::client::ResultSubscriber subscriber(options);
   std::fprintf(stderr, "listening to %s (palpate-node)\n", options.endpoint.c_str());
   for (;;) {
-    // Only the present matters to a planner: update() takes in all that has come.
+    // A planner needs only the newest state: update() reads everything that has come.
     if (!subscriber.update(std::chrono::seconds(1))) continue;
     for (const std::string& group : subscriber.groups()) {
       const palpate::v1::Recognition& answer = *subscriber.latest(group);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A planner: prints what has been recognised, and where it lies.
+"""Example of a planner: prints each recognised curve and where it lies.
 
 Needs python3-zmq, python3-protobuf and the generated package on the path:
   PYTHONPATH=build/release/proto/python python3 node/examples/planner.py
@@ -24,7 +24,7 @@ def main():
     socket = zmq.Context().socket(zmq.SUB)
     socket.setsockopt(zmq.SUBSCRIBE, b"recognition/")  # or b"recognition/cup/" for one group
     socket.setsockopt(zmq.RECONNECT_IVL, 10)
-    # A cut cable is noticed; not by HEARTBEAT_IVL, with which libzmq 4.3 can abort a reader that pauses.
+    # Notices a cut cable. Not HEARTBEAT_IVL: with it, libzmq 4.3 can abort a reader that pauses.
     socket.setsockopt(zmq.TCP_KEEPALIVE, 1)
     socket.setsockopt(zmq.TCP_KEEPALIVE_IDLE, 1)  # [s]
     if options.curve_secret_key:
@@ -34,13 +34,13 @@ def main():
 
     print(f"listening to {options.endpoint} (palpate-node)", file=sys.stderr)
 
-    newest = {}  # of each group: (epoch, seq)
+    newest = {}  # by group: (epoch, seq)
     while True:
         _, payload = socket.recv_multipart()
         answer = recognition_pb2.Recognition.FromString(payload)
         stamp = (answer.header.epoch, answer.header.seq)
         if newest.get(answer.group) == stamp:
-            continue  # the recognizer repeats its latest answers for those who come late
+            continue  # the recognizer repeats its latest answers for late subscribers
         newest[answer.group] = stamp
 
         name = CurveClass.Name(answer.curve_class).removeprefix("CURVE_CLASS_").lower()

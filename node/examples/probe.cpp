@@ -1,4 +1,4 @@
-// A probe: publishes touched points. Replace the loop's body by your own driver.
+// Example of a probe: publishes touched points. Replace the body of the loop by your own driver.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -11,7 +11,7 @@
 int main(int argc, char** argv) {
   palpate::client::ContactPublisherOptions options;
   if (argc > 1) options.endpoint = argv[1];
-  if (argc > 3) {  // CURVE: our secret key file, the recognizer's public one
+  if (argc > 3) {  // CURVE: our secret key file, the recognizer's public key file
     const auto keys = palpate::client::read_curve_client(argv[2], argv[3]);
     if (!keys) {
       std::fprintf(stderr, "%s\n", keys.error.c_str());
@@ -27,10 +27,10 @@ int main(int argc, char** argv) {
   }
 
   palpate::v1::ContactBatch batch;
-  batch.set_object(1);  // a new number: a new object
-  batch.set_patch(0);   // plus one at each lift-off
+  batch.set_object(1);  // a new number = a new object
+  batch.set_patch(0);   // add 1 at each lift-off
   for (int i = 0; i < 240; ++i) {
-    // A 40 x 25 mm ellipse, one point every 0.5 mm or so.
+    // An ellipse with half axes of 40 mm and 25 mm, one point about every 0.5 mm.
     const double t = 0.4 + 0.012 * i;
     palpate::v1::ContactSample& sample = *batch.add_samples();
     sample.set_x_m(0.3 + 0.040 * std::cos(t));

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A probe: publishes touched points. Replace `touch()` by your own driver.
+"""Example of a probe: publishes touched points. Replace `touch()` by your own driver.
 
 Needs python3-zmq, python3-protobuf and the generated package on the path:
   PYTHONPATH=build/release/proto/python python3 node/examples/probe.py
@@ -16,7 +16,7 @@ from zmq.auth import load_certificate
 
 
 def touch():
-    """Yields points of a 40 x 25 mm ellipse, one every 0.5 mm or so, as a driver would."""
+    """Stands for a driver: yields points of an ellipse with half axes of 40 mm and 25 mm, one about every 0.5 mm."""
     for i in range(240):
         t = 0.4 + 0.012 * i
         yield 0.3 + 0.040 * math.cos(t), 0.1 + 0.025 * math.sin(t)
@@ -32,20 +32,20 @@ def main():
     options = parser.parse_args()
 
     socket = zmq.Context().socket(zmq.XPUB)
-    socket.setsockopt(zmq.LINGER, 200)  # [ms] do not hang at exit where nobody listens
+    socket.setsockopt(zmq.LINGER, 200)  # [ms] longest wait at exit if nobody listens
     socket.setsockopt(zmq.RECONNECT_IVL, 10)
     if options.curve_secret_key:
         socket.curve_publickey, socket.curve_secretkey = load_certificate(options.curve_secret_key)
         socket.curve_serverkey, _ = load_certificate(options.curve_server_key)
     socket.connect(options.endpoint)
     print(f"waiting for a recognizer at {options.endpoint} (palpate-node)", file=sys.stderr)
-    socket.recv()  # the recognizer's subscription: from here on nothing is lost
+    socket.recv()  # the recognizer's subscription; messages sent before it are lost
 
     batch = ContactBatch()
     batch.header.source = options.name
-    batch.header.epoch = random.getrandbits(64)  # tells a restart of this probe
-    batch.object = 1  # a new number: a new object
-    batch.patch = 0  # plus one at each lift-off
+    batch.header.epoch = random.getrandbits(64)  # a new number shows that this probe has restarted
+    batch.object = 1  # a new number = a new object
+    batch.patch = 0  # add 1 at each lift-off
     topic = f"contact/{options.name}/".encode()
     for x, y in touch():
         sigma = 2e-5

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""palpate in Python, step by step. Every step prints what it found.
+"""palpate in Python, step by step. Every step prints its result.
 
   PYTHONPATH=build/strict/node/python python3 node/examples/tutorial.py [--plot FILE.png | --no-plot]
 """
@@ -14,11 +14,11 @@ parser.add_argument("--plot", help="file of the picture (needs matplotlib); else
 parser.add_argument("--no-plot", action="store_true")
 options = parser.parse_args()
 rng = np.random.default_rng(1)
-sigma = 0.02  # of the probe [mm]
+sigma = 0.02  # noise of the probe [mm]
 
 
 def stroke(start, end, n=111):
-    """A probe's points along an ellipse of 25 x 17.5 mm, in millimetres."""
+    """Points of a probe along an ellipse with half axes of 25 mm and 17.5 mm, in millimetres."""
     t = np.linspace(start, end, n)
     return np.column_stack([25 * np.cos(t), 17.5 * np.sin(t)]) + rng.normal(0, sigma, (n, 2))
 

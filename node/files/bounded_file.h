@@ -1,4 +1,4 @@
-// Files of strangers: read whole, up to a bound.
+// Reads whole files of unknown origin, up to a length limit.
 #pragma once
 
 #include <fcntl.h>
@@ -15,8 +15,8 @@
 
 namespace palpate {
 
-/// Reads from a descriptor to its end. Pipes are read too, and refused where they go on beyond the
-/// bound. An error reads "NAME: cannot be read: why".
+/// Reads from a descriptor to its end. Pipes work too. Fails if there are more than `most_bytes`.
+/// An error reads "NAME: cannot be read: why".
 inline Result<std::string> read_bounded(int fd, const std::string& name, std::size_t most_bytes) {
   const auto fail = [&](const std::string& why) {
     return Result<std::string>::fail(name + ": cannot be read: " + why);
@@ -42,7 +42,7 @@ inline Result<std::string> read_bounded(int fd, const std::string& name, std::si
   }
 }
 
-/// A whole file.
+/// Reads a whole file.
 inline Result<std::string> read_bounded(const std::string& path, std::size_t most_bytes) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) {

@@ -1,4 +1,5 @@
-// The one place where strings of strangers become fit for a terminal or a log.
+// Makes untrusted strings safe to print. All code that prints them to a terminal or a log uses
+// this.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +8,8 @@
 
 namespace palpate {
 
-/// Printable ASCII as it is, every other byte as \xNN: nothing that a terminal would obey. At most
-/// `most` bytes of the text, then "...".
+/// Keeps printable ASCII and writes every other byte as \xNN, so that no terminal control code gets
+/// through. Shows at most `most` bytes of the text, then "...".
 inline std::string printable(std::string_view text, std::size_t most = 200) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string shown;

@@ -12,7 +12,7 @@ namespace {
 
 using google::protobuf::TextFormat;
 
-/// The first thing that is wrong with a probe file.
+/// Checks a probe file and keeps the first error.
 class ProbeCheck {
  public:
   ProbeCheck(const v1::Probe& probe, const TextFormat::ParseInfoTree& tree, std::string file)
@@ -43,7 +43,7 @@ class ProbeCheck {
         return fail(probe_.has_deviation_length_m() ? "deviation_length_m" : "deviation_m",
                     "deviation_m needs a deviation_length_m whose value is > 0");
       }
-      character.deviation_length_m.value = 1.0;  // of nothing: any length does
+      character.deviation_length_m.value = 1.0;  // no deviation: any length will do
     }
     if (probe_.has_lag_m()) {
       const v1::ProbeEstimate& lag = probe_.lag_m();
@@ -61,7 +61,7 @@ class ProbeCheck {
  private:
   std::nullopt_t fail(const char* field, const std::string& why, int index = -1) {
     const auto* descriptor = probe_.GetDescriptor()->FindFieldByName(field);
-    // protobuf aborts where a repeated field is asked for as a whole.
+    // protobuf aborts if GetLocation gets a repeated field without an index.
     const int line =
         descriptor->is_repeated() && index < 0 ? -1 : tree_.GetLocation(descriptor, index).line;
     error_ = file_ + ":" + std::to_string(line < 0 ? 1 : line + 1);
@@ -133,7 +133,7 @@ class ProbeCheck {
       fail("offset_covariance_m2", "must be numbers", 0);
       return false;
     }
-    // Rounding of a file's decimals, beside the largest entry.
+    // Tolerance for asymmetry, relative to the largest entry: the decimals of a file are rounded.
     constexpr double kRounding = 1e-9;
     const double largest = offset.covariance_m2.cwiseAbs().maxCoeff();
     const Eigen::MatrixXd& matrix = offset.covariance_m2;

@@ -1,4 +1,5 @@
-// Probe files: what a probe does to positions, as text.
+// Reads and writes probe files (palpate/v1/probe.proto): how a probe's positions differ from the
+// true ones.
 #pragma once
 
 #include <string>
@@ -9,24 +10,24 @@
 
 namespace palpate {
 
-/// A probe file that has been read.
+/// A probe file after reading.
 struct QualifiedProbe {
   std::string file;
   v1::Probe described;
   ProbeCharacter character;
 };
 
-/// An error reads "FILE:LINE: FIELD: what is wrong", or "FILE:LINE:COLUMN: what is wrong" where it
-/// is no message at all.
+/// Reads a probe file. An error reads "FILE:LINE: FIELD: what is wrong", or "FILE:LINE:COLUMN: what
+/// is wrong" if the text cannot be parsed.
 Result<QualifiedProbe> read_probe(const std::string& path);
 
 /// The same from text; `name` stands for the file in errors.
 Result<QualifiedProbe> parse_probe(const std::string& text, const std::string& name);
 
-/// The numbers of a character, in `probe`.
+/// Copies the numbers of `character` into `probe`.
 void to_wire(const ProbeCharacter& character, v1::Probe& probe);
 
-/// A whole file, with a line that says what it is.
+/// The text of a probe file, with a first line that says what it is.
 std::string probe_text(const v1::Probe& probe);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// The probe files of a node: which is whose.
+// All probe files of a node, and which probe each is for.
 #pragma once
 
 #include <string>
@@ -9,14 +9,15 @@
 
 namespace palpate {
 
-/// Each file is for the probe that it names; one without a name for all that no other names.
+/// A file applies to the probe that it names. A file without name applies to all probes that no
+/// other file names.
 class ProbeFiles {
  public:
-  /// Fails at the first file that cannot be used, as read_probe() does, and where two are for the
-  /// same probe.
+  /// Reads all files. Fails at the first one that cannot be used (errors as of read_probe()), and
+  /// if two are for the same probe.
   static Result<ProbeFiles> read(const std::vector<std::string>& paths);
 
-  /// nullptr = nobody has qualified it.
+  /// The file of this probe; nullptr if the probe has none.
   const QualifiedProbe* of(std::string_view probe) const;
 
   const std::vector<QualifiedProbe>& all() const { return probes_; }

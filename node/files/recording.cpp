@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view kMagic = "palpate2";
 constexpr std::string_view kFormerMagic = "palpate1";
 constexpr std::string_view kMark = "\xA7rec";
-// Mark, received_ns, frame_count, topic size, payload size, checksum.
+// Layout of a record: mark, received_ns, frame_count, topic size, payload size, checksum.
 constexpr std::size_t kTimeAt = kMark.size();
 constexpr std::size_t kFramesAt = kTimeAt + 8;
 constexpr std::size_t kTopicAt = kFramesAt + 4;
@@ -27,7 +27,7 @@ constexpr std::size_t kPayloadAt = kTopicAt + 4;
 constexpr std::size_t kChecksumAt = kPayloadAt + 4;
 constexpr std::size_t kHeaderBytes = kChecksumAt + 4;
 constexpr std::size_t kReadBytes = 64 * 1024;
-// Of the former format: a message with its fields' tags and lengths.
+// Former format: longest message including tags and lengths of its fields.
 constexpr std::size_t kMostFormerBytes = kMostRecordBytes + 64;
 constexpr std::size_t kLongestVarint = 10;
 
@@ -44,7 +44,7 @@ std::uint64_t get(std::string_view in, std::size_t at, int bytes) {
   return value;
 }
 
-/// Of a record's header, but for mark and checksum, and of what follows it.
+/// Checksum of the header (without mark and checksum) and of what follows it.
 std::uint32_t checksum(std::string_view header, std::string_view body) {
   const auto bytes = [](std::string_view text) {
     return reinterpret_cast<const Bytef*>(text.data());
@@ -100,7 +100,8 @@ std::string RecordingReader::open(const std::string& path) {
   return {};
 }
 
-/// False where the file has no more so many bytes; then all that it has are there.
+/// Reads until `bytes` bytes are available. Returns false if the file has fewer; all that it has
+/// are then available.
 bool RecordingReader::fill(std::size_t bytes) {
   while (rest().size() < bytes && file_) {
     if (at_ > kReadBytes) {
@@ -138,7 +139,7 @@ bool RecordingReader::next_checked(RecordedMessage& message) {
     const bool whole_header = fill(kHeaderBytes);
     const std::string_view start = rest();
     if (!start.starts_with(kMark.substr(0, start.size()))) {
-      // On to the next mark, or where one may begin.
+      // Skip to the next mark, or to where one may begin.
       const std::size_t mark = start.find(kMark.front(), 1);
       skip(std::min(mark, start.size()));
       continue;
@@ -165,7 +166,7 @@ bool RecordingReader::next_checked(RecordedMessage& message) {
         return true;
       }
     }
-    // Broken off here; or a length is damaged, and whole records follow.
+    // Either the file is incomplete here, or a length is damaged and intact records follow.
     if (rest().find(kMark, 1) == std::string_view::npos) {
       breaks_off_ = true;
       return false;
@@ -190,7 +191,7 @@ bool RecordingReader::next_former(RecordedMessage& message) {
       return false;
     }
     if (!has_length || length > kMostFormerBytes) {
-      // Nothing says where the next message begins.
+      // The start of the next message is unknown.
       while (fill(1)) skip(rest().size());
       return false;
     }

@@ -1,9 +1,11 @@
-// Recorded messages in a file, written and read one by one: of any length.
+// Recordings: messages in a file, written and read one at a time, so that a file may have any
+// length.
 //
-// The file begins with the eight bytes "palpate2". Each record follows: the four bytes "\xA7rec",
-// then little-endian received_ns (8 bytes), number of frames, bytes of topic and of payload, CRC-32
-// of all that and of what follows (4 bytes each), then topic and payload as they came. Files of the
-// former format ("palpate1": protobuf's RecordedMessage after its length) are read too.
+// The file begins with the eight bytes "palpate2". Records follow. A record is the four bytes
+// "\xA7rec"; then, little-endian, received_ns (8 bytes), the number of frames, the lengths of topic
+// and payload in bytes, and the CRC-32 of these fields and of what follows (4 bytes each); then
+// topic and payload as they came. Files of the former format ("palpate1": protobuf's
+// RecordedMessage, each after its length) can be read too.
 #pragma once
 
 #include <cstddef>
@@ -15,24 +17,25 @@
 
 namespace palpate {
 
-/// A message as it came, whatever it is.
+/// A message as it came; it may be malformed.
 struct RecordedMessage {
-  std::int64_t received_ns = 0;   ///< Unix time at the recorder, by a clock that never steps back
-  std::uint32_t frame_count = 2;  ///< 2 = topic and payload; of others, the first two are kept
+  std::int64_t received_ns = 0;  ///< Unix time at the recorder; never decreases
+  /// 2 = topic and payload. Of any other number, at most the first two frames are kept.
+  std::uint32_t frame_count = 2;
   std::string topic;
   std::string payload;
 };
 
-/// Longest topic and payload together that are recorded or believed. [bytes]
+/// Longest topic plus payload that is recorded or accepted on reading. [bytes]
 inline constexpr std::size_t kMostRecordBytes = std::size_t{16} << 20;
 
-/// Appends messages; what has been written survives a kill, but for the message being written.
+/// Appends messages to a file. If the process is killed, at most the message being written is lost.
 class RecordingWriter {
  public:
-  /// Makes a new file; never overwrites. Returns an empty string, or what went wrong.
+  /// Creates a new file; never overwrites one. Returns an empty string or an error.
   std::string open(const std::string& path);
 
-  /// False where it cannot be written.
+  /// Returns false if the file cannot be written.
   bool write(const RecordedMessage& message);
 
  private:
@@ -42,18 +45,19 @@ class RecordingWriter {
 
 class RecordingReader {
  public:
-  /// Returns an empty string, or what went wrong.
+  /// Returns an empty string or an error.
   std::string open(const std::string& path);
 
-  /// The next whole message; false at the end. What is damaged is skipped and counted: a record
-  /// whose checksum is wrong, and all up to the next whole one. In the former format, which has no
-  /// checksums, a message that is none is skipped, and a length that is none ends the file.
+  /// Reads the next intact message; returns false at the end. Skips and counts damage: a record
+  /// with a wrong checksum, and all bytes up to the next intact one. The former format has no
+  /// checksums: there, a message that cannot be parsed is skipped, and an impossible length ends
+  /// the file.
   bool next(RecordedMessage& message);
 
-  std::uint64_t messages() const { return messages_; }  ///< given out
+  std::uint64_t messages() const { return messages_; }  ///< returned
   std::uint64_t damaged() const { return damaged_; }    ///< places where bytes were skipped
-  std::uint64_t skipped_bytes() const { return skipped_bytes_; }  ///< in all of them
-  bool breaks_off() const { return breaks_off_; }                 ///< the last message is not whole
+  std::uint64_t skipped_bytes() const { return skipped_bytes_; }  ///< total
+  bool breaks_off() const { return breaks_off_; }  ///< the last message is incomplete
 
  private:
   bool next_checked(RecordedMessage& message);
@@ -64,7 +68,7 @@ class RecordingReader {
   std::string_view rest() const { return std::string_view(buffer_).substr(at_); }
 
   std::ifstream file_;
-  std::string buffer_;  // read but not yet consumed, from at_ on
+  std::string buffer_;  // bytes read; those from at_ on are not consumed
   std::size_t at_ = 0;
   bool former_ = false;
   bool in_damage_ = false;
@@ -74,7 +78,7 @@ class RecordingReader {
   bool breaks_off_ = false;
 };
 
-/// Whether the file begins like a recording.
+/// True if the file begins like a recording.
 bool is_recording(const std::string& path);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// A value, or the sentence that says why there is none.
+// A value, or an error message if there is none.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@ namespace palpate {
 template <typename T>
 struct Result {
   std::optional<T> value;
-  std::string error;  ///< empty where there is a value
+  std::string error;  ///< empty if there is a value
 
   static Result ok(T v) { return {std::move(v), {}}; }
   static Result fail(std::string why) { return {std::nullopt, std::move(why)}; }

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-/// Keeps the first error of protobuf's text parser.
+/// Keeps the first error that protobuf's text parser reports.
 class FirstError : public google::protobuf::io::ErrorCollector {
  public:
   explicit FirstError(const std::string& name) : name_(name) {}
@@ -43,7 +43,7 @@ std::string parse_text(const std::string& text, const std::string& name,
 }
 
 Result<std::string> read_file(const std::string& path) {
-  // Far more than a person writes. [bytes]
+  // Far longer than any file that a person writes. [bytes]
   constexpr std::size_t kMostBytes = std::size_t{64} << 20;
   return read_bounded(path, kMostBytes);
 }

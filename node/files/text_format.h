@@ -1,4 +1,4 @@
-// Messages in protobuf's text format: scenes, parts, configurations.
+// Reads messages in protobuf's text format: scenes, parts, configurations.
 #pragma once
 
 #include <google/protobuf/text_format.h>
@@ -9,13 +9,13 @@
 
 namespace palpate {
 
-/// Reads `text` into `message`. Returns the first error, "NAME:LINE:COLUMN: what is wrong", or
-/// nothing. `locations` receives where each field stands.
+/// Parses `text` into `message`. Returns an empty string, or the first error as "NAME:LINE:COLUMN:
+/// what is wrong". If given, `locations` receives the position of each field.
 std::string parse_text(const std::string& text, const std::string& name,
                        google::protobuf::Message& message,
                        google::protobuf::TextFormat::ParseInfoTree* locations = nullptr);
 
-/// A whole file; an error reads "PATH: cannot be read: why".
+/// Reads a whole file. An error reads "PATH: cannot be read: why".
 Result<std::string> read_file(const std::string& path);
 
 }  // namespace palpate

@@ -15,7 +15,7 @@ Claims::Claims(std::uint64_t own_id, std::vector<std::string> places, std::size_
   }
 }
 
-/// Those who wait for the same place do not take it at the same moment.
+/// Random, so that processes waiting for the same place do not take it at the same moment.
 milliseconds Claims::some_patience() {
   random_state_ = random_state_ * 6364136223846793005U + 1442695040888963407U;
   return kSilence + milliseconds((random_state_ >> 33U) % 150U);
@@ -32,7 +32,7 @@ void Claims::hear(std::string_view place, std::uint64_t id, SteadyTime now) {
 
 Claims::Changes Claims::decide(bool is_heard, SteadyTime now) {
   Changes changes;
-  // Who could not be heard, or did not run, for so long, is gone for the others.
+  // For the others, a process that could not be heard or did not run for this long is gone.
   const bool was_silent = now - last_heard_of_us_ > kSilence;
   if (is_heard) last_heard_of_us_ = now;
   std::size_t count = 0;
@@ -44,7 +44,7 @@ Claims::Changes Claims::decide(bool is_heard, SteadyTime now) {
     count += claim.is_own ? 1U : 0U;
   }
   if (!is_heard || was_silent) {
-    // As long as nothing is heard, nobody has been silent.
+    // While we hear nothing, we cannot say that an owner is silent.
     for (auto& [place, claim] : claims_) {
       if (!claim.is_own) claim.last_heard = now;
     }
@@ -56,7 +56,7 @@ Claims::Changes Claims::decide(bool is_heard, SteadyTime now) {
     claim.is_contested = false;
     ++count;
     changes.take.push_back(place);
-    // One at a time: others who wait have their turn.
+    // One at a time, so that other processes get places too.
     if (claims_.size() > 1) break;
   }
   return changes;

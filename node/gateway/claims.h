@@ -1,4 +1,5 @@
-// Who has which place: a partition of a cell's groups that one recogniser at a time is to take.
+// Decides which process serves which place. A place is a partition of a cell's groups; one
+// recognizer at a time should serve it.
 #pragma once
 
 #include <chrono>
@@ -12,18 +13,20 @@
 
 namespace palpate::gateway {
 
-/// Who has a place says so aloud, and whoever has not heard of an owner for a while takes it. That
-/// is no lock: two may believe that a place is theirs. Exactness does not rest on it but on the
-/// plant storing an answer only after the one that its recogniser knows as the last (place.h); so
-/// this may be simple, and works on while a stream looks for a leader.
+/// The owner of a place announces it every kPeriod; a process that has not heard of an owner for a
+/// while takes the place. This is not a lock: two processes may both believe that they own a place.
+/// Correctness does not depend on it, because the plant stores an answer only after the one that
+/// its recognizer knows as the last (place.h). So this can be simple, and it works while a stream
+/// has no leader.
 class Claims {
  public:
   static constexpr std::chrono::milliseconds kPeriod{100};
-  /// Silence after which an owner is gone: five words of it lost. With what those who wait differ
-  /// by and the time to begin, a group is answered again well within two seconds.
+  /// An owner that is silent for this long (five announcements lost) counts as gone. Together with
+  /// the random waiting time and the time to begin, a group is answered again well within two
+  /// seconds.
   static constexpr std::chrono::milliseconds kSilence{500};
 
-  /// After taking a place, within which one who took it at the same moment has been heard.
+  /// Wait after taking a place, to hear of a process that took it at the same moment.
   static constexpr std::chrono::milliseconds kSettle{100};
 
   struct Changes {
@@ -31,16 +34,16 @@ class Claims {
     std::vector<std::string> release;
   };
 
-  /// `places`: those that this process may take; `most`: so many at a time.
+  /// `places`: those that this process may take. `most`: how many of them at a time.
   Claims(std::uint64_t own_id, std::vector<std::string> places, std::size_t most, SteadyTime now);
 
-  /// Somebody says that he has it.
+  /// Process `id` announces that it owns `place`.
   void hear(std::string_view place, std::uint64_t id, SteadyTime now);
 
-  /// What is to be taken and to be let go by now. `is_heard`: whether others could hear us.
+  /// Which places to take and to release now. `is_heard`: whether others can hear us.
   Changes decide(bool is_heard, SteadyTime now);
 
-  /// The places to speak up for.
+  /// The places to announce.
   std::vector<std::string> own() const;
 
   std::uint64_t id() const { return id_; }
@@ -48,7 +51,7 @@ class Claims {
  private:
   struct Claim {
     bool is_own = false;
-    bool is_contested = false;  // by one who goes first
+    bool is_contested = false;  // by an owner with a smaller id, which takes precedence
     SteadyTime last_heard;
     std::chrono::milliseconds patience{0};
   };

@@ -15,17 +15,18 @@ namespace {
 using nlohmann::json;
 using std::chrono::milliseconds;
 
-// Contacts that the plant has delivered and that have no stored answer yet. Beyond it the plant
-// waits, which bounds our memory: a second of the busiest cell.
+// Maximum of contacts delivered and not answered yet. Beyond it the plant waits, which bounds our
+// memory. A second of the busiest cell.
 constexpr int kMostUnacknowledged = 8192;
-// The engine says this often that a consumer lives; without it for so long we ask.
+// The server sends this heartbeat for a consumer. After kSilence without one we ask for it.
 constexpr milliseconds kHeartbeat{500};
 constexpr milliseconds kSilence{1500};
 constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
-// It delivers nothing twice: a new beginning has a consumer of its own.
+// Practically never: nothing is delivered twice, because each new beginning creates its own
+// consumer.
 constexpr std::int64_t kAckWaitNs = std::int64_t{3600} * 1000 * kNanosecondsPerMillisecond;
 
-// The engine's number of an error (JSConsumerNotFoundErr).
+// The server's error code JSConsumerNotFoundErr.
 constexpr int kNoConsumer = 10014;
 
 }  // namespace
@@ -37,8 +38,8 @@ ContactConsumer::ContactConsumer(Plant& plant, PlaceName place, Events events)
       name_("recognise" +
             (place_.partition.empty() ? std::string() : "-" + to_token(place_.partition))) {}
 
-/// What the former one has not acknowledged only spares work: what is delivered though it is
-/// answered, is known to be by the answers.
+/// The position of the previous consumer only saves work. Contacts delivered although they are
+/// answered are recognised by the stored answers.
 void ContactConsumer::begin() {
   const std::string consumer = contact_stream(place_.cell) + "." + name_;
   plant_.api(this, "CONSUMER.INFO." + consumer, nullptr, [this, consumer](const json* answer) {
@@ -95,7 +96,8 @@ void ContactConsumer::forget() {
 
 void ContactConsumer::take(const PlantMessage& message) {
   heard_ = now_steady();
-  if (message.subject() == deliver_subject_) {  // the engine's own word; contacts have their own
+  // A message of the server itself; contacts have their own subjects.
+  if (message.subject() == deliver_subject_) {
     if (message.number("Nats-Last-Consumer") > consumer_seq_) {
       events_.failed("contacts were lost on the way");
     }
@@ -104,7 +106,8 @@ void ContactConsumer::take(const PlantMessage& message) {
   const DeliveryNumbers numbers = numbers_of(message.reply());
   const bool is_gap = numbers.consumer_seq > consumer_seq_ + 1;
   consumer_seq_ = numbers.consumer_seq;
-  if (numbers.stream_seq <= stream_seq_) return;  // again, after a change of the consumer's leader
+  // Delivered again after the consumer's leader changed.
+  if (numbers.stream_seq <= stream_seq_) return;
   if (is_gap) return events_.failed("contacts were lost on the way");
   stream_seq_ = numbers.stream_seq;
   delivered_.push_back({stream_seq_, std::string(message.reply()), false});
@@ -122,7 +125,7 @@ void ContactConsumer::done(std::uint64_t stream_seq) {
   }
 }
 
-/// One acknowledges all before it.
+/// Acknowledging one contact acknowledges all before it.
 void ContactConsumer::acknowledge() {
   if (!ack_reply_.empty() && plant_.connection().publish(ack_reply_, "+ACK")) ack_reply_.clear();
 }
@@ -135,7 +138,7 @@ void ContactConsumer::tend(SteadyTime now) {
   }
 }
 
-/// Silence may be a consumer that looks for a leader, one that is gone, or a message lost.
+/// After silence: the consumer may be without a leader, it may be gone, or a message may be lost.
 void ContactConsumer::check() {
   plant_.api(this, "CONSUMER.INFO." + contact_stream(place_.cell) + "." + name_, nullptr,
              [this](const json* answer) {

@@ -1,5 +1,5 @@
-// The contacts of a place as the plant delivers them: in the stream's order, none left out, and
-// which of them need not be delivered again.
+// Receives the contacts of a place from the plant, in the stream's order and without gaps, and
+// acknowledges those that are done.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,21 @@ class ContactConsumer {
  public:
   struct Events {
     std::function<void(const PlantMessage& contact, std::uint64_t stream_seq)> contact;
-    /// Nothing more comes until forget() and begin().
+    /// No further contacts arrive until forget() and begin().
     std::function<void(const std::string& why)> failed;
   };
 
   ContactConsumer(Plant& plant, PlaceName place, Events events);
 
-  /// From the first contact on that a former consumer has not acknowledged.
+  /// Starts at the first contact that the previous consumer has not acknowledged.
   void begin();
   void forget();
 
-  /// A contact is answered, or never will be.
+  /// The contact has its answer, or will never have one.
   void done(std::uint64_t stream_seq);
-  /// Tells the plant up to where all are done.
+  /// Tells the plant up to which contact all are done.
   void acknowledge();
-  /// Call it often: acknowledges, and asks where the plant has been silent for long.
+  /// Call it often. Acknowledges, and checks the consumer if the plant has been silent for long.
   void tend(SteadyTime now);
 
  private:
@@ -47,15 +47,15 @@ class ContactConsumer {
   Plant& plant_;
   PlaceName place_;
   Events events_;
-  std::string name_;  // by which the plant knows it
+  std::string name_;  // of the consumer on the plant
 
   std::uint64_t subscription_ = 0;
   std::string deliver_subject_;
-  std::uint64_t consumer_seq_ = 0;  // of the message delivered last, by the consumer's count
-  std::uint64_t stream_seq_ = 0;    // by the stream's
+  std::uint64_t consumer_seq_ = 0;  // of the last message delivered, counted by the consumer
+  std::uint64_t stream_seq_ = 0;    // the same, counted by the stream
   SteadyTime heard_;
   std::deque<Delivered> delivered_;  // not acknowledged, in the stream's order
-  std::string ack_reply_;            // of the last of those that may be
+  std::string ack_reply_;            // of the last contact that may be acknowledged
 };
 
 }  // namespace palpate::gateway

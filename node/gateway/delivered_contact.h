@@ -1,4 +1,4 @@
-// A contact as the plant gives it: what it is, and which of the stream and of the consumer.
+// Parses a contact that the plant delivers, and its numbers in the stream and in the consumer.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,13 @@ struct GroupContact {
   FedContact contact;
 };
 
-/// A contact of the plant; nullopt where subject and payload do not agree, or are none of ours.
+/// Parses a contact; nullopt if subject and payload disagree or are not of this contract.
 std::optional<GroupContact> read_contact(std::string_view subject, std::string_view payload,
                                          std::uint64_t stream_seq);
 
-/// Of "$JS.ACK.STREAM.CONSUMER.TIMES.STREAM_SEQ.CONSUMER_SEQ.TIME.PENDING", before which newer
-/// servers have two more tokens.
+/// Numbers parsed from the reply subject
+/// "$JS.ACK.STREAM.CONSUMER.TIMES.STREAM_SEQ.CONSUMER_SEQ.TIME.PENDING"; newer servers insert two
+/// more tokens after "ACK".
 struct DeliveryNumbers {
   std::uint64_t stream_seq = 0;
   std::uint64_t consumer_seq = 0;

@@ -14,8 +14,8 @@
 namespace palpate::gateway {
 namespace {
 
-// Answers and accepted contacts that may wait for us in the node, which drops beyond: many times
-// what can be in flight at a time.
+// Messages that may wait for us in the node, which drops further ones: many times what can be in
+// flight.
 constexpr const char* kNodesHighWaterMark = "100000";
 
 SocketSettings unbounded() {
@@ -54,7 +54,7 @@ FedNode::FedNode(zmq::context_t& context, const FedNodeOptions& options, const s
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
 
-  // Nothing of a former node's is to be taken for this one's.
+  // Nothing of an earlier node may be mistaken for this one's.
   std::error_code ignored;
   for (const std::string& path : {contacts_path_, results_path_}) {
     std::filesystem::remove(path, ignored);
@@ -63,7 +63,7 @@ FedNode::FedNode(zmq::context_t& context, const FedNodeOptions& options, const s
   process_ = ::fork();
   if (process_ < 0) throw std::runtime_error("no process for a node");
   if (process_ == 0) {
-    // Only what is safe after the fork of a process of several threads.
+    // Only calls that are safe after fork() in a process with several threads.
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(1);
     sigset_t none;
@@ -72,7 +72,7 @@ FedNode::FedNode(zmq::context_t& context, const FedNodeOptions& options, const s
     ::execvp(pointers.front(), pointers.data());
     ::_exit(127);
   }
-  // The status last: whoever hears one hears the others.
+  // Status last: when it arrives, the other subscriptions are active too.
   for (const TopicKind kind : {TopicKind::Contact, TopicKind::Recognition, TopicKind::Status}) {
     results_.set(zmq::sockopt::subscribe, topic_prefix(kind));
   }
@@ -97,7 +97,8 @@ FedNode::~FedNode() {
 
 bool FedNode::is_ready(bool heard) {
   TwoFrames message;
-  while (receive_now(contacts_, message)) is_heard_ = true;  // its subscription
+  // The only messages here are the node's subscriptions, which show that it listens.
+  while (receive_now(contacts_, message)) is_heard_ = true;
   return is_heard_ && heard;
 }
 

@@ -1,4 +1,4 @@
-// An ordinary palpate-node as a child process, fed with contacts of the plant.
+// An ordinary palpate-node as a child process. It receives contacts from the plant.
 #pragma once
 
 #include <sys/types.h>
@@ -14,32 +14,33 @@ namespace palpate::gateway {
 
 struct FedNodeOptions {
   std::string program = "palpate-node";
-  std::string config;  ///< its configuration file; empty = none
-  std::string folder;  ///< of its two endpoints, which tools may use as any node's
-  /// Longest contact message: a longer one would cost us the connection. [bytes]
+  std::string config;  ///< configuration file of the node; empty = none
+  std::string folder;  ///< holds its two endpoints; tools may use them like those of any node
+  /// Longest contact message: the node would cut our connection for a longer one. [bytes]
   std::size_t max_message_bytes = 65536;
 };
 
-/// Fresh: it knows of no sequence and no object. Ends with this, and with this process.
+/// Starts without any sequence or object. The node ends with this object and with this process.
 class FedNode {
  public:
-  /// Endpoints are ipc://FOLDER/NAME.contacts and .results. Throws std::runtime_error where it
-  /// cannot be started.
+  /// The endpoints are ipc://FOLDER/NAME.contacts and .results. Throws std::runtime_error if the
+  /// node cannot be started.
   FedNode(zmq::context_t& context, const FedNodeOptions& options, const std::string& name);
   ~FedNode();
   FedNode(const FedNode&) = delete;
   FedNode& operator=(const FedNode&) = delete;
 
-  /// Whether it hears us, and we hear all that it says. `heard`: a status has been received.
+  /// True if the node receives what we send and we receive all that it publishes. `heard`: a status
+  /// has been received.
   bool is_ready(bool heard);
 
-  /// Whether its process has ended.
+  /// True if the node's process has ended.
   bool has_ended();
 
-  /// Never lost: our queue has no bound, and what may be in it has (GroupFeed).
+  /// Nothing is lost: our queue has no bound, but GroupFeed bounds what can be in it.
   void send(std::string_view topic, std::string_view payload);
 
-  /// What it has said; false where nothing waits.
+  /// Receives a message of the node; false if none waits.
   bool receive(TwoFrames& message) { return receive_now(results_, message); }
   zmq::socket_t& results() { return results_; }
 

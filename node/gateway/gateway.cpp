@@ -16,10 +16,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Whatever wakes the poll does so at once; this is for what goes by time.
+// Longest poll, for work that depends on time; everything else wakes the poll at once.
 constexpr milliseconds kTick{20};
 constexpr milliseconds kStatusPeriod{1000};
-// Who says that he has a place: "palpate.<cell>.place", or with the partition behind it.
+// Owners announce a place on "palpate.<cell>.place", with the partition behind it if there is one.
 constexpr const char* kPlaceKind = "place";
 
 std::vector<std::string> texts_of(const std::vector<PlaceName>& places) {
@@ -91,7 +91,7 @@ void Gateway::serve_plant(SteadyTime now) {
     spdlog::info("{} the plant", was_connected_ ? "connected to" : "no connection to");
     if (was_connected_) complaint_told_.clear();
   }
-  // It is repeated at each attempt.
+  // Each failed attempt repeats the complaint.
   if (std::string complaint = plant_.connection().take_complaint();
       !complaint.empty() && complaint != complaint_told_) {
     spdlog::warn("the plant: {}", printable(complaint));
@@ -156,7 +156,7 @@ void Gateway::publish_status() {
   header.set_seq(header.seq() + 1);
 }
 
-/// Once a second at most, what has been lost since.
+/// Logs what has been lost since the last call, at most once a second.
 void Gateway::log_changes() {
   if (!up_) return;
   v1::GatewayUpStatus up;

@@ -1,4 +1,4 @@
-// palpate-gateway: between a cell's endpoints and the plant's streams. One thread and one poll.
+// palpate-gateway: connects a cell's endpoints with the plant's streams. One thread, one poll.
 #pragma once
 
 #include <cstdint>
@@ -24,18 +24,18 @@ struct GatewayOptions {
   PlantOptions plant;
   StreamLimits streams;
   std::optional<UpwardOptions> up;
-  std::vector<PlaceName> places;  ///< that it may take
+  std::vector<PlaceName> places;  ///< those that it may take
   std::size_t most_places = 64;
   FedNodeOptions node;
 };
 
 class Gateway {
  public:
-  /// Throws std::runtime_error where an endpoint, a folder or a file cannot be had.
+  /// Throws std::runtime_error if an endpoint, a folder or a file cannot be opened.
   explicit Gateway(const GatewayOptions& options);
 
-  /// Serves until `stop_fd` is readable. Throws std::runtime_error where the cell's node refuses
-  /// it.
+  /// Serves until `stop_fd` is readable. Throws std::runtime_error if the cell's node refuses the
+  /// gateway.
   void run(int stop_fd);
 
  private:
@@ -51,7 +51,7 @@ class Gateway {
   std::optional<Upward> up_;
   Claims claims_;
   std::map<std::string, std::unique_ptr<Place>, std::less<>> places_;  // by PlaceName::text()
-  std::map<std::string, bool, std::less<>> cells_;  // whether their streams are there
+  std::map<std::string, bool, std::less<>> cells_;  // true if the cell's streams exist
   std::uint64_t connection_ = 0;
   bool was_connected_ = false;
   std::string complaint_told_;

@@ -1,5 +1,5 @@
-// A group's contacts on their way through a recogniser: which may be given to it, and which of them
-// an answer holds. Speaks to nobody.
+// A group's contacts on their way through a recognizer: which may be sent to it, and which of them
+// an answer covers. Does no I/O.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,17 @@ namespace palpate::gateway {
 
 struct FedContact {
   std::uint64_t stream_seq = 0;
-  bool is_new = true;  ///< false: answered already, given again to rebuild the object
+  bool is_new = true;  ///< false: already answered; sent again to rebuild the object
   std::string probe;
   std::uint64_t epoch = 0;
   std::uint64_t seq = 0;
   std::uint64_t object = 0;
-  std::string payload;    ///< until it is given
+  std::string payload;    ///< until it is sent
   std::size_t bytes = 0;  ///< of the payload
 };
 
-/// What an answer answers: all of the group's new contacts from stream_seq `from` to `through`, of
-/// an object whose first contact is `begin`.
+/// The contacts that an answer covers: all new contacts of the group from stream_seq `from` to
+/// `through`. `begin` is the first contact of their object.
 struct AnsweredSpan {
   std::uint64_t from = 0;
   std::uint64_t through = 0;
@@ -38,27 +38,28 @@ class GroupFeed {
   /// In the stream's order.
   void add(FedContact contact) { waiting_.push_back(std::move(contact)); }
 
-  /// The contact that may be given next; nullptr where it must wait: while contacts of another
-  /// object are unanswered, which the node would answer no more once it knows of the new object;
-  /// while one of the same number is, which an answer could not be told from; and beyond some at a
-  /// time, so that the node never has to reject what waits.
+  /// The contact that may be sent next; nullptr if it must wait. It waits while contacts of another
+  /// object are unanswered, because the node would not answer them after it has seen the new
+  /// object; while a contact with the same (probe, epoch, seq) is unanswered, because their answers
+  /// could not be told apart; and while too many are unanswered, so that the node never has to
+  /// reject for overload.
   const FedContact* next() const;
 
-  /// next() has been given.
+  /// next() has been sent.
   void given();
 
-  /// The node has taken a contact: the first of a new object begins it.
+  /// The node has accepted a contact. The first one of a new object begins that object.
   void accepted(std::uint64_t stream_seq);
 
-  /// The node has not: gives it back, out of the feed.
+  /// The node has rejected a contact: removes it from the feed and returns it.
   std::optional<FedContact> rejected(std::uint64_t stream_seq);
 
-  /// An answer of the node's whose newest contact is this one; nullopt where it answers nothing
+  /// The node has sent an answer whose newest contact is this one. nullopt if it covers nothing
   /// new.
   std::optional<AnsweredSpan> answered(std::string_view probe, std::uint64_t epoch,
                                        std::uint64_t seq);
 
-  /// Given, and neither answered nor rejected.
+  /// Number of contacts sent, and neither answered nor rejected yet.
   std::size_t in_flight_count() const { return in_flight_.size(); }
   std::size_t in_flight_bytes() const { return in_flight_bytes_; }
 

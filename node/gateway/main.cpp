@@ -1,5 +1,6 @@
-// palpate-gateway: contacts, recognitions and status of a cell to the streams of a plant, and
-// recognition of what these hold. Exit codes: 0 stopped as asked, 1 failed at run time, 2 usage.
+// palpate-gateway: forwards contacts, recognitions and status of a cell to the plant's streams, and
+// recognises what the streams hold. Exit codes: 0 stopped by a signal, 1 failed at run time, 2
+// usage.
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
@@ -149,7 +150,7 @@ std::vector<std::string> split(const std::string& text, char at) {
   }
 }
 
-/// Returns an empty string, or what is wrong.
+/// Completes and checks the options. Returns an empty string or an error.
 std::string complete(CommandLine& line) {
   GatewayOptions& options = line.gateway;
   options.plant.urls = split(line.urls, ',');

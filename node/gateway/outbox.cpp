@@ -6,12 +6,12 @@
 namespace palpate::gateway {
 namespace {
 
-// What a process that is killed may lose while the plant is there: a tenth of a second of the
-// busiest cell.
+// What a killed process may lose while the plant is reachable: a tenth of a second of the busiest
+// cell.
 constexpr std::size_t kMostMessages = 4096;
 constexpr std::size_t kMostBytes = std::size_t{16} << 20;
 
-/// No subject has a slash.
+/// The name of a lane. No subject contains a slash, so the two kinds cannot collide.
 std::string lane_of(const Addressed& to) { return to.group.empty() ? to.subject : to.group + "/"; }
 
 }  // namespace
@@ -65,7 +65,7 @@ void Outbox::answered(const std::string& lane_name, std::uint64_t ticket, const 
     case Stored::Verdict::TooLong:
       end = End::Refused;
       break;
-    case Stored::Verdict::NotTheLast:  // nothing was expected: as good as no answer
+    case Stored::Verdict::NotTheLast:  // not expected here; handled like no answer
     case Stored::Verdict::NotNow:
       entry->is_under_way = false;
       is_failing_ = true;
@@ -86,7 +86,7 @@ void Outbox::answered(const std::string& lane_name, std::uint64_t ticket, const 
 }
 
 void Outbox::tend(SteadyTime now) {
-  // A subject without a stream is answered at once: asked for again ten times a second.
+  // If no stream has the subject, the answer comes at once; so wait before asking again.
   constexpr std::chrono::milliseconds kAgain{100};
   if (is_failing_ && now < failed_at_ + kAgain) return;
   for (auto& [name, lane] : lanes_) send(lane, now);

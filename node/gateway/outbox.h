@@ -1,4 +1,4 @@
-// What is on its way to the plant, in the order that the plant is to have it.
+// Messages on their way to the plant, each subject in order.
 #pragma once
 
 #include <cstddef>
@@ -13,37 +13,37 @@
 
 namespace palpate::gateway {
 
-/// A message of the cell with its address.
+/// A message of the cell with its destination.
 struct Outgoing {
   Addressed to;
   std::string payload;
-  std::uint64_t segment = 0;  ///< of the spool that it comes from; 0 = of none
+  std::uint64_t segment = 0;  ///< of the spool that it was read from; 0 = none
 };
 
-/// Publishes, and again until the plant says that it is stored. Whatever is lost on the way, each
-/// subject's messages are stored in their order: one at a time of a subject is on its way. And of a
-/// group no contact of another object goes before all of the former object are stored.
+/// Publishes each message, and repeats it until the plant confirms that it is stored. To keep the
+/// order whatever is lost, only one message of a subject is on its way at a time. In addition, a
+/// contact of a new object is sent only after all contacts of the group's old object are stored.
 class Outbox {
  public:
   enum class End { Stored, StoredBefore, Refused };
   using Ended = std::function<void(const Outgoing&, End)>;
 
-  /// `ended` is told of each message once.
+  /// `ended` is called once for each message.
   Outbox(Plant& plant, Ended ended) : plant_(plant), ended_(std::move(ended)) {}
   ~Outbox() { plant_.forget(this); }
   Outbox(const Outbox&) = delete;
   Outbox& operator=(const Outbox&) = delete;
 
-  /// Whether the plant takes messages and memory has room for another.
+  /// True if the plant accepts messages and memory has room for another one.
   bool has_room(SteadyTime now) const;
 
   void add(Outgoing message, SteadyTime now);
 
-  /// Sends again what has been for nothing. Call it some times a second.
+  /// Sends again what has not been confirmed. Call it several times a second.
   void tend(SteadyTime now);
 
-  /// Nothing is sent before. A gateway that starts beside another one waits so long: what it has
-  /// and the other had before it is then stored, in the other's order.
+  /// Sends nothing before `time`. A gateway that starts while another one runs waits this long, so
+  /// that what the other one had before it is stored first, in the other one's order.
   void hold_until(SteadyTime time) { held_until_ = time; }
 
   std::size_t size() const { return size_; }

@@ -21,20 +21,20 @@ namespace {
 using nlohmann::json;
 using std::chrono::milliseconds;
 
-// Given to the node and unanswered. The node lets 16 MiB wait (max_waiting_bytes, half of it for
-// whoever has most) before it would reject any.
+// Maximum of contacts sent to the node and unanswered. The node would reject only beyond 16 MiB
+// (one group may use half of max_waiting_bytes).
 constexpr std::size_t kMostInFlight = 512;
 constexpr std::size_t kMostBytesInFlight = std::size_t{4} << 20;
-// Of a place: as many as half of the most that a node may be given (kMostThings in node/options.h).
-// Further names, which only a stranger invents, are not taken.
+// Maximum of groups per place: half of the largest number that a node accepts (kMostThings in
+// node/options.h). More names can only come from a stranger; they are not accepted.
 constexpr std::size_t kMostGroups = 50'000;
 constexpr milliseconds kTend{50};
 constexpr milliseconds kRetry{300};
-// A node says each second that it lives.
+// A node publishes its status every second.
 constexpr milliseconds kNodeSilence{5000};
 constexpr milliseconds kLookupTimeout{500};
-// Of a replay that stops before its last contact: a replica of the stream that is behind has it
-// soon.
+// Attempts of a replay that stops before its last contact: a replica of the stream that is behind
+// will have it soon.
 constexpr int kReplayTries = 20;
 
 constexpr const char* kFrom = "Palpate-From";
@@ -120,7 +120,7 @@ void Place::take_contact(const PlantMessage& message, std::uint64_t stream_seq) 
   if (group.state == Group::State::Unknown) ask(found->first, group);
 }
 
-// --- What of a group is answered
+// --- Which contacts of a group are answered
 
 void Place::ask(const std::string& name, Group& group) {
   group.state = Group::State::Asking;
@@ -145,7 +145,7 @@ void Place::ask(const std::string& name, Group& group) {
                        printable(name_.text()), printable(name));
           return end_replay(asked);
         }
-        // Nothing new: nothing to go on with.
+        // Nothing new has arrived, so there is nothing to continue.
         const bool is_new = std::any_of(
             asked.arrived.begin(), asked.arrived.end(),
             [&](const FedContact& contact) { return contact.stream_seq > asked.through; });
@@ -172,7 +172,7 @@ void Place::replay(const std::string& name, std::uint64_t object, std::uint64_t 
         const std::uint64_t seq = message->number("Nats-Sequence");
         if (!message->status().empty() || seq > group.through) return end_replay(group);
         auto read = read_contact(message->header("Nats-Subject"), message->payload(), seq);
-        // What the node did not take then, it does not get now.
+        // A contact that the node did not accept then is not replayed.
         if (read && read->contact.object == object && read->group == name) {
           read->contact.is_new = false;
           group.replayed.push_back(std::move(read->contact));
@@ -248,14 +248,16 @@ void Place::hear(const TwoFrames& message) {
     if (!parse(node, payload)) return;
     node_has_spoken_ = true;
     node_heard_ = now_steady();
-    // It has judged so many; what it took of them it has shown before.
+    // The node has judged this many contacts, and has already shown those that it accepted; the
+    // rest are rejected.
     while (!given_.empty() && given_count_ - given_.size() < node.messages_received()) {
       node_rejected();
     }
   }
 }
 
-/// It shows what it takes, in the order in which it was given; what it passes over it has rejected.
+/// The node shows the contacts that it accepts in the order in which they were sent. Those that it
+/// skips it has rejected.
 void Place::node_took(const v1::Header& header, std::string_view probe) {
   while (!given_.empty()) {
     const FedContact& first = given_.front().contact;
@@ -302,7 +304,8 @@ void Place::node_answered(const v1::Recognition& recognition, std::string_view p
   Answer answer{*span, {}, std::string(payload)};
   answer.id =
       found->first + "/" + std::to_string(header.epoch()) + "/" + std::to_string(header.seq());
-  // While the plant stores one, the next ones of an object become one: coarser, never later.
+  // While the plant stores one answer, the later ones of the same object are merged: fewer answers,
+  // but none is delayed.
   const bool may_replace = group.answers.size() > (group.is_first_sent ? 1U : 0U);
   if (may_replace && group.answers.back().span.object == span->object) {
     answer.span.from = group.answers.back().span.from;
@@ -333,7 +336,7 @@ void Place::stored(const std::string& name, const Stored& stored) {
   const AnsweredSpan span = group.answers.front().span;
   switch (stored.verdict) {
     case Stored::Verdict::NotNow:
-      return;  // tend() tries again, under the same id
+      return;  // tend() tries again, with the same id
     case Stored::Verdict::NotTheLast:
       group.is_storing = true;
       return is_it_ours(name);
@@ -359,8 +362,8 @@ void Place::stored(const std::string& name, const Stored& stored) {
   store_next(name, group);
 }
 
-/// Something has been stored after the answer that we know as the last: another's, or ours, of
-/// which a server that died has not told us.
+/// Something was stored after the answer that we know as the last: either another process's answer,
+/// or ours, whose confirmation a dying server did not send.
 void Place::is_it_ours(const std::string& name) {
   const json query{{"last_by_subj", make_subject(name_.cell, "recognition", name)}};
   plant_.request(
@@ -390,7 +393,7 @@ void Place::serve(SteadyTime now) {
     return;
   }
   TwoFrames message;
-  // (What is heard may make all begin anew.)
+  // (Handling a message may begin everything anew.)
   while (node_ && node_->receive(message)) hear(message);
   if (!node_) return;
   if (node_->has_ended()) return fail("its node has ended");

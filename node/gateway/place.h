@@ -1,13 +1,14 @@
-// A partition of a cell's groups, taken by this process: contacts from the plant to a node of its
-// own, the node's answers back.
+// A place: a partition of a cell's groups that this process has taken. It sends contacts from the
+// plant to a node of its own and stores the node's answers on the plant.
 //
-// What makes it exact: an answer is stored only as the next one after the answer that its
-// recogniser knows as the last of the group (Nats-Expected-Last-Subject-Sequence). It says in its
-// headers up to which contact of the stream it answers, and where its object begins. So the answers
-// themselves are the ledger: whoever takes the place reads the last one of a group, gives its
-// object's contacts to a fresh node again, and goes on with the contact after it. A recogniser that
-// was believed dead and still answers is refused, and begins anew. Whatever else goes wrong (the
-// node ends, a message is missing, the consumer is gone) has the same cure: begin anew.
+// Every contact is answered exactly once, because the plant stores an answer only as the next one
+// after the answer that its recognizer knows as the group's last
+// (Nats-Expected-Last-Subject-Sequence). The headers of an answer say up to which contact of the
+// stream it covers, and where its object begins. So the stored answers are the ledger. A process
+// that takes the place reads the last answer of a group, sends the contacts of its object to a
+// fresh node again, and continues with the contact after it. A recognizer that was believed dead
+// and still answers is refused, and begins anew. All other failures (the node ends, a message is
+// missing, the consumer is gone) are handled in the same way: begin anew.
 #pragma once
 
 #include <cstdint>
@@ -30,25 +31,25 @@ namespace palpate::gateway {
 
 class Place {
  public:
-  /// Touches nothing of the plant's before `begin_at`.
+  /// Does nothing on the plant before `begin_at`.
   Place(zmq::context_t& context, Plant& plant, PlaceName name, FedNodeOptions node,
         SteadyTime begin_at);
   ~Place();
   Place(const Place&) = delete;
   Place& operator=(const Place&) = delete;
 
-  /// Takes what has come from the node, gives it what may go. Call it often; plant.serve() calls
-  /// the rest.
+  /// Reads what the node has sent, and sends it what may go. Call it often; plant.serve() calls the
+  /// rest.
   void serve(SteadyTime now);
 
-  /// The node's results, to be polled; nullptr where there is none at present.
+  /// The socket of the node's results, to be polled; nullptr if there is no node at present.
   zmq::socket_t* socket() { return node_ ? &node_->results() : nullptr; }
 
   const PlaceName& name() const { return name_; }
   const v1::GatewayPlaceStatus& status() const { return status_; }
 
  private:
-  // An answer that is to be stored, or is being.
+  // An answer that waits to be stored, or is being stored.
   struct Answer {
     AnsweredSpan span;
     std::string id;
@@ -58,17 +59,18 @@ class Place {
   struct Group {
     enum class State { Unknown, Asking, Live };
     State state = State::Unknown;
-    std::deque<FedContact> arrived;   // before it is known what of them is answered
-    std::deque<FedContact> replayed;  // of the present object, answered
-    int tries = 0;                    // to have them all
+    std::deque<FedContact> arrived;   // received before we know which of them are answered
+    std::deque<FedContact> replayed;  // answered contacts of the present object
+    int tries = 0;                    // attempts to read them all
     GroupFeed feed;
-    std::deque<std::uint64_t> unanswered;  // stream_seq of the contacts that are new
-    std::uint64_t through = 0;             // contacts answered by what is stored
+    std::deque<std::uint64_t> unanswered;  // stream_seq of the new contacts
+    std::uint64_t through = 0;             // last contact covered by a stored answer
     std::uint64_t last_answer_seq = 0;     // in the stream of recognitions; 0 = none
     std::deque<Answer> answers;
     bool is_storing = false;
-    bool is_first_sent = false;  // answers' first may be stored already: it stays as it is
-    bool is_ready = false;       // in ready_
+    // The first of `answers` may be stored already, so it must not change.
+    bool is_first_sent = false;
+    bool is_ready = false;  // it is in ready_
   };
 
   struct Given {
@@ -81,7 +83,7 @@ class Place {
   void forget_all();
   void take_contact(const PlantMessage& message, std::uint64_t stream_seq);
 
-  // What of a group is answered already, and its present object again.
+  // Finds out which contacts of a group are answered, and replays its present object.
   void ask(const std::string& name, Group& group);
   void replay(const std::string& name, std::uint64_t object, std::uint64_t next_seq);
   void end_replay(Group& group);
@@ -106,13 +108,13 @@ class Place {
   ContactConsumer consumer_;
   v1::GatewayPlaceStatus status_;
 
-  // All that a new beginning forgets.
+  // State that is discarded when the place begins anew.
   std::unique_ptr<FedNode> node_;
   bool node_has_spoken_ = false;
   SteadyTime node_heard_;
   std::map<std::string, Group, std::less<>> groups_;
   std::deque<Group*> ready_;
-  std::deque<Given> given_;  // to the node, which has not yet shown whether it takes them
+  std::deque<Given> given_;  // sent to the node, which has not shown yet whether it accepts them
   std::uint64_t given_count_ = 0;
   std::size_t in_flight_count_ = 0;
   std::size_t in_flight_bytes_ = 0;

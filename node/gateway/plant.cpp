@@ -9,10 +9,10 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kApiTimeout{3000};
-// Stored within a millisecond or so; a stream that looks for a leader says nothing.
+// Storing takes about a millisecond; a stream without a leader does not answer.
 constexpr milliseconds kStoreTimeout{1000};
 constexpr milliseconds kExpiryPeriod{20};
-// The engine's numbers of errors (JSStreamWrongLastSequenceErrF, JSStreamMessageExceedsMaximumErr).
+// The server's error codes JSStreamWrongLastSequenceErrF and JSStreamMessageExceedsMaximumErr.
 constexpr int kWrongLastSequence = 10071;
 constexpr int kMessageTooLong = 10054;
 
@@ -39,7 +39,8 @@ void Plant::request(const void* owner, const std::string& subject, std::string_v
                     const Headers& headers, milliseconds timeout, Handler handler) {
   const std::uint64_t id = ++last_id_;
   const std::string reply = inbox_ + "." + std::to_string(id);
-  // One that could not be sent is over at once: serve() says so, as its caller expects no call yet.
+  // A request that could not be sent times out at once, in serve(): the caller does not expect its
+  // handler to be called here.
   const bool sent = connection_.publish(subject, payload, reply.c_str(), headers);
   const SteadyTime now = now_steady();
   requests_[id] = {owner, sent ? now + timeout : now, connection_.connection_count(),
@@ -55,7 +56,8 @@ void Plant::store(const void* owner, const std::string& subject, std::string_vie
   request(owner, subject, payload, headers, kStoreTimeout,
           [handler = std::move(handler)](const PlantMessage* message) {
             Stored stored;
-            // "503": no stream has that subject at present, for want of a leader or of itself.
+            // "503": no stream has that subject at present, because it has no leader or does not
+            // exist.
             if (message == nullptr || !message->status().empty()) return handler(stored);
             const auto answer = nlohmann::json::parse(message->payload(), nullptr, false);
             if (!answer.is_object()) return handler(stored);
@@ -103,7 +105,7 @@ void Plant::expire(SteadyTime now) {
   }
   for (const std::uint64_t id : over) {
     const auto found = requests_.find(id);
-    if (found == requests_.end()) continue;  // forgotten by another's handler
+    if (found == requests_.end()) continue;  // another handler has forgotten it
     const Handler handler = std::move(found->second.handler);
     requests_.erase(found);
     handler(nullptr);

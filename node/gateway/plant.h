@@ -1,4 +1,4 @@
-// What a gateway asks of the plant's engine, over its connection: requests and their answers.
+// Requests to the plant's NATS server and their answers.
 #pragma once
 
 #include <chrono>
@@ -13,23 +13,23 @@
 
 namespace palpate::gateway {
 
-/// What the engine says of a message that it was to store.
+/// The server's answer to a message that it was asked to store.
 struct Stored {
   enum class Verdict {
     Yes,
-    Before,      ///< it has one of that id already
-    NotTheLast,  ///< another message has come in between (Nats-Expected-Last-Subject-Sequence)
-    TooLong,     ///< never
-    NotNow,      ///< nobody answered, or no room: whether it is stored is not known
+    Before,      ///< it already has one with that id
+    NotTheLast,  ///< another message came in between (Nats-Expected-Last-Subject-Sequence)
+    TooLong,     ///< never stored
+    NotNow,      ///< no answer, or no room; not known whether it is stored
   };
   Verdict verdict = Verdict::NotNow;
   std::uint64_t seq = 0;  ///< in its stream
 };
 
-/// Belongs to one thread.
+/// Not thread-safe.
 class Plant {
  public:
-  /// nullptr: no answer within the time, or the connection was lost meanwhile.
+  /// Gets nullptr if there was no answer in time or the connection was lost meanwhile.
   using Handler = std::function<void(const PlantMessage*)>;
 
   /// Throws as PlantConnection does.
@@ -38,23 +38,23 @@ class Plant {
   PlantConnection& connection() { return connection_; }
   bool is_connected() const { return connection_.is_connected(); }
 
-  /// Calls the handlers and listeners of what has come, and of requests whose time is over.
+  /// Calls handlers and listeners for what has arrived, and the handlers of requests that have
+  /// timed out.
   void serve(SteadyTime now);
 
-  /// Publishes with an address for the answer; the handler is called once, unless forget(owner)
-  /// comes first.
+  /// Publishes a request. The handler is called once, unless forget(owner) comes first.
   void request(const void* owner, const std::string& subject, std::string_view payload,
                const Headers& headers, std::chrono::milliseconds timeout, Handler handler);
-  /// The same with JSON both ways, for the engine's own interface.
+  /// The same with JSON in both directions, for the server's own interface.
   void api(const void* owner, const std::string& subject, const nlohmann::json& body,
            std::function<void(const nlohmann::json*)> handler);
-  /// Publishes a message that a stream is to store.
+  /// Publishes a message that a stream should store.
   void store(const void* owner, const std::string& subject, std::string_view payload,
              const Headers& headers, std::function<void(const Stored&)> handler);
-  /// Its requests are answered no more.
+  /// Drops all requests of this owner; their handlers are not called.
   void forget(const void* owner);
 
-  /// A subject on which nobody else is heard.
+  /// A subject on which only this process is heard.
   std::string private_subject();
 
  private:

@@ -11,27 +11,27 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A server that is frozen, or a cable that is cut, is noticed within three of these.
+// A frozen server or a cut cable is noticed within three of these.
 constexpr milliseconds kPingInterval{500};
 constexpr int kPingsUnanswered = 2;
-// One server of a cluster that dies costs a connection to the next.
+// If one server of a cluster dies, connecting to the next takes this long.
 constexpr milliseconds kReconnectWait{50};
 constexpr milliseconds kConnectTimeout{2000};
-// libnats goes on where a connection is lost, but not where there never was one, nor where a server
-// refuses who we say that we are. That may be mended there, so we ask again, seldom enough for a
-// server's log.
+// libnats reconnects after a lost connection, but not if there never was one, nor if the server
+// refuses our credentials. The latter may be repaired on the server, so we try again, seldom enough
+// for the server's log.
 constexpr milliseconds kBetweenAttempts{1000};
-// What may hold this thread where a server reads no more.
+// Longest time that a server that does not read can block this thread.
 constexpr milliseconds kWriteDeadline{500};
-// Beyond it messages are dropped, as a socket would: each place has at most some thousands under
-// way.
+// Beyond it messages are dropped, as a socket would. Each place has at most some thousands in
+// flight.
 constexpr std::size_t kMostArrived = 200'000;
 
 void check(natsStatus status, const std::string& what) {
   if (status != NATS_OK) throw std::runtime_error(what + ": " + natsStatus_GetText(status));
 }
 
-/// libnats' text without the place in its source, "(conn.c:1905): ", before it.
+/// libnats' error text without the leading position in its source, "(conn.c:1905): ".
 std::string complaint_of(const char* text, natsStatus status) {
   std::string_view said = text != nullptr && *text != 0 ? text : natsStatus_GetText(status);
   if (const std::size_t end = said.find("): "); said.starts_with('(') && end != said.npos) {
@@ -149,10 +149,10 @@ void PlantConnection::set_callbacks() {
   check(natsOptions_SetErrorHandler(nats, complains, state), "callback");
 }
 
-/// On a thread of its own: a server that does not answer holds it for a while.
+/// Connects on another thread, because a server that does not answer blocks the call for a while.
 void PlantConnection::connect() {
   state_->closed = false;
-  state_->connected = true;  // until libnats says otherwise of what this gives
+  state_->connected = true;  // until libnats reports otherwise for this connection
   attempt_ = std::async(std::launch::async, [options = options_.get(), state = state_] {
     Attempt attempt;
     attempt.status = natsConnection_Connect(&attempt.connection, options);
@@ -170,16 +170,16 @@ PlantConnection::~PlantConnection() {
   if (attempt_.valid()) connection_ = attempt_.get().connection;
   drop();
   {
-    // A message is libnats' to free, which it can no longer once it is closed.
+    // libnats frees messages, which it cannot do after it is closed.
     const std::lock_guard lock(state_->mutex);
     state_->ended = true;
     state_->arrived.clear();
   }
-  // libnats' threads may be in a callback: they end before what they touch.
+  // libnats' threads may be in a callback; they must end before the objects that they use.
   nats_CloseAndWait(kConnectTimeout.count());
 }
 
-/// A connection where there was none yet, and a new one where libnats has given up.
+/// Makes the first connection, and a new one when libnats has given up.
 void PlantConnection::renew(SteadyTime now) {
   if (!attempt_.valid()) {
     if ((connection_ == nullptr || state_->closed) && now >= next_attempt_) {
@@ -223,7 +223,7 @@ void PlantConnection::serve(SteadyTime now) {
     arrived.swap(state_->arrived);
   }
   for (const PlantMessage& message : arrived) {
-    // A listener may end its own subscription, or another's.
+    // A listener may end its own subscription or another one.
     const auto found = subscriptions_.find(message.subscription());
     if (found == subscriptions_.end()) continue;
     const Listener listener = found->second.listener;

@@ -1,5 +1,5 @@
-// The connection to the plant's engine, NATS: libnats has threads of its own, what they bring is
-// taken by one.
+// The connection to the plant's NATS server. libnats uses threads of its own; their messages are
+// collected and handled on one thread.
 #pragma once
 
 #include <nats/nats.h>
@@ -22,44 +22,44 @@ namespace palpate::gateway {
 
 struct PlantOptions {
   std::vector<std::string> urls{
-      "nats://127.0.0.1:4222"};  ///< of one server or several of a cluster
+      "nats://127.0.0.1:4222"};  ///< of one server, or of several servers of a cluster
   std::string client_name = "palpate-gateway";
-  // The engine's own files; empty = none.
+  // Files in NATS' own formats; empty = none.
   std::string credentials;  ///< a user's .creds
   std::string tls_ca;
   std::string tls_certificate;
   std::string tls_key;
 };
 
-/// Belongs to one thread but for what says otherwise.
+/// Not thread-safe, except where stated.
 class PlantConnection {
  public:
   using Listener = std::function<void(const PlantMessage&)>;
 
-  /// Begins to connect, and goes on for ever where nobody is there yet, or who is there refuses.
-  /// Throws std::runtime_error where a file cannot be read.
+  /// Starts to connect. Keeps trying while no server is there yet or the server refuses. Throws
+  /// std::runtime_error if a file cannot be read.
   explicit PlantConnection(const PlantOptions& options);
   ~PlantConnection();
   PlantConnection(const PlantConnection&) = delete;
   PlantConnection& operator=(const PlantConnection&) = delete;
 
   bool is_connected() const { return connection_ != nullptr && state_->connected.load(); }
-  /// Connections made so far: another number means that what was on its way may be lost.
+  /// Number of connections made so far. When it changes, messages on their way may have been lost.
   std::uint64_t connection_count() const { return state_->connections.load(); }
-  /// What the engine or libnats last complained of; empty where of nothing since it was asked.
+  /// The last error of the server or of libnats; empty if there was none since the last call.
   std::string take_complaint();
 
-  /// To be polled for input: serve() has something to do.
+  /// To be polled for input; then call serve().
   int fd() const { return state_->wake_fd; }
   void wake() const { state_->wake(); }
-  /// Calls the listeners of what has come. Throws std::runtime_error where an address is none.
+  /// Calls the listeners of what has arrived. Throws std::runtime_error if an address is malformed.
   void serve(SteadyTime now);
 
-  /// False where there is no connection, or libnats does not take it.
+  /// False if there is no connection, or libnats does not accept the message.
   bool publish(const std::string& subject, std::string_view payload, const char* reply = nullptr,
                const Headers& headers = {});
 
-  /// Hears of a subject until unsubscribe(), over all connections to come.
+  /// Receives a subject until unsubscribe(), also over later connections.
   std::uint64_t subscribe(const std::string& subject, Listener listener);
   void unsubscribe(std::uint64_t subscription);
 
@@ -67,7 +67,7 @@ class PlantConnection {
   std::uint64_t dropped() const { return state_->dropped.load(); }
 
  private:
-  // What libnats' threads touch.
+  // State shared with libnats' threads.
   struct State {
     std::atomic<bool> connected{false};
     std::atomic<bool> closed{false};
@@ -85,7 +85,7 @@ class PlantConnection {
     void complain(std::string_view text);
   };
 
-  // Of a subscription, to libnats' thread, which has done with it later than we.
+  // Passed to libnats' thread with a subscription, which it may use for longer than we do.
   struct Tap {
     std::shared_ptr<State> state;
     std::uint64_t id = 0;

@@ -29,7 +29,7 @@ std::string_view PlantMessage::header(const char* name) const {
   int count = 0;
   if (natsMsgHeader_Values(message_.get(), name, &values, &count) != NATS_OK) return {};
   const std::string_view last = count > 0 ? or_empty(values[count - 1]) : std::string_view();
-  std::free(static_cast<void*>(values));  // the array; the texts are the message's
+  std::free(static_cast<void*>(values));  // the array; the texts belong to the message
   return last;
 }
 

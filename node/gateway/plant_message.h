@@ -13,26 +13,26 @@
 
 namespace palpate::gateway {
 
-/// A text that is a number and nothing else.
+/// The number, if the text is one and nothing else.
 std::optional<std::uint64_t> whole_number(std::string_view text);
 
 class PlantMessage {
  public:
-  /// `subscription`: by which it came; 0 = by none.
+  /// `subscription`: the one that it came by; 0 = none.
   PlantMessage(std::uint64_t subscription, natsMsg* message)
       : subscription_(subscription), message_(message, &natsMsg_Destroy) {}
 
   std::uint64_t subscription() const { return subscription_; }
   std::string_view subject() const { return natsMsg_GetSubject(message_.get()); }
-  /// Empty where it wants no answer.
+  /// Empty if it needs no answer.
   std::string_view reply() const;
   std::string_view payload() const;
-  /// Empty where it has none of that name. Of several the last: what the engine adds to a message
-  /// comes behind what its sender has written.
+  /// Empty if there is no header of that name. If there are several, the last one: the server adds
+  /// its own after those of the sender.
   std::string_view header(const char* name) const;
-  /// A number in a header; 0 where there is none.
+  /// The number in a header; 0 if there is none.
   std::uint64_t number(const char* name) const;
-  /// The engine's own word in place of a payload, e.g. "404", "503"; empty else.
+  /// The server's status if it sends one in place of a payload, e.g. "404", "503"; else empty.
   std::string_view status() const { return header("Status"); }
 
  private:

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kSegments = 16;
 constexpr std::string_view kEnding = ".recording";
-// Of a record beside topic and payload, as node/files/recording.h lays it out.
+// Bytes of a record besides topic and payload; see node/files/recording.h.
 constexpr std::uint64_t kRecordBytes = 28;
 
 }  // namespace
@@ -43,7 +43,7 @@ std::string Spool::path_of(std::uint64_t segment) const {
   return folder_ + name.data() + std::string(kEnding);
 }
 
-/// A segment of a former process: read once to its end, to know how many messages wait.
+/// Takes over a segment of an earlier process. Reads it once to its end to count its messages.
 void Spool::take_up(const std::string& file) {
   const std::string name = fs::path(file).filename().string();
   std::uint64_t number = 0;
@@ -93,7 +93,7 @@ void Spool::add(std::string_view topic, std::string_view payload) {
       !writer_->write({unix_time_ns(), 2, std::string(topic), std::string(payload)})) {
     if (writer_) error_ = path_of(segments_.rbegin()->first) + ": cannot be written";
     ++lost_;
-    // What of the record has come to the disk ends there; the next one has a file of its own.
+    // The part of the record on disk ends this file; the next record gets a new file.
     if (writer_) segments_.rbegin()->second.is_closed = true;
     writer_.reset();
     return;
@@ -129,7 +129,7 @@ std::optional<Spool::Taken> Spool::next() {
       --unread_;
       return taken;
     }
-    // The disk has damaged the rest.
+    // The rest is damaged.
     lost_ += segment.messages;
     unread_ -= segment.messages;
     segment.messages = 0;
@@ -137,7 +137,7 @@ std::optional<Spool::Taken> Spool::next() {
     reader_.reset();
     remove_where_done(read_segment_);
   }
-  // All read: the last segment goes with its last release.
+  // All is read: the last segment is deleted after its last release.
   if (reader_) {
     segments_[read_segment_].is_read = true;
     reader_.reset();
@@ -148,7 +148,7 @@ std::optional<Spool::Taken> Spool::next() {
 
 void Spool::release(std::uint64_t number) {
   const auto segment = segments_.find(number);
-  if (segment == segments_.end()) return;  // the bound has taken it
+  if (segment == segments_.end()) return;  // deleted already, because of the bound
   --segment->second.unreleased;
   remove_where_done(number);
 }

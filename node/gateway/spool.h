@@ -1,4 +1,4 @@
-// Messages on disk while the plant is away.
+// Messages kept on disk while the plant cannot be reached.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,17 @@
 
 namespace palpate::gateway {
 
-/// First in, first out, over a kill of the process too (not over a loss of power: nothing is
-/// synced). A folder of recordings, each of at most a sixteenth of the bound, which `palpate
-/// replay` reads as well. One is first written and then read, and deleted when all that was read of
-/// it has been released. Beyond the bound the oldest one goes, counted.
+/// A first-in first-out queue that survives a kill of the process (not a loss of power: nothing is
+/// synced). It is a folder of recordings, each at most a sixteenth of the bound, which `palpate
+/// replay` can read too. A recording is written, then read, and deleted when everything read from
+/// it has been released. Beyond the bound the oldest recording is deleted and counted.
 class Spool {
  public:
-  /// Takes up what a former process has left in `folder`, which is made where it is not. Throws
-  /// std::runtime_error where it cannot be used, or another process uses it.
+  /// Continues with what an earlier process has left in `folder`; creates it if necessary. Throws
+  /// std::runtime_error if the folder cannot be used or another process uses it.
   Spool(const std::string& folder, std::uint64_t most_bytes);
 
-  /// Nothing to be read.
+  /// True if nothing is unread.
   bool empty() const { return unread_ == 0; }
 
   void add(std::string_view topic, std::string_view payload);
@@ -33,17 +33,17 @@ class Spool {
     std::uint64_t segment = 0;
     RecordedMessage message;
   };
-  /// The oldest that has not been read; nullopt where there is none.
+  /// Reads the oldest unread message; nullopt if there is none.
   std::optional<Taken> next();
 
-  /// A message taken from there is done with.
+  /// A message of that segment is done.
   void release(std::uint64_t segment);
 
   std::uint64_t size() const { return unread_; }
   std::uint64_t bytes() const { return bytes_; }
-  /// Messages that the bound, or a disk that cannot be written, has cost.
+  /// Messages lost because of the bound or because the disk could not be written.
   std::uint64_t lost() const { return lost_; }
-  /// What last went wrong with the disk; empty where nothing did.
+  /// The last error of the disk; empty if there was none.
   const std::string& error() const { return error_; }
 
  private:
@@ -65,7 +65,7 @@ class Spool {
   std::uint64_t most_bytes_;
   PathLock lock_;
   std::map<std::uint64_t, Segment> segments_;  ///< by number, oldest first
-  std::optional<RecordingWriter> writer_;      ///< of the last segment, where it is not closed
+  std::optional<RecordingWriter> writer_;      ///< of the last segment, unless it is closed
   std::optional<RecordingReader> reader_;
   std::uint64_t read_segment_ = 0;
   std::uint64_t next_number_ = 1;

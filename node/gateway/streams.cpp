@@ -11,9 +11,9 @@ namespace {
 using nlohmann::json;
 
 constexpr double kNanosecondsPerSecond = 1e9;
-// The status of a node or gateway over the last hour, at one a second.
+// The status of one node or gateway over the last hour, at one message per second.
 constexpr int kStatusMessages = 3600;
-// JSStreamNameExistErr: it is there, with other limits than ours. They are whoever's who made it.
+// JSStreamNameExistErr: the stream exists with other limits. Whoever created it decides them.
 constexpr int kExistsOtherwise = 10058;
 
 std::string stream(std::string_view cell, const char* kind) {
@@ -47,7 +47,7 @@ void make_streams(Plant& plant, const void* owner, const std::string& cell,
   constexpr double kSecondsPerHour = 3600.0;
   contacts["max_age"] = static_cast<std::int64_t>(limits.contacts_max_age_h * kSecondsPerHour *
                                                   kNanosecondsPerSecond);
-  // Without an age: the last answer of a group says where its recognition stands.
+  // No maximum age: the last answer of a group shows how far its recognition has come.
   json recognitions =
       common(recognition_stream(cell), {make_subject(cell, "recognition") + ".>"}, limits);
   json status =

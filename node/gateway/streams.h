@@ -9,12 +9,13 @@
 
 namespace palpate::gateway {
 
-/// Of streams that a gateway makes because there are none; those that there are stay as they are.
+/// Limits of the streams that a gateway creates. Streams that exist already stay unchanged.
 struct StreamLimits {
-  int replicas = 1;                  ///< servers that hold each stream: 1, or 3 of a cluster
-  double contacts_max_age_h = 24.0;  ///< contacts are kept so long; 0 = for ever
-  std::int64_t max_bytes = -1;       ///< of each stream; -1 = what the server has. The oldest go
-  /// How long the engine remembers ids, to drop what comes twice: some 150 bytes a message.
+  int replicas = 1;                  ///< servers that hold each stream: 1, or 3 in a cluster
+  double contacts_max_age_h = 24.0;  ///< age at which contacts are deleted; 0 = never
+  /// Of each stream; beyond it the oldest are deleted; -1 = the server's limit.
+  std::int64_t max_bytes = -1;
+  /// How long the server remembers message ids, to drop duplicates; about 150 bytes per message.
   double duplicate_window_s = 120.0;
 };
 
@@ -22,7 +23,7 @@ std::string contact_stream(std::string_view cell);
 std::string recognition_stream(std::string_view cell);
 std::string status_stream(std::string_view cell);
 
-/// Asks for the three; done(true) where they are there.
+/// Creates the three streams. Calls done(true) if they exist then.
 void make_streams(Plant& plant, const void* owner, const std::string& cell,
                   const StreamLimits& limits, const std::function<void(bool)>& done);
 

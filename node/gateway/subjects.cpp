@@ -77,7 +77,7 @@ std::optional<std::string> from_token(std::string_view token) {
     const std::size_t low = kDigits.find(token[i + 2]);
     if (high == std::string_view::npos || low == std::string_view::npos) return std::nullopt;
     const char c = static_cast<char>(16 * high + low);
-    if (is_plain(c)) return std::nullopt;  // it has a token already
+    if (is_plain(c)) return std::nullopt;  // it already has a token
     name += c;
     i += 2;
   }
@@ -143,14 +143,16 @@ std::optional<Addressed> address(std::string_view cell, std::string_view topic,
       break;
     }
     case TopicKind::Estimate:
-      return std::nullopt;  // a stream for the cell alone: ten times as much as what it comes from
+      // Not forwarded: ten times as much data as the contacts that it is computed from.
+      return std::nullopt;
   }
   to.epoch = header.epoch();
   to.seq = header.seq();
-  // Each cell and kind has a stream of its own: there the topic's name tells the rest.
+  // Each cell and kind has its own stream, so the topic's name is enough.
   to.id.append(parsed->name).append("/").append(hexadecimal(to.epoch));
   to.id.append("/").append(hexadecimal(to.seq));
-  // A sender without epoch counts from 0 again after a restart: there the bytes tell them apart.
+  // A sender without epoch counts from 0 again after a restart; a hash of the payload tells its
+  // messages apart.
   if (to.epoch == 0) to.id.append("/").append(hexadecimal(hash_of(payload)));
   return to;
 }

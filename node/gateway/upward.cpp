@@ -10,13 +10,14 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kDrainTime{2};
-// Of a cell: as many probes and groups as the largest node has (kMostThings in node/options.h).
+// Maximum of topics per cell: as many probes and groups as the largest node accepts (kMostThings in
+// node/options.h).
 constexpr std::size_t kMostTopics = 200'000;
-// A node's queue for us holds some thousands as well; beyond both the oldest are lost, which their
-// sequence numbers tell.
+// The node's queue for us holds some thousands more. Beyond both the oldest messages are lost, as
+// their sequence numbers show.
 constexpr int kHighWaterMark = 20'000;
-// How much later than another gateway of the cell this one may be, to be waited for at the start:
-// what waits in queues between a node and a gateway that lives.
+// How far this gateway may be behind another gateway of the cell when it starts: the time that
+// messages wait in the queues between a node and a running gateway.
 constexpr milliseconds kHold{1000};
 
 SocketSettings settings_of(const UpwardOptions& options) {
@@ -43,7 +44,7 @@ Upward::Upward(zmq::context_t& context, Plant& plant, const UpwardOptions& optio
       }) {
   outbox_.hold_until(now_steady() + kHold);
   // Three prefixes, however many topics: libzmq loses subscriptions beyond a thousand when it
-  // connects again.
+  // reconnects.
   for (const TopicKind kind : options_.kinds) {
     socket_.set(zmq::sockopt::subscribe, topic_prefix(kind));
   }
@@ -91,7 +92,7 @@ void Upward::take(const TwoFrames& message, SteadyTime now) {
   }
 }
 
-/// A node repeats the latest of each group once a second.
+/// False for repeats: a node sends the latest message of each group again once a second.
 bool Upward::is_news(std::string_view topic, const Addressed& to) {
   auto found = sequences_.find(topic);
   if (found == sequences_.end()) {

@@ -1,4 +1,4 @@
-// From a cell to the plant: contacts, recognitions and status, each once and in order.
+// Forwards contacts, recognitions and status from a cell to the plant, each once and in order.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +19,10 @@ namespace palpate::gateway {
 
 struct UpwardOptions {
   std::string cell;
-  /// The cell's node's results endpoint, which has the contacts that it accepts as they came. Where
-  /// a cell has no node, an endpoint to bind, to which its probes connect.
+  /// The results endpoint of the cell's node, which forwards the contacts that it accepts. If a
+  /// cell has no node: an endpoint to bind, to which its probes connect.
   Endpoint endpoint;
-  std::vector<TopicKind> kinds;  ///< carried up
+  std::vector<TopicKind> kinds;  ///< the kinds to forward
   std::optional<CurveClient> curve;
   std::string spool_folder;
   std::uint64_t spool_bytes = std::uint64_t{1} << 30;
@@ -30,16 +30,16 @@ struct UpwardOptions {
 
 class Upward {
  public:
-  /// Throws std::runtime_error where the endpoint or the spool cannot be had.
+  /// Throws std::runtime_error if the endpoint or the spool cannot be opened.
   Upward(zmq::context_t& context, Plant& plant, const UpwardOptions& options);
 
   zmq::socket_t& socket() { return socket_; }
 
-  /// Takes what has come, and sends what may go; some milliseconds at most. Call it some times a
-  /// second at least. True where more waits.
+  /// Receives what has come and sends what may go; takes some milliseconds at most. Call it several
+  /// times a second. Returns true if more waits.
   bool serve(SteadyTime now);
 
-  /// Why the cell's node refuses this gateway; empty where it does not.
+  /// Why the cell's node refuses this gateway; empty if it does not.
   const std::string& refusal() { return handshakes_.refusal(); }
 
   void fill(v1::GatewayUpStatus& status) const;

@@ -1,4 +1,4 @@
-// Percentiles of computing time over one reporting period.
+// Quantiles of the computing times of one reporting period.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ class ComputeTimes {
     }
   }
 
-  /// The value that the fraction `q` in [0, 1] of the times do not exceed; 0 where there are none.
+  /// The q-quantile of the times, q in [0, 1]; 0 if there are none.
   std::int64_t quantile(double q) {
     if (times_.empty()) return 0;
     const auto nth = times_.begin() + std::lround(q * static_cast<double>(times_.size() - 1));
@@ -33,7 +33,7 @@ class ComputeTimes {
   }
 
  private:
-  static constexpr std::size_t kKept = 4096;  // the latest, where a period has more
+  static constexpr std::size_t kKept = 4096;  // if a period has more, the latest are kept
 
   std::vector<std::int64_t> times_;
   std::size_t next_ = 0;

@@ -12,10 +12,10 @@ const Group::Member* Group::find_member(std::string_view probe) const {
   return found == members_.end() ? nullptr : &*found;
 }
 
-// With several probes, the others' last messages of the old object arrive after the first probe has
-// announced the new one. They must neither be mixed into the new object nor bring the old one back:
-// only a probe that changes its own number begins an object. A probe that has never said otherwise
-// waits until the others are silent.
+// When one probe of several announces a new object, the others' last messages of the old object are
+// still on their way. They must neither be mixed into the new object nor bring the old one back. So
+// an object begins only with a probe that changes its own number; any other probe waits until the
+// others are silent.
 bool Group::is_stale_object(const ContactMessage& message, const Probe* probe,
                             SteadyTime now) const {
   if (members_.empty() || message.object == object_) return false;
@@ -61,7 +61,8 @@ std::shared_ptr<GroupRecognizer> Group::begin_work() {
   assert(!in_work_);
   in_work_ = true;
   in_work_bytes_ = waiting_.bytes();
-  std::swap(recognizer_->contacts, waiting_);  // theirs is empty: they have taken it in
+  // The recognizer's queue is empty: it has processed its messages.
+  std::swap(recognizer_->contacts, waiting_);
   return recognizer_;
 }
 

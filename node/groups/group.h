@@ -1,5 +1,5 @@
-// The probes that touch one object: which of their messages count, and what waits for the
-// recognizer.
+// A group: the probes that touch one object. Decides which of their messages count, and keeps the
+// messages that wait for the recognizer.
 #pragma once
 
 #include <chrono>
@@ -20,16 +20,18 @@ namespace palpate {
 
 struct GroupOptions {
   std::size_t max_probes_per_group = 16;
-  /// A probe that keeps another object's number is heard once the others have been silent so long.
+  /// A probe that still sends another object's number is accepted after the others have been silent
+  /// for this time.
   std::chrono::duration<double> object_takeover{1.0};
-  /// After lost messages the arc is broken where the hole exceeds this many sample spacings.
+  /// After lost messages, the patch is split where the gap exceeds this many sample spacings.
   double gap_break_spacings = 10.0;
-  /// Class that all parts are of: fitted in place of a search. nullopt = it is sought.
+  /// Class of all parts; it is fitted without a search. nullopt = search.
   std::optional<CurveClass> given_class = {};
 };
 
-/// Belongs to the node's thread. Its recognizer works on a worker's, on one answer at a time: what
-/// comes meanwhile waits, and is answered for at once. Load makes answers coarser, never later.
+/// Owned by the node's thread. Its recognizer runs on a worker's thread and computes one answer at
+/// a time. Messages that arrive meanwhile wait and are then answered together: under load there are
+/// fewer answers, but none is delayed.
 class Group {
  public:
   Group(std::string_view name, const RecognizerOptions& recognizer, const GroupOptions& options)
@@ -38,34 +40,34 @@ class Group {
         recognizer_(std::make_shared<GroupRecognizer>(name, recognizer, options.gap_break_spacings,
                                                       options.given_class)) {}
 
-  /// Whether the message may be taken; REJECT_REASON_UNSPECIFIED = yes. `probe` is its sender,
-  /// nullptr where unknown so far. Changes nothing.
+  /// Whether the message may be accepted; REJECT_REASON_UNSPECIFIED = yes. `probe` is its sender,
+  /// or nullptr if not known yet. Changes nothing.
   v1::RejectReason judge(const ContactMessage& message, const Probe* probe, SteadyTime now) const;
 
-  /// Takes a message that judge() lets pass; it waits for the recognizer. An object that ends
-  /// before its turn is not recognised any more.
+  /// Accepts a message that judge() has passed and queues it. If a new object begins, the waiting
+  /// messages of the old one are dropped.
   void take(const ContactMessage& message, Continuity continuity, SteadyTime now);
 
-  /// Gives all that waits to the recognizer, which is to run() next. Until end_work() it belongs to
-  /// the thread that runs it.
+  /// Moves all waiting messages to the recognizer and returns it for run(). Until end_work() it
+  /// belongs to the thread that runs it.
   std::shared_ptr<GroupRecognizer> begin_work();
 
-  /// The recognizer is back; it holds the answer until the next begin_work().
+  /// Call it when run() has returned. The answer is valid until the next begin_work().
   GroupRecognizer::Answer& end_work();
 
   bool is_in_work() const { return in_work_; }
 
-  /// What its next answer is taken to need of a core; 0 before the first. As much as the last one,
-  /// and half of what was expected of that: an object's first samples, quickly answered, do not
-  /// make a group quick whose answers take long. Of a core: who waits for others is not slow.
+  /// Expected processor time of the next answer; 0 before the first. It is the maximum of the last
+  /// time and half of the last expectation: the quick first answers of a new object do not make a
+  /// slow group quick. Time spent waiting for a core does not count.
   std::chrono::nanoseconds expected_compute() const { return expected_compute_; }
 
   bool is_quick() const { return expected_compute_ <= kQuickCompute; }
 
-  /// An answer that a planner of 50 Hz has in its next period.
+  /// An answer within this time reaches a planner of 50 Hz in its next period.
   static constexpr std::chrono::milliseconds kQuickCompute{20};
 
-  /// Memory of the messages that wait or are being taken in. [bytes]
+  /// Memory of the messages that wait or are being processed. [bytes]
   std::size_t queued_bytes() const { return waiting_.bytes() + in_work_bytes_; }
 
   const std::string& name() const { return name_; }

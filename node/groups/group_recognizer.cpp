@@ -59,11 +59,11 @@ std::size_t GroupRecognizer::take(const QueuedContacts& message,
   newest_.epoch = message.epoch;
   newest_.seq = message.seq;
   newest_.sample_stamp_ns =
-      message.newest_sample_stamp_ns;  // of this alone: a wild one does not stay
+      message.newest_sample_stamp_ns;  // not a maximum: a wrong stamp must not persist
   return samples.size() - added.accepted;
 }
 
-/// By the members' numbers; empty where none of them is qualified. `files`: those of these probes.
+/// Indexed by member; empty if no member has a probe file. `files`: names of the probe files used.
 std::vector<const ProbeCharacter*> GroupRecognizer::qualified_probes(
     std::vector<std::string>& files) const {
   std::vector<const ProbeCharacter*> probes;
@@ -90,7 +90,7 @@ void GroupRecognizer::answer_by_search() {
     to_wire(recognizer_.recognize(), sources(), answer.recognition);
     return;
   }
-  // The estimates of a round tip wait for an answer that tells its side.
+  // Estimates of a round tip need an answer that shows on which side the material is.
   if (wants_estimates) (void)recognizer_.recognize();
   ProbedRecognition found = recognise_probed(touched_, probes, options_);
   found.recognition.forgotten_count = forgotten_;

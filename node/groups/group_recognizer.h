@@ -1,4 +1,4 @@
-// The half of a group that computes: samples in, answer out, on a worker's thread.
+// The computing half of a group: samples in, answer out, on a worker's thread.
 #pragma once
 
 #include <cstddef>
@@ -22,16 +22,16 @@
 
 namespace palpate {
 
-/// Passes between the node's thread, which fills in `contacts` and reads `answer`, and a worker's,
-/// which does run(); never in both hands.
+/// The node's thread fills in `contacts` and reads `answer`; a worker's thread calls run(). Only
+/// one of them uses the object at a time.
 class GroupRecognizer : public Work {
  public:
   struct Answer {
-    v1::Recognition recognition;               ///< of the header, the frame only
-    std::vector<v1::LocalEstimate> estimates;  ///< new ones, in order for each probe; the same
+    v1::Recognition recognition;               ///< its header has only the frame
+    std::vector<v1::LocalEstimate> estimates;  ///< new ones, in order per probe; header as above
     std::size_t samples_refused = 0;           ///< by the recognizer
-    std::int64_t compute_ns = 0;               ///< as a planner waits for it
-    std::int64_t processor_ns = 0;  ///< of that on a core: on a busy machine it waits for one too
+    std::int64_t compute_ns = 0;               ///< elapsed time of the computation
+    std::int64_t processor_ns = 0;  ///< the part of it spent on a core; the rest is waiting for one
   };
 
   /// `gap_break_spacings`, `given_class`: see GroupOptions.
@@ -46,15 +46,15 @@ class GroupRecognizer : public Work {
 
   ContactQueue contacts;
   bool wants_estimates = false;
-  /// Which probes are qualified; always or never nullptr. Another where the files are read again.
+  /// The node's probe files; nullptr if it has none. Replaced when the files are read again.
   std::shared_ptr<const ProbeFiles> probe_files;
   Answer answer;
 
-  /// Takes `contacts` in, and answers for all samples of the object.
+  /// Processes `contacts` and computes the answer for all samples of the object.
   void run() override;
 
-  /// Name of a probe and its own patch number, for the recognizer's numbers of both. Views a name
-  /// that lives until the next run().
+  /// Name and patch number of a probe, from the recognizer's numbers. The name is valid until the
+  /// next run().
   ContactSource source_of(std::uint32_t probe, std::uint32_t run) const;
 
  private:
@@ -64,7 +64,7 @@ class GroupRecognizer : public Work {
     PatchNumbering patches;
   };
 
-  // Where the samples taken last came from.
+  // Where the last samples came from.
   struct Newest {
     std::string source;
     std::uint64_t epoch = 0;
@@ -74,7 +74,7 @@ class GroupRecognizer : public Work {
 
   static MemoryOptions memory_of(const RecognizerOptions& recognizer, bool is_class_given) {
     MemoryOptions memory = recognizer.memory;
-    memory.takes_repeated = is_class_given;  // a distance measured twice counts twice
+    memory.takes_repeated = is_class_given;  // two equal distances count twice in least squares
     return memory;
   }
 
@@ -91,11 +91,12 @@ class GroupRecognizer : public Work {
   std::optional<CurveClass> given_class_;
   RecognizerOptions options_;
   Recognizer recognizer_;
-  /// Where there are probe files or a class is given: the samples as they came. Each answer takes
-  /// the probes' offsets off anew, by the normals of the curve that it finds.
+  /// The samples as they came; used with probe files or a given class. Each answer subtracts the
+  /// probes' offsets anew, along the normals of the curve that it finds.
   SampleMemory touched_;
-  std::size_t forgotten_ = 0;   ///< samples of touched_, since the object began
-  std::size_t simplified_ = 0;  ///< likewise, those that said more than a search uses
+  std::size_t forgotten_ = 0;  ///< samples of this object that touched_ has forgotten
+  /// Of this object, samples with more information than a search uses.
+  std::size_t simplified_ = 0;
   std::string frame_;
   std::uint64_t object_ = 0;
   std::vector<Member> members_;

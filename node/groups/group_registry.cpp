@@ -12,9 +12,9 @@ Group* GroupRegistry::find(std::string_view name) {
 
 std::optional<GroupRegistry::Entries::const_iterator> GroupRegistry::place_for(
     std::string_view probe, SteadyTime now) const {
-  auto idle = groups_.end();  // of all
-  auto own = groups_.end();   // of those that only this probe touches
-  std::size_t opened = 0;     // by this probe
+  auto idle = groups_.end();  // oldest of all
+  auto own = groups_.end();   // oldest of those that only this probe touches
+  std::size_t opened = 0;     // opened by this probe
   const auto older = [&](Entries::const_iterator entry, Entries::const_iterator than) {
     return than == groups_.end() ||
            entry->second.group.last_taken() < than->second.group.last_taken();
@@ -22,7 +22,7 @@ std::optional<GroupRegistry::Entries::const_iterator> GroupRegistry::place_for(
   for (auto entry = groups_.begin(); entry != groups_.end(); ++entry) {
     const bool is_own = entry->second.opened_by == probe;
     if (is_own) ++opened;
-    if (entry->second.group.is_in_work()) continue;  // a worker's for now
+    if (entry->second.group.is_in_work()) continue;  // cannot be evicted now
     if (older(entry, idle)) idle = entry;
     if (is_own && entry->second.group.probe_count() <= 1 && older(entry, own)) own = entry;
   }
@@ -63,7 +63,7 @@ void GroupRegistry::take(Group& group, const ContactMessage& message, Continuity
   if (entry.waiting) return;
   entry.waiting = true;
   entry.waiting_since = arrivals_++;
-  // Time not asked for is not saved up: after a pause a group is first, but not for long.
+  // Unused time does not accumulate: after a pause a group comes first, but not for long.
   entry.served_ns = std::max(entry.served_ns, served_floor_ns_);
 }
 

@@ -1,5 +1,5 @@
-// The groups in memory and their waiting messages, never more than bounds, and whose turn it is to
-// be recognised.
+// All groups in memory with their waiting messages, within fixed bounds. Decides which group is
+// recognised next.
 #pragma once
 
 #include <algorithm>
@@ -18,10 +18,10 @@ namespace palpate {
 
 struct GroupBounds {
   std::size_t max_groups = 64;
-  std::size_t max_groups_per_probe = 8;  ///< that it has opened
+  std::size_t max_groups_per_probe = 8;  ///< that this probe has opened
   /// Memory of the messages that wait for recognition, of all groups together. [bytes]
   std::size_t max_waiting_bytes = std::size_t{32} << 20;
-  /// Who is silent for longer may be forgotten to make room for another.
+  /// A group or probe that is silent for longer may be forgotten to make room.
   std::chrono::duration<double> evict_idle{10.0};
 };
 
@@ -33,40 +33,40 @@ class GroupRegistry {
 
   Group* find(std::string_view name);
 
-  /// True where add() would find room for a group that this probe opens.
+  /// True if add() would find room for a group that this probe opens.
   bool has_room(std::string_view probe, SteadyTime now) const {
     return place_for(probe, now).has_value();
   }
 
-  /// Adds an unknown group on a free place or, where there is none, on that of the one idle for
-  /// longest, if that is long enough. A probe that has opened as many as it may loses the oldest of
-  /// them that it touches alone: a flood of invented names costs nobody else a place. The name of
-  /// who goes is put into `evicted`. Needs has_room().
+  /// Adds a new group. If there is no room, it replaces the group idle for longest, if that is idle
+  /// for longer than evict_idle. A probe that has opened its maximum number of groups replaces the
+  /// oldest of those that it touches alone, so a flood of invented names costs no other probe its
+  /// group. `evicted` receives the name of the group replaced. Needs has_room().
   Group& add(std::string_view name, std::string_view probe, SteadyTime now, std::string& evicted);
 
-  /// Whether so much more may wait for the group (nullptr: a new one). Nobody may hold more than is
-  /// left to all others: who has had no answer yet always finds room.
+  /// Whether `bytes` more may wait for the group (nullptr: a new one). No group may hold more than
+  /// is left to all others, so that a group that has had no answer yet always finds room.
   bool has_room_to_wait(const Group* group, std::size_t bytes) const {
     const std::size_t left =
         bounds_.max_waiting_bytes - std::min(bounds_.max_waiting_bytes, queued_bytes_);
     return (group == nullptr ? 0 : group->queued_bytes()) + bytes <= left;
   }
 
-  /// Takes a message for the group: it waits for its turn.
+  /// Queues an accepted message for the group.
   void take(Group& group, const ContactMessage& message, Continuity continuity, SteadyTime now);
 
-  /// The waiting group that has had the least computing time so far, nullptr where none waits. So
-  /// a group that asks for little is served at once, however many others keep the recognizer busy.
-  /// `only_quick`: of those that are quick.
+  /// The waiting group with the least computing time so far; nullptr if none waits. A group that
+  /// needs little is thus served at once, however busy the others keep the recognizer.
+  /// `only_quick`: only among the quick groups.
   Group* next_waiting(bool only_quick = false);
 
-  /// Gives the group to a worker: it is no more waiting, until more comes.
+  /// Hands the group to a worker. It no longer waits, until further messages come.
   std::shared_ptr<GroupRecognizer> begin_work(Group& group);
 
-  /// The worker has answered.
+  /// Call it when the worker has answered.
   GroupRecognizer::Answer& end_work(Group& group);
 
-  /// Messages wait, or are being worked on.
+  /// True if messages wait or are being processed.
   bool has_work() const;
 
   std::size_t size() const { return groups_.size(); }
@@ -77,12 +77,12 @@ class GroupRegistry {
     Group group;
     std::string opened_by;
     bool waiting = false;
-    std::uint64_t waiting_since = 0;  // in order of arrival
+    std::uint64_t waiting_since = 0;  // order of arrival
     std::int64_t served_ns = 0;
   };
   using Entries = std::map<std::string, Entry, std::less<>>;
 
-  // That of another group, or end() for a free one; nullopt where there is none.
+  // The group to replace, or end() if there is a free place; nullopt if there is no room.
   std::optional<Entries::const_iterator> place_for(std::string_view probe, SteadyTime now) const;
 
   GroupBounds bounds_;

@@ -15,7 +15,7 @@ Continuity continuity_of(SequenceEvent event, bool same_group) {
   return Continuity::Anew;
 }
 
-// A sender may claim any stamp; what cannot be subtracted is shown as 0.
+// A sender may set any stamp; if the difference overflows, the latency is 0.
 std::int64_t latency_between(std::int64_t sent_ns, std::int64_t received_ns) {
   std::int64_t latency = 0;
   return __builtin_sub_overflow(received_ns, sent_ns, &latency) ? 0 : latency;
@@ -56,7 +56,7 @@ void Intake::reject(RejectReason reason, const Sender& sender, Probe* probe) {
   if (reason == v1::REJECT_REASON_NOT_ALLOWED) {
     last.append(", which the key ").append(sender.key).append(" may not publish as");
   } else if (probe != nullptr) {
-    ++probe->rejected;  // what others send in its name is none of its own
+    ++probe->rejected;  // messages sent by others under its name do not count
   }
 }
 

@@ -1,4 +1,4 @@
-// From a message to its group's recognizer: the one place that decides whether it counts.
+// Takes a message from the wire to its group. The only place that decides whether a message counts.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace palpate {
 struct IntakeOptions {
   IngestLimits limits;
   std::size_t max_probes = 256;
-  GroupBounds groups;  ///< its evict_idle holds for probes too
+  GroupBounds groups;  ///< evict_idle applies to probes too
   GroupOptions group;
   RecognizerOptions recognizer;
 };
@@ -26,11 +26,11 @@ struct IntakeOptions {
 struct IntakeCounters {
   std::uint64_t messages_received = 0;
   std::uint64_t messages_accepted = 0;
-  std::uint64_t samples_received = 0;                                ///< of the messages accepted
-  std::uint64_t samples_refused = 0;                                 ///< of them, by the recognizer
+  std::uint64_t samples_received = 0;  ///< of the messages accepted
+  std::uint64_t samples_refused = 0;   ///< of these, refused by the recognizer
   std::array<std::uint64_t, v1::RejectReason_ARRAYSIZE> rejected{};  ///< by RejectReason
-  /// Name of the probe on whose topic the last of each came; empty where the topic is none. Of
-  /// NOT_ALLOWED with the key that sent it.
+  /// By RejectReason: the probe named in the topic of the last such message; empty if the topic is
+  /// invalid. For NOT_ALLOWED with the sender's key.
   std::array<std::string, v1::RejectReason_ARRAYSIZE> rejected_last;
 };
 
@@ -38,8 +38,8 @@ class Intake {
  public:
   explicit Intake(const IntakeOptions& options);
 
-  /// Takes one message, or counts why not; a message that is not taken changes nothing else.
-  /// `now_unix_ns` is the wall clock, for the latency shown.
+  /// Accepts one message or counts why not; a rejected message changes nothing else. `now_unix_ns`:
+  /// wall clock, for the latency shown.
   v1::RejectReason take(std::size_t frame_count, std::string_view topic, std::string_view payload,
                         SteadyTime now, std::int64_t now_unix_ns, const Sender& sender = {});
 
@@ -49,7 +49,7 @@ class Intake {
   const ProbeRegistry& probes() const { return probes_; }
   const IntakeCounters& counters() const { return counters_; }
 
-  /// The recognizer has refused so many of the samples taken.
+  /// Counts accepted samples that the recognizer has refused.
   void count_refused(std::size_t samples) { counters_.samples_refused += samples; }
 
   /// Names of groups and probes forgotten since the last call.

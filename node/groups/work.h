@@ -1,4 +1,4 @@
-// Something that takes long, to be done on another thread.
+// A long computation, to be done on another thread.
 #pragma once
 
 namespace palpate {
@@ -10,7 +10,7 @@ class Work {
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
-  /// Called on a worker's thread. Whatever this touches belongs to that thread until it returns.
+  /// Called on a worker's thread. Whatever it uses belongs to that thread until it returns.
   virtual void run() = 0;
 };
 

@@ -20,11 +20,12 @@
 namespace palpate {
 namespace {
 
-// Above what the process has: beside a quick thread on the same core, a slow one has a tenth of it.
+// Added to the nice value of the process. Next to a quick thread on the same core, a slow one gets
+// a tenth of it.
 constexpr int kSlowNice = 10;
 
-// The system's sched_attr in its first form; glibc has none before 2.41, and Linux' own header does
-// not go with <sched.h>.
+// The kernel's sched_attr in its first version. glibc has none before 2.41, and Linux' own header
+// conflicts with <sched.h>.
 struct SchedulingWanted {
   std::uint32_t size = sizeof(SchedulingWanted);
   std::uint32_t policy = SCHED_OTHER;
@@ -37,35 +38,36 @@ struct SchedulingWanted {
 };
 static_assert(sizeof(SchedulingWanted) == 48);
 
-// What the system gives who asks for none: 0.7 ms, times four from eight cores on.
+// The longest slice that the scheduler gives by default: 0.7 ms, times four from eight cores on.
 constexpr std::uint64_t kLongestOwnSlice_ns = 2'800'000;
 
-/// What the calling thread asks of the system's scheduler. Since Linux 6.6 whoever is on a core
-/// keeps it until the end of its slice, found out at a tick of up to 4 ms, whatever waits, unless
-/// that asks for a shorter one (6.12): then it has the core at once. So each work asks for as long
-/// as it will take, and the shorter goes first.
+/// The calling thread's request to the scheduler. Since Linux 6.6 a thread keeps its core until its
+/// slice ends, which is checked at a tick of up to 4 ms. Since 6.12 a thread that asks for a
+/// shorter slice gets the core at once. So each work asks for a slice as long as it will take, and
+/// shorter works go first.
 class Turn {
  public:
   explicit Turn(Workers::Pace pace) {
-    wanted_.nice = ::getpriority(PRIO_PROCESS, 0);  // of this thread alone, on Linux
+    wanted_.nice = ::getpriority(PRIO_PROCESS, 0);  // on Linux, of this thread alone
     if (pace == Workers::Pace::Quick) return;
-    // A thread cannot take this back without privileges: what is slow has threads of its own.
+    // A thread cannot undo this without privileges, so slow works have threads of their own.
     wanted_.nice += kSlowNice;
-    wanted_.policy = SCHED_BATCH;  // nor does it take a core from others when it wakes
-    // Where a sandbox knows nothing of slices, the older call does this half.
+    wanted_.policy = SCHED_BATCH;  // does not preempt others when it wakes up
+    // A sandbox may not know sched_setattr; the older call sets the nice value at least.
     if (!ask()) (void)!::nice(kSlowNice);
   }
 
-  /// 0 = not known, the system's own slice; so are shorter ones, who asks for less than the node's
-  /// thread takes the core from it. Twice as much is asked for, up to the system's bound of 100 ms:
-  /// who has used up its slice falls behind who has given way to it.
+  /// 0 = not known: use the default slice. So do works shorter than it: a request below the default
+  /// would take the core from the node's own thread. Asks for twice the expected time, up to the
+  /// kernel's bound of 100 ms, because a thread that uses up its slice falls behind those that gave
+  /// way to it.
   void ask_for(std::chrono::nanoseconds expected) {
     auto slice_ns = static_cast<std::uint64_t>(2 * expected.count());
     if (slice_ns <= kLongestOwnSlice_ns) slice_ns = 0;
-    // Most answers take about as long as the one before, and need no call.
+    // Most answers take about as long as the one before and need no call.
     if (slice_ns <= 2 * wanted_.slice_ns && wanted_.slice_ns <= 2 * slice_ns) return;
     wanted_.slice_ns = slice_ns;
-    (void)ask();  // a system that knows no slices has its own rule for all
+    (void)ask();  // a kernel without slices has its own rule for all threads
   }
 
  private:
@@ -76,7 +78,7 @@ class Turn {
 
 }  // namespace
 
-/// An eventfd: rung by one thread, heard by another.
+/// An eventfd: one thread signals, another waits.
 struct Workers::Bell {
   explicit Bell(int flags) : fd(::eventfd(0, EFD_CLOEXEC | flags)) {
     if (fd < 0) throw std::runtime_error("no eventfd");
@@ -94,9 +96,9 @@ struct Workers::Bell {
   const int fd;
 };
 
-/// What the node's thread and the worker's share. Lives as long as either needs it.
+/// Shared by the node's thread and the worker's thread. Lives as long as either needs it.
 struct Workers::Worker {
-  // Who sets a state gives `work` and `expected` to the side that waits for it.
+  // Setting the state hands `work` and `expected` to the other thread.
   enum class State { Idle, Ordered, Finished };
 
   explicit Worker(std::shared_ptr<Bell> finished_bell)
@@ -122,7 +124,7 @@ struct Workers::Worker {
   std::atomic<bool> end{false};
   Bell ordered;
   std::shared_ptr<Bell> finished;
-  std::thread thread;  // of the node's side
+  std::thread thread;  // used by the node's thread
 };
 
 Workers::Workers(std::size_t quick_count, std::size_t slow_count)
@@ -131,7 +133,7 @@ Workers::Workers(std::size_t quick_count, std::size_t slow_count)
     const Pace pace = i < quick_count ? Pace::Quick : Pace::Slow;
     auto worker = std::make_shared<Worker>(finished_);
     worker->thread = std::thread([worker, pace] { worker->serve(pace); });
-    // Fifteen letters at most, for top and debuggers.
+    // Shown by top and debuggers; at most 15 characters.
     pthread_setname_np(
         worker->thread.native_handle(),
         ((pace == Pace::Slow ? "slow" : "recognize") + std::to_string(i % 10000)).c_str());
@@ -182,8 +184,8 @@ std::optional<std::size_t> Workers::take_finished() {
       --busy_count_;
       return i;
     }
-    // Who finishes after this rings again: looked for once more, nobody is missed. Heard twice, the
-    // ring of who has finished since would be lost.
+    // A worker that finishes after this signals again. Looking once more misses nobody. Clearing
+    // the signal twice could lose the one of a worker that has finished since.
     if (attempt == 0) finished_->hear();
   }
   return std::nullopt;

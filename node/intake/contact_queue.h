@@ -1,4 +1,4 @@
-// Messages of one group that wait for its recognizer.
+// The messages of one group that wait for its recognizer.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace palpate {
 
-/// How a message follows the one that its probe sent to the same group before.
+/// How a message follows the previous one of its probe in the same group.
 enum class Continuity { Unbroken, SamplesMissing, Anew };
 
-/// A message that has been taken; its samples stand in the queue's.
+/// An accepted message. The queue holds its samples.
 struct QueuedContacts {
   std::string probe;
-  std::string frame;  ///< of the object that the message begins; empty where it begins none
+  std::string frame;  ///< frame of the object that the message begins; empty if it begins none
   bool begins_object = false;
   Continuity continuity = Continuity::Anew;
   std::uint64_t epoch = 0;
@@ -28,7 +28,7 @@ struct QueuedContacts {
   MaterialSide material_side = MaterialSide::Unspecified;
   std::int64_t newest_sample_stamp_ns = 0;
   std::size_t sample_count = 0;
-  std::size_t detail_count = 0;  ///< as many, or none
+  std::size_t detail_count = 0;  ///< sample_count or 0
 };
 
 class ContactQueue {
@@ -53,7 +53,7 @@ class ContactQueue {
   }
 
   /// Calls visit(const QueuedContacts&, std::span<const ContactSample>, std::span<const
-  /// SampleDetail>) in the order of arrival.
+  /// SampleDetail>) for each message in the order of arrival.
   template <typename Visit>
   void for_each(Visit&& visit) const {
     std::size_t first = 0;
@@ -66,7 +66,7 @@ class ContactQueue {
     }
   }
 
-  /// Keeps the memory of an ordinary queue for the next, and gives a burst's back.
+  /// Empties the queue. Keeps an ordinary amount of memory for reuse and frees that of a burst.
   void clear() {
     if (bytes_ > kOrdinaryBytes) {
       messages_ = {};
@@ -83,12 +83,12 @@ class ContactQueue {
   std::size_t bytes() const { return bytes_; }
 
  private:
-  // What a probe of 1 kHz brings in the longest of ordinary recognitions, of some milliseconds.
+  // What a probe of 1 kHz sends during an ordinary recognition of some milliseconds.
   static constexpr std::size_t kOrdinaryBytes = 16 * 1024;
 
   std::vector<QueuedContacts> messages_;
   std::vector<ContactSample> samples_;
-  std::vector<SampleDetail> details_;  ///< of the messages that have them
+  std::vector<SampleDetail> details_;  ///< only of the messages that have them
   std::size_t bytes_ = 0;
 };
 

@@ -16,7 +16,7 @@ bool all_finite(double x, double y, double sigma) {
   return std::isfinite(x) && std::isfinite(y) && std::isfinite(sigma);
 }
 
-/// Whether any of it is said; what is set to 0 is said.
+/// True if any field is set, even to 0.
 bool has_normal(const v1::ContactSample& sample) {
   return sample.has_normal_x() || sample.has_normal_y() || sample.has_normal_sigma_rad();
 }

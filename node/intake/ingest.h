@@ -1,5 +1,5 @@
-// The border: one message from the wire becomes core types, or a reason why not. No sockets, no
-// clock and no memory of earlier messages, so that it can be fuzzed.
+// Checks and decodes one message from the wire into core types, or returns the reason why not. Uses
+// no sockets, no clock and no memory of earlier messages, so that it can be fuzzed.
 #pragma once
 
 #include <cstddef>
@@ -16,25 +16,27 @@ namespace palpate {
 
 struct IngestLimits {
   std::size_t max_message_bytes = 65536;  ///< of the second frame
-  /// About 40 kB on the wire; with normals and covariances 94 kB, which is too long a message.
+  /// A message of 1,024 samples has about 40 kB. With normals and covariances it has 94 kB, which
+  /// exceeds max_message_bytes.
   std::size_t max_samples_per_batch = 1024;
-  /// Largest |x|, |y|. Beyond it a double no longer resolves a nanometre. [m]
+  /// Largest |x| and |y|. A double beyond 1e7 m does not resolve a nanometre. [m]
   double max_coordinate_m = 1e7;
   double max_sigma_m = 1e3;       ///< [m]
   double max_tip_radius_m = 1e3;  ///< [m]
 };
 
-/// Sigmas between 0 ("not known") and this are no real noise, and their squares would underflow.
-/// [m]
+/// Smallest valid sigma, except 0 ("not known"): no real noise is smaller, and its square would
+/// underflow. [m]
 inline constexpr double kMinSigma = 1e-15;
 
-/// The same of a normal's direction: a unit vector is rounded by a tenth of that. [rad]
+/// Smallest valid standard deviation of a normal's direction: ten times the rounding of a unit
+/// vector. [rad]
 inline constexpr double kMinNormalSigma = 1e-15;
 
-/// A message that has passed; views point into the decoder's memory.
+/// A message that has passed all checks. The views point into the decoder's memory.
 struct ContactMessage {
   std::string_view probe;
-  std::string_view group;  ///< the probe's name where the message has none
+  std::string_view group;  ///< the probe's name if the message has no group
   std::string_view frame;
   std::uint64_t epoch = 0;
   std::uint64_t seq = 0;
@@ -44,24 +46,24 @@ struct ContactMessage {
   double tip_radius_m = 0.0;
   MaterialSide material_side = MaterialSide::Unspecified;
   std::vector<ContactSample> samples;  ///< at least one
-  std::vector<SampleDetail> details;   ///< of the samples; empty where none says more
+  std::vector<SampleDetail> details;   ///< one per sample, or empty if no sample has any
   std::int64_t newest_sample_stamp_ns = 0;
 };
 
-/// Decodes messages one after the other, without allocating once it has grown to the largest.
+/// Decodes messages one after the other. Does not allocate after it has seen the largest message.
 class ContactDecoder {
  public:
   explicit ContactDecoder(const IngestLimits& limits = {}) : limits_(limits) {}
 
-  /// Checks and decodes one message of `frame_count` frames, of which the first two are given
-  /// (empty where there are fewer). Returns REJECT_REASON_UNSPECIFIED where it has passed;
-  /// message() then holds until the next call.
+  /// Checks and decodes a message of `frame_count` frames; `topic` and `payload` are the first two
+  /// (empty if there are fewer). Returns REJECT_REASON_UNSPECIFIED if it has passed; message() then
+  /// holds until the next call.
   v1::RejectReason decode(std::size_t frame_count, std::string_view topic,
                           std::string_view payload);
 
   const ContactMessage& message() const { return message_; }
 
-  /// The probe of the topic last decoded, empty where the topic was invalid.
+  /// The probe of the last topic; empty if the topic was invalid.
   std::string_view probe() const { return probe_; }
 
  private:
@@ -75,7 +77,7 @@ class ContactDecoder {
   ContactMessage message_;
 };
 
-/// True for reasons that say the bytes are no contact message at all.
+/// True for reasons which say that the bytes are no contact message at all.
 bool is_malformed(v1::RejectReason reason);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// From the probe's patch numbers to runs of unbroken contact.
+// Splits a probe's patches into runs of unbroken contact.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace palpate {
 
-/// A run ends where the probe says so (another patch number), where the probe or the object starts
-/// anew, and where messages were lost and the arc is broken by it. Runs are numbered for the
-/// recognizer and never joined again; the probe's number of each is remembered.
+/// A run ends where the patch number changes, where the probe or the object starts anew, and where
+/// lost messages leave a gap in the arc. The recognizer gets its own number for each run; the
+/// probe's patch number of each is kept.
 class PatchNumbering {
  public:
-  /// Number of the run that these samples continue or begin. `break_spacings`: after lost messages
-  /// the arc is broken where the hole exceeds this many sample spacings.
+  /// Number of the run that these samples continue or begin. `break_spacings`: after lost messages,
+  /// a gap larger than this many sample spacings ends the run.
   std::uint32_t run_of(std::uint32_t wire_patch, bool samples_are_missing, double break_spacings,
                        std::span<const ContactSample> samples) {
     const bool joins = open_ && wire_patch == wire_patches_.back() &&
@@ -27,10 +27,10 @@ class PatchNumbering {
     return first_run_ + static_cast<std::uint32_t>(wire_patches_.size()) - 1;
   }
 
-  /// The next samples begin a run in any case: new epoch, new object.
+  /// Makes the next samples begin a new run (new epoch or new object).
   void end_run() { open_ = false; }
 
-  /// The probe's own number of a run; nullopt where that is too long ago.
+  /// The probe's patch number of a run; nullopt if the run is too old.
   std::optional<std::uint32_t> wire_patch(std::uint32_t run) const {
     const std::uint32_t index = run - first_run_;
     if (index >= wire_patches_.size()) return std::nullopt;
@@ -38,7 +38,8 @@ class PatchNumbering {
   }
 
  private:
-  // Twice the strokes (most_patches, 1,024 at most) and touches (1,024) that one recognition holds.
+  // Twice what one recognition holds: most_patches strokes (at most 1,024) plus 1,024 single
+  // touches.
   static constexpr std::size_t kRemembered = 4096;
 
   void begin(std::uint32_t wire_patch) {
@@ -52,13 +53,14 @@ class PatchNumbering {
     spacing_ = 0.0;
   }
 
-  // A single sample has no spacing: then nothing speaks for an unbroken arc.
+  // A single sample gives no spacing, so nothing shows that the arc is unbroken.
   bool is_broken(double break_spacings, std::span<const ContactSample> samples) const {
     if (!has_last_ || samples.empty()) return true;
     return (samples.front().position_m - last_).norm() > break_spacings * spacing_;
   }
 
-  // Mean spacing over about the last kMemory samples; a hole is no spacing.
+  // Updates the mean spacing over about the last kMemory samples. A gap does not count as a
+  // spacing.
   void follow(std::span<const ContactSample> samples, bool after_hole) {
     constexpr double kMemory = 16.0;
     for (const ContactSample& sample : samples) {

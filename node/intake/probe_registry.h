@@ -1,4 +1,4 @@
-// The probes that are known, with their health; never more than a bound.
+// All known probes with their health, within a fixed bound.
 #pragma once
 
 #include <chrono>
@@ -20,33 +20,33 @@ struct Probe {
   std::string name;
   std::string group;  ///< of its latest message
   SequenceTracker sequence;
-  std::optional<std::uint64_t> object;  ///< number in its latest message
+  std::optional<std::uint64_t> object;  ///< in its latest message
   SteadyTime last_heard;
   bool alive = true;
-  std::uint64_t messages = 0;  ///< taken
-  std::uint64_t samples = 0;   ///< taken
+  std::uint64_t messages = 0;  ///< accepted
+  std::uint64_t samples = 0;   ///< accepted
   std::uint64_t rejected = 0;
   RateMeter message_rate;
   RateMeter sample_rate;
-  std::int64_t latency_ns = 0;  ///< of the latest message, publication to arrival
+  std::int64_t latency_ns = 0;  ///< of the latest message, from publication to arrival
   enum class Told { Nothing, Up, Silent };
-  Told told = Told::Nothing;  ///< of what the operator has read
+  Told told = Told::Nothing;  ///< what the log last said about it
 };
 
 class ProbeRegistry {
  public:
-  /// `evict_idle`: who is silent for longer may be forgotten to make room. Active probes are never
-  /// pushed out: a flood of invented names must not cost a real probe its place.
+  /// `evict_idle`: a probe silent for longer may be forgotten to make room. Active probes are never
+  /// evicted, so a flood of invented names cannot displace a real probe.
   ProbeRegistry(std::size_t max_probes, std::chrono::duration<double> evict_idle)
       : max_probes_(max_probes), evict_idle_(evict_idle) {}
 
   Probe* find(std::string_view name);
 
-  /// True where add() would find room.
+  /// True if add() would find room.
   bool has_room(SteadyTime now) const;
 
-  /// Adds an unknown probe, in place of the one silent for longest where there is no free place;
-  /// that one's name goes to `evicted`. Needs has_room().
+  /// Adds a new probe. If there is no room, it replaces the probe silent for longest, whose name
+  /// goes to `evicted`. Needs has_room().
   Probe& add(std::string_view name, SteadyTime now, std::string& evicted);
 
   const std::map<std::string, Probe, std::less<>>& all() const { return probes_; }
@@ -54,7 +54,7 @@ class ProbeRegistry {
 
   std::uint64_t evicted_count() const { return evicted_count_; }
 
-  /// Sums over all probes that ever were.
+  /// Sums over all probes, including those forgotten.
   std::uint64_t gaps() const;
   std::uint64_t missing() const;
   std::uint64_t restarts() const;

@@ -1,4 +1,4 @@
-// Events a second over the last second.
+// Events per second, averaged over the last second.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ class RateMeter {
     buckets_[current_ % kBuckets] += count;
   }
 
-  /// Mean over the last second; the current tenth counts as far as it has gone.
+  /// Mean over the last second; of the current tenth only the elapsed part counts.
   double per_second(Time now) {
     advance(now);
     std::uint64_t sum = 0;

@@ -1,4 +1,4 @@
-// Order and completeness of one topic's messages, told from (epoch, seq).
+// Checks order and completeness of one topic's messages by their (epoch, seq).
 #pragma once
 
 #include <array>
@@ -8,16 +8,16 @@
 namespace palpate {
 
 enum class SequenceEvent {
-  First,        ///< nothing was known of this sender
+  First,        ///< the first message of this sender
   Next,         ///< follows the last one
   Gap,          ///< messages before it are missing
-  Restart,      ///< a new epoch, or the same one counted anew
-  NotNewer,     ///< a duplicate, or out of order: not to be used
-  TooFarAhead,  ///< more missing than anybody can have sent: not to be used
-  StaleEpoch,   ///< from before a restart: not to be used
+  Restart,      ///< a new epoch, or seq counted anew in the same one
+  NotNewer,     ///< a duplicate or out of order: do not use
+  TooFarAhead,  ///< more messages missing than possible: do not use
+  StaleEpoch,   ///< from before a restart: do not use
 };
 
-/// True where the message is to be used.
+/// True if the message is to be used.
 constexpr bool is_news(SequenceEvent event) {
   return event != SequenceEvent::NotNewer && event != SequenceEvent::TooFarAhead &&
          event != SequenceEvent::StaleEpoch;
@@ -25,7 +25,7 @@ constexpr bool is_news(SequenceEvent event) {
 
 class SequenceTracker {
  public:
-  /// What a message of (epoch, seq) would be, without taking it.
+  /// Classifies a message of (epoch, seq) without recording it.
   SequenceEvent judge(std::uint64_t epoch, std::uint64_t seq) const {
     if (!started_) return SequenceEvent::First;
     if (epoch != epoch_) {
@@ -35,19 +35,19 @@ class SequenceTracker {
       return SequenceEvent::Restart;
     }
     if (seq > seq_ && seq - seq_ > kLargestGap) return SequenceEvent::TooFarAhead;
-    // One wild number must not shut a sender out that counts on from where it was. And a sender
-    // that never sets its epoch has no other way to say that it has restarted.
+    // A single wrong number must not shut out a sender that continues where it was. And a sender
+    // that never sets its epoch cannot show a restart in any other way.
     if (seq < seq_ && (seq_ - seq > kLargestGap || epoch == 0)) return SequenceEvent::Restart;
     if (seq <= seq_) return SequenceEvent::NotNewer;
     return seq == seq_ + 1 ? SequenceEvent::Next : SequenceEvent::Gap;
   }
 
-  /// Judges, and takes the message if it is news.
+  /// Classifies the message, and records it if it is to be used.
   SequenceEvent take(std::uint64_t epoch, std::uint64_t seq) {
     const SequenceEvent event = judge(epoch, seq);
     if (!is_news(event)) return event;
-    // A restarted sender counts from 0: what is below was sent before we heard it again. Of a
-    // sender never heard before nobody can say since when we should have heard it.
+    // A restarted sender counts from 0, so all messages below seq were lost. For the first message
+    // of an unknown sender there is no such knowledge.
     const std::uint64_t lost = event == SequenceEvent::Gap       ? seq - seq_ - 1
                                : event == SequenceEvent::Restart ? seq
                                                                  : 0;
@@ -65,9 +65,9 @@ class SequenceTracker {
 
   std::uint64_t epoch() const { return epoch_; }
   std::uint64_t seq() const { return seq_; }
-  std::uint64_t gaps() const { return gaps_; }          ///< holes
-  std::uint64_t missing() const { return missing_; }    ///< messages in the holes
-  std::uint64_t restarts() const { return restarts_; }  ///< changes of epoch
+  std::uint64_t gaps() const { return gaps_; }          ///< number of gaps
+  std::uint64_t missing() const { return missing_; }    ///< messages missing in the gaps
+  std::uint64_t restarts() const { return restarts_; }  ///< new epochs, or seq counted anew
 
  private:
   void retire(std::uint64_t epoch) {
@@ -76,9 +76,10 @@ class SequenceTracker {
     if (retired_count_ < retired_.size()) ++retired_count_;
   }
 
-  // What a sender of 1 kHz sends in 50 days unheard.
+  // A sender of 1 kHz needs 50 days for so many messages.
   static constexpr std::uint64_t kLargestGap = std::uint64_t{1} << 32U;
-  // Epochs left behind. Old connections drain within seconds: a handful of restarts is enough.
+  // Number of former epochs remembered. Old connections drain within seconds, so a handful of
+  // restarts is enough.
   static constexpr std::size_t kRetiredEpochs = 8;
 
   bool started_ = false;

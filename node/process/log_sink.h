@@ -1,4 +1,4 @@
-// Where the node's log goes: standard error, but never for longer than nobody reads it.
+// Log sink for standard error that never blocks.
 #pragma once
 
 #include <poll.h>
@@ -16,9 +16,9 @@
 
 namespace palpate {
 
-/// Writes to a descriptor where it takes a line at once: a pipe that nobody empties or a terminal
-/// that is held must not stop the node. Lines lost are counted, and told with the next that goes
-/// out. One thread's.
+/// Writes a line only if the descriptor accepts it at once: a pipe that nobody reads or a stopped
+/// terminal must not stop the node. Counts lost lines and reports them with the next line written.
+/// Not thread-safe.
 class LogSink : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
  public:
   explicit LogSink(int fd) : fd_(fd) {}
@@ -42,7 +42,7 @@ class LogSink : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
   void flush_() override {}
 
  private:
-  // A pipe that is ready takes so many bytes without blocking.
+  // A pipe that is ready accepts this many bytes without blocking.
   static constexpr std::size_t kMostBytes = PIPE_BUF;
 
   bool write(std::string_view text) const {

@@ -1,12 +1,12 @@
-// Silence for protobuf's own log.
+// Switches protobuf's own log off.
 #pragma once
 
 #include <google/protobuf/stubs/logging.h>
 
 namespace palpate {
 
-/// Every program calls this first: libprotobuf would print a line for each malformed message, as
-/// many as a stranger likes to send. Who parses counts what fails, or says it.
+/// Every program calls this first. Otherwise libprotobuf would print a line for each malformed
+/// message, as many as a stranger sends. The code that parses counts or reports failures itself.
 inline void silence_protobuf() { google::protobuf::SetLogHandler(nullptr); }
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// SIGHUP as something to poll: reread what may change while the program runs.
+// SIGHUP as a descriptor to poll: asks the program to read its key and probe files again.
 #pragma once
 
 #include <pthread.h>
@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// Blocks SIGHUP, to be read from the returned descriptor; -1 where there is none. Call it before
-/// any thread starts.
+/// Blocks SIGHUP and returns a descriptor to read it from; -1 on failure. Call it before any thread
+/// starts.
 inline int take_reload_signal() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -19,7 +19,7 @@ inline int take_reload_signal() {
   return signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
-/// Whether a reload has been asked for since the last call.
+/// True if a reload has been requested since the last call.
 inline bool reload_requested(int reload_fd) {
   signalfd_siginfo info{};
   bool asked = false;

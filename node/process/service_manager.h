@@ -1,6 +1,5 @@
-// What systemd is told (sd_notify(3), which describes this protocol for programs without its
-// library): that the program serves, that it is alive, that it ends. Without a service manager
-// nothing is said.
+// Tells systemd that the program serves, that it is alive, and that it ends. Uses the protocol that
+// sd_notify(3) describes, without its library. Does nothing without a service manager.
 #pragma once
 
 #include <sys/socket.h>
@@ -20,11 +19,11 @@ class ServiceManager {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// From the environment, where the service manager says where it listens and how often it wants
-  /// to hear from us.
+  /// Reads the address and the watchdog interval that the service manager has put into the
+  /// environment.
   ServiceManager() {
     const char* address = std::getenv("NOTIFY_SOCKET");
-    // "/path" or, of Linux's abstract names, "@name".
+    // "/path", or "@name" for Linux's abstract names.
     const std::string_view path = address == nullptr ? "" : address;
     if (path.size() < 2 || path.size() >= sizeof address_.sun_path) return;
     if (path.front() != '/' && path.front() != '@') return;
@@ -36,7 +35,7 @@ class ServiceManager {
     const char* watchdog = std::getenv("WATCHDOG_USEC");
     const char* whose = std::getenv("WATCHDOG_PID");
     const bool ours = whose == nullptr || std::strtoll(whose, nullptr, 10) == ::getpid();
-    // Half of what it waits, as sd_watchdog_enabled(3) advises.
+    // Half of the watchdog interval, as sd_watchdog_enabled(3) advises.
     if (watchdog != nullptr && ours) {
       period_ = std::chrono::microseconds(std::strtoll(watchdog, nullptr, 10) / 2);
     }
@@ -50,7 +49,7 @@ class ServiceManager {
   void ready(const std::string& status) const { tell("READY=1\nSTATUS=" + status); }
   void stopping() const { tell("STOPPING=1"); }
 
-  /// Alive: said no more often than it must be.
+  /// Reports that the program is alive, no more often than necessary.
   void alive(Time now) {
     if (period_.count() <= 0 || now < next_) return;
     next_ = now + period_;
@@ -58,7 +57,7 @@ class ServiceManager {
   }
 
  private:
-  // A manager that does not listen is none of our trouble.
+  // Failures are ignored: the program must run without a listening manager.
   void tell(std::string_view text) const {
     if (fd_ < 0) return;
     (void)::sendto(fd_, text.data(), text.size(), MSG_NOSIGNAL,

@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM as something to poll.
+// SIGINT and SIGTERM as a descriptor to poll.
 #pragma once
 
 #include <poll.h>
@@ -10,8 +10,8 @@
 
 namespace palpate {
 
-/// Blocks the stop signals, to be read from the returned descriptor; -1 where there is none. Call
-/// it before any thread starts, so that every thread (libzmq's too) has them blocked.
+/// Blocks the stop signals and returns a descriptor to read them from; -1 on failure. Call it
+/// before any thread starts, so that every thread (libzmq's too) blocks them.
 inline int take_stop_signals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -21,7 +21,7 @@ inline int take_stop_signals() {
   return signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
-/// Whether a stop has been asked for.
+/// True if a stop has been requested.
 inline bool stop_requested(int stop_fd) {
   pollfd stop{stop_fd, POLLIN, 0};
   return ::poll(&stop, 1, 0) > 0;

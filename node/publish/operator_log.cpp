@@ -8,10 +8,10 @@
 namespace palpate {
 namespace {
 
-// A tip on its way to the next place is not silent to an operator; a probe that has been switched
-// off is, after this.
+// A probe on its way to the next place is not reported as silent; a probe that has been switched
+// off is, after this time.
 constexpr std::chrono::seconds kSilent{5};
-// Of one kind at a time: a flood of invented names must not become a flood of lines.
+// Lines of one kind per call: a flood of invented names must not flood the log.
 constexpr std::size_t kMostLines = 10;
 
 }  // namespace

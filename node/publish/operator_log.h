@@ -1,5 +1,5 @@
-// What an operator reads in the log: probes that come and fall silent, who is turned away and what
-// is rejected, each by name. Few lines, however much happens.
+// Messages for the operator: which probes come and fall silent, which clients are refused, and what
+// is rejected, each by name. Only a few lines, however much happens.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace palpate {
 
 class OperatorLog {
  public:
-  /// Logs what is new since the last call; `zap` is nullptr without CURVE.
+  /// Logs what is new since the last call. `zap` is nullptr without CURVE.
   void tell(Intake& intake, const ZapHandler* zap, SteadyTime now);
 
  private:

@@ -14,8 +14,8 @@ void ResultPublisher::publish(TopicKind kind, std::string_view name, v1::Header&
   auto found = feeds_.find(topic);
   if (found == feeds_.end()) {
     found = feeds_.emplace(topic, Feed()).first;
-    // A topic that may have been counted before must not count from 0 again in the same epoch:
-    // receivers would take the new messages for old ones.
+    // A topic that may have been used before must not count from 0 again in the same epoch:
+    // receivers would take its messages for old ones.
     found->second.epoch = has_forgotten_ ? random_epoch() : epoch_;
   }
   Feed& feed = found->second;
@@ -31,7 +31,7 @@ void ResultPublisher::publish(TopicKind kind, std::string_view name, v1::Header&
 
 namespace {
 
-/// Whether a subscription to `prefix` asks for topics that begin with `topics`.
+/// True if a subscription to `prefix` matches some topic that begins with `topics`.
 bool meets(std::string_view prefix, std::string_view topics) {
   return prefix.starts_with(topics) || topics.starts_with(prefix);
 }
@@ -43,8 +43,8 @@ void ResultPublisher::serve_subscriptions(int max_messages, PeerGuard* peers,
   TwoFrames message;
   for (int count = 0; count < max_messages && receive_now(socket_, message); ++count) {
     const std::string_view text(message.topic.data<char>(), message.topic.size());
-    // First byte 1 and then the prefix; 0 ends a subscription; anything else is no business of
-    // ours.
+    // First byte 1: a subscription to the prefix that follows; 0: its end. Other messages are
+    // ignored.
     const bool begins = !text.empty() && text.front() == '\1';
     const bool ends = !text.empty() && text.front() == '\0';
     if (message.frame_count != 1 || (!begins && !ends)) continue;
@@ -53,7 +53,8 @@ void ResultPublisher::serve_subscriptions(int max_messages, PeerGuard* peers,
       peers->count_subscription(descriptor_of(message.topic), begins, prefix.size());
     }
     if (meets(prefix, topic_prefix(TopicKind::Estimate))) {
-      // (One that repeats its subscription ends it once: the estimates then go on for nobody.)
+      // (A client that subscribes twice ends its subscription once; estimates then continue without
+      // a receiver.)
       if (begins) {
         ++estimate_subscriptions_;
       } else if (estimate_subscriptions_ > 0) {

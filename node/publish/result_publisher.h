@@ -1,4 +1,4 @@
-// Publishes results and keeps the latest of each topic for those who come late.
+// Publishes results and keeps the latest of each topic for late subscribers.
 #pragma once
 
 #include <google/protobuf/message_lite.h>
@@ -17,43 +17,43 @@
 
 namespace palpate {
 
-/// Last-value cache over an XPUB socket. A repeated message keeps its (epoch, seq), by which
-/// receivers know it: a repetition reaches everyone.
+/// A last-value cache on an XPUB socket. A repeated message reaches all subscribers; it keeps its
+/// (epoch, seq), so that they recognise it.
 class ResultPublisher {
  public:
-  /// `source`: name of the node. The socket must outlive this and be an XPUB with
-  /// ZMQ_XPUB_VERBOSER, so that every subscription is seen and not only a prefix's first, and the
-  /// end of each.
+  /// `source`: name of the node. The socket must outlive this object and be an XPUB with
+  /// ZMQ_XPUB_VERBOSER, which reports every subscription to a prefix (not only the first) and every
+  /// end of one.
   ResultPublisher(zmq::socket_t& socket, std::string source);
 
-  /// Fills in the header (a part of `message`; the frame stays as given), sends and remembers. An
-  /// estimate is one of a stream and not the state of something: sent once, it is not kept for
-  /// those who come late, and a hole in its seq says what a slow planner has lost.
+  /// Sets the header (part of `message`; the frame stays as given), sends the message and keeps it
+  /// for late subscribers. An estimate is not kept, because it is part of a stream; a gap in its
+  /// seq shows a slow planner what it has lost.
   void publish(TopicKind kind, std::string_view name, v1::Header& header,
                const google::protobuf::MessageLite& message);
 
-  /// Sends an accepted contact message on under its own topic, the bytes as they came, to those who
-  /// subscribe to it: without a subscriber the socket drops it uncopied. It is not kept for those
-  /// who come late, and its header stays the probe's.
+  /// Forwards an accepted contact message under its own topic, unchanged. Without a subscriber the
+  /// socket drops it uncopied. It is not kept for late subscribers, and its header stays the
+  /// probe's.
   void forward(TwoFrames& contact) { forward_now(socket_, contact); }
 
-  /// Takes the subscriptions that have come, at most `max_messages`, and sends the subscribers the
-  /// latest of every topic that they ask for: each once however many ask, and as it reaches all of
-  /// them, no oftener than every kLeastRepeat. What comes too soon waits for the next call. `peers`
-  /// counts them; nullptr = nobody does.
+  /// Reads at most `max_messages` subscriptions and sends the latest message of every topic that
+  /// they match. A topic is sent once, however many subscribe, because all subscribers receive it;
+  /// and at most once per kLeastRepeat: what comes too soon waits for the next call. `peers` counts
+  /// the subscriptions; nullptr = nobody does.
   void serve_subscriptions(int max_messages, PeerGuard* peers,
                            std::chrono::steady_clock::time_point now);
 
   static constexpr std::chrono::milliseconds kLeastRepeat{50};
 
-  /// Whether anybody has subscribed to estimates, of any probe.
+  /// True if anybody has subscribed to estimates, of any probe.
   bool estimates_are_wanted() const { return estimate_subscriptions_ > 0; }
 
-  /// Sends the latest of all topics again: a planner that has lost the newest message to a full
-  /// queue would otherwise stay with an old answer until the next touch.
+  /// Sends the latest message of all topics again. Otherwise a planner that has lost the newest
+  /// message to a full queue would keep an old answer until the next touch.
   void repeat_all();
 
-  /// The topic's name is gone; should it come back, it counts anew under a new epoch.
+  /// Forgets the topic. If it comes back, it counts from 0 in a new epoch.
   void forget(TopicKind kind, std::string_view name);
 
   std::uint64_t published_count() const { return published_count_; }
@@ -72,7 +72,7 @@ class ResultPublisher {
   std::string source_;
   std::uint64_t epoch_;
   bool has_forgotten_ = false;
-  std::map<std::string, Feed, std::less<>> feeds_;  // by topic: a prefix is a range
+  std::map<std::string, Feed, std::less<>> feeds_;  // by topic, sorted, so that a prefix is a range
   bool any_asked_for_ = false;
   std::uint64_t estimate_subscriptions_ = 0;
   std::chrono::steady_clock::time_point next_repeat_;

@@ -1,4 +1,4 @@
-// What NodeStatus says.
+// Fills in NodeStatus.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-/// What the intake does not know.
+/// Values that the intake does not know.
 struct NodeVitals {
   double uptime_s = 0.0;
   std::string_view version;
@@ -19,14 +19,14 @@ struct NodeVitals {
   std::uint64_t connections_cut = 0;
 };
 
-/// All but the header. Clears `out` first.
+/// Sets all fields but the header. Clears `out` first.
 void fill_status(Intake& intake, ComputeTimes& compute_times, const NodeVitals& vitals,
                  SteadyTime now, v1::NodeStatus& out);
 
-/// Sets each probe's `alive` by its age; returns the number of those that changed.
+/// Sets each probe's `alive` by its age. Returns how many changed.
 int update_liveness(ProbeRegistry& probes, std::chrono::duration<double> timeout, SteadyTime now);
 
-/// Resident memory of this process; 0 where the system does not tell. [bytes]
+/// Resident memory of this process; 0 if not known. [bytes]
 std::uint64_t resident_memory_bytes();
 
 }  // namespace palpate

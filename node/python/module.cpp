@@ -1,4 +1,4 @@
-// palpate._core: the recogniser for numpy arrays. What a user sees is in palpate/__init__.py.
+// palpate._core: the recognizer for numpy arrays. The public interface is palpate/__init__.py.
 #include <pybind11/eigen.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -79,7 +79,7 @@ py::dict contact_of(const palpate::LocalizedContact& contact) {
   return result;
 }
 
-/// An answer: what is asked of it is made for Python then.
+/// An answer. Its parts are converted to Python when they are read.
 struct Answer {
   palpate::Recognition recognition;
   double compute_s = 0.0;
@@ -101,7 +101,8 @@ void add_property(py::class_<Answer>& type, const char* name, Get get) {
   type.def_property_readonly(name, [get](const Answer& answer) { return get(answer.recognition); });
 }
 
-/// Adds the time of its scope: what is C++'s own, without the way from Python and back.
+/// Adds the time of its scope to a sum: the C++ time of a call, without the conversion from and to
+/// Python.
 class ComputeTime {
  public:
   explicit ComputeTime(double& sum_s) : sum_s_(sum_s) {}
@@ -123,8 +124,8 @@ class Recognizer {
       : recognizer_(options_of(sigma_m, classes, form_deviation_m, unqualified_probe, most_patches,
                                most_samples_per_patch)) {}
 
-  /// `points` n x 2 in metres, `sigma_m` of length n, 1 or 0, the others as PointDetails; returns
-  /// how many were taken.
+  /// `points`: n x 2, in metres. `sigma_m`: length n, 1 or 0. The others as in PointDetails.
+  /// Returns how many points were accepted.
   py::tuple add(const Array& points, const Array& sigma_m, std::uint32_t probe, std::uint32_t patch,
                 double tip_radius_m, const std::string& side, const Array& normals,
                 const Array& normal_sigmas, const Array& covariances_m2) {
@@ -136,7 +137,7 @@ class Recognizer {
     const palpate::PatchContext context{probe, patch, tip_radius_m, side_called(side)};
     const double* xy = points.data();
     const double* sigma = sigma_m.data();
-    // Nothing of a patch is taken where a part of it cannot be.
+    // If any point of a patch is invalid, none of the patch is added.
     std::size_t not_finite = 0;
     for (std::size_t i = 0; i < count; ++i) {
       not_finite += std::isfinite(xy[2 * i]) && std::isfinite(xy[2 * i + 1]) ? 0 : 1;
@@ -218,7 +219,7 @@ class Recognizer {
   double compute_s_ = 0.0;  // since the last answer
 };
 
-/// A curve where it lies in the world, in metres.
+/// A curve at its pose in the world, in metres.
 class PlacedCurve {
  public:
   PlacedCurve(const std::string& name, const Eigen::Vector3d& params, double x, double y,
@@ -242,8 +243,8 @@ class PlacedCurve {
     return points;
   }
 
-  /// Parameters of the nearest points, and the signed distances to them: positive to the left of
-  /// increasing t.
+  /// The curve parameters of the nearest points, and the signed distances to them (positive to the
+  /// left of increasing t).
   py::tuple feet(const Array& xy) const {
     const auto count = static_cast<py::ssize_t>(count_of_points(xy));
     Array t(count);
@@ -269,7 +270,7 @@ class PlacedCurve {
   palpate::Pose2 world_T_curve_;
 };
 
-/// The least squares of a class that is given, on points n x 2 in any unit of length; the others as
+/// Least squares fit of a given class. `points`: n x 2, in any unit of length. The others as in
 /// PointDetails.
 py::dict fit_given(const std::string& name, const Array& points, double sigma, const Array& normals,
                    const Array& normal_sigmas, const Array& covariances) {
@@ -338,7 +339,7 @@ PYBIND11_MODULE(_core, module) {
       .def("at", &PlacedCurve::at)
       .def("feet", &PlacedCurve::feet);
   module.def("fit_given", &fit_given);
-  // Throws where the details cannot be used: before they are sent, say.
+  // Throws if the details are invalid. Lets the caller check them before sending.
   module.def("check_details", [](std::size_t points, const Array& normals,
                                  const Array& normal_sigmas, const Array& covariances) {
     PointDetails(normals, normal_sigmas, covariances, points);

@@ -72,7 +72,7 @@ void PointDetails::check(std::size_t i) const {
   }
   if (covariances_ != nullptr) {
     const double* c = covariances_ + (one_covariance_ ? 0 : 4 * i);
-    constexpr double kRounding = 1e-12;  // of the products that a covariance is made of
+    constexpr double kRounding = 1e-12;  // rounding of the products that a covariance consists of
     if (!is_covariance({c[0], c[1], c[3]}) ||
         std::abs(c[1] - c[2]) > kRounding * std::sqrt(c[0] * c[3])) {
       throw std::invalid_argument("covariances: number " + std::to_string(i) +

@@ -10,15 +10,15 @@ namespace palpate {
 
 using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
-/// Throws std::invalid_argument unless of shape (n, 2).
+/// Number of points. Throws std::invalid_argument unless the shape is (n, 2).
 std::size_t count_of_points(const Array& points);
 
-/// What is said of the points beside where they are, read where numpy has it.
+/// Optional data of points besides their positions; reads numpy's memory without a copy.
 class PointDetails {
  public:
-  /// Each empty where nothing is said. `normals`: (n, 2), of unit length, (0, 0) where none was
-  /// measured; `normal_sigmas`: 1 or n, radians; `covariances`: (2, 2) or (n, 2, 2). Throws
-  /// std::invalid_argument that names what is not so.
+  /// Each array may be empty. `normals`: (n, 2), unit vectors, (0, 0) where none was measured.
+  /// `normal_sigmas`: 1 or n standard deviations, in radians. `covariances`: (2, 2) or (n, 2, 2).
+  /// Throws std::invalid_argument that names the problem.
   PointDetails(const Array& normals, const Array& normal_sigmas, const Array& covariances,
                std::size_t points);
 

@@ -39,5 +39,5 @@ def version() -> str:
 (ROOT / "build").mkdir(exist_ok=True)
 setup(version=version(),
       packages=["palpate"], cmdclass={"build_py": ByCMake}, distclass=ForOnePython,
-      # Nothing of it beside the sources.
+      # Write nothing next to the sources.
       options={"build": {"build_base": str(ROOT / "build/wheel-parts")}, "egg_info": {"egg_base": str(ROOT / "build")}})

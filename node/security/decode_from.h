@@ -1,4 +1,4 @@
-// Decoding with the sender's rights.
+// Decodes a message and checks that its sender may publish it.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// Decodes a message of that sender (ContactDecoder::decode). What it may not publish as is
-/// rejected for that, whatever else is wrong.
+/// Decodes a message of that sender (ContactDecoder::decode). Returns NOT_ALLOWED if the sender may
+/// not publish as this probe, whatever else is wrong.
 inline v1::RejectReason decode_from(const Sender& sender, ContactDecoder& decoder,
                                     std::size_t frame_count, std::string_view topic,
                                     std::string_view payload) {

@@ -1,4 +1,4 @@
-// Keys of the side that binds: its own, and those that may connect.
+// The node's CURVE keys: its own, and those of the clients that may connect.
 #pragma once
 
 #include <optional>
@@ -17,11 +17,11 @@ struct NodeKeys {
   std::vector<AllowedClient> clients;
 };
 
-/// Reads the key files; with an empty path there is nothing to read: CURVE is not asked for.
+/// Reads the key files. An empty path means no CURVE.
 Result<NodeKeys> read_node_keys(const std::string& secret_key_path,
                                 const std::string& allowed_path);
 
-/// nullopt where there is no CURVE. Make it before the sockets that ask it.
+/// nullopt without CURVE. Create it before the sockets that use it.
 std::optional<ZapHandler> make_zap_handler(zmq::context_t& context, const NodeKeys& keys);
 
 }  // namespace palpate

@@ -55,7 +55,7 @@ void PeerGuard::tend(Time now) {
     if (told->event == ZMQ_EVENT_ACCEPTED) peers_.emplace(descriptor, Peer{now});
   }
   while (peers_.size() > bounds_.max_peers) {
-    // The one silent for longest, if that is long enough; else the last to come.
+    // The peer that has been silent for longest, if that is long enough; else the newest.
     const auto order = [](const auto& a, const auto& b) {
       return std::pair(a.second.spoke, a.second.since) < std::pair(b.second.spoke, b.second.since);
     };
@@ -76,7 +76,7 @@ void PeerGuard::hear(int descriptor) {
 
 void PeerGuard::count_subscription(int descriptor, bool begins, std::size_t bytes) {
   const auto peer = peers_.find(descriptor);
-  if (peer == peers_.end()) return;  // has left, or been cut
+  if (peer == peers_.end()) return;  // has left or been cut
   peer->second.spoke = true;
   std::size_t& held = peer->second.subscription_bytes;
   if (!begins) {
@@ -102,7 +102,8 @@ void PeerGuard::cut_all(const std::string& why) {
   while (!peers_.empty()) cut(peers_.begin(), why);
 }
 
-// By its descriptor, as libzmq has no call for it: its connection ends as if the peer had left.
+// Shuts the connection's descriptor down, because libzmq has no call for it. To libzmq it looks as
+// if the peer had left.
 void PeerGuard::cut(Peers::iterator peer, const std::string& why) {
   last_cut_ = name_of_peer(peer->first);
   last_cut_.append(": ").append(why);

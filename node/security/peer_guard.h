@@ -1,4 +1,4 @@
-// Bounds on the peers of a bound socket, and on what they subscribe to.
+// Limits the number of peers of a bound socket and the size of their subscriptions.
 #pragma once
 
 #include <chrono>
@@ -14,47 +14,47 @@ namespace palpate {
 
 struct PeerBounds {
   std::size_t max_peers = 256;  ///< of each socket
-  /// Of one peer; all together may have kPeersOfSubscriptions times as much. libzmq takes about 32
-  /// bytes of memory for each byte. [bytes]
+  /// Of one peer; all peers together may have kPeersOfSubscriptions times as much. libzmq uses
+  /// about 32 bytes of memory for each byte. [bytes]
   std::size_t max_subscription_bytes = 65536;
 };
 
-/// libzmq itself bounds neither. This watches the connections of a socket by its events, and cuts
-/// those that are too many or ask for too much; who has been cut is counted and named. Belongs to
-/// the socket's thread, and must be destroyed before the socket.
+/// libzmq limits neither. This class watches the connections of a socket by its events and cuts
+/// those beyond the limits; they are counted and named. Owned by the socket's thread; must be
+/// destroyed before the socket.
 class PeerGuard {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
   static constexpr std::size_t kPeersOfSubscriptions = 16;
-  /// What a subscription counts beside its own bytes, for the nodes that libzmq keeps at its end.
+  /// Added to the length of each subscription, for libzmq's nodes.
   static constexpr std::size_t kSubscriptionOverheadBytes = 32;
-  /// A peer that has said nothing for so long gives way to another.
+  /// A peer silent for this long may be replaced by another.
   static constexpr std::chrono::seconds kSilence{10};
 
-  /// `what`: name of the socket in logs. Throws zmq::error_t where the monitor cannot be made.
+  /// `what`: name of the socket in logs. Throws zmq::error_t if the monitor cannot be created.
   PeerGuard(zmq::context_t& context, zmq::socket_t& socket, const PeerBounds& bounds,
             std::string what);
 
-  /// Takes the events that have come, and cuts who is too many.
+  /// Reads the events and cuts peers beyond the limit.
   void tend(Time now);
 
-  /// To be polled for input: tend() then.
+  /// To be polled for input; then call tend().
   zmq::socket_t& events() { return monitor_.events(); }
 
-  /// The peer of that descriptor (descriptor_of) has said something.
+  /// The peer with that descriptor (descriptor_of) has sent something.
   void hear(int descriptor);
 
-  /// It has subscribed to so many bytes, or ended that subscription. Cuts who has too much.
+  /// The peer has begun or ended a subscription of so many bytes. Cuts peers beyond the limit.
   void count_subscription(int descriptor, bool begins, std::size_t bytes);
 
-  /// Cuts all: who may, comes back at once.
+  /// Cuts all connections. Clients that are allowed reconnect at once.
   void cut_all(const std::string& why);
 
   std::size_t peer_count() const { return peers_.size(); }
   std::uint64_t cut_count() const { return cut_count_; }
 
-  /// What has been cut since the last call, for the log; empty where nothing has.
+  /// Describes the cuts since the last call, for the log; empty if there are none.
   std::string take_report();
 
  private:
@@ -78,7 +78,7 @@ class PeerGuard {
   std::string last_cut_;
 };
 
-/// Descriptor of the connection that a message came in on; -1 where it came from nobody.
+/// Descriptor of the connection on which a message arrived; -1 if there is none.
 int descriptor_of(zmq::message_t& message);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// Who sent a message, and what that one may do.
+// The sender of a message and its rights.
 #pragma once
 
 #include <string_view>
@@ -7,10 +7,10 @@
 
 namespace palpate {
 
-/// Who sent a message, as far as it matters.
+/// The sender of a message.
 struct Sender {
   std::string_view key;                ///< Z85; empty without CURVE
-  const ProbeNames* probes = nullptr;  ///< as which it may publish; nullptr = any
+  const ProbeNames* probes = nullptr;  ///< names it may publish under; nullptr = any
 
   bool may_publish_as(std::string_view probe) const {
     return probes == nullptr || probes->contains(probe);

@@ -14,7 +14,8 @@ constexpr std::string_view kZapVersion = "1.0";
 constexpr std::size_t kKeyBytes = 32;
 constexpr std::size_t kZapFrames = 7;
 constexpr std::size_t kZ85Length = 40;
-constexpr const char* kUserId = "User-Id";  // ZMTP's name for the ZAP reply's user id
+// The name by which ZMTP passes the user id of the ZAP reply.
+constexpr const char* kUserId = "User-Id";
 
 std::string z85_of(std::string_view bytes) {
   std::array<char, kZ85Length + 1> text{};

@@ -1,4 +1,4 @@
-// The samples of CSV files, sorted into objects to be recognised.
+// Sorts the samples of sample files into objects to be recognised.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,23 @@
 
 namespace palpate {
 
-/// What is recognised together: one object under one group of one file.
+/// The samples that are recognised together: those of one object of one group of one file.
 struct ContactGroup {
   std::string file;
   std::string name;
   std::uint64_t object = 0;
-  std::vector<std::string> probes;  ///< names, by the runs' context.probe
+  std::vector<std::string> probes;  ///< names, indexed by context.probe of the runs
   std::vector<ContactRun> runs;     ///< in the order of the file
 };
 
-/// Groups in the order in which the file begins them.
+/// Groups in the order of their first sample in the file.
 std::vector<ContactGroup> contact_groups(const std::string& file, const ContactTable& table);
 
-/// That of measured normals nothing counts and of covariances the mean noise, where there are any;
-/// else nothing.
+/// If the samples have normals or covariances: a note that normals are not used and that only the
+/// mean noise of covariances is; else empty.
 std::string note_of_unused_detail(const ContactGroup& group);
 
-/// Feeds them all to a recogniser.
+/// Adds all samples of the group to the recognizer.
 AddResult add_group(const ContactGroup& group, Recognizer& recognizer);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// palpate: the tool beside the recognizer node. Each subcommand has a file <name>_command.cpp.
+// palpate: the command-line tool. Each subcommand has a file commands/<name>_command.cpp.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -96,7 +96,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   palpate::silence_protobuf();
   const int exit_code = run(argc, argv);
-  // What was said has to have arrived: a full disk is known only now.
+  // Check that all output has been written: a full disk shows only now.
   const bool written =
       std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (!written && exit_code == palpate::kDone) {

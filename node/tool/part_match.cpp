@@ -11,14 +11,14 @@
 namespace palpate {
 namespace {
 
-/// Placements are sought all along the part, which takes some ten milliseconds a segment; a part of
-/// a metre so has one each 4 mm.
+/// Placements are searched for all along the part, which takes about ten milliseconds per segment.
+/// A part of one metre may thus have a segment every 4 mm.
 constexpr std::size_t kMostControlPoints = 256;
 
-/// Rounding of coordinates there is 2 nm, what the finest probes tell apart.
+/// At this distance the rounding of a coordinate is 2 nm, the resolution of the finest probes.
 constexpr double kFarthest_m = 1e7;
 
-/// One for each probe and patch number, in the order in which they begin.
+/// One patch for each probe and patch number, in the order of their first sample.
 std::vector<StoredPatch> patches_of(const ContactGroup& group) {
   std::vector<StoredPatch> patches;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> index_of;

@@ -1,4 +1,5 @@
-// Patches on a known closed part: model file in, message and text out.
+// Matches patches to a known closed part: reads the model, returns the answer as a message and as
+// text.
 #pragma once
 
 #include <string>
@@ -11,17 +12,17 @@
 
 namespace palpate {
 
-/// The closed spline of a file in the scenes' schema (palpate/v1/scene.proto); its pose and probes
-/// are not looked at. An error reads "FILE[:LINE:COLUMN]: what is wrong".
+/// Reads the closed spline of a scene file (palpate/v1/scene.proto); ignores its pose and probes.
+/// An error reads "FILE[:LINE:COLUMN]: what is wrong".
 Result<ClosedSpline> read_part(const std::string& path);
-/// The same of a text; `path` is what errors name.
+/// The same from text; `path` stands for the file in errors.
 Result<ClosedSpline> parse_part(const std::string& text, const std::string& path);
 
-/// Sample numbers count the samples of a patch in the order of the file.
+/// In the answer, samples are numbered within their patch, in the order of the file.
 v1::PartMatch match_part(const ContactGroup& group, const ClosedSpline& part,
                          const SegmentMatchOptions& options);
 
-/// For a person to read, several lines, each ended.
+/// A text of several lines for a person to read; each line ends with a line feed.
 std::string part_match_text(const v1::PartMatch& match);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// A qualification: what is written and said of it.
+// The results of a probe qualification, as a probe file and as text.
 #pragma once
 
 #include <string>
@@ -9,23 +9,24 @@
 
 namespace palpate {
 
-/// What was done: names for the probe file and the report.
+/// Names for the probe file and the report.
 struct QualificationOrigin {
-  std::string artefact;                 ///< "circle 0.0525"
+  std::string artefact;                 ///< e.g. "circle 0.0525"
   std::vector<std::string> recordings;  ///< files
-  std::string probe;                    ///< the name that all samples bear, else empty
+  std::string probe;  ///< the name of the probe if all samples have the same, else empty
 };
 
-/// Whether there is anything to write: the samples could be laid on the artefact.
+/// True if there is something to write: the artefact could be fitted to the samples.
 bool is_estimate(QualificationStatus status);
 
 v1::Probe probe_message(const Qualification& qualification, const QualificationOrigin& origin);
 
-/// For a person to read: each term with its deviation, what the samples cannot tell, the verdict.
+/// A text for a person to read: each term with its standard deviation, what the samples do not
+/// determine, and the verdict.
 std::string qualification_text(const Qualification& qualification,
                                const QualificationOrigin& origin);
 
-/// Why nothing could be estimated, a sentence.
+/// The sentence that says why nothing could be estimated.
 std::string why_not(QualificationStatus status);
 
 }  // namespace palpate

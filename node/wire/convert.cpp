@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-// The same fields stand in LocalizedContact and in LocalEstimate.
+// Sets the fields that LocalizedContact and LocalEstimate share.
 template <typename Message>
 void fill_geometry(const LocalEstimate& estimate, const ContactSource& source, Message& out) {
   out.set_probe(source.probe.data(), source.probe.size());
@@ -29,7 +29,7 @@ void fill_hypothesis(const Hypothesis& hypothesis, v1::Hypothesis& out) {
   out.set_chi2(hypothesis.chi2);
   out.set_dof(static_cast<std::uint32_t>(std::max(hypothesis.dof, 0)));
   out.set_at_limit(hypothesis.at_limit);
-  // Hopeless classes are not brought to canonical form.
+  // Classes with no chance have no canonical form.
   if (hypothesis.at_limit || hypothesis.covariance.size() == 0) return;
   to_wire(hypothesis.shape, *out.mutable_parameters());
   to_wire(hypothesis.world_T_curve, *out.mutable_pose());
@@ -126,10 +126,10 @@ void to_wire(const Recognition& recognition, const ContactSourceOf& source_of,
   const CurveClass curve_class = recognition.shape.curve_class;
   out.set_status(to_wire(recognition.status));
   out.set_doubt(to_wire(recognition.doubt));
-  // While nothing is known no class is named: "unclassified" would be an answer.
+  // While COLLECTING no class is named: "unclassified" would be an answer.
   const bool has_answer = recognition.status != RecognitionStatus::Collecting;
   out.set_curve_class(has_answer ? to_wire(curve_class) : v1::CURVE_CLASS_UNSPECIFIED);
-  // A class that is best where it turns into another one has no shape of its own.
+  // A best fit at the limit of its class has no shape of that class.
   const bool has_shape = recognition.hypotheses.empty() || !recognition.hypotheses.front().at_limit;
   if (has_answer && has_shape && curve_class != CurveClass::Unclassified) {
     to_wire(recognition.shape, *out.mutable_parameters());

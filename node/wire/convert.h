@@ -1,4 +1,4 @@
-// From the recognizer's types to the wire's.
+// Converts the recognizer's types to messages.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 namespace palpate {
 
 v1::CurveClass to_wire(CurveClass curve_class);
-/// CurveClass::Unclassified for UNSPECIFIED and unknown values.
+/// CurveClass::Unclassified for UNSPECIFIED and for unknown values.
 CurveClass from_wire(v1::CurveClass curve_class);
 
 v1::RecognitionStatus to_wire(RecognitionStatus status);
@@ -24,22 +24,22 @@ v1::RecognitionDoubt to_wire(Doubt doubt);
 void to_wire(const ShapeParameters& shape, v1::Parameters& out);
 void to_wire(const Pose2& pose, v1::Pose2& out);
 
-/// Name of the probe and its own patch number, for the recognizer's numbers of both.
+/// Name of a probe and its own patch number, from the recognizer's numbers of both.
 struct ContactSource {
   std::string_view probe;
   std::uint32_t patch = 0;
 };
 using ContactSourceOf = std::function<ContactSource(std::uint32_t probe, std::uint32_t run)>;
 
-/// Fills in all that the recognizer knows; header, group, object, newest_* and compute_ns are left
-/// to the caller. Clears `out` first.
+/// Sets all fields that the recognizer knows; the caller sets header, group, object, newest_* and
+/// compute_ns. Clears `out` first.
 void to_wire(const Recognition& recognition, const ContactSourceOf& source_of,
              v1::Recognition& out);
 
-/// Sets the fields of a normal or covariance that is there.
+/// Sets the fields of the normal and of the covariance, if present.
 void to_wire(const SampleDetail& detail, v1::ContactSample& out);
 
-/// All but the header.
+/// Sets all fields but the header. Clears `out` first.
 void to_wire(const LocalEstimate& estimate, const ContactSource& source, v1::LocalEstimate& out);
 
 }  // namespace palpate

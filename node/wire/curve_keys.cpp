@@ -25,7 +25,8 @@ constexpr std::size_t kZ85Length = 40;
 constexpr std::string_view kPublicKey = "public-key";
 constexpr std::string_view kSecretKey = "secret-key";
 constexpr std::string_view kBlanks = " \t\r";
-// Larger than any list of keys that a person keeps; bounds what a wrong path makes us read.
+// Upper limits, larger than any list of keys that a person keeps: a wrong path must not make us
+// read a huge file.
 constexpr std::size_t kMaxKeys = 10000;
 constexpr std::size_t kMostKeyFileBytes = std::size_t{4} << 20;
 
@@ -50,13 +51,14 @@ std::string at_line(const std::string& path, std::size_t number, std::string_vie
   return (path + ":" + std::to_string(number) + ": ").append(what);
 }
 
-// A line that is a key and what the client may do. No key begins with '#': in Z85 its first five
-// characters would be a number beyond 32 bits.
+// True if the line is a bare key, perhaps followed by rights. No key begins with '#': its first
+// five characters would be a number beyond 32 bits in Z85.
 bool is_bare_key(std::string_view line) {
   return is_z85_key(std::string(line.substr(0, line.find_first_of(kBlanks))));
 }
 
-// What a line gives, "NAME = VALUE" or "NAME VALUE", the value perhaps in quotes, and what follows.
+// The parts of a line "NAME = VALUE" or "NAME VALUE". The value may be in quotes; `rest` is what
+// follows it.
 struct Setting {
   std::string_view name;
   std::string_view value;
@@ -67,7 +69,7 @@ Setting setting_of(std::string_view line) {
   const std::size_t end = line.find_first_of(" \t=");
   if (end == std::string_view::npos) return {line, {}, {}};
   std::string_view value = trimmed(line.substr(end));
-  // A key may begin with '=' itself.
+  // A key may itself begin with '='.
   const bool is_assigned = value.starts_with('=') && (line[end] == '=' || !is_bare_key(value));
   if (is_assigned) value = trimmed(value.substr(1));
   const bool is_quoted = value.starts_with('"') || value.starts_with('\'');
@@ -78,7 +80,7 @@ Setting setting_of(std::string_view line) {
           trimmed(value.substr(closing + (is_quoted ? 1 : 0)))};
 }
 
-// "probes=a,b": an empty string, or what is wrong.
+// Parses "probes=a,b". Returns an empty string or an error.
 std::string read_rights(std::string_view text, AllowedClient* client) {
   constexpr std::string_view kProbes = "probes=";
   if (text.empty()) return {};
@@ -109,7 +111,7 @@ Result<KeyLines> read_key_lines(const std::string& path) {
   std::istringstream file(*text.value);
   KeyLines keys;
   std::string line;
-  bool in_metadata = false;  // which says what it likes
+  bool in_metadata = false;  // its content is not checked
   for (std::size_t number = 1; std::getline(file, line); ++number) {
     const std::string_view said = trimmed(line);
     if (said.empty() || said.front() == '#') continue;
@@ -197,7 +199,8 @@ Result<CurveKeyPair> read_curve_keys(const std::string& secret_path) {
   if (::stat(secret_path.c_str(), &info) != 0) {
     return Keys::fail(secret_path + ": " + std::strerror(errno));
   }
-  // A credential of systemd's is ours by an access list, whose mask shows as the group's rights.
+  // systemd makes a credential readable to us by an access list, whose mask appears as the group's
+  // rights.
   const char* credentials = std::getenv("CREDENTIALS_DIRECTORY");
   const bool granted =
       credentials != nullptr && secret_path.starts_with(std::string(credentials) + "/");

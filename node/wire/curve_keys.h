@@ -1,15 +1,16 @@
-// CURVE keys and their files: certificates as CZMQ and pyzmq write and read them (ZPL, ZeroMQ's
-// RFC 4), so that each side may have made its own.
+// CURVE keys and their files: certificates as CZMQ and pyzmq write and read them (ZPL, ZeroMQ's RFC
+// 4), so that either side may have created its own.
 //
 //     metadata
 //     curve
 //         public-key = "KEY"
 //         secret-key = "KEY"
 //
-// KEY in Z85 (40 characters). A public file has no secret key; several of them, one after the
-// other, are an allow-clients file. Bare lines "public-key KEY" and "KEY" are read too, empty lines
-// and lines that begin with '#' skipped. In an allow-clients file the probes as which a client may
-// publish can follow its key; without them it may publish as all, with "probes=" as none:
+// KEY is in Z85 (40 characters). A public file has no secret key. Several public files, one after
+// the other, make an allow-clients file. Bare lines "public-key KEY" and "KEY" are accepted too;
+// empty lines and lines that begin with '#' are skipped. In an allow-clients file, a list of probes
+// may follow a key: the client may publish under these names only. Without a list it may publish
+// under any name, with "probes=" under none:
 //
 //     KEY probes=left,right
 #pragma once
@@ -31,30 +32,31 @@ struct CurveKeyPair {
 
 using ProbeNames = std::set<std::string, std::less<>>;
 
-/// Who may connect, and what it may do there.
+/// A client that may connect, and its rights.
 struct AllowedClient {
   std::string public_key;            ///< Z85
-  std::optional<ProbeNames> probes;  ///< as which it may publish; nullopt = any
+  std::optional<ProbeNames> probes;  ///< names it may publish under; nullopt = any
 };
 
-/// False where libzmq was built without CURVE: nothing below works then.
+/// False if libzmq was built without CURVE. Nothing below works then.
 bool curve_available();
 
-/// A fresh pair from the system's random source.
+/// Creates a pair of keys from the system's random source.
 Result<CurveKeyPair> generate_curve_keys();
 
 /// Writes both keys to `secret_path` (mode 0600) and the public key to `public_path` (mode 0644).
-/// Never overwrites. Returns an empty string, or what went wrong.
+/// Never overwrites a file. Returns an empty string or an error.
 std::string write_curve_keys(const CurveKeyPair& keys, const std::string& secret_path,
                              const std::string& public_path);
 
-/// Reads a secret key file. Fails where others may read it, or where the keys do not match.
+/// Reads a secret key file. Fails if other users may read it, or if its keys do not match.
 Result<CurveKeyPair> read_curve_keys(const std::string& secret_path);
 
-/// All public keys of a file, at least one. A public key file or several; without rights.
+/// Reads all public keys of a file, at least one: a public key file, or several together. Ignores
+/// rights.
 Result<std::vector<std::string>> read_public_keys(const std::string& path);
 
-/// The clients of an allow-clients file, at least one, each once.
+/// Reads the clients of an allow-clients file: at least one, no duplicates.
 Result<std::vector<AllowedClient>> read_allowed_clients(const std::string& path);
 
 }  // namespace palpate

@@ -13,10 +13,10 @@ constexpr std::string_view kTcp = "tcp://";
 constexpr std::string_view kIpc = "ipc://";
 constexpr std::string_view kInproc = "inproc://";
 
-// What follows the last colon: libzmq would take 99999 for 34463.
+// Checks the port after the last colon, because libzmq would take 99999 for 34463.
 bool has_port(std::string_view tcp_address) {
   const std::size_t colon = tcp_address.rfind(':');
-  if (colon == kTcp.size() - std::string_view("://").size()) return false;  // that of "tcp://"
+  if (colon == kTcp.size() - std::string_view("://").size()) return false;  // the colon of "tcp://"
   const std::string_view port = tcp_address.substr(colon + 1);
   std::uint16_t number = 0;
   const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);

@@ -1,4 +1,4 @@
-// Endpoint options: "bind:tcp://127.0.0.1:5581", "connect:ipc:///run/palpate/contacts".
+// Endpoint options such as "bind:tcp://127.0.0.1:5581" and "connect:ipc:///run/palpate/contacts".
 #pragma once
 
 #include <string>
@@ -13,17 +13,18 @@ inline constexpr std::string_view kDefaultResultsEndpoint = "tcp://127.0.0.1:558
 
 struct Endpoint {
   bool bind = false;
-  std::string address;  ///< as ZeroMQ takes it: tcp://, ipc:// or inproc://
+  std::string address;  ///< in ZeroMQ's form: tcp://, ipc:// or inproc://
 };
 
-/// A bare address gets `bind_by_default`. Fails on another transport or an empty address.
+/// An address without prefix gets `bind_by_default`. Fails on any other transport and on an empty
+/// address.
 Result<Endpoint> parse_endpoint(std::string_view text, bool bind_by_default);
 
 /// "bind:ADDRESS" or "connect:ADDRESS".
 std::string to_string(const Endpoint& endpoint);
 
-/// True where only this machine can reach the address: ipc, inproc, and tcp on a loopback address.
-/// A name other than "localhost" counts as not local: what it means can change.
+/// True if only this machine can reach the address: ipc, inproc, and tcp on a loopback address. A
+/// host name other than "localhost" counts as not local, because its meaning can change.
 bool is_local(const Endpoint& endpoint);
 
 }  // namespace palpate

@@ -31,7 +31,8 @@ v1::GivenClassStatus to_wire(GivenStatus status) {
   return v1::GIVEN_CLASS_STATUS_UNSPECIFIED;
 }
 
-/// From where travel goes at a sample to where the material lies; zero where either is not known.
+/// A vector from the direction of travel at sample i towards the material; zero if the material
+/// side is not known.
 Vec2 into_material(const ProbedPatch& run, std::size_t i) {
   if (run.context.material_side == MaterialSide::Unspecified) {
     return Vec2::Zero();
@@ -41,7 +42,7 @@ Vec2 into_material(const ProbedPatch& run, std::size_t i) {
   return run.context.material_side == MaterialSide::Left ? left_of(travel) : -left_of(travel);
 }
 
-/// `runs`: corrected.
+/// The points of a fit, from runs whose probe offsets are already subtracted.
 std::vector<GivenPoint> points_of(std::span<const ProbedPatch> runs,
                                   std::span<const std::size_t> left_out) {
   std::vector<GivenPoint> points;
@@ -57,7 +58,7 @@ std::vector<GivenPoint> points_of(std::span<const ProbedPatch> runs,
         point.normal = details[i].normal;
         point.normal_sigma_rad = details[i].normal_sigma_rad;
         point.covariance_m2 = details[i].covariance_m2;
-        // A measured normal knows better.
+        // A measured normal is more reliable than the direction of travel.
         if (details[i].normal_sigma_rad > 0.0) point.into_material = -details[i].normal;
       }
       points.push_back(point);
@@ -73,7 +74,7 @@ bool is_told(const GivenFit& fit) {
   return fit.status == GivenStatus::Fitted || fit.status == GivenStatus::NotDetermined;
 }
 
-/// A fit, and the points that it is of.
+/// A fit, and the points that it was made from.
 struct PointsFitted {
   std::vector<GivenPoint> points;
   GivenFit fit;
@@ -91,7 +92,7 @@ PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
                                   [](const ProbedPatch& run) { return run.probe != nullptr; });
   std::vector<ProbedPatch> corrected = raw;
   PointsFitted fitted;
-  constexpr int kRounds = 2;  // as of recognise_probed
+  constexpr int kRounds = 2;  // as in recognise_probed
   for (int round = 0;; ++round) {
     fitted.points = points_of(corrected, left_out);
     fitted.fit = fit_given_class(curve_class, fitted.points, {sigma_m});

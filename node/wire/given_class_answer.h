@@ -1,4 +1,4 @@
-// A class that is given: samples of an object in, the answer's message out.
+// Fits a given class to the samples of an object and returns the answer as a message.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@
 
 namespace palpate {
 
-/// By qualified probes where there are any (`probes`: by the runs' probe number; empty = none):
-/// their offsets are taken off by the normals of the curve fitted, and the covariance holds what
-/// they leave open. `left_out`: numbers of samples, from 1 in the order of the runs. Of the options
-/// the noise and the fraction within which a parameter counts as determined. The recognition's
-/// header, group, object, newest_* and compute_ns are left to the caller.
+/// `probes`: the qualified probes, indexed by the runs' probe number; empty = none. Their offsets
+/// are subtracted along the normals of the fitted curve, and the covariance includes their
+/// uncertainties. `left_out`: numbers of samples to leave out, from 1 in the order of the runs. Of
+/// the options only sigma_m and determined_fraction are used. The caller sets header, group,
+/// object, newest_* and compute_ns of the recognition.
 v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const ContactRun> runs,
                                         std::span<const ProbeCharacter* const> probes,
                                         std::span<const std::size_t> left_out,

@@ -18,14 +18,14 @@ std::string text_of(const SocketEvent& told) {
 
 }  // namespace
 
-// Few events a connection: nothing piles up where nobody asks.
+// Subscribes to a few events per connection only, so that nothing accumulates if nobody reads them.
 HandshakeWatch::HandshakeWatch(zmq::context_t& context, zmq::socket_t& socket)
     : monitor_(context, socket,
                ZMQ_EVENT_HANDSHAKE_FAILED_AUTH | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
                    ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_SUCCEEDED) {}
 
 const std::string& HandshakeWatch::refusal() {
-  // Who starts or ends just then closes one or two.
+  // A listener that starts or ends at that moment closes one or two.
   constexpr int kClosedInARow = 8;
   while (const auto told = monitor_.next()) {
     if (told->event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED) {

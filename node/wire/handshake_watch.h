@@ -1,4 +1,4 @@
-// Why the other side refuses a connection.
+// Finds out why the other side refuses a connection.
 #pragma once
 
 #include <string>
@@ -8,26 +8,26 @@
 
 namespace palpate {
 
-/// Who connects and is refused hears it once, and libzmq does not try again: without this it looks
-/// as if nobody were there. A listener that disagrees on CURVE may close the connection before it
-/// has said so, time after time: that counts as well. Belongs to the socket's thread, and must be
-/// destroyed before the socket.
+/// libzmq reports a refused connection only once and does not try again; without this class a
+/// refusal looks as if no one were listening. A listener that disagrees on CURVE may also close the
+/// connection again and again without a reason; that counts as a refusal too. Owned by the socket's
+/// thread; must be destroyed before the socket.
 class HandshakeWatch {
  public:
-  /// Make it before the socket connects. Throws zmq::error_t where the monitor cannot be made.
+  /// Create it before the socket connects. Throws zmq::error_t if the monitor cannot be created.
   HandshakeWatch(zmq::context_t& context, zmq::socket_t& socket);
 
-  /// Takes the events that have come. What the latest refusal was, for a person to read after the
-  /// address; empty where there was none.
+  /// Reads the events and returns the latest refusal, worded to follow the address; empty if there
+  /// was none.
   const std::string& refusal();
 
-  /// To be polled for input: refusal() then.
+  /// To be polled for input; then call refusal().
   zmq::socket_t& events() { return monitor_.events(); }
 
  private:
   SocketMonitor monitor_;
   std::string refusal_;
-  int closed_in_a_row_ = 0;  ///< connections, before they were agreed on
+  int closed_in_a_row_ = 0;  ///< connections closed before the handshake succeeded
 };
 
 }  // namespace palpate

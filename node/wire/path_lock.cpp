@@ -22,7 +22,7 @@ Result<PathLock> PathLock::acquire(const std::string& path) {
     ::close(fd);
     return Result<PathLock>::fail(path + ": " + why);
   }
-  // The file stays when the lock goes: to remove it would let two processes lock two files.
+  // The file remains when the lock is released: removing it would let two processes lock two files.
   return Result<PathLock>::ok(PathLock(fd));
 }
 
@@ -41,7 +41,7 @@ std::string ipc_path(const std::string& address) {
   constexpr std::string_view kIpcScheme = "ipc://";
   if (!address.starts_with(kIpcScheme)) return {};
   std::string path = address.substr(kIpcScheme.size());
-  // "ipc://*" makes a path of its own; "@name" is not in the file system.
+  // "ipc://*" chooses a path itself; "@name" is not in the file system.
   if (path.empty() || path.front() == '@' || path == "*") return {};
   return path;
 }

@@ -1,4 +1,4 @@
-// One owner for an ipc:// path.
+// Makes sure that an ipc:// path has only one owner.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace palpate {
 
-/// Holds an exclusive lock on a file beside the socket, PATH.lock, for its lifetime: a second bind
-/// on an ipc path would silently succeed and steal it. The kernel frees the lock with the process,
-/// however that ends.
+/// Holds an exclusive lock on PATH.lock, a file next to the socket. Without it, a second bind on an
+/// ipc path would succeed and take the path from its owner. The kernel releases the lock when the
+/// process ends, in whatever way.
 class PathLock {
  public:
-  /// Fails where another process, or another lock in this one, holds it.
+  /// Fails if another process, or another PathLock of this one, holds the lock.
   static Result<PathLock> acquire(const std::string& path);
 
   PathLock() = default;  ///< holds nothing
@@ -26,7 +26,7 @@ class PathLock {
   int fd_ = -1;
 };
 
-/// Path in the file system of an ipc:// address; empty for other transports and abstract names.
+/// The file path of an ipc:// address; empty for other transports and for abstract names.
 std::string ipc_path(const std::string& address);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// The recogniser's options as the node and the tools offer them, in one table.
+// The recognizer's options, in one table for the node and the tools.
 #pragma once
 
 #include <limits>
@@ -9,23 +9,23 @@
 
 namespace palpate {
 
-/// One option: its name is the field in NodeConfig, the flag (--max-groups) and the environment
+/// One option. Its name is the field in NodeConfig, the flag (--max-groups) and the environment
 /// variable (PALPATE_MAX_GROUPS).
 struct OptionInfo {
   const char* name;
   const char* help;
-  double lowest = 0.0;  ///< numbers only
+  double lowest = 0.0;  ///< for numbers only
   double highest = std::numeric_limits<double>::max();
-  const char* also = "";  ///< a second flag, where the name is longer than what people say
+  const char* also = "";  ///< a second, shorter flag
 };
 
-/// "--sigma-m" of "sigma_m".
+/// Converts "sigma_m" to "--sigma-m".
 std::string flag_of(std::string name);
 
-/// The flags of an option of that name, as CLI11 takes them: "--sigma,--sigma-m".
+/// The flags of an option in CLI11's form, e.g. "--sigma,--sigma-m".
 std::string flags_of(const OptionInfo& info);
 
-/// The recogniser's options that are said in words.
+/// The recognizer's options that are given as words.
 struct RecognizerWords {
   std::string method = "ml";
   std::vector<std::string> classes;  ///< empty = all
@@ -34,10 +34,10 @@ struct RecognizerWords {
   std::size_t shift = static_cast<std::size_t>(EstimatorOptions{}.shift);
 };
 
-/// Sets what the words say; returns what is wrong with them, or nothing.
+/// Sets the options in `recognizer` that `words` name. Returns an empty string or an error.
 std::string resolve(const RecognizerWords& words, RecognizerOptions& recognizer);
 
-/// The recogniser's part of the table.
+/// The recognizer's part of the table of options; see for_each_option().
 template <typename Words, typename Recognizer, typename Visit>
 void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& visit) {
   constexpr double kMostSamples = 1e6;

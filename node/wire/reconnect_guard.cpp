@@ -5,7 +5,7 @@
 namespace palpate {
 namespace {
 
-// Longer than the longest pause before libzmq's own retry, which also is announced at once.
+// Longer than the longest pause before libzmq's own retry, which it also announces at once.
 constexpr std::chrono::milliseconds kPatience{100};
 
 }  // namespace
@@ -38,7 +38,7 @@ bool ReconnectGuard::tend(std::chrono::steady_clock::time_point now) {
   return reconnected;
 }
 
-// libzmq tells resolved addresses: where ours was a name, all are connected again.
+// libzmq reports resolved addresses. If ours is a host name, all addresses are connected again.
 bool ReconnectGuard::reconnect(const std::string& told) {
   const bool known = std::find(addresses_.begin(), addresses_.end(), told) != addresses_.end();
   bool reconnected = false;

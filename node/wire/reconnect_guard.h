@@ -1,4 +1,4 @@
-// Brings a connecting socket back after a peer's oversize frame.
+// Reconnects a socket after a peer has sent an oversize frame.
 #pragma once
 
 #include <chrono>
@@ -11,18 +11,18 @@
 
 namespace palpate {
 
-/// libzmq (4.3.4) gives a connection up for good when a frame exceeds ZMQ_MAXMSGSIZE: it reports
-/// DISCONNECTED and never CONNECT_RETRIED. One bad message would so silence a probe for ever. This
-/// watches the socket's events and connects again. Belongs to the socket's thread, and must be
+/// After a frame beyond ZMQ_MAXMSGSIZE, libzmq (4.3.4) gives the connection up for good: it reports
+/// DISCONNECTED and never CONNECT_RETRIED. One bad message would silence a probe for ever. This
+/// class watches the socket's events and connects again. Owned by the socket's thread; must be
 /// destroyed before the socket.
 class ReconnectGuard {
  public:
-  /// Watches a socket that has been connected to `addresses`. Throws zmq::error_t where the monitor
-  /// cannot be made.
+  /// Watches a socket that is connected to `addresses`. Throws zmq::error_t if the monitor cannot
+  /// be created.
   ReconnectGuard(zmq::context_t& context, zmq::socket_t& socket,
                  std::vector<std::string> addresses);
 
-  /// Call often; cheap. Returns true where it has connected again.
+  /// Cheap; call it often. Returns true if it has reconnected.
   bool tend(std::chrono::steady_clock::time_point now);
 
  private:

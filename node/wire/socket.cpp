@@ -8,27 +8,27 @@ namespace palpate {
 namespace {
 
 // A frozen peer or a cut cable is noticed after one interval and one timeout. Only the publishing
-// side asks: where a reader's own heartbeat expires while its queue is full (it has not read for so
-// long), libzmq 4.3 aborts the process once the queue is emptied ("_input_stopped").
+// side sends heartbeats: if a reader's own heartbeat expires while its queue is full (it has not
+// read for that long), libzmq 4.3 aborts the process when the queue is emptied ("_input_stopped").
 constexpr int kHeartbeatIntervalMs = 200;
 constexpr int kHeartbeatTimeoutMs = 600;
-// What tells a reader of a cut cable instead, after a second of silence and three unanswered
-// probes.
+// A reader notices a cut cable by TCP keepalive instead: after a second of silence and three
+// unanswered probes.
 constexpr int kKeepaliveIdleS = 1;
 constexpr int kKeepaliveIntervalS = 1;
 constexpr int kKeepaliveProbes = 3;
-// A peer that connects and says nothing is dropped.
+// A peer that connects and does not complete the handshake is dropped after this time.
 constexpr int kHandshakeTimeoutMs = 1000;
-// Retries after 10, 20, then every 32 to 42 ms: a restarted recognizer is found again in less than
-// 50 ms, and a machine that is down costs a few packets a second.
+// Retries after 10 ms, 20 ms, then every 32 to 42 ms: a restarted recognizer is found within 50 ms,
+// and a machine that is down costs a few packets per second.
 constexpr int kReconnectFirstMs = 10;
 constexpr int kReconnectMaxMs = 32;
-// Closing waits this long for what is still to be sent, even to a peer that has stopped reading.
+// Closing waits this long for unsent messages, even for a peer that has stopped reading.
 constexpr int kLingerMs = 100;
-// ZMQ_ZAP_ENFORCE_DOMAIN: libzmq 4.3 has it, zmq.h shows it among the drafts only.
+// ZMQ_ZAP_ENFORCE_DOMAIN: libzmq 4.3 has it, but zmq.h declares it only among the drafts.
 constexpr int kZapEnforceDomain = 93;
 
-// Of those who bind once and for all.
+// Holds locks until the process ends.
 class PathLocks {
  public:
   void keep(PathLock lock) {
@@ -64,7 +64,8 @@ zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
   if (settings.curve_server) {
     socket.set(zmq::sockopt::curve_server, true);
     socket.set(zmq::sockopt::curve_secretkey, settings.curve_server->secret_key);
-    // Enforced: without a handler libzmq would let every key in; so it lets none in.
+    // With enforcement libzmq admits no key if there is no ZAP handler; without it, it would admit
+    // every key.
     socket.set(zmq::sockopt::zap_domain, kZapDomain);
     const int enforce = 1;
     if (zmq_setsockopt(socket.handle(), kZapEnforceDomain, &enforce, sizeof enforce) != 0) {
@@ -80,7 +81,7 @@ zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
 }
 
 std::string attach(zmq::socket_t& socket, const Endpoint& endpoint, PathLock* lock) {
-  // libzmq would take the path from whoever has bound it, and leave that one deaf.
+  // Otherwise libzmq would silently take the path from the socket that has bound it.
   if (const std::string path = ipc_path(endpoint.address); endpoint.bind && !path.empty()) {
     Result<PathLock> locked = PathLock::acquire(path);
     if (!locked) return "cannot bind to " + endpoint.address + ": " + locked.error;
@@ -91,7 +92,7 @@ std::string attach(zmq::socket_t& socket, const Endpoint& endpoint, PathLock* lo
       kept.keep(std::move(*locked.value));
     }
   }
-  // Only where an address says so: else IPv4 addresses would be shown as mapped ones.
+  // Only if the address is IPv6; otherwise IPv4 addresses would be shown as mapped ones.
   socket.set(zmq::sockopt::ipv6, endpoint.address.find('[') != std::string::npos);
   const int rc = endpoint.bind ? zmq_bind(socket.handle(), endpoint.address.c_str())
                                : zmq_connect(socket.handle(), endpoint.address.c_str());
@@ -110,7 +111,7 @@ bool receive_now(zmq::socket_t& socket, TwoFrames& message) {
                             : message.frame_count == 1 ? message.payload
                                                        : surplus;
     if (zmq_msg_recv(frame.handle(), socket.handle(), ZMQ_DONTWAIT) < 0) {
-      // ZeroMQ delivers all frames of a message or none: after the first, only a signal can
+      // ZeroMQ delivers all frames of a message or none, so after the first frame only a signal can
       // interrupt.
       if (zmq_errno() == EINTR && message.frame_count > 0) continue;
       return false;
@@ -147,7 +148,7 @@ bool send_now(zmq::socket_t& socket, std::string_view topic, std::string_view pa
 
 void poll(std::vector<zmq::pollitem_t>& items, int timeout_ms) {
   for (zmq::pollitem_t& item : items) item.revents = 0;
-  // An interrupted poll may have left revents unset, which is what a timeout looks like.
+  // An interrupted poll may have left revents unset, which looks like a timeout.
   (void)zmq_poll(items.data(), static_cast<int>(items.size()), timeout_ms);
 }
 

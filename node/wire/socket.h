@@ -1,4 +1,4 @@
-// ZeroMQ sockets with this project's settings, and the two-frame message.
+// ZeroMQ sockets with this project's settings, and messages of two frames.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,7 @@
 
 namespace palpate {
 
-/// ZAP domain of the recognizer's sockets; a fixed name, as there is one domain.
+/// ZAP domain of all the recognizer's sockets.
 inline constexpr const char* kZapDomain = "palpate";
 
 struct CurveClient {
@@ -27,39 +27,41 @@ struct CurveClient {
 struct SocketSettings {
   int send_high_water_mark = 1000;     ///< messages waiting for one peer
   int receive_high_water_mark = 1000;  ///< messages waiting from one peer
-  /// Longest frame accepted; a longer one costs its sender the connection. The longest that the
-  /// recognizer sends, a Recognition with 1,000 contacts, is a fortieth of this. [bytes]
+  /// Longest frame accepted; a longer one ends the sender's connection. 40 times the longest
+  /// message of the recognizer, a Recognition with 1,000 contacts. [bytes]
   std::int64_t max_message_bytes = std::int64_t{16} << 20;
-  std::optional<CurveKeyPair> curve_server;  ///< set on the recognizer's side: needs a ZapHandler
-  std::optional<CurveClient> curve_client;   ///< set on the other side
+  std::optional<CurveKeyPair> curve_server;  ///< for the recognizer; needs a ZapHandler
+  std::optional<CurveClient> curve_client;   ///< for its clients
 };
 
-/// A socket that notices a peer's end, reconnects quickly and does not linger at exit, with those
-/// settings; not yet bound or connected.
+/// Creates a socket with these settings, not yet bound or connected. It notices when a peer dies,
+/// reconnects quickly, and waits at most kLingerMs on closing.
 zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type,
                           const SocketSettings& settings);
 
-/// Binds or connects. Returns an empty string, or what went wrong. Who binds an ipc path locks it:
-/// in `lock`, to be kept as long as the socket, or without it until the process ends.
+/// Binds or connects. Returns an empty string or an error. Binding an ipc path locks it: `lock`
+/// receives the lock and must live as long as the socket; without `lock` it is held until the
+/// process ends.
 std::string attach(zmq::socket_t& socket, const Endpoint& endpoint, PathLock* lock = nullptr);
 
-/// A frame's bytes, for as long as it lives.
+/// The frame's bytes; valid as long as the frame.
 inline std::string_view view_of(const zmq::message_t& frame) {
   return {frame.data<char>(), frame.size()};
 }
 
-/// What one receive brought. Frames beyond the second are dropped and counted only.
+/// A received message. Of further frames only the number is kept.
 struct TwoFrames {
   zmq::message_t topic;
   zmq::message_t payload;
   std::size_t frame_count = 0;
 };
 
-/// Takes one waiting message; false where none waits. Never blocks, never throws on a signal.
+/// Receives a waiting message; returns false if there is none. Never blocks. A signal does not make
+/// it throw.
 bool receive_now(zmq::socket_t& socket, TwoFrames& message);
 
-/// Takes what waits and gives it to take(message), at most `most` messages and until `deadline`: a
-/// flood ends no loop. True where more may wait.
+/// Passes waiting messages to take(message), at most `most` and until `deadline`, so that a flood
+/// of messages cannot hold the caller. Returns true if more may wait.
 template <typename Take>
 bool drain(zmq::socket_t& socket, TwoFrames& message, int most,
            std::chrono::steady_clock::time_point deadline, Take&& take) {
@@ -70,14 +72,15 @@ bool drain(zmq::socket_t& socket, TwoFrames& message, int most,
   return true;
 }
 
-/// Sends without blocking; false where the peer's high-water mark (or no peer) drops it.
+/// Sends without blocking. Returns false if there is no peer or its high-water mark drops the
+/// message.
 bool send_now(zmq::socket_t& socket, std::string_view topic, std::string_view payload);
 
-/// Sends a message that has come on as it is, without copying it; its frames are empty afterwards.
-/// Never blocks; false where the peer's high-water mark drops it.
+/// Forwards a received message unchanged and without copying; its frames are empty afterwards.
+/// Never blocks. Returns false if the peer's high-water mark drops it.
 bool forward_now(zmq::socket_t& socket, TwoFrames& message);
 
-/// Polls for at most `timeout_ms`; a signal ends it early like a timeout.
+/// Polls for at most `timeout_ms`. A signal ends it early, like a timeout.
 void poll(std::vector<zmq::pollitem_t>& items, int timeout_ms);
 
 }  // namespace palpate

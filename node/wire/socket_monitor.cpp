@@ -17,7 +17,8 @@ SocketMonitor::SocketMonitor(zmq::context_t& context, zmq::socket_t& socket, int
     : socket_(socket), events_(context, zmq::socket_type::pair) {
   const std::string monitor = unique_monitor_address();
   if (zmq_socket_monitor(socket_.handle(), monitor.c_str(), events) != 0) throw zmq::error_t();
-  // libzmq's thread waits where the queue of events is full: it must not be by a flood of peers.
+  // No limit: libzmq's thread would block on a full event queue, and a flood of peers could fill
+  // it.
   events_.set(zmq::sockopt::rcvhwm, 0);
   events_.set(zmq::sockopt::linger, 0);
   events_.connect(monitor);
@@ -26,7 +27,7 @@ SocketMonitor::SocketMonitor(zmq::context_t& context, zmq::socket_t& socket, int
 SocketMonitor::~SocketMonitor() { zmq_socket_monitor(socket_.handle(), nullptr, 0); }
 
 std::optional<SocketEvent> SocketMonitor::next() {
-  // Each event is two frames: number and value, then the address.
+  // Each event has two frames: number and value, then the address.
   zmq::message_t frame;
   if (zmq_msg_recv(frame.handle(), events_.handle(), ZMQ_DONTWAIT) < 0) return std::nullopt;
   SocketEvent told;

@@ -1,4 +1,4 @@
-// What libzmq tells of a socket's connections.
+// The events of a socket's connections, as libzmq reports them.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,22 @@ namespace palpate {
 
 struct SocketEvent {
   std::uint16_t event = 0;  ///< ZMQ_EVENT_...
-  std::uint32_t value = 0;  ///< what the event says of its value: a descriptor, an error number
+  std::uint32_t value = 0;  ///< depends on the event: a descriptor or an error number
   std::string address;
 };
 
-/// One a socket: libzmq tells its events to one listener. Belongs to the socket's thread, and must
-/// be destroyed before the socket.
+/// At most one per socket, because libzmq reports events to one listener only. Owned by the
+/// socket's thread; must be destroyed before the socket.
 class SocketMonitor {
  public:
-  /// `events`: the ZMQ_EVENT_... to hear of, or'ed. Throws zmq::error_t where it cannot be made.
+  /// `events`: the ZMQ_EVENT_... to report, or'ed. Throws zmq::error_t if the monitor cannot be
+  /// created.
   SocketMonitor(zmq::context_t& context, zmq::socket_t& socket, int events);
   ~SocketMonitor();
   SocketMonitor(const SocketMonitor&) = delete;
   SocketMonitor& operator=(const SocketMonitor&) = delete;
 
-  /// The next event that has come; nullopt where there is none.
+  /// The next event; nullopt if there is none.
   std::optional<SocketEvent> next();
 
   /// To be polled for input.

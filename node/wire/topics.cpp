@@ -10,7 +10,7 @@ namespace {
 constexpr std::array kKinds = {TopicKind::Contact, TopicKind::Recognition, TopicKind::Estimate,
                                TopicKind::Status};
 
-// Not std::isalnum: its answer depends on the locale.
+// Not std::isalnum, because that depends on the locale.
 bool is_name_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
          c == '.' || c == '-';

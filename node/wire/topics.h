@@ -1,4 +1,4 @@
-// Topics: "contact/<probe>/" and the like, built and parsed.
+// Builds and parses topics such as "contact/<probe>/".
 #pragma once
 
 #include <cstddef>
@@ -15,19 +15,19 @@ enum class TopicKind { Contact, Recognition, Estimate, Status };
 
 struct Topic {
   TopicKind kind = TopicKind::Contact;
-  std::string_view name;  ///< views the text that was parsed
+  std::string_view name;  ///< view into the parsed text
 };
 
-/// Names of probes, groups, nodes and frames: 1 to 64 of [A-Za-z0-9_.-].
+/// True for a valid name of a probe, group, node or frame: 1 to 64 of [A-Za-z0-9_.-].
 bool is_valid_name(std::string_view name);
 
-/// The topics of that kind all begin so, e.g. "recognition/": subscribe to it for all of them.
+/// The prefix of all topics of that kind, e.g. "recognition/". Subscribe to it to receive them all.
 std::string_view topic_prefix(TopicKind kind);
 
-/// E.g. "recognition/cup/". The name must be valid.
+/// Returns e.g. "recognition/cup/". The name must be valid.
 std::string make_topic(TopicKind kind, std::string_view name);
 
-/// nullopt where the text is no topic of this contract.
+/// nullopt if the text is not a topic of the contract.
 std::optional<Topic> parse_topic(std::string_view text);
 
 }  // namespace palpate

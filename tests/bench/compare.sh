@@ -1,19 +1,18 @@
 #!/usr/bin/env bash
-# Instructions per call of each piece of the library, counted by valgrind: a busy machine changes nothing.
+# Instructions per call of each piece of the library, counted by valgrind. A busy machine does not change them.
 #
 #   tests/bench/compare.sh             the working tree: CSV of kernel, calls, instructions
-#   tests/bench/compare.sh OLD         beside the commit OLD, with the ratio to it
+#   tests/bench/compare.sh OLD         also those of the commit OLD, and the ratio to them
 #   tests/bench/compare.sh OLD NEW     the commit NEW in place of the working tree
 #     --only REGEX    kernels whose name matches, e.g. '^recognition/cold' ('kernels --list' lists all)
 #     --jobs N        builds and counts N at a time (default: all cores)
 #
-# The CSV goes to standard output, all else to standard error. A ratio under 1 is fewer instructions than in OLD.
-# The working tree's kernels.cpp and tests/support are built against each (Release, same flags), so data are
-# equal; a commit whose interfaces differ from what they use does not compile, and is said so. Commits are
-# checked out as git worktrees in build/kernels/{old,new}, which 'git worktree remove --force' takes away
-# again. Preparing data is not counted, allocation within a call is. Repeated counts agree to 1e-5. Instructions
-# are not time: cache misses, mispredicted branches and divisions cost more than one. Needs valgrind;
-# installs nothing.
+# The CSV goes to standard output, everything else to standard error. A ratio below 1 means fewer instructions than in
+# OLD. Both are built with the working tree's kernels.cpp and tests/support (Release, same flags), so the data are
+# equal; a commit with other interfaces does not compile, and the script says so. Commits are checked out as git
+# worktrees in build/kernels/{old,new}; remove them with 'git worktree remove --force'. Preparing data is not counted;
+# allocation within a call is. Repeated counts agree to 1e-5. Instructions are not time: cache misses, mispredicted
+# branches and divisions cost more than one. Needs valgrind; installs nothing.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Speed against error, beside the paper, the peers and the physical limits: one command, one report.
+# Speed against error, compared with the paper, other programs and the theoretical limits: one command, one report.
 #
 #   tests/bench/run.sh            everything, about half an hour on two cores
 #   tests/bench/run.sh --quick    fewer scenes, under five minutes after the build
-#   tests/bench/run.sh --keep     besides: puts the summary and its plots into tests/bench/report/latest/, for the repository
+#   tests/bench/run.sh --keep     also copies the summary and its plots to tests/bench/report/latest/, for the repository
 #
 # Installs what is missing (Debian), builds Release (preset strict), writes build/report/report.md with its plots (SVG and PNG)
-# and a CSV of every figure. Peers that cannot be installed are skipped aloud. Leave the machine alone meanwhile:
-# times are medians, but a busy neighbour is a busy neighbour.
+# and a CSV of every figure. Programs that cannot be installed are skipped, with a message. Run nothing else meanwhile:
+# times are medians, but other work still disturbs them.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."
 

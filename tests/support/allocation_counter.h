@@ -1,12 +1,12 @@
-// Counts the program's allocations through operator new.
+// Counts the calls of operator new in a test program.
 #pragma once
 
 #include <cstddef>
 
 namespace palpate::test {
 
-/// Calls of operator new so far. A test program that asks has the counting operator new, others
-/// have the standard one.
+/// Number of calls of operator new so far. Only a test program that calls this function is linked
+/// with the counting operator new.
 std::size_t allocation_count();
 
 }  // namespace palpate::test

@@ -11,9 +11,9 @@
 namespace palpate::test {
 namespace {
 
-/// Relative to the root of the product of two variances.
+/// Relative to the square root of the product of two variances.
 constexpr double kCovarianceRounding = 1e-9;
-/// Variances below this are close to where doubles lose their digits.
+/// Doubles lose digits near variances below this.
 constexpr double kLeastVariance = 1e-280;
 
 std::string broken_covariance(const ShapePoseCovariance& covariance) {
@@ -71,11 +71,11 @@ TouchedPlaces places_of(std::span<const Vec2> positions) {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
   Vec2 high = -low;
   for (const Vec2& p : positions) {
-    distinct.emplace(p.x() + 0.0, p.y() + 0.0);  // -0 is 0
+    distinct.emplace(p.x() + 0.0, p.y() + 0.0);  // -0 becomes 0
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  constexpr double kUnits = 8.0;  // in the last place of the largest coordinate
+  constexpr double kUnits = 8.0;  // in units of the last place of the largest coordinate
   TouchedPlaces places;
   places.distinct = distinct.size();
   if (!positions.empty()) {

@@ -1,4 +1,4 @@
-// What every answer must keep, whatever the input.
+// Invariants that every answer must satisfy, whatever the input.
 #pragma once
 
 #include <cstddef>
@@ -9,24 +9,25 @@
 
 namespace palpate::test {
 
-/// Fewest distinct places that a RECOGNIZED answer may rest on: two more than its class has
-/// parameters, and no fewer than a spline has; eight for no class.
+/// Fewest distinct places of a RECOGNIZED answer: two more than its class has parameters, and no
+/// fewer than a spline has; eight for no class.
 std::size_t fewest_places(CurveClass curve_class);
 
-/// What an answer rests on.
+/// The places that an answer is based on.
 struct TouchedPlaces {
   std::size_t distinct = 0;
-  /// Largest distance from the middle of their bounding box is no more than what rounding makes of
-  /// their coordinates.
+  /// True if their largest distance from the middle of their bounding box is no more than the
+  /// rounding of their coordinates.
   bool at_rounding = false;
 };
 
 TouchedPlaces places_of(std::span<const Vec2> positions);
 
-/// The first invariant that the answer breaks, in words; empty where it keeps all:
-/// probabilities in [0, 1] that sum to 1 within 1e-9, no NaN; covariances symmetric and positive
-/// semidefinite to rounding where their entries are finite; contacts finite; never RECOGNIZED from
-/// fewer distinct places than its class asks for, nor where the extent is at rounding.
+/// Describes the first invariant that the answer violates; empty if there is none. The invariants:
+/// probabilities are in [0, 1] and sum to 1 within 1e-9, nothing is NaN; covariances are symmetric
+/// and, where their entries are finite, positive semidefinite to rounding; contacts are finite; an
+/// answer is not RECOGNIZED from fewer distinct places than its class needs, nor if the extent is
+/// at rounding.
 std::string broken_invariant(const Recognition& answer, const TouchedPlaces& places);
 
 }  // namespace palpate::test

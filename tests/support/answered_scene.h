@@ -1,4 +1,4 @@
-// A scene as it stands when the recogniser's tree is asked.
+// A scene with the recognizer's weighing, as the recognition tree gets it.
 #pragma once
 
 #include <vector>
@@ -11,13 +11,13 @@
 
 namespace palpate::test {
 
-/// What tree_beside() is given.
+/// The inputs of tree_beside().
 struct AnsweredScene {
   Weighing weighing;
   std::vector<LocalizedContact> contacts;
 };
 
-/// With the scene's noise stated, weighed once more from an earlier weighing.
+/// With the scene's noise stated; weighed twice, the second time starting from the first weighing.
 inline AnsweredScene answered(const Scene& scene) {
   const std::vector<StoredPatch> patches = stored_patches(scene, scene.sigma_m);
   bool sigma_known = false;

@@ -1,4 +1,4 @@
-"""Processes on a private bus: node, simulator and planners for the process tests."""
+"""Runs node, simulator and clients on private endpoints, for the process tests."""
 import json
 import math
 import os
@@ -15,7 +15,7 @@ from programs import NODE, SIM, TOOL
 
 
 class Bus:
-    """A folder of its own with ipc endpoints (or tcp ports that the system picks); kills what is left."""
+    """A temporary folder with ipc endpoints (or tcp ports chosen by the system). Kills remaining processes at the end."""
 
     def __init__(self, transport="ipc"):
         self._folder = tempfile.TemporaryDirectory(prefix="palpate-")
@@ -46,7 +46,7 @@ class Bus:
         return process
 
     def start_node(self, *arguments):
-        """Starts the node and waits until its sockets are open; its log is node.log_path."""
+        """Starts a node and waits until its sockets are open. Its log is node.log_path."""
         self.logs += 1
         path = self.folder / f"node-{self.logs}.log"
         with open(path, "w") as log:
@@ -57,7 +57,7 @@ class Bus:
         while time.monotonic() < deadline:
             found = re.search(r"contacts on (\S+), results on ([^\s,]+)", path.read_text())
             if found:
-                # The ports that the system picked; a restarted node takes the same ones.
+                # The ports that the system chose; a restarted node uses them again.
                 self.contacts, self.results = found.groups()
                 return node
             if node.poll() is not None:
@@ -66,7 +66,7 @@ class Bus:
         raise AssertionError("the node does not start: " + path.read_text())
 
     def simulate(self, *arguments, timeout=60):
-        """Plays scenes to their end."""
+        """Plays scenes with palpate-sim until it ends."""
         subprocess.run([str(SIM), "--contacts", self.contacts, "--quiet", *map(str, arguments)],
                        check=True, timeout=timeout)
 
@@ -81,10 +81,10 @@ class Bus:
         return socket
 
     def publisher(self, high_water_mark=1000):
-        """A probe's socket, ready: an XPUB says when the node listens."""
+        """The socket of a probe, once the node listens (an XPUB receives the node's subscription)."""
         socket = self.context.socket(zmq.XPUB)
         socket.setsockopt(zmq.SNDHWM, high_water_mark)
-        # A restarted node subscribes again over the same pipe: tell that too.
+        # A restarted node subscribes again over the same pipe; report that too.
         socket.setsockopt(zmq.XPUB_VERBOSE, 1)
         socket.setsockopt(zmq.RECONNECT_IVL, 10)
         socket.setsockopt(zmq.LINGER, 0)
@@ -96,12 +96,12 @@ class Bus:
 
 
 def receive_any(socket, timeout_s):
-    """The next message as topic and payload, None after the timeout."""
+    """Returns the next message as (topic, payload); None after the timeout."""
     return socket.recv_multipart() if socket.poll(int(1000 * timeout_s)) else None
 
 
 def receive(socket, timeout_s):
-    """The next result as a message, None after the timeout."""
+    """Returns the next result as a protobuf message; None after the timeout."""
     if not socket.poll(int(1000 * timeout_s)):
         return None
     topic, payload = socket.recv_multipart()
@@ -113,7 +113,7 @@ def receive(socket, timeout_s):
 
 
 def wait_for(socket, accept, timeout_s=10):
-    """The first result that is accepted."""
+    """Returns the first result that the predicate accepts."""
     deadline = time.monotonic() + timeout_s
     last = None
     while time.monotonic() < deadline:
@@ -127,7 +127,7 @@ def wait_for(socket, accept, timeout_s=10):
 
 
 class Probe:
-    """A probe that strokes a circle of 20 mm about (0.3, 0.1)."""
+    """A probe that strokes a circle of 20 mm radius around (0.3, 0.1)."""
 
     def __init__(self, socket, name="finger", group="", epoch=1):
         self.socket, self.name, self.group, self.epoch = socket, name, group, epoch
@@ -159,7 +159,7 @@ class Probe:
 
 
 def errors_in_sigmas(answer, truth):
-    """Errors of parameters and pose in published standard deviations; `truth`: a SceneTruth in JSON."""
+    """Errors of parameters and pose, in published standard deviations. `truth`: a SceneTruth in JSON."""
     names = [name for name in "abc" if name in truth.get("parameters", {})]
     found = [getattr(answer.parameters, name) for name in names]
     true = [truth["parameters"][name] for name in names]
@@ -188,7 +188,7 @@ def peak_memory_kb(process):
 
 
 def stop(process, with_signal=signal.SIGTERM, timeout=5):
-    """Asks a process to stop; gives exit code and seconds taken."""
+    """Stops a process by a signal. Returns its exit code and the seconds it took."""
     start = time.monotonic()
     process.send_signal(with_signal)
     code = process.wait(timeout)
@@ -196,7 +196,7 @@ def stop(process, with_signal=signal.SIGTERM, timeout=5):
 
 
 def wait_for_log(process, text, timeout_s=10):
-    """Until its log, process.log_path, says this."""
+    """Waits until this text is in its log (process.log_path)."""
     deadline = time.monotonic() + timeout_s
     while text not in process.log_path.read_text():
         if time.monotonic() > deadline:

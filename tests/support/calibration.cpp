@@ -14,7 +14,7 @@ std::size_t probability_bin(double probability) {
 }
 
 Band binomial_band(const std::vector<double>& probabilities, double coverage) {
-  // The law of the number of successes, one trial after the other.
+  // The distribution of the number of successes, updated trial by trial.
   std::vector<double> law(probabilities.size() + 1, 0.0);
   law[0] = 1.0;
   std::size_t trials = 0;

@@ -75,12 +75,12 @@ PlacedCurve random_curve(CurveClass curve_class, std::mt19937_64& rng) {
 std::vector<double> random_places(const PlacedCurve& curve, int count, std::mt19937_64& rng) {
   double low = -1.2;
   double high = 1.2;
-  double least = 0.0;  // distance from t = 0
+  double least = 0.0;  // smallest distance from t = 0
   if (curve.curve_class == CurveClass::Ellipse) {
     low = 0.0;
     high = 2.0 * kPi;
   } else if (curve.curve_class == CurveClass::SemiCubicalParabola) {
-    least = 0.15;  // the cusp
+    least = 0.15;  // away from the cusp
   }
   // One in each of `count` equal parts, so that no two coincide.
   std::vector<double> places;

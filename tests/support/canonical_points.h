@@ -19,19 +19,20 @@ struct PlacedCurve {
   Pose2 world_T_curve;
 };
 
-/// The classes that have invariants of their own: all but line and circle.
+/// The classes that have invariants of their own: all except line and circle.
 std::span<const CurveClass> invariant_classes();
 
-/// A shape of size about one at a random pose: well-conditioned, well inside its class. [m]
+/// A shape of size about 1 m at a random pose: well-conditioned and far from the limits of its
+/// class.
 PlacedCurve random_curve(CurveClass curve_class, std::mt19937_64& rng);
 
-/// Curve parameters spread over the part of the curve that bends.
+/// Curve parameters spread over the curved part of the curve.
 std::vector<double> random_places(const PlacedCurve& curve, int count, std::mt19937_64& rng);
 
-/// The exact estimate at t, travelled with t increasing (direction 1) or against it (-1).
+/// The exact estimate at t, with travel along increasing t (direction 1) or against it (-1).
 LocalEstimate exact_estimate(const PlacedCurve& curve, double t, int direction = 1);
 
-/// Exact estimates, each its own patch with a random direction of travel.
+/// Exact estimates, each on its own patch with a random direction of travel.
 std::vector<TreePoint> exact_points(const PlacedCurve& curve, std::span<const double> places,
                                     std::mt19937_64& rng);
 

@@ -9,7 +9,7 @@
 namespace palpate::test {
 namespace {
 
-/// Without noise a quarter of the samples says what all say.
+/// Without noise, a quarter of the samples contains the same information.
 constexpr std::size_t kStep = 4;
 
 std::vector<Vec2> thinned(const PriorScene& prior_scene) {
@@ -42,8 +42,9 @@ double half_extent(const PriorScene& prior_scene) {
   return 0.5 * (high - low).norm();
 }
 
-/// The root of det(I + F) for the columns of normal displacements by prior widths of departures,
-/// after what shape and pose of the truth (columns of `taken`) can take up.
+/// The square root of det(I + F). `departures`: normal displacements for one prior width of each
+/// departure; the part that shape and pose of the truth (the columns of `taken`) can absorb is
+/// removed.
 double root_of_information(const Eigen::MatrixXd& taken, const Eigen::MatrixXd& departures,
                            double weight) {
   const Eigen::MatrixXd left = departures - taken * taken.colPivHouseholderQr().solve(departures);
@@ -52,8 +53,9 @@ double root_of_information(const Eigen::MatrixXd& taken, const Eigen::MatrixXd& 
                        .determinant());
 }
 
-/// A spline of the same a and b with c = +-step, its pose and a, b free: chi-square is (c / r)^4,
-/// and r the c that the data resolve. The factor is the prior's mass over that of the likelihood.
+/// Against a spline with the same a and b and c = +-step; pose, a and b are free. Chi-square is (c
+/// / r)^4 with r the c that the data resolve. Returns the mass of the prior over that of the
+/// likelihood.
 double against_spline(const PriorScene& prior_scene, double extent) {
   constexpr double kStepOfC = 0.1;   // sqrt(extent)
   constexpr double kWidthOfC = 1.5;  // sqrt(extent)
@@ -122,7 +124,7 @@ double occam_against_richer(const PriorScene& prior_scene) {
         departures(i, 0) = 0.5 * (t - middle) * (t - middle) / extent;
         break;
       case CurveClass::Circle:
-        // b = a (1 - e): the radius is a (1 - e / 2 + e / 2 cos 2t); e has the width 1/2.
+        // b = a (1 - e): the radius is a (1 - e / 2 + e / 2 cos 2t); the prior width of e is 1/2.
         departures(i, 0) = 0.25 * scene.values[0] * std::cos(2.0 * t);
         departures(i, 1) = 0.25 * scene.values[0] * std::sin(2.0 * t);
         break;
@@ -137,7 +139,8 @@ double occam_against_richer(const PriorScene& prior_scene) {
         break;
     }
   }
-  // Columns of like size, or the factorisation drops one for its unit.
+  // Scale the columns to similar size; otherwise the factorisation may drop one because of its
+  // unit.
   for (Eigen::Index k = 0; k < taken.cols(); ++k) {
     const double size = taken.col(k).norm();
     taken.col(k) /= size > 0.0 ? size : 1.0;

@@ -1,4 +1,4 @@
-// Closed spline parts, and strokes over them as a probe makes them.
+// Closed spline parts, and strokes along them as a probe makes them.
 #pragma once
 
 #include <random>
@@ -9,14 +9,14 @@
 
 namespace palpate::test {
 
-/// Five segments, as the part of section 6; that of sim/scenes/paper_closed_spline.textproto. About
+/// The part of section 6 with five segments, as in sim/scenes/paper_closed_spline.textproto. About
 /// 52 mm across.
 ClosedSpline paper_part();
 
-/// A regular polygon's spline: every segment is like every other.
+/// The spline of a regular polygon: all its segments are alike.
 ClosedSpline symmetric_part(int points);
 
-/// From curve parameter t0, travelled by arc_m [m] (negative: against increasing t).
+/// A stroke from curve parameter t0 over arc_m [m] (negative: against increasing t).
 struct PartStroke {
   double t0 = 0.0;
   double arc_m = 0.0;
@@ -26,11 +26,11 @@ struct PartStroke {
 struct TouchedPart {
   std::vector<StoredPatch> patches;
   std::vector<std::vector<double>>
-      t;  ///< true curve parameter of each sample, taken modulo nothing
+      t;  ///< true curve parameter of each sample, not reduced by the period
 };
 
-/// Samples at equal arc lengths of the part at that pose, with isotropic Gaussian noise of
-/// `noise_m`; they claim `sigma_m`. Tips (radius 0 = none) lie outside.
+/// Samples at equal arc lengths along the part at that pose, with isotropic Gaussian noise of
+/// `noise_m`; the samples state `sigma_m`. Tips (radius 0 = none) are outside.
 TouchedPart touch(const ClosedSpline& part, const Pose2& world_T_part,
                   const std::vector<PartStroke>& strokes, double noise_m, double sigma_m,
                   std::mt19937_64& rng, double tip_radius_m = 0.0);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the CPU seconds of building targets from an empty folder, and the dearest files.
+"""Prints the CPU seconds of building targets from an empty folder, and the most expensive files.
 
     tests/support/cpu_seconds.py strict                              # everything
     tests/support/cpu_seconds.py release palpate palpate-node palpate-sim
@@ -17,7 +17,7 @@ SLOWEST = 15
 
 
 def measure(log, command):
-    """As the compiler's launcher: runs it and adds a line to the log."""
+    """The compiler launcher: runs the compiler and adds a line to the log."""
     pid = os.fork()
     if pid == 0:
         os.execvp(command[0], command)

@@ -1,5 +1,4 @@
-// How the distances to an ellipse change with its shape and pose: what any bound on them is made
-// of.
+// Derivatives of the distances to an ellipse by its shape and pose, for bounds on its parameters.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +9,8 @@
 
 namespace palpate::test {
 
-/// A row a point: derivatives of its orthogonal distance, out of the ellipse, by a, b, x, y and
-/// theta. By central differences.
+/// One row per point: the derivatives of its orthogonal distance (positive outside) by a, b, x, y
+/// and theta, by central differences.
 Eigen::MatrixXd distance_slopes(const Ellipse& ellipse, const Pose2& world_T_ellipse,
                                 std::span<const Vec2> points);
 

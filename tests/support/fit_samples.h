@@ -1,4 +1,4 @@
-// The sliding window's fit over samples of equal noise, all of them one window.
+// The sliding window's fit to samples of equal noise, all in one window.
 #pragma once
 
 #include <span>

@@ -33,7 +33,7 @@ double squared_distances(const PlacedShape& placed, std::span<const Vec2> points
 
 double refine_geometrically(std::span<const Vec2> points, PlacedShape* placed, int fixed) {
   constexpr int kMostSteps = 60;
-  constexpr double kEnough = 1e-6;  // relative fall of the sum in one step
+  constexpr double kEnough = 1e-6;  // relative decrease of the sum in one step
   constexpr double kMostDamping = 1e12;
   const auto letters = static_cast<Eigen::Index>(parameter_letters(placed->curve_class).size());
   const Eigen::Index unknowns = letters + 3;
@@ -63,7 +63,7 @@ double refine_geometrically(std::span<const Vec2> points, PlacedShape* placed, i
       normal += row * row.transpose();
       gradient += distance * row;
     }
-    // Parameters that the data do not feel (a line's sliding) stay where they are.
+    // Parameters without effect on the data (a line's sliding) keep their values.
     const double floor = 1e-14 * normal.diagonal().maxCoeff();
     bool better = false;
     double before = sum;

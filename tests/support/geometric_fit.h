@@ -1,4 +1,5 @@
-// Least squares of point distances to a canonical curve: plain, on all points, from a given start.
+// Least squares of point distances to a canonical curve: a simple reference that uses all points
+// and a given start.
 #pragma once
 
 #include <span>
@@ -13,11 +14,11 @@ struct PlacedShape {
   Pose2 world_T_curve;
 };
 
-/// Sum of squared distances of the points to the curve. [m^2]; infinite for a shape that is none.
+/// Sum of squared distances of the points to the curve; infinite for an invalid shape. [m^2]
 double squared_distances(const PlacedShape& placed, std::span<const Vec2> points);
 
-/// Takes shape and pose to a minimum of squared_distances by damped Gauss-Newton steps; returns it.
-/// The shape parameter `fixed` (0 to 2) keeps its value; -1 = none does.
+/// Moves shape and pose to a minimum of squared_distances by damped Gauss-Newton steps and returns
+/// the minimum. The shape parameter `fixed` (0 to 2) keeps its value; -1 = none is fixed.
 double refine_geometrically(std::span<const Vec2> points, PlacedShape* placed, int fixed = -1);
 
 }  // namespace palpate::test

@@ -1,12 +1,11 @@
-# Sourced by node/demo.sh and tests/run.sh: how long a part takes on this machine, said before it starts.
+# Sourced by node/demo.sh and tests/run.sh: predicts how long a part takes on this machine.
 #
-# A part's cost is known in seconds of one core of the machine that the table in tests/README.md was measured
-# on. What this machine is beside that one, and how busy it is now, a small program tells that is compiled on
-# all cores at once.
+# The cost of a part is known in core seconds of the machine of the table in tests/README.md. To compare this machine,
+# and its present load, with that one, a small program is compiled on all cores at once.
 
-# Seconds that the program below took there, with nothing else running, on both cores at once.
+# Seconds that compiling the program below took there, on both cores at once, with nothing else running.
 calibration_reference_s=4.1
-# Core seconds there of what the scripts do, from empty folders. Of a build: tests/support/cpu_seconds.py.
+# Core seconds there of the parts, from empty folders. Measure builds with tests/support/cpu_seconds.py.
 demo_build_cost=320
 strict_build_cost=650
 strict_test_cost=650
@@ -14,7 +13,7 @@ sanitize_cost=1520
 tidy_cost=460
 fuzz_cost=330
 
-calibrate() {  # sets calibration_s, the seconds that it takes here and now
+calibrate() {  # sets calibration_s: the seconds that it takes here and now
   local LC_ALL=C  # a point in EPOCHREALTIME
   local folder start=$EPOCHREALTIME
   folder=$(mktemp -d)
@@ -40,7 +39,7 @@ EOF
   calibration_s=$(awk -v a="$start" -v b="$EPOCHREALTIME" 'BEGIN { print b - a }')
 }
 
-how_long() {  # core seconds there: prints about how many minutes here
+how_long() {  # $1: core seconds there; prints about how many minutes here
   awk -v cost="$1" -v here="$calibration_s" -v there="$calibration_reference_s" -v cores="$(nproc)" \
     'BEGIN { minutes = cost * here / there / cores / 60; printf minutes < 1 ? "a minute" : "%.0f minutes", minutes + 0.5 }'
 }

@@ -1,4 +1,4 @@
-// Error of shape and pose together, over the directions that the data determine.
+// Joint error of shape and pose, in the directions that the data determine.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -10,11 +10,12 @@
 namespace palpate::test {
 
 struct JointError {
-  Eigen::VectorXd error;       ///< of what is determined
+  Eigen::VectorXd error;       ///< of the determined parameters
   Eigen::MatrixXd covariance;  ///< of the same, as published
 };
 
-/// [shape; x; y; theta] without a circle's theta; of a line its distance across and its direction.
+/// Error of [shape; x; y; theta], without theta for a circle; for a line only its distance and its
+/// direction.
 inline JointError joint_error(const Hypothesis& found, const Scene& scene) {
   JointError joint{error_of(found, scene), found.covariance};
   if (scene.curve_class == CurveClass::Line) {
@@ -31,8 +32,8 @@ inline JointError joint_error(const Hypothesis& found, const Scene& scene) {
   return joint;
 }
 
-/// e^T C^-1 e. Metres, radians and roots of metres: a correlation matrix has the same size
-/// everywhere.
+/// e^T C^-1 e. Scaled to a correlation matrix, so that the different units (metres, radians, roots
+/// of metres) do no harm.
 inline double squared_distance(const JointError& joint) {
   const Eigen::VectorXd scale = joint.covariance.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd correlation = scale.asDiagonal() * joint.covariance * scale.asDiagonal();

@@ -11,12 +11,12 @@
 namespace palpate::test {
 namespace {
 
-/// A tip's centre on that side of the curve, + for the left of increasing t.
+/// The tip's centre at that distance from the curve, positive to the left of increasing t.
 Vec2 lifted(const Curve& curve, double t, double lift_m) {
   return position(curve, t) + lift_m * left_of(derivatives(curve, t).first.normalized());
 }
 
-/// Of the stretch of the curve that has these parameters. [m]
+/// Points along the stretch of the curve that contains these parameters. [m]
 std::vector<Vec2> places_along(const Curve& curve, const std::vector<double>& t) {
   constexpr int kPlaces = 500;
   const auto [low, high] = std::minmax_element(t.begin(), t.end());
@@ -27,8 +27,8 @@ std::vector<Vec2> places_along(const Curve& curve, const std::vector<double>& t)
   return along;
 }
 
-/// Whether a tip can be there: nothing of the curve lies within it, but for what its roundness
-/// leaves between two of the places.
+/// True if a tip fits there: no point of the curve is inside it, except within the tolerance for
+/// the spacing of the points.
 bool has_room(const std::vector<Vec2>& along, const Vec2& centre_m, double tip_radius_m) {
   constexpr double kTouching = 0.999;
   return std::none_of(along.begin(), along.end(), [&](const Vec2& place) {
@@ -36,8 +36,8 @@ bool has_room(const std::vector<Vec2>& along, const Vec2& centre_m, double tip_r
   });
 }
 
-/// Whether the touched stretch goes through one place twice, as no wall does: a spline with c < 0,
-/// whose x = t^2 and y(t) = y(-t) at a t^2 = -c.
+/// True if the touched stretch passes through one point twice, as no wall can: a spline with c < 0,
+/// where x = t^2 and y(t) = y(-t) at a t^2 = -c.
 bool crosses_itself(const Scene& scene) {
   if (scene.curve_class != CurveClass::CubicSpline || scene.values[2] >= 0.0) {
     return false;
@@ -55,7 +55,7 @@ LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_si
   options.patches = 1;
   options.points_per_patch = 20 * count;
   options.sigma_over_size = sigma_over_size;
-  // Beside a cusp there is no longer patch than an arm.
+  // Next to a cusp, a patch is at most as long as one arm.
   const bool has_cusp = curve_class == CurveClass::SemiCubicalParabola;
   options.least_fraction = has_cusp ? 0.3 : 0.7;
   options.most_fraction = has_cusp ? 0.4 : 0.95;
@@ -69,11 +69,12 @@ LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_si
   const std::vector<double> t = touches.scene.t.front();
   double bend = 0.0;
   for (const double at : t) bend += geometry(*curve, at).kappa;
-  const double side = bend >= 0.0 ? -1.0 : 1.0;  // of increasing t, on which the centres lie
+  // The side of increasing t on which the centres lie.
+  const double side = bend >= 0.0 ? -1.0 : 1.0;
   std::vector<std::size_t> order(places.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  // Where the curve bends towards the tip more sharply than it is round, or lies in its way
-  // elsewhere, no tip comes.
+  // A tip cannot touch where the curve bends around it more tightly than its radius, or where
+  // another part of the curve is in its way.
   const std::vector<Vec2> along = places_along(*curve, t);
   std::erase_if(order, [&](std::size_t k) {
     constexpr double kRoom = 0.9;

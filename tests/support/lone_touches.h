@@ -1,4 +1,4 @@
-// Curves touched here and there, one sample at a time, in no order: what a trigger probe delivers.
+// Curves touched at single places, one sample each, in no order, as a trigger probe delivers them.
 #pragma once
 
 #include <random>
@@ -10,20 +10,20 @@
 namespace palpate::test {
 
 struct LoneTouches {
-  Scene scene;  ///< one patch a touch; with a tip, positions are its centres
+  Scene scene;  ///< one patch per touch; with a tip, positions are its centres
   double tip_radius_m = 0.0;
-  std::vector<Vec2> normals;  ///< true ones, from the surface to the tip's side, world frame
+  std::vector<Vec2> normals;  ///< true normals, from the surface towards the tip, world frame
 };
 
-/// `count` places drawn evenly along most of the curve piece. A tip lies on the outer side of the
+/// `count` places drawn evenly along most of the curve piece. A tip is on the outer side of the
 /// piece's bend, on the same side of the curve everywhere.
 LoneTouches lone_touches(CurveClass curve_class, int count, double sigma_over_size,
                          double tip_over_size, std::mt19937_64& rng);
 
-/// Adds each touch as a patch of its own; `sigma_m` is what they claim (0 = not known).
+/// Adds each touch as a patch of its own. `sigma_m`: stated by the samples; 0 = not known.
 void add_touches(const LoneTouches& touches, double sigma_m, Recognizer* recognizer);
 
-/// The same with the normals measured to a deviation.
+/// The same with measured normals of that standard deviation.
 void add_touches_with_normals(const LoneTouches& touches, double sigma_m, double normal_sigma_rad,
                               std::mt19937_64& rng, Recognizer* recognizer);
 

@@ -48,7 +48,7 @@ ClassFit placed_fit(const ShapeParameters& shape, const Pose2& world_T_curve, co
     c.col(k) = pose.rotate(c.col(k)) / data.scale;
   }
   c.col(0) += pose.translation() / data.scale;
-  // t in [-1, 1], as all fits have it.
+  // Scale t to [-1, 1], as in all fits.
   double reach = 0.0;
   for (const double at : t) {
     reach = std::max(reach, std::abs(at));

@@ -1,4 +1,4 @@
-// A curve of known shape and pose as the fits have it.
+// A curve of known shape and pose in the form of a fit's result.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace palpate::test {
 
-/// In the data's frame and units; `t`: canonical parameters of the points' feet, one a point. Its
-/// chi-square is not that of the points before it is refined.
+/// In the frame and units of the data. `t`: canonical parameters of the foot points, one per point.
+/// Its chi-square is not valid before it is refined.
 ClassFit placed_fit(const ShapeParameters& shape, const Pose2& world_T_curve, const FitData& data,
                     std::span<const double> t);
 

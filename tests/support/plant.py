@@ -1,4 +1,4 @@
-"""NATS servers on loopback, with a store that goes with them, and a client of their text protocol."""
+"""NATS servers on loopback with a temporary store, and a client of their text protocol."""
 import collections
 import json
 import os
@@ -18,7 +18,7 @@ SERVER = shutil.which("nats-server") or "/usr/sbin/nats-server"
 
 
 def skip_where_absent():
-    """ctest shows 77 as skipped; said aloud, too."""
+    """Exits with 77, which ctest shows as skipped, and prints why."""
     for program in (GATEWAY, pathlib.Path(SERVER)):
         if not program.exists():
             print(f"SKIPPED: no {program}: apt-get install nats-server libnats-dev, and build again")
@@ -36,7 +36,7 @@ def free_ports(count):
 
 
 class Servers:
-    """One server, or a cluster, that maps the contacts of each cell to partitions of their groups."""
+    """One server or a cluster, with a mapping of the contacts of each cell to partitions."""
 
     def __init__(self, folder, count=1, partitions=0, extra=""):
         self.folder, self.count = pathlib.Path(folder), count
@@ -68,7 +68,7 @@ class Servers:
         return self
 
     def reload(self, i=0):
-        """The server reads its file again."""
+        """Makes the server read its configuration again."""
         self.processes[i].send_signal(signal.SIGHUP)
 
     def kill(self, i=0, with_signal=signal.SIGKILL):
@@ -77,7 +77,7 @@ class Servers:
             self.processes[i].wait()
 
     def wait(self, timeout_s=30):
-        """Until JetStream answers."""
+        """Waits until JetStream answers."""
         deadline = time.monotonic() + timeout_s
         while time.monotonic() < deadline:
             try:
@@ -103,8 +103,8 @@ Message = collections.namedtuple("Message", "subject reply headers payload")
 
 
 class Client:
-    """As much of the protocol as a test needs: publish, subscribe, request; by any of the servers that is up. `tls`: an
-    ssl.SSLContext; `login`: what to say of oneself in CONNECT, from what the server says of itself."""
+    """The part of the protocol that tests need: publish, subscribe, request. Uses any server that is up. `tls`: an
+    ssl.SSLContext. `login`: returns the fields of CONNECT, given the server's INFO."""
 
     def __init__(self, url, timeout_s=10, tls=None, login=None):
         self.url, self.timeout_s = url, timeout_s
@@ -159,7 +159,7 @@ class Client:
                                                         block, payload))
 
     def _read(self):
-        """The next message; None at the timeout."""
+        """Returns the next message; None after the timeout."""
         while True:
             try:
                 line = self.file.readline()
@@ -210,7 +210,7 @@ class Client:
         return json.loads(answer.payload) if answer.payload else {"error": answer.headers}
 
     def stream(self, name, filter_subject="", batch=500):
-        """All messages of a stream, in order, with their sequence numbers."""
+        """Returns all messages of a stream in order, with their sequence numbers."""
         config = {"deliver_policy": "all", "ack_policy": "none", "inactive_threshold": 30_000_000_000}
         if filter_subject:
             config["filter_subject"] = filter_subject
@@ -239,7 +239,7 @@ class Client:
 
 
 def start_gateway(bus, url, name, *arguments):
-    """Starts a gateway; its log is process.log_path, which it goes on with."""
+    """Starts a gateway. Appends its log to process.log_path."""
     path = bus.folder / f"{name}.log"
     with open(path, "a") as log:
         gateway = bus.start(GATEWAY, "--plant", url, "--name", name, *arguments, stderr=log)
@@ -248,7 +248,7 @@ def start_gateway(bus, url, name, *arguments):
 
 
 def recogniser(bus, url, name, places, *arguments):
-    """A gateway that takes places, with a folder for its nodes' endpoints."""
+    """Starts a gateway that takes places, with a folder for its nodes' endpoints."""
     folder = bus.folder / name
     folder.mkdir(exist_ok=True)
     taken = [word for place in places for word in ("--take", place)]
@@ -256,13 +256,13 @@ def recogniser(bus, url, name, places, *arguments):
 
 
 def carrier(bus, url, name, cell, endpoint, *arguments):
-    """A gateway that carries a cell's messages up."""
+    """Starts a gateway that forwards a cell's messages to the plant."""
     return start_gateway(bus, url, name, "--from", endpoint, "--cell", cell, "--spool", bus.folder / f"{name}.spool",
                          *arguments)
 
 
 def gateway_status(client, cell, name, timeout_s=5):
-    """What it says next."""
+    """Returns its next status."""
     with Client(client.url) as listener:
         listener.subscribe(f"palpate.{cell}.gateway.{name}")
         message = listener.receive(timeout_s)
@@ -286,7 +286,7 @@ def wait_for_stored(client, stream, count, timeout_s=30):
 
 
 class Ledger:
-    """What the plant holds of a cell: contacts by their place in the stream, and the answers that hold them."""
+    """The messages that the plant holds of a cell: contacts by their position in the stream, and the answers that cover them."""
 
     def __init__(self, client, cell):
         self.contacts = {}   # (group, stream_seq): ContactBatch
@@ -307,15 +307,16 @@ class Ledger:
             self.answers.setdefault(answer.group, []).append((*numbers, answer, stored_s))
 
     def sent_once(self, test, sent):
-        """`sent`: {probe: number of batches}, one epoch each: all are there, once and in order."""
+        """Checks that all batches are stored once and in order. `sent`: {probe: number of batches}, of one epoch each."""
         found = {}
         for (_, _), batch in sorted(self.contacts.items(), key=lambda item: item[0][1]):
             found.setdefault(batch.header.source, []).append(batch.header.seq)
         test.assertEqual({probe: list(range(count)) for probe, count in sent.items()}, found)
 
     def answered_once(self, test):
-        """Every contact in exactly one answer: the spans of a group follow each other, and name its contacts. An answer's
-        newest contact is the one that it says, and of its object. Gives (group, seq): (answer, when it was stored)."""
+        """Checks that every contact is covered by exactly one answer: the spans of a group follow each other and name its
+        contacts, and the newest contact of an answer is the one that it states, of its object. Returns {(group, seq):
+        (answer, time of storing)}."""
         held = {}
         for group, answers in self.answers.items():
             last = 0
@@ -348,6 +349,6 @@ class Ledger:
         return [(key, self.contacts[key]) for key in self._by_group.get(group, []) if first <= key[1] <= last]
 
     def last_answers(self):
-        """{(group, object): its last answer}."""
+        """Returns {(group, object): its last answer}."""
         return {(group, answer.object): answer for group, answers in self.answers.items()
                 for _, _, _, answer, _ in answers}

@@ -1,4 +1,4 @@
-"""The built programs, as script tests call them."""
+"""Calls the built programs from script tests."""
 import os
 import pathlib
 import subprocess
@@ -11,7 +11,7 @@ SIM = BUILD / "sim/palpate-sim"
 
 
 def run(program, *arguments, text_in=None, timeout=30):
-    """Runs a program to its end; gives exit code, standard output and standard error."""
+    """Runs a program until it ends. Returns exit code, standard output and standard error."""
     done = subprocess.run([str(program), *map(str, arguments)], input=text_in, text=True,
                           capture_output=True, timeout=timeout)
     return done.returncode, done.stdout, done.stderr

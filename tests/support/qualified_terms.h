@@ -1,4 +1,4 @@
-// Every term of a qualification beside what the probe really is.
+// Compares every term of a qualification with the truth about the probe.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@ struct QualifiedTerm {
 };
 
 /// Constant, harmonics to order 3 (0 +- 0 where the estimate has none), noise, coherent deviation
-/// and its length, rate of spikes; the lag where both have one.
+/// and its length, spike rate; and the lag if both have one.
 inline std::vector<QualifiedTerm> qualified_terms(const ProbeCharacter& truth,
                                                   const ProbeCharacter& estimate) {
   std::vector<QualifiedTerm> terms;

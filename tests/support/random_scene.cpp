@@ -9,12 +9,12 @@
 namespace palpate::test {
 namespace {
 
-/// A curve piece: position over [t0, t1], parameters scale as a^power under lengths.
+/// A piece of a curve: position over [t0, t1]. Parameters scale as a^power with lengths.
 struct Piece {
   std::function<Vec2(double)> position;
   double t0 = 0.0;
   double t1 = 1.0;
-  double gap = -1.0;  ///< parameters nearer to 0 than this are left out (a cusp); -1 = none
+  double gap = -1.0;  ///< parameters nearer to 0 than this (a cusp) are left out; -1 = none
 };
 
 Piece piece_of(CurveClass curve_class, const Eigen::Vector3d& v, double reach) {
@@ -43,7 +43,7 @@ Piece piece_of(CurveClass curve_class, const Eigen::Vector3d& v, double reach) {
   }
 }
 
-/// Shape at unit size (before scaling) and the reach of the parameter.
+/// A shape of unit size (before scaling) and the range of the parameter.
 std::pair<Eigen::Vector3d, double> random_shape(CurveClass curve_class, std::mt19937_64& rng) {
   switch (curve_class) {
     case CurveClass::Line:
@@ -83,7 +83,7 @@ Eigen::Vector3d scaled(CurveClass curve_class, const Eigen::Vector3d& v, double 
   }
 }
 
-/// Parameter of the enlarged curve for a parameter of the original.
+/// Parameter on the enlarged curve of a parameter of the original.
 double scaled_t(CurveClass curve_class, double t, double s) {
   switch (curve_class) {
     case CurveClass::Line:
@@ -97,7 +97,7 @@ double scaled_t(CurveClass curve_class, double t, double s) {
   }
 }
 
-/// Arc length against parameter on a fine table.
+/// Arc length by parameter in a fine table.
 struct ArcTable {
   std::vector<double> t, s;
   double half_diagonal = 0.0;
@@ -132,7 +132,7 @@ struct ArcTable {
   }
 };
 
-/// Arc of a patch: of a piece whose arc is `total` and whose half diagonal is `size`.
+/// Arc of a patch on a piece with the arc `total` and the half diagonal `size`.
 double random_arc(const SceneOptions& options, double total, double size, std::mt19937_64& rng) {
   if (options.most_arc_over_size > 0.0) {
     return size * std::exp(uniform(rng, std::log(options.least_arc_over_size),
@@ -170,7 +170,9 @@ void touch(const Piece& piece, const SceneOptions& options, double scale, std::m
       const double arc = begin + (end - begin) * i / (options.points_per_patch - 1);
       const double t = table.parameter_at(arc);
       Vec2 world = scene->world_T_curve * Vec2(scale * piece.position(t));
-      const double y = noise(rng);  // drawn one by one: compilers differ in the order of arguments
+      // in a statement of its own, because the order of evaluating arguments differs between
+      // compilers
+      const double y = noise(rng);
       world += Vec2(noise(rng), y);
       samples.push_back(world);
       parameters.push_back(t);
@@ -196,7 +198,7 @@ Pose2 random_pose(const SceneOptions& options, std::mt19937_64& rng) {
           uniform(rng, -kPi, kPi)};
 }
 
-/// The scene before it is touched: the curve of that shape, enlarged by `scale`, at a random pose.
+/// The scene without touches: the curve of that shape, enlarged by `scale`, at a random pose.
 Scene untouched(CurveClass curve_class, const Eigen::Vector3d& shape, double scale,
                 const SceneOptions& options, std::mt19937_64& rng) {
   Scene scene;

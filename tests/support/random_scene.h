@@ -1,4 +1,5 @@
-// Random touched curves with known truth, made by formulas of their own (no curve code of core).
+// Random touched curves with known truth, computed by formulas of their own (no curve code of
+// core).
 #pragma once
 
 #include <cstdint>
@@ -13,18 +14,18 @@ namespace palpate::test {
 struct SceneOptions {
   int patches = 2;
   int points_per_patch = 111;
-  /// Noise over the half diagonal of the whole curve piece.
+  /// Noise divided by the half diagonal of the whole curve piece.
   double sigma_over_size = 1e-3;
   /// Arc of each patch as a fraction of the whole curve piece, uniform in [least, most].
   double least_fraction = 0.06;
   double most_fraction = 0.25;
-  /// Where most_arc_over_size > 0, the arc of each patch in units of size_m instead, log-uniform in
+  /// If most_arc_over_size > 0: arc of each patch in units of size_m instead, log-uniform in
   /// [least, most].
   double least_arc_over_size = 0.0;
   double most_arc_over_size = 0.0;
   double size_m = 0.05;  ///< half diagonal of the whole curve piece [m]
-  /// Whether a patch may run across a cusp, or next to it: nothing follows a path there, but single
-  /// touches may lie so.
+  /// Permits a patch across a cusp or next to it. No stroke can follow that, but single touches may
+  /// lie so.
   bool across_cusp = false;
 };
 
@@ -37,13 +38,14 @@ struct Scene {
   std::vector<std::vector<double>> t;      ///< true curve parameter of each sample
 };
 
-/// Classes outside the eight, for "never confidently wrong".
+/// Shapes of none of the eight classes, to test that the recognizer is never confidently wrong.
 enum class OutsideShape { Sinusoid, Superellipse, LogSpiral, Quartic };
 
-/// Patches lie in disjoint parts of the curve, in random order and directions of travel.
+/// A scene of random shape and pose. Its patches are on disjoint parts of the curve, in random
+/// order and with random directions of travel.
 Scene random_scene(CurveClass curve_class, const SceneOptions& options, std::mt19937_64& rng);
 /// One stretch of an ellipse, arc_rad of its eccentric angle t from a random start. The patches
-/// share it: each covers 98 per cent of its part (least_fraction, most_fraction are not used).
+/// share it: each covers 98 % of its part (least_fraction and most_fraction are not used).
 Scene random_ellipse_arc(double arc_rad, const SceneOptions& options, std::mt19937_64& rng);
 Scene random_outside_scene(OutsideShape shape, const SceneOptions& options, std::mt19937_64& rng);
 

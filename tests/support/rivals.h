@@ -1,4 +1,5 @@
-// What the recogniser knows of a scene's rivals, as starting points of the margin's own fits.
+// The margin of a scene, computed from the recognizer's fits of the rival classes as starting
+// points.
 #pragma once
 
 #include "tests/support/class_margin.h"
@@ -7,16 +8,17 @@
 namespace palpate::test {
 
 struct Margin {
-  bool determined = false;                        ///< the data determine the class (class_margin.h)
-  bool told_apart = false;                        ///< of a curve of no class: long enough to tell
-  CurveClass nearest = CurveClass::Unclassified;  ///< the rival that comes nearest to its need
-  double chi2 = 0.0;                              ///< that it leaves without noise
+  bool determined = false;  ///< the data determine the class (class_margin.h)
+  bool told_apart = false;  ///< for a curve of no class: long enough to exclude all classes
+  CurveClass nearest = CurveClass::Unclassified;  ///< the rival closest to fitting well enough
+  double chi2 = 0.0;                              ///< of that rival, without noise
   double occam = 0.0;                             ///< occam_against_richer
 };
 
-/// From the answers on the points without noise, one class allowed at a time: each is refined here
-/// before it counts, so that a poor fit of the recogniser makes no scene determined. A rival that
-/// it does not find at all would; that costs the recogniser a failure, never a success.
+/// Starts from the recognizer's answers on the points without noise, with one class allowed at a
+/// time. Each is refined here, so that a poor fit of the recognizer does not make a scene count as
+/// determined. A rival that the recognizer does not find at all would do so; but that can only add
+/// failures to the recognizer's record, never successes.
 inline Margin margin_of(const PriorScene& prior_scene) {
   const CurveClass truth = prior_scene.scene.curve_class;
   Scene exact = prior_scene.scene;

@@ -18,7 +18,7 @@ COLOURS = {"core": "#dbe9f6", "node": "#e2f0d9", "sim": "#fbe5d6"}
 
 
 def includes():
-    """The rooms that each room includes."""
+    """Returns {room: rooms that it includes}."""
     found = {room: set() for room in dict.fromkeys(NODE + SIM)}
     for top in ("core", "node", "sim"):
         for file in sorted((ROOT / top).rglob("*")):
@@ -30,7 +30,7 @@ def includes():
 
 
 def reach(room, edges):
-    """All rooms that are reached from a room."""
+    """All rooms that can be reached from a room."""
     waiting, seen = list(edges[room]), set()
     while waiting:
         other = waiting.pop()
@@ -41,14 +41,14 @@ def reach(room, edges):
 
 
 def reduced(edges):
-    """Without those that lead over another room anyway."""
+    """Without edges whose target is also reached through another room."""
     return {room: sorted(other for other in others
                          if not any(other in reach(between, edges) for between in others - {other}))
             for room, others in edges.items()}
 
 
 def rows_of(edges):
-    """Each room in the row below the lowest of those that it includes."""
+    """Puts each room into the row below the lowest room that it includes."""
     level = {}
     for room in edges:  # in an order in which what is included stands first
         level[room] = 1 + max((level[other] for other in edges[room]), default=-1)

@@ -1,4 +1,4 @@
-// Random scenes as the recogniser's inputs.
+// Converts random scenes to inputs of the recognizer.
 #pragma once
 
 #include "core/recognition/recognizer.h"
@@ -7,7 +7,7 @@
 
 namespace palpate::test {
 
-/// Adds every patch; `sigma_m` is what the samples claim (0 = not known).
+/// Adds every patch. `sigma_m`: stated by the samples; 0 = not known.
 inline void add_scene(const Scene& scene, double sigma_m, Recognizer* recognizer) {
   std::uint32_t number = 0;
   for (const auto& patch : scene.patches) {
@@ -55,7 +55,7 @@ inline const Hypothesis* hypothesis_of(const Recognition& answer, CurveClass cur
   return nullptr;
 }
 
-/// Error of shape and pose, [shape; x; y; theta], modulo the pose symmetry (2-fold only).
+/// Error of [shape; x; y; theta], modulo the pose symmetry (2-fold only).
 inline Eigen::VectorXd error_of(const Hypothesis& hypothesis, const Scene& scene) {
   const auto letters = static_cast<Eigen::Index>(parameter_letters(scene.curve_class).size());
   Eigen::VectorXd error(letters + 3);

@@ -49,7 +49,7 @@ PriorScene scene_from(const ScenePrior& prior, std::uint64_t seed, std::uint32_t
   options.size_m = log_uniform(rng, kLeastSize_m, kMostSize_m);
   options.least_arc_over_size = prior.least_arc_over_size;
   options.most_arc_over_size = prior.most_arc_over_size;
-  // The same numbers are drawn with and without noise.
+  // Draw the same numbers with and without noise.
   std::mt19937_64 same = rng;
   PriorScene result;
   result.size_m = options.size_m;

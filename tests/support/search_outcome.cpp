@@ -23,14 +23,14 @@ double arc_or_noise(std::mt19937_64& rng, double least, double most) {
   return std::exp(std::uniform_real_distribution<double>(std::log(least), std::log(most))(rng));
 }
 
-/// Tip centres for surface points: outside the bend at the middle of each patch.
+/// Replaces surface points by tip centres, outside the bend at the middle of each patch.
 void lift_to_tip(double radius_m, Scene* scene, std::vector<MaterialSide>* sides) {
   const auto curve = make_curve(scene->curve_class, scene->values);
   for (std::size_t p = 0; p < scene->patches.size(); ++p) {
     const auto& t = scene->t[p];
     const double travel = t.back() >= t.front() ? 1.0 : -1.0;
     const double bend = travel * geometry(*curve, t[t.size() / 2]).kappa;
-    const double side = bend >= 0.0 ? -1.0 : 1.0;  // of travel, on which the centres lie
+    const double side = bend >= 0.0 ? -1.0 : 1.0;  // the side of travel on which the centres lie
     sides->push_back(side > 0.0 ? MaterialSide::Right : MaterialSide::Left);
     for (std::size_t i = 0; i < t.size(); ++i) {
       const Vec2 tangent = travel * derivatives(*curve, t[i]).first.normalized();
@@ -70,10 +70,10 @@ Prepared prepare(const SearchCase& search_case) {
   return prepared;
 }
 
-/// The true curve in the data's frame, as a fit to the reduced points.
+/// The true curve in the frame of the data, as a fit to the reduced points.
 ClassFit truth_of(const Scene& scene, const Prepared& prepared) {
   const FitData& reduced = prepared.reduced;
-  // Parameters: those of the nearest samples of the same patch.
+  // Curve parameters: those of the nearest samples of the same patch.
   std::vector<double> t;
   for (std::size_t p = 0; p < reduced.patches.size(); ++p) {
     const auto samples = prepared.data.patch(p);
@@ -91,7 +91,7 @@ ClassFit truth_of(const Scene& scene, const Prepared& prepared) {
 
 double chi2_of(const std::optional<ClassFit>& fit) { return fit ? fit->chi2 : kInfinity; }
 
-/// Whether a conic has not left its class.
+/// True if a conic has not left its class.
 bool is_still(CurveClass curve_class, const ClassFit& fit) {
   const bool ellipse = curve_class == CurveClass::Ellipse;
   return (!ellipse && curve_class != CurveClass::Hyperbola) ||
@@ -143,7 +143,7 @@ SearchCase search_case(CurveClass curve_class, std::uint64_t seed, std::uint32_t
 }
 
 SearchCase lone_search_case(CurveClass curve_class, std::uint64_t seed, std::uint32_t number) {
-  // A sequence of its own: not that of search_case.
+  // A different sequence from that of search_case.
   constexpr std::uint32_t kLone = 0x10e;
   std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
                          static_cast<std::uint32_t>(curve_class), number, kLone};

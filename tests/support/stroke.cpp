@@ -60,7 +60,7 @@ LocalEstimate polar_geometry(const PolarRadius& p, double phi) {
   return e;
 }
 
-/// By arc length from a start: fourth-order steps of d phi / ds = 1 / sqrt(r^2 + r'^2).
+/// Walks by arc length from a start, with fourth-order steps of d phi / ds = 1 / sqrt(r^2 + r'^2).
 void walk_polar(PolarRadius (*radius)(double), double phi, std::size_t count, TrueStroke* stroke) {
   const auto rate = [&](double at) {
     const PolarRadius p = radius(at);
@@ -103,7 +103,7 @@ TrueStroke random_stroke(std::size_t shape, double length_m, std::mt19937_64& rn
   if (shape < touched_arcs().size()) {
     const TouchedArc& arc = touched_arcs()[shape];
     stroke.name = arc.name;
-    // Anywhere within 40 mm of the arc's own middle.
+    // Anywhere within 40 mm of the middle of the arc.
     walk_class(arc, 0.04 * (place - 0.5), count, &stroke);
   } else if (shape == touched_arcs().size()) {
     stroke.name = "superellipse";
@@ -147,7 +147,7 @@ Eigen::Vector3d TrueStroke::error_of(const LocalEstimate& estimate) const {
   const LocalEstimate& e = truth[nearest];
   const Vec2 tangent(std::cos(e.tangent_angle), std::sin(e.tangent_angle));
   const double s = tangent.dot(estimate.position - e.position);
-  // kappa_s through the places around by a parabola, kappa by its integral.
+  // kappa_s by a parabola through the neighbouring points, kappa by its integral.
   const std::size_t middle = std::clamp<std::size_t>(nearest, 1, truth.size() - 2);
   const double before = truth[middle - 1].kappa_s;
   const double at = truth[middle].kappa_s;

@@ -1,5 +1,5 @@
-// Repeatable randomness for tests: the seed comes from the suite's and test's names, so that a
-// test sees the same numbers alone, in any order and on any machine.
+// Repeatable random numbers for tests. The seed depends on the names of suite and test only, so
+// that a test gets the same numbers alone, in any order and on any machine.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace palpate::test {
 /// environment (default 0). A failing test prints it.
 std::uint64_t test_seed();
 
-/// Generator seeded by test_seed(); `stream` separates independent sequences within one test.
+/// A generator seeded by test_seed(). `stream` separates independent sequences within one test.
 std::mt19937_64 test_rng(std::uint64_t stream = 0);
 
 inline double uniform(std::mt19937_64& rng, double least, double most) {
@@ -28,11 +28,11 @@ inline double random_sign(std::mt19937_64& rng) {
 }
 
 /// Number of random cases: `base` times PALPATE_TEST_STRESS (default 1) from the environment, at
-/// least one. Under a sanitizer it is a fraction: the same code runs on fewer scenes.
+/// least one. With a sanitizer it is a fraction: the same code on fewer scenes.
 int stress_count(int base);
 
-/// Whether there are as many cases as bounds on their counts and means are for: not with a fraction
-/// of them. What each case must fulfil alone is asked in any run.
+/// True if there are enough cases for bounds on counts and means, so not if only a fraction of them
+/// runs. Requirements on single cases are checked in any run.
 bool counts_tell();
 
 }  // namespace palpate::test

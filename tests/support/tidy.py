@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""clang-tidy over core/, node/ and sim/: no finding, or exit 1.
+"""Runs clang-tidy on core/, node/ and sim/. Exits with 1 if there is a finding.
 
     tests/support/tidy.py           everything but the analyzer, files of a folder together
     tests/support/tidy.py --deep    the analyzer too, each file alone: ten times as long
@@ -26,14 +26,14 @@ def call(*command):
 
 def configure():
     call("cmake", "--preset", "tidy")
-    # Generated headers that ours include.
+    # Generated headers that our files include.
     protos = (SOURCE / "proto").rglob("*.proto")
     headers = [f"proto/cpp/{proto.relative_to(SOURCE / 'proto').with_suffix('.pb.h')}" for proto in protos]
     call("cmake", "--build", BUILD, "--target", *headers)
 
 
 def ours():
-    """Each file of ours, its target and the options that it is compiled with."""
+    """Yields each of our files with its target and compiler options."""
     for entry in json.loads((BUILD / "compile_commands.json").read_text()):
         file = pathlib.Path(entry["file"])
         if BUILD in file.parents or not OURS.match(str(file.relative_to(SOURCE))):
@@ -46,7 +46,7 @@ def ours():
 
 
 def together(files):
-    """Those of a folder and a target in one file: what they include is looked at once."""
+    """Combines the files of a folder and target into one, so that their includes are checked once."""
     groups = {}
     for file, target, options in files:
         groups.setdefault((file.parent, target), (options, []))[1].append(file)
@@ -80,7 +80,7 @@ def main():
                 if not only or any(part in str(file) for part in only)]
         for done in concurrent.futures.as_completed(work):
             status, text = done.result()
-            # A header's finding is found again by whoever includes it.
+            # A finding in a header is reported for every file that includes it.
             for finding in re.split(r"^(?=/\S+:\d+:\d+: (?:warning|error): )", text, flags=re.MULTILINE):
                 if finding.strip() and finding not in said:
                     said.add(finding)

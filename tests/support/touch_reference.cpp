@@ -22,7 +22,7 @@ namespace palpate::test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRecognized = 0.95;  // RecognizerOptions's own
+constexpr double kRecognized = 0.95;  // the default of RecognizerOptions
 
 FitData data_of(const LoneTouches& touches, std::size_t every, std::size_t first) {
   SampleMemory memory;
@@ -36,7 +36,7 @@ FitData data_of(const LoneTouches& touches, std::size_t every, std::size_t first
   return make_fit_data(memory.patches(), 0.0, &sigma_known);
 }
 
-/// The curve of those parameters, its feet those of the touches.
+/// The curve with these parameters; its foot points are those of the touches.
 ClassFit placed(const ShapeParameters& shape, const Pose2& world_T_curve, const FitData& data) {
   std::vector<double> t;
   if (const auto curve = make_curve(shape.curve_class, shape.values)) {
@@ -48,10 +48,10 @@ ClassFit placed(const ShapeParameters& shape, const Pose2& world_T_curve, const 
   return placed_fit(shape, world_T_curve, data, t);
 }
 
-/// All optima that were found, by CurveClass: several of one may be the same.
+/// All optima found, by CurveClass; some may be equal.
 using Optima = std::array<std::vector<ClassFit>, 9>;
 
-/// Takes a start to its optimum, and a spline's rival to its own, if that is a curve of its class.
+/// Moves a start to its optimum, and a spline's rival to its own, if it is a curve of its class.
 void follow(const ClassFit& start, const FitData& data, Optima* optima) {
   std::vector<ClassFit>& of_class = (*optima)[static_cast<std::size_t>(start.curve_class)];
   ClassFit there = settled(start, data, RivalOf::Best);
@@ -69,8 +69,8 @@ void follow(const ClassFit& start, const FitData& data, Optima* optima) {
   }
 }
 
-/// Length of the way through the feet in their order over that of the shortest tree through the
-/// touches: two for a needle whose sides share the touches of one edge.
+/// Length of the path through the foot points in their order, divided by that of the shortest tree
+/// through the touches: two for a needle whose sides share the touches of one edge.
 double detour_of(const ClassFit& fit, const FitData& data) {
   const auto canonical = to_canonical(fit, data);
   const auto curve =
@@ -89,7 +89,7 @@ double detour_of(const ClassFit& fit, const FitData& data) {
     feet.push_back(position(*curve, t[i]) / data.scale);
     touches.push_back(data.points[i].position);
   }
-  double closing = 0.0;  // the widest gap of a closed curve is no part of the way
+  double closing = 0.0;  // the largest gap of a closed curve, which is not part of the path
   for (std::size_t i = 1; i < feet.size(); ++i) {
     closing = std::max(closing, (feet[i] - feet[i - 1]).norm());
   }
@@ -99,7 +99,7 @@ double detour_of(const ClassFit& fit, const FitData& data) {
          shortest_tree(touches);
 }
 
-/// From the fits to some of the touches, as curves in the frame of all.
+/// Continues fits to some of the touches as curves in the frame of all.
 void follow_part(const LoneTouches& touches, std::size_t every, std::size_t first,
                  const FitData& data, Optima* optima) {
   const FitData part = data_of(touches, every, first);
@@ -114,12 +114,12 @@ void follow_part(const LoneTouches& touches, std::size_t every, std::size_t firs
   }
 }
 
-/// Whether two starts led to one curve. A conic has one optimum beside the data.
+/// True if two starts led to the same curve. A conic has one optimum near the data.
 bool is_same_optimum(const ClassFit& a, const ClassFit& b) {
   return !a.polynomial || !b.polynomial || is_same_curve(*a.polynomial, *b.polynomial);
 }
 
-/// Ellipse and hyperbola without an optimum of their own are the parabola.
+/// An ellipse or hyperbola without an optimum of its own is replaced by the parabola.
 void take_limits(ClassFits* fits) {
   const auto& parabola = (*fits)[static_cast<std::size_t>(CurveClass::Parabola)];
   for (const CurveClass curve_class : {CurveClass::Ellipse, CurveClass::Hyperbola}) {
@@ -137,7 +137,7 @@ void take_limits(ClassFits* fits) {
 }  // namespace
 
 TouchReference reference_of(const LoneTouches& touches) {
-  // Of the shortest tree: what goes there and back.
+  // Relative to the shortest tree: a curve above it goes forth and back.
   constexpr double kNeedle = 1.5;
   Arcs arcs = smooth_arcs(data_of(touches, 1, 0), true);
   const FitData& data = arcs.smooth.reduced;  // every touch stands for itself
@@ -179,14 +179,14 @@ TouchReference reference_of(const LoneTouches& touches) {
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     if (static_cast<int>(points.size()) < degrees_of_freedom(curve_class)) {
-      reference.compares_all = false;  // it goes through them in a family of ways
+      reference.compares_all = false;  // it passes through them in infinitely many ways
       continue;
     }
-    std::vector<std::pair<const ClassFit*, double>> distinct;  // and log of the evidence
+    std::vector<std::pair<const ClassFit*, double>> distinct;  // with the log of the evidence
     double highest = -kInfinity;
     for (ClassFit& optimum : optima[i]) {
       reference.chi2[i] = std::min(reference.chi2[i], optimum.chi2);
-      // Each touch anywhere along the curve with the same density.
+      // Each touch is equally likely anywhere along the curve.
       const double detour = detour_of(optimum, data);
       ClassFits alone;
       alone[i] = optimum;
@@ -214,7 +214,7 @@ TouchReference reference_of(const LoneTouches& touches) {
       reference.other_shapes = distinct.empty() ? 0.0 : 1.0 - 1.0 / sum;
     }
     if (!fits[i] && searched[i] && searched[i]->at_limit) {
-      fits[i] = searched[i];  // what is known of its limit
+      fits[i] = searched[i];  // what is known about its limit
     }
   }
   take_limits(&fits);
@@ -240,9 +240,9 @@ int* BesideReference::counted_for(Doubt doubt, const TouchReference& reference) 
 }
 
 void BesideReference::add(const LoneTouches& touches) {
-  // By the reference: what has less changes no answer.
+  // Probability by the reference; smaller ones do not change an answer.
   constexpr double kMatters = 0.01;
-  // Of chi-square: what the smooth model of strung touches may make of it.
+  // Difference of chi-square that the smooth model of joined touches may cause.
   constexpr double kMissed = kLeastError;
   const CurveClass truth = touches.scene.curve_class;
   Recognizer recognizer;

@@ -3,8 +3,8 @@
 namespace palpate::test {
 
 const std::vector<TouchedArc>& touched_arcs() {
-  // Semi-cubical parabola and spline: parameters of a curve of size about 25 mm in metres, which
-  // scale with length to the powers (-1/2, 0, 1/2).
+  // Semi-cubical parabola and spline: parameters in metres of a curve of about 25 mm; they scale
+  // with length to the powers (-1/2, 0, 1/2).
   static const std::vector<TouchedArc> arcs = {
       {"line", Line{}, {0.3, -0.1, 0.8}, 0.0, 0.022, 1},
       {"circle", Circle{0.020}, {0.1, 0.2, -2.0}, 1.0, 0.022, 1},

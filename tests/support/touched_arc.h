@@ -1,5 +1,5 @@
 // Arcs of every class as a probe touches them: samples at equal arc lengths with Gaussian noise,
-// and the true geometry that an estimate is measured against.
+// and the true geometry to compare an estimate with.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,24 +19,25 @@ struct TouchedArc {
   Pose2 world_T_curve;
   double centre_t = 0.0;  ///< curve parameter in the middle of the arc
   double length_m = 0.0;
-  int direction = 1;  ///< of travel against increasing t: 1 or -1
+  int direction = 1;  ///< of travel: 1 along increasing t, -1 against it
 };
 
-/// One arc of each class, of a part of about 25 mm, 22 mm long, off the vertices and with an
-/// orientation of its own.
+/// One arc of each class, 22 mm long on a part of about 25 mm, away from the vertices, each with
+/// its own orientation.
 const std::vector<TouchedArc>& touched_arcs();
 
-/// `count` points at equal arc lengths, ends included.
+/// `count` points at equal arc lengths, including both ends.
 std::vector<Vec2> samples_of(const TouchedArc& arc, int count);
 
-/// Isotropic Gaussian noise added.
+/// Adds isotropic Gaussian noise.
 std::vector<Vec2> with_noise(std::span<const Vec2> samples, double sigma_m, std::mt19937_64& rng);
 
-/// True geometry at the foot of a world point, signed by the travel; covariance zero.
+/// True geometry at the foot point of a world point, with signs by the direction of travel;
+/// covariance zero.
 LocalEstimate truth_at(const TouchedArc& arc, const Vec2& world_point);
 
-/// (offset along the left normal, tangent angle, kappa, kappa_s) less the truth at the foot of the
-/// estimate's position.
+/// (offset along the left normal, tangent angle, kappa, kappa_s) minus the truth at the foot point
+/// of the estimate's position.
 Eigen::Vector4d error_of(const LocalEstimate& estimate, const TouchedArc& arc);
 
 }  // namespace palpate::test

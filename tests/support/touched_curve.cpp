@@ -55,7 +55,7 @@ Eigen::MatrixXd bound_of(const Scene& scene) {
       information += row.head(unknowns) * row.head(unknowns).transpose();
     }
   }
-  // In natural sizes the inverse is as well conditioned as the scene is.
+  // In natural units the inverse is as well conditioned as the scene is.
   const Eigen::VectorXd sizes = natural_sizes(scene).head(unknowns);
   const Eigen::MatrixXd scaled = sizes.asDiagonal() * information * sizes.asDiagonal();
   Eigen::MatrixXd bound = Eigen::MatrixXd::Zero(letters + 3, letters + 3);

@@ -5,8 +5,8 @@
     print(result)                     # ellipse (recognized), a = 25.0012 +- 0.0021 mm, ...
     result.params["a"], result.pose, result.covariance, result.residuals(points)
 
-Points are arrays of shape (n, 2), in the unit that is told; what comes back is in the same unit, angles in
-radians. A patch is one unbroken touch, its points in their order along the part.
+Points are arrays of shape (n, 2), in the unit that `unit` names. Results are in the same unit, angles in radians. A
+patch is one unbroken touch; its points are in their order along the part.
 """
 from __future__ import annotations
 
@@ -25,11 +25,20 @@ __version__ = "@PROJECT_VERSION@"
 __all__ = ["Planner", "Probe", "Recognizer", "Result", "fit", "models"]
 
 _NONE = np.empty(0)
-_MOST_DRAWN = 1 << 16  # points kept for the picture of a stream; then every second one
+_MOST_DRAWN = 1 << 16  # points kept for Result.plot and sample; beyond it every second one is dropped
 
 
 class Recognizer:
-    """Follows one object: add points as they come, ask for the answer whenever it is wanted."""
+    """Recognises one object while it is touched: add points as they come, and call recognize() at any time.
+
+    sigma: standard deviation of points that are added without one; None = estimated from the data.
+    unit: "m", "mm", "cm", "um", "nm" or "in"; of all lengths that go in and come out.
+    classes: names of the classes to consider, e.g. "ellipse"; empty = all.
+    form_deviation: standard deviation of the part's surface from its ideal curve; 0 = exactly of its class.
+    most_patches: patches kept (not counting patches of one point); beyond it the oldest is forgotten.
+    most_samples_per_patch: points kept of a patch; beyond it neighbours are merged.
+    unqualified_probe: see fit().
+    """
 
     def __init__(self, sigma: float | None = None, unit: str = "m", classes: Iterable[str] = (),
                  form_deviation: float = 0.0, most_patches: int = 64, most_samples_per_patch: int = 1024,
@@ -42,17 +51,22 @@ class Recognizer:
         self._drawn = 0
         self._tip_radius = 0.0
         self.dropped = 0
-        """Points that said nothing new: at exactly the place of the one before."""
+        """Number of points not used because they repeat the place of the point before exactly."""
 
     def add(self, points, patch: int = 0, probe: int = 0, sigma=None, tip_radius: float = 0.0,
             material_side: str = "unspecified", normals=None, normal_sigma=None, covariances=None) -> int:
-        """Appends points of one patch, in their order. Gives how many were taken; raises ValueError on points
-        that are not finite.
+        """Appends points (n, 2) of one patch, in their order along the part. Returns how many were accepted. Raises
+        ValueError if a point is not finite or another argument is invalid; then no point is added.
 
-        normals: (n, 2), the surface's, of length 1, out of the material, (0, 0) where none was measured;
-        normal_sigma: standard deviation of their directions in radians, one number or one a normal.
-        covariances: of the positions in place of sigma, (2, 2) or (n, 2, 2), in the unit's square. Result.simplified_count
-        tells of how many points not all of that counts."""
+        patch, probe: numbers of the patch and of the probe. A new patch number begins a new patch.
+        sigma: standard deviation of a point, one number or one per point; None = that of the constructor.
+        tip_radius: radius of a round tip whose centres the points are; 0 = points of the surface.
+        material_side: "left", "right" or "unspecified", seen along the direction of travel.
+        normals: (n, 2), unit normals of the surface, out of the material; (0, 0) where none was measured.
+        normal_sigma: standard deviation of their directions in radians, one number or one per normal.
+        covariances: of the positions, in place of sigma; (2, 2) or (n, 2, 2), in the square of the unit.
+        A search over the classes uses normals and covariances only in part; Result.simplified_count says for how many
+        points."""
         points = np.asarray(points, dtype=np.float64)
         in_metres = points if self._scale == 1.0 else self._scale * points
         sigmas = _NONE if sigma is None else self._scale * np.atleast_1d(np.asarray(sigma, dtype=np.float64))
@@ -68,11 +82,12 @@ class Recognizer:
         return accepted
 
     def recognize(self) -> Result:
+        """Returns the answer for all points so far."""
         touched = np.concatenate(self._points) if self._points else np.empty((0, 2))
         return Result(self._core.recognize(), self._unit, touched, self._tip_radius)
 
     def reset(self) -> None:
-        """A new object."""
+        """Forgets all points: a new object begins."""
         self._core.reset()
         self._points.clear()
         self._drawn = 0
@@ -83,15 +98,19 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
         classes: Iterable[str] = (), form_deviation: float = 0.0, touches: bool = False,
         most_samples_per_patch: int = 1024, normals=None, normal_sigma: float | None = None,
         unqualified_probe: bool = False) -> Result:
-    """Recognises one object: an array (n, 2) of one patch, or a list of them.
+    """Recognises one object and returns the Result. Raises ValueError if an argument is invalid.
 
-    sigma: standard deviation of a point, one number or (for one patch) one a point; None estimates it.
-    tip_radius: the points are centres of a round tip. material_side: of the direction of travel.
-    touches: every point is a touch of its own, in no order along the part.
-    form_deviation: standard deviation of the part from its ideal curve, half of a +- tolerance.
-    unqualified_probe: nobody has measured the probe's lobes, radius and drift: uncertainties and the odds of the
-    classes hold what of these the residuals leave possible.
-    normals: of the surface, measured, as the points: an array or a list of them, as Recognizer.add has it.
+    points: an array (n, 2) of one patch, or a list of such arrays.
+    sigma: standard deviation of a point, one number or (for one patch) one per point; None = estimated.
+    unit, classes, most_samples_per_patch: see Recognizer.
+    tip_radius: radius of a round tip whose centres the points are; 0 = points of the surface.
+    material_side: "left", "right" or "unspecified", seen along the direction of travel.
+    touches: every point is a touch of its own; their order does not matter.
+    form_deviation: standard deviation of the part's surface from its ideal curve, e.g. half of a +- tolerance.
+    unqualified_probe: set it if nobody has measured the probe's lobes, tip radius and drift. Uncertainties and class
+    probabilities then include such deviations, in any size that the residuals permit.
+    normals: measured normals of the surface, in arrays like the points; see Recognizer.add.
+    normal_sigma: standard deviation of their directions in radians.
     """
     patches = _patches(points, touches)
     of_patches: Sequence = [None] * len(patches) if normals is None else _patches(normals, touches)
@@ -101,7 +120,7 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
         raise ValueError("points: there are none")
     if len(of_patches) != len(patches):
         raise ValueError("normals: not as many as points")
-    # A list is there at once: nothing of it is forgotten.
+    # The whole list is known, so no patch needs to be forgotten.
     recognizer = Recognizer(None, unit, classes, form_deviation, max(64, len(patches)), most_samples_per_patch,
                             unqualified_probe)
     for number, patch in enumerate(patches):
@@ -126,7 +145,7 @@ def __dir__() -> list[str]:
 
 
 def __getattr__(name: str):
-    """Probe and Planner need pyzmq and protobuf; recognising does not."""
+    """Imports Probe and Planner on first use: they need pyzmq and protobuf, recognition does not."""
     if name in ("Probe", "Planner"):
         from . import bus
         return getattr(bus, name)

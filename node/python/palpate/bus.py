@@ -1,4 +1,4 @@
-"""Probes and planners of a running palpate-node. Needs pyzmq and protobuf."""
+"""Clients of a running palpate-node: probes and planners. Needs pyzmq and protobuf."""
 from __future__ import annotations
 
 import random
@@ -22,7 +22,7 @@ RESULTS = "tcp://127.0.0.1:5582"
 
 
 def _secure(socket: zmq.Socket, secret_key: str | None, server_key: str | None) -> None:
-    """CURVE by certificate files: of `palpate keygen`, CZMQ or zmq.auth.create_certificates."""
+    """Sets CURVE keys from certificate files, as `palpate keygen`, CZMQ and zmq.auth.create_certificates write them."""
     if secret_key is None and server_key is None:
         return
     if secret_key is None or server_key is None:
@@ -35,7 +35,7 @@ def _secure(socket: zmq.Socket, secret_key: str | None, server_key: str | None) 
 
 
 def _name(what: str, name: str) -> str:
-    """What the recognizer would reject is not sent."""
+    """Raises ValueError for a name that the recognizer would reject."""
     if not re.fullmatch(r"[A-Za-z0-9_.-]{1,64}", name):
         raise ValueError(f"{what}: {name!r}: a name is 1 to 64 of A-Z a-z 0-9 _ . -")
     return name
@@ -45,12 +45,12 @@ class _Peer:
     def __init__(self, kind: int, endpoint: str, secret_key: str | None, server_key: str | None) -> None:
         self._context = zmq.Context()
         self._socket = self._context.socket(kind)
-        self._socket.setsockopt(zmq.LINGER, 200)  # [ms] nobody listens: the end is not held up
+        self._socket.setsockopt(zmq.LINGER, 200)  # [ms] longest wait at the end if nobody listens
         self._socket.setsockopt(zmq.RECONNECT_IVL, 10)
         self._socket.setsockopt(zmq.TCP_KEEPALIVE, 1)
         self._socket.setsockopt(zmq.TCP_KEEPALIVE_IDLE, 1)  # [s]
         _secure(self._socket, secret_key, server_key)
-        # A refusal is told once, and libzmq does not try again; who disagrees on CURVE may close before it has said so.
+        # libzmq reports a refusal only once and does not try again. A peer that disagrees on CURVE may close without one.
         self._refusals = self._socket.get_monitor_socket(zmq.EVENT_HANDSHAKE_FAILED_AUTH |
                                                          zmq.EVENT_HANDSHAKE_FAILED_PROTOCOL |
                                                          zmq.EVENT_HANDSHAKE_FAILED_NO_DETAIL |
@@ -59,7 +59,7 @@ class _Peer:
         self.endpoint = endpoint
 
     def _wait(self, timeout: float) -> bool:
-        """True where there is something to receive; raises ConnectionRefusedError where the recognizer refuses us."""
+        """Waits for a message. False after timeout; raises ConnectionRefusedError if the recognizer refuses us."""
         poller = zmq.Poller()
         poller.register(self._socket, zmq.POLLIN)
         poller.register(self._refusals, zmq.POLLIN)
@@ -71,7 +71,7 @@ class _Peer:
             self._hear(recv_monitor_message(self._refusals)["event"])
 
     def _hear(self, event: int) -> None:
-        closed_in_a_row = 8  # who starts or ends just then closes one or two
+        closed_in_a_row = 8  # a peer that starts or ends at that moment closes one or two
         why = "and we do not agree on CURVE: one of us has keys, the other none"
         if event == zmq.EVENT_HANDSHAKE_SUCCEEDED:
             self._closed_in_a_row = 0
@@ -99,7 +99,7 @@ class _Peer:
 
 
 class _Details:
-    """Fields of messages for what is said of points; raises ValueError on what a recognizer would reject."""
+    """Message fields of normals and covariances. Raises ValueError for values that a recognizer would reject."""
 
     def __init__(self, count: int, normals: np.ndarray, normal_sigma: np.ndarray, covariances: np.ndarray) -> None:
         _core.check_details(count, normals, normal_sigma, covariances)
@@ -118,7 +118,7 @@ class _Details:
 
 
 class Probe(_Peer):
-    """Publishes touched points.
+    """A probe: publishes touched points to a recognizer.
 
         with palpate.Probe("finger", sigma=0.02, unit="mm") as probe:
             probe.send(points)
@@ -128,8 +128,15 @@ class Probe(_Peer):
     def __init__(self, name: str, endpoint: str = CONTACTS, group: str = "", sigma: float = 0.0, unit: str = "m",
                  tip_radius: float = 0.0, timeout: float = 10.0, secret_key: str | None = None,
                  server_key: str | None = None) -> None:
-        """Waits until a recognizer listens; raises TimeoutError after `timeout` seconds, and ConnectionRefusedError
-        where it refuses our keys."""
+        """Connects and waits until a recognizer listens. Raises TimeoutError after `timeout` seconds and
+        ConnectionRefusedError if the recognizer refuses our keys.
+
+        name: of the probe, 1 to 64 of A-Z a-z 0-9 _ . -
+        group: probes of one group touch the same object; empty = the probe's own name.
+        sigma: standard deviation of a point, in `unit`; 0 = not known.
+        unit: "m", "mm", "cm", "um", "nm" or "in"; of points, sigma and tip_radius.
+        tip_radius: radius of a round tip whose centres the points are; 0 = points of the surface.
+        secret_key, server_key: for CURVE, our secret key file and the recognizer's public one; both or neither."""
         self._scale = units(unit)
         _name("name", name)
         if group:
@@ -156,13 +163,14 @@ class Probe(_Peer):
         self._socket.recv()
 
     def send(self, points, normals=None, normal_sigma=None, covariances=None) -> None:
-        """Points (n, 2) of the patch, in their order along the part; normals (n, 2), their deviation in radians, and
-        covariances in the unit's square as Recognizer.add has them."""
+        """Publishes points (n, 2) of the present patch, in their order along the part. normals, normal_sigma and
+        covariances: see Recognizer.add. Raises ValueError for invalid arguments. Never blocks; messages that the
+        recognizer does not read in time are lost."""
         points = np.atleast_2d(np.asarray(points, dtype=np.float64))
         if points.shape[1] != 2 or not np.isfinite(points).all():
             raise ValueError("points must be finite, of shape (n, 2)")
         said = _Details(len(points), *details(normals, normal_sigma, covariances, self._scale))
-        most = 1000  # samples of a message; the node takes 4096 at most
+        most = 1000  # samples per message; by default a node accepts 1024
         for start in range(0, len(points), most):
             del self._batch.samples[:]
             now = time.time_ns()
@@ -173,17 +181,17 @@ class Probe(_Peer):
             self._batch.header.seq += 1
 
     def lift_off(self) -> None:
-        """What follows is another patch."""
+        """Begins a new patch: call it at each lift-off."""
         self._batch.patch += 1
 
     def new_object(self) -> None:
-        """What follows is another part."""
+        """Begins a new object; the recognizer forgets the old one."""
         self._batch.object += 1
         self._batch.patch = 0
 
 
 class Planner(_Peer):
-    """Receives answers.
+    """A planner: receives the answers of a recognizer.
 
         with palpate.Planner() as planner:
             answer = planner.receive(timeout=5)    # a palpate.v1.Recognition
@@ -191,6 +199,7 @@ class Planner(_Peer):
 
     def __init__(self, endpoint: str = RESULTS, group: str | None = None, secret_key: str | None = None,
                  server_key: str | None = None) -> None:
+        """Connects. group: the group whose answers are received; None = all. secret_key, server_key: see Probe."""
         if group is not None:
             _name("group", group)
         super().__init__(zmq.SUB, endpoint, secret_key, server_key)
@@ -199,7 +208,8 @@ class Planner(_Peer):
         self._socket.connect(endpoint)
 
     def receive(self, timeout: float = 10.0) -> recognition_pb2.Recognition:
-        """The next new answer; raises TimeoutError, and ConnectionRefusedError where our keys are refused."""
+        """Returns the next new answer (SI units). Raises TimeoutError after `timeout` seconds and ConnectionRefusedError if
+        the recognizer refuses our keys."""
         deadline = time.monotonic() + timeout
         while True:
             left = deadline - time.monotonic()
@@ -208,12 +218,12 @@ class Planner(_Peer):
             frames = self._socket.recv_multipart()
             answer = recognition_pb2.Recognition.FromString(frames[1])
             stamp = (answer.header.epoch, answer.header.seq)
-            if self._newest.get(answer.group) != stamp:  # else repeated for those who come late
+            if self._newest.get(answer.group) != stamp:  # else a repeat for late subscribers
                 self._newest[answer.group] = stamp
                 return answer
 
     def __iter__(self) -> Iterator[recognition_pb2.Recognition]:
-        """New answers for as long as they come: ends after ten silent seconds."""
+        """Yields new answers; ends when none has come for ten seconds."""
         while True:
             try:
                 yield self.receive()

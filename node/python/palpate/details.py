@@ -1,4 +1,4 @@
-"""What is said of points beside where they are and a noise of one size."""
+"""Optional data of points: measured normals and covariances."""
 from __future__ import annotations
 
 import numpy as np
@@ -7,8 +7,9 @@ _NONE = np.empty(0)
 
 
 def details(normals, normal_sigma, covariances, scale: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """As the core takes it: empty where nothing is said. What is there as float64 is not copied, covariances in metres
-    neither."""
+    """Converts them to the arrays that the core takes: (normals, normal_sigma, covariances in m^2), empty if None.
+    `scale`: metres per unit. float64 arrays are not copied (covariances only if `scale` is not 1). Raises ValueError if
+    only one of normals and normal_sigma is given."""
     if normals is None and normal_sigma is None and covariances is None:
         return _NONE, _NONE, _NONE
     if (normals is None) != (normal_sigma is None):

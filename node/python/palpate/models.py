@@ -1,11 +1,11 @@
-"""Curves whose class is known, in the habits of scikit-image: estimate, residuals, predict_xy.
+"""Fits of a known class, with the interface of scikit-image's models: estimate, residuals, predict_xy.
 
     from skimage.measure import ransac
     Ellipse = palpate.models.model("ellipse")
     ellipse, inliers = ransac(points, Ellipse, Ellipse.min_samples, residual_threshold=0.1)
 
-The least squares of the orthogonal distances of that class to all points, in any order and in any unit of length: what
-comes back is in the same unit.
+estimate() minimises the sum of squared orthogonal distances of all points, in any order. Points may be in any unit of
+length; results are in the same unit.
 """
 from __future__ import annotations
 
@@ -18,20 +18,28 @@ from .details import details
 
 
 class CurveModel:
-    """params: the shape's parameters, then x, y and theta of the pose; None before estimate() has succeeded."""
+    """A curve of one class. model() makes its subclasses.
+
+    params: the shape parameters, then x, y and theta (radians) of the pose; None until estimate() has succeeded.
+    covariance: of params; empty until then.
+    rms: root mean square distance of the points. peak_to_valley: largest less smallest signed distance.
+    sigma: standard deviation of a point, stated or estimated.
+    min_samples: fewest points that determine a curve of the class."""
     curve_class: ClassVar[str]
     min_samples: ClassVar[int]
 
     def __init__(self) -> None:
         self.params: np.ndarray | None = None
         self.status = ""
-        """Why estimate() has not succeeded, where it has not."""
+        """Outcome of estimate(): "fitted", or why it has not succeeded."""
         self.covariance = np.empty((0, 0))
         self.rms = self.peak_to_valley = self.sigma = float("nan")
 
     def estimate(self, data, sigma: float = 0.0, normals=None, normal_sigma=None, covariances=None) -> bool:
-        """Whether the points (n, 2) determine one curve of the class. sigma: of a point, where it is known. The others as
-        Recognizer.add has them; normals count where every point's noise is known."""
+        """Fits the curve to points (n, 2). Returns True if they determine one curve of the class.
+
+        sigma: standard deviation of a point; 0 = estimated. normals, normal_sigma, covariances: see Recognizer.add.
+        Normals are used only if the noise of every point is known."""
         fit = _core.fit_given(self.curve_class, np.asarray(data, dtype=np.float64), sigma,
                               *details(normals, normal_sigma, covariances, 1.0))
         self.status = fit["status"]
@@ -43,11 +51,11 @@ class CurveModel:
         return success
 
     def residuals(self, data) -> np.ndarray:
-        """Signed distances of points, positive to the left of increasing t."""
+        """Signed distances of points (n, 2) from the curve, positive to the left of increasing t."""
         return self._curve(self.params).feet(np.asarray(data, dtype=np.float64))[1]
 
     def predict_xy(self, t, params=None) -> np.ndarray:
-        """Points of the curve at its parameters t."""
+        """Points (n, 2) of the curve at the curve parameters t."""
         return self._curve(self.params if params is None else params).at(np.atleast_1d(np.asarray(t, dtype=np.float64)))
 
     def _curve(self, params) -> _core.PlacedCurve:
@@ -59,6 +67,7 @@ class CurveModel:
 
 
 def model(curve_class: str) -> type[CurveModel]:
-    """The model of a class: "line", "circle", "ellipse", "parabola", "hyperbola", "cubical_parabola", ..."""
+    """Returns the model class of a curve class: "line", "circle", "ellipse", "parabola", "hyperbola",
+    "cubical_parabola", "semi_cubical_parabola" or "cubic_spline"."""
     members = {"curve_class": curve_class, "min_samples": _core.degrees_of_freedom(curve_class)}
     return type(curve_class.title().replace("_", "") + "Model", (CurveModel,), members)

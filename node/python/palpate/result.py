@@ -1,4 +1,4 @@
-"""What was recognised, in the unit of the points."""
+"""The answer of a recognition, in the unit of the points."""
 from __future__ import annotations
 
 from functools import cached_property
@@ -9,28 +9,34 @@ import numpy as np
 from . import _core
 
 _UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "nm": 1e-9, "in": 0.0254}
-# Powers of length in a, b and c; core/README.md, "Curves".
+# Exponents of length in the units of a, b and c (default 1); core/README.md, "Curves".
 _POWERS = {"cubical_parabola": {"a": -2.0, "c": 0.0},
            "semi_cubical_parabola": {"a": -0.5, "b": 0.0},
            "cubic_spline": {"a": -0.5, "b": 0.0, "c": 0.5}}
 
 
 def units(name: str) -> float:
-    """Metres in one of the unit."""
+    """Metres per unit. Raises ValueError for an unknown unit."""
     if name not in _UNITS:
         raise ValueError(f"unit: {name!r} is none of {', '.join(_UNITS)}")
     return _UNITS[name]
 
 
 class Result:
-    """status: "collecting", "ambiguous" or "recognized"; doubt: why it is ambiguous, else "none".
-    curve_class; params: {"a": ...}; pose: (x, y, theta); covariance: of [params; x; y; theta]. Where no curve was
-    found (unclassified, collecting, or a class at its limit to another), params is empty and the pose not a number.
-    probabilities: {class: posterior}. contacts: local geometry of the touched places, in metres.
-    sigma: the noise, given or estimated. sample_count, outlier_count, forgotten_count; dwelling_count: of samples that
-    repeat a place where the probe stood still; simplified_count: of samples with a normal or a covariance that do not
-    count in full.
-    compute_s: what the recognition took since the answer before, without the way from Python and back."""
+    """The answer for one object. Lengths are in `unit`, angles in radians.
+
+    status: "collecting", "ambiguous" or "recognized". doubt: why it is ambiguous, else "none".
+    curve_class: the most probable class, e.g. "ellipse".
+    params: shape parameters, {"a": ...}. pose: (x, y, theta). covariance: of [params; x; y; theta]. If there is no
+    curve (unclassified, collecting, or a best fit at the limit of the class), params and covariance are empty and the
+    pose is NaN.
+    probabilities: {class: posterior probability}.
+    contacts: local geometry of the touched places, in metres.
+    sigma: standard deviation of a point, stated or estimated.
+    sample_count: points that the answer is based on. outlier_count: points set aside as spikes. forgotten_count: points
+    forgotten to make room. dwelling_count: points merged because the probe stood still. simplified_count: points whose
+    normal or covariance is used only in part.
+    compute_s: computing time in seconds since the answer before, without the conversion from and to Python."""
 
     def __init__(self, core: _core.Answer, unit: str, touched: np.ndarray, tip_radius: float) -> None:
         self._core, self.unit, self._touched, self._tip_radius = core, unit, touched, tip_radius
@@ -38,7 +44,7 @@ class Result:
         self.status = core.status
         self.doubt = core.doubt
         self.curve_class = core.curve_class
-        # Best at the limit of another class, it has no shape of its own.
+        # A best fit at the limit of its class has no shape of that class.
         letters = _core.parameter_letters(self.curve_class) if core.has_shape else ""
         powers = _POWERS.get(self.curve_class, {})
         self._factors = [scale ** -powers.get(letter, 1.0) for letter in letters]
@@ -81,25 +87,26 @@ class Result:
 
     @property
     def std(self) -> dict[str, float]:
-        """Standard deviations of the parameters and of x, y, theta."""
+        """Standard deviations of the shape parameters and of x, y, theta, by name."""
         names = [*self.params, "x", "y", "theta"]
         return dict(zip(names, np.sqrt(np.diag(self.covariance)))) if self.covariance.size else {}
 
     def residuals(self, xy) -> np.ndarray:
-        """Signed distances of points from the curve, positive to the left of increasing t."""
+        """Signed distances of points (n, 2) from the curve, positive to the left of increasing t. Raises ValueError if no
+        curve was found, as do the methods below."""
         _, distance = self._need_curve().feet(self._scale * np.asarray(xy, dtype=np.float64))
         return distance / self._scale
 
     def nearest(self, xy) -> np.ndarray:
-        """Curve parameter t of the point of the curve that is nearest to each point."""
+        """Curve parameters t of the nearest points of the curve to the points (n, 2)."""
         return self._need_curve().feet(self._scale * np.asarray(xy, dtype=np.float64))[0]
 
     def predict_xy(self, t) -> np.ndarray:
-        """Points of the curve at the parameters t."""
+        """Points (n, 2) of the curve at the curve parameters t."""
         return self._need_curve().at(np.atleast_1d(np.asarray(t, dtype=np.float64))) / self._scale
 
     def sample(self, n: int = 200) -> np.ndarray:
-        """n points along the curve: all of a closed one, else what was touched."""
+        """n points along the curve, (n, 2): all of a closed curve, else the touched arc."""
         curve = self._need_curve()
         if curve.period > 0:
             return self.predict_xy(np.linspace(-curve.period / 2, curve.period / 2, n))
@@ -107,7 +114,7 @@ class Result:
         return self.predict_xy(np.linspace(t.min(), t.max(), n))
 
     def plot(self, ax=None):
-        """Draws points and curve with matplotlib; gives the axes."""
+        """Draws points and curve with matplotlib and returns the axes."""
         if ax is None:
             import matplotlib.pyplot as plt
             _, ax = plt.subplots()

@@ -7,10 +7,10 @@
 namespace palpate {
 namespace {
 
-// Bits of Unicode's braille patterns (U+2800 and on), by the dot's row and column.
+// Bits of Unicode's braille patterns (from U+2800), by row and column of the dot.
 constexpr std::uint8_t kBitOfDot[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
 
-/// U+2800 + dots in UTF-8.
+/// The character U+2800 + dots in UTF-8.
 std::string braille(std::uint8_t dots) {
   const char bytes[] = {'\xe2', static_cast<char>(0xa0 + (dots >> 6)),
                         static_cast<char>(0x80 + (dots & 0x3f))};
@@ -40,22 +40,23 @@ void BrailleCanvas::dot(double x, double y, Ink ink) {
 }
 
 void BrailleCanvas::line(double x0, double y0, double x1, double y1, Ink ink) {
-  // The part of it that lies within the canvas, after Liang and Barsky.
+  // Clip the line to the canvas (Liang and Barsky).
   const double dx = x1 - x0;
   const double dy = y1 - y0;
-  // From nowhere, or beyond what doubles hold.
+  // Not a line, or too long for a double.
   if (!std::isfinite(dx) || !std::isfinite(dy)) return;
   double from = 0.0;
   double to = 1.0;
   for (const auto& [step, room] :
        {std::pair(-dx, x0), {dx, width() - x0}, {-dy, y0}, {dy, height() - y0}}) {
-    // A line beside the border that runs along it lies outside as a whole.
+    // A line parallel to a border and beyond it is entirely outside.
     if (step == 0.0 && room < 0.0) return;
     if (step < 0.0) from = std::max(from, room / step);
     if (step > 0.0) to = std::min(to, room / step);
   }
   if (!(from <= to)) return;
-  // Dots of the part; of a line so long that its ends round, no more than there are.
+  // Number of dots of the clipped line. For a line so long that its ends are rounded, no more than
+  // the canvas has.
   const auto steps = static_cast<int>(
       std::min(std::ceil((to - from) * std::max(std::abs(dx), std::abs(dy))), width() + height()));
   for (int i = 0; i <= steps; ++i) {

@@ -1,5 +1,5 @@
-// A picture of dots for a plain terminal: a character of Unicode's braille block is two dots wide
-// and four high, so that dots are about as far apart either way.
+// A picture of dots for a plain terminal. A character of Unicode's braille block is two dots wide
+// and four dots high, so that dots are about equally spaced in both directions.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +9,12 @@
 
 namespace palpate {
 
-/// Of two inks in one character the later of these gives the colour.
+/// If a character has dots of several inks, the last of these in this order gives the colour.
 enum class Ink : std::uint8_t { None, RivalInk, CurveInk, SampleInk };
 
 class BrailleCanvas {
  public:
-  static constexpr int kDotsAcross = 2;  // of a character
+  static constexpr int kDotsAcross = 2;  // per character
   static constexpr int kDotsDown = 4;
 
   BrailleCanvas(std::size_t columns, std::size_t rows)
@@ -23,11 +23,11 @@ class BrailleCanvas {
   double width() const { return static_cast<double>(kDotsAcross * columns_); }
   double height() const { return static_cast<double>(kDotsDown * rows_); }
 
-  /// From the upper left corner; what lies outside is not drawn.
+  /// Draws a dot; x and y count from the upper left corner. Dots outside are ignored.
   void dot(double x, double y, Ink ink);
   void line(double x0, double y0, double x1, double y1, Ink ink);
 
-  /// In UTF-8, with the terminal's colours.
+  /// The lines of the picture, in UTF-8, with the terminal's colours.
   std::vector<std::string> lines() const;
 
  private:

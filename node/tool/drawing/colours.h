@@ -1,4 +1,4 @@
-// Colours that mean the same in every drawing; all of them readable on white.
+// Colours with the same meaning in every drawing. All are readable on white.
 #pragma once
 
 namespace palpate {

@@ -8,7 +8,7 @@
 namespace palpate {
 namespace {
 
-/// Derivative of the curve's offset along its left normal by [shape parameters; x; y; theta].
+/// Derivative of the curve's displacement along its left normal by [shape parameters; x; y; theta].
 Eigen::VectorXd offset_gradient(const CurveModel& model, double t, const Vec2& left) {
   const Eigen::Index size = model.covariance.rows();
   const Eigen::Index letters = size - 3;
@@ -22,7 +22,7 @@ Eigen::VectorXd offset_gradient(const CurveModel& model, double t, const Vec2& l
   return gradient;
 }
 
-/// Offset, along `left` of `point`, of the nearest point of another curve.
+/// Displacement, along `left`, from `point` to the nearest point of another curve.
 double offset_to(const CurveModel& other, const Vec2& point, const Vec2& left, double t) {
   const FootPoint foot = foot_point_near(other.curve, other.world_T_curve.to_local(point), t);
   return left.dot(other.world_T_curve * foot.position - point);
@@ -44,7 +44,8 @@ std::optional<BandWidth> band_at(const CurveModel& model, double t) {
     const auto other = moved(model, (side * kBandSigmas / sigma) * towards);
     if (!other) return linear;
     const double offset = offset_to(*other, point, left, t);
-    // On the wrong side, or several times as far, the foot lies on another part of the curve.
+    // If the foot point is on the wrong side, or several times as far, it is on another part of the
+    // curve.
     constexpr double kSamePart = 4.0;
     const bool is_same_part =
         offset * side > 0.0 && std::abs(offset) < kSamePart * std::abs(linear);

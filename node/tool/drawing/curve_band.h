@@ -1,4 +1,4 @@
-// How far the true curve may lie beside the most probable one, place by place.
+// The confidence band of the most probable curve: how far the true curve may lie beside it.
 #pragma once
 
 #include <optional>
@@ -8,23 +8,23 @@
 
 namespace palpate {
 
-/// Standard deviations within which 95 % of a normal distribution lie: the 97.5 % point.
+/// A normal distribution lies within this many standard deviations with 95 % probability.
 inline constexpr double kBandSigmas = 1.959963984540054;
 
-/// Distances of the band's two borders from the curve, along its left normal. [m]
+/// Distances of the two borders of the band from the curve, along its left normal. [m]
 struct BandWidth {
   double left_m = 0.0;   ///< >= 0
   double right_m = 0.0;  ///< <= 0
 };
 
-/// The 95 % band of the curve's place at one t. Each border is the curve at the most probable of
-/// all parameters that lie kBandSigmas from the estimate and put the curve furthest to that side,
-/// the first order reliability method: the curve itself is evaluated there, so that a long thin
-/// valley of the covariance bends the band as it bends the curve. Where these parameters leave the
-/// canonical form's range the border is the linear one. nullopt without a covariance.
+/// The 95 % band of the curve at one t. Of all parameters at kBandSigmas from the estimate, each
+/// border takes those that move the curve farthest to that side (the first order reliability
+/// method), and evaluates the curve itself there. So a long thin valley of the covariance bends the
+/// band as it bends the curve. If these parameters are outside the range of the canonical form, the
+/// border is the linear one. nullopt without a covariance.
 std::optional<BandWidth> band_at(const CurveModel& model, double t);
 
-/// First-order standard deviations of curvature [1/m] beside places of the curve.
+/// First-order standard deviation of the curvature along the curve. [1/m]
 class CurvatureDeviation {
  public:
   explicit CurvatureDeviation(const CurveModel& model);
@@ -33,8 +33,8 @@ class CurvatureDeviation {
   std::optional<double> at(double t) const;
 
  private:
-  // The model one standard deviation either way along each principal axis of the covariance; the
-  // model itself where that leaves the canonical form's range.
+  // The model moved by one standard deviation in either direction along each principal axis of the
+  // covariance; the unmoved model if that leaves the range of the canonical form.
   struct Axis {
     CurveModel minus;
     CurveModel plus;

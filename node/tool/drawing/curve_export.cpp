@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-/// Chords of a polyline: a turn of the whole curve in steps of a degree.
+/// Chords of a polyline: one degree each for a full turn.
 constexpr int kSteps = 360;
 
 struct ExportedPlace {
@@ -52,7 +52,7 @@ std::string as_json(const v1::Recognition& answer, const std::vector<ExportedPla
   json["class"] = spoken_name(answer.curve_class());
   json["status"] = status_text(answer);
   for (const Quantity& quantity : quantities_of(answer)) {
-    // An infinite deviation is no JSON number: null.
+    // An infinite deviation is not a JSON number; it becomes null.
     json["quantities"][quantity.name] = {{"value", quantity.value}, {"sigma", quantity.sigma}};
   }
   json["units"] = "SI";
@@ -63,7 +63,7 @@ std::string as_json(const v1::Recognition& answer, const std::vector<ExportedPla
   return json.dump(1) + "\n";
 }
 
-/// The parts of a drawing that hold nothing of ours, in the order that the format asks for.
+/// The sections of a DXF file that hold no data of ours, in the order that the format requires.
 void write_frame_before(DL_Dxf& dxf, DL_WriterA& out) {
   dxf.writeHeader(out);
   constexpr int kMillimetres = 4;
@@ -149,7 +149,7 @@ std::string write_dxf(const CurveModel& model, const std::vector<ExportedPlace>&
     }
   }
   write_frame_after(dxf, *out);
-  // The library does not tell whether the disk took it all.
+  // The library does not report whether the disk accepted everything.
   std::ifstream written(path, std::ios::ate | std::ios::binary);
   constexpr std::streamoff kEnd = 4;  // bytes: "EOF" and a line end
   std::string end(kEnd, ' ');

@@ -1,4 +1,4 @@
-// The recognised curve as a file for other programs.
+// Writes the recognised curve to a file for other programs.
 #pragma once
 
 #include <optional>
@@ -11,13 +11,13 @@ namespace palpate {
 
 enum class ExportKind { Csv, Json, Dxf };
 
-/// By the path's ending: .csv, .json or .dxf.
+/// The kind by the path's ending: .csv, .json or .dxf; nullopt for any other.
 std::optional<ExportKind> export_kind(const std::string& path);
 
-/// Writes the piece that a picture shows: all of a closed curve, else the touched arc and half as
-/// much again at either end. CSV: t, x_m, y_m, tangent_rad, kappa_per_m along it. JSON: besides
-/// class, parameters and pose. DXF, in millimetres: a LINE, CIRCLE or ELLIPSE as such, the others
-/// as polylines. Returns why it could not, or nothing.
+/// Writes the piece of the curve that a picture shows: all of a closed curve, else the touched arc,
+/// extended by half its length at both ends. CSV: t, x_m, y_m, tangent_rad, kappa_per_m along it.
+/// JSON: in addition class, parameters and pose. DXF, in millimetres: a LINE, CIRCLE or ELLIPSE as
+/// such, other classes as polylines. Returns an empty string or an error.
 std::string export_curve(const ContactGroup& group, const v1::Recognition& answer,
                          const std::string& path);
 

@@ -30,14 +30,14 @@ std::optional<CurveModel> model_placed(v1::CurveClass wire_class, const v1::Para
   return CurveModel{*curve, {pose.x_m(), pose.y_m(), pose.theta_rad()}, {}};
 }
 
-// Chords are as good as arcs for a picture, and take no quadrature: a rival's shape may be any.
+// Chords are accurate enough for a picture and need no quadrature; a rival may have any shape.
 constexpr int kChords = 64;
 
 double chord(const Curve& curve, double t, double step) {
   return (position(curve, t + step) - position(curve, t)).norm();
 }
 
-/// The t at which the chords from t0 have the length.
+/// The t at which the chords from t0 have the given length.
 double parameter_beyond(const Curve& curve, double t0, double step, double length) {
   double left = length;
   double t = t0;

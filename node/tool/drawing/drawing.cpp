@@ -8,15 +8,15 @@
 namespace palpate {
 namespace {
 
-// Chords of this many pieces of an ellipse that fills 1000 pixels stay within 0.03 pixels of it.
+// With this many chords, an ellipse that fills 1000 pixels is off by at most 0.03 pixels.
 constexpr int kCurvePieces = 240;
 constexpr int kRivalPieces = 120;
-// Less probable hypotheses are listed, but not drawn.
+// Less probable hypotheses are listed but not drawn.
 constexpr double kWorthDrawing = 1e-3;
-// Touched points that tell how far an open curve is drawn.
+// Number of touched points that determine how far an open curve is drawn.
 constexpr std::size_t kMostForSpan = 128;
 
-/// Contacts and some of the samples: a patch too short for a contact has samples still.
+/// Contacts and some of the samples, because a patch too short for a contact has samples too.
 std::vector<Vec2> touched_points(const ContactGroup& group, const v1::Recognition& answer) {
   std::vector<Vec2> points;
   for (const v1::LocalizedContact& contact : answer.contacts()) {
@@ -27,7 +27,7 @@ std::vector<Vec2> touched_points(const ContactGroup& group, const v1::Recognitio
   const std::size_t step = count / kMostForSpan + 1;
   std::size_t index = 0;
   for (const ContactRun& run : group.runs) {
-    // Both ends of every run, as long as runs are few.
+    // Both ends of every run, if there are few runs.
     const bool ends = group.runs.size() < kMostForSpan;
     for (std::size_t i = 0; i < run.samples.size(); ++i, ++index) {
       const bool is_end = i == 0 || i + 1 == run.samples.size();
@@ -37,8 +37,8 @@ std::vector<Vec2> touched_points(const ContactGroup& group, const v1::Recognitio
   return points;
 }
 
-/// Band and curvature's deviation change slowly along the curve: computed, which is most of a
-/// drawing's work, at every fourth place, and interpolated between.
+/// The band and the curvature's deviation change slowly along the curve and take most of the time
+/// of a drawing. They are computed at every fourth place and interpolated between.
 constexpr std::size_t kStep = 4;
 static_assert(kCurvePieces % kStep == 0);
 
@@ -109,8 +109,8 @@ double probability_of(const v1::Recognition& answer) {
   return 0.0;
 }
 
-/// Arc length from the first place, interpolated; nullopt where t is no place of it: answers come
-/// from the bus.
+/// Arc length at t, interpolated from the first place; nullopt if t is not finite (answers come
+/// from the network).
 std::optional<double> arc_at(const DrawnCurve& curve, double t) {
   const CurvePlace& first = curve.places.front();
   const CurvePlace& last = curve.places.back();
@@ -156,7 +156,7 @@ double noise_of(const ContactSample& sample, double sigma_m) {
 
 struct NearFoot {
   double t = 0.0;
-  double distance = 0.0;  ///< signed: > 0 to the left
+  double distance = 0.0;  ///< positive to the left
 };
 
 double curvature_of(const CurveDerivatives& d) {
@@ -164,10 +164,11 @@ double curvature_of(const CurveDerivatives& d) {
   return std::abs(cross(d.first, d.second)) / (speed * speed * speed);
 }
 
-/// The foot by one step of Newton's method from a near one, half the work of going on to the last
-/// digit; nullopt where that leads away, or the distance may be wrong by more than `tolerance`. On
-/// the circle of curvature kappa, what is left `along` the tangent makes the distance wrong by
-/// kappa along^2 / (2 (1 - kappa distance)), which is below kappa along^2 for kappa distance < 1/2.
+/// The foot point by one Newton step from a near one, which takes half the time of full
+/// convergence. nullopt if the step leads away, or if the distance may be wrong by more than
+/// `tolerance`. On a circle of curvature kappa, a remaining component `along` the tangent makes the
+/// distance wrong by kappa along^2 / (2 (1 - kappa distance)), which is below kappa along^2 for
+/// kappa distance < 1/2.
 std::optional<NearFoot> foot_by_one_step(const Curve& curve, const Vec2& point, double t,
                                          double tolerance) {
   const CurveDerivatives before = derivatives(curve, t);
@@ -180,7 +181,8 @@ std::optional<NearFoot> foot_by_one_step(const Curve& curve, const Vec2& point, 
   const Vec2 tangent = there.first.normalized();
   const double along = tangent.dot(beside);
   const double distance = cross(tangent, beside);
-  const double kappa = curvature_of(before) + curvature_of(there);  // at least the larger
+  // At least the larger of the two.
+  const double kappa = curvature_of(before) + curvature_of(there);
   const bool is_near = beside.squaredNorm() <= away.squaredNorm() &&
                        kappa * std::abs(distance) < 0.5 && kappa * along * along <= tolerance;
   return is_near ? std::optional(NearFoot{t, distance}) : std::nullopt;
@@ -218,7 +220,7 @@ std::vector<SampleResidual> residuals_of(const CurveModel& model, const ContactR
                                          double sigma_m) {
   std::vector<SampleResidual> residuals;
   residuals.reserve(run.samples.size());
-  // Of the noise: nothing that can be seen.
+  // As a fraction of the noise; too small to be seen.
   constexpr double kTolerance = 1e-3;
   const ToLocal to_curve(model.world_T_curve);
   double sum = 0.0;
@@ -238,7 +240,7 @@ std::vector<SampleResidual> residuals_of(const CurveModel& model, const ContactR
     sum += foot->distance;
     residuals.push_back({foot->t, foot->distance, false});
   }
-  // The centres of a tip lie on one side of the curve, a radius away.
+  // The centres of a tip lie on one side of the curve, one radius away.
   const double tip = std::copysign(run.context.tip_radius_m, sum);
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     residuals[i].residual_m -= tip;

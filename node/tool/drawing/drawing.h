@@ -1,5 +1,5 @@
-// What a picture of a recognition shows, in metres: the one source of palpate view and of fit
-// --plot.
+// The contents of a picture of a recognition, in metres. `palpate view` and `fit --plot` both use
+// it.
 #pragma once
 
 #include <optional>
@@ -14,14 +14,14 @@
 
 namespace palpate {
 
-/// One place of the drawn curve.
+/// One point of the drawn curve.
 struct CurvePlace {
   double t = 0.0;
   Vec2 position;
   Vec2 left;                      ///< unit normal, to the left of increasing t
-  double arc_m = 0.0;             ///< arc length from the first place, by chords
+  double arc_m = 0.0;             ///< length of the chords from the first point
   std::optional<BandWidth> band;  ///< 95 %
-  // With Curvature::Along:
+  // Only with Curvature::Along:
   double kappa = 0.0;    ///< signed by increasing t; not finite at a cusp [1/m]
   double kappa_s = 0.0;  ///< [1/m^2]
   std::optional<double> kappa_sigma;
@@ -35,12 +35,13 @@ struct DrawnCurve {
   std::vector<CurvePlace> places;
 };
 
-/// Local geometry of a touched place beside the curve's.
+/// Local geometry of a touched place, with its position along the curve.
 struct DrawnContact {
   const v1::LocalizedContact* contact = nullptr;
   double arc_m =
       0.0;  ///< along the drawn curve; without one, along the straight lines between contacts
-  /// Signed by increasing t, as the curve's: a stroke the other way turns kappa's sign. [1/m]
+  /// Signed by increasing t, as the curve's: for a stroke in the other direction the sign is
+  /// changed. [1/m]
   double kappa = 0.0;
 };
 
@@ -50,24 +51,25 @@ struct Drawing {
   std::vector<DrawnContact> contacts;
 };
 
-/// Only charts show the curvature, and its deviations are most of a drawing's work.
+/// Only charts need the curvature, and its deviation takes most of the time of a drawing.
 enum class Curvature { Along, None };
 
-/// Views contacts of `answer`, which must outlive it.
+/// The drawing refers to contacts of `answer`, which must outlive it.
 Drawing make_drawing(const ContactGroup& group, const v1::Recognition& answer, Curvature curvature);
 
-/// What a sample leaves beside the curve.
+/// Residual of one sample from the curve.
 struct SampleResidual {
-  double t = 0.0;           ///< of its foot
-  double residual_m = 0.0;  ///< to the curve's left; for a tip's centre, beyond its radius
-  bool is_far = false;      ///< beyond kFarSigmas
+  double t = 0.0;  ///< of the foot point
+  /// Positive to the left of the curve; less the radius for a tip's centre.
+  double residual_m = 0.0;
+  bool is_far = false;  ///< beyond kFarSigmas
 };
 
-/// Samples further from the curve than this are drawn as spikes: noise alone leaves 6 of 10
-/// million.
+/// Samples farther from the curve than this are drawn as spikes. Noise alone leaves 6 of 10 million
+/// beyond it.
 inline constexpr double kFarSigmas = 5.0;
 
-/// Residuals of a run from a curve; `sigma_m` is the noise of samples that bring none.
+/// Residuals of the samples of a run from the curve. `sigma_m`: noise of samples that state none.
 std::vector<SampleResidual> residuals_of(const CurveModel& model, const ContactRun& run,
                                          double sigma_m);
 

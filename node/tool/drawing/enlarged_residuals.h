@@ -1,4 +1,4 @@
-// Residuals drawn as lines from the curve, so much enlarged that they can be seen.
+// Residuals as lines from the curve, enlarged so that they can be seen.
 #pragma once
 
 #include <cstddef>
@@ -13,18 +13,18 @@ struct EnlargedResiduals {
     Vec2 foot;
     Vec2 end;
   };
-  double gain = 1.0;  ///< 1, 2 or 5 times a power of ten
+  double gain = 1.0;  ///< enlargement: 1, 2 or 5 times a power of ten
   std::vector<Line> lines;
   std::vector<Vec2> far;  ///< samples beyond kFarSigmas; they have no line
 };
 
-/// Of all samples, or of every second, third, ... where they are more than `most_lines` (the far
-/// ones: more than ten times that). `sigma_m` is the noise of samples that bring none, `size_m` the
-/// picture's.
+/// Draws every sample, or every second, third, ... if there are more than `most_lines` (far
+/// samples: more than ten times that). `sigma_m`: noise of samples that state none. `size_m`: size
+/// of the picture.
 EnlargedResiduals enlarged_residuals(const CurveModel& model, const ContactGroup& group,
                                      double sigma_m, double size_m, std::size_t most_lines);
 
-/// 1, 2 or 5 times a power of ten: the largest that is at most `value` (> 0).
+/// The largest value of the form 1, 2 or 5 times a power of ten that is at most `value` (> 0).
 double round_gain(double value);
 
 }  // namespace palpate

@@ -16,7 +16,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kSheetWidth = 1024.0;  // of the document, all in pixels
+constexpr double kSheetWidth = 1024.0;  // of the document; all in pixels
 constexpr double kHeader = 92.0;
 constexpr double kPanelHeight = 344.0;
 constexpr std::size_t kColumns = 2;
@@ -25,10 +25,10 @@ constexpr double kPanelLeft = 84.0;  // of a panel
 constexpr double kPanelRight = 20.0;
 constexpr double kPanelTop = 62.0;
 constexpr double kPanelBottom = 56.0;
-/// The pooled value's band.
+/// Half width of the pooled value's band, in standard deviations.
 constexpr double kBandSigmas = 2.0;
 constexpr const char* kMutedColour = "#5b6470";
-/// Of a panel's second line, the parabola's beside the other conic's.
+/// For the second line of a panel: the parabola's, next to the other conic's.
 constexpr const char* kDashes[] = {"", " stroke-dasharray=\"7 4\""};
 
 struct Range {
@@ -39,21 +39,22 @@ struct Range {
   bool holds(double value) const { return value >= low && value <= high; }
 };
 
-/// A little more than the values; about one value, where they are one.
+/// The range of the values with a small margin, also if all are equal.
 Range range_of(const std::vector<double>& values) {
   if (values.empty()) {
     return {};
   }
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   constexpr double kMargin = 0.08;
-  constexpr double kLeast = 1e-6;  // of the values: a picture of rounding says nothing
+  // Relative to the values: a picture of rounding errors says nothing.
+  constexpr double kLeast = 1e-6;
   const double least = kLeast * std::max(std::abs(*low), std::abs(*high)) + 1e-300;
   const double margin = kMargin * (*high - *low) + least;
   return {*low - margin, *high + margin};
 }
 
-/// Contacts that say next to nothing do not squeeze the others: those within a few times the
-/// median deviation set the range, and the pooled lines.
+/// Range of the contacts whose deviation is at most a few times the median, and of the pooled
+/// lines: vague contacts must not squeeze the others.
 Range range_of_values(const InvariantPanel& panel, const Range& x) {
   constexpr double kVague = 4.0;
   std::vector<double> sigmas;
@@ -72,7 +73,7 @@ Range range_of_values(const InvariantPanel& panel, const Range& x) {
     }
   }
   for (const PooledLine& line : panel.lines) {
-    // Beyond the contacts a sloping line runs out of the picture.
+    // Beyond the contacts a sloping line would leave the picture.
     if (panel.points.empty() || line.slope == 0.0) {
       const double sigma = line.sigma_at(x.low);
       values.push_back(line.at(x.low) - (std::isfinite(sigma) ? kBandSigmas * sigma : 0.0));
@@ -96,7 +97,7 @@ Range range_of_places(const InvariantPanel& panel) {
   return range;
 }
 
-/// One panel, its upper left corner at `corner`.
+/// One panel, with its upper left corner at (left, top).
 class PanelDrawing {
  public:
   PanelDrawing(const InvariantPanel& panel, double left, double top, std::size_t number)
@@ -120,7 +121,7 @@ class PanelDrawing {
  private:
   double pixel_x(double x) const { return left_ + (x - x_.low) / x_.length() * (right_ - left_); }
   double pixel_y(double y) const { return bottom_ - (y - y_.low) / y_.length() * (bottom_ - top_); }
-  /// SVG's numbers are single precision: what is far outside is cut.
+  /// SVG's numbers have single precision, so positions far outside are clamped.
   static double cut(double pixels) {
     constexpr double kFar = 1e5;
     return std::clamp(pixels, -kFar, kFar);

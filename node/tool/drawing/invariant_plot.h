@@ -1,5 +1,5 @@
-// The recognition tree's invariants drawn as in the paper: what each contact says, and the value
-// with its band that all of them give.
+// Draws the recognition tree's invariants as in the paper: the estimate of each contact, and the
+// value of all contacts together with its band.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace palpate {
 
-/// An SVG document, a panel an invariant of every class that the tree asked about. `title` names
-/// the data.
+/// An SVG document with one panel for each invariant of every class that the tree tested. `title`:
+/// name of the data.
 std::string invariant_plot(const Recognition& answer, const std::string& title);
 
 }  // namespace palpate

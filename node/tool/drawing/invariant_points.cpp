@@ -24,7 +24,7 @@ namespace palpate {
 namespace {
 
 using Geometry = Eigen::Vector3d;  ///< tangent angle, kappa, kappa_s
-/// The canonical frame of a cubic: its first two parameters and its turn.
+/// The canonical frame of a cubic: its first two shape parameters and its rotation.
 using Frame = Eigen::Vector3d;
 using Function = std::function<double(const Geometry&, const Frame&)>;
 
@@ -38,7 +38,8 @@ struct Value {
   double sigma = 0.0;
 };
 
-/// First-order propagation; differences over a thousandth of a deviation see no curvature.
+/// First-order propagation. Differences over a thousandth of a standard deviation are not affected
+/// by curvature.
 template <typename Of>
 double variance_of(const Eigen::Vector3d& at, const Eigen::Matrix3d& covariance, const Of& of) {
   constexpr double kDifference = 1e-3;
@@ -53,7 +54,8 @@ double variance_of(const Eigen::Vector3d& at, const Eigen::Matrix3d& covariance,
   return std::max(gradient.dot(covariance * gradient), 0.0);
 }
 
-/// With the frame's uncertainty too: a contact far out on a cubic sees a small turn of it enlarged.
+/// Includes the uncertainty of the frame: for a contact far out on a cubic, a small rotation of the
+/// frame has a large effect.
 Value propagated(const MeasuredGeometry& point, const Function& function,
                  const PooledFrame& frame = {}) {
   const Geometry at(point.tangent_angle, point.kappa, point.kappa_s);
@@ -64,10 +66,10 @@ Value propagated(const MeasuredGeometry& point, const Function& function,
   return {function(at, frame.value), std::sqrt(own + of_frame)};
 }
 
-/// c of a point of (t^2, a t^3 + b t^2 + c t) by its tangent and curvature, which are measured
-/// better than the curvature's derivative: the slope gives c = 2 t (slope - b) - 3 a t^2, and then
-/// the second derivative (3 a t^2 - c) / (4 t^3) is a quadratic equation for t. Of its two roots
-/// that of the c that lies nearer to `pooled_c`; NaN where there is none.
+/// c of a point of (t^2, a t^3 + b t^2 + c t) from its tangent and curvature, which are measured
+/// better than the curvature's derivative. The slope gives c = 2 t (slope - b) - 3 a t^2; then the
+/// second derivative (3 a t^2 - c) / (4 t^3) is a quadratic equation for t. Of its two roots the
+/// one is taken whose c is nearer to `pooled_c`; NaN if there is none.
 double spline_c_of(const CanonicalPoint<double>& p, double a, double b, double pooled_c) {
   const double rise = p.sine / p.cosine - b;
   const double second = p.kappa / (p.cosine * p.cosine * p.cosine);
@@ -125,7 +127,7 @@ class Panels {
                                            : number(invariant.value));
   }
 
-  /// A level line through what each contact says.
+  /// A panel with the estimates of all contacts and a level line for the pooled value.
   InvariantPanel over_contacts(const NamedInvariant& invariant, const char* unit,
                                const Function& function, const PooledFrame& frame = {}) const {
     InvariantPanel panel;
@@ -167,7 +169,7 @@ class Panels {
     }
     InvariantPanel& panel = panels_[*conics_];
     if (invariant.name == "Ic2") {
-      return;  // with Ic1
+      return;  // drawn with Ic1
     }
     PooledLine line;
     if (invariant.name == "Ic1") {
@@ -178,7 +180,8 @@ class Panels {
       line.label = value_text(invariant) + ", " + value_text(*ic2);
       line.intercept = ic2->value;
       line.slope = -invariant.value;
-      // How the two go together, from the line through the contacts; their sizes as published.
+      // Their correlation comes from the line fitted to the contacts, their standard deviations
+      // from the published invariants.
       const ConicLine fit = fit_conic_line(points_);
       const double product = std::sqrt(fit.covariance(0, 0) * fit.covariance(1, 1));
       const double correlation = product > 0.0 ? fit.covariance(0, 1) / product : 0.0;
@@ -210,7 +213,7 @@ class Panels {
     return panel;
   }
 
-  /// The canonical frame of the class with about these parameters, as all contacts give it.
+  /// The canonical frame of the class near these parameters, fitted to all contacts.
   std::optional<PooledFrame> frame_of(CurveClass curve_class,
                                       const Eigen::Vector3d& parameters) const {
     constexpr int kStarts = 24;  // 15 degrees apart
@@ -246,7 +249,7 @@ class Panels {
 
   void add_cubic(const NamedInvariant& invariant) {
     if (invariant.name == "a" || invariant.name == "b") {
-      return;  // with c
+      return;  // drawn with c
     }
     const bool cubical = invariant.curve_class == CurveClass::CubicalParabola;
     const bool semi = invariant.curve_class == CurveClass::SemiCubicalParabola;
@@ -283,7 +286,7 @@ class Panels {
       };
     } else {
       unit = "m^(1/2)";
-      // Two of the three parameters as all contacts give them leave c to each.
+      // With the pooled values of the other two parameters, each contact gives an estimate of c.
       function = [canonical, pooled_c = invariant.value](const Geometry& g, const Frame& f) {
         return spline_c_of(canonical(g, f), f[0], f[1], pooled_c);
       };
@@ -303,7 +306,7 @@ class Panels {
   std::vector<MeasuredGeometry> points_;
   std::vector<InvariantPanel> panels_;
   std::optional<std::size_t> conics_;
-  CurveClass framed_ = CurveClass::Unclassified;  ///< whose frame `frame_` is
+  CurveClass framed_ = CurveClass::Unclassified;  ///< the class that `frame_` belongs to
   std::optional<PooledFrame> frame_;
 };
 

@@ -1,5 +1,5 @@
-// The recognition tree's invariants contact by contact: what each contact alone says, beside the
-// value that all of them give together.
+// The recognition tree's invariants contact by contact: the estimate of each contact alone, and the
+// value of all contacts together.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,8 +11,8 @@
 
 namespace palpate {
 
-/// What one contact says, with one standard deviation: its own estimate's, and for a cubic the
-/// frame's that all of them give.
+/// The estimate of one contact with its standard deviation, from the contact's own covariance and,
+/// for a cubic, that of the common frame.
 struct InvariantPoint {
   int patch = 0;  ///< number of the patch among those of the contacts
   double x = 0.0;
@@ -21,12 +21,12 @@ struct InvariantPoint {
   double y_sigma = 0.0;
 };
 
-/// y = intercept + slope x, as all contacts say it.
+/// The line y = intercept + slope x that all contacts together give.
 struct PooledLine {
   std::string label;
   double intercept = 0.0;
   double slope = 0.0;
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of both
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of (intercept, slope)
 
   double at(double x) const { return intercept + slope * x; }
   double sigma_at(double x) const;
@@ -34,18 +34,19 @@ struct PooledLine {
 
 struct InvariantPanel {
   std::string title;
-  std::string test;  ///< what the tree says of the class: "p = 0.4"
+  std::string test;  ///< the tree's result for the class, e.g. "p = 0.4"
   std::string x_label;
   std::string y_label;
-  bool x_is_contact = true;  ///< x counts contacts from 1
+  bool x_is_contact = true;  ///< x is the number of the contact, from 1
   std::size_t contacts = 0;
   std::vector<InvariantPoint> points;
   std::vector<PooledLine> lines;
 };
 
-/// A panel for every invariant of every class that the tree asked about, in the order asked. Conics
-/// share one, on which each is a straight line: Ip = Ic2 - Ic1 |kappa|^(-2/3). The invariants of
-/// the cubics need the canonical frame, which is that of the class laid through all contacts.
+/// One panel for each invariant of every class that the tree tested, in the order tested. The
+/// conics share one panel, in which each of them is a straight line: Ip = Ic2 - Ic1 |kappa|^(-2/3).
+/// The invariants of the cubics need the canonical frame; it comes from a fit of the class to all
+/// contacts.
 std::vector<InvariantPanel> invariant_panels(const Recognition& answer);
 
 }  // namespace palpate

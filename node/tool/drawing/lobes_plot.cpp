@@ -11,19 +11,19 @@ namespace palpate {
 namespace {
 
 constexpr double kRound = 480.0;   // side of the polar picture's square [px]
-constexpr double kCircle = 130.0;  // radius of offset 0 in it [px]
-constexpr double kReach = 85.0;    // of the largest offset beyond it [px]
-constexpr double kStrip = 500.0;   // width of the residuals' strip [px]
+constexpr double kCircle = 130.0;  // radius of the circle of offset 0 [px]
+constexpr double kReach = 85.0;    // of the largest offset beyond that circle [px]
+constexpr double kStrip = 500.0;   // width of the strip of residuals [px]
 constexpr const char* kSpikeColour = "#c2185b";
 
-/// Place in the polar picture.
+/// A point of the polar picture.
 std::string polar(double angle, double offset_px) {
   const double radius = kCircle + offset_px;
   return formatted("%.1f,%.1f ", 0.5 * kRound + radius * std::cos(angle),
                    0.5 * kRound - radius * std::sin(angle));
 }
 
-/// The offset with so many deviations, all around.
+/// The offset plus `deviations` standard deviations, all around.
 std::string ring(const NormalOffset& offset, double deviations, double px_per_m) {
   std::string points;
   constexpr int kSteps = 360;
@@ -35,7 +35,7 @@ std::string ring(const NormalOffset& offset, double deviations, double px_per_m)
   return points;
 }
 
-/// What is not a spike reaches so far. [m]
+/// Largest value of all samples except spikes. [m]
 double largest(const Qualification& qualification, double QualifiedSample::*field) {
   double most = 1e-12;
   for (const QualifiedSample& sample : qualification.samples) {
@@ -61,7 +61,7 @@ std::string lobes_plot(const Qualification& qualification, const std::string& ti
   svg += "<g transform=\"translate(0 30)\">\n";
   svg += formatted("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"none\" stroke=\"#bbb\"/>\n",
                    0.5 * kRound, 0.5 * kRound, kCircle);
-  // 95 % of a normal law.
+  // 95 % of a normal distribution.
   constexpr double kBand = 1.96;
   svg += "<path fill=\"" + std::string(kBandColour) +
          "\" fill-opacity=\"0.25\" fill-rule=\"evenodd\" d=\"M" + ring(offset, kBand, px_per_m) +

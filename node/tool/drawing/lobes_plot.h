@@ -1,4 +1,4 @@
-// The lobes of a qualified probe: offset by direction with its band, and the samples.
+// Draws the lobes of a qualified probe: the offset by direction with its band, and the samples.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace palpate {
 
-/// An SVG document: a polar picture of the offset, enlarged, and the residuals over the normal's
-/// direction. At most 4,000 samples of each are drawn, evenly taken, and the picture says so.
+/// An SVG document: a polar picture of the enlarged offset, and the residuals over the direction of
+/// the normal. It shows at most 4,000 samples in each, evenly selected, and says so.
 std::string lobes_plot(const Qualification& qualification, const std::string& title);
 
 }  // namespace palpate

@@ -7,7 +7,8 @@
 namespace palpate {
 namespace {
 
-// Deviations within which 95 % of a normal distribution in the plane lie: sqrt(-2 ln 0.05).
+// A normal distribution in the plane lies within this many standard deviations with 95 %
+// probability: sqrt(-2 ln 0.05).
 constexpr double kPlaneSigmas = 2.4477468306808166;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// How well the place of a curve's frame is known.
+// The confidence ellipse of the position of a curve's frame.
 #pragma once
 
 #include <optional>
@@ -7,11 +7,12 @@
 
 namespace palpate {
 
-/// Holds the true origin with a probability of 95 %: by the joint covariance's block of x and y.
+/// Contains the true origin with a probability of 95 %; from the block of x and y of the joint
+/// covariance.
 struct PoseEllipse {
   double long_m = 0.0;  ///< half axes, long_m >= short_m >= 0
   double short_m = 0.0;
-  double angle_rad = 0.0;  ///< of the long one in the world
+  double angle_rad = 0.0;  ///< direction of the long axis in the world
 };
 
 /// nullopt without a covariance.

@@ -16,7 +16,7 @@ std::optional<Extent> shown_extent(const ContactGroup& group, const v1::Recognit
   for (const ContactRun& run : group.runs) {
     for (const ContactSample& sample : run.samples) include(sample.position_m);
   }
-  // Samples may have been lost on their way, or be of another program; contacts come with the
+  // Samples may have been lost on their way or belong to another program; contacts come with the
   // answer.
   for (const v1::LocalizedContact& contact : answer.contacts()) {
     const Vec2 place(contact.x_m(), contact.y_m());
@@ -27,7 +27,7 @@ std::optional<Extent> shown_extent(const ContactGroup& group, const v1::Recognit
   const double size = (high - low).maxCoeff();
   const Vec2 centre = 0.5 * (low + high);
   const auto distance = [&](const Vec2& p) { return (p - centre).cwiseAbs().maxCoeff() / size; };
-  constexpr double kWhole = 3.0;  // sizes of what was touched
+  constexpr double kWhole = 3.0;  // in units of the size of what was touched
   constexpr double kNear = 1.0;
   double furthest = 0.0;
   for (const CurvePlace& place : drawing.curve->places) {

@@ -1,4 +1,4 @@
-// How much of the plane a picture shows.
+// The part of the plane that a picture shows.
 #pragma once
 
 #include "node/tool/contact_groups.h"
@@ -7,15 +7,15 @@
 
 namespace palpate {
 
-/// A rectangle along the axes. [m]
+/// A rectangle parallel to the axes. [m]
 struct Extent {
   Vec2 low;
   Vec2 high;
 };
 
-/// What was touched, and the curve with its frame: all of a curve that is not far larger than what
-/// was touched; of another one, as of an arc that is not yet determined, what is near. nullopt
-/// where there is nothing to show.
+/// Contains everything that was touched, and the curve with its frame. Of a curve that is much
+/// larger than what was touched (such as an arc that is not determined yet), it contains only the
+/// part nearby. nullopt if there is nothing to show.
 std::optional<Extent> shown_extent(const ContactGroup& group, const v1::Recognition& answer,
                                    const Drawing& drawing);
 

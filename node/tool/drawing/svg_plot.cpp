@@ -20,15 +20,15 @@
 namespace palpate {
 namespace {
 
-constexpr double kWidth = 1064.0;  // of the document, all in pixels
+constexpr double kWidth = 1064.0;  // of the document; all in pixels
 constexpr double kHeight = 680.0;
 constexpr double kLeft = 80.0;
 constexpr double kTop = 24.0;
-constexpr double kRight = 364.0;  // the table's place
+constexpr double kRight = 364.0;  // left edge of the table
 constexpr double kBottom = 60.0;
 
-constexpr double kDotPixels = 3.6;    // width of a stroke's sample
-constexpr double kTouchPixels = 7.0;  // of a touch that stands alone
+constexpr double kDotPixels = 3.6;    // width of a sample of a stroke
+constexpr double kTouchPixels = 7.0;  // of a single touch
 
 constexpr const char* kRivalColour = "#8a5cc2";
 constexpr const char* kResidualColour = "#c2185b";
@@ -36,7 +36,7 @@ constexpr const char* kContactColour = "#b36b00";
 constexpr const char* kXAxisColour = "#c00000";
 constexpr const char* kYAxisColour = "#008000";
 
-/// From metres to pixels, equal scales on both axes, y upwards.
+/// From metres to pixels: equal scales on both axes, y upwards.
 class View {
  public:
   View(const Vec2& low, const Vec2& high) {
@@ -109,7 +109,7 @@ std::string axes_svg(const View& view) {
   return svg;
 }
 
-/// SVG's numbers are single precision: what is far outside is cut.
+/// SVG's numbers have single precision, so positions far outside are clamped.
 std::string point_text(const View& view, const Vec2& place) {
   constexpr double kFar = 1e5;
   const Vec2 at = view(place).cwiseMin(kFar).cwiseMax(-kFar);
@@ -123,7 +123,7 @@ std::string polyline(const View& view, const DrawnCurve& curve, const char* styl
   return svg + "\"/>\n";
 }
 
-/// The area between the band's borders, as a closed line to and fro.
+/// The area between the borders of the band, as a closed path.
 std::string band_svg(const View& view, const DrawnCurve& curve) {
   std::string left;
   std::string right;
@@ -174,7 +174,7 @@ std::string frame_svg(const View& view, const v1::Recognition& answer, const Dra
   }
   const std::optional<CurveModel> model = model_of(answer);
   if (const auto ellipse = model ? pose_ellipse(*model) : std::optional<PoseEllipse>()) {
-    // As large as the picture says: beyond it, its border cannot be seen anyway.
+    // Clamped: the border of a larger ellipse is outside the picture anyway.
     constexpr double kFar = 1e5;
     svg += formatted(
         "<ellipse class=\"origin\" clip-path=\"url(#picture)\" rx=\"%.2f\" ry=\"%.2f\" "
@@ -187,16 +187,16 @@ std::string frame_svg(const View& view, const v1::Recognition& answer, const Dra
   return svg;
 }
 
-/// Whether every run is a touch of its own: they are shown by probe, a stroke by its patch.
+/// True if every run is a single touch. Touches are coloured by probe, strokes by patch.
 bool are_touches(const ContactGroup& group) {
   return std::all_of(group.runs.begin(), group.runs.end(),
                      [](const ContactRun& run) { return run.samples.size() == 1; });
 }
 
-/// Dots as the round ends of lines without length: a few bytes each.
+/// Dots as round ends of lines of length 0, which takes a few bytes each.
 std::string samples_svg(const View& view, const ContactGroup& group,
                         const VisibleSamples& visible) {
-  // A touch stands alone; the samples of a stroke make a line.
+  // Single touches need larger dots; the samples of a stroke form a line.
   const bool touches = are_touches(group);
   const double width = touches ? kTouchPixels : kDotPixels;
   std::string svg;
@@ -272,7 +272,7 @@ void add_answer(const ContactGroup& group, const v1::Recognition& answer, SvgTab
   const LengthUnit unit = length_unit_for(answer.sigma_m());
   table.row("noise", number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name));
   table.row("group", group.name + ", object " + std::to_string(group.object));
-  // Of a long path the end tells more.
+  // The end of a long path says more than its beginning.
   constexpr std::size_t kMostOfPath = 36;
   std::string file = group.file;
   if (file.size() > kMostOfPath) {
@@ -360,7 +360,7 @@ EnlargedResiduals residuals_of_picture(const ContactGroup& group, const v1::Reco
 std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer) {
   const Drawing drawing = make_drawing(group, answer, Curvature::None);
   const View view = view_of(group, answer, drawing);
-  // Of dots, half a pixel beside another one, one is not seen.
+  // A dot half a pixel from another one cannot be seen.
   constexpr double kCellPixels = 0.5;
   constexpr std::size_t kMostDots = 50000;
   const VisibleSamples visible =

@@ -1,5 +1,5 @@
-// A recognition drawn to scale: samples, most probable curve with its 95 % band, rivals, enlarged
-// residuals, contacts and frame, with a table of what is known.
+// Draws a recognition to scale: samples, the most probable curve with its 95 % band, rivals,
+// enlarged residuals, contacts and frame, and a table of the results.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// An SVG document of at most a few megabytes: of samples that lie on one another's dots one is
-/// drawn, and the picture says how many are left out.
+/// An SVG document of at most a few megabytes. Samples whose dots would coincide are drawn once;
+/// the picture says how many are left out.
 std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer);
 
 }  // namespace palpate

@@ -19,7 +19,7 @@ std::string escaped(const std::string& text) {
         safe += "&quot;";
         break;
       default:
-        // XML has no control characters.
+        // XML does not permit control characters.
         safe += static_cast<unsigned char>(c) < ' ' ? '?' : c;
     }
   }

@@ -1,4 +1,4 @@
-// Text beside a drawing, in SVG: headings, rows, sentences and the meaning of colours.
+// The text beside a drawing, in SVG: headings, rows, sentences and the legend.
 #pragma once
 
 #include <cstdio>
@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// What printf makes of the values, up to 511 characters.
+/// Printf-formatted text of at most 511 characters.
 template <typename... Values>
 std::string formatted(const char* pattern, Values... values) {
   char text[512];
@@ -14,17 +14,17 @@ std::string formatted(const char* pattern, Values... values) {
   return text;
 }
 
-/// Text as it may stand in markup.
+/// The text, escaped for use in markup.
 std::string escaped(const std::string& text);
 
-/// Lines from a place downwards. [px]
+/// Writes lines from a position downwards. [px]
 class SvgTable {
  public:
   SvgTable(double x, double y) : x_(x), y_(y) {}
 
   void heading(const std::string& text);
   void row(const std::string& name, const std::string& value);
-  /// In lines that fit.
+  /// Breaks the text into lines that fit.
   void words(const std::string& text);
   void key(const char* colour, const std::string& label);
   void gap() { y_ += 8.0; }

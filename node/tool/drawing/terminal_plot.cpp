@@ -10,14 +10,14 @@
 namespace palpate {
 namespace {
 
-/// From metres to dots, equal scales on both axes, y upwards.
+/// From metres to dots: equal scales on both axes, y upwards.
 class DotView {
  public:
   DotView(const Extent& extent, const BrailleCanvas& canvas)
       : centre_(0.5 * (extent.low + extent.high)),
         middle_(0.5 * canvas.width(), 0.5 * canvas.height()) {
     const Vec2 size = (extent.high - extent.low).cwiseMax(1e-12);
-    // A dot's room at every border.
+    // Leaves one dot free at every border.
     dots_per_m_ = std::min((canvas.width() - 2.0) / size.x(), (canvas.height() - 2.0) / size.y());
   }
 
@@ -43,7 +43,7 @@ void draw_curve(const DrawnCurve& curve, const DotView& view, Ink ink, BrailleCa
 std::string caption(const ContactGroup& group, const Extent& extent) {
   const Vec2 size = extent.high - extent.low;
   const LengthUnit unit = length_unit_for(size.maxCoeff());
-  // Two digits tell how large it is; the table has the rest.
+  // Two digits are enough for the size; the table has the rest.
   const auto short_number = [&](double metres) {
     char text[32];
     std::snprintf(text, sizeof text, "%.2g", metres * unit.per_m);
@@ -57,7 +57,7 @@ std::string caption(const ContactGroup& group, const Extent& extent) {
 
 std::vector<std::string> terminal_plot(const ContactGroup& group, const v1::Recognition& answer,
                                        std::size_t columns, std::size_t rows) {
-  constexpr std::size_t kLeastSide = 3;  // characters: less shows no shape
+  constexpr std::size_t kLeastSide = 3;  // characters; less shows no shape
   if (columns < kLeastSide || rows < kLeastSide + 1) return {};
   const Drawing drawing = make_drawing(group, answer, Curvature::None);
   const std::optional<Extent> extent = shown_extent(group, answer, drawing);

@@ -1,4 +1,4 @@
-// A recognition drawn small, in the characters of a terminal.
+// A small drawing of a recognition in the characters of a terminal.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 namespace palpate {
 
 /// `rows` lines of at most `columns` characters: samples, most probable curve and rivals to scale,
-/// and under them whose they are and how large the picture is. Empty where there is nothing to
-/// show or no room.
+/// with a legend and the size of the picture below them. Empty if there is nothing to show or too
+/// little room.
 std::vector<std::string> terminal_plot(const ContactGroup& group, const v1::Recognition& answer,
                                        std::size_t columns, std::size_t rows);
 

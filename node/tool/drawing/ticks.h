@@ -1,11 +1,11 @@
-// Where a chart's axis has its marks.
+// Positions of the marks on a chart's axis.
 #pragma once
 
 #include <cmath>
 
 namespace palpate {
 
-/// 1, 2 or 5 times a power of ten, for about `count` ticks over the length.
+/// 1, 2 or 5 times a power of ten, such that about `count` ticks fit the length.
 inline double tick_step(double length, double count) {
   const double rough = length / count;
   const double power = std::pow(10.0, std::floor(std::log10(rough)));

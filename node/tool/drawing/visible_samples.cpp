@@ -7,8 +7,8 @@
 namespace palpate {
 namespace {
 
-/// Squares beside one another differ; squares 2^28 apart in x or y may not, which is far beyond any
-/// picture.
+/// A key of the square and colour. Keys of neighbouring squares differ; those of squares 2^28 apart
+/// in x or y may coincide, which is far beyond any picture.
 std::uint64_t key_of(const Vec2& position, double cell_m, std::size_t colour) {
   const auto index = [cell_m](double value) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / cell_m))) &

@@ -21,7 +21,7 @@ std::string with_article(v1::CurveClass curve_class) {
   return (name.front() == 'e' ? "an " : "a ") + name;
 }
 
-/// The most probable class beside the answer's.
+/// The most probable class other than the answer's.
 v1::CurveClass rival_of(const v1::Recognition& answer) {
   for (const v1::Hypothesis& hypothesis : answer.hypotheses()) {
     if (hypothesis.curve_class() != answer.curve_class()) return hypothesis.curve_class();

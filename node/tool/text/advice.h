@@ -1,4 +1,4 @@
-// What a person who strokes the part is to do next.
+// What the person who strokes the part should do next.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// One or two sentences: what the answer is or why there is none yet, and what would help.
+/// One or two sentences: the answer, or why there is none yet, and what would help.
 std::string advice_text(const v1::Recognition& answer);
 
 }  // namespace palpate

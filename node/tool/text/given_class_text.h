@@ -1,4 +1,4 @@
-// A fit of a given class for a person to read.
+// The fit of a given class as text for a person to read.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// Several lines, each ended.
+/// Several lines, each ending with a line feed.
 std::string given_class_text(const v1::GivenClassAnswer& answer);
 
 }  // namespace palpate

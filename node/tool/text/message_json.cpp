@@ -9,7 +9,7 @@ std::string json_line(const google::protobuf::Message& message) {
   options.preserve_proto_field_names = true;
   options.always_print_primitive_fields = true;
   std::string text;
-  // Cannot fail: no message has an Any.
+  // Cannot fail, because no message has an Any.
   (void)google::protobuf::util::MessageToJsonString(message, &text, options);
   return text + "\n";
 }

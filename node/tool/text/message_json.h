@@ -1,4 +1,4 @@
-// Messages as protobuf's JSON, field names as in the wire contract.
+// Messages as protobuf's JSON, with the field names of the wire contract.
 #pragma once
 
 #include <google/protobuf/message.h>
@@ -7,7 +7,7 @@
 
 namespace palpate {
 
-/// One line, ended; fields that are zero are printed too.
+/// One line, ending with a line feed. Fields that are zero are included.
 std::string json_line(const google::protobuf::Message& message);
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// A match for a person to read.
+// A part match as text for a person to read.
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +23,7 @@ std::string verdict(const v1::PartMatch& match) {
   }
 }
 
-/// "0-17, 94-110".
+/// Indices as ranges, e.g. "0-17, 94-110".
 template <typename Indices>
 std::string ranges(const Indices& indices) {
   std::string text;

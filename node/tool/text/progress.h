@@ -1,4 +1,4 @@
-// How far long work is: one line on a terminal, drawn anew; nothing where nobody looks on.
+// Progress of long work: one line that is redrawn, on a terminal only.
 #pragma once
 
 #include <unistd.h>
@@ -16,13 +16,13 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Takes the line away, for what is said at the end.
+  /// Erases the line, to make room for the final output.
   void end() {
     if (drawn_) std::cerr << "\r\033[K" << std::flush;
     drawn_ = false;
   }
 
-  /// `text()` gives the line; it is asked for no more often than a person can read.
+  /// Shows the line that `text()` returns. Calls it no more often than a person can read.
   template <typename Text>
   void tell(Text&& text) {
     if (!is_seen_) return;

@@ -19,7 +19,8 @@ void add_line(std::string& text, const std::string& name, const std::string& val
 
 std::string degrees(double angle) { return std::to_string(std::lround(angle * kDegrees)) + " deg"; }
 
-/// Lower bound on what a size may be where its deviation is as large as itself.
+/// A size with its deviation. If the deviation is larger than the size: an upper bound, two
+/// deviations above it.
 std::string size_text(const Estimate& size) {
   if (size.value > size.deviation) return length_text(size.value, size.deviation);
   const double most = size.value + 2.0 * size.deviation;

@@ -25,7 +25,7 @@ std::string with_sigma(double value, double sigma) {
     return number(value) + " +- " + number(sigma);
   }
   constexpr int kSigmaDigits = 2;
-  constexpr int kMostDecimals = 9;  // beyond, or left of the point: powers of ten
+  constexpr int kMostDecimals = 9;  // with more decimals, or none: powers of ten
   const int decimals = kSigmaDigits - 1 - static_cast<int>(std::floor(std::log10(sigma)));
   if (decimals >= 0 && decimals <= kMostDecimals) {
     return print("%.*f", decimals, value) + " +- " + print("%.*f", decimals, sigma);

@@ -1,4 +1,4 @@
-// Numbers as a person reads them: with as many digits as their uncertainty leaves.
+// Numbers for people, with as many digits as their uncertainty justifies.
 #pragma once
 
 #include <cstdio>
@@ -8,9 +8,9 @@
 
 namespace palpate {
 
-inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< per radian
+inline constexpr double kDegrees = 180.0 / std::numbers::pi;  ///< degrees per radian
 
-/// Appends what printf makes of the values, up to 255 characters.
+/// Appends printf-formatted text of at most 255 characters.
 template <typename... Values>
 void add_row(std::string& text, const char* format, Values... values) {
   char row[256];
@@ -18,14 +18,15 @@ void add_row(std::string& text, const char* format, Values... values) {
   text += row;
 }
 
-/// "12.3456 +- 0.0021": the standard deviation to two significant digits, the value to the same
-/// place. Without uncertainty (0): six significant digits; where it is not finite: "+- inf".
+/// E.g. "12.3456 +- 0.0021": the standard deviation to two significant digits, the value to the
+/// same place. If sigma is 0 (not known): the value to six significant digits. If it is not finite:
+/// "+- inf".
 std::string with_sigma(double value, double sigma);
 
 /// Six significant digits.
 std::string number(double value);
 
-/// A unit of length that suits a magnitude: m, mm or um.
+/// A unit of length that suits the magnitude: m, mm or um.
 struct LengthUnit {
   std::string_view name;
   double per_m = 1.0;

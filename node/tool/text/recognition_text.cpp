@@ -41,11 +41,11 @@ std::vector<Named> parameters_of(const v1::Parameters& parameters) {
   return named;
 }
 
-/// Standard deviation of the i-th of [a, b, c as present; x; y; theta].
+/// Standard deviation of entry i of [those of a, b, c that the class has; x; y; theta].
 double sigma_of(const v1::Recognition& answer, std::size_t i) {
   const auto count = static_cast<std::size_t>(answer.covariance_size());
   const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(count))));
-  if (n * n != count) return std::numeric_limits<double>::infinity();  // no matrix
+  if (n * n != count) return std::numeric_limits<double>::infinity();  // not a square matrix
   if (i >= n) return 0.0;
   return std::sqrt(std::max(answer.covariance(static_cast<int>(i * n + i)), 0.0));
 }
@@ -126,7 +126,7 @@ void add_decisions(const v1::Recognition& answer, std::string& text) {
   }
 }
 
-/// Without a standard deviation where a tolerance decided.
+/// Without a standard deviation if the tree used a plain tolerance.
 std::string value_text(const v1::Invariant& invariant) {
   return std::isfinite(invariant.sigma()) ? with_sigma(invariant.value(), invariant.sigma())
                                           : number(invariant.value());
@@ -155,7 +155,7 @@ std::vector<Quantity> quantities_of(const v1::Recognition& answer) {
   if (!answer.has_pose()) return quantities;
   const std::size_t x = quantities.size();
   const v1::Pose2& pose = answer.pose();
-  // One unit for both: the pose's distance from the world's origin chooses it.
+  // One unit for both coordinates, chosen by the distance of the pose from the world's origin.
   const LengthUnit unit = length_unit_for(std::max(
       {std::abs(pose.x_m()), std::abs(pose.y_m()), sigma_of(answer, x), sigma_of(answer, x + 1)}));
   const auto add_length = [&](const char* name, double value) {

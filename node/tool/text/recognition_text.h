@@ -1,4 +1,4 @@
-// A recognition for a person to read.
+// A recognition as text for a person to read.
 #pragma once
 
 #include <string>
@@ -12,32 +12,31 @@ namespace palpate {
 /// The sentence for a doubt, e.g. "several classes remain plausible".
 std::string_view sentence_of(v1::RecognitionDoubt doubt);
 
-/// "ellipse", "semi-cubical parabola".
+/// E.g. "ellipse", "semi-cubical parabola".
 std::string spoken_name(v1::CurveClass curve_class);
 
 /// A shape parameter or a component of the pose.
 struct Quantity {
   std::string name;    ///< "a", "b", "c", "x", "y", "theta"
   double value = 0.0;  ///< in SI units
-  double sigma = 0.0;  ///< standard deviation; infinite where the data do not determine it
-  std::string text;    ///< "30.0012 +- 0.0021 mm"
+  double sigma = 0.0;  ///< standard deviation; infinite if the data do not determine the value
+  std::string text;    ///< e.g. "30.0012 +- 0.0021 mm"
 };
 
-/// The answer's shape parameters, then its pose; empty where it names no curve.
+/// The shape parameters of the answer, then its pose. Empty if the answer names no curve.
 std::vector<Quantity> quantities_of(const v1::Recognition& answer);
 
-/// "recognized", "ambiguous: several classes remain plausible".
+/// E.g. "recognized", "ambiguous: several classes remain plausible".
 std::string status_text(const v1::Recognition& answer);
 
 /// One line: class, parameters and pose with their standard deviations.
 std::string summary_text(const v1::Recognition& answer);
 
-/// The recognition tree's invariants by class, in powers of metres: "ellipse Ic1 163 +- 16,
-/// Ic2 52.1
-/// +- 3.2; parabola Ip 3.1 +- 0.2"; empty where it asked about no class.
+/// The recognition tree's invariants by class, in powers of metres, e.g. "ellipse Ic1 163 +- 16,
+/// Ic2 52.1 +- 3.2; parabola Ip 3.1 +- 0.2". Empty if the tree tested no class.
 std::string invariants_text(const v1::Recognition& answer);
 
-/// The whole answer, several lines, each ended.
+/// The whole answer: several lines, each ending with a line feed.
 std::string report_text(const v1::Recognition& answer);
 
 }  // namespace palpate

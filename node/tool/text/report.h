@@ -1,4 +1,4 @@
-// The whole answer in words where its noise may be estimated.
+// The whole answer as text, when its noise may be estimated.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace palpate {
 
-/// As report_text of recognition_text.h. Chi-square is left out where the noise is not known: taken
-/// in units of noise that was estimated from the same samples, it tells nothing.
+/// Like report_text of recognition_text.h, but without chi-square if the noise is not known:
+/// relative to noise estimated from the same samples, chi-square says nothing.
 std::string report_text(const v1::Recognition& answer, bool noise_is_known);
 
 }  // namespace palpate

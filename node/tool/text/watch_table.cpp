@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kWidestName = 16;
 constexpr std::size_t kObjectWidth = 7;
 
-/// A name in a column: cut where it is longer.
+/// A name padded or cut to the width of its column.
 std::string column(const std::string& text, std::size_t width) {
   std::string cell = printable(text).substr(0, width);
   cell.resize(width, ' ');
@@ -26,14 +26,15 @@ std::string right_column(const std::string& text, std::size_t width) {
   return std::string(width > text.size() ? width - text.size() : 0, ' ') + text + " ";
 }
 
-/// An object's number; of a long one, as a clock gives, the end tells one from the next.
+/// The number of an object. A long one (such as a time stamp) is shortened to its last digits,
+/// which distinguish it from the next.
 std::string object_text(std::uint64_t object) {
   const std::string digits = std::to_string(object);
   return digits.size() <= kObjectWidth ? digits
                                        : ".." + digits.substr(digits.size() - kObjectWidth + 2);
 }
 
-/// Columns as wide as the names in them.
+/// Widths of the columns: as wide as the names in them.
 struct NameWidths {
   std::size_t group = std::string_view("GROUP").size();
   std::size_t probe = std::string_view("PROBE").size();

@@ -1,4 +1,4 @@
-// What palpate watch shows on a terminal: groups and probes as one table.
+// The table of groups and probes that `palpate watch` shows on a terminal.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,8 @@
 
 namespace palpate {
 
-/// A recognizer says every second that it lives; after this it is called silent.
+/// A recognizer publishes its status every second. After this time without it, the recognizer is
+/// shown as silent.
 inline constexpr std::chrono::duration<double> kRecognizerSilence{2.5};
 
 struct WatchedGroup {
@@ -24,15 +25,15 @@ struct WatchedState {
   std::map<std::string, WatchedGroup> groups;
   v1::NodeStatus status;
   bool has_status = false;
-  double silent_s = 0.0;  ///< since anything was heard
+  double silent_s = 0.0;  ///< since the last message
 };
 
-/// Lines of at most `columns` characters, at most `rows` of them; what does not fit is counted in
-/// the last one. Text from the bus is shown without control characters.
+/// At most `rows` lines of at most `columns` characters. The last line counts what does not fit.
+/// Control characters in received text are not shown.
 std::vector<std::string> watch_table(const WatchedState& state, std::size_t columns,
                                      std::size_t rows);
 
-/// "recognizer silent for 6 s".
+/// E.g. "recognizer silent for 6 s".
 std::string silence_text(double silent_s);
 
 }  // namespace palpate

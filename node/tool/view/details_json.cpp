@@ -15,14 +15,14 @@
 namespace palpate {
 namespace {
 
-/// To so many significant digits.
+/// Rounds to `digits` significant digits.
 double rounded(double value, int digits) {
   if (value == 0.0 || !std::isfinite(value)) return value;
   const double power = std::pow(10.0, digits - 1 - std::floor(std::log10(std::abs(value))));
   return std::isfinite(power) && power > 0.0 ? std::round(value * power) / power : value;
 }
 
-/// Where the band is widest.
+/// The largest width of the band.
 std::string band_width_text(const DrawnCurve& curve) {
   double widest_m = 0.0;
   for (const CurvePlace& place : curve.places) {
@@ -146,7 +146,7 @@ void write_quantities(const v1::Recognition& answer, JsonText& json) {
   json.end_array();
 }
 
-/// Of what was touched; an arc not yet determined makes the drawn curve far larger.
+/// Size of what was touched. An arc that is not determined yet can make the drawn curve far larger.
 double touched_size_of(const LiveGroup& group, double drawn_size_m) {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
   Vec2 high = -low;
@@ -160,7 +160,7 @@ double touched_size_of(const LiveGroup& group, double drawn_size_m) {
   return size > 0.0 ? std::min(size, drawn_size_m) : drawn_size_m;
 }
 
-/// Lines from the curve to the samples, enlarged; and the samples that are far from it.
+/// Writes the enlarged residuals as lines from the curve, and the samples far from it.
 void write_residuals(const LiveGroup& group, const Drawing& drawing, JsonText& json) {
   const std::optional<CurveModel> model =
       drawing.curve ? model_of(group.answer) : std::optional<CurveModel>();

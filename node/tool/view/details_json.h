@@ -1,4 +1,5 @@
-// What a browser shows in words, numbers and charts: it is read, and so comes a few times a second.
+// JSON of what a browser shows as words, numbers and charts. A person reads it, so it is sent only
+// a few times a second.
 #pragma once
 
 #include "node/tool/drawing/drawing.h"
@@ -10,9 +11,9 @@ namespace palpate {
 /// "recognized", "ambiguous" or "collecting".
 const char* status_word(const v1::Recognition& answer);
 
-/// Words, quantities, hypotheses, the tree's path, charts and residuals of a group's answer;
-/// coordinates in steps from its origin. `drawing` is that of the group, with the curvature along
-/// its curves.
+/// Writes words, quantities, hypotheses, the tree's path, charts and residuals of a group's answer.
+/// Coordinates are in steps from its origin. `drawing` must be that of the group, with
+/// Curvature::Along.
 void write_details(LiveGroup& group, const Drawing& drawing, SteadyTime now, JsonText& json);
 
 }  // namespace palpate

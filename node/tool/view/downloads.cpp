@@ -44,7 +44,7 @@ std::string moment_json(const LiveState& state, std::string_view group, std::int
   LiveGroup then = state.group_at(*moment);
   const Drawing drawing = make_drawing(then.touched, then.answer, Curvature::Along);
   SentSamples none;
-  // As to a browser that has another generation: all of them, even if there is none.
+  // A browser with another generation is sent all samples, even if there are none.
   none.generation = then.generation + 1;
   JsonText json;
   json.begin_object();

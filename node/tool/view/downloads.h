@@ -1,4 +1,4 @@
-// What can be had of a group: what it is, to save it; what it was, to look at it again.
+// Files and moments of a group that a browser can request.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,17 @@
 
 namespace palpate {
 
-/// Its samples, as palpate fit reads them; a comment says where some were dropped.
+/// The samples in the format that `palpate fit` reads. A comment says where some were dropped.
 std::string samples_csv(const LiveGroup& group);
 
-/// Its answer, in the wire contract's JSON.
+/// The answer in the wire contract's JSON.
 std::string answer_json(const LiveGroup& group);
 
-/// Times of the moments of a group that can be looked at again, as JSON. [Unix time, ms]
+/// The times of a group's moments that can be shown again, as JSON. [Unix time, ms]
 std::string moments_json(LiveState& state, std::string_view group);
 
-/// The moment nearest to a time as a message of the live feed, and its own time; empty where there
-/// is none.
+/// The moment nearest to a time, as a message of the live feed with the moment's own time; empty if
+/// there is none.
 std::string moment_json(const LiveState& state, std::string_view group, std::int64_t time_ms,
                         SteadyTime now);
 

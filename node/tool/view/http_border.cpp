@@ -11,15 +11,15 @@ namespace palpate {
 namespace {
 
 bool is_ip_address(std::string_view host) {
-  // No zone of a link-local address ("%eth0"), which may be any text, and no zero byte, at which
-  // the library stops reading.
+  // Rejects the zone of a link-local address ("%eth0"), which may be any text, and zero bytes, at
+  // which the library stops reading.
   if (host.find_first_not_of("0123456789abcdefABCDEF.:") != std::string_view::npos) return false;
   boost::system::error_code error;
   boost::asio::ip::make_address(host, error);
   return !error;
 }
 
-/// "HOST:PORT", "[IPV6]:PORT".
+/// Parses "HOST:PORT" or "[IPV6]:PORT".
 std::optional<HostPort> parse_host_port(std::string_view text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string_view::npos) return std::nullopt;
@@ -27,7 +27,7 @@ std::optional<HostPort> parse_host_port(std::string_view text) {
   const std::string_view digits = text.substr(colon + 1);
   const bool in_brackets = host.size() > 2 && host.front() == '[' && host.back() == ']';
   if (in_brackets) host = host.substr(1, host.size() - 2);
-  // An IPv6 address needs its brackets, and nothing else may have them.
+  // An IPv6 address needs brackets; nothing else may have them.
   if ((host.find(':') != std::string_view::npos) != in_brackets || host.empty()) {
     return std::nullopt;
   }
@@ -49,13 +49,13 @@ std::optional<Route> group_route(std::string_view target, std::string_view befor
   return is_valid_name(name) ? std::optional(Route{kind, name, 0}) : std::nullopt;
 }
 
-/// "/moment/<digits>/<group>.json".
+/// Parses "/moment/<digits>/<group>.json".
 std::optional<Route> moment_route(std::string_view target) {
   constexpr std::string_view kBefore = "/moment/";
   if (!target.starts_with(kBefore)) return std::nullopt;
   target.remove_prefix(kBefore.size());
   const std::size_t digits = target.find('/');
-  // A minus sign would be a number to from_chars.
+  // from_chars would accept a minus sign.
   if (digits == std::string_view::npos || target.starts_with('-')) return std::nullopt;
   std::int64_t time_ms = 0;
   const auto [stop, error] = std::from_chars(target.data(), target.data() + digits, time_ms);
@@ -86,7 +86,7 @@ bool is_loopback_host(std::string_view host) {
 }
 
 bool is_own_host(std::string_view host_header, std::uint16_t port) {
-  // Browsers leave HTTP's own port out.
+  // Browsers omit HTTP's standard port.
   const bool has_port =
       host_header.rfind(':') != std::string_view::npos && !host_header.ends_with(']');
   const std::optional<HostPort> named =

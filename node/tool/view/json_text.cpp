@@ -44,10 +44,10 @@ void JsonText::raw(std::string_view json) {
   text_ += json;
 }
 
-// Numbers are most of what is written: each with its comma in one piece.
+// Most values are numbers; each is appended together with its comma.
 template <typename... Arguments>
 void JsonText::number(Arguments... arguments) {
-  // The longest: a comma, a sign, 17 digits, a point and an exponent of five characters.
+  // Longest text: a comma, a sign, 17 digits, a point and an exponent of five characters.
   constexpr std::size_t kMostCharacters = 32;
   char characters[kMostCharacters];
   characters[0] = ',';

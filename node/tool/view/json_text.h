@@ -1,5 +1,5 @@
-// JSON written straight into a string: a picture is thousands of numbers, and a tree of them costs
-// more than the drawing.
+// Writes JSON directly into a string. A picture has thousands of numbers, and a tree of JSON values
+// would cost more than the drawing.
 #pragma once
 
 #include <concepts>
@@ -10,8 +10,7 @@
 
 namespace palpate {
 
-/// Whoever writes sees to it that what begins also ends, and that only members of objects have
-/// keys.
+/// The caller must close what it opens, and give keys to members of objects only.
 class JsonText {
  public:
   void begin_object() { begin('{'); }
@@ -19,22 +18,22 @@ class JsonText {
   void begin_array() { begin('['); }
   void end_array() { end(']'); }
 
-  /// Name of the member whose value comes next; ours, without anything to escape.
+  /// The key of the next value. A literal of this program; it is not escaped.
   JsonText& key(std::string_view name);
 
-  /// The shortest number that is this one; null where it is not finite.
+  /// The shortest text that gives the same number; null if it is not finite.
   void value(double value);
-  /// To so many significant digits: short.
+  /// The number to `digits` significant digits.
   void value(double value, int digits);
   void value(std::signed_integral auto value) { whole(static_cast<std::int64_t>(value)); }
   void value(std::unsigned_integral auto value) { whole(static_cast<std::uint64_t>(value)); }
   void value(bool truth) { raw(truth ? "true" : "false"); }
-  /// Any bytes: they are escaped, and what is not UTF-8 is replaced.
+  /// Any bytes: special characters are escaped, and what is not UTF-8 is replaced.
   void value(std::string_view text);
   void value(const std::string& text) { value(std::string_view(text)); }
   void value(const char* text) { value(std::string_view(text)); }
   void null() { raw("null"); }
-  /// JSON already written.
+  /// JSON that is already written.
   void raw(std::string_view json);
 
   template <typename... Value>
@@ -43,7 +42,7 @@ class JsonText {
   }
 
   const std::string& text() const { return text_; }
-  /// What has been written; it begins anew.
+  /// Returns what has been written and starts anew.
   std::string take() {
     needs_comma_ = false;
     return std::exchange(text_, {});

@@ -8,9 +8,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Words and numbers that change faster cannot be read, and ages are shown in tenths of a second.
+// Words and numbers that change faster cannot be read. Ages are shown in tenths of a second.
 constexpr milliseconds kOverviewPeriod{200};
-// These take a foot point of every sample besides: a third of the server's work at five a second.
+// Details need a foot point for every sample: a third of the server's work at five a second.
 constexpr milliseconds kDetailsPeriod{250};
 
 template <typename Write>
@@ -27,7 +27,7 @@ std::string LiveFeed::group_for(const Viewer& viewer, SteadyTime now) {
 }
 
 const LiveFeed::Drawn& LiveFeed::drawn_now(LiveGroup& group, SteadyTime now) {
-  // Groups are as many as there may be: only where one has gone are there more drawn than known.
+  // There may be more drawn groups than existing ones only after a group has been removed.
   if (drawn_.size() > state_.groups().size()) {
     std::erase_if(drawn_,
                   [this](const auto& entry) { return state_.find(entry.first) == nullptr; });

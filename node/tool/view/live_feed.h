@@ -1,4 +1,4 @@
-// What each browser is to be sent next.
+// Decides what each browser is sent next.
 #pragma once
 
 #include <map>
@@ -9,28 +9,27 @@
 
 namespace palpate {
 
-/// One browser's place in the feed. The newest state wins: it is told how things are, not what
-/// happened in between.
+/// The state of one browser's feed. It is sent the newest state; states in between are skipped.
 struct Viewer {
-  std::string wanted;  ///< group chosen; empty = follow the one that is touched
-  std::string shown;   ///< group that it was sent last
+  std::string wanted;  ///< group chosen; empty = follow the one being touched
+  std::string shown;   ///< group that was sent last
   std::uint64_t sent_version = 0;
   std::uint64_t sent_details_version = 0;
   SentSamples sent_samples;
-  std::uint64_t sent_overview = 0;  ///< its number
+  std::uint64_t sent_overview = 0;  ///< number of the last overview sent
 };
 
-/// Everything is drawn when a viewer is due for it, once however many viewers there are; what is
-/// read beside the pictures a few times a second only.
+/// A picture is made when a viewer is due for it, once for all viewers. Words and numbers are made
+/// only a few times a second.
 class LiveFeed {
  public:
   explicit LiveFeed(LiveState& state) : state_(state) {}
 
-  /// The viewer's next message; empty where it knows everything.
+  /// The viewer's next message; empty if it has everything.
   std::string next_message(Viewer& viewer, SteadyTime now);
 
  private:
-  // Of a group, as JSON.
+  // The JSON of a group.
   struct Drawn {
     std::uint64_t version = 0;
     std::string picture;

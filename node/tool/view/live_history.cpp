@@ -40,7 +40,7 @@ void LiveHistory::seal(std::shared_ptr<SampleEra> era, const ContactGroup& sampl
 void LiveHistory::drop_oldest() {
   Moment& oldest = moments_.front();
   bytes_ -= bytes_of(oldest);
-  // With the last moment that needs them, an object's samples go.
+  // The samples of an object go with the last moment that needs them.
   if (oldest.era->past && oldest.era.use_count() == 1) bytes_ -= bytes_of(*oldest.era->past);
   moments_.pop_front();
 }
@@ -55,7 +55,7 @@ std::vector<std::int64_t> LiveHistory::times(std::string_view group) const {
 
 const Moment* LiveHistory::nearest(std::string_view group, std::int64_t time_ms) const {
   const Moment* nearest = nullptr;
-  // As doubles: who asks may name any time.
+  // As doubles, because a request may name any time.
   const auto distance = [time_ms](const Moment& moment) {
     return std::abs(static_cast<double>(moment.time_ms) - static_cast<double>(time_ms));
   };

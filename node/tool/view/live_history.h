@@ -1,4 +1,4 @@
-// The last minutes of every group, to look back at: one home for all browsers, whenever they came.
+// The last minutes of every group, for browsers to look back at. All browsers share it.
 #pragma once
 
 #include <cstdint>
@@ -15,40 +15,40 @@
 
 namespace palpate {
 
-/// The samples of one object while none of them was left out. Those of the present are in its
-/// group; they come here when the group lets go of them.
+/// The samples of one object for as long as none of them was dropped. Those of the present object
+/// are in its group; they are moved to `past` when the group gives them up.
 struct SampleEra {
   std::optional<ContactGroup> past;
 };
 
-/// How a group looked when an answer came.
+/// The state of a group when an answer came.
 struct Moment {
   std::string group;
   std::int64_t time_ms = 0;  ///< Unix time
-  std::string answer;        ///< a v1::Recognition
+  std::string answer;        ///< a serialised v1::Recognition
   Vec2 origin_m = Vec2::Zero();
   std::uint64_t samples_received = 0;
   std::shared_ptr<SampleEra> era;
-  std::vector<std::uint32_t> counts;  ///< samples of each run
+  std::vector<std::uint32_t> counts;  ///< number of samples of each run
 };
 
 class LiveHistory {
  public:
-  /// Moments of a group are this far apart, but for the last of an object.
+  /// Shortest time between two moments of a group, except for the last one of an object.
   static constexpr std::int64_t kLeastInterval_ms = 200;
   static constexpr std::int64_t kLongest_ms = 3 * 60 * 1000;
-  /// Of all moments and the samples that only they hold. A moment of usual size is 4 kB: three
-  /// minutes of ten groups.
+  /// Maximum memory of all moments and of the samples that only they hold. A moment usually has 4
+  /// kB, so this is three minutes of ten groups.
   static constexpr std::size_t kMostBytes = std::size_t{48} << 20;
 
-  /// Keeps it; the oldest go.
+  /// Adds a moment; deletes the oldest ones beyond the bound.
   void add(Moment moment);
-  /// Takes the samples that the era's moments still need; its group has let go of it.
+  /// Takes the samples that the era's moments still need, when the group gives them up.
   void seal(std::shared_ptr<SampleEra> era, const ContactGroup& samples);
 
-  /// Times of a group's moments, the oldest first. [ms]
+  /// Times of a group's moments, oldest first. [ms]
   std::vector<std::int64_t> times(std::string_view group) const;
-  /// The group's moment nearest to a time; null where there is none.
+  /// The group's moment nearest to a time; nullptr if there is none.
   const Moment* nearest(std::string_view group, std::int64_t time_ms) const;
 
   std::size_t bytes() const { return bytes_; }
@@ -56,7 +56,7 @@ class LiveHistory {
  private:
   void drop_oldest();
 
-  std::deque<Moment> moments_;  // in the order of their coming
+  std::deque<Moment> moments_;  // in order of arrival
   std::size_t bytes_ = 0;
 };
 

@@ -15,18 +15,18 @@ using namespace std::chrono_literals;
 // Thirty pictures a second look continuous.
 constexpr auto kLeastInterval = 30ms;
 constexpr auto kHandshakeTime = 5s;
-// A browser is asked for a sign of life after half of this, and let go after it.
+// A browser is pinged after half of this time of silence and disconnected after all of it.
 constexpr auto kIdleTime = 20s;
 
 }  // namespace
 
 LiveSession::LiveSession(beast::tcp_stream&& stream, LiveFeed& feed, std::shared_ptr<void> count)
     : socket_(std::move(stream)), feed_(feed), count_(std::move(count)) {
-  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own clock
+  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timeouts
   socket_.set_option(websocket::stream_base::timeout{kHandshakeTime, kIdleTime, true});
   socket_.read_message_max(kMaxNameLength);
   socket_.text(true);
-  socket_.auto_fragment(false);  // a message is at hand as a whole
+  socket_.auto_fragment(false);  // messages are complete, so one frame each
 }
 
 void LiveSession::accept(const Request& request) {

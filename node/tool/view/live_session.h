@@ -1,4 +1,4 @@
-// One browser's WebSocket.
+// The WebSocket of one browser.
 #pragma once
 
 #include <boost/beast/core.hpp>
@@ -13,26 +13,26 @@
 
 namespace palpate {
 
-/// A browser says which group it wants ("" = the one that is touched) each time it has drawn the
-/// last message; only then does it get the next. A browser that is slow, hidden or frozen is sent
-/// nothing and costs nothing; one that no longer answers pings is let go.
+/// After a browser has drawn a message it names the group that it wants ("" = the one being
+/// touched); only then is it sent the next message. So a slow, hidden or frozen browser is sent
+/// nothing and costs nothing. A browser that no longer answers pings is disconnected.
 class LiveSession : public std::enable_shared_from_this<LiveSession> {
  public:
   using Request = boost::beast::http::request<boost::beast::http::empty_body>;
 
-  /// `count` lives as long as the session.
+  /// `count` lives as long as the session; its use count is the number of sessions.
   LiveSession(boost::beast::tcp_stream&& stream, LiveFeed& feed, std::shared_ptr<void> count);
 
   void accept(const Request& request);
 
-  /// Sends what is new, if the browser is ready and it is time.
+  /// Sends what is new, if the browser is ready and the interval has passed.
   void tick(SteadyTime now);
 
  private:
   void read();
   void on_read(boost::beast::error_code error);
 
-  boost::beast::websocket::stream<boost::beast::tcp_stream, false> socket_;  // never deflates
+  boost::beast::websocket::stream<boost::beast::tcp_stream, false> socket_;  // without compression
   LiveFeed& feed_;
   std::shared_ptr<void> count_;
   boost::beast::flat_buffer incoming_;

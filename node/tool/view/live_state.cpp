@@ -12,10 +12,12 @@ namespace {
 
 constexpr std::int64_t kNsPerMs = 1'000'000;
 
-// Who follows leaves a group that has been silent for so long for one that is touched.
+// A viewer that follows the touch leaves a group that has been silent for this long if another one
+// is touched.
 constexpr std::chrono::milliseconds kFollowAfter{1000};
 
-/// Keeps every second sample of every run; of runs that have a single one, the later half.
+/// Keeps every second sample of every run; of runs with a single sample, the later half of the
+/// runs.
 void thin(LiveGroup& group) {
   std::vector<ContactRun> kept;
   const std::size_t runs = group.touched.runs.size();
@@ -42,7 +44,7 @@ MaterialSide side_of(v1::MaterialSide side) {
                                            : MaterialSide::Unspecified;
 }
 
-/// Names come from the bus: where one is none, the message is not for us.
+/// False for a batch with invalid names or numbers: it is not ours to draw.
 bool is_drawable(const v1::ContactBatch& batch) {
   const auto is_finite = [](const v1::ContactSample& sample) {
     return std::isfinite(sample.x_m()) && std::isfinite(sample.y_m()) &&
@@ -54,7 +56,7 @@ bool is_drawable(const v1::ContactBatch& batch) {
          std::all_of(batch.samples().begin(), batch.samples().end(), is_finite);
 }
 
-/// The one to go where there are as many as there may be; the end where there is room.
+/// The entry to remove if the map is full; end() if there is room.
 template <typename Map>
 auto one_too_many(Map& map, std::size_t most) {
   if (map.size() < most) return map.end();
@@ -147,7 +149,7 @@ LiveGroup LiveState::group_at(const Moment& moment) const {
 }
 
 void LiveState::begin_object(LiveGroup& group, std::uint64_t object) {
-  // The last look of an object is worth keeping, however soon it came after the one before.
+  // The last state of an object is always kept, however soon it follows the one before.
   if (group.has_answer && group.last_moment_ns != group.answer_received_ns) keep_moment(group);
   seal_era(group);
   group.has_previous_object = group.has_object;
@@ -218,7 +220,7 @@ void LiveState::take(const v1::Recognition& answer, SteadyTime now, std::int64_t
   live.answer_received_ns = received_ns;
   live.answer_rate.add(now, 1);
   live.version = ++next_version_;
-  // By the distance from the last one, whichever way the clock was set.
+  // The distance in time, in either direction, because the clock may have been set.
   if (std::abs(received_ns - live.last_moment_ns) >= LiveHistory::kLeastInterval_ms * kNsPerMs) {
     keep_moment(live);
   }

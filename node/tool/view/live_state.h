@@ -1,5 +1,5 @@
-// What palpate view knows at present: groups with their contacts and answers, probes, recognizers.
-// Speaks to nobody; bounded, whatever comes.
+// The present state that `palpate view` shows: groups with their contacts and answers, probes,
+// recognizers. Does no I/O, and is bounded whatever arrives.
 #pragma once
 
 #include <chrono>
@@ -20,38 +20,38 @@ namespace palpate {
 
 using SteadyTime = std::chrono::steady_clock::time_point;
 
-/// Samples kept of one group's object, 32 bytes each. Of more, every second one is dropped, and it
-/// is said how many are shown.
+/// Samples kept of one group's object, 32 bytes each. If there are more, every second one is
+/// dropped, and the page says how many are shown.
 inline constexpr std::size_t kMostSamplesKept = 20000;
-/// Groups kept, as many as a recognizer has by default; the one unheard for longest makes room.
+/// Groups kept; as many as a recognizer has by default. The one silent for longest is replaced.
 inline constexpr std::size_t kMostGroupsKept = 64;
-/// Probes shown of one recognizer, and recognizers.
+/// Maximum of probes shown of one recognizer, and of recognizers shown.
 inline constexpr int kMostProbesShown = 256;
 inline constexpr std::size_t kMostNodesKept = 8;
 
 struct LiveGroup {
-  /// Contacts of the present object. One run a probe and patch.
+  /// Contacts of the present object, one run per probe and patch.
   ContactGroup touched;
   std::uint64_t samples_received = 0;
   std::size_t samples_kept = 0;
-  /// Drawn coordinates are relative to this, so that short numbers suffice.
+  /// Drawn coordinates are relative to this point, so that they are short numbers.
   Vec2 origin_m = Vec2::Zero();
-  /// Changes where the kept samples are other ones, and not only more.
+  /// Changes when samples are dropped or replaced, not when samples are added.
   std::uint64_t generation = 0;
 
   v1::Recognition answer;
   bool has_answer = false;
   std::int64_t answer_received_ns = 0;  ///< Unix time
   RateMeter answer_rate;
-  /// Changes with every answer and object: with all that the group's picture shows.
+  /// Changes with every answer and object, so with everything that the group's picture shows.
   std::uint64_t version = 0;
   SteadyTime last_heard;
 
-  /// Of the samples, for moments to look back at.
+  /// The era of the present samples, which moments of the history refer to.
   std::shared_ptr<SampleEra> era = std::make_shared<SampleEra>();
   std::int64_t last_moment_ns = 0;  // Unix time
 
-  // Of the object before: an answer that was on its way when the object changed.
+  // The object before, to detect an answer that was on its way when the object changed.
   std::uint64_t previous_object = 0;
   bool has_previous_object = false;
   bool has_object = false;
@@ -66,24 +66,24 @@ struct LiveNode {
 class LiveState {
  public:
   void take(const v1::ContactBatch& batch, SteadyTime now);
-  /// `received_ns`: the wall clock, for the latency shown.
+  /// `received_ns`: wall clock, for the latency shown.
   void take(const v1::Recognition& answer, SteadyTime now, std::int64_t received_ns);
   void take(const v1::NodeStatus& status, SteadyTime now);
 
   const std::map<std::string, LiveGroup, std::less<>>& groups() const { return groups_; }
   const std::map<std::string, LiveNode, std::less<>>& nodes() const { return nodes_; }
   const LiveHistory& history() const { return history_; }
-  /// Times of a group's moments, the present one included. [Unix time, ms]
+  /// Times of a group's moments, including the present one. [Unix time, ms]
   std::vector<std::int64_t> moments_of(std::string_view name);
-  /// A group as it was at a moment of the history, as far as it is still known.
+  /// A group as it was at a moment of the history, as far as its data are still kept.
   LiveGroup group_at(const Moment& moment) const;
 
-  /// nullptr where there is none of that name.
+  /// nullptr if there is no group of that name.
   LiveGroup* find(std::string_view name);
-  /// The group to show to who follows the touch: the one `shown` as long as it is touched, else the
-  /// one heard last; empty where there is none.
+  /// The group to show to a viewer that follows the touch: `shown` as long as it is touched, else
+  /// the one heard last; empty if there is none.
   std::string followed_group(std::string_view shown, SteadyTime now) const;
-  /// Changes where what overviews show of probes and recognizers has changed at once.
+  /// Changes when the probes or recognizers in the overview change in a way to be shown at once.
   std::uint64_t status_version() const { return status_version_; }
 
  private:
@@ -96,7 +96,8 @@ class LiveState {
   std::map<std::string, LiveGroup, std::less<>> groups_;
   std::map<std::string, LiveNode, std::less<>> nodes_;
   LiveHistory history_;
-  std::uint64_t next_version_ = 0;  // of all groups: a group that comes back is no old one
+  // Shared by all groups, so that a group that comes back does not look like its former self.
+  std::uint64_t next_version_ = 0;
   std::uint64_t status_version_ = 0;
 };
 

@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-/// Takes what comes on the bus into the state, in the io_context's thread.
+/// Reads messages from the bus into the state, on the io_context's thread.
 class BusReader {
  public:
   BusReader(boost::asio::io_context& io, const client::ResultSubscriberOptions& options,
@@ -26,12 +26,12 @@ class BusReader {
         pause_(io),
         descriptor_(io, subscriber_.socket().get(zmq::sockopt::fd)) {}
 
-  // ZeroMQ's descriptor is not asio's to close.
+  // ZeroMQ's descriptor must not be closed by asio.
   ~BusReader() { descriptor_.release(); }
 
-  /// ZeroMQ's descriptor tells of news once only: everything is taken before it is waited for.
+  /// ZeroMQ's descriptor signals news only once, so all messages are read before waiting for it.
   void read() {
-    // Browsers get their turn after so many messages.
+    // After this many messages browsers get their turn.
     constexpr int kMessagesPerTurn = 200;
     for (int count = 0; count < kMessagesPerTurn; ++count) {
       const client::ReceivedResult result = subscriber_.receive(std::chrono::milliseconds(0));
@@ -42,9 +42,11 @@ class BusReader {
   }
 
  private:
-  /// To be woken for every message of many costs more than the message does.
+  /// Waiting for a moment first: waking up for every single message would cost more than the
+  /// message.
   void wait() {
-    constexpr std::chrono::milliseconds kPause(5);  // a tenth of what an eye takes for at once
+    // A tenth of what the eye perceives as simultaneous.
+    constexpr std::chrono::milliseconds kPause(5);
     pause_.expires_after(kPause);
     pause_.async_wait([this](const boost::system::error_code& stopped) {
       if (stopped) return;
@@ -69,11 +71,11 @@ class BusReader {
   boost::asio::posix::stream_descriptor descriptor_;
 };
 
-/// A recognizer on the same machine goes first: whoever looks on waits a moment. ZeroMQ's threads,
-/// which are started later, inherit it.
+/// Lowers the priority of this process, so that a recognizer on the same machine comes first.
+/// ZeroMQ's threads, which start later, inherit it.
 void give_way() {
-  constexpr int kNice = 5;  // a third of another one's share where all cores are busy
-  // Where that fails it is as before.
+  constexpr int kNice = 5;  // a third of another process's share when all cores are busy
+  // Failure is harmless.
   (void)setpriority(PRIO_PROCESS, 0, kNice);
 }
 

@@ -1,5 +1,5 @@
-// Everything that palpate view runs. Its header is light: Boost.Beast, Asio and the page stay
-// behind it.
+// Runs `palpate view`. This header is light: Boost.Beast, Asio and the page are included only by
+// its source.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace palpate {
 
-/// Shows in browsers what comes on the bus, until `stop_fd` is readable. `on_bound` is told the
-/// port. Throws std::invalid_argument where it cannot subscribe, boost::system::system_error where
-/// it cannot listen.
+/// Shows what arrives on the bus in browsers until `stop_fd` is readable. Calls `on_bound` with the
+/// port. Throws std::invalid_argument if it cannot subscribe and boost::system::system_error if it
+/// cannot listen.
 void serve_live_view(const client::ResultSubscriberOptions& bus, const HostPort& listen,
                      int stop_fd, const std::function<void(std::uint16_t port)>& on_bound);
 

@@ -1,4 +1,4 @@
-// What a browser is told of everything there is, a few times a second.
+// JSON of the overview that a browser is sent a few times a second.
 #pragma once
 
 #include "node/tool/view/json_text.h"
@@ -6,7 +6,7 @@
 
 namespace palpate {
 
-/// Lists all groups, probes and recognizers, with their ages.
+/// Lists all groups, probes and recognizers with their ages.
 void write_overview(const LiveState& state, SteadyTime now, JsonText& json);
 
 }  // namespace palpate

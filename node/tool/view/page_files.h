@@ -1,4 +1,4 @@
-// The page's files, compiled in (embed.cmake makes page_files.cpp of page/).
+// The files of the page, compiled into the program (embed.cmake makes page_files.cpp from page/).
 #pragma once
 
 #include <span>

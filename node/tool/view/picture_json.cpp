@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-/// [x, y]
+/// Writes [x, y].
 void write_place(const char* name, const StepCoordinates::Steps& steps, JsonText& json) {
   json.key(name).begin_array();
   StepCoordinates::write(steps, json);
@@ -77,7 +77,7 @@ void write_pose(const v1::Recognition& answer, const StepCoordinates& place, Jso
   json.end_object();
 }
 
-/// What both messages begin with.
+/// Writes the members that both messages begin with.
 void write_origin(const LiveGroup& group, const StepCoordinates& place, JsonText& json) {
   json.member("group", group.touched.name);
   json.member("object", std::to_string(group.touched.object));
@@ -109,7 +109,8 @@ double drawn_size_m(const Drawing& drawing, const LiveGroup& group) {
 }
 
 StepCoordinates coordinates_of(const Drawing& drawing, const LiveGroup& group) {
-  // A millionth of the size, rounded down to a power of ten: at 1000 pixels a thousandth of one.
+  // A millionth of the size, rounded down to a power of ten: a thousandth of a pixel at 1000
+  // pixels.
   constexpr double kFraction = 1e-6;
   return {group.origin_m,
           std::pow(10.0, std::floor(std::log10(kFraction * drawn_size_m(drawing, group))))};

@@ -1,5 +1,5 @@
-// What a browser draws, as JSON: it comes with every answer, as fast as the browser draws. Every
-// text from the bus stays text: it is escaped here and becomes a text node there.
+// JSON of what a browser draws. It is sent with every answer, as fast as the browser draws. Text
+// from the bus is escaped here and shown as a text node in the browser, so it cannot become markup.
 #pragma once
 
 #include <cstdint>
@@ -12,26 +12,26 @@
 
 namespace palpate {
 
-/// Size of curve and touched places. [m]
+/// Size of the curve and the touched places. [m]
 double drawn_size_m(const Drawing& drawing, const LiveGroup& group);
 
-/// Steps as fine as the drawing needs.
+/// Coordinate steps that are fine enough for the drawing.
 StepCoordinates coordinates_of(const Drawing& drawing, const LiveGroup& group);
 
-/// Curve, band, rivals, contacts and frame of a group's answer; coordinates in steps from its
-/// origin. `drawing` is that of the group.
+/// Writes curve, band, rivals, contacts and frame of a group's answer; coordinates in steps from
+/// its origin. `drawing` must be that of the group.
 void write_picture(const LiveGroup& group, const Drawing& drawing, JsonText& json);
 
-/// Which of a group's samples a browser has.
+/// The samples of a group that a browser already has.
 struct SentSamples {
   std::uint64_t generation = 0;
   std::vector<std::size_t> of_run;
 };
 
-/// Whether there are samples that it has not, or another generation of them.
+/// True if the browser lacks samples or has another generation of them.
 bool has_news(const LiveGroup& group, const SentSamples& sent);
 
-/// The samples that it has not, runs continued where they ended. Brings `sent` up to date.
+/// Writes the samples that the browser lacks, continuing the runs, and updates `sent`.
 void write_samples(const LiveGroup& group, SentSamples& sent, JsonText& json);
 
 }  // namespace palpate

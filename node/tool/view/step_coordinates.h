@@ -1,4 +1,4 @@
-// Places in a message to the browser, as short as they may be.
+// Short coordinates for messages to the browser.
 #pragma once
 
 #include <cmath>
@@ -10,11 +10,11 @@
 
 namespace palpate {
 
-/// Digits of what charts show: a hundredth of a pixel of a thousand.
+/// Significant digits in charts: a hundredth of a pixel of a thousand.
 inline constexpr int kChartDigits = 5;
 
-/// Places as whole steps from an origin: whole numbers are written many times faster than others,
-/// and are short.
+/// Coordinates as whole steps from an origin. Integers are short and many times faster to write
+/// than other numbers.
 class StepCoordinates {
  public:
   struct Steps {
@@ -24,7 +24,7 @@ class StepCoordinates {
 
   StepCoordinates(const Vec2& origin_m, double step_m) : origin_m_(origin_m), step_m_(step_m) {}
 
-  /// nullopt where the place is too far away to be written, or none.
+  /// nullopt if the place is not finite or too far away for an integer.
   std::optional<Steps> steps_to(const Vec2& place) const {
     constexpr double kMost = 9007199254740992.0;  // 2^53: whole numbers of JavaScript
     const double x = std::round((place.x() - origin_m_.x()) / step_m_);
@@ -33,7 +33,7 @@ class StepCoordinates {
     return Steps{static_cast<std::int64_t>(x), static_cast<std::int64_t>(y)};
   }
 
-  /// Writes x and y; nothing where they cannot be written.
+  /// Writes x and y, or nothing if they cannot be written.
   void write(const Vec2& place, JsonText& json) const {
     if (const std::optional<Steps> steps = steps_to(place)) write(*steps, json);
   }

@@ -19,13 +19,13 @@ namespace http = beast::http;
 using asio::ip::tcp;
 using namespace std::chrono_literals;
 
-// Connections that have not become a browser's live feed; a request must have come within its time.
+// Maximum of connections that are not live feeds. Each request must arrive within kRequestTime.
 constexpr long kMostHttpConnections = 128;
 constexpr auto kRequestTime = 5s;
 constexpr std::uint32_t kMostHeaderBytes = 8192;
-// Browsers that look on; each is a socket and the last message.
+// Maximum of live feeds; each is a socket and the last message.
 constexpr long kMostViewers = 64;
-// Viewers are looked at this often: half a picture's interval.
+// How often viewers are checked: half the interval of pictures.
 constexpr auto kTick = 15ms;
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
@@ -40,7 +40,7 @@ const char* content_type_of(std::string_view name) {
   return "application/octet-stream";
 }
 
-/// One connection's requests, one after the other.
+/// The requests of one connection, one after the other.
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(tcp::socket&& socket, WebServer& server, std::shared_ptr<void> count)
@@ -107,7 +107,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       return refuse(http::status::forbidden, "the live feed is for this page only\n");
     }
     if (!server_.add_viewer(std::move(stream_), request)) {
-      // The stream has not been taken.
+      // The stream was not moved from.
       refuse(http::status::service_unavailable, "too many browsers look on\n");
     }
   }
@@ -144,8 +144,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     response_ = Response(status, 11);
     response_.set(http::field::content_type, type);
     response_.set(http::field::cache_control, "no-cache");
-    // Nothing but this server's own files runs or is loaded, and no other page may frame it. The
-    // live feed is named too: older browsers do not count WebSockets to 'self'.
+    // Only this server's own files may be loaded or run, and no other page may frame it. The live
+    // feed is named as well, because older browsers do not count WebSockets as 'self'.
     std::string policy =
         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src "
         "'self'";
@@ -203,7 +203,7 @@ void WebServer::accept() {
   acceptor_.async_accept([this](beast::error_code error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
     if (error) {
-      // Out of descriptors: connections that end make room.
+      // Out of descriptors: try again later, when connections have ended.
       timer_.expires_after(kTick);
       timer_.async_wait([this](beast::error_code stopped) {
         if (stopped) return;

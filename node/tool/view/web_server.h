@@ -1,4 +1,4 @@
-// The page and its live feed over HTTP; one thread, the io_context's.
+// Serves the page and its live feed over HTTP, on the thread of the io_context.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -16,19 +16,19 @@ namespace palpate {
 
 class WebServer {
  public:
-  /// Binds; throws boost::system::system_error where it cannot. `state` must outlive it.
+  /// Binds. Throws boost::system::system_error on failure. `state` must outlive the server.
   WebServer(boost::asio::io_context& io, const HostPort& listen, LiveState& state);
 
-  /// The port bound: with port 0 the one that the system chose.
+  /// The port bound; for port 0 the one that the system chose.
   std::uint16_t port() const { return port_; }
 
-  /// Browsers connected.
+  /// Number of browsers connected to the live feed.
   std::size_t viewers() const { return static_cast<std::size_t>(live_count_.use_count()) - 1; }
 
   LiveFeed& feed() { return feed_; }
   LiveState& state() { return state_; }
 
-  /// Takes a browser's connection over from HTTP; false where there are too many.
+  /// Takes a browser's connection over from HTTP. Returns false if there are too many.
   bool add_viewer(boost::beast::tcp_stream&& stream, const LiveSession::Request& request);
 
  private:
@@ -40,7 +40,7 @@ class WebServer {
   std::uint16_t port_ = 0;
   LiveState& state_;
   LiveFeed feed_;
-  // Each connection holds a copy while it lives: their use counts are the numbers of connections.
+  // Each connection holds a copy while it lives, so the use counts are the numbers of connections.
   std::shared_ptr<void> http_count_ = std::make_shared<int>();
   std::shared_ptr<void> live_count_ = std::make_shared<int>();
   std::vector<std::weak_ptr<LiveSession>> sessions_;

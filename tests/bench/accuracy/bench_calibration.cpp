@@ -1,6 +1,6 @@
-// Whether the published uncertainties are true: probability of the best class against how often it
-// is the class, and squared errors in units of the published covariance against their chi-square
-// law. Prints CSV.
+// Checks the published uncertainties: the probability of the best class against how often it is
+// right, and squared errors in units of the published covariance against their chi-square law.
+// Prints CSV.
 //   bench_calibration [--scenes N]
 #include <Eigen/Cholesky>
 #include <array>
@@ -22,8 +22,8 @@ constexpr double kNoise[] = {1e-5, 1e-4, 5e-4, 1e-3, 2e-3};
 constexpr std::array kBins = {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99, 1.0};
 constexpr int kDeciles = 10;
 
-/// Distribution function of chi-square with n degrees of freedom, by the regularised incomplete
-/// gamma series.
+/// Distribution function of chi-square with n degrees of freedom, by the series of the regularised
+/// incomplete gamma function.
 double chi2_cdf(double x, double n) {
   if (x <= 0.0) return 0.0;
   const double a = 0.5 * n;
@@ -61,13 +61,14 @@ void add(const test::Scene& scene, const Recognition& answer, Calibration* calib
   bin.right += right ? 1 : 0;
   bin.probability += best.probability;
   if (!right || answer.status != RecognitionStatus::Recognized) return;
-  // Linear enough for the law to be chi-square: every shape parameter within 3 %.
+  // Only if the problem is linear enough for a chi-square law: every shape parameter known to 3 %.
   constexpr double kDetermined = 0.03;
   const auto letters = static_cast<Eigen::Index>(parameter_letters(scene.curve_class).size());
   for (Eigen::Index k = 0; k < letters; ++k) {
     if (std::sqrt(best.covariance(k, k)) > kDetermined * std::abs(scene.values[k])) return;
   }
-  // Without what is free: a circle's theta, all of a line but its offset.
+  // Without the free parameters: a circle's theta; of a line all but its offset, so lines are left
+  // out.
   if (scene.curve_class == CurveClass::Line) return;
   const Eigen::Index n = pose_symmetry(scene.curve_class) == 0 ? letters + 2 : letters + 3;
   const Eigen::VectorXd error = test::error_of(best, scene).head(n);

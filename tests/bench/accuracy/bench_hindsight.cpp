@@ -1,8 +1,9 @@
-// What choosing the window costs: errors of the sliding window beside those of the best window of
-// one length and degree, chosen with the truth at hand. Prints markdown.
+// Measures the cost of choosing the window from the data: errors of the sliding window compared
+// with those of the best window of one length and degree, chosen with knowledge of the truth.
+// Prints markdown.
 //     bench_hindsight [--strokes N] [--curve NAME] [--length-mm L]
-// Exits with 1 where a cell is beyond the limit of any rule and neither few strokes nor a fixed
-// window that the samples refute explain it.
+// Exits with 1 if the ratio of a cell exceeds the limit and neither few strokes nor a fixed window
+// that the samples refute explain it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -28,15 +29,16 @@ namespace {
 
 constexpr std::uint64_t kSeed = 2026;
 constexpr std::array kLengths_m = {0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.3};
-/// Of the size of the parts.
+/// Relative to the size of the parts.
 constexpr std::array kNoises = {0.0, 1e-5, 1e-4, 5e-4, 2e-3};
 constexpr double kSize_m = 0.025;
-/// What a noise of zero is stated as: double precision's own at 0.2 m from the origin. [m]
+/// Stated noise when the true noise is zero: the rounding of doubles at 0.2 m from the origin. [m]
 constexpr double kRounding_m = 1e-16;
-/// Places looked at along a stroke.
+/// Places evaluated along a stroke.
 constexpr std::size_t kPlaces = 12;
-/// Lengths of fixed windows, from the fewest samples of a window on: a fifth apart, over which an
-/// error that goes as the power -3.5 of the length changes by half.
+/// Lengths of fixed windows, from the fewest samples of a window. Each is a fifth longer than the
+/// one before; an error proportional to the power -3.5 of the length changes by half over such a
+/// step.
 constexpr std::size_t kFewest = 16;
 constexpr double kNextLength = 1.2;
 
@@ -46,8 +48,8 @@ struct Place {
   Squares sliding{};
   Squares stated{};  ///< published variances
   double samples = 0.0;
-  std::vector<std::optional<Squares>> fixed;  ///< where such a window has room
-  std::vector<bool> contradicted;             ///< whether the samples refute its polynomial
+  std::vector<std::optional<Squares>> fixed;  ///< if such a window has room
+  std::vector<bool> contradicted;             ///< the samples refute its polynomial
 };
 
 std::vector<std::size_t> lengths_up_to(std::size_t samples) {
@@ -63,9 +65,9 @@ Squares squares_of(const test::TrueStroke& stroke, const LocalEstimate& estimate
   return {error[1] * error[1], error[2] * error[2]};
 }
 
-/// Whether noise leaves residuals as large about a polynomial of that degree in one of 10,000
-/// windows at most. An estimate that has no stated noise cannot be asked: it takes a bend for noise
-/// beside which nothing is left of the window, and says nothing of either.
+/// True if noise leaves such large residuals about a polynomial of that degree in at most one of
+/// 10,000 windows. If the noise is estimated, this cannot be decided: the estimate takes a bend for
+/// noise.
 bool is_contradicted(std::span<const Vec2> window, int degree, double sigma_m) {
   constexpr double kChance = 1e-4;
   const AlignedFrame frame = aligned_frame(window).frame;
@@ -77,7 +79,7 @@ bool is_contradicted(std::span<const Vec2> window, int degree, double sigma_m) {
   if (!plain.factorise(0.0)) {
     return false;
   }
-  // Noise alike in all directions shows as 1 + slope^2 of it.
+  // Noise that is equal in all directions appears as 1 + slope^2 of it.
   const auto start = plain.coefficients();
   LegendreFit<kMaxJetDegree> fit;
   double squares = 0.0;
@@ -133,20 +135,20 @@ void add_places(const test::TrueStroke& stroke, const std::vector<Vec2>& samples
   }
 }
 
-/// The sliding window beside the fixed one that makes the ratio largest.
+/// The sliding window compared with the fixed window that gives the largest ratio.
 struct Comparison {
   double ratio = 0.0;
   std::size_t candidate = 0;
-  double samples = 0.0;         ///< of the sliding windows, in the mean
-  double fixed_rms = 0.0;       ///< of the fixed window's errors
-  double stated_rms = 0.0;      ///< of the deviations that the sliding window publishes
-  double worst_two = 0.0;       ///< of the sliding window's squared errors, the two worst places'
+  double samples = 0.0;         ///< mean, of the sliding windows
+  double fixed_rms = 0.0;       ///< errors of the fixed window
+  double stated_rms = 0.0;      ///< deviations that the sliding window publishes
+  double worst_two = 0.0;       ///< the two largest squared errors of the sliding window
   double contradicted = 0.0;    ///< share of the places where the samples refute the fixed window
-  double uncontradicted = 0.0;  ///< the ratio at the others; 0 where there are none
+  double uncontradicted = 0.0;  ///< the ratio at the other places; 0 if there are none
 };
 
-/// The largest ratio over the fixed windows, each at the places where it has room and an estimate:
-/// at least at half of them all.
+/// The largest ratio over the fixed windows. Each is evaluated at the places where it has room and
+/// an estimate; at least half of all.
 Comparison compared(const std::vector<Place>& places, std::size_t quantity) {
   Comparison found;
   const std::size_t candidates = places.empty() ? 0 : places.front().fixed.size();
@@ -156,7 +158,7 @@ Comparison compared(const std::vector<Place>& places, std::size_t quantity) {
     double sliding = 0.0;
     double fixed = 0.0;
     double stated = 0.0;
-    double sliding_beside = 0.0;  // at the places where the samples do not refute it
+    double sliding_beside = 0.0;  // at the places where the samples do not refute the fixed window
     double fixed_beside = 0.0;
     double worst = 0.0;
     double second = 0.0;
@@ -199,10 +201,11 @@ Comparison compared(const std::vector<Place>& places, std::size_t quantity) {
   return found;
 }
 
-/// Of the least that a rule which sees data can lose to who knows the truth: one term z, known to a
-/// deviation of 1, is left out (error z) or taken in (error 1), beside an error b of what is in
-/// anyway. The largest, over priors of z on 0 and +-d, of the square root of Bayes' mean of
-/// (squared error) / (b^2 + min(z^2, 1)): for every rule the worst z is at least as bad.
+/// A lower bound on the loss of any rule that sees only the data, against one that knows the truth.
+/// One term z, known to a deviation of 1, is left out (error z) or included (error 1), in addition
+/// to an unavoidable error b. Returns the largest value, over priors of z on 0 and +-d, of the
+/// square root of Bayes' mean of (squared error) / (b^2 + min(z^2, 1)): for every rule the worst z
+/// is at least as bad.
 double least_ratio_of_any_rule(double b) {
   constexpr double kStep = 0.01;
   constexpr double kFarthest = 12.0;
@@ -228,8 +231,8 @@ double least_ratio_of_any_rule(double b) {
   return std::sqrt(largest);
 }
 
-/// b where z is the next term for the quantity: of the orthonormal terms k and k + 2 of equal
-/// noise, the derivatives at the middle of sqrt(2k + 1) P_k.
+/// b if z is the next term for this quantity: from the orthonormal terms k and k + 2 with equal
+/// noise, the derivatives of sqrt(2k + 1) P_k at the middle.
 double share_of_lower(int order) {
   const auto basis = legendre_derivatives<4, 6>(0.0);
   return std::abs(basis(order, order) / basis(order, order + 2)) *
@@ -238,8 +241,8 @@ double share_of_lower(int order) {
 
 constexpr double kAsked = 1.2;
 
-/// A cell that a few strokes leave beyond the limit is walked with so many times as many: the best
-/// of some sixty fixed windows, chosen afterwards among few strokes, is lucky besides.
+/// A cell beyond the limit is repeated with this many times as many strokes: with few strokes, the
+/// best of about sixty fixed windows, chosen afterwards, is partly luck.
 constexpr int kMoreStrokes = 20;
 
 struct Cell {
@@ -269,7 +272,7 @@ Cell walked(std::size_t shape, double length_m, double noise, int strokes) {
 
 double ratio_unless_refuted(const Comparison& c) { return std::min(c.ratio, c.uncontradicted); }
 
-/// Of a cell above what is asked for. `more`: of more strokes, where these are beyond the limit.
+/// The row of a cell above the limit. `more`: the result with more strokes, if it was repeated.
 std::string row_of(const std::string& curve, double length, double noise, std::size_t quantity,
                    const Comparison& c, const std::optional<Comparison>& more) {
   constexpr std::size_t kDegrees = kMaxJetDegree - kMinJetDegree + 1;
@@ -292,7 +295,7 @@ std::string row_of(const std::string& curve, double length, double noise, std::s
   return row;
 }
 
-/// What to walk: one curve's, one length's, or all.
+/// Which strokes to evaluate: of one curve, of one length, or all.
 struct Selection {
   int strokes = 10;
   std::string curve;
@@ -301,7 +304,7 @@ struct Selection {
 
 class Table {
  public:
-  /// False where a cell is beyond the limit of any rule and nothing explains it.
+  /// Returns false if a cell is beyond the limit of any rule and nothing explains it.
   bool print(const Selection& selection) {
     std::printf("| curve, stroke |");
     for (const double noise : kNoises) {
@@ -386,7 +389,7 @@ class Table {
 
   std::vector<std::string> above_;
   std::array<std::vector<double>, 2> all_;
-  std::array<int, 2> unexplained_{};  ///< beyond the limit of any rule, and nothing refuted
+  std::array<int, 2> unexplained_{};  ///< beyond the limit of any rule, and no window refuted
   std::array<double, 2> limits_ = {least_ratio_of_any_rule(share_of_lower(2)),
                                    least_ratio_of_any_rule(share_of_lower(3))};
 };

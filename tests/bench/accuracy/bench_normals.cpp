@@ -1,8 +1,9 @@
-// How many touches of an ellipse a measured normal saves: the fewest after which both axes are
-// known to a part of themselves in 95 % of scenes. Touches lie anywhere on the ellipse, in no
-// order, and the class is given; with --sought it is not, and the ellipse has to be recognised.
-// Beside each number, the mean square of the axes' errors over their published deviations (law: 1),
-// and how many scenes were recognised as something else. Prints a table.
+// Measures how many touches of an ellipse a measured normal saves: the fewest touches after which
+// both axes are known to a given relative accuracy in 95 % of scenes. Touches lie anywhere on the
+// ellipse, in no order. The class is given; with --sought the ellipse has to be recognised. For
+// each number of touches it also prints the mean square of the axes' errors in units of their
+// published deviations (expected: 1) and how many scenes were recognised as another class. Prints a
+// table.
 //   bench_normals [--sought] [--scenes N] [--accuracy PART] [--most N] [--seed S]
 #include <Eigen/Geometry>
 #include <cmath>
@@ -43,12 +44,12 @@ std::vector<GivenPoint> touch(int count, double sigma_m, double normal_sigma_rad
 }
 
 struct Outcome {
-  int known = 0;         ///< scenes in which both axes are
-  double squares = 0.0;  ///< of errors over deviations, of the scenes that were
+  int known = 0;         ///< scenes in which both axes are known to the accuracy
+  double squares = 0.0;  ///< of errors over deviations, in these scenes
   int wrong = 0;         ///< recognised as something else
 };
 
-/// What is told of the curve; covariance of [shape; x; y; theta].
+/// What the answer says about the curve; covariance of [shape; x; y; theta].
 struct Told {
   bool is_ellipse = false;
   bool is_other = false;

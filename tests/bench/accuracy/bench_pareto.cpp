@@ -1,7 +1,7 @@
-// Speed against error: every local estimator by window and shift, alone (the recognition tree on
-// its estimates, as in the paper), the tree on the default contacts (palpate fit --method tree),
-// and the refinement on all points. Prints CSV, one row for each class, noise and pipeline. Errors
-// are medians over all scenes.
+// Speed against error of three pipelines: the recognition tree on every local estimator, window and
+// shift (as in the paper), the tree on the default contacts (palpate fit --method tree), and the
+// refinement on all points. Prints CSV, one row per class, noise and pipeline. Errors are medians
+// over all scenes.
 //   bench_pareto [--scenes N]
 #include <algorithm>
 #include <chrono>
@@ -53,7 +53,7 @@ double median_us(const Work& work) {
   return median(times);
 }
 
-/// What a pipeline did on the scenes of a cell.
+/// Results of one pipeline on the scenes of a cell.
 struct Cell {
   std::vector<double> update_us, recognition_us, kappa, kappa_s, shape, pose;
   int scenes = 0;
@@ -62,7 +62,8 @@ struct Cell {
   int wrong = 0;  ///< recognised as another class
 };
 
-/// Largest relative error of the shape, and the pose's error in parts of the touched half extent.
+/// Largest relative error of the shape, and the error of the pose relative to the touched half
+/// extent.
 void add_errors(const Hypothesis& found, const test::Scene& scene, Cell* cell) {
   const Eigen::VectorXd error =
       (test::error_of(found, scene).array() / test::natural_sizes(scene).array()).abs();
@@ -78,8 +79,8 @@ void add_miss(Cell* cell) {
   cell->pose.push_back(std::numeric_limits<double>::infinity());
 }
 
-/// Errors of curvature and its derivative against the truth in the middle of the window, in parts
-/// of kappa and of kappa^2 + |kappa_s|.
+/// Errors of curvature and its derivative against the truth in the middle of the window, relative
+/// to kappa and to kappa^2 + |kappa_s|.
 void add_local_errors(const test::Scene& scene, std::size_t patch, std::size_t middle,
                       const LocalEstimate& found, Cell* cell) {
   const std::vector<double>& t = scene.t[patch];
@@ -92,8 +93,8 @@ void add_local_errors(const test::Scene& scene, std::size_t patch, std::size_t m
 
 void tree_on(const test::Scene& scene, const EstimatorOptions& estimator, Cell* cell) {
   ++cell->scenes;
-  // Chained finite differences and circles bring no covariance that a test could use: the paper's
-  // tolerance.
+  // Chained finite differences and circles have no covariance that a test could use, so the tree
+  // uses the paper's tolerance.
   RecognitionTreeOptions options;
   constexpr double kPaperTolerance = 0.05;
   if (estimator.kind == EstimatorKind::FiniteDifference ||
@@ -109,7 +110,7 @@ void tree_on(const test::Scene& scene, const EstimatorOptions& estimator, Cell* 
   std::vector<TreePoint> points;
   for (std::size_t p = 0; p < windows.size(); ++p) {
     samples += static_cast<double>(scene.patches[p].size());
-    // The tree takes its points as independent: the ends and the middle of what the windows cover.
+    // The tree assumes independent points: take both ends and the middle of the windows.
     const std::size_t n = windows[p].size();
     for (const std::size_t i : {std::size_t{0}, n / 2, n - 1}) {
       if (n == 0 || !windows[p][i].result) continue;
@@ -196,7 +197,7 @@ int main(int argc, char** argv) {
         const Eigen::VectorXd bound = test::bound_of(scenes.back()).diagonal().cwiseSqrt().array() /
                                       test::natural_sizes(scenes.back()).array();
         const auto letters = static_cast<Eigen::Index>(parameter_letters(curve_class).size());
-        // Median of |error| of a normal law: 0.6745 standard deviations.
+        // The median of |error| of a normal distribution is 0.6745 standard deviations.
         constexpr double kMedian = 0.6745;
         shape_bounds.push_back(kMedian * bound.head(letters).maxCoeff());
         pose_bounds.push_back(kMedian * std::hypot(bound[letters], bound[letters + 1]));

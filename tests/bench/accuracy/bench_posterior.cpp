@@ -1,8 +1,9 @@
-// What the posterior is worth on scenes drawn from a stated prior (tests/support/scene_prior.h):
-// how often the class that the data determine is told, whether stated probabilities are true,
-// errors beside their covariance and beside the bound, and the time of recognize(). Prints tables.
+// Measures the quality of the posterior on scenes drawn from a stated prior
+// (tests/support/scene_prior.h): how often the answer names the class that the data determine,
+// whether stated probabilities are true, errors compared with their covariance and with the bound,
+// and the time of recognize(). Prints tables.
 //   bench_posterior [--scenes N] [--seed S] [--noise stated|unknown] [--classes-only]
-//   [--other-prior] [--csv FILE]
+//                   [--other-prior] [--csv FILE]
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -23,7 +24,7 @@ namespace {
 
 using namespace palpate;
 
-constexpr double kTold = 0.95;       // probability asked for
+constexpr double kTold = 0.95;       // required probability
 constexpr double kCoverage = 0.999;  // of the binomial bands
 constexpr int kRepetitions = 3;      // of each timing; the least counts
 
@@ -73,7 +74,7 @@ Row run(const Options& options, const test::ScenePrior& prior, std::uint32_t num
   return row;
 }
 
-/// A share as "n of m (p %)".
+/// A share in the form "n of m (p %)".
 std::string share(long n, long m) {
   char text[64];
   std::snprintf(text, sizeof(text), "%ld of %ld (%.1f %%)", n, m,

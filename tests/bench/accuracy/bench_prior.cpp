@@ -1,10 +1,10 @@
-// Whether probabilities are true where the parts are drawn from the very prior that is assumed
-// (core/README.md, "The prior"): what is left there is the integrals' own error. One stroke of 111
-// samples, noise stated; shape and place as the prior has them, so long that half of its extent is
-// the unit of the prior. A draw that cannot be touched so far (a circle that is too small, a cusp
-// within the stroke) is left out, and so is its class's share: the odds of the others are as they
-// were. Prints, by bin of the stated probability, how often the answer is right, and the stated
-// mass of every class beside how often it is the truth.
+// Checks the stated probabilities on parts that are drawn from the very prior that the recognizer
+// assumes (core/README.md, "The prior"); remaining errors are those of the integrals. Each scene
+// has one stroke of 111 samples with stated noise, and shape and place from the prior; half of the
+// stroke's extent is the prior's unit of length. A draw that cannot be touched that far (a circle
+// that is too small, a cusp within the stroke) is left out together with its class's share, so that
+// the odds of the others do not change. Prints, by bin of the stated probability, how often the
+// answer is right, and for every class its stated mass and how often it is the truth.
 //   bench_prior [--scenes N] [--seed S]
 #include <algorithm>
 #include <array>
@@ -34,20 +34,20 @@ using test::uniform;
 
 constexpr int kSamples = 111;
 
-/// Draws one coordinate by the inverse of its distribution function, the others at the centre: the
-/// prior's factors are independent, but for an ellipse's direction.
+/// Draws one coordinate by the inverse of its distribution function, with the others at the centre.
+/// The factors of the prior are independent, except for an ellipse's direction.
 class CoordinateLaw {
  public:
   CoordinateLaw(CurveClass curve_class, int k) {
     constexpr int kSteps = 200000;
-    // (Of an ellipse's direction and shape nothing is told at the centre, the parabola's limit.)
+    // (At the centre, the parabola's limit, an ellipse's direction and shape have no effect.)
     const TouchedVector centre = curve_class == CurveClass::Ellipse
                                      ? expected_coordinates(curve_class, 1.0, 1.0)
                                      : prior_centre(curve_class);
     double sum = 0.0;
     double last = 0.0;
     for (int i = 0; i < kSteps; ++i) {
-      // The size's tails are exponential, the others' are powers.
+      // The tails of the size are exponential, those of the others are powers.
       const double part = (i + 0.5) / kSteps;
       TouchedVector z = centre;
       z[k] += k == 0 ? 40.0 * (part - 0.5) : 2.0 * std::tan(kPi * (part - 0.5));
@@ -77,7 +77,7 @@ class CoordinateLaw {
   std::vector<double> sums_;
 };
 
-/// The prior of a class, whose lengths are in half extents of what is touched.
+/// The prior of a class; lengths are in half extents of what is touched.
 class ClassLaw {
  public:
   explicit ClassLaw(CurveClass curve_class) : class_(curve_class) {
@@ -112,7 +112,7 @@ class ClassLaw {
   std::vector<CoordinateLaw> coordinates_;
 };
 
-/// Half of the longer side of the points' box along their principal axes.
+/// Half of the longer side of the points' bounding box along their principal axes.
 double half_extent(const std::vector<Vec2>& points) {
   Vec2 middle = Vec2::Zero();
   for (const Vec2& point : points) middle += point / static_cast<double>(points.size());
@@ -129,8 +129,7 @@ double half_extent(const std::vector<Vec2>& points) {
   return 0.5 * (high - low).maxCoeff();
 }
 
-/// Places evenly along an arc whose middle is at t; nullopt where it goes all around, or over a
-/// cusp.
+/// Points evenly along an arc with its middle at t; nullopt if it goes all around or over a cusp.
 std::optional<std::vector<Vec2>> places_on(const Curve& curve, double t, double length) {
   const double begin = parameter_at_arc_length(curve, t, -0.5 * length);
   const double end = parameter_at_arc_length(curve, t, 0.5 * length);
@@ -151,7 +150,7 @@ std::optional<std::vector<Vec2>> places_on(const Curve& curve, double t, double 
   return places;
 }
 
-/// The stroke about t whose half extent is 1.
+/// The stroke around t with a half extent of 1.
 std::optional<std::vector<Vec2>> stroke_on(const Curve& curve, double t) {
   constexpr double kExact = 1e-6;
   double low = 1.9;

@@ -1,5 +1,5 @@
-// How often the search for a class's optimum misses it: beside the optimum that the truth leads to
-// (tests/support/search_outcome.h). Prints tables by class, patches and noise.
+// Counts how often the search for a class's optimum misses it, compared with the optimum reached
+// from the truth (tests/support/search_outcome.h). Prints tables by class, patches and noise.
 //   bench_search [--touches] [--scenes N] [--seed S] [--list]
 #include <array>
 #include <cmath>
@@ -14,13 +14,13 @@ namespace {
 
 using namespace palpate;
 
-// Chi-square above the reference by which an optimum counts as missed, and by which the class can
-// no longer be told with certainty: odds of 1000.
+// An optimum counts as missed if its chi-square exceeds the reference by kMissed. Beyond kDecisive,
+// odds of 1000, the class can no longer be recognised with certainty.
 constexpr double kMissed = 1.0;
 const double kDecisive = 2.0 * std::log(1000.0);
 
 constexpr std::array kNoiseBounds = {1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
-// How many patches, or touches, are counted together: up to these.
+// Numbers of patches, or of touches, are counted together up to these bounds.
 constexpr std::array<std::size_t, 6> kPatchBounds = {1, 2, 3, 4, 5, 6};
 constexpr std::array<std::size_t, 6> kTouchBounds = {6, 8, 12, 20, 35, 60};
 

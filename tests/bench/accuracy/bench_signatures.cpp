@@ -1,8 +1,8 @@
-// The paper's figures 2 to 5, 9 and 10: signature curves (curvature, its derivative by arc length),
-// semi-signature curves (with the slope lambda besides), and local estimates from noisy strokes
-// beside them: by circles through three samples (figure 9), by the two-round fit (figure 10) and by
-// the sliding window. Shapes are the paper's where it gives them. Prints CSV, in units of the
-// part's size; values of invariants stand in the labels of figures 4 and 5.
+// Data of the paper's figures 2 to 5, 9 and 10: signature curves (curvature and its derivative by
+// arc length), semi-signature curves (with the slope lambda as well), and for comparison local
+// estimates from noisy strokes: by circles through three samples (figure 9), by the two-round fit
+// (figure 10) and by the sliding window. Shapes are the paper's where it gives them. Prints CSV in
+// units of the part's size; the labels of figures 4 and 5 hold the values of the invariants.
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -19,10 +19,10 @@ namespace {
 using namespace palpate;
 
 constexpr std::uint64_t kSeed = 2026;
-constexpr double kNoise = 1e-4;  // of the part's size, which is 1
+constexpr double kNoise = 1e-4;  // relative to the part's size, which is 1
 constexpr int kCurvePoints = 400;
 constexpr int kSamples = 600;
-/// The paper's n and l, and fits enough for the second round: 75 + 3 * 4 = 87 samples an estimate.
+/// The paper's n and l, and enough fits for the second round: 75 + 3 * 4 = 87 samples per estimate.
 constexpr int kWindow = 75;
 constexpr int kShift = 4;
 constexpr int kFits = 4;
@@ -51,7 +51,7 @@ void print_curve(const std::string& figure, const std::string& label, const Curv
   }
 }
 
-/// The slope of an estimate is the world's, and no part of these figures.
+/// The slope of an estimate is in the world frame and not part of these figures.
 void print_estimate(const std::string& label, const std::string& kind, const LocalResult& result) {
   if (result) {
     const LocalEstimate& e = result.estimate;

@@ -1,6 +1,6 @@
-// What hard decisions about spikes cost an answer, beside one that is told which samples they are:
-// the error of taking samples out where the likelihood is a mixture. Prints a table by share of
-// spikes, noise stated and not.
+// Measures what hard decisions about spikes cost: the error of an answer that removes samples,
+// compared with one that knows which samples are spikes. (The exact likelihood would be a mixture.)
+// Prints a table by share of spikes, with noise stated and not stated.
 //   bench_spikes [--scenes N] [--seed S]
 #include <algorithm>
 #include <array>
@@ -22,14 +22,14 @@ namespace {
 using namespace palpate;
 
 constexpr std::array kShares = {0.0, 0.02, 0.1, 0.3};
-/// A spike's coordinates are off by up to this part of the size, either way.
+/// Maximum displacement of each coordinate of a spike, relative to the size, in either direction.
 constexpr double kReach = 0.1;
-/// Farther off the curve than this many standard deviations nothing is noise.
+/// A sample farther from the curve than this many standard deviations is not noise.
 constexpr double kFarOff = 5.0;
 
 struct Spiked {
   test::Scene scene;
-  test::Scene without;  ///< the good samples alone
+  test::Scene without;  ///< with the good samples only
   std::vector<std::vector<bool>> is_spike;
 };
 
@@ -65,16 +65,16 @@ bool is_right(const Recognition& answer, CurveClass truth) {
 
 struct Counts {
   long far_off = 0;  ///< spikes
-  long left = 0;     ///< of these, after the search that knows no class
-  long lost = 0;     ///< good samples, likewise
+  long left = 0;     ///< of these, spikes remaining after the search without a class
+  long lost = 0;     ///< good samples lost by that search
   long scenes = 0;
   long right_told = 0;
   long right = 0;
   long wrong_told = 0;
   long wrong = 0;
-  double squares = 0.0;  ///< of the estimates' difference in their covariance
+  double squares = 0.0;  ///< of the difference of the estimates, in units of their covariance
   long components = 0;
-  std::vector<double> differences;  ///< of the truth's probability
+  std::vector<double> differences;  ///< of the true class's probability
 
   void count_search(const Spiked& spiked, const Curve& curve, double stated_m) {
     for (std::size_t p = 0; p < spiked.scene.patches.size(); ++p) {

@@ -1,7 +1,7 @@
-// What normals measured along strokes would add to their places: the Kanatani-Cramer-Rao bound of
-// both kinds of residual over that of the places alone, at the true curve, as a geometric mean of
-// the shape parameters' deviations, median of the scenes. Each sample has a normal of its own with
-// an error of its own, so that this is the most that they can add. Prints a table.
+// Bound on the gain from normals measured along strokes: the Kanatani-Cramer-Rao bound of places
+// and normals together over that of the places alone, at the true curve; geometric mean over the
+// deviations of the shape parameters, median over the scenes. Each sample has its own normal with
+// an independent error, so this is the largest possible gain. Prints a table.
 //   bench_stroke_normals [--degrees D] [--scenes N] [--curve NAME] [--seed S]
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ namespace {
 
 using namespace palpate;
 
-/// The places of a scene, noise-free, as data of that noise; with each sample's own true normal.
+/// The noise-free places of a scene, as data with that noise, each with its true normal.
 FitData data_of(const test::Scene& scene, double sigma_m, double normal_sigma_rad,
                 const Curve& curve) {
   SampleMemory memory;
@@ -40,7 +40,7 @@ FitData data_of(const test::Scene& scene, double sigma_m, double normal_sigma_ra
   }
   bool sigma_known = true;
   FitData data = make_fit_data(memory.patches(), 0.0, &sigma_known);
-  // A normal counts in full at a touch alone in its patch: so does each sample here.
+  // A normal is used in full only at a patch of one sample, so each sample becomes a patch.
   data.patches.clear();
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     data.patches.push_back({i, i + 1});
@@ -52,7 +52,8 @@ FitData data_of(const test::Scene& scene, double sigma_m, double normal_sigma_ra
   return data;
 }
 
-/// Sum of the logarithms of the shape parameters' deviations by the bound; nullopt without one.
+/// Sum of the logarithms of the bounds on the shape parameters' deviations; nullopt without a
+/// bound.
 std::optional<double> log_deviations(const test::Scene& scene, double sigma_m,
                                      double normal_sigma_rad) {
   const auto curve = make_curve(scene.curve_class, scene.values);
@@ -79,7 +80,7 @@ std::optional<double> log_deviations(const test::Scene& scene, double sigma_m,
   return std::isfinite(sum) ? std::optional(sum) : std::nullopt;
 }
 
-/// nullopt where too few scenes have a bound.
+/// nullopt if too few scenes have a bound.
 std::optional<double> median_ratio(CurveClass curve_class, const test::SceneOptions& options,
                                    double sigma_over_size, double normal_sigma_rad, int scenes,
                                    std::uint64_t seed) {
@@ -139,7 +140,7 @@ int main(int argc, char** argv) {
           options.points_per_patch = count;
           options.most_fraction = std::min(options.most_fraction, 0.8 / patches);
           options.least_fraction = std::min(options.least_fraction, 0.5 * options.most_fraction);
-          options.sigma_over_size = 0.0;  // places on the true curve
+          options.sigma_over_size = 0.0;  // exact places
           const auto ratio =
               patches * count > degrees_of_freedom(curve_class)
                   ? median_ratio(curve_class, options, noise, degrees * kPi / 180.0, scenes, seed)

@@ -1,6 +1,6 @@
-// Hard cases in numbers: one-parameter sweeps towards each degeneracy. Prints CSV: how often the
-// class is right, recognised and recognised wrongly, errors beside the Kanatani-Cramer-Rao bound,
-// the condition number, the time.
+// One-parameter sweeps towards each degeneracy. Prints CSV: how often the class is right,
+// recognised and recognised wrongly, errors compared with the Kanatani-Cramer-Rao bound, the
+// condition number, and the time.
 //   bench_sweeps [--scenes N]
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kSeed = 2026;
 constexpr double kSize_m = 0.025;  // half extent of the parts below, about
-constexpr double kNoise = 1e-3;    // of it, unless swept
+constexpr double kNoise = 1e-3;    // relative to it, unless swept
 constexpr double kSigma_m = kNoise * kSize_m;
 constexpr double kStroke_m = 0.022;  // the paper's patches: 111 samples 0.2 mm apart
 const Pose2 kPose{0.11, -0.07, 0.6};
@@ -36,7 +36,7 @@ struct Sweep {
   std::string name;
   std::vector<double> values;
   Make make;
-  /// The class at the limit, which is the right answer where the difference drowns in the noise.
+  /// The class at the limit, which is the right answer when the difference is below the noise.
   CurveClass limit = CurveClass::Unclassified;
 };
 
@@ -44,7 +44,7 @@ Curve curve_of(CurveClass curve_class, double a, double b = 0.0, double c = 0.0)
   return make_curve(curve_class, Eigen::Vector3d(a, b, c)).value();
 }
 
-/// Two strokes of the paper's length about these parameters.
+/// Two strokes of the paper's length around these parameters.
 Scene two_strokes(const Curve& curve, double t1, double t2, std::mt19937_64& rng,
                   double length_m = kStroke_m) {
   const Stroke strokes[] = {{t1, length_m, 111, 1}, {t2, length_m, 111, -1}};
@@ -55,7 +55,7 @@ Scene paper_ellipse(std::mt19937_64& rng) {
   return two_strokes(curve_of(CurveClass::Ellipse, 0.025, 0.0175), 0.9, 3.0, rng);
 }
 
-/// The conic of that eccentricity with a focal parameter of 20 mm: a fixed neighbourhood of its
+/// The conic of that eccentricity with a focal parameter of 20 mm, in a fixed neighbourhood of its
 /// vertex.
 Scene conic(double eccentricity, std::mt19937_64& rng) {
   constexpr double kFocalParameter_m = 0.02;
@@ -67,7 +67,7 @@ Scene conic(double eccentricity, std::mt19937_64& rng) {
   }
   const double a = kFocalParameter_m / std::abs(e2);
   const double b = kFocalParameter_m / std::sqrt(std::abs(e2));
-  // The same arc lengths from the vertex as on the parabola.
+  // At the same arc lengths from the vertex as on the parabola.
   const Curve parabola = curve_of(CurveClass::Parabola, 0.5 * kFocalParameter_m);
   const double s1 = arc_length(parabola, 0.0, -1.5);
   const double s2 = arc_length(parabola, 0.0, 1.2);
@@ -118,8 +118,8 @@ Scene strokes_around(int patches, int samples, std::mt19937_64& rng) {
   return test::touched_curve(ellipse, kPose, strokes, kSigma_m, rng);
 }
 
-/// Tangents of the two strokes at right angles but for `off`: their relative slope is infinite at
-/// 0.
+/// Two strokes whose tangents are at right angles plus `off`: at 0 their relative slope is
+/// infinite.
 Scene right_angle(double off, std::mt19937_64& rng) {
   const Curve cubical = curve_of(CurveClass::CubicalParabola, 900.0, -0.5);
   const double t1 = 0.002;
@@ -167,7 +167,7 @@ std::vector<Sweep> sweeps() {
        {0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0002},
        [=](double v, auto& rng) {
          const Curve curve = curve_of(CurveClass::SemiCubicalParabola, 1.2 * scale, 0.4);
-         // From the cusp on, on both arms.
+         // Starting at distance v from the cusp, on both arms.
          const double t1 = parameter_at_arc_length(curve, 0.0, v + 0.5 * kStroke_m);
          const double t2 = parameter_at_arc_length(curve, 0.0, -v - 0.5 * kStroke_m);
          return two_strokes(curve, t1, t2, rng);

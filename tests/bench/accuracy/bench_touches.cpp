@@ -1,14 +1,13 @@
-// Touches one at a time, in no order, as a trigger probe delivers them: how often the class is
-// recognised, how often wrongly, the errors beside the published deviations, and the processor's
-// time. Prints a table.
+// Single touches in no order, as a trigger probe delivers them: how often the class is recognised,
+// how often wrongly, the errors compared with the published deviations, and the processor time.
+// Prints a table.
 //   bench_touches [--scenes N] [--count N] [--noise SIGMA_OVER_SIZE] [--normals DEGREES]
-//   [--unstated]
-//                 [--curve NAME] [--seed S] [--reference]
-// --reference: beside a search that leaves nothing out (tests/support/touch_reference.h), by points
-// of stated noise: where it says that the touches determine the class, whether that is recognised,
-// and how often an optimum was missed. What is sure (P >= 0.95) and not RECOGNIZED, by cause: fewer
-// than two touches left over by the class (few), two shapes of it, the shape not known well enough
-// (both of these by the reference too), other.
+//                 [--unstated] [--curve NAME] [--seed S] [--reference]
+// --reference: compares with an exhaustive search (tests/support/touch_reference.h), on points of
+// stated noise. If the reference says that the touches determine the class: how often it is
+// recognised, and how often an optimum was missed. Answers that are sure (P >= 0.95) but not
+// RECOGNIZED are counted by cause: fewer than two touches more than the class has unknowns (few);
+// two shapes of the class, or a shape not known well enough (both by the reference too); other.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -30,7 +29,7 @@ using test::LoneTouches;
 
 struct Cell {
   int scenes = 0, recognized = 0, wrong = 0, sure = 0;
-  double squares = 0.0;  ///< of shape errors over published deviations
+  double squares = 0.0;  ///< of shape errors divided by published deviations
   int letters = 0;
   std::vector<double> ms;
   std::map<std::string, int> by_wrong;

@@ -1,6 +1,6 @@
-// The recognition tree beside the posterior on scenes drawn from a stated prior
-// (tests/support/scene_prior.h): how often its tests reject the true class, which at their
-// significance they should as often as that says, and where it ends. Prints tables.
+// The recognition tree compared with the posterior on scenes drawn from a stated prior
+// (tests/support/scene_prior.h): how often its tests reject the true class (expected: as often as
+// their significance says), and which class it reaches. Prints tables.
 //   bench_tree [--scenes N] [--seed S]
 #include <algorithm>
 #include <cmath>
@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
     for (Cell* cell :
          {&all, &classes[truth], &noises[decade_of(scene.scene.sigma_m / scene.size_m)]}) {
       ++cell->scenes;
-      // What would be RECOGNIZED if the tree were not asked.
+      // RECOGNIZED, or it would be without the tree.
       const bool right =
           answer.shape.curve_class == truth &&
           (answer.status == RecognitionStatus::Recognized || answer.doubt == Doubt::TreeRejects);

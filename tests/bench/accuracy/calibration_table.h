@@ -1,4 +1,4 @@
-// Stated probabilities beside how often they are the truth, a row a bin.
+// A table of stated probabilities and how often they are true, one row per bin.
 #pragma once
 
 #include <cstdio>
@@ -8,7 +8,8 @@
 
 namespace palpate::bench {
 
-/// How many bins lie beside the binomial band that holds them in 99.9 % of runs.
+/// Prints the table. Returns how many bins are outside the binomial band that contains them in 99.9
+/// % of runs.
 inline int print_calibration(const std::string& title, const test::Calibration& calibration) {
   constexpr double kCoverage = 0.999;
   int beside = 0;

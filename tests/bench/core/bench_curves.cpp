@@ -1,4 +1,4 @@
-// Cost of each question to a curve, by class: bench_curves
+// Time of each function of a curve, by class: bench_curves
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -10,7 +10,7 @@
 namespace palpate {
 namespace {
 
-/// The class of the benchmark's argument with points all around it, cycled through.
+/// A curve of the class given by the benchmark's argument, and points all around it, used in turn.
 struct Case {
   explicit Case(benchmark::State& state)
       : curve(*make_curve(static_cast<CurveClass>(state.range(0)), {1.3, 0.7, 0.4})) {
@@ -52,7 +52,7 @@ void curve_foot_point(benchmark::State& state) {
 }
 BENCHMARK(curve_foot_point)->Apply(all_classes);
 
-/// A path 1 mm beside the curve: each search starts 0.01 from its foot.
+/// A path 1 mm from the curve; each search starts 0.01 from the foot point.
 void curve_foot_point_near(benchmark::State& state) {
   Case c(state);
   for (std::size_t i = 0; i < c.points.size(); ++i) {

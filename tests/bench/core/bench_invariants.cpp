@@ -1,4 +1,4 @@
-// Cost of each invariant and fit: bench_invariants
+// Time of each invariant and fit: bench_invariants
 #include <benchmark/benchmark.h>
 
 #include <random>
@@ -17,7 +17,7 @@
 namespace palpate {
 namespace {
 
-/// Points of a random curve of the class with one per cent of noise known to the covariance.
+/// Points of a random curve of the class, with 1 % of noise stated by the covariance.
 std::vector<TreePoint> tree_points(CurveClass curve_class, int count) {
   std::mt19937_64 rng(7);
   const test::PlacedCurve curve = test::random_curve(curve_class, rng);

@@ -1,4 +1,4 @@
-// Cost of the local estimators: per estimate over 111 samples, and per sample along a stroke.
+// Time of the local estimators: per estimate over 111 samples, and per sample along a stroke.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ void per_estimate(benchmark::State& state) {
 }
 BENCHMARK(per_estimate)->DenseRange(0, 3)->Unit(benchmark::kMicrosecond);
 
-/// Over the window. Shift 4, as in the paper: a quarter of the samples brings an estimate.
+/// By window. The shift is 4 as in the paper, so every fourth sample gives an estimate.
 void fixed_window_per_sample(benchmark::State& state) {
   const std::vector<Vec2> samples = arc(4000);
   EstimatorOptions options = options_for(state);
@@ -68,8 +68,8 @@ void fixed_window_per_sample(benchmark::State& state) {
 }
 BENCHMARK(fixed_window_per_sample)->ArgsProduct({{0, 1, 2, 3}, {15, 31, 51, 75, 111, 151}});
 
-/// The window that the data choose, along circles on which it holds more and more samples: the
-/// label is their mean number. Shift 4: a quarter of the samples brings an estimate.
+/// The window chosen from the data, along circles on which it contains more and more samples; the
+/// label is their mean number. The shift is 4, so every fourth sample gives an estimate.
 void sliding_window_per_sample(benchmark::State& state) {
   const auto per_radian = static_cast<double>(state.range(0));
   std::mt19937_64 rng(1);
@@ -109,7 +109,7 @@ void jet_degree(benchmark::State& state) {
 }
 BENCHMARK(jet_degree)->DenseRange(3, 5)->Unit(benchmark::kMicrosecond);
 
-/// One window of the sliding window, of as many nodes as its pyramid makes of 111 samples.
+/// One window of the sliding window, with as many nodes as its pyramid makes of 111 samples.
 void window_fit(benchmark::State& state) {
   NodePyramid pyramid;
   for (const Vec2& p : arc(111)) {

@@ -1,8 +1,8 @@
-// Cost of a full recognition, all classes considered: bench_recognition
+// Time of a full recognition, with all classes considered: bench_recognition
 //   cold: a new recognizer for every scene. Over 64 random scenes of each class, two patches.
-//   warm: ten samples more for a recognizer that has answered before them.
+//   warm: ten more samples for a recognizer that has answered before.
 //   stream: whole scenes, ten samples at a time.
-//   live_tree: of an answer, the invariants and the tree. The label is the contacts' mean number.
+//   live_tree: invariants and tree of an answer. The label is the mean number of contacts.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ std::vector<test::Scene> scenes_of(CurveClass curve_class, int points_per_patch,
   test::SceneOptions options;
   options.points_per_patch = points_per_patch;
   options.patches = patches;
-  // Many patches share the curve piece between them.
+  // Many patches share the curve piece among them.
   options.least_fraction = std::min(options.least_fraction, 0.5 / patches);
   options.most_fraction = std::min(options.most_fraction, 0.9 / patches);
   std::vector<test::Scene> scenes;
@@ -48,7 +48,7 @@ void cold(benchmark::State& state) {
 }
 BENCHMARK(cold)->DenseRange(1, 8)->Unit(benchmark::kMicrosecond);
 
-/// Samples of two patches of an ellipse in all.
+/// By the total number of samples, in two patches of an ellipse.
 void cold_by_samples(benchmark::State& state) {
   const auto scenes = scenes_of(CurveClass::Ellipse, static_cast<int>(state.range(0)) / 2, 2);
   std::size_t i = 0;
@@ -100,7 +100,7 @@ void warm(benchmark::State& state) {
 }
 BENCHMARK(warm)->DenseRange(1, 8)->UseManualTime()->Unit(benchmark::kMicrosecond);
 
-/// A whole scene as it comes, ten samples at a time; time per answer, searches included.
+/// A whole scene as it arrives, ten samples at a time; time per answer, including searches.
 void stream(benchmark::State& state) {
   const auto curve_class = static_cast<CurveClass>(state.range(0));
   state.SetLabel(std::string(name_of(curve_class)));
@@ -126,7 +126,7 @@ void stream(benchmark::State& state) {
 }
 BENCHMARK(stream)->DenseRange(1, 8)->Unit(benchmark::kMicrosecond);
 
-/// What the tree adds to an answer for so many patches of 111 samples.
+/// The time of the tree in addition to an answer, for so many patches of 111 samples.
 void live_tree(benchmark::State& state) {
   const auto curve_class = static_cast<CurveClass>(state.range(0));
   std::vector<test::AnsweredScene> scenes;

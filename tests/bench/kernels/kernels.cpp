@@ -1,7 +1,8 @@
-// Each piece of the library on fixed, seeded data, by name, for compare.sh to count instructions:
-//   kernels --list    one "NAME CALLS" a line: CALLS goes through all of the kernel's data once
+// Runs each piece of the library on fixed, seeded data, by name, so that compare.sh can count its
+// instructions:
+//   kernels --list    prints "NAME CALLS" per line; CALLS goes once through all of its data
 //   kernels NAME N    runs the kernel N times; without N: CALLS times
-// What belongs to a call passes through `palpate_kernel_call`; what only prepares it does not.
+// Only what runs inside `palpate_kernel_call` is counted; preparation is outside of it.
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -38,7 +39,7 @@
 #include "tests/support/scene_data.h"
 
 /// The function whose instructions are counted (compare.sh names it): call number i of a kernel.
-/// The barrier keeps the call from becoming a jump, after which this function would never return.
+/// The barrier prevents a tail call, after which this function would never return.
 extern "C" [[gnu::noinline]] void palpate_kernel_call(const std::function<void(std::size_t)>& call,
                                                       std::size_t i) {
   call(i);
@@ -50,19 +51,19 @@ namespace {
 
 using Call = std::function<void(std::size_t)>;
 
-/// A kernel with its data made.
+/// A kernel with its data.
 struct Prepared {
   Call call;
-  Call before;  ///< what call i needs and is not counted, if anything
+  Call before;  ///< not counted: what call i needs, if anything
 };
 
 struct Kernel {
   std::string name;
-  int calls = 1;  ///< after which the data repeat
+  int calls = 1;  ///< number of calls after which the data repeat
   std::function<Prepared()> prepare;
 };
 
-/// Makes the compiler form the value.
+/// Forces the compiler to compute the value.
 template <typename T>
 void keep(const T& value) {
   asm volatile("" : : "r"(&value) : "memory");
@@ -84,7 +85,7 @@ constexpr double kSigma = 5e-5;  // [m]
 constexpr int kWindows = 16;
 constexpr std::size_t kWindowSamples = 111;
 
-/// Windows of an ellipse of 25 and 17.5 mm, 0.2 mm between samples, all around it.
+/// Windows all around an ellipse of 25 and 17.5 mm, 0.2 mm between samples.
 std::vector<std::vector<Vec2>> windows() {
   const Ellipse ellipse{0.025, 0.0175};
   std::mt19937_64 rng(1);
@@ -177,7 +178,7 @@ constexpr int kPoints = 5;
 
 using Points = std::vector<MeasuredGeometry>;
 
-/// Exact points of random curves of the class, with the covariance of one per cent of noise or so.
+/// Exact points of random curves of the class, with the covariance of about 1 % of noise.
 std::vector<Points> points(CurveClass curve_class, int count) {
   std::mt19937_64 rng(7);
   std::vector<Points> all;
@@ -256,7 +257,7 @@ constexpr int kPlaces = 256;
 struct Place {
   double t = 0.0;
   Vec2 anywhere = Vec2::Zero();
-  Vec2 beside = Vec2::Zero();  ///< 1 mm from the curve's point at t, the curve being of size 1 m
+  Vec2 beside = Vec2::Zero();  ///< 1 mm from the curve's point at t; the curve's size is 1 m
   LocalGeometry local;
 };
 
@@ -284,13 +285,13 @@ void add_curves(std::vector<Kernel>* kernels) {
     };
     add("position", [=](const Place& p) { return position(curve, p.t); });
     add("geometry", [=](const Place& p) { return geometry(curve, p.t); });
-    // Both give the signed distance too.
+    // Both also return the signed distance.
     add("foot-point", [=](const Place& p) { return foot_point(curve, p.anywhere); });
     add("foot-point-near",
         [=](const Place& p) { return foot_point_near(curve, p.beside, p.t + 0.01); });
     add("localise", [=](const Place& p) { return localise(curve, p.local); });
   }
-  // The distance that refinement asks of a conic: of an ellipse, from points 1 mm beside it.
+  // The distance that refinement needs for a conic, here for points 1 mm from an ellipse.
   const auto beside = [] {
     std::vector<Vec2> all;
     for (int i = 0; i < kPlaces; ++i) {
@@ -363,7 +364,7 @@ void add_recognition(std::vector<Kernel>* kernels) {
   }
 }
 
-/// The tree beside an answer for 222 samples.
+/// The tree in addition to an answer for 222 samples.
 void add_tree(std::vector<Kernel>* kernels) {
   for (const CurveClass curve_class : kCurveClasses) {
     const auto answered = [=] {
@@ -380,7 +381,7 @@ void add_tree(std::vector<Kernel>* kernels) {
 }
 
 std::vector<Kernel> all_kernels() {
-  // First the cost of calling a kernel at all, which compare.sh takes off the others.
+  // First the cost of calling a kernel, which compare.sh subtracts from the others.
   std::vector<Kernel> kernels = {over(
       "empty", 1, [] { return std::vector<int>(1); }, [](int value) { return value; })};
   add_local(&kernels);
@@ -399,7 +400,7 @@ void run(const Kernel& kernel, int calls) {
     }
   };
   before(0);
-  prepared.call(0);  // what happens once only is not counted
+  prepared.call(0);  // what happens only once is not counted
   for (int i = 0; i < calls; ++i) {
     const auto number = static_cast<std::size_t>(i);
     before(number);

@@ -1,5 +1,5 @@
-// The command line of a benchmark: CLI11 behind a few calls, since whoever includes CLI11 compiles
-// it.
+// The command line of a benchmark: a small interface to CLI11, because every file that includes
+// CLI11 compiles it.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ class App;
 
 namespace palpate::bench {
 
-/// Values keep what they hold where the command line does not name them; --help prints it.
+/// A value keeps its content, which --help prints, unless the command line sets it.
 class BenchOptions {
  public:
   explicit BenchOptions(const std::string& about);
@@ -26,14 +26,14 @@ class BenchOptions {
   BenchOptions& number(const std::string& name, double& value, const std::string& help);
   BenchOptions& seed(std::uint64_t& value);
   BenchOptions& text(const std::string& name, std::string& value, const std::string& help);
-  /// As text, but one of `members`.
+  /// A text that must be one of `members`.
   BenchOptions& one_of(std::initializer_list<const char*> members, const std::string& name,
                        std::string& value, const std::string& help);
   BenchOptions& flag(const std::string& name, bool& value, const std::string& help);
   /// Arguments without a name.
   BenchOptions& files(std::vector<std::string>& value, const std::string& help);
 
-  /// The exit code where the program shall end: after --help, or with what is wrong printed.
+  /// The exit code if the program should end: after --help, or after printing an error.
   std::optional<int> parse(int argc, char** argv);
 
  private:

@@ -1,4 +1,4 @@
-// Processor time of the calling thread, which a busy machine changes far less than the time of day.
+// Processor time of the calling thread. A busy machine changes it far less than elapsed time.
 #pragma once
 
 #include <ctime>

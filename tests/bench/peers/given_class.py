@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""A class that is given: `palpate fit --class` beside geometric fits of scipy and OpenCV, same points.
+"""Fits of a given class: `palpate fit --class` compared with geometric fits of scipy and OpenCV on the same points.
 
     tests/bench/peers/given_class.py build/strict/node/tool/palpate
 
-Prints a table in markdown: time of one fit, root mean square orthogonal distance, and how far the shape
-lies from palpate's. scipy.optimize.least_squares runs on the same distances from a start a few percent off
-(it is told what palpate has to find); OpenCV's fitEllipse is algebraic and takes float32. Debian's
-packages: python3-numpy, python3-scipy, and python3-opencv, which may be absent.
+Prints a table in markdown: time of one fit, root mean square orthogonal distance, and difference of the shape from
+palpate's. scipy.optimize.least_squares minimises the same distances, from a start a few percent off the solution that
+palpate has to find. OpenCV's fitEllipse is algebraic and takes float32. Needs the Debian packages python3-numpy and
+python3-scipy; python3-opencv is optional.
 """
 import json
 import math
@@ -55,7 +55,7 @@ def circle_residuals(q, p):
 
 
 def ellipse_residuals(q, p):
-    """Orthogonal: one parameter a point beside the five of the ellipse."""
+    """Orthogonal distances: one parameter per point in addition to the five of the ellipse."""
     c, s = math.cos(q[4]), math.sin(q[4])
     t = q[5:]
     x, y = q[2] * np.cos(t), q[3] * np.sin(t)

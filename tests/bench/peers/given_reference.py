@@ -1,17 +1,16 @@
 #!/usr/bin/python3
-"""A class that is given: `palpate fit --class`, scipy and OpenCV beside least squares in 50 digits.
+"""Fits of a given class: `palpate fit --class`, scipy and OpenCV compared with least squares in 50 digits.
 
     tests/bench/peers/given_reference.py build/strict/node/tool/palpate [tests/data/reference/given.txt]
 
-Prints a table in markdown, a row a class and program: time of one fit, and how far the shape (of a line: its
-direction) lies from the 50-digit one over its largest parameter, by the median and the worst of the file's cases.
-Cases that the points leave open are not asked about (fewer points than one more than there are unknowns), nor
-those where a lower sum of squares than the reference's is found.
+Prints a table in markdown, one row per class and program: time of one fit, and difference of the shape (for a line: its
+direction) from the 50-digit one relative to its largest parameter, median and worst over the file's cases. Leaves out
+cases with fewer points than the unknowns plus one, and those where a lower sum of squares than the reference's is found.
 
-scipy.optimize.least_squares (orthogonal distances: a parameter a point beside those of the class) and scipy.odr
-(the implicit equation) start from the truth, one percent off, with the points' mean taken off: they are told what
-palpate has to find. OpenCV's fitEllipse, fitEllipseAMS and fitEllipseDirect are algebraic, its fitLine and they
-take float32. Debian's packages: python3-numpy, python3-scipy, and python3-opencv; what is absent is said.
+scipy.optimize.least_squares (orthogonal distances: one parameter per point in addition to those of the class) and
+scipy.odr (the implicit equation) start one percent off the truth, with the points' mean subtracted; palpate has to find
+it by itself. OpenCV's fitEllipse, fitEllipseAMS and fitEllipseDirect are algebraic; these and fitLine take float32.
+Uses the Debian packages python3-numpy, python3-scipy and python3-opencv, and says which is absent.
 """
 import json
 import math
@@ -77,7 +76,7 @@ def curve(name, s, t):
 
 
 def implicit(name, s, x, y):
-    """Zero on the canonical curve, about a distance beside it where that is simple."""
+    """An implicit function: zero on the canonical curve, near it about the distance where that is simple."""
     if name == "line":
         return y
     if name in ("circle", "ellipse"):
@@ -104,7 +103,7 @@ def local(pose, p):
 
 
 def feet(name, s, pose, p):
-    """Parameters of the nearest points, by a dense walk."""
+    """Parameters of the nearest points, by dense sampling."""
     x, y = local(pose, p)
     reach = np.max(np.hypot(x, y))
     if name in ("circle", "ellipse"):
@@ -122,7 +121,8 @@ def feet(name, s, pose, p):
 
 
 def start_of(case):
-    """The truth one percent off, about the points' mean; the points about it; shape's letters."""
+    """Returns (shape, pose, points): a start one percent off the truth, and the points. Pose and points are relative to
+    the points' mean."""
     n = len(LETTERS[case["class"]])
     middle = case["points"].mean(axis=0)
     p = case["points"] - middle
@@ -213,8 +213,8 @@ def error_of(case, shape, theta):
 
 
 def is_least(tool, case):
-    """Whether the 50 digits are the least squares: the reference follows each foot along its arm, and beside a
-    cusp a nearer one may be on the other arm."""
+    """True if the 50-digit reference is the least squares solution. The reference follows each foot point along its arm;
+    next to a cusp a nearer one may be on the other arm."""
     by_palpate(tool, case)
     if case["rms"] < math.sqrt(case["squares"] / len(case["points"])) * (1.0 - 1e-9):
         print(f"{case['name']}: palpate leaves less than the reference; not asked about", file=sys.stderr)

@@ -1,11 +1,11 @@
-// Scenes for palpate and its peers, and what palpate says to them: peer_scenes FOLDER
-//   points.csv   the samples, every scene
-//   truth.csv    what was touched
+// Writes scenes for palpate and its peers, and palpate's answers to them: peer_scenes FOLDER
+//   points.csv   the samples of all scenes
+//   truth.csv    the true curves
 //   palpate.csv  the answer to each scene, all classes considered (cold), and with the class given
-// Letters of the shape: parameter_letters(class). Ellipse arcs are one stretch of that many degrees
-// of the eccentric angle; the other scenes are two patches that lie anywhere, as a probe touches a
-// part. With the class given (RecognizerOptions::classes) the other classes are still fitted to the
-// reduced points, and left out of the rest.
+// Letters of the shape: parameter_letters(class). A scene of an ellipse arc is one stretch of that
+// many degrees of the eccentric angle; the other scenes are two patches anywhere on the part.
+// "Class given" means RecognizerOptions::classes: the other classes are still fitted to the reduced
+// points, but take no further part.
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -27,7 +27,7 @@ struct Options {
   std::filesystem::path folder;
   std::uint64_t seed = 20240607;
   int scenes = 40;      ///< of each kind and noise
-  int repetitions = 5;  ///< of each recognition that is timed
+  int repetitions = 5;  ///< of each timed recognition
 };
 
 /// What is touched and how.
@@ -48,7 +48,7 @@ struct Timed {
   double seconds = 0.0;
 };
 
-/// The answer of a new recognizer and the median of its times, samples handed over included.
+/// The answer of a new recognizer and the median of its times, including passing the samples.
 Timed recognise(const test::Scene& scene, const RecognizerOptions& options, int repetitions) {
   Timed timed;
   std::vector<double> seconds;
@@ -64,13 +64,13 @@ Timed recognise(const test::Scene& scene, const RecognizerOptions& options, int 
   return timed;
 }
 
-/// In the fewest digits that read back as the same number.
+/// With the fewest digits that give the same number when read back.
 std::string number(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-/// The shape under the letters a, b, c and the pose; empty fields where there is none.
+/// The shape in columns a, b, c, and the pose; empty fields if there is none.
 void write_shape(std::ostream& out, const ShapeParameters& shape, const Pose2& pose) {
   const std::string_view letters = parameter_letters(shape.curve_class);
   for (const char letter : std::string_view("abc")) {
@@ -173,7 +173,8 @@ void write_answers(const std::vector<PeerScene>& scenes, int repetitions, std::o
     RecognizerOptions options;
     options.classes = 1U << static_cast<unsigned>(scene.curve_class);
     const Timed given = recognise(scene, options, repetitions);
-    // "Unclassified" stays a rival when one class is wanted; what that class would be counts here.
+    // "Unclassified" remains a rival when one class is given; here the hypothesis of that class
+    // counts.
     const Hypothesis* hypothesis = test::hypothesis_of(given.answer, scene.curve_class);
     out << i << ',' << name_of(all.answer.shape.curve_class) << ','
         << name_of_status(all.answer.status) << ',' << name_of(all.answer.doubt);

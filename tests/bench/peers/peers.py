@@ -1,17 +1,17 @@
 #!/usr/bin/python3
-"""palpate beside what else fits these curves, on the same points.
+"""palpate compared with other programs that fit these curves, on the same points.
 
     build/strict/tests/bench/peers/peer_scenes FOLDER
     tests/bench/peers/peers.py FOLDER
 
-Reads points.csv, truth.csv and palpate.csv of FOLDER, writes peers.csv (every figure) there and prints
-tables in markdown. Times are of one machine: run both on it, one after the other, with nothing else.
-Debian's packages: python3-numpy, and python3-opencv and python3-scipy, which may be absent.
+Reads points.csv, truth.csv and palpate.csv of FOLDER, writes peers.csv (all results) there and prints tables in
+markdown. To compare times, run both programs on the same machine, one after the other, with nothing else running. Needs
+the Debian package python3-numpy; python3-opencv and python3-scipy are optional.
 
-Each peer gets the points about their mean in units of their spread, which float32 needs: OpenCV takes
-float32 only, 6e-8 of the value; the coordinates are up to ten sizes from the origin, and unshifted
-that would be 6e-7 of the size, more than half of the least noise here. No peer is told more than
-palpate is; scipy.odr and palpate "class given" are told the class.
+Each peer gets the points relative to their mean, in units of their spread. OpenCV needs that because it takes float32
+only (rounding 6e-8 of the value): coordinates are up to ten sizes from the origin, so unshifted points would be rounded
+by 6e-7 of the size, more than half of the smallest noise here. No peer gets more information than palpate; scipy.odr and
+palpate "class given" know the class.
 """
 import argparse
 import collections
@@ -49,14 +49,14 @@ def algebraic_conic(x, y):
 
 
 def discriminant_class(conic, tolerance):
-    """The class by B^2 - 4 A C over its natural size; a parabola is never hit exactly."""
+    """The class by B^2 - 4 A C relative to its natural size; a fit is never exactly a parabola."""
     a, b, c = conic[:3]
     d = (b * b - 4 * a * c) / (a * a + b * b + c * c)
     return "parabola" if abs(d) <= tolerance else "ellipse" if d < 0 else "hyperbola"
 
 
 def specific_conic(x, y, wanted):
-    """The algebraic fit under 4 A C - B^2 = 1 (Fitzgibbon) or -1: always of the wanted class."""
+    """The algebraic fit with the constraint 4 A C - B^2 = 1 (Fitzgibbon) or -1: always of the given class."""
     d = design(x, y)
     d1, d2 = d[:, :3], d[:, 3:]
     t = -np.linalg.solve(d2.T @ d2, d2.T @ d1)
@@ -75,8 +75,8 @@ def specific_conic(x, y, wanted):
 
 
 def central_parameters(conic, wanted):
-    """(a, b, x, y, theta) of an ellipse (a >= b) or hyperbola (a on the axis it meets); None if the
-    conic is not of that class."""
+    """(a, b, x, y, theta) of an ellipse (a >= b) or hyperbola (a along the transverse axis); None if the conic is not of
+    that class."""
     a, b, c, d, e, f = conic
     quadratic = np.array([[a, b / 2], [b / 2, c]])
     if (np.linalg.det(quadratic) > 0) != (wanted == "ellipse"):
@@ -119,7 +119,7 @@ def turned_back(x, y, theta):
 
 
 def algebraic(x, y, _, options):
-    """What one would write in an afternoon."""
+    """A simple implementation, as one might write in an afternoon."""
     conic = algebraic_conic(x, y)
     found = discriminant_class(conic, options.parabola_tolerance)
     if found == "parabola":
@@ -242,7 +242,7 @@ def odr(x, y, curve_class, options):
 # --- Running and judging
 
 def peers_present():
-    """name -> (function, classes it is asked about)"""
+    """{name: (function, classes that it can fit)}"""
     peers = {"algebraic conic": (algebraic, CONICS)}
     if cv2 is None:
         print("skipped: OpenCV (python3-opencv is not installed)", file=sys.stderr)
@@ -257,7 +257,7 @@ def peers_present():
 
 
 def timed(fit, points, curve_class, options):
-    """The answer and the median time, of the points as the user has them to the shape in metres."""
+    """Returns the answer and the median time from the user's points to the shape in metres."""
     seconds = []
     for _ in range(options.repetitions):
         start = time.perf_counter()
@@ -283,8 +283,8 @@ def scaled(answer, unit):
 
 
 def relative_error(answer, truth):
-    """The largest over the parameters; infinite for another class or no shape. A cubical parabola's c
-    is a slope: relative to 1 at least; its sign and a's do not turn with the frame."""
+    """The largest relative error of the parameters; infinite for another class or no shape. The error of a cubical
+    parabola's c, a slope, is relative to at least 1. The signs of a and c do not depend on the frame."""
     if answer.curve_class != truth.curve_class or not answer.shape or answer.shape["a"] == 0:
         return math.inf
     worst = 0.0
@@ -318,7 +318,7 @@ PALPATE_GIVEN = "palpate, class given"
 
 
 def measure(options):
-    """One row for every scene and peer."""
+    """Returns one row per scene and peer."""
     truth, points, palpate = read(options.folder)
     peers = peers_present()
     rows = []

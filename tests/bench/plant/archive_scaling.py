@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""node/examples/archive.py on one local process and on two, and on two of which one is killed: rows, seconds, scaling.
+"""Scaling of node/examples/archive.py: with one local process, with two, and with two of which one is killed.
 
     PALPATE_SOURCE=$PWD PALPATE_BUILD=$PWD/build/strict \\
       PYTHONPATH=$PWD/tests/support:$PWD/build/strict/node/python:$PWD/build/strict/proto/python \\
       /usr/bin/python3 tests/bench/plant/archive_scaling.py [--strokes N]
 
-Each stroke is 30 samples of a circle's arc with noise, an object of its own, a thousand in a CSV file. Scaling is of the time between
-the first and the last task: processes start before it. Beside it: what the machine gives to two processes of the same work that share
-nothing.
+Each object is one stroke of 30 noisy samples of a circle's arc; a CSV file has a thousand of them. The scaling is that of
+the time between the first and the last task, without the start of the processes. For comparison it prints the scaling of
+two independent processes that do the same work on this machine.
 """
 import argparse
 import pathlib
@@ -40,7 +40,7 @@ def run(folder, files, workers, kill=False):
 
 
 def plain_scaling(file, rounds=5):
-    """What this machine gives to two processes that know nothing of each other, over one: the same work without Dask."""
+    """Scaling from one process to two independent ones that do the same work without Dask."""
     code = (f"import sys; sys.path.insert(0, {str(ARCHIVE.parent)!r}); import archive, time; path = sys.argv[1];"
             "work = lambda: archive.rows_of(path, archive.deal(path, 1)[0], 0.0);"
             "work(); print(flush=True); input(); begin = time.monotonic(); [work() for _ in range(3)];"

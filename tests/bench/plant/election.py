@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How long a stream of three servers takes nothing after the one that leads it is killed: the engine alone, none of our programs.
+"""How long a stream of three servers accepts no messages after its leader is killed. NATS alone, without our programs.
 
     PALPATE_SOURCE=$PWD PALPATE_BUILD=$PWD/build/strict \\
       PYTHONPATH=$PWD/tests/support:$PWD/build/strict/proto/python \\
@@ -23,7 +23,7 @@ def leader(url):
 
 
 def silence_s(servers):
-    """From the kill to the next message that is stored."""
+    """Time from the kill to the next message stored."""
     dead = leader(servers.url)
     servers.kill(dead)
     killed = time.monotonic()

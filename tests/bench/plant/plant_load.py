@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""A simulated plant on this machine: what it bears, what it costs beside the bare node, and what latency it adds.
+"""A simulated plant on this machine: its capacity, and its cost and latency compared with a bare node.
 
     PALPATE_SOURCE=$PWD PALPATE_BUILD=$PWD/build/strict PYTHONPATH=$PWD/tests/support:$PWD/build/strict/proto/python \\
       /usr/bin/python3 tests/bench/plant/plant_load.py [--probes N] [--seconds S] [--replicas 1|3]
 
-Each probe sends 100 samples a second, ten batches of ten, circle after circle of twelve batches, each its own group. Once to a bare
-palpate-node, and once by a gateway up to the servers, a gateway down with a node of its own, and answers back to the servers. Printed:
-whether every contact was stored and answered, processor time of each process a thousand samples, and the time from sending a
-contact to hearing the first answer that holds it, of all contacts.
+Each probe is a group of its own and sends 100 samples a second in batches of ten: circle after circle, of twelve batches
+each. The run is done once with a bare palpate-node, and once through the plant: a gateway to the servers, a second gateway
+with a node of its own, and the answers back to the servers. Prints whether every contact was stored and answered, the
+processor time of each process per thousand samples, and for all contacts the time from sending it to receiving the first
+answer that covers it.
 """
 import argparse
 import os
@@ -26,7 +27,7 @@ BATCHES_PER_S = 10
 
 
 def processor_s(*processes):
-    """Of them and their children."""
+    """Processor time of these processes and their children."""
     total = 0.0
     for process in processes:
         pids = [process if isinstance(process, int) else process.pid]
@@ -73,7 +74,7 @@ class Feed(threading.Thread):
 
 
 class Ear(threading.Thread):
-    """The first answer that holds each contact."""
+    """The first answer that covers each contact."""
 
     def __init__(self, read, feed, contacts):
         super().__init__()

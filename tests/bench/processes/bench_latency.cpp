@@ -1,8 +1,8 @@
-// Latency from publishing a batch to receiving the recognition that contains it, less the
-// computation, beside a bare two-hop ZeroMQ relay of equal message sizes in the same run, and
-// beside one that keeps its core and its cache busy for as long as the node computed. Turns are
-// taken message by message, so that all see the same machine. Prints CSV: transport, what,
-// quantiles in microseconds.
+// Latency from publishing a batch to receiving the recognition that contains it, without the
+// computing time. For comparison, in the same run: a bare two-hop ZeroMQ relay with equal message
+// sizes, and a relay that keeps its core and cache busy for as long as the node computed. They take
+// turns message by message, so that all see the same state of the machine. Prints CSV: transport,
+// what, quantiles in microseconds.
 #include <benchmark/benchmark.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -33,14 +33,14 @@ struct Endpoints {
   std::string out;
 };
 
-/// What a message tells the relay to do, in its first bytes.
+/// What the relay should do with a message; stored in the first bytes of the message.
 struct RelayOrder {
   std::uint64_t answer_bytes;
   std::int64_t busy_ns;
 };
 
-/// What the busy relay walks through, so that what it sends with is as cold as after a recognition:
-/// a core's second-level cache.
+/// Memory that the busy relay walks through, so that its caches are as cold as after a recognition:
+/// the size of a core's second-level cache.
 constexpr std::size_t kWorkingSetBytes = std::size_t{1} << 20;
 
 /// Forwards each message as one of the ordered size, after as much work as ordered.
@@ -71,7 +71,7 @@ constexpr std::size_t kWorkingSetBytes = std::size_t{1} << 20;
   }
 }
 
-/// The same way through the relay: as many bytes in, as many out.
+/// The same path through the relay: as many bytes in, as many out.
 double through_relay(zmq::socket_t& to, zmq::socket_t& from, std::string payload,
                      const RelayOrder& order) {
   std::memcpy(payload.data(), &order, sizeof order);
@@ -108,10 +108,10 @@ bool measure(const std::string& transport, const Endpoints& node, const Endpoint
   std::vector<double> less_compute;
   std::vector<double> relayed;
   std::vector<double> busy_relayed;
-  constexpr int kBatches = 20;  // of an object
-  constexpr int kSamples = 10;  // of a batch
+  constexpr int kBatches = 20;  // per object
+  constexpr int kSamples = 10;  // per batch
   constexpr int kWarmUp = 100;
-  // The same pause before each of the three: a core that has slept wakes up later.
+  // The same pause before each of the three, because a core that has slept takes time to wake up.
   const auto pause = [] { std::this_thread::sleep_for(std::chrono::microseconds(500)); };
   for (int round = 0; round < rounds + kWarmUp; ++round) {
     const auto object = static_cast<std::uint64_t>(1 + round / kBatches);
@@ -149,7 +149,7 @@ bool measure(const std::string& transport, const Endpoints& node, const Endpoint
   return true;
 }
 
-/// Measures one transport beside a relay of its own.
+/// Measures one transport, with a relay of its own.
 bool measure_transport(const std::string& transport, const Endpoints& node, const Endpoints& bare,
                        int rounds) {
   const pid_t relay_pid = fork();

@@ -1,7 +1,7 @@
-// What the node does under load: batches of 50 samples from 1 to 64 probes, at rates up to and
-// beyond what it takes; by one node, or two that share the probes by the beginning of their names.
-// Prints CSV: what was offered, taken and missing, how many recognitions, and the nodes' CPU time
-// and memory.
+// The node under load: batches of 50 samples from 1 to 64 probes, at rates up to and beyond what it
+// can process; with one node, or with two that share the probes by name prefix. Prints CSV:
+// messages offered, accepted and missing, number of recognitions, and CPU time and memory of the
+// nodes.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -27,7 +27,7 @@ struct Load {
   int nodes;
 };
 
-/// "east" and "west" in turn, so that two nodes have half of the probes each.
+/// Alternately "east" and "west", so that two nodes have half of the probes each.
 std::string name_of(int probe) {
   return (probe % 2 == 0 ? "east" : "west") + std::to_string(probe);
 }
@@ -56,7 +56,7 @@ bool run(const Load& load, double seconds, const std::string& folder) {
     subscription.endpoint = results;
     subscription.status = true;
     sides[i].results = std::make_unique<client::ResultSubscriber>(subscription);
-    // A node's first status says that it is up; its subscription came before.
+    // A node's first status shows that it runs and has subscribed.
     const auto deadline = Clock::now() + std::chrono::seconds(10);
     while (sides[i].results->receive(std::chrono::milliseconds(100)).status == nullptr) {
       if (Clock::now() > deadline) return false;

@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""A good probe beside groups whose recognition takes long: does it wait for them?
+"""Latency of a normal probe while other groups are slow to recognise.
 
     PALPATE_SOURCE=$PWD PALPATE_BUILD=$PWD/build/strict PYTHONPATH=$PWD/tests/support:$PWD/build/strict/proto/python \\
       /usr/bin/python3 tests/bench/processes/beside_slow.py [--rounds N] [--answers N] [FILE.csv[.gz] ...]
 
-Each file (those of tests/data/hostile unless others are named) is played as a group of its own; when it has been answered, it is
-played again as the next object. A round is a new node: the good probe alone, then beside processes that do nothing but keep all
-cores busy, at the lowest priority there is, then beside the slow groups, then SIGTERM. Latency is from publishing a batch to
-receiving the answer that contains it. A machine that lends its cores to others too, as a virtual one may, takes them away where
-all are busy: what that costs, the busy cores tell, and it is no doing of the node's. What else runs here can spoil a round
-(others_cores: what it took while the good probe was alone): the medians over the rounds count. Prints a line a round, the medians,
-and how they stand to what is asked.
+Each file (by default those of tests/data/hostile) is played as a group; when it has been answered, it is played again as
+the next object. Each round uses a new node and measures the normal probe three times: alone, next to processes of lowest
+priority that only keep all cores busy, and next to the slow groups; then it sends SIGTERM. Latency is the time from
+publishing a batch to receiving the answer that contains it. The busy processes show what a machine that shares its cores
+(such as a virtual one) takes away when all cores are busy; that part is not the node's. Other programs can spoil a round
+(others_cores: what they used while the normal probe was alone), so the medians over the rounds count. Prints one line per
+round, the medians, and a comparison with the requirements.
 """
 import argparse
 import contextlib
@@ -38,7 +38,7 @@ PAUSE_S = 0.002  # a probe of some 300 batches a second
 
 
 def batches_of(path, group):
-    """The file's samples as the messages of a group: source and bytes, without object and seq."""
+    """The file's samples as messages of a group, (source, bytes), without object and seq."""
     data = path.read_bytes()
     if path.suffix == ".gz":
         data = gzip.decompress(data)
@@ -60,7 +60,7 @@ def batches_of(path, group):
 
 
 def play(contacts, results, groups):
-    """Plays every group again and again, each as soon as its last object has been answered in full."""
+    """Plays every group again and again, each as soon as its last object is completely answered."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     context = zmq.Context()
     out = context.socket(zmq.XPUB)
@@ -110,7 +110,7 @@ def quantile(values, fraction):
 
 
 def latest_status_s(socket, seconds):
-    """How much later than its period a status came, at most."""
+    """Largest delay of a status beyond its period."""
     latest, last, end = 0.0, None, time.monotonic() + seconds
     while time.monotonic() < end:
         if receive(socket, 60) is None:
@@ -123,7 +123,7 @@ def latest_status_s(socket, seconds):
 
 
 def machine_busy_s():
-    """Processor time of everything on this machine so far."""
+    """Total processor time of this machine so far."""
     with open("/proc/stat") as file:
         user, nice, system, _, _, irq, softirq, *_ = map(int, file.readline().split()[1:])
     return (user + nice + system + irq + softirq) / os.sysconf("SC_CLK_TCK")
@@ -156,7 +156,7 @@ def play_round(files, answers):
 
 @contextlib.contextmanager
 def several(what, count, *arguments):
-    """So many processes that do this, until the end of the block."""
+    """Runs this function in several processes until the end of the block."""
     processes = [multiprocessing.Process(target=what, args=arguments, daemon=True) for _ in range(count)]
     for process in processes:
         process.start()
@@ -169,7 +169,7 @@ def several(what, count, *arguments):
 
 
 def keep_a_core_busy():
-    """Whoever wants the core has it at once."""
+    """Keeps a core busy at the lowest priority."""
     os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
     while True:
         pass

@@ -59,7 +59,7 @@ double NodeProcess::cpu_seconds() const {
   std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
   std::string text;
   std::getline(file, text);
-  // proc(5): the fields after the name in brackets; user and system time are the 14th and 15th.
+  // proc(5): fields after the name in parentheses; user and system time are the 14th and 15th.
   std::istringstream fields(text.substr(text.rfind(')') + 1));
   std::string skipped;
   for (int field = 3; field < 14; ++field) fields >> skipped;
@@ -79,8 +79,8 @@ double NodeProcess::resident_bytes() const {
 
 namespace {
 
-/// Of variance 1, always the same, and of which neighbours know nothing: SplitMix64's mixing
-/// (G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators", 2014).
+/// Repeatable scatter of variance 1, independent between neighbours: SplitMix64's mixing (G.
+/// Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators", 2014).
 double scatter_of(int i) {
   std::uint64_t bits = 0x9e3779b97f4a7c15U * (static_cast<std::uint64_t>(i) + 1);
   bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;

@@ -1,4 +1,4 @@
-// A palpate-node as a child process, as the benchmarks of the running system start and watch it.
+// A palpate-node as a child process, started and observed by the benchmarks of the running system.
 #pragma once
 
 #include <sys/types.h>
@@ -14,7 +14,7 @@ namespace palpate::bench {
 
 using Clock = std::chrono::steady_clock;
 
-/// A folder for sockets that is gone with this object.
+/// A folder for sockets, removed with this object.
 class TemporaryFolder {
  public:
   TemporaryFolder();
@@ -48,7 +48,7 @@ v1::ContactBatch batch_of(int first, int count, std::uint64_t object);
 
 double microseconds(Clock::duration duration);
 
-/// The value below which that fraction lies; sorts.
+/// The q-quantile of the values; sorts them.
 double quantile(std::vector<double>& values, double fraction);
 
 }  // namespace palpate::bench

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""Answers a second of a node with one worker and with two, 64 groups asking all the time.
+"""Answers per second of a node with one worker and with two, under constant load from 64 groups.
 
     PALPATE_SOURCE=$PWD PALPATE_BUILD=$PWD/build/strict PYTHONPATH=$PWD/tests/support:$PWD/build/strict/proto/python \\
       /usr/bin/python3 tests/bench/processes/two_workers.py [--rounds N] [--seconds S]
 
-Each group sends its next batch of 10 samples as soon as the last one has been answered, so that every answer is of the same work.
-Rounds with one worker and two take turns. Beside answers a second it prints what an answer costs each thread: processor time, which a
-busy machine hardly changes. On two cores the node's own thread, libzmq's and this program take their share of them: what cores that
-did nothing else could give by these costs is printed beside what came.
+Each group sends its next batch of 10 samples as soon as the last one has been answered, so every answer takes the same
+work. Rounds with one worker and with two alternate. Besides answers per second it prints the processor time of each thread
+per answer, which a busy machine hardly changes. On two cores, the node's own thread, libzmq and this program use a share;
+so it also prints the answers per second that cores with nothing else to do would give by these times.
 """
 import argparse
 import os
@@ -26,7 +26,7 @@ WARM_UP_S = 1.0
 
 
 def thread_times_s(process):
-    """Processor time so far, by what the threads are."""
+    """Processor time so far, by kind of thread."""
     times = {"workers": 0.0, "node": 0.0, "libzmq": 0.0}
     for task in pathlib.Path(f"/proc/{process.pid}/task").iterdir():
         name = (task / "comm").read_text()
@@ -36,7 +36,7 @@ def thread_times_s(process):
 
 
 class Asking:
-    """All groups, each with its next batch as soon as it has been answered."""
+    """All groups; each sends its next batch as soon as it has been answered."""
 
     def __init__(self, bus):
         self._out = bus.publisher(high_water_mark=0)
@@ -61,7 +61,7 @@ class Asking:
                                   head.SerializeToString() + self._samples[count % BATCHES_PER_OBJECT]])
 
     def serve(self, seconds):
-        """Answers within that time."""
+        """Number of answers within that time."""
         answers, end = 0, time.monotonic() + seconds
         while time.monotonic() < end:
             if not self._answers.poll(1000):

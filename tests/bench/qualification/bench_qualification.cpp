@@ -1,4 +1,5 @@
-// Whether a qualification finds what the probe does, and says how well: simulated, in markdown.
+// Checks on simulated probes whether a qualification finds the probe's errors and states its own
+// accuracy correctly. Prints markdown.
 #include <CLI/CLI.hpp>
 #include <Eigen/LU>
 #include <chrono>
@@ -74,8 +75,8 @@ void print_row(const std::string& scene_name, const test::ProbeScene& scene, int
   }
 }
 
-/// The bound on the covariance of the axes for the part's strokes: derivatives of the distances by
-/// shape and pose, the noise as it is made, and an offset known as the qualification knows it.
+/// The bound on the covariance of the axes for the part's strokes, from the derivatives of the
+/// distances by shape and pose, the true noise, and the offset's covariance from the qualification.
 Eigen::Matrix2d bound_of_axes(const test::ProbeScene& part, const ArtefactRecording& touched,
                               const Eigen::MatrixXd& offset_covariance) {
   const auto& ellipse = std::get<Ellipse>(part.curve);
@@ -112,7 +113,7 @@ Eigen::Matrix2d bound_of_axes(const test::ProbeScene& part, const ArtefactRecord
   return information.inverse().topLeftCorner<2, 2>();
 }
 
-/// What an answer says of an ellipse's axes beside the truth.
+/// An answer's axes of an ellipse compared with the truth.
 struct Axes {
   int runs = 0;
   int held = 0;
@@ -142,15 +143,15 @@ struct Axes {
   }
 };
 
-/// How the probe is qualified before it is applied, and how it is set up.
+/// How the probe is qualified before it is used, and how it is set up.
 struct SetUps {
   std::string name;
   int recordings = 1;
-  double between_m = 0.0;  ///< standard deviation of the constant over set-ups
-  bool same = true;        ///< the part is touched in the recording's own
+  double between_m = 0.0;  ///< standard deviation of the constant between set-ups
+  bool same = true;        ///< the part is touched in the set-up of the recording
 };
 
-/// The probe qualified on a ring, then an ellipse's arc measured with its file, and without.
+/// Qualifies the probe on a ring, then measures an ellipse's arc with its file and without.
 void print_applied(const test::ProbeScene& ring, const SetUps& setups, double arc_deg, int runs) {
   test::ProbeScene part = ring;
   part.curve = Ellipse{0.03, 0.022};
@@ -182,8 +183,8 @@ void print_applied(const test::ProbeScene& ring, const SetUps& setups, double ar
       ProbedPatch& patch = patches.emplace_back();
       patch.context.patch = static_cast<std::uint32_t>(patches.size());
       patch.context.tip_radius_m = stroke.tip_radius_m;
-      // Every other stroke runs back. Without the side a short arc may be taken for touched from
-      // within.
+      // Every other stroke runs backwards. Without a stated side a short arc may be taken for one
+      // touched from inside.
       patch.context.material_side =
           patches.size() % 2 == 1 ? MaterialSide::Left : MaterialSide::Right;
       patch.samples = stroke.samples;

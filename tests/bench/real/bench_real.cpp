@@ -1,4 +1,4 @@
-// Figures on real recordings, in markdown.
+// Results on real recordings, printed as markdown.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
@@ -30,8 +30,8 @@ constexpr const char* kAbout =
       the same part by a probe that is qualified on a ring (part "ellip1" of that set), touched on the
       same surface, beside the answers without that.)";
 
-/// The data's makers state no tolerance of the part: a round figure, half of the +-0.1 mm that
-/// cutting plates of that size keeps to without special care.
+/// The makers of the data state no tolerance of the part. A round figure: half of the +-0.1 mm that
+/// is usual for plates of that size cut without special care.
 constexpr double kFormDeviation_m = 5e-5;
 
 }  // namespace

@@ -12,9 +12,9 @@ struct Laid {
   double chi2 = 0.0;  ///< [m^2]
 };
 
-/// Gauss-Newton from a start; the foot points are followed from sample to sample. A design is far
-/// longer than the profile on it: it is turned about the profile's `middle`, not about its own
-/// centre, far away.
+/// Gauss-Newton from a start; foot points are followed from sample to sample. A design is far
+/// longer than its profile, so it is turned about the profile's `middle` and not about its own
+/// distant centre.
 std::optional<Laid> lay_from(const Curve& design, Laid at, double t_start,
                              std::span<const Vec2> profile, const Vec2& middle) {
   constexpr int kIterations = 50;
@@ -33,7 +33,7 @@ std::optional<Laid> lay_from(const Curve& design, Laid at, double t_start,
       const Vec2 normal(-std::sin(angle), std::cos(angle));
       const Vec2 arm = (point - middle) / length;
       distances[i] = foot.distance;
-      // Moving the design along the normal brings it nearer; lengths in profile lengths.
+      // Moving the design along the normal brings it closer. Lengths are in profile lengths.
       jacobian.row(i) << normal.x() * length, normal.y() * length, cross(arm, normal) * length;
     }
     at.chi2 = distances.squaredNorm();
@@ -41,7 +41,7 @@ std::optional<Laid> lay_from(const Curve& design, Laid at, double t_start,
     if (!step.allFinite()) {
       return std::nullopt;
     }
-    // Turned about `middle`, then moved.
+    // Rotate about `middle`, then move.
     const Pose2 about{middle.x(), middle.y(), 0.0};
     const Pose2 move{step[0] * length, step[1] * length, step[2]};
     at.world_T_design = about * move * about.inverse() * at.world_T_design;

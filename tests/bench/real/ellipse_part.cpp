@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kArcs = 36;
 constexpr int kArcDegrees[] = {60, 90, 120, 180};
-/// Of the worse axis: beyond it even the right class is a wrong answer.
+/// Relative error of the worse axis beyond which even the right class counts as wrong.
 constexpr double kWrongAxis = 0.1;
 
 /// A contact and its polar angle about the part's centre, in [0, 2 pi).
@@ -32,7 +32,7 @@ double turn(double angle) {
   return rest < 0.0 ? rest + 2.0 * kPi : rest;
 }
 
-/// Centre of the ellipse that explains the whole recording.
+/// Centre of the ellipse fitted to the whole recording.
 Vec2 centre_of(const Recording& recording) {
   const Recognition whole = recognise(recording.context, recording.points);
   const Hypothesis* ellipse = test::hypothesis_of(whole, CurveClass::Ellipse);
@@ -42,7 +42,7 @@ Vec2 centre_of(const Recording& recording) {
   return ellipse->world_T_curve.translation();
 }
 
-/// The contacts within `width` from `start` on, by rising angle.
+/// The contacts within `width` from `start` on, by increasing angle.
 std::vector<Vec2> arc(const std::vector<Polar>& contacts, double start, double width) {
   std::vector<Polar> inside;
   for (const Polar& contact : contacts) {
@@ -76,8 +76,8 @@ struct Counts {
   std::vector<double> errors;  ///< of the ellipse hypothesis, whether it won or not
   std::map<std::string, int> answers;
   int other_class = 0;             ///< RECOGNIZED
-  int wrong_axis = 0;              ///< RECOGNIZED as an ellipse, of another size
-  std::vector<std::string> wrong;  ///< both, a line each
+  int wrong_axis = 0;              ///< RECOGNIZED as an ellipse of another size
+  std::vector<std::string> wrong;  ///< both kinds, one line each
 };
 
 void add(const std::string& arc, const Recognition& answer, const EllipsePart& part,
@@ -123,7 +123,7 @@ std::string joined(const std::map<std::string, int>& answers) {
   return out.str();
 }
 
-/// Rows of the table where the recognizer is told `form_deviation_m`; returns the wrong answers.
+/// Rows of the table for that `form_deviation_m`; returns the wrong answers.
 std::vector<std::string> print_rows(const EllipsePart& part, const PatchContext& context,
                                     const std::vector<Polar>& contacts, double form_deviation_m,
                                     std::ostream& out) {
@@ -152,7 +152,7 @@ std::vector<std::string> print_rows(const EllipsePart& part, const PatchContext&
   return wrong;
 }
 
-/// Touches one at a time: random ones of the contacts, in random order. Prints the wrong answers.
+/// Single touches: random contacts in random order. Prints the wrong answers.
 void print_touches(const EllipsePart& part, const std::vector<Polar>& contacts, std::ostream& out) {
   constexpr int kDraws = 36;
   out << "\nOf the same contacts, touched one at a time in no order, " << kDraws
@@ -193,7 +193,7 @@ void print_ellipse_part(const EllipsePart& part,
   }
   const Vec2 centre = centre_of(part.recording);
   PatchContext context = part.recording.context;
-  // Rising angles run around the part with the material on their left.
+  // By increasing angle one travels around the part with the material on the left.
   context.material_side = part.side_known ? MaterialSide::Left : MaterialSide::Unspecified;
   std::vector<Polar> contacts;
   for (const Vec2& point : part.recording.points) {

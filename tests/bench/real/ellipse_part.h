@@ -1,4 +1,5 @@
-// Arcs of a closed elliptic part of known size: how far off, how often certain, how often wrongly.
+// Arcs of a closed elliptic part of known size: errors, how often the answer is certain, and how
+// often it is wrong.
 #pragma once
 
 #include <filesystem>
@@ -13,16 +14,15 @@ struct EllipsePart {
   Recording recording;  ///< contacts all around the part, in order
   double semi_major_m = 0.0;
   double semi_minor_m = 0.0;
-  /// Tell palpate that the material lies inside; otherwise both sides of the tip's centres are
-  /// open.
+  /// State that the material is inside; otherwise both sides of the tip's centres are possible.
   bool side_known = false;
-  /// What is known of the part's making (RecognizerOptions::form_deviation_m).
+  /// Form error of the part (RecognizerOptions::form_deviation_m).
   double form_deviation_m = 0.0;
 };
 
-/// Prints a table in markdown, without a stated form deviation and with the part's; with
-/// `arcs_csv`, writes the points of each arc for opencv_arcs.py. Throws std::runtime_error where
-/// the whole recording gives no ellipse to measure arcs about, or the file cannot be written.
+/// Prints a table in markdown, without a stated form deviation and with the part's. With `arcs_csv`
+/// it also writes the points of each arc for opencv_arcs.py. Throws std::runtime_error if the whole
+/// recording gives no ellipse, or if the file cannot be written.
 void print_ellipse_part(const EllipsePart& part,
                         const std::optional<std::filesystem::path>& arcs_csv, std::ostream& out);
 

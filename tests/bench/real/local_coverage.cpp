@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kTurns = 36;
 
-/// Twice the area on the left of a closed path.
+/// Twice the area to the left of a closed path.
 double turned_area(const std::vector<Vec2>& points) {
   double area = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -29,8 +29,8 @@ struct LaidPart {
   double residual_rms_m = 0.0;
 };
 
-/// Least squares of the distances of the tip's centres less its radius, over the pose alone.
-/// Contacts beyond four robust deviations, which are no touches of the part, do not count.
+/// Least squares of the distances of the tip's centres less its radius, over the pose only.
+/// Contacts beyond four robust deviations, which did not touch the part, are ignored.
 LaidPart lay_part(const Curve& part, double tip_radius_m, const std::vector<Vec2>& centres,
                   double start_angle) {
   constexpr int kIterations = 100;
@@ -74,7 +74,7 @@ LaidPart lay_part(const Curve& part, double tip_radius_m, const std::vector<Vec2
     }
     laid.residual_rms_m = std::sqrt(squares / used);
     if (class_of(part) == CurveClass::Circle) {
-      jacobian.col(2).setZero();  // its angle is open, and stays
+      jacobian.col(2).setZero();  // its angle is free and stays unchanged
     }
     const Eigen::Vector3d step = jacobian.completeOrthogonalDecomposition().solve(residuals);
     if (!step.allFinite()) {
@@ -91,7 +91,7 @@ LaidPart lay_part(const Curve& part, double tip_radius_m, const std::vector<Vec2
 }
 
 LaidPart best_laid(const Curve& part, double tip_radius_m, const std::vector<Vec2>& centres) {
-  constexpr int kStarts = 4;  // over half a turn: the part's symmetry
+  constexpr int kStarts = 4;  // over half a turn, the part's symmetry
   LaidPart best;
   for (int i = 0; i < kStarts; ++i) {
     const LaidPart laid = lay_part(part, tip_radius_m, centres, i * kPi / kStarts);
@@ -108,7 +108,7 @@ struct Tally {
   std::array<double, 2> squares{};
 };
 
-/// One turn from contact `first` on: every estimate beside the truth.
+/// One turn starting at contact `first`: compares every estimate with the truth.
 void walk(const EllipsePart& part, const Curve& curve, const LaidPart& laid, std::size_t first,
           double form_deviation_m, bool leftwards, Tally* tally) {
   constexpr double kDeviations = 2.0;

@@ -1,4 +1,5 @@
-// How often the sliding window's deviations hold along a closed elliptic part of known size.
+// Checks the deviations of the sliding window along a closed elliptic part of known size: how often
+// they contain the error.
 #pragma once
 
 #include <ostream>
@@ -7,10 +8,10 @@
 
 namespace palpate::bench {
 
-/// Prints a table in markdown: kappa and kappa_s of every window of turns from places all around,
-/// beside the part's at the place, laid on the contacts by its pose alone; without a stated form
-/// deviation and with the part's. The material is said to lie inside. Throws std::runtime_error
-/// where the part cannot be laid on the recording.
+/// Prints a table in markdown: kappa and kappa_s of every window, for turns from places all around,
+/// compared with the part's at that place; the part's pose is fitted to the contacts. Without a
+/// stated form deviation and with the part's. States that the material is inside. Throws
+/// std::runtime_error if the part cannot be fitted to the recording.
 void print_local_coverage(const EllipsePart& part, std::ostream& out);
 
 }  // namespace palpate::bench

@@ -25,7 +25,7 @@ namespace {
 
 struct Mirror {
   Curve design;
-  double t_pole = 0.0;  ///< of the design, where the beam's middle ray meets it
+  double t_pole = 0.0;  ///< of the design, where the central ray of the beam meets it
 };
 
 double number(const google::protobuf::Struct& fields, const std::string& name) {
@@ -36,7 +36,7 @@ double number(const google::protobuf::Struct& fields, const std::string& name) {
   return field->second.number_value();
 }
 
-/// y^2 = 2 P x seen from its focus at distance r: a = P / 2 and r = a (1 + t^2).
+/// y^2 = 2 P x, seen from its focus at distance r: a = P / 2 and r = a (1 + t^2).
 Mirror parabolic(const google::protobuf::Struct& fields) {
   constexpr double kMillimetre = 1e-3;
   const double a = 0.5 * number(fields, "P_mm") * kMillimetre;
@@ -44,8 +44,8 @@ Mirror parabolic(const google::protobuf::Struct& fields) {
   return {Parabola{a}, std::sqrt(r / a - 1.0)};
 }
 
-/// Foci at distances p and q of the pole, their rays at grazing angle theta there: x = (p - q) / (2
-/// e) with e = sqrt(1 - b^2 / a^2).
+/// Foci at distances p and q from the pole, with rays at the grazing angle theta there: x = (p - q)
+/// / (2 e) with e = sqrt(1 - b^2 / a^2).
 Mirror elliptic(const google::protobuf::Struct& fields) {
   const double p = number(fields, "p");
   const double q = number(fields, "q");
@@ -96,7 +96,7 @@ std::string ellipse_cells(const Recognition& answer) {
          with_deviation(ellipse->shape.values[1], ellipse->covariance(1, 1));
 }
 
-/// Of the estimates along the profile the one that lies the nearest to `place`.
+/// The estimate along the profile that is nearest to `place`.
 std::optional<LocalEstimate> sliding_window_at(const std::vector<Vec2>& points, const Vec2& place) {
   SlidingWindow window;
   std::optional<LocalEstimate> nearest;

@@ -1,4 +1,4 @@
-// X-ray mirrors: what palpate says beside what they were designed to be.
+// X-ray mirrors: palpate's answers compared with their designs.
 #pragma once
 
 #include <filesystem>
@@ -6,8 +6,8 @@
 
 namespace palpate::bench {
 
-/// Tables in markdown for the mirrors of folder/design.json (tests/data/real/README.md). Throws
-/// std::runtime_error where a file cannot be read.
+/// Prints tables in markdown for the mirrors of folder/design.json (tests/data/real/README.md).
+/// Throws std::runtime_error if a file cannot be read.
 void print_mirrors(const std::filesystem::path& folder, std::ostream& out);
 
 }  // namespace palpate::bench

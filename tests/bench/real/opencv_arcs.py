@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""OpenCV's ellipses on the arcs of bench_real, in markdown.
+"""Fits OpenCV's ellipses to the arcs of bench_real. Prints markdown.
 
     build/strict/tests/bench/real/bench_real --ellipse-part FILE --semi-axes A,B --tip-radius R --arcs ARCS.csv
     tests/bench/real/opencv_arcs.py ARCS.csv --semi-axes A,B --tip-radius R
 
-OpenCV knows no tip: it fits the tip's centres, and R is taken off both axes, which is exact at the
-vertices (an offset of an ellipse is no ellipse between them). Each arc is given about its mean in
-units of its spread, for OpenCV works in float32. fitEllipseAMS and fitEllipseDirect return
-fitEllipse's answer without saying so where their own fails: such arcs, told by equal answers, are
-counted, and the second median leaves them out. Debian's packages: python3-numpy, python3-opencv.
+OpenCV does not know a tip: it fits the tip's centres, and R is subtracted from both axes, which is exact at the vertices
+only (the offset curve of an ellipse is not an ellipse). Each arc is given relative to its mean, in units of its spread,
+because OpenCV works in float32. If fitEllipseAMS and fitEllipseDirect fail, they return fitEllipse's answer without a
+notice. Such arcs, recognised by equal answers, are counted, and the second median leaves them out. Needs the Debian
+packages python3-numpy and python3-opencv.
 """
 import argparse
 import collections

@@ -23,8 +23,8 @@ namespace palpate::bench {
 namespace {
 
 constexpr int kStarts = 72;
-/// Of the worse axis: beyond it, where the 95 % region does not hold the truth either, even the
-/// right class is a wrong answer.
+/// Relative error of the worse axis beyond which even the right class counts as wrong, if the 95 %
+/// region does not contain the truth either.
 constexpr double kAxisBeyondUse = 0.1;
 
 std::vector<ContactSample> samples_of(const std::vector<Vec2>& points) {
@@ -39,7 +39,7 @@ struct Row {
   int recognised_held = 0;
   int ellipses = 0;
   int ellipses_held = 0;
-  std::vector<std::string> wrong;  ///< RECOGNIZED, a line each
+  std::vector<std::string> wrong;  ///< RECOGNIZED, one line each
 };
 
 std::string line_of(const Recognition& answer) {
@@ -90,9 +90,9 @@ std::string share(int part, int whole) {
                           " % of " + std::to_string(whole);
 }
 
-/// Constant of a recording beside its known shape and lobe along an axis, and their variances as
-/// white noise of the samples' scatter leaves them. The lobes between an ellipse's axes are not
-/// told from its own turn.
+/// The constant of a recording relative to its known shape, and its lobe along an axis, with their
+/// variances for white noise of the samples' scatter. The lobes between an ellipse's axes cannot be
+/// distinguished from its rotation.
 struct KnownTerms {
   Eigen::VectorXd value_m;
   Eigen::VectorXd variance_m2;
@@ -102,7 +102,7 @@ KnownTerms terms_of(const Qualification& result, double axis_angle) {
   constexpr Eigen::Index kTold = 2;
   constexpr int kLobes = 2;
   const int count = offset_coefficients(kLobes);
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count + 2, count + 2);  // and the place's x, y
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count + 2, count + 2);  // plus the place's x and y
   Eigen::VectorXd right = Eigen::VectorXd::Zero(count + 2);
   double squares = 0.0;
   int used = 0;
@@ -122,7 +122,7 @@ KnownTerms terms_of(const Qualification& result, double axis_angle) {
   return {value.head(kTold), variance * inverse.diagonal().head(kTold)};
 }
 
-/// What a file from the ring cannot know: by how much the same probe is off otherwise on the part.
+/// What a file from the ring cannot contain: how much the same probe's errors differ on the part.
 void print_reproducibility(const Qualification& on_ring, const Qualification& on_part,
                            std::ostream& out) {
   const double axis_angle = on_part.poses.front().theta;
@@ -143,8 +143,8 @@ void print_reproducibility(const Qualification& on_ring, const Qualification& on
         {second.value_m - first.value_m, Eigen::VectorXd(first.variance_m2 + second.variance_m2)});
 }
 
-/// Errors of the worse axis that normal ones of the bound's covariance would have, were white noise
-/// all there is: no unbiased estimate from these contacts has smaller ones.
+/// Errors of the worse axis that normal errors with the bound's covariance would have for white
+/// noise alone: no unbiased estimate from these contacts has smaller ones.
 void add_bound(const std::vector<Vec2>& points, double sigma_m, const Pose2& pose,
                const EllipsePart& part, std::mt19937_64& rng, std::vector<double>* errors) {
   const Eigen::MatrixXd slopes =
@@ -161,7 +161,7 @@ void add_bound(const std::vector<Vec2>& points, double sigma_m, const Pose2& pos
   }
 }
 
-/// What palpate is told of the probe.
+/// What palpate knows about the probe.
 enum class Told { Nothing, Unqualified, File };
 constexpr Told kAllTold[] = {Told::Nothing, Told::Unqualified, Told::File};
 
@@ -175,7 +175,7 @@ RecognizerOptions options_of(Told told) {
   return options;
 }
 
-/// The points within so many degrees as seen from `centre`, in order, from start `i` of kStarts.
+/// The points within `degrees` as seen from `centre`, in order, from start `i` of kStarts.
 std::vector<Vec2> arc_of(const std::vector<Vec2>& all, const Vec2& centre, int degrees, int i) {
   const double start = 2.0 * kPi * i / kStarts;
   std::vector<std::pair<double, Vec2>> inside;
@@ -191,7 +191,7 @@ std::vector<Vec2> arc_of(const std::vector<Vec2>& all, const Vec2& centre, int d
   return points;
 }
 
-/// Arcs of the ring itself: how many are RECOGNIZED as what it is, and as something else.
+/// Arcs of the ring itself: how many are RECOGNIZED as a circle, and how many as something else.
 void print_ring(const Ring& ring, std::ostream& out) {
   const Recording& whole = ring.recording;
   const Recognition centred = recognise(whole.context, whole.points, options_of(Told::Unqualified));

@@ -1,4 +1,4 @@
-// A probe qualified on a ring, and an elliptic part touched by it: with and without the
+// Qualifies a probe on a ring and measures an elliptic part with it, with and without the
 // qualification.
 #pragma once
 
@@ -13,7 +13,8 @@ struct Ring {
   double radius_m = 0.0;
 };
 
-/// Prints the probe's terms, the full turn's axes and arcs of 60 to 180 degrees in markdown.
+/// Prints the probe's terms, the axes from the full turn, and arcs of 60 to 180 degrees, in
+/// markdown.
 void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostream& out);
 
 }  // namespace palpate::bench

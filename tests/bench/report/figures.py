@@ -1,4 +1,4 @@
-"""Rows of the benchmarks' CSV files, and the plots made of them."""
+"""Reads the rows of the benchmarks' CSV files and makes plots of them."""
 import collections
 import csv
 import math
@@ -6,7 +6,7 @@ import math
 import matplotlib
 
 matplotlib.use("svg")
-matplotlib.rcParams["svg.hashsalt"] = "palpate"  # the same data, the same file
+matplotlib.rcParams["svg.hashsalt"] = "palpate"  # the same data give the same file
 matplotlib.rcParams["svg.fonttype"] = "none"  # text stays text
 import matplotlib.pyplot as plt  # noqa: E402
 import matplotlib.ticker  # noqa: E402
@@ -16,7 +16,7 @@ COLOURS = {"finite-difference": "tab:red", "circle": "tab:orange", "two-round": 
 
 
 def rows_of(path):
-    """A list of dictionaries; numbers are numbers. Lines before the header (of Google Benchmark) are skipped."""
+    """A list of dictionaries, with numbers converted. Skips the lines of Google Benchmark before the header."""
     with open(path, newline="") as file:
         lines = file.readlines()
     start = next((i for i, line in enumerate(lines) if line.startswith("name,")), 0)
@@ -99,7 +99,7 @@ def pareto(rows, folder):
 
 
 def local_errors(rows, folder):
-    """Error of kappa and of kappa_s over the samples of an estimate, a line an estimator, at two noise levels."""
+    """Error of kappa and of kappa_s over the number of samples of an estimate, one line per estimator, at two noise levels."""
     shift = 4.0
     further = {"two-round": 9 * shift}  # its ten windows begin a shift apart
     figure, axes = plt.subplots(2, 2, figsize=(10, 7), sharex=True)
@@ -121,7 +121,7 @@ def local_errors(rows, folder):
 
 
 def sweeps(rows, folder):
-    """Error beside the bound, and what the answers said, towards each degeneracy."""
+    """Error compared with the bound, and the kinds of answers, towards each degeneracy."""
     groups = group_by(rows, "sweep")
     columns = 5
     lines = math.ceil(len(groups) / columns)
@@ -167,7 +167,7 @@ def calibration(rows, folder):
 
 
 def signatures(rows, folder):
-    """Of figure 10's kind: estimates beside the signature curve, a panel a class."""
+    """Like figure 10: estimates and the signature curve, one panel per class."""
     figure, axes = plt.subplots(2, 3, figsize=(12, 7))
     own_rows = [r for r in rows if r["figure"] == 10.0]
     for axis, ((name,), group) in zip(axes.flat, group_by(own_rows, "label").items()):
@@ -207,7 +207,7 @@ def semi_signature(rows, folder):
 
 
 def conic_figures(rows, folder):
-    """Figures 4 and 5: curves, their signature curves, the invariants' values."""
+    """Figures 4 and 5: curves, their signature curves, and the values of the invariants."""
     figure, axes = plt.subplots(2, 2, figsize=(11, 8))
     for line, number in enumerate((4.0, 5.0)):
         own = [r for r in rows if r["figure"] == number]
@@ -249,7 +249,7 @@ def processes(latency, load, folder):
 
 
 def cost(recognition, local, folder):
-    """Of a recognition over the samples; of the local estimators, per sample of a stream, over the window."""
+    """Time of a recognition over the number of samples; time of the local estimators per sample of a stream over the window."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.2))
     rows = [r for r in recognition if str(r["name"]).startswith("cold_by_samples/")]
     rows = [r for r in rows if str(r["name"]).split("/")[1].isdigit()]

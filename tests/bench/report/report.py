@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes report.md, a short summary.md and their plots beside the CSV files that tests/bench/run.sh has made.
+"""Writes report.md, a short summary.md and their plots next to the CSV files that tests/bench/run.sh has made.
 
     tests/bench/report/report.py FOLDER [--scale quick|full]
 """
@@ -51,7 +51,7 @@ def number(value, digits=3):
 
 
 def best_pipelines(rows):
-    """Of each pipeline and noise the window and shift of least shape error, where it names most classes right."""
+    """For each pipeline and noise: the window and shift with the least shape error, of those that name most classes right."""
     lines = []
     for noise in sorted({r["noise_over_size"] for r in rows}):
         for pipeline in dict.fromkeys(r["pipeline"] for r in rows):

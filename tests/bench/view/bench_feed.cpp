@@ -1,5 +1,6 @@
-// What palpate view computes for its browsers: 16 groups at 30 updates a second, eight browsers
-// each at another group, on a clock of its own. The machine does not matter to instructions:
+// The work of `palpate view` for its browsers: 16 groups with 30 updates a second, and eight
+// browsers each showing another group, on a simulated clock. Count instructions, which do not
+// depend on the load of the machine:
 //   valgrind --tool=callgrind --toggle-collect=palpate_feed_call
 //   build/strict/tests/bench/view/bench_feed
 // Prints what the browsers were sent.
@@ -15,7 +16,7 @@
 #include "node/tool/view/live_feed.h"
 #include "node/wire/convert.h"
 
-/// The function whose instructions are counted. The barrier keeps the call from becoming a jump.
+/// The function whose instructions are counted. The barrier prevents a tail call.
 extern "C" [[gnu::noinline]] void palpate_feed_call(const std::function<void()>& call) {
   call();
   asm volatile("" : : : "memory");
@@ -32,7 +33,7 @@ constexpr int kSamplesABatch = 10;
 constexpr int kBatchesBefore = 20;
 constexpr double kRadius_m = 0.02, kStep_rad = 0.01, kSigma_m = 2e-5;
 
-/// A circle about (0.3, 0.1), with noise that is always the same.
+/// A point of a circle around (0.3, 0.1), with repeatable noise.
 Vec2 touched(int number) {
   const double radius = kRadius_m + kSigma_m * std::numbers::sqrt2 * std::sin(12.9898 * number);
   return Vec2(0.3 + radius * std::cos(kStep_rad * number),
@@ -53,7 +54,7 @@ v1::ContactBatch batch_of(const std::string& probe, int first) {
   return batch;
 }
 
-/// The recognizer's to the first samples; those after are as good as its.
+/// The recognizer's answer to the first samples, also used for the later ones.
 v1::Recognition answer_to_first() {
   Recognizer recognizer;
   std::vector<ContactSample> samples;

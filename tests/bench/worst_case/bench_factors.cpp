@@ -1,8 +1,8 @@
-// By what factor one thing makes recognize() dearer, over random scenes that are otherwise the
-// same: tips whose side is not told, spikes in 30 % of the samples, both; and what the updates of a
-// stream cost beside their median.
+// By what factor one condition increases the cost of recognize(), over random scenes that are
+// otherwise the same: tips whose side is not stated, spikes in 30 % of the samples, or both. Also
+// the cost of a stream's updates compared with their median.
 //   bench_factors [--scenes N] [--seed S]
-// Costs are processor times of this thread, the least of three.
+// Costs are processor times of this thread, the least of three runs.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -52,7 +52,7 @@ void print(const std::string& what, std::vector<double> values) {
               at(0.99), at(1.0));
 }
 
-/// Costs of the updates of one stream over their median; the first answer is no update.
+/// Costs of the updates of one stream divided by their median. The first answer is not an update.
 std::vector<double> updates_over_median(const TouchedInput& input) {
   Recognizer recognizer;
   std::vector<double> us;

@@ -1,6 +1,7 @@
-// What habits of a probe do to answers, over random scenes that are otherwise the same: noise that
-// is not stated or stated wrong, a probe that stands still, spikes, strokes that do not meet, a
-// wavy part. Which answers are right, which are sure and wrong, and which scenes lose samples.
+// The effect of a probe's habits on answers, over random scenes that are otherwise the same: noise
+// that is not stated or stated wrongly, a probe that stands still, spikes, strokes that do not
+// meet, a wavy part. Prints which answers are right, which are sure and wrong, and which scenes
+// lose samples.
 //   bench_habits [--scenes N] [--seed S]
 #include <cstdio>
 #include <random>
@@ -46,7 +47,7 @@ Recognition answer_to(const InputRecipe& recipe) {
   return recognizer.recognize();
 }
 
-/// A part that is no spline: most of the splines that touched_input draws are semi-cubical
+/// A part that is not a spline: most of the splines that touched_input draws are semi-cubical
 /// parabolas to within the noise, and neither answer would be wrong.
 InputRecipe recipe_to_tell(std::mt19937_64& rng) {
   InputRecipe recipe = bench::plain_recipe(rng);
@@ -56,15 +57,15 @@ InputRecipe recipe_to_tell(std::mt19937_64& rng) {
   return recipe;
 }
 
-/// Of scenes of one habit.
+/// Scenes of one habit.
 struct Tally {
   int of_class = 0;
-  int right = 0;       ///< RECOGNIZED as the class that was touched
-  int as_another = 0;  ///< RECOGNIZED as another one
+  int right = 0;       ///< RECOGNIZED as the class touched
+  int as_another = 0;  ///< RECOGNIZED as another class
   int as_none = 0;     ///< RECOGNIZED as none of the classes
   int of_none = 0;
   int none_as_class = 0;
-  int losing = 0;  ///< scenes of which samples were set aside as spikes
+  int losing = 0;  ///< scenes with samples set aside as spikes
 };
 
 void count(const InputRecipe& recipe, Tally* tally) {
@@ -84,7 +85,7 @@ void count(const InputRecipe& recipe, Tally* tally) {
   tally->losing += answer.outlier_count > 0 ? 1 : 0;
 }
 
-/// A habit, put into an ordinary scene.
+/// A habit and how to add it to an ordinary scene.
 struct Habit {
   const char* name;
   void (*put)(InputRecipe* recipe);

@@ -1,11 +1,13 @@
-// The input whose recognize() costs the most beside a clean ellipse of as many samples and patches:
-// searched for by random restarts and local changes, over any shape or none, noise, tips, patches
-// and spikes; or measured for CSV files. Prints the worst found, writes it as a CSV file, and says
-// how to count its instructions.
-//   bench_worst_case [--seconds S] [--tries N] [--seed S] [--most-samples N] [--kind KIND] [--save
-//   FILE] bench_worst_case FILE.csv ...       costs of these bench_worst_case --once FILE.csv one
-//   recognize() of the file and nothing else, for callgrind
-// Costs are processor times of this thread, the least of three: a busy neighbour matters little.
+// Searches for the input whose recognize() costs most compared with a clean ellipse of as many
+// samples and patches. It uses random restarts and local changes over any shape or none, noise,
+// tips, patches and spikes. Prints the worst input found, writes it as a CSV file, and says how to
+// count its instructions. Or it measures given CSV files.
+//   bench_worst_case [--seconds S] [--tries N] [--seed S] [--most-samples N] [--kind KIND]
+//                    [--save FILE]
+//   bench_worst_case FILE.csv ...        costs of these files
+//   bench_worst_case --once FILE.csv     only one recognize() of the file, for callgrind
+// Costs are processor times of this thread, the least of three runs, so that a busy machine matters
+// little.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -31,11 +33,11 @@ using bench::thread_us;
 using bench::TouchedInput;
 
 constexpr int kRepetitions = 3;
-/// A climb begins at the worst of so many random inputs, and ends after so many changes that make
-/// it no worse.
+/// A climb starts at the worst of this many random inputs, and ends after this many changes in a
+/// row without a worse result.
 constexpr int kStarts = 12;
 constexpr int kPatience = 20;
-/// Share of new starts from the worst input found so far rather than from anywhere.
+/// Share of new starts from the worst input found so far; the others are random.
 constexpr double kFromWorst = 0.3;
 
 double cost_once_us(const TouchedInput& input) {
@@ -57,7 +59,8 @@ double cost_us(const TouchedInput& input) {
   return least;
 }
 
-/// Cost of the clean ellipse of that many samples in each of that many patches, measured once each.
+/// Cost of the clean ellipse with that many samples in each of that many patches; each is measured
+/// once.
 double clean_cost_us(const TouchedInput& input) {
   static std::map<std::vector<std::size_t>, double> known;
   std::vector<std::size_t> sizes;
@@ -73,8 +76,7 @@ struct Found {
   double ratio = 0.0;
 };
 
-/// The cost; nothing where a first measurement shows that it is no higher than the `ratio` asked
-/// for.
+/// The cost; nullopt if a first measurement shows that it is not above `ratio`.
 std::optional<Found> measured(const InputRecipe& recipe, double ratio) {
   const TouchedInput input = bench::input_of(recipe);
   const double clean = clean_cost_us(input);
@@ -102,7 +104,7 @@ std::optional<TouchedInput> input_from(const std::string& path) {
     std::fprintf(stderr, "bench_worst_case: %s\n", table.error.c_str());
     return std::nullopt;
   }
-  // In the order of the file, as the tool feeds it; all groups and objects of a file are one here.
+  // In the order of the file, as the tool does; all groups and objects of a file are one here.
   TouchedInput input;
   std::map<std::tuple<std::size_t, std::size_t, std::uint64_t, std::uint32_t>, std::size_t> places;
   for (const ContactRow& row : table.value->rows) {

@@ -1,4 +1,4 @@
-// An ordinary scene, which other conditions are compared with.
+// An ordinary scene, as the reference for other conditions.
 #pragma once
 
 #include <random>
@@ -7,8 +7,8 @@
 
 namespace palpate::bench {
 
-/// A part of one of the eight classes or of none: 1 to 4 patches of 111 samples, honest noise,
-/// samples on the surface.
+/// A part of one of the eight classes or of none: 1 to 4 patches of 111 samples, correctly stated
+/// noise, samples on the surface.
 InputRecipe plain_recipe(std::mt19937_64& rng);
 
 }  // namespace palpate::bench

@@ -27,7 +27,7 @@ int log_integer(std::mt19937_64& rng, int least, int most) {
   return static_cast<int>(std::lround(log_uniform(rng, least, most)));
 }
 
-/// Zero with that probability, else log-uniform.
+/// Zero with that probability, otherwise log-uniform.
 double often_zero(std::mt19937_64& rng, double zero, double least, double most) {
   const bool is_zero = uniform(rng, 0.0, 1.0) < zero;
   return is_zero ? 0.0 : log_uniform(rng, least, most);
@@ -35,7 +35,7 @@ double often_zero(std::mt19937_64& rng, double zero, double least, double most) 
 
 constexpr int kMembers = 15;
 
-/// Draws member `which` of the recipe.
+/// Draws member number `which` of the recipe.
 void draw(int which, std::mt19937_64& rng, InputRecipe* r) {
   switch (which) {
     case 0:
@@ -92,7 +92,7 @@ void draw(int which, std::mt19937_64& rng, InputRecipe* r) {
   }
 }
 
-/// Members that the kind does not leave open.
+/// Sets the members that the kind prescribes.
 InputRecipe confined(InputRecipe r, InputKind kind) {
   if (kind == InputKind::Any) {
     return r;
@@ -114,7 +114,7 @@ InputRecipe confined(InputRecipe r, InputKind kind) {
   return r;
 }
 
-/// Fewer samples a patch, then fewer patches, until the whole is within `most_samples`.
+/// Reduces the samples per patch, then the patches, until the total is within `most_samples`.
 InputRecipe bounded(InputRecipe recipe, InputKind kind, std::size_t most_samples) {
   InputRecipe r = confined(std::move(recipe), kind);
   constexpr std::size_t kFew = 32;
@@ -132,7 +132,7 @@ InputRecipe bounded(InputRecipe recipe, InputKind kind, std::size_t most_samples
 
 using Path = std::function<Vec2(double)>;
 
-/// The curve at parameter u in [0, 1], of half extent about 1.
+/// The curve at parameter u in [0, 1], with a half extent of about 1.
 Path path_of(Shape shape, std::mt19937_64& rng) {
   const double p = uniform(rng, 0.0, 1.0);
   const double q = uniform(rng, 0.0, 1.0);
@@ -232,7 +232,7 @@ Path path_of(Shape shape, std::mt19937_64& rng) {
   return {};
 }
 
-/// Parameter against arc length.
+/// Parameter by arc length.
 class ArcTable {
  public:
   explicit ArcTable(const Path& path) {
@@ -341,7 +341,7 @@ InputRecipe mutated(InputRecipe recipe, std::mt19937_64& rng, InputKind kind,
 
 namespace {
 
-/// How far along its patch sample i lies, 0 to 1.
+/// Position of sample i along its patch, 0 to 1.
 double share_at(const InputRecipe& r, int i) {
   const int standing = static_cast<int>(r.standing * r.samples);
   const int moving = r.samples - standing;
@@ -371,7 +371,7 @@ TouchedInput input_of(const InputRecipe& r) {
     patch.context.tip_radius_m = r.tip * r.size_m;
     const bool forward = uniform(rng, 0.0, 1.0) < 0.5;
     if (uniform(rng, 0.0, 1.0) < r.sides_told) {
-      // Tips lie to the right of increasing u, outside a curve that runs counterclockwise.
+      // Tips are to the right of increasing u: outside a curve that runs counterclockwise.
       patch.context.material_side = forward ? MaterialSide::Left : MaterialSide::Right;
     }
     const double arc = std::min(r.arc, table.total());
@@ -394,7 +394,7 @@ TouchedInput input_of(const InputRecipe& r) {
         point += r.spike_size * Vec2(std::cos(angle), std::sin(angle));
       }
       if (i > 0 && uniform(rng, 0.0, 1.0) < r.dwelling) {
-        // Not quite: what repeats exactly is not taken.
+        // Not exactly, because exact repetitions are not accepted.
         point = before + 1e-3 * r.sigma * Vec2(dx, -dx);
       }
       before = point;
@@ -417,7 +417,7 @@ TouchedInput clean_ellipse_like(const TouchedInput& input) {
     TouchedPatch patch;
     patch.context.patch = static_cast<std::uint32_t>(k);
     const std::size_t count = input[k].samples.size();
-    // Patches of at least an eighth of the circumference.
+    // Patches cover at least an eighth of the circumference.
     const double turn = 2.0 * kPi * std::max(1.0 / static_cast<double>(input.size()), 0.125);
     for (std::size_t i = 0; i < count; ++i) {
       const double t = 2.0 * kPi * static_cast<double>(k) / static_cast<double>(input.size()) +

@@ -1,5 +1,5 @@
-// Inputs of the recogniser by a few numbers that a search can change: any shape or none, noise,
-// tips, patches, spikes.
+// Inputs of the recognizer, described by a few numbers that a search can change: any shape or none,
+// noise, tips, patches, spikes.
 #pragma once
 
 #include <cstdint>
@@ -41,55 +41,54 @@ enum class Shape {
 };
 inline constexpr int kShapes = 15;
 
-/// What an input is made from. Lengths are in units of the part's half extent unless said
-/// otherwise.
+/// Parameters of an input. Lengths are in units of the part's half extent unless stated otherwise.
 struct InputRecipe {
   Shape shape = Shape::Ellipse;
   std::uint64_t seed = 0;  ///< of everything random below
   int patches = 2;         ///< 1 to 64
-  int samples = 111;       ///< of a patch, 8 to 4096
+  int samples = 111;       ///< per patch, 8 to 4096
   double size_m = 0.025;
   double arc = 0.5;               ///< of each patch
   double coverage = 1.0;          ///< patches begin within this share of the curve
   double sigma = 1e-3;            ///< white noise of the samples
-  double stated_over_true = 1.0;  ///< of sigma; 0 = not stated
+  double stated_over_true = 1.0;  ///< stated sigma divided by the true one; 0 = not stated
   double spikes = 0.0;            ///< share of samples, 0 to 0.3
   double spike_size = 0.1;
   double tip = 0.0;           ///< tip radius; 0 = samples on the surface
-  double sides_told = 1.0;    ///< share of patches whose material side is told
+  double sides_told = 1.0;    ///< share of patches whose material side is stated
   double misplacement = 0.0;  ///< standard deviation of each patch's shift
   double wave = 0.0;          ///< amplitude of a form deviation, smooth along the arc
   double dwelling = 0.0;      ///< share of samples that stay at the place of the one before
   double standing = 0.0;      ///< share of a patch's samples at one place, each with its own noise
-  int passes = 1;             ///< over each patch, there and back
+  int passes = 1;             ///< over each patch, back and forth
   double offset = 0.0;        ///< of the part from the origin
 };
 
-/// What a search keeps to, so that the dearest input of each kind is known.
+/// Restriction of a search, to find the most expensive input of each kind.
 enum class InputKind {
   Any,
   Plain,     ///< no tips, no spikes, noise stated
-  Tips,      ///< plain, but tips whose sides are told
-  Sides,     ///< plain, but tips whose sides are not told
-  Spikes,    ///< plain, but spikes
+  Tips,      ///< plain, but with tips whose sides are stated
+  Sides,     ///< plain, but with tips whose sides are not stated
+  Spikes,    ///< plain, but with spikes
   Unstated,  ///< plain, but the noise is not stated
-  Few,       ///< 32 samples at most
-  Patches,   ///< 16 patches and more
+  Few,       ///< at most 32 samples
+  Patches,   ///< at least 16 patches
 };
 
-/// Its name on a command line; nullopt where there is no such kind.
+/// The kind of that name on a command line; nullopt if there is none.
 std::optional<InputKind> input_kind(std::string_view name);
 
-/// Within the bounds stated at each member.
+/// A random recipe within the bounds stated at each member.
 InputRecipe random_recipe(std::mt19937_64& rng, InputKind kind, std::size_t most_samples);
 
-/// One to three members of the recipe drawn again or changed by a little.
+/// The recipe with one to three members drawn again or changed a little.
 InputRecipe mutated(InputRecipe recipe, std::mt19937_64& rng, InputKind kind,
                     std::size_t most_samples);
 
 TouchedInput input_of(const InputRecipe& recipe);
 
-/// A clean ellipse, touched all around in as many patches of as many samples as the input has.
+/// A clean ellipse, touched all around, with as many patches and samples as the input.
 TouchedInput clean_ellipse_like(const TouchedInput& input);
 
 /// The recipe on one line.

@@ -1,4 +1,4 @@
-// No function of a curve allocates.
+// The functions of a curve must not allocate memory.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -13,7 +13,7 @@ namespace {
 std::atomic<std::size_t> malloc_count = 0;
 }
 
-// The linker's --wrap leads all calls from this program's objects and static libraries through
+// The linker's --wrap redirects all calls from this program's objects and static libraries to
 // these.
 extern "C" {
 void* __real_malloc(std::size_t size);
@@ -39,7 +39,7 @@ namespace {
 
 std::size_t allocations() { return malloc_count + test::allocation_count(); }
 
-const void* volatile seen = nullptr;  // keeps the compiler from leaving an allocation out
+const void* volatile seen = nullptr;  // keeps the compiler from removing an allocation
 
 TEST(Allocation, TheCountersCount) {
   const std::size_t before = allocations();

@@ -1,4 +1,4 @@
-// Each hard case of the curves by name, with its defined outcome.
+// Hard cases of the curves, each with a name and a defined outcome.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,12 +11,12 @@ namespace {
 TEST(CurveHardCases, EllipseWithinOnePartInTenMillionOfACircle) {
   const Ellipse ellipse{1.0 + 1e-7, 1.0};
   const LocalGeometry g = ellipse.geometry(0.3);
-  // kappa_s = -3 ab (a^2 - b^2) s c / D^3, all factors without cancellation.
+  // kappa_s = -3 ab (a^2 - b^2) s c / D^3; no factor has cancellation.
   const double expected = -3.0 * (2e-7 + 1e-14) * std::sin(0.3) * std::cos(0.3);
   EXPECT_NEAR(g.kappa_s / expected, 1.0, 1e-6);  // D = 1 + O(1e-7)
   const auto place = ellipse.localise(g);
   ASSERT_TRUE(place.has_value());
-  // (a^2 + b^2 - 2 D) loses 1e-7 of its digits: t to 1e-9 or so.
+  // (a^2 + b^2 - 2 D) loses digits to 1e-7, so t is known to about 1e-9.
   EXPECT_NEAR(place->t, 0.3, 1e-8);
 }
 
@@ -25,11 +25,11 @@ TEST(CurveHardCases, EllipseAHundredTimesLongerThanWide) {
   EXPECT_NEAR(ellipse.geometry(0.0).kappa, 100.0, 1e-12);
   for (const double t : {0.0, 1e-3, 0.5, 1.5, 3.1}) {
     const Vec2 normal = left_of(ellipse.derivatives(t).first).normalized();
-    // 0.003 inside: less than the vertex's radius of curvature 0.01.
+    // 0.003 inside: less than the vertex's radius of curvature, 0.01.
     const FootPoint foot = ellipse.foot_point(ellipse.position(t) + 0.003 * normal);
     EXPECT_NEAR(std::abs(foot.distance), 0.003, 1e-12);
   }
-  // The full turn of a/b = 100: complete elliptic integral, 400.1098329722651.
+  // The circumference for a/b = 100, by the complete elliptic integral: 400.1098329722651.
   EXPECT_NEAR(ellipse.arc_length(-kPi, kPi), 400.1098329722651, 1e-9);
 }
 
@@ -65,7 +65,8 @@ TEST(CurveHardCases, NearACuspCurvatureGrowsWithoutBoundAndStaysOrdered) {
 }
 
 TEST(CurveHardCases, BothSidesOfASplinesInflectionAreLocalised) {
-  // The slope is extreme there: the angle alone leaves t to the root of rounding, or unreachable.
+  // The slope is extreme there: the angle alone determines t to the square root of rounding, or not
+  // at all.
   const CubicSpline spline{1.1, 0.3, 0.8};
   const double inflection = std::sqrt(0.8 / 3.3);
   for (const double offset : {0.0, 1e-15, 1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3}) {
@@ -77,7 +78,8 @@ TEST(CurveHardCases, BothSidesOfASplinesInflectionAreLocalised) {
       EXPECT_TRUE(place->along_increasing_t);
     }
   }
-  // A slope beyond the extreme one, as noise makes it: the inflection next to it.
+  // A slope beyond the extreme one, as noise can produce it: the result is the inflection next to
+  // it.
   LocalGeometry beyond = spline.geometry(inflection);
   beyond.tangent_angle -= 1e-4;
   const auto place = spline.localise(beyond);
@@ -90,16 +92,17 @@ TEST(CurveHardCases, EveryLocalisationNextToACusp) {
   for (const double t : {1e-3, -1e-3, 1e-6, -1e-9, 1e-12, -1e-15}) {
     const auto place = cusp.localise(cusp.geometry(t));
     ASSERT_TRUE(place.has_value());
-    EXPECT_NEAR(place->t / t, 1.0, 1e-14);  // by kappa: the slope differs from b by 1.8 t only
+    // By kappa, because the slope differs from b by 1.8 t only.
+    EXPECT_NEAR(place->t / t, 1.0, 1e-14);
     EXPECT_TRUE(place->along_increasing_t);
   }
 }
 
 TEST(CurveHardCases, ArcsOfVerySlenderEllipsesEnd) {
-  // Rounding of t next to t = pi moves the speed by more than any relative tolerance.
+  // The rounding of t next to t = pi changes the speed by more than any relative tolerance.
   for (const double ratio : {1e2, 1e6, 1e10, 1e15}) {
     const Ellipse ellipse{ratio, 1.0};
-    // The integral of |sin t|; the width adds less than (3 + ln(a/b)) / (a/b)^2 on either side of t
+    // The integral of |sin t|. The width adds less than (3 + ln(a/b)) / (a/b)^2 on either side of t
     // = pi.
     EXPECT_NEAR(ellipse.arc_length(0.1, 6.0) / ratio, 2.0 + std::cos(0.1) + std::cos(6.0),
                 2.0 * (3.0 + std::log(ratio)) / (ratio * ratio) + 2e-15);

@@ -1,4 +1,4 @@
-// Foot points where they are hard: evolutes, far away, at every size, next to a cusp, slender
+// Foot points in hard cases: on evolutes, far away, at every size, next to a cusp, on slender
 // ellipses.
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 TEST(FootPointHardCases, CentresOfCurvature) {
-  // The squared distance is flat to third order (fourth at a vertex): t is known to a cube (fourth)
-  // root of rounding, the distance to rounding.
+  // The squared distance is flat to third order (fourth at a vertex): t is known to the cube
+  // (fourth) root of rounding, the distance to rounding.
   for (const CurveClass curve_class : kCurveClasses) {
     if (curve_class == CurveClass::Line) {
       continue;
@@ -42,7 +42,7 @@ TEST(FootPointHardCases, VerticesSeenFromTheCuspOfTheEvolute) {
   EXPECT_NEAR((Ellipse{2.0, 1.0}).foot_point({1.5, 0.0}).distance, 0.5, 1e-15);
   EXPECT_NEAR(Parabola{1.0}.foot_point({2.0, 0.0}).distance, -2.0, 1e-15);
   EXPECT_NEAR((Hyperbola{3.0, 4.0}).foot_point({25.0 / 3.0, 0.0}).distance, -16.0 / 3.0, 1e-14);
-  // And just off the axis there, where the root is nearly triple.
+  // And just off the axis, where the root is nearly triple.
   for (const double y : {1e-3, 1e-9, 1e-15, 1e-300}) {
     EXPECT_NEAR((Ellipse{2.0, 1.0}).foot_point({1.5, y}).distance, 0.5, y + 1e-15);
     EXPECT_NEAR(Parabola{1.0}.foot_point({2.0, -y}).distance, -2.0, y + 1e-15);
@@ -56,11 +56,11 @@ TEST(FootPointHardCases, SlenderAndRoundEllipses) {
     for (const double t : {0.0, 1e-9, 1e-3, 0.5, 1.5, 0.5 * kPi, 3.1, -2.0, -1e-5}) {
       const CurveDerivatives d = ellipse.derivatives(t);
       const Vec2 normal = left_of(d.first).normalized();
-      // Inside by half the sharpest radius, and outside by as much and by far more.
+      // Inside by half the smallest radius; outside by as much, and by far more.
       const double radius = 1.0 / ratio;
       for (const double offset : {0.5 * radius, -0.5 * radius, -1.0, -1e3}) {
         const FootPoint foot = ellipse.foot_point(d.position + offset * normal);
-        // The rounding of the point itself, and that of sin t next to t = pi.
+        // The rounding of the point itself, and of sin t next to t = pi.
         const double rounding = 8.0 * kEpsilon * (ratio + std::abs(offset));
         EXPECT_NEAR(foot.distance, offset, rounding) << ratio << " " << t;
         EXPECT_LE((foot.position - d.position).norm(), 2.0 * rounding) << ratio << " " << t;
@@ -97,7 +97,7 @@ TEST(FootPointHardCases, FarAwayPoints) {
 TEST(FootPointHardCases, AnywhereNextToACusp) {
   const SemiCubicalParabola cusp{1.2, -0.8};
   for (const double t : {1e-2, 1e-4, 1e-6, -1e-3, -1e-5}) {
-    // Half the radius to the left, which is the outside: the arm's own foot comes back.
+    // Half the radius to the left, which is outside: the foot point is on the same arm.
     const CurveDerivatives d = cusp.derivatives(t);
     const double offset = 0.5 / cusp.geometry(t).kappa;
     const Vec2 outside = d.position - offset * left_of(d.first).normalized();
@@ -120,8 +120,8 @@ TEST(FootPointHardCases, SplineThatIsAllButACuspHasTheFeetOfTheCusp) {
       const Vec2 point = 0.3 * Vec2(std::cos(angle), std::sin(angle));
       const FootPoint foot = spline.foot_point(point);
       const FootPoint limit = cusp.foot_point(point);
-      // The curves are |c t| apart in y, t being that of a foot, and a distance moves no more than
-      // its curve.
+      // The curves are |c t| apart in y, with t of a foot point, and a distance changes by no more
+      // than the curve moves.
       const double apart = std::abs(c) * std::max(std::abs(foot.t), std::abs(limit.t));
       EXPECT_NEAR(std::abs(foot.distance), std::abs(limit.distance), apart + 1e-15)
           << c << " " << angle;

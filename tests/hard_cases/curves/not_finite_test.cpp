@@ -1,5 +1,5 @@
-// NaN, infinities and numbers at the ends of the range: each has a defined outcome, and none is
-// NaN.
+// NaN, infinities and numbers at the ends of the range: each must have a defined outcome, and none
+// may be NaN.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ TEST_P(NotFinite, ExtremeGeometryIsAPlaceOrNone) {
 TEST_P(NotFinite, GeometryFarOutIsStillANumber) {
   for (const double t : {1e3, -1e6, 1e20, -1e60}) {
     if (GetParam() == CurveClass::Hyperbola) {
-      continue;  // exp(t): below
+      continue;  // exp(t); see below
     }
     const LocalGeometry g = geometry(curve_, t);
     EXPECT_TRUE(is_finite(g)) << t;

@@ -1,4 +1,4 @@
-// The hard cases of the invariants: each has a name and a defined outcome, and none gives a NaN.
+// Hard cases of the invariants: each has a name and a defined outcome, and none may be NaN.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -63,7 +63,7 @@ TEST(EqualCurvatures, LeaveTheLineUndeterminedWithInfiniteVariance) {
 TEST(EqualCurvatures, WithinTheirNoiseAreAlsoUndetermined) {
   auto points = points_of(CurveClass::Ellipse, {2.0, 1.999, 0.0}, {0.1, 0.9, 1.7, 2.5});
   for (MeasuredGeometry& point : points) {
-    point.covariance.diagonal() << 1e-8, 1e-4, 1e-2;  // kappa to 2 %, its range is 0.2 %
+    point.covariance.diagonal() << 1e-8, 1e-4, 1e-2;  // kappa to 2 %; its range is 0.2 %
   }
   EXPECT_EQ(fit_conic_line(points).status, InvariantStatus::PointsTooAlike);
 }
@@ -86,7 +86,7 @@ TEST(NearCircle, AxesWithin1e7OfEachOtherAreToldApart) {
   ASSERT_EQ(line.status, InvariantStatus::Ok);
   const ConicParameters ellipse = ellipse_parameters(line.ic1, line.ic2, line.covariance);
   ASSERT_EQ(ellipse.status, InvariantStatus::Ok);
-  // kappa varies by 3e-7: of a - b about eight digits less than of a double's sixteen remain.
+  // kappa varies by 3e-7, so a - b keeps about eight of a double's sixteen digits.
   EXPECT_NEAR(ellipse.a - ellipse.b, 1e-7, 5e-9);
   EXPECT_GT(ellipse.covariance(0, 0), 0.0);
 }
@@ -102,7 +102,8 @@ TEST(FlatEllipse, OfOneToAHundredKeepsItsDigits) {
 
 TEST(EllipseParabolaHyperbola, MeetAtIc1ZeroWithinItsUncertainty) {
   // From an ellipse through the parabola to a hyperbola: conics of focal parameter 1 whose far
-  // vertex runs away. Ic1 = -+1/(ab)^(2/3) goes through zero and its sign is the class.
+  // vertex goes to infinity. Ic1 = -+1/(ab)^(2/3) passes through zero; its sign determines the
+  // class.
   for (const double a : {1e2, 1e4, 1e6}) {
     const double b = std::sqrt(a);
     const double t = 1.0 / b;
@@ -122,7 +123,7 @@ TEST(EllipseParabolaHyperbola, MeetAtIc1ZeroWithinItsUncertainty) {
 }
 
 TEST(Vertices, HaveAnIpOfSecondOrderError) {
-  // Only vertices: kappa_s = 0 at each, and the first-order variance of Ip from kappa_s vanishes.
+  // Vertices only: kappa_s = 0 at each, so the first-order variance of Ip from kappa_s vanishes.
   auto points = points_of(CurveClass::Ellipse, {2.0, 1.0, 0.0}, {0.0, 0.5 * kPi, kPi, 1.5 * kPi});
   for (MeasuredGeometry& point : points) {
     point.covariance.diagonal() << 1e-8, 1e-8, 1e-2;
@@ -131,7 +132,7 @@ TEST(Vertices, HaveAnIpOfSecondOrderError) {
   ASSERT_EQ(line.status, InvariantStatus::Ok);
   EXPECT_TRUE(std::isfinite(line.chi2));
   EXPECT_NEAR(line.ic1, std::pow(2.0, -2.0 / 3.0), 4.0 * std::sqrt(line.covariance(0, 0)));
-  // First order alone would claim an error of about 1e-4.
+  // First order alone would give an error of about 1e-4.
   EXPECT_GT(std::sqrt(line.covariance(1, 1)), 1e-3);
 }
 
@@ -145,7 +146,7 @@ TEST(Inflection, IsNoConicAndSaysSo) {
   points[1].kappa = -1.0;
   EXPECT_EQ(fit_conic_line(points).status, InvariantStatus::SignChange);
   EXPECT_EQ(conic_invariants(points[0], points[1]).status, InvariantStatus::SignChange);
-  points[1].patch = 1;  // another patch may run the other way
+  points[1].patch = 1;  // another patch may run in the other direction
   EXPECT_NE(fit_conic_line(points).status, InvariantStatus::SignChange);
 }
 
@@ -187,7 +188,8 @@ TEST(VerticalCanonicalTangent, OfASplineIsNoSingularity) {
   EXPECT_LT((fit.parameters - truth).norm(), 1e-8);
 }
 
-/// Two points of a curve of the class whose tangents differ by `rotation`; the other's t is sought.
+/// Two points of a curve of the class whose tangents differ by `rotation`. Searches for t of the
+/// second.
 std::vector<MeasuredGeometry> pair_with_rotation(CurveClass curve_class, const Eigen::Vector3d& p,
                                                  double t, double low, double high,
                                                  double rotation) {
@@ -204,7 +206,7 @@ std::vector<MeasuredGeometry> pair_with_rotation(CurveClass curve_class, const E
 }
 
 TEST(RotationOfAQuarterTurn, IsNoSingularityOfTheCubicalPair) {
-  const Eigen::Vector3d truth(1.5, -1.0, 0.0);  // slopes from -1 up
+  const Eigen::Vector3d truth(1.5, -1.0, 0.0);  // slopes from -1 upwards
   for (const double rotation : {0.5 * kPi, -0.5 * kPi}) {
     const auto points =
         pair_with_rotation(CurveClass::CubicalParabola, truth, 0.1, 0.2, 3.0, rotation);
@@ -229,7 +231,8 @@ TEST(RotationOfAQuarterTurn, IsNoSingularityOfTheSemiCubicalPair) {
 }
 
 TEST(ParallelTangents, OfSymmetricPointsLeaveTheCubicalPairUndetermined) {
-  // t and -t of a cubical parabola have the same tangent, kappa^2 and kappa_s: one point twice.
+  // t and -t of a cubical parabola have the same tangent, kappa^2 and kappa_s: the same point
+  // twice.
   const auto points = points_of(CurveClass::CubicalParabola, {1.5, -1.0, 0.0}, {0.4, -0.4});
   EXPECT_EQ(cubical_parabola_pair(points[0], points[1]).status, InvariantStatus::PointsTooAlike);
 }
@@ -246,7 +249,7 @@ TEST(RepeatedPoints, AreUndeterminedNotWrong) {
           fit_cubic_spline(points)}) {
       EXPECT_TRUE(finite(fit) || fit.status != InvariantStatus::Ok);
       if (fit.status ==
-          InvariantStatus::Ok) {  // one of the curves through a point: no width is known
+          InvariantStatus::Ok) {  // one of many curves through a point: its width is not known
         EXPECT_GT(fit.covariance.diagonal().maxCoeff(), 1.0);
       }
     }
@@ -270,7 +273,7 @@ TEST(SplineOfVanishingC, IsASemiCubicalParabolaAndItsWidthOfCSaysSo) {
 }
 
 TEST(SplineOfVanishingA, IsAParabolaAndTheFitStaysFinite) {
-  // a -> 0: (t^2, b t^2 + c t) is a parabola; the spline's own frame loses its meaning.
+  // a -> 0: (t^2, b t^2 + c t) is a parabola, and the spline's own frame loses its meaning.
   for (const double a : {1e-3, 1e-6, 1e-9}) {
     const auto points =
         points_of(CurveClass::CubicSpline, {a, 0.4, 1.2}, {0.7, -0.5, 1.0, -0.9, 0.3});

@@ -1,4 +1,5 @@
-// What real samples do: each case has a named outcome, a value or a reason, and never NaN.
+// Hard cases of local estimates, as real samples contain them: each has a defined outcome, a value
+// or a reason, and never NaN.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -109,7 +110,7 @@ TEST_P(EveryEstimator, VerticalTangentInTheWorld) {
     arc.world_T_curve.theta = 0.5 * kPi * quarter - arc.centre_t;
     const LocalResult result = run(test::samples_of(arc, 111));
     ASSERT_EQ(result.status, LocalStatus::Ok);
-    // The bias of a window that turns by 1.1 rad, the same in every direction: at most 5 %.
+    // The bias of a window that turns by 1.1 rad: at most 5 %, the same in every direction.
     EXPECT_NEAR(result.estimate.kappa, 50.0, 2.5);
   }
 }
@@ -128,7 +129,7 @@ TEST_P(EveryEstimator, MoreThanHalfACircle) {
   const LocalResult result = run(test::samples_of(arc, 111));
   if (GetParam() == EstimatorKind::Jet) {
     EXPECT_EQ(result.status, LocalStatus::DoublesBack);
-  } else {  // five points, or windows of 75, see less of it
+  } else {  // estimators of five points, or of windows of 75, see less of it
     EXPECT_EQ(result.status, LocalStatus::Ok);
     EXPECT_GT(result.estimate.kappa, 25.0);
   }
@@ -258,17 +259,17 @@ TEST(SpikesHardCases, ACornerIsNoSpike) {
 }
 
 struct SpikedArc {
-  double spike_m;   ///< each coordinate of a spike is off by up to so much
+  double spike_m;   ///< maximum error of each coordinate of a spike
   double turn_rad;  ///< of the whole patch of 22 mm
 };
 
-/// A patch of 22 mm, a third of its samples off.
+/// A patch of 22 mm with a third of its samples displaced.
 class AThirdOfTheSamples : public testing::TestWithParam<SpikedArc> {
  protected:
   static constexpr double kStep_m = 2e-4;
   static constexpr int kSamples = 111;
 
-  /// An arc that starts in the origin along x and bends left.
+  /// An arc that starts at the origin along x and bends to the left.
   Vec2 place(int i) const {
     const double s = kStep_m * i;
     const double kappa = GetParam().turn_rad / (kStep_m * (kSamples - 1));
@@ -283,7 +284,7 @@ class AThirdOfTheSamples : public testing::TestWithParam<SpikedArc> {
                        : std::abs(p.y());
   }
 
-  /// Samples beyond five sigma that are not among those dropped.
+  /// Samples beyond five sigma that were not dropped.
   std::size_t far_off(std::span<const Vec2> samples, std::span<const std::size_t> dropped) const {
     std::size_t far = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -323,15 +324,16 @@ TEST_P(AThirdOfTheSamples, AndNoNoiseStated) {
   }
   std::cout << "spikes " << spikes << ", left " << left << ", good samples lost " << lost << "\n";
   EXPECT_GT(spikes, 30U * kTrials);
-  // A run of eight neighbours is spared as form: one patch in a hundred has one, a quarter of whose
-  // spikes it is; and those within the noise's reach stay.
+  // A run of eight neighbouring spikes is kept as form: one patch in a hundred has one, a quarter
+  // of its spikes. Spikes within the noise remain as well.
   EXPECT_LT(100 * left, spikes);
-  // Those lost lie on the curve by chance, out of their order, or next to spikes at an end.
+  // The good samples lost are next to spikes at an end, or near spikes that lie on the curve by
+  // chance.
   EXPECT_LT(lost, 3U * kTrials);
 }
 
-// Of 11 mm and more they passed for noise of the line's own length; where the patch turns, for
-// noise that asks for blocks which no parabola follows.
+// Spikes of 11 mm and more were taken for noise as large as the line; in patches that turn, for
+// noise that needs blocks which no parabola follows.
 INSTANTIATE_TEST_SUITE_P(SpikesHardCases, AThirdOfTheSamples,
                          testing::Values(SpikedArc{0.005, 0.0}, SpikedArc{0.011, 0.0},
                                          SpikedArc{0.05, 0.0}, SpikedArc{0.002, 1.7},
@@ -374,10 +376,10 @@ TEST(SpikesHardCases, ALeastMedianParabolaShowsTheNoiseOfHalfASpikedBlock) {
     }
     std::nth_element(scales.begin(), scales.begin() + 100, scales.end());
     std::cout << count << " samples: median scale " << scales[100] << " sigma\n";
-    // The best of so many parabolas is nearer than the true one: the factor for few samples takes
-    // that back within a tenth, as far as one number for all lengths can.
+    // The best of so many parabolas is closer than the true one. The factor for few samples
+    // corrects that to within a tenth, as far as one number for all lengths can.
     EXPECT_NEAR(scales[100], 1.0, 0.2) << count;
-    // Two of a third of spikes may happen to lie on a parabola with a good sample.
+    // Two of a third of spikes may lie on a parabola with a good sample by chance.
     EXPECT_LE(bent, 10) << count;
   }
 }
@@ -389,7 +391,7 @@ TEST(SpikesHardCases, FewSamples) {
 
 TEST(TipRadiusHardCases, HollowTooNarrowForTheTip) {
   LocalEstimate surface;
-  surface.kappa = 100.0;  // 10 mm, hollow to the left
+  surface.kappa = 100.0;  // 10 mm, concave on the left
   EXPECT_TRUE(tip_from_surface(surface, 0.009).has_value());
   EXPECT_FALSE(tip_from_surface(surface, 0.010).has_value());
   EXPECT_FALSE(tip_from_surface(surface, 0.011).has_value());

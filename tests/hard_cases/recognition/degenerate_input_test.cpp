@@ -1,5 +1,5 @@
-// Inputs that hold no curve, or one at the limits of a double: certain of nothing, probabilities
-// still probabilities.
+// Inputs that contain no curve, or a curve at the limits of a double: no answer may be certain, and
+// probabilities must remain valid.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@
 namespace palpate {
 namespace {
 
-/// Every position a patch of its own, as a probe touches that is lifted each time.
+/// Every position is a patch of its own: the probe is lifted each time.
 Recognition touched_apart(const std::vector<Vec2>& positions, double sigma_m) {
   Recognizer recognizer;
   PatchContext context;
@@ -48,7 +48,7 @@ void expect_certain_of_nothing(const Recognition& answer, const std::vector<Vec2
   EXPECT_NE(answer.status, RecognitionStatus::Recognized);
 }
 
-/// 111 samples over a quarter of an ellipse with a = size about a place, by their formula.
+/// 111 samples over a quarter of an ellipse with a = size around `about`, by formula.
 std::vector<Vec2> quarter_of_ellipse(double size, const Vec2& about) {
   std::vector<Vec2> positions;
   for (int i = 0; i < 111; ++i) {
@@ -58,7 +58,7 @@ std::vector<Vec2> quarter_of_ellipse(double size, const Vec2& about) {
   return positions;
 }
 
-/// Noise stated: usual, far below and far above everything; 0 = not stated. [m]
+/// Stated noise: usual, far too small and far too large; 0 = not stated. [m]
 constexpr double kStated[] = {2e-5, 1e-15, 1e-9, 1e3, 0.0};
 
 TEST(DegenerateInput, NineTouchesOfOnePlaceAreNoCurve) {
@@ -151,7 +151,7 @@ TEST(DegenerateInput, IdenticalCollinearSteps) {
   }
 }
 
-// Every sample of the last patch may be set aside as a spike, which leaves a patch of none.
+// All samples of the last patch may be set aside as spikes, which leaves an empty patch.
 TEST(DegenerateInput, APatchOfSpikesOnly) {
   const std::vector<Vec2> good = quarter_of_ellipse(0.025, {0.1, -0.03});
   for (const std::size_t count : {1U, 2U, 3U}) {
@@ -205,8 +205,8 @@ TEST(DegenerateInput, WhatIsNotFiniteIsRefusedAndSaid) {
   EXPECT_EQ(answer.sample_count, 0U);
 }
 
-// A probe at rest far from the origin: samples scatter by more than the tip, no class has evidence,
-// and neither has a free form.
+// A probe at rest far from the origin: the samples scatter by more than the tip, and neither a
+// class nor a free form has evidence.
 TEST(DegenerateInput, ARestingProbeFarAwayIsNoCurve) {
   auto rng = test::test_rng();
   std::normal_distribution<double> scatter_m(0.0, 4.5e-6);

@@ -1,4 +1,5 @@
-// Each input that fuzzing has kept, once: a finding aborts with the invariant that is broken.
+// Runs each input of the fuzzing corpus once. A failure aborts and names the invariant that is
+// broken.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -19,7 +20,8 @@ TEST(FuzzCorpus, OfTheRecognizerBreaksNoInvariant) {
       std::filesystem::path(PALPATE_TEST_DATA).parent_path() / "fuzz/corpus/recognizer";
   int inputs = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    std::cout << entry.path().filename().string() << std::endl;  // the last one is the finding
+    // If it aborts, the last name printed is the input.
+    std::cout << entry.path().filename().string() << std::endl;
     std::ifstream file(entry.path(), std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), {});
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());

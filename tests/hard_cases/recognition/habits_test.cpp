@@ -1,5 +1,5 @@
-// What probes do beside stroking once at an even speed: hold a touch, stand still, go there and
-// back, turn round and round, and give few samples beside a cusp.
+// Habits of probes other than one even stroke: holding a touch, standing still, going back and
+// forth, going round several times, and few samples near a cusp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kNoiseOfHabit = 1e-5;  // [m]
 
-/// An ellipse some centimetres across, from a random place on.
+/// An ellipse a few centimetres across, touched from a random place on.
 struct Part {
   double a, b, start;
 
@@ -42,7 +42,7 @@ struct Tally {
   std::size_t dwelling = 0;
 };
 
-/// Answers to so many scenes of ellipses, the noise stated and not.
+/// Answers to ellipse scenes, with the noise stated and not stated.
 Tally answers_to(const std::function<Places(const Part&, std::mt19937_64&)>& touched) {
   constexpr int kScenes = 30;
   std::mt19937_64 rng(11);
@@ -69,7 +69,8 @@ Tally answers_to(const std::function<Places(const Part&, std::mt19937_64&)>& tou
     tally.wrong += recognized && !ellipse ? 1 : 0;
     tally.dwelling = std::max(tally.dwelling, answer.dwelling_count);
   }
-  // Each is determined: one in twenty may be left in doubt, of 30 more than 6 once in 3,000 times.
+  // Each scene is determined. One in twenty may remain ambiguous; more than 6 of 30 occur once in
+  // 3,000 runs.
   EXPECT_GE(tally.right, 24);
   EXPECT_EQ(tally.wrong, 0);
   return tally;
@@ -127,8 +128,8 @@ TEST(Habits, AFullTurnThreeTimes) {
 }
 
 TEST(Habits, FewSamplesBesideACusp) {
-  // The spline has a semi-cubical parabola as its limit. Where the search came to the one and not
-  // to the other, its probability was 1.
+  // The spline has a semi-cubical parabola as its limit. When the search reached only one of them,
+  // its probability was 1.
   std::ifstream in(std::string(PALPATE_TEST_DATA) + "/hostile/misleading_cusp_58.csv");
   ASSERT_TRUE(in.good());
   Recognizer recognizer;

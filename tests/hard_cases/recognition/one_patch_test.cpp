@@ -1,4 +1,4 @@
-// What a single patch can tell: data that are precise enough buy certainty.
+// What a single patch can determine: precise data must make the answer certain.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,12 +10,12 @@
 namespace palpate {
 namespace {
 
-/// 111 samples over `turn_rad` of the tangent from the vertex side `from_rad` on, of a parabola of
-/// a = 20 mm; noise in units of the patch's half extent.
+/// 111 samples of a parabola of a = 20 mm, over `turn_rad` of the tangent from `from_rad` (0 = the
+/// vertex). Noise in units of the patch's half extent.
 test::Scene patch_of_parabola(double from_rad, double turn_rad, double sigma_over_size,
                               std::mt19937_64& rng) {
   const double a = 0.02;
-  // (a t^2, 2 a t): the tangent is turned by atan(t) from the vertex.
+  // (a t^2, 2 a t): the tangent is turned by atan(t) from that at the vertex.
   const double t0 = std::tan(from_rad);
   const double t1 = std::tan(from_rad + turn_rad);
   const Curve parabola = make_curve(CurveClass::Parabola, {a, 0.0, 0.0}).value();
@@ -32,7 +32,7 @@ TEST(OnePatch, SixtyDegreesOfAParabolaAtAHundredThousandthAreRecognized) {
   constexpr int kPatches = 20;
   int recognised = 0;
   for (int i = 0; i < kPatches; ++i) {
-    // From symmetric about the vertex to one arm.
+    // From symmetric about the vertex to one arm only.
     const double from = -0.5 * kTurn + 0.5 * kTurn * i / (kPatches - 1);
     const test::Scene scene = patch_of_parabola(from, kTurn, 1e-5, rng);
     const Recognition answer = test::recognise(scene, scene.sigma_m);
@@ -46,11 +46,11 @@ TEST(OnePatch, SixtyDegreesOfAParabolaAtAHundredThousandthAreRecognized) {
       EXPECT_NEAR(answer.shape.values[0], 0.02, 5.0 * std::sqrt(answer.covariance(0, 0))) << i;
     }
   }
-  // By chance one in twenty noises has another conic two standard deviations away.
+  // By chance, noise puts another conic at two standard deviations one time in twenty.
   EXPECT_GE(recognised, kPatches - 2);
 }
 
-// Certainty grows with the precision of the data, without a bound below 1.
+// Certainty grows with the precision of the data, without a limit below 1.
 TEST(OnePatch, CertaintyOfAParabolaGrowsWithPrecision) {
   constexpr int kPatches = 20;
   double before = 0.0;
@@ -65,7 +65,8 @@ TEST(OnePatch, CertaintyOfAParabolaGrowsWithPrecision) {
       doubt += (1.0 - parabola->probability) / kPatches;
     }
     if (before > 0.0) {
-      // The Occam factor of the rivals' extra parameter falls with the noise: by ten a step.
+      // The Occam factor of the rivals' extra parameter is proportional to the noise: a factor of
+      // ten per step.
       EXPECT_LT(doubt, 0.3 * before) << level;
     }
     before = doubt;

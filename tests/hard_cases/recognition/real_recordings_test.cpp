@@ -1,4 +1,5 @@
-// Real mirrors: what they are designed to be, and form error that no white noise explains.
+// Real mirrors: no answer may be certain of another class than the design's, and form error that
+// white noise cannot explain must be reported.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -52,9 +53,9 @@ TEST(RealRecordings, FormErrorIsSeenAndNoMirrorIsCertainlyAnotherClass) {
 }
 
 TEST(RealRecordings, PoleCurvatureOfTheDesignIsMeasured) {
-  // Curvature at the pole is sin(theta) (1/p + 1/q) / 2; the profiles are nearly circular about it,
-  // and their middle window's kappa agrees with it to a few per cent (the pole's place is not
-  // given).
+  // The curvature at the pole is sin(theta) (1/p + 1/q) / 2. The profiles are nearly circular
+  // around it, and kappa of their middle window agrees to a few per cent (the position of the pole
+  // is not given).
   struct Design {
     const char* name;
     double p, q, theta;

@@ -1,4 +1,4 @@
-// Hard cases end to end, each with its defined outcome.
+// Hard cases of the whole recognition, each with a defined outcome.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace {
 
 using Patch = std::vector<ContactSample>;
 
-/// 111 samples 0.2 mm apart on the 25 x 17.5 mm ellipse from parameter t0, sigma 0.05 mm; `outside`
-/// [m] moves them along the outward normal (tip centres).
+/// 111 samples 0.2 mm apart on the 25 x 17.5 mm ellipse from parameter t0, with noise of 0.05 mm.
+/// `outside` [m] moves them along the outward normal (tip centres).
 Patch elliptic_arc(double t0, std::mt19937_64& rng, double sigma_m = 5e-5, double outside = 0.0) {
   std::normal_distribution<double> noise(0.0, 5e-5);
   Patch patch;
@@ -47,7 +47,7 @@ void expect_the_ellipse(const Recognition& answer) {
   // Five standard deviations of the published covariance.
   EXPECT_NEAR(answer.shape.values[0], 0.025, 5.0 * std::sqrt(answer.covariance(0, 0)));
   EXPECT_NEAR(answer.shape.values[1], 0.0175, 5.0 * std::sqrt(answer.covariance(1, 1)));
-  // The bound for two such patches: about 0.06 % and 0.2 %.
+  // The bound for two such patches is about 0.06 % and 0.2 %.
   EXPECT_LT(std::sqrt(answer.covariance(0, 0)), 0.001 * 0.025);
   EXPECT_LT(std::sqrt(answer.covariance(1, 1)), 0.004 * 0.0175);
 }
@@ -60,9 +60,9 @@ TEST(RecognitionHardCases, PaperScene) {
   EXPECT_EQ(answer.sample_count, 222U);
 }
 
-// Without noise a parabola leaves a chi-square of 8 on this patch and a semi-cubical parabola of
-// 0.6: no posterior is sure of the ellipse, nor of anything else, but by a noise of one in twenty;
-// and none gives the truth less than a thousandth.
+// Without noise a parabola leaves a chi-square of 8 on this patch, and a semi-cubical parabola 0.6.
+// So no posterior is sure of the ellipse, nor of anything else, except by chance one time in
+// twenty; and none gives the truth less than a thousandth.
 TEST(RecognitionHardCases, OnePatchOfItCannotTell) {
   std::mt19937_64 rng = test::test_rng();
   constexpr int kPatches = 40;
@@ -78,19 +78,20 @@ TEST(RecognitionHardCases, OnePatchOfItCannotTell) {
       EXPECT_EQ(answer.shape.curve_class, CurveClass::Ellipse) << i;
     }
   }
-  EXPECT_LE(recognised, 6);  // 2 expected of 40; more with a probability of 0.3 %
+  EXPECT_LE(recognised, 6);  // 2 of 40 expected; more than 6 with a probability of 0.3 %
 }
 
 TEST(RecognitionHardCases, UnknownNoiseIsEstimated) {
   std::mt19937_64 rng = test::test_rng();
   const Recognition answer = recognise({elliptic_arc(0.3, rng, 0.0), elliptic_arc(2.5, rng, 0.0)});
   expect_the_ellipse(answer);
-  // Relative standard deviation of such an estimate: 1 / sqrt(2 * 217) = 5 %.
+  // The relative standard deviation of such an estimate is 1 / sqrt(2 * 217) = 5 %.
   EXPECT_NEAR(answer.sigma_m / 5e-5, 1.0, 0.2);
 }
 
-// Radius of curvature 0.03 mm at the bend, samples 0.27 mm apart: what tells c are the few samples
-// around it. Its sign they tell by 0.05 mm, the width of the bend between two of them.
+// The radius of curvature at the bend is 0.03 mm, the sample spacing 0.27 mm, so only the few
+// samples around the bend determine c. They determine its sign by the width of the bend, 0.05 mm
+// between two of them.
 TEST(RecognitionHardCases, ABendSharperThanTheSpacingIsNoSpike) {
   const double size = 0.025;
   const Curve spline =
@@ -111,20 +112,20 @@ TEST(RecognitionHardCases, ABendSharperThanTheSpacingIsNoSpike) {
         continue;
       }
       ++recognised;
-      // With the bend's samples taken for spikes c was beside the truth by more than ten.
+      // When samples of the bend were taken for spikes, c was wrong by more than ten deviations.
       const Eigen::VectorXd error = test::error_of(answer.hypotheses.front(), scene);
       EXPECT_LT(std::abs(error[2]), 5.0 * std::sqrt(answer.covariance(2, 2)))
           << sigma_m << " " << i;
     }
-    // Where the width is ten deviations and more; at two of them either sign may fit better.
+    // Where the width is ten deviations or more; at two of them either sign may fit better.
     if (sigma_m < 1e-5) {
       EXPECT_EQ(recognised, 20) << sigma_m;
     }
   }
 }
 
-// A patch that ends in a spline's bend: feet followed from the reduced points ended on its other
-// arm, in one direction of travel.
+// A patch that ends in the bend of a spline. In one direction of travel, foot points that were
+// followed from the reduced points ended on the other arm.
 TEST(RecognitionHardCases, APatchMayEndInABend) {
   const Curve spline = make_curve(CurveClass::CubicSpline, {29.103, -0.12605, -0.10527}).value();
   std::mt19937_64 rng = test::test_rng();
@@ -142,7 +143,7 @@ TEST(RecognitionHardCases, APatchMayEndInABend) {
   }
 }
 
-// Neighbours of spikes are suspected with them; what the ellipse explains comes back.
+// Neighbours of spikes are suspected with them; those that the ellipse explains are taken back.
 TEST(RecognitionHardCases, SpikesCostNoMoreThanThemselves) {
   std::mt19937_64 rng = test::test_rng();
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -164,11 +165,11 @@ TEST(RecognitionHardCases, SpikesCostNoMoreThanThemselves) {
     set_aside += static_cast<int>(answer.outlier_count);
   }
   EXPECT_LE(set_aside, spikes);
-  EXPECT_GE(set_aside, 8 * spikes / 10);  // those that slide along the arc do no harm
+  EXPECT_GE(set_aside, 8 * spikes / 10);  // those that are displaced along the arc do no harm
 }
 
-// Some lie near the curve, but not where the stroke was then: taken back, they led every class
-// astray.
+// Some spikes are near the curve but out of order along the stroke. When they were taken back, they
+// misled every class.
 TEST(RecognitionHardCases, SpikesAlongTheCurve) {
   std::mt19937_64 rng = test::test_rng();
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -206,8 +207,8 @@ TEST(RecognitionHardCases, SpikesInAFifthOfTheSamples) {
     const Recognition answer = recognise(patches);
     EXPECT_GE(answer.outlier_count, spikes / 2) << fraction;
     if (fraction > 0.2) {
-      // At a third, runs of neighbouring spikes may survive: then nothing fits, and no other class
-      // is claimed for certain, nor that there is none.
+      // With a third of spikes, runs of neighbouring spikes may survive. Then nothing fits, but
+      // neither another class nor "none of them" is certain.
       EXPECT_TRUE(answer.status != RecognitionStatus::Recognized ||
                   answer.shape.curve_class == CurveClass::Ellipse);
       continue;
@@ -233,9 +234,8 @@ TEST(RecognitionHardCases, RoundTipsOutsideAndInside) {
       {elliptic_arc(0.3, rng, 5e-5, -0.002), elliptic_arc(2.5, rng, 5e-5, -0.002)}, hole));
 }
 
-// The offsets of an ellipse to its two sides fit a short arc alike; a part is rather touched from
-// outside.
-// Wrong no more often than the answers themselves say.
+// The offsets of an ellipse to either side fit a short arc equally well; a part is more likely to
+// be touched from outside. Answers must not be wrong more often than they state themselves.
 TEST(RecognitionHardCases, TipsWhoseSideIsNotToldAreTakenToBeOutsideButNeverForCertainInside) {
   std::mt19937_64 rng = test::test_rng();
   PatchContext context;
@@ -262,20 +262,21 @@ TEST(RecognitionHardCases, TipsWhoseSideIsNotToldAreTakenToBeOutsideButNeverForC
     wrong += right ? 0 : 1;
   }
   EXPECT_GT(recognised, kScenes / 2);
-  // More than four deviations of a count above what is stated comes about once in ten thousand
-  // runs.
+  // A count exceeds the stated one by four deviations about once in ten thousand runs.
   EXPECT_LE(wrong, stated + 4.0 * std::sqrt(stated)) << "of " << recognised;
 }
 
-// Samples of a closed stroke sorted by angle lie so unevenly that noise turns the directions along
-// which tips are taken off; the ellipse, nearer by six of chi-square, must not be all that is left.
+// Samples of a closed stroke sorted by angle are spaced so unevenly that noise turns the directions
+// in which tips are subtracted. The ellipse, whose chi-square is smaller by six, must not be the
+// only class left.
 TEST(RecognitionHardCases, ARingByATipIsNeverCertainlyAnEllipseForTheLobesOfItsNoise) {
   std::mt19937_64 rng = test::test_rng();
   constexpr double kRadius = 0.0525;
   constexpr double kTip = 0.00475;
   constexpr double kSigma = 2e-4;
   constexpr int kSamples = 286;
-  // The ellipse's two more parameters gain a chi-square of two degrees of freedom and this.
+  // The two additional parameters of the ellipse gain a chi-square of two degrees of freedom plus
+  // this.
   constexpr double kGain = 6.0;
   const double lobe = kSigma * std::sqrt(2.0 * kGain / kSamples);
   std::normal_distribution<double> noise(0.0, kSigma);
@@ -296,7 +297,8 @@ TEST(RecognitionHardCases, ARingByATipIsNeverCertainlyAnEllipseForTheLobesOfItsN
     for (const Hypothesis& hypothesis : recognise({patch}, context).hypotheses) {
       circle += hypothesis.shape.curve_class == CurveClass::Circle ? hypothesis.probability : 0.0;
     }
-    // The gain is beyond 60 in fewer than one of a million rings, and no prior prefers one ellipse.
+    // The gain exceeds 60 for fewer than one ring in a million, and no prior prefers one particular
+    // ellipse.
     EXPECT_GT(circle, std::exp(-0.5 * 60.0)) << ring;
   }
 }
@@ -321,12 +323,13 @@ TEST(RecognitionHardCases, ALineTouchedByTipsWhoseSideIsNotToldIsEitherOfTwo) {
     EXPECT_NEAR(told.world_T_curve.y, -0.002, 1e-5);
     told_and_not_recognised += told.status == RecognitionStatus::Recognized ? 0 : 1;
   }
-  // One noise in twenty leaves a class with a bend more than a twentieth; five of twenty do not.
+  // One noise in twenty leaves a class with a bend more than a twentieth; five of twenty do not
+  // occur.
   EXPECT_LE(other_doubts, 4);
   EXPECT_LE(told_and_not_recognised, 4);
 }
 
-// Near c = 0 a spline bends within a few samples: none of them is a spike.
+// Near c = 0 a spline bends within a few samples; none of them is a spike.
 TEST(RecognitionHardCases, ASharpBendIsNotEatenAwayAsSpikes) {
   for (const std::uint64_t seed : {24, 144, 889, 1392}) {
     std::mt19937_64 rng(seed);
@@ -405,7 +408,7 @@ TEST(RecognitionHardCases, GarbageNeverBecomesAnAnswer) {
     patch.insert(patch.begin() + 70, patch[70]);  // repeated
   }
   expect_the_ellipse(recognise(patches));
-  // Random points are no curve, and no NaN.
+  // Random points must not be a curve, and nothing may be NaN.
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   Patch chaos;
   for (int i = 0; i < 100; ++i) {
@@ -453,7 +456,7 @@ TEST(RecognitionHardCases, TheTreeAloneAnswersTheCleanScene) {
   }
   RecognizerOptions options;
   options.method = RecognitionMethod::Tree;
-  // Without noise the estimates' error is their bias, which no covariance tells.
+  // Without noise the error of the estimates is their bias, which no covariance contains.
   options.tree.relative_floor = 1e-2;
   const Recognition answer = recognise(patches, {}, options);
   EXPECT_FALSE(answer.decisions.empty());

@@ -1,5 +1,5 @@
-// Parts that look alike from several places, patches that say little, and parts that are not the
-// model.
+// Parts that look alike from several places, patches that determine little, and parts that are not
+// the model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,8 @@ TEST(SegmentMatchHardCases, ASymmetricPartIsAmbiguous) {
     const SegmentMatch match = match_segment(part, touched.patches);
     ASSERT_EQ(match.status, SegmentMatchStatus::Ambiguous) << points;
     EXPECT_EQ(match.doubt, SegmentMatchDoubt::SeveralPlacements);
-    // Once for every rotation, and a mirror axis across each segment lets the travel be reversed.
+    // One placement per rotation. Each segment also has a mirror axis, so the travel may be
+    // reversed.
     ASSERT_GE(match.placements.size(), static_cast<std::size_t>(points));
     for (int i = 0; i < points; ++i) {
       EXPECT_NEAR(match.placements[static_cast<std::size_t>(i)].probability,
@@ -35,7 +36,7 @@ TEST(SegmentMatchHardCases, ASymmetricPartIsAmbiguous) {
 }
 
 TEST(SegmentMatchHardCases, AHalfTurnSymmetricPartHasTwoPlacements) {
-  // Control points that go into one another by a half turn, and by no reflection.
+  // Control points that a half turn maps onto each other, but no reflection.
   const ClosedSpline part(
       {{0.04, 0.0}, {0.02, 0.035}, {-0.02, 0.015}, {-0.04, 0.0}, {-0.02, -0.035}, {0.02, -0.015}});
   auto rng = test::test_rng();
@@ -64,7 +65,7 @@ TEST(SegmentMatchHardCases, AShortPatchIsAmbiguousRatherThanWrong) {
   EXPECT_EQ(determined, 0);
 }
 
-/// The paper's part with each control point 3 mm off.
+/// The paper's part with each control point displaced by 3 mm.
 ClosedSpline other_part() {
   return ClosedSpline(
       {{0.033, 0.000}, {0.012, 0.031}, {-0.035, 0.022}, {-0.028, -0.021}, {0.007, -0.030}});
@@ -78,12 +79,12 @@ TEST(SegmentMatchHardCases, AnotherPartIsNoMatch) {
                                                   {{segment + 0.1, 0.045}}, 1e-5, 1e-5, rng);
     const SegmentMatch match = match_segment(part, touched.patches);
     EXPECT_EQ(match.status, SegmentMatchStatus::NoMatch) << segment;
-    EXPECT_FALSE(match.placements.empty());  // how badly
+    EXPECT_FALSE(match.placements.empty());  // they say how badly the part fits
   }
 }
 
-/// What the part leaves at its best placement of a stroke without noise, in the noise's units: the
-/// noncentrality of the test that the noise is to be told from.
+/// What the part leaves at its best placement of a stroke without noise, in units of the noise: the
+/// noncentrality of the test.
 double difference_of(const ClosedSpline& part, const Pose2& pose, const test::PartStroke& stroke,
                      double sigma_m, std::mt19937_64& rng) {
   const test::TouchedPart exact = test::touch(other_part(), pose, {stroke}, 0.0, sigma_m, rng);
@@ -91,12 +92,12 @@ double difference_of(const ClosedSpline& part, const Pose2& pose, const test::Pa
   return match.placements.empty() ? 0.0 : match.placements[0].chi2;
 }
 
-// A short stroke has hardly more shape than its place along the model can make up for. Where it
-// happens to fit elsewhere, no answer can know better; wherever it does not, the answer says so.
+// A short stroke has hardly more shape than its place along the model can compensate. If it happens
+// to fit elsewhere, no answer can know better; otherwise the answer must say that it does not fit.
 TEST(SegmentMatchHardCases, AShortStrokeOfAnotherPartFitsOnlyWhereNoiseHidesTheDifference) {
-  // What is left over is tested with 4 to 6 degrees of freedom at 1e-3, above 23: the test misses
-  // a difference of 100, whose chi-square has the mean 106 and the standard deviation 20, in 3
-  // strokes of 100,000.
+  // The rest is tested with 4 to 6 degrees of freedom at 1e-3, a threshold of 23. The test misses a
+  // difference of 100, whose chi-square has a mean of 106 and a standard deviation of 20, for 3
+  // strokes in 100,000.
   constexpr double kTold = 100.0;
   constexpr double kSigma_m = 1e-5;
   const ClosedSpline part = test::paper_part();
@@ -122,7 +123,7 @@ TEST(SegmentMatchHardCases, AShortStrokeOfAnotherPartFitsOnlyWhereNoiseHidesTheD
     }
   }
   if (!test::counts_tell()) return;
-  // Of both kinds there are some, or the test would say nothing.
+  // There must be some of both kinds, or the test says nothing.
   EXPECT_GE(told, 20);
   EXPECT_GE(hidden, 3);
 }
@@ -139,8 +140,8 @@ TEST(SegmentMatchHardCases, TheMirroredPartIsNoMatch) {
   }
 }
 
-/// Points of no part at all, beside which the noise they claim is nothing: scattered, a corner, a
-/// wave, of a thousandth to ten times the part's size.
+/// Points of no part at all, whose stated noise is negligible: scattered, a corner, a wave; of a
+/// thousandth to ten times the part's size.
 StoredPatch nonsense(std::mt19937_64& rng, int kind) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const double size_m = 0.05 * std::pow(10.0, 2.0 * uniform(rng));
@@ -186,7 +187,7 @@ TEST(SegmentMatchHardCases, AJointLiesAmongTheSamplesThatItParts) {
       for (std::size_t k = 0; k < patch.samples.size(); ++k) {
         const Vec2& here = patch.samples[k].position_m;
         nearest = std::min(nearest, (joint.position_m - here).norm());
-        // What lies between were samples that are set aside: a step may pass over some.
+        // Samples between them were set aside, so a step may skip some.
         for (std::size_t other = 0; other < k; ++other) {
           longest_step = std::max(longest_step, (here - patch.samples[other].position_m).norm());
         }

@@ -1,4 +1,4 @@
-// Thousands of random conics at random poses and sizes: there and back.
+// Thousands of random conics at random poses and sizes: conversion to the canonical form and back.
 #include "core/curves/algebraic/canonical_conic.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TEST(CanonicalConicProperties, EveryCurveComesBackFromItsEquation) {
   for (int trial = 0; trial < test::stress_count(2000); ++trial) {
     for (const CurveClass curve_class : kClasses) {
       const RandomCurve random = random_curve(curve_class, rng);
-      // Any unit of length, any common factor.
+      // In any unit of length and with any common factor.
       const double unit = std::pow(10.0, uniform(rng, -6.0, 6.0));
       const Eigen::Vector3d values = unit * random.values;
       const Pose2 pose{unit * uniform(rng, -3.0, 3.0), unit * uniform(rng, -3.0, 3.0),
@@ -30,7 +30,7 @@ TEST(CanonicalConicProperties, EveryCurveComesBackFromItsEquation) {
       ASSERT_TRUE(back.curve.has_value())
           << name_of(curve_class) << " " << describe(back.degeneracy);
       ASSERT_EQ(back.curve->curve_class, curve_class) << values.transpose() << " unit " << unit;
-      // Coefficients are rounded at the size of their terms, those of a pose three sizes away; the
+      // Coefficients are rounded relative to their terms, those of a pose three sizes away. The
       // squares of the semi-axes (0.05 to 3 units) are differences of such terms.
       const double bound = 1e3 * 400.0 * std::numeric_limits<double>::epsilon();
       for (Eigen::Index k = 0; k < 2; ++k) {
@@ -38,7 +38,7 @@ TEST(CanonicalConicProperties, EveryCurveComesBackFromItsEquation) {
             << name_of(curve_class);
       }
       if (curve_class == CurveClass::Line) {
-        // The same line: its nearest point to the origin lies on both.
+        // The same line: its point nearest to the origin lies on both.
         EXPECT_LE(std::abs(pose.to_local(back.curve->world_T_curve.translation()).y()),
                   bound * unit);
         EXPECT_LE(std::abs(std::sin(back.curve->world_T_curve.theta - pose.theta)), bound);
@@ -49,7 +49,7 @@ TEST(CanonicalConicProperties, EveryCurveComesBackFromItsEquation) {
       if (curve_class != CurveClass::Circle) {
         const double turn = back.curve->world_T_curve.theta - pose.theta;
         const double period = curve_class == CurveClass::Parabola ? 2.0 * kPi : kPi;
-        // Axes are as uncertain as the two eigenvalues are alike.
+        // The direction of the axes is the less certain, the closer the two eigenvalues are.
         const double alike =
             curve_class == CurveClass::Ellipse ? 1.0 - std::pow(values[1] / values[0], 2) : 1.0;
         EXPECT_LE(std::abs(std::remainder(turn, period)), bound / alike) << name_of(curve_class);
@@ -69,8 +69,8 @@ TEST(CanonicalConicProperties, PointsOfTheCurveSatisfyItsEquation) {
       Eigen::Matrix<double, 6, 1> terms;
       terms << p.x() * p.x(), p.x() * p.y(), p.y() * p.y(), p.x(), p.y(), 1.0;
       terms = terms.cwiseProduct(q);
-      // Rounding of the coefficients and of the point, whose sizes are those of the terms and of
-      // the pose: some 100 units in the last place.
+      // Rounding of the coefficients and of the point, relative to the sizes of the terms and of
+      // the pose: about 100 units in the last place.
       const double size = terms.cwiseAbs().sum() + q.cwiseAbs().maxCoeff() * 100.0;
       EXPECT_LE(std::abs(terms.sum()), 100.0 * std::numeric_limits<double>::epsilon() * size)
           << name_of(curve_class);
@@ -79,7 +79,7 @@ TEST(CanonicalConicProperties, PointsOfTheCurveSatisfyItsEquation) {
 }
 
 TEST(CanonicalConicProperties, ThroughTheParabolaTheClassChangesWhereRoundingLosesTheDifference) {
-  // b^2 = a p, a -> infinity: an ellipse about its vertex, its quadratic part (p / a, 1).
+  // b^2 = a p, a -> infinity: an ellipse seen from its vertex, with the quadratic part (p / a, 1).
   for (int exponent = 0; exponent <= 18; ++exponent) {
     const double small = std::pow(10.0, -exponent);
     ConicCoefficients q;

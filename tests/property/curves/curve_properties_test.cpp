@@ -1,4 +1,4 @@
-// Laws that every curve class obeys, over random curves and several magnitudes of size.
+// Properties that every curve class must have, over random curves of very different sizes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,8 +19,8 @@ TEST_P(CurveProperties, DerivativesAreThoseOfThePosition) {
     const RandomCurve random = random_curve(GetParam(), rng);
     const double t = uniform(rng, random.t_least, random.t_most);
     const CurveDerivatives d = derivatives(random.curve, t);
-    // Fourth-order central differences, step 1e-3: truncation h^4/30 times the fifth derivative
-    // (below 1e-12 of the largest derivative here), rounding 1e-16 / h.
+    // Fourth-order central differences with step 1e-3. Truncation: h^4/30 times the fifth
+    // derivative (below 1e-12 of the largest derivative here). Rounding: 1e-16 / h.
     const double h = 1e-3;
     const auto difference = [&](auto field) {
       return Vec2((8.0 * (field(t + h) - field(t - h)) - (field(t + 2 * h) - field(t - 2 * h))) /
@@ -49,7 +49,7 @@ TEST_P(CurveProperties, GeometryIsThatOfTheDerivatives) {
     const LocalGeometry g = geometry(random.curve, t);
     const double v = d.first.norm();
     if (v < 1e-2) {
-      continue;  // next to a cusp the general formula is the ill-conditioned one
+      continue;  // next to a cusp the general formula is ill-conditioned
     }
     const double bend = cross(d.first, d.second);
     const double kappa = bend / (v * v * v);  // (1)
@@ -80,7 +80,7 @@ TEST_P(CurveProperties, ArcLengthAddsUpAndInverts) {
     EXPECT_GE(std::abs(s01) * (1.0 + 1e-13),
               (position(random.curve, t1) - position(random.curve, t0)).norm());
     const double back = parameter_at_arc_length(random.curve, t0, s01);
-    // In arc length: near a cusp t itself is ill-conditioned.
+    // Compared in arc length: near a cusp t itself is ill-conditioned.
     EXPECT_NEAR(arc_length(random.curve, t0, back), s01, 1e-12 * (std::abs(s01) + 1e-3));
   }
 }
@@ -95,8 +95,8 @@ TEST_P(CurveProperties, ScaleEquivariance) {
       const Curve large = scaled(random, factor);
       const LocalGeometry g = geometry(random.curve, t);
       const LocalGeometry h = geometry(large, scaled_t);
-      // Parameters and t are rounded anew, to which curvatures next to a sharp bend are as
-      // sensitive as they are large: 1e-12 of their natural size.
+      // Parameters and t are rounded again. Near a sharp bend, curvatures are as sensitive to that
+      // as they are large: 1e-12 of their natural size.
       const double size = std::max(std::abs(g.kappa), 1.0);
       EXPECT_LE(std::abs(h.kappa * factor - g.kappa), 1e-12 * size);
       EXPECT_LE(std::abs(h.kappa_s * factor * factor - g.kappa_s),
@@ -104,7 +104,7 @@ TEST_P(CurveProperties, ScaleEquivariance) {
       const Vec2 point(uniform(rng, -2.0, 2.0), uniform(rng, -2.0, 2.0));
       const double distance = foot_point(random.curve, point).distance;
       const double scaled_distance = foot_point(large, factor * point).distance / factor;
-      // The sign is free where two feet on opposite sides are equally near.
+      // The sign is not determined if two foot points on opposite sides are equally near.
       EXPECT_NEAR(std::abs(scaled_distance), std::abs(distance), 1e-14);
       const double u = random.random_t(rng);
       const double length = arc_length(random.curve, t, u);
@@ -120,7 +120,7 @@ TEST_P(CurveProperties, PositionIsDifferentiatedByItsParameters) {
     const RandomCurve random = random_curve(GetParam(), rng);
     const double t = random.random_t(rng);
     const auto by_parameters = position_by_parameters(random.curve, t);
-    // Every canonical form is linear in its parameters, but for x of the polynomial ones.
+    // Every canonical form is linear in its parameters, except for x of the polynomial ones.
     const Vec2 other = position(random.curve, t) - by_parameters * parameters(random.curve);
     const double x =
         GetParam() == CurveClass::Line || GetParam() == CurveClass::CubicalParabola ? t

@@ -1,4 +1,4 @@
-// Foot points of random curves against brute force.
+// Foot points of random curves, compared with brute force.
 #include "core/curves/foot_point.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ namespace {
 
 class FootPointProperties : public testing::TestWithParam<CurveClass> {};
 
-/// Least distance over the whole curve: a grid that is uniform in asinh t, so that it reaches any
-/// foot, then golden-section search about each of its local minima.
+/// Least distance over the whole curve: a grid uniform in asinh t, so that it reaches any foot
+/// point, then golden-section search around each of its local minima.
 double brute_force_distance(const Curve& curve, const Vec2& point, double reach) {
   const auto distance = [&](double t) { return (position(curve, t) - point).norm(); };
   constexpr int kCells = 600;
@@ -42,8 +42,8 @@ double brute_force_distance(const Curve& curve, const Vec2& point, double reach)
   return best;
 }
 
-/// A parameter beyond which the curve is farther from the point than twice the point from the
-/// origin.
+/// A parameter beyond which the distance of the curve from the point exceeds twice the point's
+/// distance from the origin.
 double far_parameter(const Curve& curve, const Vec2& point) {
   if (domain(curve).period > 0.0) {
     return kPi;
@@ -70,12 +70,12 @@ TEST_P(FootPointProperties, IsTheNearestOfAllPoints) {
     EXPECT_NEAR(std::abs(foot.distance), (point - foot.position).norm(), rounding);
     const double brute =
         brute_force_distance(random.curve, point, far_parameter(random.curve, point));
-    // Golden section leaves t to the root of epsilon, the distance to epsilon.
+    // Golden section determines t to the square root of epsilon, the distance to epsilon.
     EXPECT_LE(std::abs(foot.distance), brute + rounding)
         << random.values.transpose() << " point " << point.transpose() << " t " << foot.t;
     EXPECT_GE(foot.t, domain(random.curve).lower);
     EXPECT_LE(foot.t, domain(random.curve).upper);
-    // Perpendicular but for rounding of the point itself; at a cusp there is no direction.
+    // Perpendicular except for the rounding of the point itself; a cusp has no direction.
     const CurveDerivatives d = derivatives(random.curve, foot.t);
     const double error_of_t = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(foot.t);
     const double second = d.first.squaredNorm() + size * d.second.norm();
@@ -91,23 +91,24 @@ TEST_P(FootPointProperties, OffsetPointsComeBackWithSideAndDistance) {
     const RandomCurve random = random_curve(GetParam(), rng);
     const double t = random.random_t(rng);
     if (GetParam() == CurveClass::SemiCubicalParabola && std::abs(t) < 0.3) {
-      continue;  // next to the cusp such a point is beyond the other arm: the cusp has tests of its
-                 // own
+      // Next to the cusp such a point is beyond the other arm; the cusp has tests of its own.
+      continue;
     }
     const CurveDerivatives d = derivatives(random.curve, t);
-    // The length over which the curvature stays below its inverse: the radius of curvature is not,
-    // at a flat place next to a sharp bend.
+    // The length over which the curvature stays below the inverse of that length. The radius of
+    // curvature is not such a length at a flat place next to a sharp bend.
     const LocalGeometry g = geometry(random.curve, t);
     const double length = 1.0 / std::sqrt(g.kappa * g.kappa + std::abs(g.kappa_s) + 1.0);
     const double offset = uniform(rng, -0.4, 0.4) * length;
     const Vec2 point = d.position + offset * left_of(d.first).normalized();
-    // The near variant, from a tenth of that length away; every offset, other arms nearby or not.
+    // The local search, from a tenth of that length away; for every offset, whether or not other
+    // arms are near.
     const double start = t + uniform(rng, -0.1, 0.1) * length / d.first.norm();
     const FootPoint near = foot_point_near(random.curve, point, start);
     const double rounding = 1e-14 * (1.0 + d.position.norm());
     EXPECT_NEAR(near.distance, offset, rounding);
     EXPECT_LE((near.position - d.position).norm(), 4.0 * rounding) << t << " " << near.t;
-    // The global one finds it, or another arm that is nearer.
+    // The global search finds this foot point, or another arm that is nearer.
     const FootPoint foot = foot_point(random.curve, point);
     EXPECT_LE(std::abs(foot.distance), std::abs(offset) + rounding);
     if ((foot.position - d.position).norm() < 1e-6) {
@@ -124,7 +125,7 @@ TEST_P(FootPointProperties, NearAgreesWithGlobalAlongAPath) {
   std::mt19937_64 rng = test::test_rng();
   for (int i = 0; i < test::stress_count(50); ++i) {
     const RandomCurve random = random_curve(GetParam(), rng);
-    // Ten micrometres off the curve, as a tip that touches: a smooth path next to the curve.
+    // A smooth path 10 um from the curve, like that of a touching tip.
     double t = 0.1;
     FootPoint tracked = foot_point(random.curve, position(random.curve, t));
     for (int k = 0; k < 100; ++k) {

@@ -1,4 +1,4 @@
-// Places and poses found again from local geometry, over random curves, poses and directions of
+// Recovers places and poses from local geometry, over random curves, poses and directions of
 // travel.
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 class LocalisationProperties : public testing::TestWithParam<CurveClass> {};
 
-/// Where on the curve is anywhere for line and circle; half a turn apart is the same for an
+/// Error of a place: none for line and circle, where any place is right; modulo half a turn for an
 /// ellipse.
 double place_error(const Curve& curve, double t, double expected) {
   switch (class_of(curve)) {
@@ -41,7 +41,7 @@ TEST_P(LocalisationProperties, PlaceAndDirectionComeBackAtAnySize) {
       const LocalGeometry g = geometry(curve, t);
       const auto place = localise(curve, along ? g : reversed(g));
       ASSERT_TRUE(place.has_value()) << random.values.transpose() << " t " << t;
-      // Ellipse: D is known to a few epsilon and divided by the focal distance squared.
+      // Ellipse: D is known to a few epsilon and is divided by the squared focal distance.
       const double condition =
           GetParam() == CurveClass::Ellipse
               ? 1.0 + std::pow(random.values[0], 2) /
@@ -69,9 +69,9 @@ TEST_P(LocalisationProperties, PoseComesBackFromAContact) {
     const Pose2 found = pose_from_contact(random.curve, {t, along},
                                           world_T_curve * position(random.curve, t), angle);
     EXPECT_NEAR(wrap_angle(found.theta - world_T_curve.theta), 0.0, 4e-15);
-    // The angle's rounding turns the curve about the contact: at most 6 m off here.
+    // The rounding of the angle turns the curve about the contact, at most 6 m away.
     EXPECT_LE((found.translation() - world_T_curve.translation()).norm(), 4e-14);
-    // Equivariance: the scene moved as a whole moves the pose.
+    // Equivariance: moving the whole scene moves the pose.
     const Pose2 motion{uniform(rng, -10.0, 10.0), uniform(rng, -10.0, 10.0),
                        uniform(rng, -kPi, kPi)};
     const Pose2 moved = pose_from_contact(random.curve, {t, along},
@@ -96,9 +96,9 @@ TEST_P(LocalisationProperties, NoisyGeometryLeadsNextToThePlace) {
     g.kappa_s += scale * scale * noise(rng);
     const auto place = localise(random.curve, g);
     ASSERT_TRUE(place.has_value());
-    // Wherever noise moves it, the curve there must look as measured: to 3e-3, the root of six
-    // standard deviations, where only a double root tells (a place next to a vertex by kappa
-    // alone).
+    // Wherever noise moves the place, the curve there must look as measured, to 3e-3: the square
+    // root of six standard deviations, because a place next to a vertex is a double root if only
+    // kappa determines it.
     if (GetParam() == CurveClass::Line || GetParam() == CurveClass::Circle) {
       continue;
     }

@@ -1,4 +1,4 @@
-// Random curves of every class, of size about 1 m, and the same curve at another size.
+// Random curves of every class with a size of about 1 m, and the same curve at another size.
 #pragma once
 
 #include <random>
@@ -21,7 +21,7 @@ struct RandomCurve {
 
 RandomCurve random_curve(CurveClass curve_class, std::mt19937_64& rng);
 
-/// The same shape `factor` times as large, and the parameter of the place that was at t.
+/// The same shape `factor` times as large; the parameter of the place that was at t.
 Curve scaled(const RandomCurve& random, double factor);
 double scaled_parameter(CurveClass curve_class, double t, double factor);
 

@@ -1,4 +1,4 @@
-// Reported covariances and chi-squares against Monte Carlo: what is published must be true.
+// Checks the reported covariances and chi-squares of the invariants by Monte Carlo.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -24,11 +24,12 @@ using test::PlacedCurve;
 
 constexpr int kTrials = 2000;
 
-/// Trials' variance over the reported one lies within 15 %: the standard deviation of a variance
-/// from 2000 Gaussian trials is 3.2 %, the rest is for the second order.
+/// Maximum relative difference between the variance of the trials and the reported one. The
+/// standard deviation of a variance from 2,000 Gaussian trials is 3.2 %; the rest allows for
+/// second-order effects.
 constexpr double kVarianceTolerance = 0.15;
 
-/// Joint noise of angle, kappa and kappa_s, correlated as a polynomial fit's are.
+/// Joint noise of angle, kappa and kappa_s, correlated as in a polynomial fit.
 Eigen::Matrix3d noise_covariance(const MeasuredGeometry& point, double relative) {
   const double size = curvature_scale({&point, 1});
   const Eigen::Vector3d sd = relative * Eigen::Vector3d(0.3, size, 3.0 * size * size);
@@ -57,7 +58,7 @@ std::vector<MeasuredGeometry> noisy(const std::vector<MeasuredGeometry>& points,
   return result;
 }
 
-/// Mean, covariance and mean chi-square over trials.
+/// Mean, covariance and mean chi-square of the trials.
 struct Sample {
   explicit Sample(int size)
       : sum(Eigen::VectorXd::Zero(size)), squares(Eigen::MatrixXd::Zero(size, size)) {}
@@ -142,8 +143,8 @@ TEST(CovarianceOf, SemiCubicalParabolaPair) {
   expect_same_variances(sample, exact.solutions[0].covariance);
 }
 
-/// Fraction of trials beyond the 5 % point of the chi-square law; binomial standard deviation 0.5
-/// %.
+/// Fraction of trials beyond the 5 % point of the chi-square distribution; its binomial standard
+/// deviation is 0.5 %.
 struct Rejections {
   void add(double chi2, int dof) {
     rejected += chi2 > chi_square_threshold(0.05, dof) ? 1 : 0;
@@ -156,7 +157,8 @@ struct Rejections {
 
 TEST(CovarianceOf, ConicLineWithVertices) {
   auto rng = test::test_rng();
-  // All four vertices (kappa_s = 0, where Ip has no first-order error) and four points between.
+  // All four vertices (kappa_s = 0, where Ip has no first-order error) and four points between
+  // them.
   auto points = points_of({CurveClass::Ellipse, {2.0, 1.2, 0.0}, {}},
                           {0.0, 0.5, 0.5 * kPi, 2.0, kPi, 4.0, 1.5 * kPi, 5.5});
   set_noise(points, 0.01);

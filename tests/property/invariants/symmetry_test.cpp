@@ -1,4 +1,4 @@
-// Laws that every invariant and fit obeys on thousands of random curves.
+// Properties that every invariant and fit must have, on thousands of random curves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using test::PlacedCurve;
 
-/// The class's fit without a start, from local geometry alone.
+/// The fit of the class from local geometry alone, without a given start.
 SemiSignatureFit fit_class(CurveClass curve_class, std::span<const MeasuredGeometry> points,
                            const Eigen::Vector3d& conic_start = Eigen::Vector3d::Zero()) {
   switch (curve_class) {
@@ -33,7 +33,7 @@ SemiSignatureFit fit_class(CurveClass curve_class, std::span<const MeasuredGeome
   }
 }
 
-/// Largest relative deviation of the parameters in use.
+/// Largest relative deviation of the parameters that the class has.
 double deviation(const PlacedCurve& curve, const Eigen::Vector3d& parameters) {
   double worst = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -44,8 +44,8 @@ double deviation(const PlacedCurve& curve, const Eigen::Vector3d& parameters) {
   return worst;
 }
 
-/// Sum, over the points, of how far exact inputs could move the parameters: the fit's own standard
-/// deviations at the floor of 1e-12 that stands for rounding. Ten of them are granted.
+/// How far rounding of exact inputs can move the parameters, summed over the points: ten standard
+/// deviations of the fit for the noise of 1e-12 that stands for rounding.
 double tolerance(const PlacedCurve& curve, const SemiSignatureFit& fit) {
   double worst = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -82,7 +82,7 @@ TEST_P(EveryClass, ShapeIsRecoveredAtAnyPoseAndDirectionOfTravel) {
   if (!test::counts_tell()) {
     return;
   }
-  // Seeds from pairs miss where all pairs are badly conditioned.
+  // Starts from pairs of points fail if all pairs are badly conditioned.
   EXPECT_GE(recovered, cases * 99 / 100);
 }
 
@@ -96,7 +96,7 @@ TEST_P(EveryClass, ScaleIsCarriedThroughFrom1e6thTo1e6) {
         GetParam(), test::measured(test::exact_points(curve, places, unit_rng)), curve.parameters);
     for (const double factor : {1e-6, 1e-3, 1e3, 1e6}) {
       auto same_rng = rng;
-      // Exact data of the same curve in another unit, t scaled with it.
+      // Exact data of the same curve in another unit, with t scaled accordingly.
       auto points = test::measured(test::exact_points(curve, places, same_rng));
       for (MeasuredGeometry& point : points) {
         point = in_units_of(point, 1.0 / factor);
@@ -137,7 +137,7 @@ TEST_P(EveryClass, RotationIsCarriedIntoTheOrientation) {
     auto points =
         test::measured(test::exact_points(curve, test::random_places(curve, 5, rng), rng));
     const auto fit = fit_class(GetParam(), points, curve.parameters);
-    // Well beyond pi, and by whole turns between the points: tangent angles need no unwrapping.
+    // Well beyond pi, and with whole turns between the points: tangent angles need no unwrapping.
     int turns = 0;
     for (MeasuredGeometry& point : points) {
       point.tangent_angle += 7.5 + 2.0 * kPi * (turns++ % 3);

@@ -1,5 +1,5 @@
-// Every estimator's reported standard deviations against 2,000 trials with Gaussian noise, on every
-// class, and the jet's accuracy against the two-round fit's over the same samples.
+// Checks every estimator's reported standard deviations against 2,000 trials with Gaussian noise on
+// every class, and the jet's accuracy against the two-round fit's over the same samples.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,16 +18,16 @@ const int kTrials = test::stress_count(2000);
 constexpr int kSamples = 111;  // the paper's 75 + 9 * 4
 constexpr double kSigma = 5e-5;
 
-/// A standard deviation from n Gaussian trials has the relative standard deviation 1 / sqrt(2
-/// n), 1.6 % for 2,000. Over the 128 comparisons of every estimator, class and component, five of
-/// them are exceeded once in 14,000 runs by chance.
+/// A standard deviation from n Gaussian trials has the relative standard deviation 1 / sqrt(2 n),
+/// 1.6 % for 2,000. Over the 128 comparisons (estimator, class, component), five of these are
+/// exceeded by chance once in 14,000 runs.
 const double kTolerance = 5.0 / std::sqrt(2.0 * kTrials);
 
 struct Statistics {
   Eigen::Vector4d mean = Eigen::Vector4d::Zero();
   Eigen::Vector4d sd = Eigen::Vector4d::Zero();
   Eigen::Vector4d rmse = Eigen::Vector4d::Zero();
-  Eigen::Vector4d reported_sd = Eigen::Vector4d::Zero();  ///< root of the mean reported variance
+  Eigen::Vector4d reported_sd = Eigen::Vector4d::Zero();  ///< root mean reported variance
 };
 
 EstimatorOptions options_for(EstimatorKind kind) {
@@ -78,13 +78,13 @@ TEST_P(EstimatorCovariance, IsTrue) {
   for (int i = 0; i < 4; ++i) {
     EXPECT_NEAR(s.sd[i] / s.reported_sd[i], 1.0, kTolerance) << i;
   }
-  // Bias in standard deviations, for the record: core/README.md holds the table.
+  // Bias in standard deviations, for the record; core/README.md has the table.
   RecordProperty("bias_kappa_sd", std::to_string(s.mean[2] / s.reported_sd[2]));
   RecordProperty("bias_kappa_s_sd", std::to_string(s.mean[3] / s.reported_sd[3]));
 }
 
-// Where the jet is the better one and where the two-round fit is follows from each one's reported
-// covariance and its bias, which is its error on the samples without noise: no more, no less.
+// Which of jet and two-round fit is better follows from the reported covariance of each and its
+// bias, which is its error on samples without noise.
 TEST(JetAgainstTwoRound, ErrorsAreTheReportedNoiseAndTheBiasOfTheCurve) {
   for (const test::TouchedArc& arc : test::touched_arcs()) {
     const std::vector<Vec2> exact = test::samples_of(arc, kSamples);

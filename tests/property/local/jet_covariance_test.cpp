@@ -1,4 +1,5 @@
-// The jet estimator's reported covariance against 2,000 trials with Gaussian noise, every class.
+// Checks the jet estimator's reported covariance against 2,000 trials with Gaussian noise on every
+// class.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,8 +14,8 @@ namespace {
 const int kTrials = test::stress_count(2000);
 constexpr double kSigma = 5e-5;
 
-/// The standard deviation of a standard deviation from 2,000 Gaussian trials is 1.6 %; the noise
-/// along the abscissa adds up to about 5 % to second order at the ends of a window.
+/// The standard deviation of a standard deviation from 2,000 Gaussian trials is 1.6 %. To second
+/// order, the noise along the abscissa adds up to about 5 % at the ends of a window.
 constexpr double kTolerance = 0.15;
 
 struct Case {
@@ -73,11 +74,11 @@ TEST_P(JetCovariance, IsTrue) {
       EXPECT_NEAR(measured(i, j), reported(i, j) / (sd[i] * sd[j]), kTolerance) << i << j;
     }
   }
-  // Noise adds little bias of its own: the mean is the noiseless estimate's within 5 standard
-  // deviations of a mean of 2,000 (0.11) and 1 % of the bias, which moves with the window's ends.
-  // Noise along the abscissa shifts the coefficient of P_k by (sigma / h) slope sqrt((2 k + 1) n)
-  // of its standard deviation (jet_estimator.h; slope at most 0.6); near an end the three
-  // coefficients that kappa_s is made of add up, against sqrt(3) for their standard deviations.
+  // Noise adds little bias: the mean equals the noiseless estimate within 5 standard deviations of
+  // a mean of 2,000 (0.11) plus 1 % of the bias, which moves with the ends of the window. Noise
+  // along the abscissa shifts the coefficient of P_k by (sigma / h) slope sqrt((2 k + 1) n) of its
+  // standard deviation (jet_estimator.h; slope at most 0.6). Near an end the three coefficients
+  // that kappa_s consists of add up, against sqrt(3) for their standard deviations.
   const double second_order =
       place == 0.0 ? 0.0 : 2.0 * (kSigma / 0.011) * 0.6 * std::sqrt(11 * 111);
   const Eigen::Vector4d bias = test::error_of(noiseless.estimate, arc).cwiseQuotient(sd);

@@ -1,4 +1,4 @@
-// Noise estimate and spike test against Gaussian noise, on every class.
+// Checks the noise estimate and the spike test against Gaussian noise on every class.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,17 +49,17 @@ TEST_P(NoiseEstimateOf, IsUnbiasedForWhiteNoise) {
     if (!test::counts_tell()) continue;
     const double mean = sum / kTrials;
     const double sd = std::sqrt(squares / kTrials - mean * mean);
-    // 5 standard deviations of the mean, and 3 %: the cut at four robust standard deviations and
-    // the choice between the block lengths each look at the data.
+    // 5 standard deviations of the mean, plus 3 % because two steps depend on the data: the cut at
+    // four robust standard deviations and the choice between the block lengths.
     EXPECT_NEAR(mean, 1.0, 0.03 + 5.0 * sd / std::sqrt(kTrials)) << count;
-    // dof residuals of white noise: a relative standard deviation of sqrt(2 / dof), and a quarter
-    // for the same looks.
+    // The dof residuals of white noise have a relative standard deviation of sqrt(2 / dof); a
+    // quarter more for the same two steps.
     EXPECT_LT(sd, 1.25 * std::sqrt(expected_variance)) << count;
   }
 }
 
 TEST_P(NoiseEstimateOf, IsTheNoiseOfDenseSamplesToo) {
-  // 2,000 samples a hundredth of a millimetre apart: a fifth of the noise.
+  // 2,000 samples 0.01 mm apart, which is a fifth of the noise.
   const std::vector<Vec2> exact = test::samples_of(arc(), 2000);
   auto rng = test::test_rng();
   const NoiseEstimate noise = estimate_noise(test::with_noise(exact, kSigma, rng));
@@ -80,8 +80,8 @@ TEST_P(NoiseEstimateOf, HardlySeesSpikes) {
     sum += estimate_noise(samples).sigma_m / kSigma / kTrials;
   }
   if (!test::counts_tell()) return;
-  // A spike of 40 sigma spoils its block of 16: with a spike in six of seven blocks the median
-  // holds within a factor of two, where the root mean square would be 8.
+  // A spike of 40 sigma spoils its block of 16 samples. With a spike in six of seven blocks the
+  // median is right within a factor of two; the root mean square would be 8.
   EXPECT_LT(sum, 2.5);
 }
 
@@ -96,7 +96,8 @@ TEST_P(SpikesOf, FalseAlarmsComeAtTheStatedRate) {
     patches += spikes.indices.empty() ? 0 : 1;
   }
   if (!test::counts_tell()) return;
-  // 0.05 is Bonferroni's bound. Five standard deviations of a binomial of 1,000 are 0.034.
+  // 0.05 is Bonferroni's bound. Five standard deviations of a binomial variable with 1,000 trials
+  // are 0.034.
   EXPECT_LT(static_cast<double>(patches) / kTrials, 0.05 + 0.034);
   EXPECT_GT(static_cast<double>(patches) / kTrials, 0.05 - 0.034);
 }
@@ -108,7 +109,7 @@ TEST_P(SpikesOf, AreFoundAndTheirNeighboursSpared) {
   int others = 0;
   for (int i = 0; i < kTrials; ++i) {
     std::vector<Vec2> samples = test::with_noise(exact, kSigma, rng);
-    const std::size_t k = 6 + rng() % (samples.size() - 12);  // not at an end: see the next test
+    const std::size_t k = 6 + rng() % (samples.size() - 12);  // not at an end; see the next test
     samples[k] += 12.0 * kSigma * left_of((exact[k + 1] - exact[k]).normalized());
     for (const std::size_t index : find_spikes(samples, {.sigma_m = kSigma}).indices) {
       found += index == k ? 1 : 0;
@@ -116,10 +117,10 @@ TEST_P(SpikesOf, AreFoundAndTheirNeighboursSpared) {
     }
   }
   if (!test::counts_tell()) return;
-  // 12 sigma less at most a third for the leverage in the middle of a block leave 8, against a
+  // 12 sigma, less at most a third for the leverage in the middle of a block, leave 8, against a
   // threshold of 3.9 and noise of 1: missed once in 10^4.
   EXPECT_GT(found, kTrials - 10);
-  // False alarms at 1 % of patches, and where the spike lies at the end of the next block.
+  // False alarms in 1 % of the patches, and where the spike is at the end of the next block.
   EXPECT_LT(others, 0.05 * kTrials);
 }
 
@@ -131,8 +132,8 @@ TEST_P(SpikesOf, NoneOnNoiselessCurves) {
 }
 
 TEST(Spikes, AProbeThatDwellsOrHardlyMovesLosesNothing) {
-  // Within 20 sigma noise scatters samples along the travel as well: no order, no gap tells a
-  // spike.
+  // Within 20 sigma noise scatters samples along the travel as well, so neither order nor gaps can
+  // show a spike.
   for (const double extent : {0.0, 5.0 * kSigma}) {
     for (const std::size_t count : {40U, 111U}) {
       auto rng = test::test_rng(count);
@@ -152,7 +153,7 @@ TEST(Spikes, AProbeThatDwellsOrHardlyMovesLosesNothing) {
 TEST(NormalQuantile, InvertsTheTail) {
   for (double z = 0.05; z < 30.0; z *= 1.3) {
     const double tail = std::erfc(z / std::sqrt(2.0));
-    // The tail is rounded to 1.1e-16 relative, which is 1.1e-16 / z / z of z in the far tail and
+    // The tail is rounded to 1.1e-16 relative. That is 1.1e-16 / z / z of z in the far tail and
     // 1.1e-16 * tail / (0.8 z) near the middle.
     EXPECT_NEAR(two_sided_normal_quantile(tail) / z, 1.0, 1e-13);
   }

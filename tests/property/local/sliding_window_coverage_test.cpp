@@ -1,5 +1,5 @@
 // The sliding window along strokes of 2 to 300 mm, of every class and of none, from the first
-// window to the last: its published deviations hold its errors, noise and bias together.
+// window to the last: its published deviations must cover its errors, noise and bias together.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,17 +17,17 @@ namespace palpate {
 namespace {
 
 constexpr std::array kLengths_m = {0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.3};
-/// Of the size of the parts.
+/// Relative to the size of the parts.
 constexpr std::array kNoises = {0.0, 1e-5, 1e-4, 5e-4, 2e-3};
 constexpr double kSize_m = 0.025;
-/// Of each kind; PALPATE_TEST_STRESS multiplies it.
+/// Strokes of each kind; PALPATE_TEST_STRESS multiplies it.
 int strokes() { return std::max(1, test::stress_count(2)); }
-/// Windows looked at along a stroke, first and last among them: neighbours share their samples.
+/// Windows checked along a stroke, including the first and the last; neighbours share samples.
 constexpr std::size_t kWindows = 12;
-/// What a noise of zero is stated as: double precision's own at 0.2 m from the origin. [m]
+/// Stated noise when the true noise is zero: the rounding of doubles at 0.2 m from the origin. [m]
 constexpr double kRounding_m = 1e-16;
 
-/// Of kappa and kappa_s.
+/// For kappa and kappa_s.
 struct Tally {
   double count = 0.0;
   std::array<double, 2> within{};
@@ -54,7 +54,7 @@ struct Tally {
 struct Tallies {
   Tally pooled;
   std::map<std::string, Tally> classes;
-  std::map<std::string, Tally> cells;  ///< class and length
+  std::map<std::string, Tally> cells;  ///< by class and length
 };
 
 Tallies walk(bool stated) {
@@ -63,7 +63,7 @@ Tallies walk(bool stated) {
   std::normal_distribution<double> normal;
   constexpr int kAll = 100;
   const int every =
-      std::max(1, kAll / test::stress_count(kAll));  // of the strokes, under a sanitizer
+      std::max(1, kAll / test::stress_count(kAll));  // of the strokes; fewer with a sanitizer
   int turn = 0;
   for (std::size_t shape = 0; shape < test::kStrokeShapes; ++shape) {
     for (const double length : kLengths_m) {
@@ -91,7 +91,7 @@ Tallies walk(bool stated) {
             const Eigen::Vector3d error = stroke.error_of(estimates[e]);
             for (Tally* tally :
                  {&tallies.pooled, &tallies.classes[stroke.name], &tallies.cells[cell]}) {
-              // What double precision rounds has a bound and no deviation that could be stated.
+              // Rounding errors have a bound but no standard deviation that could be stated.
               if (noise == 0.0 && tally != &tallies.cells[cell]) {
                 continue;
               }
@@ -121,8 +121,8 @@ TEST_P(SlidingWindowCoverage, PublishedDeviationsHoldTheErrors) {
   }
   for (const auto& [name, tally] : tallies.cells) {
     tally.print(name);
-    // 0.9 less what chance takes from it with probability 1e-3; the windows of a stroke share
-    // samples and, where it is estimated, the noise, and count as four.
+    // 0.9 less what chance takes away with probability 1e-3. The windows of a stroke share samples
+    // and, where it is estimated, the noise; they count as four.
     constexpr double kDeviations = 3.1;
     const double independent = 4.0 * strokes() * kNoises.size();
     const double least = 0.90 - kDeviations * std::sqrt(0.90 * 0.10 / independent);
@@ -133,17 +133,17 @@ TEST_P(SlidingWindowCoverage, PublishedDeviationsHoldTheErrors) {
   for (const auto& [name, tally] : tallies.classes) {
     tally.print(name);
     for (std::size_t k = 0; k < 2; ++k) {
-      // Beside a cusp the curvature has no bound, and a window no polynomial: a known limit.
+      // Next to a cusp the curvature is unbounded, and no polynomial fits a window: a known limit.
       constexpr double kMostGross = 0.01;
       EXPECT_LE(tally.gross_share(k), kMostGross) << name << (k == 0 ? " kappa" : " kappa_s");
       EXPECT_LE(tally.rms(k), 1.1) << name << (k == 0 ? " kappa" : " kappa_s");
-      // Not bought by width.
+      // The coverage must not come from deviations that are too large.
       EXPECT_GE(tally.rms(k), 0.8) << name << (k == 0 ? " kappa" : " kappa_s");
     }
   }
   tallies.pooled.print("all");
   for (std::size_t k = 0; k < 2; ++k) {
-    // 95 % in the limit of a normal law; two per cent are more than the scatter of so many windows.
+    // 95 % in the limit of a normal distribution. The scatter of so many windows is below 2 %.
     EXPECT_NEAR(tallies.pooled.share(k), 0.95, 0.02) << (k == 0 ? "kappa" : "kappa_s");
   }
 }

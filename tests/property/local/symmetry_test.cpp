@@ -1,4 +1,5 @@
-// SE(2) equivariance, scale, reversal and far-away origins, for every estimator and class.
+// Every estimator on every class: SE(2) equivariance, scaling, reversal of travel, and origins far
+// away.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +25,7 @@ EstimatorOptions options_for(EstimatorKind kind, double sigma_m = kSigma) {
   return options;
 }
 
-/// Differences in the units in which rounding of relative size `rounding` shows: the window's
+/// Compares estimates in units in which rounding of relative size `rounding` shows: the window's
 /// length for the position, its powers for kappa and kappa_s.
 void expect_same(const LocalEstimate& a, const LocalEstimate& b, double window, double tolerance) {
   EXPECT_NEAR((a.position - b.position).norm() / window, 0.0, tolerance);
@@ -40,9 +41,10 @@ void expect_same(const LocalEstimate& a, const LocalEstimate& b, double window, 
   }
 }
 
-/// Two computations of one estimate from coordinates rounded to `rounding` (relative to the
-/// window): kappa_s amplifies by at most 3e3 / window^2 (its standard deviation over 111 samples is
-/// 1400 sigma / window^3 for five points, times sqrt(2) for each of the two).
+/// Tolerance for two computations of an estimate from coordinates rounded to `rounding` (relative
+/// to the window). kappa_s amplifies rounding by at most 3e3 / window^2: its standard deviation
+/// over 111 samples is 1400 sigma / window^3 for five points, times sqrt(2) because both
+/// computations have it.
 double tolerance_for(double rounding) { return 4e3 * rounding; }
 
 class EstimatorSymmetry : public testing::TestWithParam<std::tuple<EstimatorKind, std::size_t>> {
@@ -92,7 +94,7 @@ TEST_P(EstimatorSymmetry, Pose) {
     LocalEstimate expected = base_;
     expected.position = pose * base_.position;
     expected.tangent_angle = base_.tangent_angle + pose.theta;
-    // Coordinates up to 2 m, rounded to 2.2e-16 m several times over.
+    // Coordinates up to 2 m, rounded several times to 2.2e-16 m.
     expect_same(result.estimate, expected, kWindow, tolerance_for(1e-15 / kWindow));
   }
 }
@@ -107,7 +109,7 @@ TEST_P(EstimatorSymmetry, OriginAThousandKilometresAway) {
   ASSERT_EQ(result.status, LocalStatus::Ok);
   LocalEstimate expected = base_;
   expected.position += far;
-  // Coordinates of 1e6 m are rounded to 5.8e-11 m: what is left is the samples' own rounding.
+  // Coordinates of 1e6 m are rounded to 5.8e-11 m; the difference is the rounding of the samples.
   expect_same(result.estimate, expected, kWindow, tolerance_for(1.2e-10 / kWindow));
 }
 
@@ -135,7 +137,8 @@ TEST_P(EstimatorSymmetry, Reversal) {
   std::vector<Vec2> reversed(samples_.rbegin(), samples_.rend());
   EstimatorOptions options = options_for(kind_);
   if (kind_ == EstimatorKind::TwoRound) {
-    options.two_round_fits = 11;  // an odd number has its middle window in the middle both ways
+    // An odd number has its middle window in the middle in both directions.
+    options.two_round_fits = 11;
     options.window = 71;
     const LocalResult forwards = estimate_window(samples_, options);
     ASSERT_EQ(forwards.status, LocalStatus::Ok);
@@ -149,8 +152,8 @@ TEST_P(EstimatorSymmetry, Reversal) {
   const Eigen::Vector4d signs(-1.0, 1.0, -1.0, 1.0);
   expected.covariance = signs.asDiagonal() * base_.covariance * signs.asDiagonal();
   if (kind_ == EstimatorKind::TwoRound) {
-    // Arc lengths by Simpson's rule on each window's own parabola, which is another one backwards:
-    // kappa_s agrees to the difference of the arc lengths, relative 1e-3.
+    // Arc lengths are computed by Simpson's rule on each window's own parabola, which differs when
+    // travelled backwards: kappa_s agrees to the relative difference of the arc lengths, 1e-3.
     EXPECT_NEAR(result.estimate.kappa_s / base_.kappa_s, 1.0, 1e-2);
     expected.kappa_s = result.estimate.kappa_s;
     expected.covariance = result.estimate.covariance;

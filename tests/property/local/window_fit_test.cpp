@@ -1,4 +1,5 @@
-// The fit of one window: honest about bias and noise together, and more accurate than fixed fits.
+// The fit of one window: its stated errors cover bias and noise together, and it is more accurate
+// than fixed fits.
 #include "core/local/stream/window_fit.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,7 @@ const int kTrials = test::stress_count(500);
 constexpr int kSamples = 111;
 constexpr std::array kSigmas_m = {1e-5, 5e-5, 2e-4};
 
-/// The longest window in the patch's middle that is followed.
+/// The longest window in the middle of the patch that a polynomial can follow.
 LocalResult fit_middle(std::span<const Vec2> patch, double sigma_m) {
   LocalResult result = test::fit_samples(patch, sigma_m);
   while (result.status == LocalStatus::NotFollowed && patch.size() > 2 * kFewestWindowNodes) {
@@ -91,8 +92,8 @@ TEST_P(WindowFitOf, CoversItsErrorsBiasIncluded) {
     std::printf("%-22s sigma %.0e  error over deviation: %.2f %.2f %.2f %.2f\n", arc().name.c_str(),
                 sigma, a.normalised[0], a.normalised[1], a.normalised[2], a.normalised[3]);
     if (!test::counts_tell()) continue;
-    // The prior is one for all curves and all windows; of a single window of a single curve, which
-    // is one draw from it, it may be off, by up to twice the noise-only ideal of 1.
+    // The prior is the same for all curves and windows. For a single window of a single curve,
+    // which is one draw from it, it may be off, by up to twice the noise-only ideal of 1.
     constexpr double kMost = 2.0;
     for (int i = 0; i < 4; ++i) {
       EXPECT_LT(a.normalised[i], kMost) << sigma << " " << i;
@@ -111,7 +112,7 @@ TEST_P(WindowFitOf, KappaIsAboutAsAccurateAsTheTwoRoundFitsOrBetter) {
         arc().name.c_str(), sigma, two_round.rmse[2], two_round.rmse[3], jet.rmse[2], jet.rmse[3],
         window.rmse[2], window.rmse[3]);
     if (!test::counts_tell()) continue;
-    // What choosing by the data may cost against a choice that happens to suit.
+    // Allowance for choosing the window from the data, against a fixed choice that happens to suit.
     constexpr double kMost = 1.2;
     EXPECT_LT(window.rmse[2], kMost * two_round.rmse[2]) << sigma;
   }
@@ -119,9 +120,9 @@ TEST_P(WindowFitOf, KappaIsAboutAsAccurateAsTheTwoRoundFitsOrBetter) {
 
 TEST_P(WindowFitOf, ExactSamplesGiveExactGeometry) {
   const std::vector<Vec2> exact = test::samples_of(arc(), kSamples);
-  // To rounding, a polynomial of degree 8 follows none of these windows: to a nanometre it does,
-  // and what the error may be follows from that: 1e-9 over the half extent of 5 mm or more to the
-  // power of the derivative, times the polynomial's own derivatives (up to 600 for the third).
+  // To rounding, no polynomial of degree 8 follows these windows; to a nanometre it does. The
+  // possible error follows from that: 1e-9 divided by the half extent (5 mm or more) to the power
+  // of the derivative, times the polynomial's own derivatives (up to 600 for the third).
   constexpr double kStated_m = 1e-9;
   const LocalResult result = fit_middle(exact, kStated_m);
   ASSERT_EQ(result.status, LocalStatus::Ok);
@@ -140,7 +141,7 @@ TEST(WindowFit, SaysWhyThereIsNone) {
   EXPECT_EQ(test::fit_samples(test::samples_of(circle, 200), 2e-5).status,
             LocalStatus::TurnsTooFar);
   test::TouchedArc ellipse = test::touched_arcs()[2];
-  ellipse.length_m = 0.06;  // some 135 degrees, and no circle
+  ellipse.length_m = 0.06;  // about 135 degrees, and not a circle
   EXPECT_EQ(test::fit_samples(test::samples_of(ellipse, 200), 2e-5).status,
             LocalStatus::TurnsTooFar);
   EXPECT_EQ(test::fit_samples({}, 2e-5).status, LocalStatus::TooFewSamples);

@@ -1,4 +1,5 @@
-// The first samples of an object: few, on short patches, most of their curvature still noise.
+// The first samples of an object: few samples on short patches, whose estimated curvature is mostly
+// noise.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,9 +12,9 @@
 namespace palpate {
 namespace {
 
-constexpr int kScenes = 60;  // of each class and number of samples
+constexpr int kScenes = 60;  // for each class and number of samples
 
-/// log-uniform between the bounds.
+/// Log-uniform between the bounds.
 double between(double least, double most, std::mt19937_64& rng) {
   std::uniform_real_distribution<double> law(std::log(least), std::log(most));
   return std::exp(law(rng));
@@ -22,7 +23,7 @@ double between(double least, double most, std::mt19937_64& rng) {
 class FirstTouches : public testing::TestWithParam<CurveClass> {};
 
 TEST_P(FirstTouches, DoNotExcludeEveryClass) {
-  // What the method promises of RECOGNIZED answers that are wrong, of all, and what a count may be
+  // The method's claim about the fraction of wrong RECOGNIZED answers, and how far a count may be
   // above it with probability 1e-3.
   constexpr double kClaimed = 0.005;
   constexpr double kDeviations = 3.1;

@@ -1,5 +1,5 @@
-// Ellipses as they are made, not as they are drawn: what RECOGNIZED answers are worth where the
-// form error is stated, beside where it is not.
+// Ellipses with form error: how reliable RECOGNIZED answers are if the form error is stated, and if
+// it is not.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -14,11 +14,11 @@
 namespace palpate {
 namespace {
 
-/// Moves every sample along the ellipse's normal by a sum of harmonics of t whose coefficients are
-/// normal: the standard deviation is `deviation_m` at every t, and the same wave runs through all
-/// patches.
+/// Moves every sample along the ellipse's normal by a sum of harmonics of t with normal
+/// coefficients. The standard deviation is `deviation_m` at every t, and all patches get the same
+/// wave.
 test::Scene with_form_error(test::Scene scene, double deviation_m, std::mt19937_64& rng) {
-  constexpr int kLowest = 2;  // the first would be a shift
+  constexpr int kLowest = 2;  // the first harmonic would be a shift
   constexpr int kHighest = 5;
   std::normal_distribution<double> normal(
       0.0, deviation_m / std::sqrt(static_cast<double>(kHighest - kLowest + 1)));
@@ -54,9 +54,9 @@ double squared_distance(const Recognition& answer, const test::Scene& scene) {
 struct Count {
   int scenes = 0;
   int recognized = 0;
-  int wrong = 0;         ///< of these
-  int ellipses = 0;      ///< of these
-  int beyond = 0;        ///< of the ellipses, the truth beyond the 95 % ellipsoid
+  int wrong = 0;         ///< of the recognised ones
+  int ellipses = 0;      ///< of the recognised ones
+  int beyond = 0;        ///< of the ellipses: the truth is outside the 95 % ellipsoid
   double squares = 0.0;  ///< normalised squared errors of the ellipses
   Count& operator+=(const Count& other) {
     scenes += other.scenes;
@@ -71,8 +71,8 @@ struct Count {
 
 constexpr int kDof = 5;
 
-/// Wrong is another class, but for a circle where the axes of the ellipse differ by less than 15 %;
-/// and an axis off by more than a tenth where the covariance does not say so.
+/// Wrong are: another class, except a circle if the axes of the ellipse differ by less than 15 %;
+/// and an axis off by more than a tenth without a covariance that says so.
 void add(const Recognition& answer, const test::Scene& scene, Count* count) {
   constexpr double kWrongAxis = 0.1;
   constexpr double kNearCircle = 0.15;
@@ -158,13 +158,13 @@ TEST(FormDeviation, StatedItMakesRecognizedAnswersRight) {
   if (!test::counts_tell()) {
     return;
   }
-  // Stated, it leaves few wrong, and covariances no smaller than the errors...
+  // With stated form error few answers are wrong, and covariances are no smaller than the errors...
   EXPECT_LT(100 * all_stated.wrong, all_stated.recognized);
   EXPECT_LE(all_stated.squares, kDof * all_stated.ellipses);
   EXPECT_LE(all_stated.beyond, 0.05 * all_stated.ellipses);
-  // ... which is not because nothing is recognised any more,
+  // ... though most scenes are still recognised,
   EXPECT_GT(2 * all_stated.recognized, all_stated.scenes);
-  // nor because these scenes were harmless.
+  // and these scenes are not harmless.
   EXPECT_GT(100 * all_unstated.wrong, all_unstated.recognized);
   EXPECT_GT(all_unstated.squares, kDof * all_unstated.ellipses);
 }
@@ -187,8 +187,8 @@ double samples_of(const test::Scene& scene) {
   return count;
 }
 
-/// Rivals are sought on a grid, and on reduced points that depend on the noise: probabilities agree
-/// to this, and a decision is compared unless it hangs on it.
+/// Rivals are searched for on a grid and on reduced points that depend on the noise, so
+/// probabilities agree only to this. A decision is compared unless it depends on such a difference.
 constexpr double kProbability = 0.03;
 
 void expect_same_certainty(const Recognition& answer, const Recognition& expected) {
@@ -199,7 +199,8 @@ void expect_same_certainty(const Recognition& answer, const Recognition& expecte
   }
 }
 
-/// Of the pose, whose last component is an angle, up to a factor of lengths.
+/// Compares the covariances of the pose, whose last component is an angle, up to a factor of
+/// lengths.
 void expect_same_covariance(const Recognition& answer, const Recognition& expected, double factor,
                             double tolerance) {
   ASSERT_EQ(answer.covariance.rows(), expected.covariance.rows());
@@ -216,7 +217,7 @@ TEST_P(FormDeviationOf, NextToNothingChangesNextToNothing) {
     const test::Scene scene = two_patches(GetParam(), rng);
     for (const double sigma_m : {scene.sigma_m, 0.0}) {
       RecognizerOptions options;
-      constexpr double kShare = 1e-8;  // of the noise's variance in any combination of residuals
+      constexpr double kShare = 1e-8;  // of the noise's variance, in any combination of residuals
       options.form_deviation_m = scene.sigma_m * std::sqrt(kShare / samples_of(scene));
       const Recognition exact = test::recognise(scene, sigma_m);
       const Recognition stated = test::recognise(scene, sigma_m, options);
@@ -243,12 +244,13 @@ TEST_P(FormDeviationOf, SaysWhatWhiteNoiseOfTheBoundWouldSay) {
       ASSERT_EQ(stated.shape.curve_class, white.shape.curve_class);
       EXPECT_NEAR(stated.hypotheses.front().probability, white.hypotheses.front().probability,
                   kProbability);
-      // The smooth model follows no sharp bend to the noise: that is no misfit of the class.
+      // The smooth model does not follow a sharp bend to within the noise; that is not a misfit of
+      // the class.
       EXPECT_EQ(stated.doubt == Doubt::Misfit, white.doubt == Doubt::Misfit);
       if (white.status == RecognitionStatus::Recognized && stated.status == white.status) {
-        // Slices of a valley are taken on the reduced points, whose degrees the noise decides:
-        // where two coordinates are nearly as wide, they may run along either. Deviations to a
-        // twentieth.
+        // Slices of a valley are computed on the reduced points, whose degrees depend on the noise.
+        // If two coordinates are nearly equally wide, they may run along either; so deviations
+        // agree to 5 %.
         expect_same_covariance(stated, white, 1.0, 0.1);
       }
     }

@@ -1,5 +1,5 @@
-// Whether what RECOGNIZED answers publish is true of shape and pose together: thousands of random
-// scenes, the squared Mahalanobis distance of the truth against its chi-square law.
+// Checks the published joint covariance of shape and pose of RECOGNIZED answers: over thousands of
+// random scenes, the squared Mahalanobis distance of the truth against its chi-square law.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,12 +16,13 @@ namespace palpate {
 namespace {
 
 constexpr double kNoiseLevels[] = {1e-8, 1e-5, 1e-4, 5e-4, 1e-3, 2e-3};
-constexpr int kScenesPerCell = 25;  // 4 numbers of patches x 6 levels x 25 = 600 of each class
+constexpr int kScenesPerCell = 25;  // 4 numbers of patches x 6 levels x 25 = 600 scenes per class
 
-/// Probability that the truth lies beyond the chi-square quantile of `significance` by the second
-/// moment of a valley that bends like a parabola. At k standard deviations along it, the squared
-/// distance is k^2 + (e + sqrt(r / 3) k^2)^2 / (1 + r) and a chi-square variable of two degrees of
-/// freedom less: e is normal, r the variance that the bend adds over that across the valley.
+/// Probability that the truth is beyond the chi-square quantile of `significance` when the
+/// covariance is the second moment of a valley that bends like a parabola. At k standard deviations
+/// along the valley, the squared distance is k^2 + (e + sqrt(r / 3) k^2)^2 / (1 + r) plus a
+/// chi-square variable with two degrees of freedom less. e is normal; r is the variance that the
+/// bend adds, divided by that across the valley.
 double probability_beyond(int dof, double variance_ratio, double significance) {
   constexpr double kStep = 0.1;
   constexpr double kFarthest = 7.0;
@@ -41,7 +42,7 @@ double probability_beyond(int dof, double variance_ratio, double significance) {
   return sum;
 }
 
-/// The bend that leaves out the most, as far as a parabola can: from none to nothing but bend.
+/// The largest such probability over all bends of a parabola, from none to nothing but bend.
 double most_beyond(int dof, double significance) {
   double most = significance;
   for (double ratio = 1e-3; dof > 2 && ratio < 1e6; ratio *= 2.0) {
@@ -70,10 +71,10 @@ struct Count {
   int recognized = 0;
   int beyond_outer = 0;
   int beyond_inner = 0;
-  int outer_by_bound = 0;  ///< by the covariance linear about the estimate
+  int outer_by_bound = 0;  ///< by the covariance linearised at the estimate
 };
 
-/// Counts an answer where it is RECOGNIZED as the true class.
+/// Counts an answer if it is RECOGNIZED as the true class.
 void add(const Recognition& answer, const test::Scene& scene, Count* count) {
   if (answer.status != RecognitionStatus::Recognized ||
       answer.shape.curve_class != scene.curve_class) {
@@ -85,7 +86,7 @@ void add(const Recognition& answer, const test::Scene& scene, Count* count) {
   ++count->recognized;
   count->beyond_outer += published > chi_square_threshold(kOuter, dof) ? 1 : 0;
   count->beyond_inner += published > chi_square_threshold(kInner, dof) ? 1 : 0;
-  // The covariance linear about the estimate, of the points before any is set aside as a spike.
+  // The covariance linearised at the estimate, from the points before any is set aside as a spike.
   const Weighing w = weigh(test::fit_data(scene, scene.sigma_m), true, {});
   const auto& fit = w.canonical[static_cast<std::size_t>(scene.curve_class)];
   if (w.best == scene.curve_class && fit) {
@@ -144,7 +145,7 @@ TEST(JointCovariance, OfRecognizedAnswersHoldsTheTruth) {
   if (!test::counts_tell()) {
     return;
   }
-  // The same count finds the bends where they are left out.
+  // The same count detects bends if the covariance ignores them.
   EXPECT_GT(beyond_by_bound, beyond);
 }
 

@@ -1,4 +1,4 @@
-// Whether a class's optimum is found among touches one at a time, in no order.
+// Single touches in no order: the search must find the optimum of each class.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,12 +10,12 @@
 namespace palpate {
 namespace {
 
-/// Chi-square above the optimum by which a class is taken for out though it is the true one: odds
-/// of 1000.
+/// Chi-square above the optimum by which the true class would be excluded: odds of 1000.
 const double kDecisive = 2.0 * std::log(1000.0);
 
-/// One arm of a semi-cubical parabola from beside its cusp on. A vertex in the midst of the touches
-/// must not leave those before it free: found so, the class was out by 4000 of chi-square.
+/// One arm of a semi-cubical parabola, starting next to its cusp. A vertex in the middle of the
+/// touches must not leave those before it free: with such a solution the class was worse by 4000 of
+/// chi-square.
 TEST(LoneSearch, FindsOneArmOfASemiCubicalParabolaBesideItsCusp) {
   constexpr double kA = 4.0;  // 1/sqrt m
   constexpr double kB = 0.3;

@@ -1,4 +1,5 @@
-// Touches one at a time, in no order, by points and by round tips whose side nobody tells.
+// Recognition from single touches in no order, by points and by round tips whose side is not
+// stated.
 #include "tests/support/lone_touches.h"
 
 #include <gtest/gtest.h>
@@ -22,13 +23,13 @@ Recognition recognise(const test::LoneTouches& touches, Noise noise = Noise::Sta
   return recognizer.recognize();
 }
 
-/// RECOGNIZED answers of many scenes.
+/// The RECOGNIZED answers of many scenes.
 struct Tally {
   int scenes = 0;
   int recognized = 0;
   int wrong = 0;
-  double stated_wrong = 0.0;  ///< by the answers' own probabilities
-  double squares = 0.0;       ///< of shape errors over published deviations
+  double stated_wrong = 0.0;  ///< expected by the answers' own probabilities
+  double squares = 0.0;       ///< of shape errors divided by published deviations
   int letters = 0;
 
   void add(const Recognition& answer, const test::Scene& scene) {
@@ -49,11 +50,11 @@ struct Tally {
   }
 
   void expect_honest(const std::string& what) const {
-    // More than four deviations of a count above what is stated comes once in ten thousand runs.
+    // A count exceeds the stated one by four deviations once in ten thousand runs.
     EXPECT_LE(wrong, stated_wrong + 4.0 * std::sqrt(stated_wrong) + 1.0) << what;
     if (letters < 20) return;
-    // Mean squares of normal errors, five deviations of it either way; the letters of a shape are
-    // correlated, so that only every third counts.
+    // Mean square of normal errors, with five deviations of it on either side. The parameters of a
+    // shape are correlated, so only every third counts.
     const double mean = squares / letters;
     EXPECT_NEAR(mean, 1.0, 5.0 * std::sqrt(2.0 * 3.0 / letters)) << what;
   }
@@ -80,7 +81,7 @@ TEST(LoneTouches, AreRecognisedInNoOrderByPointsAndByTips) {
                                    std::to_string(count) + (tip > 0.0 ? " by a tip" : " points") +
                                    (noise == Noise::Stated ? "" : ", noise not stated");
           tally.expect_honest(what);
-          // Twelve touches tell their own noise by seven residuals or fewer.
+          // With twelve touches, seven residuals or fewer determine the noise.
           if (test::counts_tell() && (noise == Noise::Stated || count > 12)) {
             EXPECT_GE(10 * tally.recognized, 7 * tally.scenes) << what;
           }
@@ -160,8 +161,8 @@ TEST(LoneTouches, OfAStraightEdgeAreNoNeedle) {
   EXPECT_GE(recognised, 15);
 }
 
-/// The order of touches whose noise nobody states comes from a curve through some of them: through
-/// too few that is a needle, and one edge in four was none any more.
+/// If the noise is not stated, the order of the touches comes from a curve through some of them.
+/// Through too few of them that curve is a needle, and one edge in four was not recognised.
 TEST(LoneTouches, OfAStraightEdgeWhoseNoiseNobodyStatesAreRecognised) {
   std::mt19937_64 rng = test::test_rng();
   const int scenes = test::stress_count(60);
@@ -179,7 +180,7 @@ TEST(LoneTouches, OfAStraightEdgeWhoseNoiseNobodyStatesAreRecognised) {
   }
 }
 
-/// Where nobody states the noise, anything lies about a curve if the noise is large enough.
+/// If the noise is not stated, any points lie on a curve, provided that the noise is large enough.
 TEST(LoneTouches, OfNoCurveAreNotCertainlyOne) {
   std::mt19937_64 rng = test::test_rng();
   std::uniform_real_distribution<double> anywhere(-0.05, 0.05);
@@ -216,7 +217,7 @@ TEST(LoneTouches, OfTheSameCurveInAnotherOrderGiveTheSameAnswer) {
     ASSERT_EQ(first.shape.curve_class, second.shape.curve_class) << count;
     ASSERT_EQ(first.status, RecognitionStatus::Recognized) << count;
     for (Eigen::Index k = 0; k < 2; ++k) {
-      // To a hundredth of a deviation: where the refinement ends.
+      // To a hundredth of a deviation, where the refinement stops.
       EXPECT_NEAR(first.shape.values[k], second.shape.values[k],
                   0.01 * std::sqrt(first.covariance(k, k)))
           << count;
@@ -233,7 +234,7 @@ TEST(LoneTouches, OfFewPlacesAreAnsweredButNeverForCertain) {
       EXPECT_EQ(answer.status, RecognitionStatus::Collecting) << count;
       continue;
     }
-    // Six leave every class a number of ways to go through them at most.
+    // Through six touches, every class passes in finitely many ways at most.
     ASSERT_EQ(answer.status,
               count < 6 ? RecognitionStatus::Ambiguous : RecognitionStatus::Recognized)
         << count;
@@ -247,7 +248,7 @@ TEST(LoneTouches, OfFewPlacesAreAnsweredButNeverForCertain) {
   }
 }
 
-/// RECOGNIZED leaves one in twenty to doubt, from however few touches it is.
+/// RECOGNIZED permits one wrong answer in twenty, however few the touches are.
 TEST(LoneTouches, ThatAreFewAndRecognisedAreSeldomAnother) {
   constexpr int kScenes = 20;
   const int scenes = test::stress_count(kScenes);
@@ -269,18 +270,18 @@ TEST(LoneTouches, ThatAreFewAndRecognisedAreSeldomAnother) {
       }
     }
     std::printf("noise %g: RECOGNIZED %d, as another %d\n", noise, recognized, wrong);
-    const double expected = 0.05 * recognized;  // and three deviations of such a count
+    const double expected = 0.05 * recognized;  // plus three deviations of such a count
     const double most = expected + 3.0 * std::sqrt(0.95 * expected);
     EXPECT_LE(wrong, most) << noise;
-    // Of so few that one in six might be wrong the line above says little; fewer scenes are asked
-    // for to run the code only.
+    // If one in six might be wrong, the check above says little. With fewer scenes it only runs the
+    // code.
     if (scenes >= kScenes) {
       EXPECT_LE(most, recognized / 6.0) << noise;
     }
   }
 }
 
-/// Beyond the bound every touch puts out an older one, anywhere along the part.
+/// Beyond the bound, every touch replaces an older one, anywhere along the part.
 TEST(LoneTouches, BeyondTheBoundLeaveNoContactsOfThoseForgotten) {
   std::mt19937_64 rng = test::test_rng();
   const test::LoneTouches touches = test::lone_touches(CurveClass::Ellipse, 150, 1e-4, 0.0, rng);
@@ -310,18 +311,18 @@ TEST(LoneTouches, BeyondTheBoundLeaveNoContactsOfThoseForgotten) {
   }
 }
 
-/// An elliptic part touched from outside all around by a round tip whose side nobody tells.
+/// An elliptic part touched from outside, all around, by a round tip whose side is not stated.
 struct PartByTip {
   double a_m = 0.0;
   double b_m = 0.0;
   double tip_radius_m = 0.0;
   double sigma_m = 0.0;
-  double spikes = 0.0;       ///< share of touches, up to a millimetre off
+  double spikes = 0.0;       ///< share of touches that are off by up to a millimetre
   double deviation_m = 0.0;  ///< standard deviation of harmonics 2 to 6 of the normal's angle
 };
 
 Recognition recognise(const PartByTip& part, int touches, std::mt19937_64& rng) {
-  constexpr int kLowest = 2;  // the first would be a shift
+  constexpr int kLowest = 2;  // the first harmonic would be a shift
   constexpr int kHighest = 6;
   constexpr double kSpike_m = 1e-3;
   std::normal_distribution<double> normal;
@@ -352,18 +353,19 @@ Recognition recognise(const PartByTip& part, int touches, std::mt19937_64& rng) 
   return recognizer.recognize();
 }
 
-/// RECOGNIZED with the tips on the other side of the wall, as an ellipse larger by their diameters.
+/// True if RECOGNIZED with the tips on the wrong side of the wall: an ellipse larger by their
+/// diameters.
 bool is_inside_out(const Recognition& answer, const PartByTip& part) {
   return answer.status == RecognitionStatus::Recognized &&
          answer.shape.curve_class == CurveClass::Ellipse &&
          answer.shape.values.sum() > part.a_m + part.b_m + 2.0 * part.tip_radius_m;
 }
 
-/// Neighbours lie a few deviations of their noise apart, so that the direction from one to the next
-/// says little of the wall's. The ellipses on both sides of the tips differ by chi-square of some
-/// 28 (waves of (a - b)^2 r / (8 M (M + 2 r)) four times around, M the mean semi-axis), which noise
-/// spreads by 2 sqrt(28); RECOGNIZED from within takes 2 log(99 * 19) = 15 the other way: 4.1
-/// deviations off, one scene in 40,000.
+/// Neighbours are a few deviations of their noise apart, so the direction from one to the next says
+/// little about the wall's direction. The ellipses on both sides of the tips differ by a chi-square
+/// of about 28 (waves of (a - b)^2 r / (8 M (M + 2 r)) four times around, M the mean semi-axis), to
+/// which noise adds a standard deviation of 2 sqrt(28). RECOGNIZED from inside needs 2 log(99 * 19)
+/// = 15 in the other direction: 4.1 deviations away, one scene in 40,000.
 TEST(LoneTouches, ThatShowNoDirectionDoNotTurnTheWallInsideOut) {
   std::mt19937_64 rng = test::test_rng();
   const int scenes = test::stress_count(150);
@@ -381,10 +383,10 @@ TEST(LoneTouches, ThatShowNoDirectionDoNotTurnTheWallInsideOut) {
   EXPECT_GE(10 * recognized, 9 * 2 * scenes);
 }
 
-/// Waves that run all around the part, 2.5 times the noise, may be what its two walls differ by.
-/// That a true ratio of evidences, outside over inside, falls below 1 / 20 of the 99 to 1 that tips
-/// have beforehand has a probability of at most 1 / (20 * 99) where they did touch from outside
-/// (Markov's inequality): two such answers in 100 scenes come once in 800 runs.
+/// Waves all around the part, 2.5 times the noise, can equal the difference of its two walls. If
+/// the tips did touch from outside, the true ratio of the evidences, outside over inside, falls
+/// below 1 / 20 of the prior odds of 99 to 1 with a probability of at most 1 / (20 * 99) (Markov's
+/// inequality): two such answers in 100 scenes occur once in 800 runs.
 TEST(LoneTouches, WithCoherentErrorsDoNotTurnTheWallInsideOut) {
   std::mt19937_64 rng = test::test_rng();
   const PartByTip part{0.065, 0.0525, 0.00475, 2e-5, 0.0, 5e-5};

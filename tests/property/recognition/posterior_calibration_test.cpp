@@ -1,4 +1,4 @@
-// Stated probabilities are true: of the answers that are given with a probability, so many are
+// Stated probabilities must be true: of the answers stated with probability p, a fraction p must be
 // right.
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 constexpr int kScenes = 2400;
 constexpr double kCoverage = 0.999;
 
-/// Of the most probable hypothesis, over all answers and by the class that it names.
+/// Calibration of the most probable hypothesis, over all answers and by the class that it names.
 struct Calibrations {
   test::Calibration pooled;
   std::array<test::Calibration, 9> by_class;
@@ -45,7 +45,7 @@ Calibrations run(const test::ScenePrior& prior, bool sigma_known) {
   return result;
 }
 
-/// A bin of few answers, whose band holds every frequency, says nothing and cannot fail.
+/// A bin with few answers, whose band contains every frequency, says nothing and cannot fail.
 void expect_true(const test::Calibration& calibration, const std::string& title, double from) {
   for (std::size_t b = 0; b < test::kProbabilityBins; ++b) {
     const test::Calibration::Bin& bin = calibration.bins()[b];
@@ -58,7 +58,7 @@ void expect_true(const test::Calibration& calibration, const std::string& title,
               << bin.right << " of " << bin.count() << ", band " << band.least << " to "
               << band.most << "\n";
     if (test::kProbabilityBounds[b] < from) {
-      continue;  // printed
+      continue;  // printed only
     }
     EXPECT_GE(bin.right, band.least)
         << title << ", bin from " << test::kProbabilityBounds[b] << ": too sure";
@@ -68,18 +68,18 @@ void expect_true(const test::Calibration& calibration, const std::string& title,
 }
 
 void expect_true(const Calibrations& calibrations) {
-  // Below these bounds several classes fit, and their prior masses decide: there the places of the
-  // scenes, which end where their parts do, are not those of the prior, which has tails, and the
-  // integral of a class that the data leave wide in two directions is short of its mass.
+  // Below these bounds several classes fit, and their prior masses decide. There the scenes differ
+  // from the prior: their places end where the parts do, while the prior has tails; and the
+  // integral of a class that is wide in two directions is too small.
   constexpr double kPooledFrom = 0.6;
   constexpr double kClassesFrom = 0.95;
   expect_true(calibrations.pooled, "all", kPooledFrom);
-  // No scene is of no class here: what is stated of "unclassified" is true under another prior.
+  // No scene is of no class here: what is stated about "unclassified" is true under another prior.
   for (std::size_t i = 1; i < calibrations.by_class.size(); ++i) {
     expect_true(calibrations.by_class[i], std::string(name_of(static_cast<CurveClass>(i))),
                 kClassesFrom);
   }
-  // Else the bins above would say nothing of sure answers.
+  // Otherwise the bins above would say nothing about sure answers.
   EXPECT_GT(calibrations.pooled.bins().back().count(), test::stress_count(kScenes) / 4);
 }
 

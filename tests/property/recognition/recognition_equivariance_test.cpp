@@ -1,4 +1,4 @@
-// The answer moves, scales and forgets order as it must.
+// The answer must move and scale with the samples and must not depend on their order.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace palpate {
 namespace {
 
-/// Two patches long enough that every class is told.
+/// Two patches that are long enough to determine every class.
 test::Scene told_scene(CurveClass curve_class, std::mt19937_64& rng) {
   test::SceneOptions options;
   options.patches = 2;
@@ -24,12 +24,12 @@ test::Scene told_scene(CurveClass curve_class, std::mt19937_64& rng) {
   return test::random_scene(curve_class, options, rng);
 }
 
-/// Rivals that are not nested in one another are sought on a grid that turns with the frame, and a
-/// sample at the edge of the spike test may fall on either side: probabilities agree to a few
-/// hundredths, and a decision is compared unless it hangs on those.
+/// Rivals that are not nested in one another are searched for on a grid that turns with the frame,
+/// and a sample at the edge of the spike test may fall on either side. So probabilities agree to a
+/// few hundredths, and a decision is compared unless it depends on such a difference.
 constexpr double kProbability = 0.03;
 
-/// The answer as a truth that another answer is measured against: moved, then enlarged.
+/// The answer as the truth that another answer is compared with: moved, then enlarged.
 test::Scene as_truth(const Recognition& answer, const Pose2& motion, double factor) {
   test::Scene truth;
   truth.curve_class = answer.shape.curve_class;
@@ -43,15 +43,16 @@ test::Scene as_truth(const Recognition& answer, const Pose2& motion, double fact
   return truth;
 }
 
-/// `other` answers the samples of `answer` moved, then enlarged by `factor`, or in another order.
+/// `other` is the answer to the samples of `answer` moved, then enlarged by `factor`, or in another
+/// order.
 void expect_same(const Recognition& answer, const Recognition& other, const Pose2& motion = {},
                  double factor = 1.0) {
   const double threshold = RecognizerOptions{}.recognized_probability;
   const double probability = answer.hypotheses.front().probability;
   ASSERT_EQ(other.shape.curve_class, answer.shape.curve_class);
   EXPECT_NEAR(other.hypotheses.front().probability, probability, kProbability);
-  // The tree's tests see windows that begin where the stroke does: other windows, and each may
-  // reject what is true as often as its significance says.
+  // The tree's tests use windows that begin where the stroke does. In reverse order these are other
+  // windows, and each test may reject the truth as often as its significance says.
   const bool tree_rejects = other.doubt == Doubt::TreeRejects || answer.doubt == Doubt::TreeRejects;
   if (std::abs(probability - threshold) > kProbability && !tree_rejects) {
     EXPECT_EQ(other.status, answer.status)
@@ -68,14 +69,14 @@ void expect_same(const Recognition& answer, const Recognition& other, const Pose
     EXPECT_LE(std::abs(joint.error[k]), allowed * std::sqrt(joint.covariance(k, k)))
         << "component " << k;
   }
-  // Shape and pose together, in the covariance that both are to have.
+  // Shape and pose together, with the covariance that both should have.
   EXPECT_LE(test::squared_distance(joint),
             allowed * allowed * static_cast<double>(joint.error.size()));
   test::Scene unmoved = truth;
   unmoved.world_T_curve = answer.world_T_curve;
   const test::JointError own = test::joint_error(answer.hypotheses.front(), unmoved);
   if (same_samples) {
-    // Shape parameters only: a motion mixes the variances of the pose.
+    // Shape parameters only, because a motion mixes the variances of the pose.
     const auto letters =
         static_cast<Eigen::Index>(parameter_letters(answer.shape.curve_class).size());
     const Eigen::Vector3d powers = length_powers(answer.shape.curve_class);
@@ -141,7 +142,7 @@ TEST_P(Equivariance, ContactsLieOnTheCurveWhereTheySay) {
   }
   const auto curve = make_curve(answer.shape.curve_class, answer.shape.values);
   ASSERT_TRUE(curve.has_value());
-  // Two windows at least of each of two patches, but where a spline bends more sharply than the
+  // At least two windows for each of two patches, except where a spline bends more sharply than the
   // samples can follow.
   const std::size_t fewest = GetParam() == CurveClass::CubicSpline ? 3 : 4;
   EXPECT_GE(answer.contacts.size(), fewest);

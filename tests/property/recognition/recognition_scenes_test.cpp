@@ -1,5 +1,5 @@
-// Thousands of random scenes: the class, the bound, and whether the published uncertainties are
-// true.
+// Thousands of random scenes: the class, the errors compared with the bound, and whether the
+// published uncertainties are true.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 constexpr double kNoiseLevels[] = {1e-8, 1e-5, 1e-4, 5e-4, 1e-3, 2e-3};
 constexpr int kScenesPerCell = 11;  // 8 classes x 4 numbers of patches x 6 levels x 11 = 2112
 
-/// What came of the scenes of one noise level and number of patches.
+/// Results of the scenes of one noise level and number of patches.
 struct Cell {
   int scenes = 0;
   int best_right = 0;  ///< the most probable class is the true one
@@ -107,7 +107,7 @@ void run(bool sigma_known) {
     return;
   }
   EXPECT_GE(scenes, 2000);
-  // Over half of the scenes can be told; of those that are, under one in a hundred is wrong.
+  // More than half of the scenes can be recognised; fewer than one in a hundred of these is wrong.
   EXPECT_GT(recognised, scenes / 2);
   EXPECT_LT(100 * wrong, recognised);
   std::cout << "scenes " << scenes << ", recognised " << recognised << ", of those wrong " << wrong
@@ -133,8 +133,8 @@ void run(bool sigma_known) {
     for (Eigen::Index k = 0; k < compared; ++k) {
       const double ratio = std::sqrt(s.squares[k] / s.count);
       std::cout << " " << ratio;
-      // 1 by the bound and by maximum likelihood attaining it; 0.1 for what is not yet linear where
-      // the bound is as large as 3 %, and three standard deviations 1 / sqrt(2 n) of such a ratio.
+      // 1 if maximum likelihood attains the bound; 0.1 for non-linearity where the bound is as
+      // large as 3 %, and three standard deviations 1 / sqrt(2 n) of such a ratio.
       EXPECT_NEAR(ratio, 1.0, 0.1 + 3.0 / std::sqrt(2.0 * s.count))
           << name_of(curve_class) << " component " << k;
     }
@@ -147,8 +147,8 @@ TEST(RecognitionScenes, WithTheNoiseStated) { run(true); }
 TEST(RecognitionScenes, WithTheNoiseUnknown) { run(false); }
 
 TEST(RecognitionScenes, CurvesOfNoClassAreNeverCertainlyOne) {
-  // "Long enough to tell": the best class leaves, without noise, more than a noncentrality of 60,
-  // twelve standard deviations of a parameter that is missing.
+  // "Long enough": without noise the best class leaves a noncentrality of more than 60, twelve
+  // standard deviations of a missing parameter.
   std::mt19937_64 rng = test::test_rng();
   int tellable = 0;
   int certainly_wrong = 0;

@@ -1,4 +1,4 @@
-// Laws of the recognition tree over random curves of every class.
+// Properties of the recognition tree over random curves of every class.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 using test::PlacedCurve;
 
 /// Adds independent Gaussian errors to angle, kappa and kappa_s, relative to each point's size, and
-/// the covariance that tells of them.
+/// the covariance of these errors.
 void add_noise(std::vector<TreePoint>& points, double relative, std::mt19937_64& rng) {
   std::normal_distribution<double> normal;
   for (TreePoint& point : points) {
@@ -66,10 +66,10 @@ TEST_P(TreeOfEveryClass, NoiseThatTheCovarianceTellsOfIsNoReasonToRejectIt) {
     if (!test::counts_tell()) {
       continue;
     }
-    // A path of at most three tests at 0.1 % each may lose 0.3 %; 2 % covers chance and curves that
-    // a simpler class explains as well.
+    // A path of at most three tests at 0.1 % each may lose 0.3 %. 2 % allows for chance and for
+    // curves that a simpler class explains as well.
     EXPECT_GE(right, cases * 98 / 100) << noise;
-    // 95.4 % of a Gaussian's; binomial standard deviation 1.2 %.
+    // 95.4 % for a Gaussian; the binomial standard deviation is 1.2 %.
     EXPECT_NEAR(static_cast<double>(within) / right, 0.954, 0.045) << noise;
   }
 }
@@ -106,8 +106,8 @@ TEST_P(TreeOfEveryClass, ClassAndShapeDoNotDependOnUnitPlaceOrOrder) {
 }
 
 TEST(RecognitionTreeProperty, RejectsTheTrueClassAsSeldomAsItsSignificanceSays) {
-  // A class passes three tests at most on its way; the estimates' law is not exactly normal, hence
-  // twice that.
+  // A class passes at most three tests. The distribution of the estimates is not exactly normal,
+  // hence twice that.
   constexpr double kTests = 3.0;
   constexpr double kSlack = 2.0;
   const double significance = RecognizerOptions{}.tree.significance;
@@ -125,7 +125,7 @@ TEST(RecognitionTreeProperty, RejectsTheTrueClassAsSeldomAsItsSignificanceSays) 
     }
     stated.push_back(kSlack * kTests * significance);
     rejected += p < significance ? 1 : 0;
-    // Where they disagree the answer says so.
+    // If they disagree the answer says so.
     const bool rejects =
         answer.tree_p_values[static_cast<std::size_t>(answer.shape.curve_class)] < significance;
     EXPECT_FALSE(rejects && answer.status == RecognitionStatus::Recognized) << "scene " << i;
@@ -136,8 +136,8 @@ TEST(RecognitionTreeProperty, RejectsTheTrueClassAsSeldomAsItsSignificanceSays) 
   std::cout << rejected << " of " << stated.size() << " rejected\n";
 }
 
-/// `within` of `count` errors lie within two deviations: as of normal laws, to four deviations of
-/// that share. The errors of one answer hang together: three count as one.
+/// `within` of `count` errors are within two deviations, as for normal distributions, to four
+/// deviations of that share. The errors of one answer are correlated: three count as one.
 void expect_two_deviations(int within, int count, const std::string& what) {
   if (!test::counts_tell()) return;
   ASSERT_GT(count, 30) << what;
@@ -148,8 +148,8 @@ void expect_two_deviations(int within, int count, const std::string& what) {
   EXPECT_LE(share, std::min(1.0, kLaw + tolerance)) << what;
 }
 
-/// From strokes to pose by nothing but local estimates: the errors of all that is published lie
-/// within two published deviations as often as those of normal laws do.
+/// From strokes to pose by local estimates alone: published errors must be within two published
+/// deviations as often as normal ones.
 TEST(RecognitionTree, ShapeAndPoseErrAsTheirPropagatedCovarianceSays) {
   RecognizerOptions options;
   options.method = RecognitionMethod::Tree;

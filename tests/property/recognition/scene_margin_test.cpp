@@ -1,5 +1,5 @@
-// What calibration and certainty are judged by: scenes, margins and bands that are themselves
-// right.
+// Tests of the test support itself: the scenes, margins and confidence bands that calibration tests
+// rely on.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,7 +44,7 @@ TEST(GeometricFit, FindsTheTruthFromNearIt) {
         test::scene_from(test::classes_only(test::even_prior()), test::test_seed(), i);
     test::PlacedShape start{drawn.scene.curve_class, drawn.scene.values, drawn.scene.world_T_curve};
     EXPECT_LT(test::least_chi2(drawn, {&start, 1}), 1e-6) << i << " from the truth itself";
-    // A hundredth of a per cent beside it: less than where the basin of a neighbour begins.
+    // A hundredth of a per cent off the truth: closer than the basin of a neighbouring optimum.
     start.values *= 1.0001;
     start.world_T_curve.x += 1e-4 * drawn.size_m;
     start.world_T_curve.theta += 1e-4;
@@ -64,8 +64,8 @@ TEST(ClassMargin, OccamFactorsGrowAsTheNoiseFalls) {
       continue;
     }
     ++compared;
-    // A parameter's standard deviation falls with the noise, by its root where chi-square grows
-    // with the fourth power; a circle has two.
+    // A parameter's standard deviation is proportional to the noise, or to its square root if
+    // chi-square grows with the fourth power. A circle has two such parameters.
     const CurveClass truth = drawn.scene.curve_class;
     const double power = truth == CurveClass::SemiCubicalParabola ? 0.5 : 1.0;
     EXPECT_GT(finer, 0.8 * factor * std::pow(100.0, power)) << i;
@@ -76,11 +76,11 @@ TEST(ClassMargin, OccamFactorsGrowAsTheNoiseFalls) {
 }
 
 TEST(BinomialBand, HoldsAllButTheTailsOfTheExactLaw) {
-  // Of 20 throws of a coin: P(at most 2) = 2.0e-4, P(at most 3) = 1.3e-3.
+  // For 20 tosses of a coin: P(at most 2) = 2.0e-4, P(at most 3) = 1.3e-3.
   const test::Band coin = test::binomial_band(std::vector<double>(20, 0.5), 0.999);
   EXPECT_EQ(coin.least, 3);
   EXPECT_EQ(coin.most, 17);
-  // Of 100 at 0.999: P(at most 97) = 1.5e-4, P(at most 98) = 4.6e-3.
+  // For 100 trials at 0.999: P(at most 97) = 1.5e-4, P(at most 98) = 4.6e-3.
   const test::Band sure = test::binomial_band(std::vector<double>(100, 0.999), 0.999);
   EXPECT_EQ(sure.least, 98);
   EXPECT_EQ(sure.most, 100);

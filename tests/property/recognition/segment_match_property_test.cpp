@@ -1,4 +1,4 @@
-// Placements on a known part under motions, reversal and order, and against their own
+// Placements on a known part under motions, reversal and reordering, and against their stated
 // probabilities.
 #include <gtest/gtest.h>
 
@@ -18,15 +18,15 @@ namespace {
 
 constexpr double kSigma = 2e-5;
 
-/// A stroke that begins anywhere on the part, uniform in arc length, in either direction.
+/// A stroke from a random place on the part, uniform in arc length, in either direction.
 test::PartStroke random_stroke(const ClosedSpline& part, double arc_m, std::mt19937_64& rng) {
   std::uniform_real_distribution<double> place(0.0, part.arc_length(0.0, 5.0));
   const double t0 = part.parameter_at_arc_length(0.0, place(rng));
   return {t0, rng() % 2 == 0 ? arc_m : -arc_m};
 }
 
-/// Strokes of those lengths anywhere on the part, which lies anywhere. The draws are made one after
-/// the other: the order of arguments is the compiler's.
+/// Strokes of these lengths anywhere on the part at a random pose. The draws are separate
+/// statements, because the compiler chooses the order of arguments.
 test::TouchedPart touch_anywhere(const ClosedSpline& part, const std::vector<double>& arcs_m,
                                  std::mt19937_64& rng) {
   std::vector<test::PartStroke> strokes;
@@ -128,8 +128,8 @@ struct Trials {
   int count = 0;
   int determined = 0;
   int determined_wrong = 0;       ///< another placement than the true one
-  double expected_wrong = 0.0;    ///< sum of what the posteriors of the determined ones leave
-  int segment_wrong = 0;          ///< the most probable segment is another
+  double expected_wrong = 0.0;    ///< sum of 1 - posterior over the determined ones
+  int segment_wrong = 0;          ///< the most probable segment is a wrong one
   double segment_expected = 0.0;  ///< by the stated probabilities
   double segment_variance = 0.0;
   int no_match = 0;
@@ -169,7 +169,7 @@ Trials run_trials(double sigma_m, double arc_m, int count, int patches, std::mt1
                                 placement.world_T_part.y - truth.y,
                                 wrap_angle(placement.world_T_part.theta - truth.theta));
     const double square = error.dot(placement.covariance.inverse() * error);
-    // Another placement lies hundreds of standard deviations away.
+    // Another placement is hundreds of standard deviations away.
     constexpr double kAnother = 100.0;
     trials.expected_wrong += 1.0 - placement.probability;
     if (square > kAnother) {
@@ -182,8 +182,8 @@ Trials run_trials(double sigma_m, double arc_m, int count, int patches, std::mt1
   return trials;
 }
 
-/// What the posteriors and covariances say of themselves is true: four standard deviations of each
-/// count. Prints the figures.
+/// Posteriors and covariances must be true, to four standard deviations of each count. Prints the
+/// results.
 void expect_calibrated(const char* name, double sigma_m, double arc_m, int patches) {
   auto rng = test::test_rng();
   const Trials t = run_trials(sigma_m, arc_m, test::stress_count(150), patches, rng);
@@ -199,7 +199,7 @@ void expect_calibrated(const char* name, double sigma_m, double arc_m, int patch
   if (!test::counts_tell()) {
     return;
   }
-  // Rare events beside their expectation: Poisson, with one more where next to none is expected.
+  // Rare events against their expectation: Poisson, plus one where almost none is expected.
   EXPECT_LE(t.determined_wrong, t.expected_wrong + 4.0 * std::sqrt(t.expected_wrong) + 1.0);
   EXPECT_NEAR(t.segment_wrong, t.segment_expected, 4.0 * std::sqrt(t.segment_variance) + 1.0);
   EXPECT_LE(t.no_match, 2);  // a thousandth of the trials is expected

@@ -1,4 +1,5 @@
-// Touches one at a time beside a search that leaves nothing out: what they determine is recognised.
+// Single touches compared with an exhaustive search: the recognizer must recognise the classes that
+// the touches determine.
 #include "tests/support/touch_reference.h"
 
 #include <gtest/gtest.h>
@@ -12,9 +13,10 @@
 namespace palpate {
 namespace {
 
-/// The reference gives each touch a path of its own where the recogniser strings them: of a smooth
-/// path without a class it thinks more. Beside a cusp, where a class is told by little, that moves
-/// probabilities across RECOGNIZED's level; nowhere else.
+/// The reference gives each touch a path of its own, while the recognizer joins touches to strokes;
+/// so the reference gives a smooth path without class more probability. Next to a cusp, where
+/// little determines the class, that moves probabilities across the level of RECOGNIZED; nowhere
+/// else.
 TEST(TouchReference, WhatTouchesDetermineIsRecognised) {
   const int scenes = test::stress_count(4);
   test::BesideReference all;
@@ -36,7 +38,7 @@ TEST(TouchReference, WhatTouchesDetermineIsRecognised) {
     all += of_class;
   }
   if (test::counts_tell()) {
-    // RECOGNIZED's own level: beyond it the reference may be mistaken one time in twenty.
+    // The level of RECOGNIZED: beyond it the reference may be wrong one time in twenty.
     EXPECT_GE(20 * all.sure, 19 * all.determined) << "of " << all.determined;
     EXPECT_LE(20 * all.other_doubt, all.determined);
     EXPECT_GE(10 * all.recognized, 9 * (all.determined - all.few_places));

@@ -1,5 +1,5 @@
-// Parts touched by probes that deviate by the law of core/README.md, "Deviations that neighbours
-// share", or not at all, one as often as the other: what is stated of class and shape is true.
+// Parts touched by probes of which half deviate by the law of core/README.md, "Deviations that
+// neighbours share": stated classes and shapes must be as reliable as stated.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -26,7 +26,7 @@ constexpr int kSamples = 160;
 constexpr double kCoverage = 0.999;
 
 struct Touched {
-  Ellipse part{1.0, 1.0};  ///< a circle where the axes are the same
+  Ellipse part{1.0, 1.0};  ///< a circle if the axes are equal
   std::vector<ContactSample> samples;
 };
 
@@ -48,7 +48,7 @@ std::vector<double> deviations(const std::vector<double>& normal_angle,
   const double order = std::round(std::clamp(1.0 / length, 2.0, 8.0));
   const double size =
       std::abs(std::student_t_distribution<double>(3.0)(rng)) * deviation * order * order / 4.0;
-  const int highest = std::uniform_int_distribution<int>(1, 8)(rng);  // 1: the constant alone
+  const int highest = std::uniform_int_distribution<int>(1, 8)(rng);  // 1: only the constant
   const double constant = size * normal(rng);
   for (double& value : result) {
     value += constant;
@@ -76,7 +76,7 @@ Touched touched(const Ellipse& part, double sigma, bool deviates, std::mt19937_6
                : along.back() +
                      (part.position(t[t.size() - 1]) - part.position(t[t.size() - 2])).norm());
   }
-  // What is off by more than a hundredth of the part is no probe for it.
+  // A probe that is off by more than a hundredth of the part is not suitable for it.
   constexpr double kMostOff = 0.01;
   std::vector<double> off(kSamples, 0.0);
   if (deviates) {
@@ -108,7 +108,7 @@ Recognition recognise(const Touched& scene, bool unqualified, unsigned classes =
 
 unsigned bit(CurveClass curve_class) { return 1U << static_cast<unsigned>(curve_class); }
 
-/// As the prior has it: half of the parts circles, m = e^2 - 1 of the others uniform.
+/// As in the prior: half of the parts are circles; m = e^2 - 1 of the others is uniform.
 Ellipse part_of_prior(std::mt19937_64& rng) {
   const bool circle = uniform(rng, 0.0, 1.0) < 0.5;
   return {1.0, circle ? 1.0 : std::sqrt(uniform(rng, 0.0, 1.0))};
@@ -138,7 +138,7 @@ TEST(UnqualifiedProbe, ProbabilitiesAreTrue) {
   std::cout << "sure " << stated.size() << " of " << scenes << ", right " << right << ", band "
             << band.least << " to " << band.most << "\n";
   EXPECT_GE(right, band.least);
-  EXPECT_GT(static_cast<int>(stated.size()), scenes / 2);  // else little is said
+  EXPECT_GT(static_cast<int>(stated.size()), scenes / 2);  // otherwise the test says little
 }
 
 TEST(UnqualifiedProbe, MakesNoEllipseOfARing) {
@@ -158,10 +158,10 @@ TEST(UnqualifiedProbe, MakesNoEllipseOfARing) {
   std::cout << "RECOGNIZED " << asked.size() << " of " << scenes << ", " << wrong
             << " as no circle\n";
   EXPECT_LE(wrong, test::binomial_band(asked, kCoverage).most);
-  EXPECT_GT(asked.size(), static_cast<std::size_t>(scenes / 4));  // else little is said
+  EXPECT_GT(asked.size(), static_cast<std::size_t>(scenes / 4));  // otherwise the test says little
 }
 
-/// All around a ring by a probe with two lobes, of which a circle leaves so much chi-square.
+/// A full turn around a ring by a probe with two lobes; `chi2` is what a circle leaves of them.
 Touched ring_by_two_lobes(double chi2, std::mt19937_64& rng) {
   const double sigma = 3e-3;
   const double lobe = sigma * std::sqrt(2.0 * chi2 / kSamples);
@@ -178,7 +178,7 @@ Touched ring_by_two_lobes(double chi2, std::mt19937_64& rng) {
   return ring;
 }
 
-/// No residual shows these lobes.
+/// These lobes are not visible in the residuals.
 TEST(UnqualifiedProbe, WithHiddenLobesMakesNoSureEllipse) {
   std::mt19937_64 rng = test::test_rng();
   const RecognizerOptions options;
@@ -198,7 +198,7 @@ TEST(UnqualifiedProbe, WithHiddenLobesMakesNoSureEllipse) {
   }
 }
 
-/// What no such deviation explains is as sure as by a probe without.
+/// A part that no such deviation explains is as certain as without the option.
 TEST(UnqualifiedProbe, LeavesPlainEllipsesRecognized) {
   std::mt19937_64 rng = test::test_rng();
   const int scenes = test::stress_count(40);
@@ -216,8 +216,8 @@ TEST(UnqualifiedProbe, LeavesPlainEllipsesRecognized) {
 
 TEST(UnqualifiedProbe, RegionsHoldTheShape) {
   std::mt19937_64 rng = test::test_rng();
-  // The moment is that of a mixture with long tails: what a normal law's 95 % region of the same
-  // moment holds of such, at the least, is 90 % (as asked of answers without a probe file).
+  // The moment is that of a mixture with long tails. The 95 % region of a normal distribution with
+  // the same moment contains at least 90 % of it (as required of answers without a probe file).
   constexpr double kHeld = 0.9;
   std::vector<double> asked;
   int held = 0;

@@ -13,7 +13,7 @@ function finite(values) {
   return /** @type {number[]} */ (values.filter((v) => typeof v === "number"));
 }
 
-/** Limits that hold the dots and the line beside them; bars, and a line that runs away (a cusp), are cut.
+/** Limits of an axis that contain the dots and the line near them. Bars, and a line that runs off (a cusp), are clipped.
  * @param {number[]} dots @param {number[]} line */
 function limits(dots, line) {
   if (dots.length === 0 && line.length === 0) return null;
@@ -41,7 +41,7 @@ export class Chart {
     this.size = {width: 300, height: 140};
     /** @type {{lines: Line[], dots: Dot[]}} */
     this.shown = {lines: [], dots: []};
-    // Asking for the size while drawing would lay the whole page out each time.
+    // Reading the size while drawing would force a layout of the whole page each time.
     new ResizeObserver((entries) => {
       const box = entries[0].contentRect;
       this.size = {width: Math.max(box.width, 120), height: Math.max(box.height, 90)};
@@ -99,7 +99,7 @@ export class Chart {
    * @param {(y: number) => number} py */
   drawLine(plot, line, px, py) {
     let d = "", up = "", down = "", pen = "M";
-    // What lies far outside is cut here: browsers cannot draw coordinates of any size.
+    // Clamp what lies far outside: browsers cannot draw coordinates of any size.
     const cut = (/** @type {number} */ v) => Math.min(Math.max(v, -1e5), 1e5);
     line.x.forEach((x, i) => {
       const y = line.y[i];

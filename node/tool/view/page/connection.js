@@ -4,7 +4,7 @@
 
 const RETRY_MS = 500;
 
-/** Makes whole steps metres. @param {number[]|undefined} places @param {number} step */
+/** Converts steps to metres. @param {number[]|undefined} places @param {number} step */
 function toMetres(places, step) {
   for (let i = 0; places && i < places.length; ++i) places[i] *= step;
 }
@@ -54,7 +54,7 @@ export class Connection {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(this.wanted);
   }
 
-  /** @param {string} group "" = the one that is touched */
+  /** @param {string} group "" = the one being touched */
   want(group) {
     if (group === this.wanted) return;
     this.wanted = group;

@@ -1,4 +1,4 @@
-// palpate view: wires the live feed to picture, panels and controls.
+// palpate view: connects the live feed to picture, panels and controls.
 // @ts-check
 import {Connection} from "./connection.js";
 import {Panels, SILENT_S} from "./panels.js";
@@ -24,10 +24,10 @@ let isPaused = false;
 let isOpen = false;
 let isScheduled = false;
 let isHealthNew = true;
-/** @type {Details|null|undefined} what the panels show */
+/** @type {Details|null|undefined} the details that the panels show */
 let shownDetails = undefined;
 let measuredVersion = -1;
-/** Touch to pixel, of the last answers; kept where tests find it. [ms] @type {number[]} */
+/** Time from touch to pixel of the last answers; tests read it. [ms] @type {number[]} */
 const latencies = [];
 Object.assign(window, {palpateLatenciesMs: latencies});
 
@@ -97,18 +97,18 @@ function drawPanels(details) {
   if (details === shownDetails) return;
   shownDetails = details;
   panels.show(details);
-  // For tests: what the words and numbers are about.
+  // For tests: the object that words and numbers belong to.
   Object.assign(window, {palpateObject: details?.object, palpateOrigin: live.picture?.origin});
 }
 
 /** @param {Picture|null} picture */
 function measureLatency(picture) {
-  // The first answers after a page has come are old ones.
+  // The first answers after the page has loaded are old.
   if (!picture || picture.version === measuredVersion) return;
   measuredVersion = picture.version;
   if (!(picture.touchMs > 0) || Date.now() - picture.answerMs > 1000) return;
   const touchMs = picture.touchMs;
-  // The next frame begins when this one has been handed to the screen.
+  // The next frame begins when this one has been passed to the screen.
   requestAnimationFrame(() => {
     latencies.push(Date.now() - touchMs);
     if (latencies.length > LATENCIES_KEPT) latencies.shift();
@@ -187,7 +187,7 @@ function setPaused(pause, group = live.group, atMs = null) {
 function settings() {
   const base = new Map(layers.map((box) => [box.name, box.defaultChecked]));
   return {
-    // A moment is one group's, whichever was followed.
+    // A moment belongs to one group, whichever group is followed.
     group: past.moment ? past.group : connection.wanted,
     at: past.moment ? past.moment.timeMs : null,
     view: plane.isFitted ? null : plane.view,
@@ -230,7 +230,7 @@ function wireControls() {
     isHealthNew = true;
     schedule();
     plane.isFitted = true;
-    // What is looked back at is the group chosen, from now on.
+    // While paused, show the past of the group just chosen.
     if (isPaused && connection.wanted) past.open(connection.wanted, past.moment?.timeMs ?? null);
     writeLink();
   };
@@ -248,7 +248,7 @@ function wireControls() {
     try {
       await navigator.clipboard.writeText(location.href);
     } catch {
-      said = "In the address bar";  // without leave to write the clipboard
+      said = "In the address bar";  // no permission to write to the clipboard
     }
     byId("copy-link").textContent = said;
     setTimeout(() => byId("copy-link").textContent = "Link", 1500);
@@ -281,7 +281,7 @@ const connection = new Connection(take, (open) => {
   isOpen = open;
   isHealthNew = true;
   if (!open && live.overview) {
-    // Everything comes anew.
+    // After reconnecting, the server sends everything again.
     live.store = null;
   }
   schedule();

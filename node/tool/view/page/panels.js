@@ -1,4 +1,4 @@
-// Words, tables and charts beside the picture.
+// The words, tables and charts next to the picture.
 // @ts-check
 import {byId, data, html, number} from "./picture.js";
 import {Chart} from "./chart.js";
@@ -22,7 +22,7 @@ function fill(id, rows) {
   byId(id).querySelector("tbody").replaceChildren(...rows);
 }
 
-/** As a person writes it. @param {string} text */
+/** Text for people. @param {string} text */
 function readable(text) {
   return text.replace("+-", "±").replace(/ um$/, " µm").replace(" deg", "°");
 }
@@ -156,5 +156,5 @@ export class Panels {
   }
 }
 
-/** A recognizer says every second that it lives. */
+/** A recognizer publishes its status every second; after this time without it, it is shown as silent. [s] */
 export const SILENT_S = 2.5;

@@ -1,4 +1,4 @@
-// The last minutes, to look back at: the server keeps them, so that a page that came late, or a link, sees them too.
+// Looking back at the last minutes. The server keeps them, so a page opened later, or a link, can show them too.
 // @ts-check
 import {decoded} from "./connection.js";
 import {byId} from "./picture.js";
@@ -6,13 +6,13 @@ import {byId} from "./picture.js";
 /** @typedef {import("./types.js").Moment} Moment */
 
 export class Past {
-  /** @param {(moment: Moment) => void} onMoment another moment is to be shown */
+  /** @param {(moment: Moment) => void} onMoment called with the moment to show */
   constructor(onMoment) {
     this.onMoment = onMoment;
     this.group = "";
     /** @type {number[]} */
     this.times = [];
-    /** @type {Moment|null} the one that is shown */
+    /** @type {Moment|null} the moment shown */
     this.moment = null;
     this.isLoading = false;
     this.scrub = /** @type {HTMLInputElement} */ (byId("scrub"));
@@ -44,7 +44,7 @@ export class Past {
     this.moment = null;
   }
 
-  /** Shows the moment where the slider stands; while one is on its way, the slider may move on. */
+  /** Shows the moment of the slider's position; the slider may move on while one is being loaded. */
   async load() {
     if (this.isLoading) return;
     this.isLoading = true;

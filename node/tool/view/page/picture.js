@@ -1,4 +1,4 @@
-// Small helpers to build SVG and HTML. Text is only ever set as text.
+// Helpers to build SVG and HTML. Text is always set as text, never as markup.
 // @ts-check
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -34,7 +34,7 @@ export function byId(id) {
   return document.getElementById(id);
 }
 
-/** A number with the page's reading of it, the exact value kept for machines.
+/** An element that shows `text` and keeps the exact value for programs.
  * @param {number|null} value
  * @param {string} text
  */
@@ -44,7 +44,7 @@ export function data(value, text) {
   return element;
 }
 
-/** Significant digits, without exponents where they are not needed.
+/** The number to `digits` significant digits, without exponent where possible.
  * @param {number|null} value
  * @param {number} digits
  */
@@ -56,7 +56,7 @@ export function number(value, digits = 4) {
   return value.toExponential(digits - 1);
 }
 
-/** 1, 2 or 5 times a power of ten, for at most `count` steps over `length`.
+/** Step of an axis: 1, 2 or 5 times a power of ten, with at most `count` steps over `length`.
  * @param {number} length
  * @param {number} count
  */
@@ -78,7 +78,7 @@ export function ticks(low, high, step) {
   return result;
 }
 
-/** As many decimals as the step has.
+/** The number with as many decimals as the step has.
  * @param {number} value
  * @param {number} step
  */

@@ -1,5 +1,5 @@
-// The touched plane: what was felt, the curve and what is not known of it. Drawn in millimetres from the
-// object's origin, y upwards; the view is one transform, so that zooming and panning draw nothing anew.
+// The picture of the touched plane: samples, the curve and its uncertainty. Drawn in millimetres from the object's
+// origin, y upwards. The view is one transform, so that zooming and panning redraw nothing.
 // @ts-check
 import {svg, tickStep, ticks, tickText} from "./picture.js";
 
@@ -9,14 +9,14 @@ import {svg, tickStep, ticks, tickText} from "./picture.js";
 /** @typedef {{x: number, y: number, scale: number}} View centre [mm] and pixels per mm */
 
 const MM = 1000;
-// Samples of one path: appended samples make the browser draw one of these anew, not all.
+// Samples per path. When samples are appended, the browser redraws one path only.
 const CHUNK = 500;
 const COLOURS = 8;
 const AXIS_PIXELS = 46;
 const TANGENT_PIXELS = 20;
-const WHOLE = 3;  // sizes of what was touched
+const WHOLE = 3;  // in sizes of what was touched
 const NEAR = 1;
-const MARGIN = 46;  // for the ticks' numbers [px]
+const MARGIN = 46;  // room for the numbers at the ticks [px]
 
 /** @param {number[]} points @param {boolean} closed */
 function pathOf(points, closed = false) {
@@ -27,7 +27,7 @@ function pathOf(points, closed = false) {
   return closed ? d + "Z" : d;
 }
 
-/** The area between two borders; a closed curve's is a ring.
+/** The area between two borders; for a closed curve it is a ring.
  * @param {number[]} left @param {number[]} right @param {boolean} closed */
 function areaOf(left, right, closed) {
   if (closed) return pathOf(left, true) + pathOf(right, true);
@@ -37,7 +37,7 @@ function areaOf(left, right, closed) {
 }
 
 export class Plane {
-  /** @param {SVGSVGElement} root @param {() => void} onViewChange the user has moved it */
+  /** @param {SVGSVGElement} root @param {() => void} onViewChange called when the user has moved the view */
   constructor(root, onViewChange) {
     this.root = root;
     this.onViewChange = onViewChange;
@@ -65,7 +65,7 @@ export class Plane {
     this.curve = svg("path", {class: "layer-curve curve", id: "curve-path"}, this.world);
     this.tips = svg("g", {class: "layer-tips"}, this.world);
     this.origin = svg("ellipse", {class: "layer-frame origin"}, this.world);
-    // In pixels, of constant size.
+    // In pixels: constant size at any zoom.
     this.far = svg("path", {class: "layer-samples far"}, clipped);
     this.tangents = svg("path", {class: "layer-samples tangents"}, clipped);
     this.marks = svg("g", {class: "layer-frame frame"}, clipped);
@@ -126,7 +126,7 @@ export class Plane {
     this.residuals.setAttribute("d", d);
   }
 
-  /** Where the frame's origin lies with 95 %. */
+  /** Draws the ellipse that contains the frame's origin with 95 % probability. */
   drawOrigin() {
     const pose = this.picture?.pose;
     const ellipse = pose?.ellipse;
@@ -197,7 +197,7 @@ export class Plane {
     }
   }
 
-  /** Where everything lies. [mm] */
+  /** The box that contains everything to show. [mm] */
   bounds() {
     let low = [Infinity, Infinity], high = [-Infinity, -Infinity];
     const include = (/** @type {number} */ x, /** @type {number} */ y, pad = 0) => {
@@ -212,8 +212,8 @@ export class Plane {
     for (const contact of this.picture?.contacts ?? []) include(contact.at[0] * MM, -contact.at[1] * MM);
     const touched = Math.max(high[0] - low[0], high[1] - low[1]);
     const centre = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
-    // A curve that is not far larger than what was touched is shown whole; of another one, as of an arc that
-    // is not yet determined, what is near.
+    // Show all of a curve that is not much larger than what was touched. Of a larger one (such as an arc that is not
+    // determined yet), show only the part nearby.
     const points = this.picture?.curve?.points ?? [];
     const distance = (/** @type {number[]} */ at, /** @type {number} */ i) => touched > 0 ?
         Math.max(Math.abs(at[i] * MM - centre[0]), Math.abs(at[i + 1] * MM + centre[1])) / touched : 0;
@@ -237,13 +237,13 @@ export class Plane {
     const extent = [0, 1].map((i) => Math.max(bounds.high[i] - bounds.low[i], 1e-6));
     const scale = 0.86 * Math.min(width / extent[0], height / extent[1]);
     const x = (bounds.low[0] + bounds.high[0]) / 2, y = (bounds.low[1] + bounds.high[1]) / 2;
-    // While points come in, the picture stands still until they leave it or leave much of it empty.
+    // While points arrive, the view stays until they leave it or much of it is empty.
     const off = Math.hypot(x - this.view.x, y - this.view.y) * scale;
     const isNear = scale / this.view.scale < 1.35 && scale / this.view.scale > 0.97 && off < 0.05 * width;
     if (!isNear) this.view = {x, y, scale};
   }
 
-  /** Shows everything, from now on too. */
+  /** Fits the view to everything, now and from now on. */
   fitAlways() {
     this.isFitted = true;
     this.view = {x: 0, y: 0, scale: 1e-9};
@@ -278,7 +278,7 @@ export class Plane {
     this.drawMarks();
   }
 
-  /** World coordinates, in mm, along both sides. */
+  /** Draws the world coordinates, in mm, along both sides. */
   drawGrid() {
     this.grid.replaceChildren();
     const origin = (this.store ?? this.picture)?.origin;
@@ -340,7 +340,7 @@ export class Plane {
     }
   }
 
-  /** @param {number} factor @param {number=} px @param {number=} py the pixel that stays */
+  /** @param {number} factor @param {number=} px @param {number=} py the pixel that stays in place */
   zoom(factor, px = (MARGIN + this.size.width) / 2, py = (this.size.height - 24) / 2) {
     const scale = Math.min(Math.max(this.view.scale * factor, 1e-4), 1e8);
     const [cx, cy] = [(MARGIN + this.size.width) / 2, (this.size.height - 24) / 2];

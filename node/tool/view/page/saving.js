@@ -1,11 +1,11 @@
-// The picture as a file, and the view as a link.
+// Saves the picture as a file and the view as a link.
 // @ts-check
 
 const STYLES = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-opacity", "stroke-dasharray",
                 "stroke-linecap", "stroke-linejoin", "opacity", "font-family", "font-size", "font-weight",
                 "vector-effect", "display", "paint-order"];
 
-/** A copy that needs no style sheet.
+/** A copy of the picture that needs no style sheet.
  * @param {SVGSVGElement} root @param {string} title */
 export function standalone(root, title) {
   const copy = /** @type {SVGSVGElement} */ (root.cloneNode(true));

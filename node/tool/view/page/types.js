@@ -1,11 +1,11 @@
-// Shapes of what the server sends (node/tool/view/picture_json.cpp, details_json.cpp, overview_json.cpp). Lengths
-// in metres; places come in whole steps and are made metres relative to `origin` as they arrive (connection.js).
-// Numbers that are not finite come as null.
+// Types of the messages that the server sends (node/tool/view/picture_json.cpp, details_json.cpp, overview_json.cpp).
+// Lengths are in metres. Places are sent as whole steps; connection.js converts them to metres relative to `origin` on
+// arrival. Numbers that are not finite are sent as null.
 
 /** @typedef {{class: string, probability: number, closed: boolean, points: number[], left?: number[],
  *   right?: number[]}} Curve */
 
-/** What is drawn with every answer.
+/** The picture, redrawn with every answer.
  * @typedef {{group: string, object: string, version: number, origin: number[], step: number, class: string,
  *   contacts: {at: number[], tangent: number}[], curve?: Curve, rivals: Curve[],
  *   pose?: {at: number[], theta: number, ellipse?: {long: number, short: number, angle: number}},
@@ -18,7 +18,7 @@
 
 /** @typedef {{name: string, value: number, sigma: number|null, text: string}} Quantity */
 
-/** What is read, a few times a second.
+/** Words, numbers and charts, sent a few times a second.
  * @typedef {{group: string, object: string, hasAnswer: boolean,
  *   status: string, statusText: string, advice: string, class: string, frame: string,
  *   quantities: Quantity[],
@@ -51,10 +51,10 @@
 
 /** One unbroken touch. @typedef {{probe: string, patch: number, tipRadius: number, points: number[]}} Run */
 
-/** Samples of one object as far as they have come.
+/** The samples of one object received so far.
  * @typedef {{group: string, origin: number[], received: number, kept: number, runs: Run[]}} SampleStore */
 
-/** A moment that is looked at again.
+/** A moment of the past, as shown again.
  * @typedef {{timeMs: number, picture: Picture|null, details: Details|null, store: SampleStore|null}} Moment */
 
 export {};
