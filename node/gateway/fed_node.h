@@ -8,6 +8,7 @@
 #include <vector>
 #include <zmq.hpp>
 
+#include "node/intake/ingest.h"
 #include "node/wire/socket.h"
 
 namespace palpate::gateway {
@@ -17,7 +18,7 @@ struct FedNodeOptions {
   std::string config;  ///< configuration file of the node; empty = none
   std::string folder;  ///< holds its two endpoints; tools may use them like those of any node
   /// Longest contact message: the node would cut our connection for a longer one. [bytes]
-  std::size_t max_message_bytes = 65536;
+  std::size_t max_message_bytes = IngestLimits{}.max_message_bytes;
 };
 
 /// Starts without any sequence or object. The node ends with this object and with this process.

@@ -15,9 +15,9 @@
 namespace palpate {
 
 struct IngestLimits {
-  std::size_t max_message_bytes = 65536;  ///< of the second frame
-  /// A message of 1,024 samples has about 40 kB. With normals and covariances it has 94 kB, which
-  /// exceeds max_message_bytes.
+  /// Of the second frame. Holds max_samples_per_batch samples with all their fields, of at most
+  /// 94 bytes each, and 2 kB for the rest.
+  std::size_t max_message_bytes = 98304;
   std::size_t max_samples_per_batch = 1024;
   /// Largest |x| and |y|. A double beyond 1e7 m does not resolve a nanometre. [m]
   double max_coordinate_m = 1e7;

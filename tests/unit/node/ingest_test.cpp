@@ -141,6 +141,22 @@ TEST(Ingest, NormalsAndCovariancesPass) {
   EXPECT_TRUE(decoder.message().details.empty());
 }
 
+TEST(Ingest, AsManySamplesAsAllowedFitWithAllTheirFields) {
+  const std::string longest_name(64, 'p');
+  v1::ContactBatch batch = line_batch(longest_name, std::numeric_limits<std::uint64_t>::max(), 0);
+  batch.set_group(longest_name);
+  batch.mutable_samples(3)->set_stamp_ns(std::numeric_limits<std::int64_t>::min());  // ten bytes
+  set_normal(batch, -0.6, 0.8, 0.02);
+  set_covariance(batch, 3e-8, -1e-8, 1e-8);
+  const v1::ContactSample full = batch.samples(3);
+  batch.clear_samples();
+  while (static_cast<std::size_t>(batch.samples_size()) < IngestLimits{}.max_samples_per_batch) {
+    *batch.add_samples() = full;
+  }
+  EXPECT_EQ(ContactDecoder().decode(2, contact_topic(longest_name), batch.SerializeAsString()),
+            v1::REJECT_REASON_UNSPECIFIED);
+}
+
 TEST(Ingest, EachReasonOfContent) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
