@@ -21,6 +21,16 @@ class Planner(unittest.TestCase):
             self.assertEqual(groups, {"one", "two"})
             self.assertLess(time.monotonic() - start, 0.5)
 
+    def test_the_latest_answer_is_repeated_unchanged_every_status_period(self):
+        with Bus() as bus:
+            bus.start_node("--status-period-s", "0.1")
+            planner = bus.subscriber()
+            socket = bus.publisher()
+            Probe(socket).stroke()
+            answer = wait_for(planner, lambda a: a.sample_count == 200)
+            for _ in range(3):
+                self.assertEqual(wait_for(planner, lambda a: True), answer)
+
     def test_a_prefix_does_not_catch_a_longer_name(self):
         with Bus() as bus:
             bus.start_node()

@@ -49,6 +49,21 @@ class Names(unittest.TestCase):
             answer = wait_for(planner, lambda a: a.group == "nameless" and a.sample_count >= 40)
             self.assertEqual(answer.sample_count, 40)
 
+    def test_a_message_that_is_too_long_shows_as_missing_only(self):
+        # As the contract says of TOO_LARGE: the socket ends the connection before the node has the message.
+        with Bus() as bus:
+            bus.start_node("--status-period-s", "0.1")
+            planner = bus.subscriber("status/")
+            socket = bus.publisher()
+            probe = Probe(socket)
+            probe.send(probe.batch(0))
+            wait_for(planner, lambda s: s.messages_received == 1)
+            probe.send(probe.batch(10, count=5000))
+            self.assertTrue(socket.poll(5000))  # the node's subscription by a new connection
+            probe.send(probe.batch(20))
+            status = wait_for(planner, lambda s: s.messages_received == 2)
+            self.assertEqual((status.messages_accepted, list(status.rejected), status.gaps, status.missing), (2, [], 1, 1))
+
     def test_a_wild_stamp_does_not_stay(self):
         with Bus() as bus:
             bus.start_node()
