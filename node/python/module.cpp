@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -25,10 +27,33 @@ using palpate::Array;
 using palpate::count_of_points;
 using palpate::PointDetails;
 
+std::vector<std::string> curve_classes() {
+  std::vector<std::string> names;
+  for (const palpate::CurveClass known : palpate::kCurveClasses) {
+    names.emplace_back(palpate::name_of(known));
+  }
+  return names;
+}
+
 palpate::CurveClass class_called(const std::string& name) {
   const auto found = palpate::curve_class_from_name(name);
-  if (!found) throw std::invalid_argument("\"" + name + "\" is no curve class");
-  return *found;
+  if (found && *found != palpate::CurveClass::Unclassified) return *found;
+  std::string known;
+  for (const std::string& one : curve_classes()) known += (known.empty() ? "" : ", ") + one;
+  throw std::invalid_argument("\"" + name + "\" is no curve class: " + known);
+}
+
+/// Throws std::invalid_argument unless `sigma` is one number or one per point, each finite and at
+/// least 0; it may be empty.
+void check_sigmas(const Array& sigma, std::size_t points) {
+  const auto count = static_cast<std::size_t>(sigma.size());
+  if (count > 1 && count != points) {
+    throw std::invalid_argument("sigma must be one number, or one a point");
+  }
+  if (!std::all_of(sigma.data(), sigma.data() + count,
+                   [](double value) { return std::isfinite(value) && value >= 0.0; })) {
+    throw std::invalid_argument("sigma: must be finite and not below 0");
+  }
 }
 
 palpate::MaterialSide side_called(const std::string& name) {
@@ -131,9 +156,7 @@ class Recognizer {
                 const Array& normal_sigmas, const Array& covariances_m2) {
     const std::size_t count = count_of_points(points);
     const auto sigmas = static_cast<std::size_t>(sigma_m.size());
-    if (sigmas > 1 && sigmas != count) {
-      throw std::invalid_argument("sigma must be one number, or one a point");
-    }
+    check_sigmas(sigma_m, count);
     const palpate::PatchContext context{probe, patch, tip_radius_m, side_called(side)};
     const double* xy = points.data();
     const double* sigma = sigma_m.data();
@@ -145,10 +168,6 @@ class Recognizer {
     if (not_finite > 0) {
       throw std::invalid_argument("points: " + std::to_string(not_finite) + " are not finite");
     }
-    if (!std::all_of(sigma, sigma + sigmas,
-                     [](double value) { return std::isfinite(value) && value >= 0.0; })) {
-      throw std::invalid_argument("sigma: must be finite and not below 0");
-    }
     if (!(std::isfinite(tip_radius_m) && tip_radius_m >= 0.0)) {
       throw std::invalid_argument("tip_radius: must be finite and not below 0");
     }
@@ -156,6 +175,7 @@ class Recognizer {
     palpate::AddResult added;
     {
       const py::gil_scoped_release release;
+      const std::lock_guard lock(mutex_);
       const ComputeTime time(compute_s_);
       samples_.resize(count);
       for (std::size_t i = 0; i < count; ++i) {
@@ -176,6 +196,7 @@ class Recognizer {
 
   Answer recognize() {
     const py::gil_scoped_release release;
+    const std::lock_guard lock(mutex_);
     Answer answer;
     {
       const ComputeTime time(compute_s_);
@@ -185,7 +206,11 @@ class Recognizer {
     return answer;
   }
 
-  void reset() { recognizer_.reset(); }
+  void reset() {
+    const py::gil_scoped_release release;
+    const std::lock_guard lock(mutex_);
+    recognizer_.reset();
+  }
 
  private:
   static palpate::RecognizerOptions options_of(double sigma_m,
@@ -213,6 +238,9 @@ class Recognizer {
     return options;
   }
 
+  // Locked only after the interpreter has been released: threads that share this object would
+  // otherwise be in the recognizer at the same time.
+  std::mutex mutex_;
   palpate::Recognizer recognizer_;
   std::vector<palpate::ContactSample> samples_;
   std::vector<palpate::SampleDetail> details_;
@@ -244,7 +272,7 @@ class PlacedCurve {
   }
 
   /// The curve parameters of the nearest points, and the signed distances to them (positive to the
-  /// left of increasing t).
+  /// left of increasing t); NaN for a point that is not finite.
   py::tuple feet(const Array& xy) const {
     const auto count = static_cast<py::ssize_t>(count_of_points(xy));
     Array t(count);
@@ -255,9 +283,12 @@ class PlacedCurve {
     {
       const py::gil_scoped_release release;
       for (py::ssize_t i = 0; i < count; ++i) {
-        const palpate::Vec2 local =
-            world_T_curve_.to_local(palpate::Vec2(from[2 * i], from[2 * i + 1]));
-        const palpate::FootPoint foot = palpate::foot_point(curve_, local);
+        const palpate::Vec2 point(from[2 * i], from[2 * i + 1]);
+        if (!point.allFinite()) {
+          t_out[i] = distance_out[i] = std::numeric_limits<double>::quiet_NaN();
+          continue;
+        }
+        const palpate::FootPoint foot = palpate::foot_point(curve_, world_T_curve_.to_local(point));
         t_out[i] = foot.t;
         distance_out[i] = foot.distance;
       }
@@ -270,25 +301,29 @@ class PlacedCurve {
   palpate::Pose2 world_T_curve_;
 };
 
-/// Least squares fit of a given class. `points`: n x 2, in any unit of length. The others as in
-/// PointDetails.
-py::dict fit_given(const std::string& name, const Array& points, double sigma, const Array& normals,
-                   const Array& normal_sigmas, const Array& covariances) {
+/// Least squares fit of a given class. `points`: n x 2, in any unit of length. `sigma`: length n, 1
+/// or 0. The others as in PointDetails.
+py::dict fit_given(const std::string& name, const Array& points, const Array& sigma,
+                   const Array& normals, const Array& normal_sigmas, const Array& covariances) {
   std::vector<palpate::GivenPoint> given(count_of_points(points));
+  check_sigmas(sigma, given.size());
   const PointDetails details(normals, normal_sigmas, covariances, given.size());
   const palpate::CurveClass curve_class = class_called(name);
   const double* xy = points.data();
+  const double* sigmas = sigma.data();
+  const auto sigma_count = static_cast<std::size_t>(sigma.size());
   palpate::GivenFit fit;
   {
     const py::gil_scoped_release release;
     for (std::size_t i = 0; i < given.size(); ++i) {
       const palpate::SampleDetail detail = details.of(i);
       given[i].position_m = palpate::Vec2(xy[2 * i], xy[2 * i + 1]);
+      given[i].sigma_m = sigma_count == 0 ? 0.0 : sigmas[sigma_count == 1 ? 0 : i];
       given[i].normal = detail.normal;
       given[i].normal_sigma_rad = detail.normal_sigma_rad;
       given[i].covariance_m2 = detail.covariance_m2;
     }
-    fit = palpate::fit_given_class(curve_class, given, {.sigma_m = sigma});
+    fit = palpate::fit_given_class(curve_class, given);
   }
   py::dict result;
   result["status"] = std::string(palpate::name_of(fit.status));
@@ -344,6 +379,7 @@ PYBIND11_MODULE(_core, module) {
                                  const Array& normal_sigmas, const Array& covariances) {
     PointDetails(normals, normal_sigmas, covariances, points);
   });
+  module.def("curve_classes", &curve_classes);
   module.def("degrees_of_freedom", [](const std::string& name) {
     return palpate::degrees_of_freedom(class_called(name));
   });

@@ -131,6 +131,86 @@ class Fit(unittest.TestCase):
             with self.assertRaises(ValueError, msg=points):
                 palpate.fit(points)
 
+    def test_what_is_wrong_is_named_and_not_guessed(self):
+        hidden = np.ma.masked_greater(PATCHES[0], PATCHES[0].max() - 1)
+        for named, points, arguments in (
+                ("points: there are none", [], {}), ("points: .*not generator", (p for p in PATCHES), {}),
+                ("points: .*not NoneType", None, {}), ("points: .*not dict", {"a": PATCHES[0]}, {}),
+                ("points: some are masked", hidden, {}), ("points: some are masked", [hidden], dict(touches=True)),
+                ("points: complex", PATCHES[0] + 0j, {}), ("sigma: complex", PATCHES, dict(sigma=0.02 + 0j)),
+                # As many as the points of each patch: of which patch is not said.
+                ("sigma: one number", PATCHES, dict(sigma=np.full(111, SIGMA))),
+                ("sigma: one number", PATCHES[0], dict(sigma=np.full(111, SIGMA), touches=True)),
+                ("is no curve class: line, circle", PATCHES, dict(classes=["elipse"])),
+                ("is no curve class", PATCHES, dict(classes="unclassified")),
+                ("material_side: .*None", PATCHES, dict(material_side=None)),
+                ("most_samples_per_patch: 0 is no whole number from 8", PATCHES, dict(most_samples_per_patch=0)),
+                ("most_samples_per_patch: '1e3'", PATCHES, dict(most_samples_per_patch="1e3"))):
+            with self.assertRaisesRegex(ValueError, named, msg=(named, arguments)):
+                palpate.fit(points, **arguments)
+        with self.assertRaisesRegex(ValueError, "most_patches: 0"):
+            palpate.Recognizer(most_patches=0)
+        recognizer = palpate.Recognizer()
+        for wrong in (dict(patch=-1), dict(patch=1 << 32), dict(patch=1.0), dict(probe="left")):
+            with self.assertRaisesRegex(ValueError, f"{next(iter(wrong))}: .* is no whole number from 0", msg=wrong):
+                recognizer.add(PATCHES[0], **wrong)
+        self.assertEqual(recognizer.add(PATCHES[0], patch=np.int64(3)), 111)
+        self.check(palpate.fit(PATCHES, sigma=SIGMA, unit="mm", classes="ellipse"))
+        nothing_hidden = np.ma.masked_array(PATCHES[0], mask=False)
+        self.check(palpate.fit([nothing_hidden, PATCHES[1]], sigma=SIGMA, unit="mm"))
+
+    def test_a_patch_of_a_list_may_have_no_normals(self):
+        points, normals = touches_with_normals(9, 0.01, seed=8)
+        result = palpate.fit([points[:4], points[4:]], sigma=SIGMA, unit="mm", normals=[None, normals[4:]], normal_sigma=0.01)
+        self.assertEqual((result.sample_count, result.simplified_count), (9, 5))
+
+    def test_an_answer_goes_to_other_processes(self):
+        import copy
+        import pickle
+        for result in (palpate.fit(PATCHES, sigma=SIGMA, unit="mm"), palpate.fit([[0.0, 0.0], [1.0, 0.0]])):
+            has_curve = result.curve_class == "ellipse"
+            if has_curve:
+                result.sample(5)
+            for other in (pickle.loads(pickle.dumps(result)), copy.deepcopy(result), pickle.loads(pickle.dumps(copy.copy(result)))):
+                self.assertEqual(repr(other), repr(result))
+                self.assertEqual(other.probabilities, result.probabilities)
+                self.assertEqual(len(other.contacts), len(result.contacts))
+                np.testing.assert_array_equal(other.covariance, result.covariance)
+                if has_curve:
+                    np.testing.assert_array_equal(other.sample(9), result.sample(9))
+                    np.testing.assert_array_equal(other.residuals(PATCHES[0]), result.residuals(PATCHES[0]))
+        ellipse_model = palpate.models.model("ellipse")()
+        ellipse_model.estimate(PATCHES[0])
+        other = pickle.loads(pickle.dumps(ellipse_model))
+        self.assertIs(type(other), type(ellipse_model))
+        np.testing.assert_array_equal(other.predict_xy([0, 1]), ellipse_model.predict_xy([0, 1]))
+
+    def test_threads_may_share_a_recognizer(self):
+        recognizer, failures = palpate.Recognizer(sigma=SIGMA, unit="mm", most_patches=64), []
+
+        def follow(number):
+            try:
+                for start in range(0, 111, 3):
+                    recognizer.add(ellipse(0.4 * number, 0.4 * number + 0.3, seed=number)[start:start + 3], patch=number)
+                    recognizer.recognize()
+            except Exception as error:
+                failures.append(error)
+
+        threads = [threading.Thread(target=follow, args=(number,)) for number in range(6)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(failures, [])
+        result = recognizer.recognize()
+        self.assertEqual(result.sample_count, 666)
+        self.check(result)
+
+    def test_a_distance_that_is_none_is_not_a_number(self):
+        result = palpate.fit(PATCHES, sigma=SIGMA, unit="mm")
+        residuals = result.residuals([POSE[:2], (math.nan, 0.0), (0.0, math.inf)])
+        self.assertEqual(np.isnan(residuals).tolist(), [False, True, True])
+
     def test_a_class_at_its_limit_to_another_has_no_shape(self):
         t = np.linspace(0.2, 1.4, 100)
         result = palpate.fit(np.column_stack([25 * np.cos(t) + 10, 17.5 * np.sin(t) - 3]).astype(int), unit="mm")
@@ -221,13 +301,36 @@ class Fit(unittest.TestCase):
                     moved = Ellipse()
                     moved.params = other
                     self.assertGreater((moved.residuals(points)**2).sum(), (residuals**2).sum())
+        # As a fit has it: of all points or of each; what is no noise is refused, not left out.
+        points = np.concatenate(PATCHES)
+        stated = Ellipse()
+        self.assertTrue(stated.estimate(points, SIGMA))
+        for sigma in (np.full(222, SIGMA), np.full((222, 1), SIGMA)):
+            each = Ellipse()
+            self.assertTrue(each.estimate(points, sigma))
+            np.testing.assert_allclose(each.covariance, stated.covariance, rtol=1e-9)
+        half = Ellipse()
+        self.assertTrue(half.estimate(points, np.where(np.arange(222) < 111, SIGMA, 1e3 * SIGMA)))
+        self.assertGreater(half.covariance[0, 0], stated.covariance[0, 0])
+        for nothing in (None, 0.0, []):
+            free = Ellipse()
+            self.assertTrue(free.estimate(points, nothing))
+            self.assertLess(abs(free.sigma / SIGMA - 1), 5 / math.sqrt(2 * 217))
+        for sigma in (-SIGMA, math.nan, math.inf, [SIGMA, SIGMA], 1j):
+            with self.assertRaisesRegex(ValueError, "sigma"):
+                Ellipse().estimate(points, sigma)
+        with self.assertRaisesRegex(ValueError, "params: 2 numbers; ellipse has 5"):
+            stated.predict_xy([0.0], params=[1.0, 2.0])
+        self.assertIs(palpate.models.model("Semi-cubical parabola"), palpate.models.model("semi_cubical_parabola"))
         line = palpate.models.model("line")()
         self.assertFalse(line.estimate([[1.0, 2.0]]))
         self.assertEqual(line.status, "too few points")
         with self.assertRaisesRegex(ValueError, "too few points"):
             line.residuals([[0.0, 0.0]])
-        with self.assertRaises(ValueError):
-            palpate.models.model("sphere")
+        self.assertTrue(math.isnan(line.rms) and math.isnan(line.peak_to_valley) and math.isnan(line.sigma))
+        for name in ("sphere", "unclassified", None):
+            with self.assertRaisesRegex(ValueError, "is no curve class: line, circle"):
+                palpate.models.model(name)
 
     def test_normals_narrow_what_few_touches_tell_of_a_known_class(self):
         points, normals = touches_with_normals(7, 0.002, seed=4)

@@ -10,12 +10,13 @@ patch is one unbroken touch; its points are in their order along the part.
 """
 from __future__ import annotations
 
+import operator
 from typing import TYPE_CHECKING, Iterable, Sequence
 
 import numpy as np
 
 from . import _core, models
-from .details import details
+from .details import details, numbers
 from .result import Result, units
 
 if TYPE_CHECKING:
@@ -26,27 +27,33 @@ __all__ = ["Planner", "Probe", "Recognizer", "Result", "fit", "models"]
 
 _NONE = np.empty(0)
 _MOST_DRAWN = 1 << 16  # points kept for Result.plot and sample; beyond it every second one is dropped
+_MOST_NUMBER = (1 << 32) - 1  # of a patch or probe, as on the wire
+_LEAST_SAMPLES = 8  # of a patch, as for palpate-node: fewer give no answer
 
 
 class Recognizer:
-    """Recognises one object while it is touched: add points as they come, and call recognize() at any time.
+    """Recognises one object while it is touched: add points as they come, and call recognize() at any time. Calls
+    from several threads wait for each other.
 
     sigma: standard deviation of points that are added without one; None = estimated from the data.
     unit: "m", "mm", "cm", "um", "nm" or "in"; of all lengths that go in and come out.
-    classes: names of the classes to consider, e.g. "ellipse"; empty = all.
+    classes: names of the classes to consider, e.g. ["circle", "ellipse"], or one name; empty = all.
     form_deviation: standard deviation of the part's surface from its ideal curve; 0 = exactly of its class.
     most_patches: patches kept (not counting patches of one point); beyond it the oldest is forgotten.
-    most_samples_per_patch: points kept of a patch; beyond it neighbours are merged.
+    most_samples_per_patch: points kept of a patch, at least 8; beyond it neighbours are merged.
     unqualified_probe: see fit().
     """
 
-    def __init__(self, sigma: float | None = None, unit: str = "m", classes: Iterable[str] = (),
+    def __init__(self, sigma: float | None = None, unit: str = "m", classes: str | Iterable[str] = (),
                  form_deviation: float = 0.0, most_patches: int = 64, most_samples_per_patch: int = 1024,
                  unqualified_probe: bool = False) -> None:
         self._unit = unit
         self._scale = units(unit)
-        self._core = _core.Recognizer(self._scale * (sigma or 0.0), list(classes), self._scale * form_deviation,
-                                      unqualified_probe, most_patches, most_samples_per_patch)
+        self._core = _core.Recognizer(self._scale * (0.0 if sigma is None else float(sigma)),
+                                      [classes] if isinstance(classes, str) else list(classes),
+                                      self._scale * form_deviation, unqualified_probe,
+                                      _whole("most_patches", most_patches, 1),
+                                      _whole("most_samples_per_patch", most_samples_per_patch, _LEAST_SAMPLES))
         self._points: list[np.ndarray] = []
         self._drawn = 0
         self._tip_radius = 0.0
@@ -67,10 +74,11 @@ class Recognizer:
         covariances: of the positions, in place of sigma; (2, 2) or (n, 2, 2), in the square of the unit.
         A search over the classes uses normals and covariances only in part; Result.simplified_count says for how many
         points."""
-        points = np.asarray(points, dtype=np.float64)
+        points = numbers(points)
         in_metres = points if self._scale == 1.0 else self._scale * points
-        sigmas = _NONE if sigma is None else self._scale * np.atleast_1d(np.asarray(sigma, dtype=np.float64))
-        accepted, repeated = self._core.add(in_metres, sigmas, probe, patch, self._scale * tip_radius, material_side,
+        sigmas = _NONE if sigma is None else self._scale * np.atleast_1d(numbers(sigma, "sigma"))
+        accepted, repeated = self._core.add(in_metres, sigmas, _whole("probe", probe), _whole("patch", patch),
+                                            self._scale * tip_radius, str(material_side),
                                             *details(normals, normal_sigma, covariances, self._scale))
         self.dropped += repeated
         self._tip_radius = max(self._tip_radius, tip_radius)
@@ -95,7 +103,7 @@ class Recognizer:
 
 
 def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_side: str = "unspecified",
-        classes: Iterable[str] = (), form_deviation: float = 0.0, touches: bool = False,
+        classes: str | Iterable[str] = (), form_deviation: float = 0.0, touches: bool = False,
         most_samples_per_patch: int = 1024, normals=None, normal_sigma: float | None = None,
         unqualified_probe: bool = False) -> Result:
     """Recognises one object and returns the Result. Raises ValueError if an argument is invalid.
@@ -109,35 +117,50 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
     form_deviation: standard deviation of the part's surface from its ideal curve, e.g. half of a +- tolerance.
     unqualified_probe: set it if nobody has measured the probe's lobes, tip radius and drift. Uncertainties and class
     probabilities then include such deviations, in any size that the residuals permit.
-    normals: measured normals of the surface, in arrays like the points; see Recognizer.add.
-    normal_sigma: standard deviation of their directions in radians.
+    normals: measured normals of the surface, in arrays like the points; see Recognizer.add. None in place of an array
+    of a list: that patch has none.
+    normal_sigma: standard deviation of their directions in radians, one number or (for one patch) one per normal.
     """
     patches = _patches(points, touches)
     of_patches: Sequence = [None] * len(patches) if normals is None else _patches(normals, touches)
-    if touches and np.size(sigma) > 1:
-        raise ValueError("sigma: one number for touches")
     if len(patches) == 0:
         raise ValueError("points: there are none")
+    for what, deviation in (("sigma", sigma), ("normal_sigma", normal_sigma)):
+        if (touches or len(patches) > 1) and np.size(deviation) > 1:
+            raise ValueError(f"{what}: one number for several patches or touches; Recognizer.add takes one per patch or point")
     if len(of_patches) != len(patches):
         raise ValueError("normals: not as many as points")
     # The whole list is known, so no patch needs to be forgotten.
     recognizer = Recognizer(None, unit, classes, form_deviation, max(64, len(patches)), most_samples_per_patch,
                             unqualified_probe)
     for number, patch in enumerate(patches):
-        recognizer.add(patch, number, 0, sigma, tip_radius, material_side, of_patches[number], normal_sigma)
+        its_normals = of_patches[number]
+        recognizer.add(patch, number, 0, sigma, tip_radius, material_side, its_normals,
+                       normal_sigma if normals is None or its_normals is not None else None)
     return recognizer.recognize()
 
 
+def _whole(what: str, value: int, least: int = 0) -> int:
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = -1
+    if not least <= number <= _MOST_NUMBER:
+        raise ValueError(f"{what}: {value!r} is no whole number from {least} to {_MOST_NUMBER}")
+    return number
+
+
 def _patches(points, touches: bool) -> Sequence:
+    if not hasattr(points, "__len__") or isinstance(points, (str, bytes, dict)):
+        raise ValueError(f"points: an array of shape (n, 2) or a list of them, not {type(points).__name__}")
     patches: Sequence = [points] if getattr(points, "ndim", 0) == 2 or _is_one_patch(points) else points
     if touches:
-        return [row[np.newaxis, :] for patch in patches for row in np.asarray(patch, dtype=np.float64)]
+        return [row[np.newaxis, :] for patch in patches for row in numbers(patch)]
     return patches
 
 
 def _is_one_patch(points) -> bool:
-    first = points[0] if len(points) else ()
-    return np.ndim(first) == 1
+    return len(points) > 0 and np.ndim(points[0]) == 1
 
 
 def __dir__() -> list[str]:

@@ -14,7 +14,7 @@ from zmq.utils.monitor import recv_monitor_message
 from palpate.v1 import contact_pb2, recognition_pb2
 
 from . import _core
-from .details import details
+from .details import details, numbers
 from .result import units
 
 CONTACTS = "tcp://127.0.0.1:5581"
@@ -166,7 +166,7 @@ class Probe(_Peer):
         """Publishes points (n, 2) of the present patch, in their order along the part. normals, normal_sigma and
         covariances: see Recognizer.add. Raises ValueError for invalid arguments. Never blocks; messages that the
         recognizer does not read in time are lost."""
-        points = np.atleast_2d(np.asarray(points, dtype=np.float64))
+        points = np.atleast_2d(numbers(points))
         if points.shape[1] != 2 or not np.isfinite(points).all():
             raise ValueError("points must be finite, of shape (n, 2)")
         said = _Details(len(points), *details(normals, normal_sigma, covariances, self._scale))

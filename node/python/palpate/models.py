@@ -14,7 +14,7 @@ from typing import ClassVar
 import numpy as np
 
 from . import _core
-from .details import details
+from .details import details, numbers
 
 
 class CurveModel:
@@ -24,6 +24,7 @@ class CurveModel:
     covariance: of params; empty until then.
     rms: root mean square distance of the points. peak_to_valley: largest less smallest signed distance.
     sigma: standard deviation of a point, stated or estimated.
+    The last three are NaN if there is no curve.
     min_samples: fewest points that determine a curve of the class."""
     curve_class: ClassVar[str]
     min_samples: ClassVar[int]
@@ -35,32 +36,37 @@ class CurveModel:
         self.covariance = np.empty((0, 0))
         self.rms = self.peak_to_valley = self.sigma = float("nan")
 
-    def estimate(self, data, sigma: float = 0.0, normals=None, normal_sigma=None, covariances=None) -> bool:
+    def estimate(self, data, sigma=None, normals=None, normal_sigma=None, covariances=None) -> bool:
         """Fits the curve to points (n, 2). Returns True if they determine one curve of the class.
 
-        sigma: standard deviation of a point; 0 = estimated. normals, normal_sigma, covariances: see Recognizer.add.
+        sigma: standard deviation of a point, one number or one per point; None or 0 = estimated. normals, normal_sigma, covariances: see Recognizer.add.
         Normals are used only if the noise of every point is known."""
-        fit = _core.fit_given(self.curve_class, np.asarray(data, dtype=np.float64), sigma,
+        fit = _core.fit_given(self.curve_class, numbers(data), np.atleast_1d(numbers(0.0 if sigma is None else sigma, "sigma")),
                               *details(normals, normal_sigma, covariances, 1.0))
         self.status = fit["status"]
         letters = len(_core.parameter_letters(self.curve_class))
         success = self.status == "fitted"
         self.params = np.array([*fit["params"][:letters], *fit["pose"]]) if success else None
         self.covariance = fit["covariance"] if success else np.empty((0, 0))
-        self.rms, self.peak_to_valley, self.sigma = fit["rms"], fit["peak_to_valley"], fit["sigma"]
+        there_is_one = success or self.status == "not determined"
+        self.rms, self.peak_to_valley, self.sigma = (
+            fit[name] if there_is_one else float("nan") for name in ("rms", "peak_to_valley", "sigma"))
         return success
 
     def residuals(self, data) -> np.ndarray:
         """Signed distances of points (n, 2) from the curve, positive to the left of increasing t."""
-        return self._curve(self.params).feet(np.asarray(data, dtype=np.float64))[1]
+        return self._curve(self.params).feet(numbers(data))[1]
 
     def predict_xy(self, t, params=None) -> np.ndarray:
         """Points (n, 2) of the curve at the curve parameters t."""
-        return self._curve(self.params if params is None else params).at(np.atleast_1d(np.asarray(t, dtype=np.float64)))
+        return self._curve(self.params if params is None else params).at(np.atleast_1d(numbers(t, "t")))
 
     def _curve(self, params) -> _core.PlacedCurve:
         if params is None:
             raise ValueError(f"estimate() has found no {self.curve_class}" + (f": {self.status}" if self.status else ""))
+        letters = len(_core.parameter_letters(self.curve_class))
+        if len(params) != letters + 3:
+            raise ValueError(f"params: {len(params)} numbers; {self.curve_class} has {letters + 3}")
         shape = np.zeros(3)
         shape[:len(params) - 3] = params[:-3]
         return _core.PlacedCurve(self.curve_class, shape, *params[-3:])
@@ -69,5 +75,16 @@ class CurveModel:
 def model(curve_class: str) -> type[CurveModel]:
     """Returns the model class of a curve class: "line", "circle", "ellipse", "parabola", "hyperbola",
     "cubical_parabola", "semi_cubical_parabola" or "cubic_spline"."""
-    members = {"curve_class": curve_class, "min_samples": _core.degrees_of_freedom(curve_class)}
+    found = _MODELS.get(str(curve_class).lower().replace("-", "_").replace(" ", "_"))
+    if found is None:
+        raise ValueError(f"{curve_class!r} is no curve class: {', '.join(_MODELS)}")
+    return found
+
+
+def _made(curve_class: str) -> type[CurveModel]:
+    members = {"curve_class": curve_class, "min_samples": _core.degrees_of_freedom(curve_class), "__module__": __name__}
     return type(curve_class.title().replace("_", "") + "Model", (CurveModel,), members)
+
+
+_MODELS = {name: _made(name) for name in _core.curve_classes()}
+globals().update({made.__name__: made for made in _MODELS.values()})  # where pickle looks for them

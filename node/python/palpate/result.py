@@ -2,17 +2,20 @@
 from __future__ import annotations
 
 from functools import cached_property
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from . import _core
+from .details import numbers
 
 _UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "nm": 1e-9, "in": 0.0254}
 # Exponents of length in the units of a, b and c (default 1); core/README.md, "Curves".
 _POWERS = {"cubical_parabola": {"a": -2.0, "c": 0.0},
            "semi_cubical_parabola": {"a": -0.5, "b": 0.0},
            "cubic_spline": {"a": -0.5, "b": 0.0, "c": 0.5}}
+_KEPT = ("has_shape", "params", "pose", "covariance", "hypotheses", "contacts", "noise_correlation_m")
 
 
 def units(name: str) -> float:
@@ -60,6 +63,11 @@ class Result:
         self.forgotten_count = core.forgotten_count
         self.simplified_count = core.simplified_count
 
+    def __getstate__(self) -> dict[str, Any]:
+        """For pickle and copy.deepcopy: values in place of what only this process has."""
+        state = {name: value for name, value in vars(self).items() if name != "_curve"}
+        return state | {"_core": SimpleNamespace(**{name: getattr(self._core, name) for name in _KEPT})}
+
     @cached_property
     def covariance(self) -> np.ndarray:
         factors = np.array(self._factors + [1 / self._scale, 1 / self._scale, 1.0])
@@ -94,16 +102,16 @@ class Result:
     def residuals(self, xy) -> np.ndarray:
         """Signed distances of points (n, 2) from the curve, positive to the left of increasing t. Raises ValueError if no
         curve was found, as do the methods below."""
-        _, distance = self._need_curve().feet(self._scale * np.asarray(xy, dtype=np.float64))
+        _, distance = self._need_curve().feet(self._scale * numbers(xy))
         return distance / self._scale
 
     def nearest(self, xy) -> np.ndarray:
         """Curve parameters t of the nearest points of the curve to the points (n, 2)."""
-        return self._need_curve().feet(self._scale * np.asarray(xy, dtype=np.float64))[0]
+        return self._need_curve().feet(self._scale * numbers(xy))[0]
 
     def predict_xy(self, t) -> np.ndarray:
         """Points (n, 2) of the curve at the curve parameters t."""
-        return self._need_curve().at(np.atleast_1d(np.asarray(t, dtype=np.float64))) / self._scale
+        return self._need_curve().at(np.atleast_1d(numbers(t, "t"))) / self._scale
 
     def sample(self, n: int = 200) -> np.ndarray:
         """n points along the curve, (n, 2): all of a closed curve, else the touched arc."""
