@@ -2,8 +2,9 @@
 //
 // Beside the columns of node/csv/contact_csv.h: columns by common names and units (x_mm, "X [um]",
 // pos_y), in any order; two or three columns without names; comma, semicolon, tab, bar or blanks
-// between them; '#' and '%' comments; decimal commas where the separator is none; what spreadsheets
-// write (UTF-16, "sep=;", titles above the names, a row of units below them, empty rows); the probe
+// between them; '#' and '%' comments; decimal commas where the separator is none or between quotes;
+// exponents with D; what spreadsheets write (UTF-16, "sep=;", titles above the names, a row of
+// units below them, empty rows); files joined end to end, with the line of names again; the probe
 // logs of LinuxCNC and grbl. Nothing is guessed in silence: every assumption, and whatever is left
 // out, is a note.
 #pragma once

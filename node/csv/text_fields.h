@@ -18,6 +18,26 @@ inline char separator_of(std::string_view line) {
   return ' ';
 }
 
+/// Where the field ends that begins at `from`: separators between quotes are text.
+inline std::size_t field_end(std::string_view line, char separator, std::size_t from) {
+  const std::size_t plain_end = std::min(line.find(separator, from), line.size());
+  std::size_t at = from;
+  while (at < line.size() && is_blank(line[at]) && line[at] != separator) ++at;
+  if (at == line.size() || line[at] != '"') return plain_end;
+  for (at = line.find('"', at + 1); at != std::string_view::npos; at = line.find('"', at + 1)) {
+    const bool is_doubled = at + 1 < line.size() && line[at + 1] == '"';
+    if (is_doubled) {
+      ++at;
+      continue;
+    }
+    ++at;
+    while (at < line.size() && is_blank(line[at]) && line[at] != separator) ++at;
+    // A quote in the midst of text, as of inches, closes nothing.
+    return at == line.size() || line[at] == separator ? at : plain_end;
+  }
+  return plain_end;
+}
+
 inline void split_fields(std::string_view line, char separator,
                          std::vector<std::string_view>& fields) {
   fields.clear();
@@ -32,7 +52,7 @@ inline void split_fields(std::string_view line, char separator,
     }
   }
   for (std::size_t from = 0;;) {
-    const std::size_t end = std::min(line.find(separator, from), line.size());
+    const std::size_t end = field_end(line, separator, from);
     std::string_view field = trim(line.substr(from, end - from));
     if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
       field = field.substr(1, field.size() - 2);

@@ -100,6 +100,57 @@ class Formats(unittest.TestCase):
         self.check("x_mm|y_mm\n" + self.rows(1e3, "|"))
         self.assertIn("FILE:3:3: y '#N/A': not a number", self.refused("x_mm,y_mm\n1,2\n3,#N/A\n"))
 
+    def test_numbers_as_machines_write_them(self):
+        # Fortran's exponents; commas between quotes, where commas part the columns too.
+        self.check("x_m,y_m\n" + self.rows(digits="{:.9E}").replace("E", "D"))
+        self.check('"Nr","X [mm]","Y [mm]"\r\n' + "".join(
+            f'"{k}","{1e3 * x:.5f}","{1e3 * y:.5f}"\r\n'.replace(".", ",") for k, (x, y) in enumerate(WHOLE)))
+        self.assertIn("commas are read as decimal points", self.notes)
+        self.check('"X, mm";"Y, mm";"a ""note"""\n' + self.rows(1e3, ";").replace("\n", ';"5"" tip; long"\n'))
+        # Whole numbers as numpy and pandas write them, by our own names and by others.
+        for names in ("probe,patch,stamp_ns,x_m,y_m\n", "probe,stroke,stamp_ns,x_m,y_m\n"):
+            self.check(names + "".join(f"p,0.0,{1.7e18 + 1e6 * k:.18e},{x!r},{y!r}\n" for k, (x, y) in enumerate(WHOLE)))
+            for bad in ("0.5", "-1.0", "4294967296", "nan", "1e300"):
+                self.assertIn(f"FILE:2:3: patch '{bad}': ", self.refused(names + f"p,{bad},1,0,0\n"))
+        # What ROS prints of a pose's topic.
+        self.check("%time,field.header.seq,field.pose.position.x,field.pose.position.y,field.pose.orientation.x\n" +
+                   "".join(f"17{k},{k},{x!r},{y!r},0\n" for k, (x, y) in enumerate(WHOLE)))
+        self.assertIn("columns ignored: time, field.header.seq, field.pose.orientation.x", self.notes)
+
+    def test_marks_of_thousands_are_not_taken_for_decimal_marks(self):
+        self.assertIn("FILE:3:2: x '1,234': numbers before have a decimal point",
+                      self.refused('x_mm,y_mm\n"987.5","1"\n"1,234","1"\n'))
+        self.assertIn("FILE:3:1: x '1.234': numbers before have a decimal comma",
+                      self.refused("x_mm;y_mm\n987,5;1\n1.234;1\n"))
+
+    def test_a_line_of_names_that_comes_again_begins_a_stroke(self):
+        first, second = ("".join(f"{1e3 * x:.6f};{1e3 * y:.6f}\n" for x, y in stroke) for stroke in ellipse())
+        for names in ("x_mm;y_mm\n", "X;Y\nmm;mm\n", "# x_mm;y_mm\n"):
+            answer = self.check(names + first + names + second)
+            self.assertIn("part the rows into 2 patches", self.notes)
+            self.assertEqual({c["patch"] for c in answer["contacts"]}, {0, 1})
+        # Where patches have numbers, it is not known whether they are the same.
+        for names in ("patch,x_m,y_m\n", "probe,patch,x_m,y_m\n"):
+            row = "0,0,1\n" if names.startswith("patch") else "p,0,0,1\n"
+            self.assertIn("FILE:3:1: the names of the columns come again", self.refused(names + row + names + row))
+
+    def test_point_numbers_without_a_name_are_not_taken_for_x(self):
+        numbered = "".join(f"{k} {1e3 * x:.6f} {1e3 * y:.6f}\n" for k, (x, y) in enumerate(WHOLE, 1))
+        self.assertIn("are these point numbers?", self.refused(numbered, "--unit", "mm"))
+        self.check("n x_mm y_mm\n" + numbered)
+        # As x is scanned by even steps: y is held still.
+        self.fit("".join(f"{k} 0 {5 + math.sin(k / 10):.6f}\n" for k in range(60)), "--unit", "mm")
+        self.assertIn("the plane is xz", self.notes)
+
+    def test_files_that_are_no_text(self):
+        for start, told in ((b"\x1f\x8b\x08", "gunzip -c"), (b"PK\x03\x04", "save the sheet as CSV"),
+                            (b"\xd0\xcf\x11\xe0", "save the sheet as CSV"), (b"%PDF-1.7", "export the points")):
+            path = self.folder / "points.bin"
+            path.write_bytes(start + bytes(100))
+            code, out, err = run(TOOL, "fit", path)
+            self.assertEqual((code, out), (2, ""))
+            self.assertIn(told, err)
+
     def test_titles_above_the_names_and_units_below_them(self):
         self.check("Part: bracket 12\nDate: 2026-11-22, 10:15\n\nx_mm,y_mm\n" + self.rows(1e3))
         self.assertIn("lines ignored before the names of the columns: 2, the first 'Part: bracket 12'", self.notes)
@@ -154,7 +205,7 @@ class Formats(unittest.TestCase):
             self.assertEqual(int(answer["sample_count"]), 12)
             self.assertIn("taken as millimetres", self.notes)
             self.assertIn("every row is a touch of its own", self.notes)
-        self.assertIn("1 probing cycles that touched nothing", self.notes)
+        self.assertIn("left out: 1 probing cycle that touched nothing", self.notes)
         self.assertIn(f"{2 + 2 * 12} other lines are ignored", self.notes)
         self.assertRegex(self.refused("[PRB:1.0,2.0:1]\n"), r"FILE:1:13: three coordinates")
 
@@ -267,7 +318,8 @@ class Formats(unittest.TestCase):
         for text, message in (("x,y\n", "FILE:1:1: no samples after the header line"),
                               ("# nothing\n", "FILE:1:1: no samples: the file is empty"),
                               ("x_mm,y_mm\n1,2\n1,two\n", "FILE:3:3: y 'two': not a number"),
-                              ("x_mm;y_mm\n1;2\n1;nan\n", "FILE:3:3: y 'nan': not a finite number"),
+                              ("x_mm;y_mm\n1;2\n1;nan\n", "FILE:3:3: y 'nan': not a finite number; leave out rows"),
+                              ("x_mm,y_mm\n1,2\n1,\n", "FILE:3:3: y '': nothing is there; leave out rows"),
                               ("1 2\n3 4 5\n", "FILE:2:5: 3 fields instead of 2"),
                               ("1 2 3 4\n", "FILE:1:1: 4 columns without a line of names"),
                               ("1\n2\n", "FILE:1:1: 1 columns without a line of names"),
