@@ -144,7 +144,7 @@ Read parse_contact_file(std::string_view text, std::string_view name,
                                                           : csv::read_points(text, name, options);
   if (!read) return Read::fail(read.error);
   csv::PointTable& points = *read.value;
-  ContactFile file{std::move(points.table), std::move(points.notes)};
+  ContactFile file{std::move(points.table), std::move(points.notes), points.has_patches};
   if (!points.points.empty()) {
     if (const std::string why = counts_instead(points, options); !why.empty()) {
       return Read::fail(std::string(name) + ": " + why);

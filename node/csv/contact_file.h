@@ -48,6 +48,7 @@ struct ContactFileOptions {
 struct ContactFile {
   ContactTable table;
   std::vector<std::string> notes;  ///< what was assumed, left out or changed, a sentence each
+  bool has_patches = false;        ///< the file says where one ends
 };
 
 /// Reads a file, or standard input for "-". Strict: used as a whole or not at all; an error reads

@@ -124,7 +124,7 @@ void add_estimate_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--sigma", estimate->options.sigma_m,
                    "Noise of samples that bring none; 0 = from each window's residuals [m]")
-      ->check(CLI::Range(0.0, 1e3))
+      ->check(number_within(0.0, 1e3))
       ->capture_default_str()
       ->type_name("METRES");
   command->add_option("--degree", estimate->options.jet_degree, "Degree of the jet's polynomial")

@@ -2,7 +2,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <string>
@@ -10,6 +12,7 @@
 
 #include "node/files/printable.h"
 #include "node/files/probe_file.h"
+#include "node/tool/commands/answer_notes.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/commands/fit_input.h"
@@ -19,6 +22,7 @@
 #include "node/tool/drawing/invariant_plot.h"
 #include "node/tool/drawing/svg_plot.h"
 #include "node/tool/part_match.h"
+#include "node/tool/text/advice.h"
 #include "node/tool/text/given_class_text.h"
 #include "node/tool/text/message_json.h"
 #include "node/tool/text/report.h"
@@ -60,7 +64,7 @@ void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
       option->capture_default_str()->type_name("NAME");
     } else if constexpr (!std::is_same_v<Field, bool>) {
       option->capture_default_str()->type_name("NUMBER")->check(
-          CLI::Range(info.lowest, info.highest));
+          number_within(info.lowest, info.highest));
     }
   });
 }
@@ -95,6 +99,7 @@ v1::GivenClassAnswer fit_given(const ContactGroup& group, const FitCommand& fit,
     notes.emplace_back(
         "WARNING: the measured normals do not count: not every sample's noise is known (--sigma)");
   }
+  if (const std::string note = note_of_misfit(answer); !note.empty()) notes.push_back(note);
   if (!files.empty() && answer.sigma_stated()) {
     notes.emplace_back("chi-square counts the probe's white noise alone, not its drift");
   }
@@ -115,8 +120,11 @@ std::string plot_path(const std::string& path, std::size_t number) {
 
 /// What is wrong with writing it, or nothing.
 std::string written(const std::string& path, const std::string& document) {
+  errno = 0;
   std::ofstream file(path, std::ios::trunc);
-  return file << document << std::flush ? "" : path + ": cannot be written";
+  if (file << document << std::flush) return "";
+  return path + ": cannot be written" +
+         (errno != 0 ? std::string(": ") + std::strerror(errno) : std::string());
 }
 
 /// Places a known part instead of recognising one.
@@ -246,10 +254,19 @@ int run(FitCommand& fit) {
       text = json ? json_line(given) : given_class_text(given);
       answer = given.recognition();
     }
+    if (std::string note = note_of_tip_side(group, answer); !note.empty()) {
+      complain(group.file + ": " + note, kDone);
+      notes.push_back(std::move(note));
+    }
     if (json) {
       std::cout << with_notes(text, notes);
     } else {
       std::cout << (number > 0 ? "\n" : "") << group.file << ": " << text;
+      const bool is_found = answer.status() == v1::RECOGNITION_STATUS_RECOGNIZED &&
+                            answer.curve_class() != v1::CURVE_CLASS_UNCLASSIFIED;
+      if (fit.given_class.empty() && !is_found) {
+        std::cout << "  advice       " << advice_text(answer) << "\n";
+      }
       for (const std::string& note : notes) std::cout << "  note         " << note << "\n";
     }
     ++number;

@@ -1,6 +1,8 @@
 #include "node/tool/drawing/curve_export.h"
 
 #include <dxflib/dl_dxf.h>
+#include <cerrno>
+#include <cstring>
 
 #include <cmath>
 #include <fstream>
@@ -110,11 +112,18 @@ void write_frame_after(DL_Dxf& dxf, DL_WriterA& out) {
   out.close();
 }
 
+/// `errno` was 0 before the file was opened.
+std::string not_written(const std::string& path) {
+  return path + ": cannot be written" +
+         (errno != 0 ? std::string(": ") + std::strerror(errno) : std::string());
+}
+
 std::string write_dxf(const CurveModel& model, const std::vector<ExportedPlace>& places,
                       bool closed, const std::string& path) {
   DL_Dxf dxf;
+  errno = 0;
   const std::unique_ptr<DL_WriterA> out(dxf.out(path.c_str(), DL_Codes::AC1015));
-  if (out == nullptr) return path + ": cannot be written";
+  if (out == nullptr) return not_written(path);
   write_frame_before(dxf, *out);
   constexpr double kPerMetre = 1e3;
   const DL_Attributes by_layer("0", 256, -1, "BYLAYER", 1.0);
@@ -170,6 +179,10 @@ std::string export_curve(const ContactGroup& group, const v1::Recognition& answe
                          const std::string& path) {
   const auto kind = export_kind(path);
   if (!kind) return path + ": ends in none of .csv, .json, .dxf";
+  if (answer.status() == v1::RECOGNITION_STATUS_RECOGNIZED &&
+      answer.curve_class() == v1::CURVE_CLASS_UNCLASSIFIED) {
+    return path + ": not written: the samples are no curve of the known classes";
+  }
   const auto model = model_of(answer);
   if (!model) return path + ": not written: no curve was found (" + status_text(answer) + ")";
   std::vector<Vec2> touched;
@@ -180,10 +193,11 @@ std::string export_curve(const ContactGroup& group, const v1::Recognition& answe
   if (!span) return path + ": not written: the touched places span no piece of the curve";
   const std::vector<ExportedPlace> places = places_of(*model, *span);
   if (*kind == ExportKind::Dxf) return write_dxf(*model, places, span->closed, path);
+  errno = 0;
   std::ofstream file(path, std::ios::trunc);
   file << (*kind == ExportKind::Csv ? as_csv(places) : as_json(answer, places, span->closed))
        << std::flush;
-  return file ? "" : path + ": cannot be written";
+  return file ? "" : not_written(path);
 }
 
 }  // namespace palpate

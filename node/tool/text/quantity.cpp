@@ -37,13 +37,18 @@ std::string with_sigma(double value, double sigma) {
 }
 
 LengthUnit length_unit_for(double magnitude_m) {
-  constexpr LengthUnit kUnits[] = {{"m", 1.0}, {"mm", 1e3}, {"um", 1e6}};
+  constexpr LengthUnit kUnits[] = {{"m", 1.0}, {"mm", 1e3}, {"um", 1e6}, {"nm", 1e9}};
   for (const LengthUnit& unit : kUnits) {
     if (magnitude_m * unit.per_m >= 1.0) {
       return unit;
     }
   }
-  return magnitude_m > 0.0 ? kUnits[2] : kUnits[0];
+  return magnitude_m > 0.0 ? kUnits[3] : kUnits[0];
+}
+
+std::string text_of_length(double metres) {
+  const LengthUnit unit = length_unit_for(metres);
+  return number(metres * unit.per_m) + " " + std::string(unit.name);
 }
 
 }  // namespace palpate

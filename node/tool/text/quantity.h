@@ -32,4 +32,7 @@ struct LengthUnit {
 };
 LengthUnit length_unit_for(double magnitude_m);
 
+/// "25 mm": six digits, in the unit of length_unit_for().
+std::string text_of_length(double metres);
+
 }  // namespace palpate

@@ -244,26 +244,65 @@ class Formats(unittest.TestCase):
 
     def test_strokes_without_patch_numbers_are_told(self):
         self.fit("x_m,y_m\n" + "".join(f"{x},{y}\n" for stroke in ellipse() for x, y in stroke))
-        self.assertIn("jumps", self.err)
+        self.assertIn("1 jump of", self.err)
         self.assertIn("column patch", self.err)
 
     def test_rows_in_no_order_are_told(self):
         rows = WHOLE[:]
         random.Random(2).shuffle(rows)
         shuffled = "x_m,y_m\n" + "".join(f"{x},{y}\n" for x, y in rows)
-        answer = self.fit(shuffled)
-        self.assertIn("1 patches go to and fro over their whole extent", self.err)
-        self.assertIn("in no order are --touches", "".join(answer["notes"]))
+        self.check(shuffled)
+        self.assertIn("WARNING", self.err)
+        self.assertIn("each is taken as a touch of its own", self.err)
+        self.assertIn("WARNING: the rows lead to and fro", self.notes)
+        for arguments, text in ((("--strokes",), shuffled),
+                                ((), "x_m,y_m,patch\n" + "".join(f"{x},{y},0\n" for x, y in rows))):
+            self.fit(text, *arguments)
+            self.assertIn("1 patch goes to and fro over the whole extent", self.err)
+            self.assertIn("in no order are --touches", self.notes)
         self.check(shuffled, "--touches")
         self.assertEqual(self.err, "")
         path = self.folder / "shuffled.csv"
         path.write_text(shuffled)
-        self.assertEqual(run(TOOL, "check", path)[0], 1)
+        code, out, _ = run(TOOL, "check", path)
+        self.assertEqual(code, 1)
+        self.assertIn("1 patch goes to and fro", out)
         # Once round the part, densely sampled with much noise between: that is an order.
         dense = "x_m,y_m\n" + "".join(f"{A * math.cos(t)},{B * math.sin(t)}\n" for t in
                                       (2 * math.pi * i / 40 for i in range(40)))
         self.fit(dense)
         self.assertEqual(self.err, "")
+
+    def test_two_strokes_row_by_row_are_told_apart_from_one(self):
+        # Means of neighbours, of more than 1024, would lie between the strokes: an ellipse of less than half the size.
+        strokes = ellipse(count=1000)
+        self.check("x_m,y_m\n" + "".join(f"{x!r},{y!r}\n" for pair in zip(*strokes) for x, y in pair))
+        self.assertIn("in no order along it", self.err)
+
+    def test_a_tip_radius_in_millimetres_where_metres_are_asked_is_told(self):
+        text = "x_m,y_m\n" + self.rows()
+        self.fit(text, "--tip-radius", 3)
+        self.assertIn("WARNING: a tip radius of 3 m is larger than all that is touched", self.notes)
+        self.assertIn("--tip-radius is metres", self.err)
+        # A ball of 20 mm nearly fills a bore.
+        self.fit("x_m,y_m\n" + "".join(f"{0.0004 * math.cos(k)},{0.0004 * math.sin(k)}\n" for k in range(40)),
+                 "--touches", "--tip-radius", 0.01)
+        self.assertNotIn("larger than all", self.err)
+
+    def test_strokes_that_were_saved_twice_are_told(self):
+        stroke = ellipse()[0]
+        text = "x_m,y_m,patch\n" + "".join(f"{x!r},{y!r},{k}\n" for k in (0, 3) for x, y in stroke)
+        self.fit(text)
+        self.assertIn("1 patch is a copy of others, sample by sample (patch 3 is one of patch 0)", self.err)
+
+    def test_strokes_may_each_have_a_clock_of_their_own(self):
+        def stamped(patches):
+            return "x_m,y_m,patch,t_s\n" + "".join(f"{x!r},{y!r},{patches * k},{0.001 * i}\n" for k, stroke in
+                                                   enumerate(ellipse()) for i, (x, y) in enumerate(stroke))
+        self.check(stamped(1))
+        self.assertEqual(self.err, "")
+        self.fit(stamped(0))
+        self.assertIn("1 stamp earlier than the one before in its patch", self.err)
 
     def test_the_noise_of_many_samples_is_that_of_one(self):
         # More than 1024 of a patch are used as means: what is said of the noise is of the samples.
@@ -297,11 +336,11 @@ class Formats(unittest.TestCase):
         self.assertNotIn("forgotten", self.notes)
         answer = self.fit(text, "--most-patches", "64")
         self.assertEqual(int(answer["sample_count"]), 64 * 9)
-        self.assertIn("234 samples of the oldest of 90 patches are forgotten", self.notes)
+        self.assertIn("forgotten: 234 samples of the oldest of 90 patches", self.notes)
 
     def test_what_is_merged_or_dropped_is_said(self):
         self.fit("x_m,y_m\n" + self.rows() + self.rows().splitlines()[-1] + "\n")
-        self.assertIn("1 samples at exactly the place", self.notes)
+        self.assertIn("dropped: 1 sample at exactly the place", self.notes)
         self.fit("x_m,y_m\n" + self.rows(), "--most-samples-per-patch", "100")
         self.assertIn("means of neighbours", self.notes)
 
@@ -342,7 +381,7 @@ class Formats(unittest.TestCase):
             f"{1e3 * x},{1e3 * y},{1000 - k}\n" for k, (x, y) in enumerate(p for s in ellipse() for p in s)))
         code, out, _ = run(TOOL, "check", path)
         self.assertEqual(code, 1, out)
-        for told in ("jumps", "221 stamps earlier", "extend over", "--unit mm", "not fit"):
+        for told in ("1 jump of", "221 stamps earlier", "extend over", "--unit mm", "not fit"):
             self.assertIn(told, out)
         self.assertEqual(run(TOOL, "check", self.folder / "absent")[0], 2)
 
