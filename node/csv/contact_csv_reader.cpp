@@ -10,6 +10,7 @@
 #include "node/csv/csv_columns.h"
 #include "node/csv/text_lines.h"
 #include "node/files/bounded_file.h"
+#include "node/files/counted.h"
 #include "node/wire/topics.h"
 
 namespace palpate {
@@ -126,8 +127,8 @@ class Reader {
     const std::size_t count = split();
     if (count != width_) {
       fail(count > width_ ? fields_[width_].data() : line_.data() + line_.size(),
-           (count > width_ ? "more than " : std::to_string(count) + " fields instead of ") +
-               std::to_string(width_) + (count > width_ ? " fields" : ""));
+           count > width_ ? "more than " + counted(width_, "field")
+                          : counted(count, "field") + " instead of " + std::to_string(width_));
       return;
     }
     ContactRow row;

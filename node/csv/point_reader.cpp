@@ -143,8 +143,8 @@ class PointReader {
       columns_.places[static_cast<std::size_t>(column)] = place;
     };
     if (width_ != 2 && width_ != 3 && width_ != kLinuxCncAxes) {
-      fail(line.data(), std::to_string(width_) +
-                            " columns without a line of names: 2 are x and y, 3 are x, y and z, 9 "
+      fail(line.data(), counted(width_, "column") +
+                            " without a line of names: 2 are x and y, 3 are x, y and z, 9 "
                             "are a LinuxCNC probe log; name the others in a first line (" +
                             known_columns() + ")");
       return;
@@ -278,7 +278,7 @@ class PointReader {
     if (fields_.size() == width_ + 1 && fields_.back().empty()) fields_.pop_back();
     if (fields_.size() != width_) {
       fail(fields_.size() > width_ ? fields_[width_].data() : line.data() + line.size(),
-           std::to_string(fields_.size()) + " fields instead of " + std::to_string(width_));
+           counted(fields_.size(), "field") + " instead of " + std::to_string(width_));
       return;
     }
     // Spreadsheets write empty rows as separators alone.

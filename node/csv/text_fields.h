@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 #include <vector>
 
@@ -63,12 +64,20 @@ inline void split_fields(std::string_view line, char separator,
   }
 }
 
+/// Whether a spreadsheet's cell that failed begins here.
+inline bool is_failed_cell(std::string_view text) {
+  constexpr std::string_view kFailures[] = {"#N/A",   "#DIV/0!", "#REF!", "#VALUE!",
+                                            "#NAME?", "#NUM!",   "#NULL!"};
+  return std::any_of(std::begin(kFailures), std::end(kFailures),
+                     [text](std::string_view failure) { return text.starts_with(failure); });
+}
+
 /// Where a comment begins: '#' or '%' at the line's beginning or after a blank. "#N/A" in a
 /// spreadsheet's cell is none, nor is "[%]" in a name.
 inline std::size_t comment_mark(std::string_view line) {
   for (std::size_t at = line.find_first_of("#%"); at != std::string_view::npos;
        at = line.find_first_of("#%", at + 1)) {
-    if (at == 0 || is_blank(line[at - 1])) return at;
+    if ((at == 0 || is_blank(line[at - 1])) && !is_failed_cell(line.substr(at))) return at;
   }
   return std::string_view::npos;
 }

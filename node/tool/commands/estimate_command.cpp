@@ -129,7 +129,7 @@ int run(EstimateCommand& command) {
       options.sigma_m = sigma_of(run, command.options.sigma_m);
       if (points.size() < samples_per_estimate(options)) {
         std::cerr << "palpate: " << probe << ", patch " << run.context.patch << ": "
-                  << points.size() << " samples, an estimate takes "
+                  << counted(points.size(), "sample") << ", an estimate takes "
                   << samples_per_estimate(options) << " (--window)\n";
         continue;
       }

@@ -2,16 +2,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
-#include <fstream>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include "node/files/printable.h"
 #include "node/files/probe_file.h"
+#include "node/files/written_file.h"
 #include "node/tool/commands/answer_notes.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
@@ -116,15 +114,6 @@ std::string plot_path(const std::string& path, std::size_t number) {
   const std::string stem = path.substr(0, dot);
   const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
   return stem + "-" + std::to_string(number) + ending;
-}
-
-/// What is wrong with writing it, or nothing.
-std::string written(const std::string& path, const std::string& document) {
-  errno = 0;
-  std::ofstream file(path, std::ios::trunc);
-  if (file << document << std::flush) return "";
-  return path + ": cannot be written" +
-         (errno != 0 ? std::string(": ") + std::strerror(errno) : std::string());
 }
 
 /// Places a known part instead of recognising one.
@@ -241,7 +230,7 @@ int run(FitCommand& fit) {
             invariant_plot(answered.recognition, group.file + ", " + group.name + ", object " +
                                                      std::to_string(group.object));
         const std::string path = plot_path(fit.invariants_plot, number + 1);
-        if (const std::string why = written(path, picture); !why.empty()) {
+        if (const std::string why = write_file(path, picture); !why.empty()) {
           return complain(why, kFailed);
         }
       }
@@ -272,7 +261,7 @@ int run(FitCommand& fit) {
     ++number;
     if (!fit.plot.empty()) {
       const std::string path = plot_path(fit.plot, number);
-      if (const std::string why = written(path, svg_plot(group, answer)); !why.empty()) {
+      if (const std::string why = write_file(path, svg_plot(group, answer)); !why.empty()) {
         return complain(why, kFailed);
       }
     }

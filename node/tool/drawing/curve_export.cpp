@@ -1,15 +1,15 @@
 #include "node/tool/drawing/curve_export.h"
 
 #include <dxflib/dl_dxf.h>
-#include <cerrno>
-#include <cstring>
 
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "node/files/written_file.h"
 #include "node/tool/drawing/curve_model.h"
 #include "node/tool/text/recognition_text.h"
 
@@ -112,18 +112,12 @@ void write_frame_after(DL_Dxf& dxf, DL_WriterA& out) {
   out.close();
 }
 
-/// `errno` was 0 before the file was opened.
-std::string not_written(const std::string& path) {
-  return path + ": cannot be written" +
-         (errno != 0 ? std::string(": ") + std::strerror(errno) : std::string());
-}
-
 std::string write_dxf(const CurveModel& model, const std::vector<ExportedPlace>& places,
                       bool closed, const std::string& path) {
   DL_Dxf dxf;
   errno = 0;
   const std::unique_ptr<DL_WriterA> out(dxf.out(path.c_str(), DL_Codes::AC1015));
-  if (out == nullptr) return not_written(path);
+  if (out == nullptr) return cannot_be_written(path);
   write_frame_before(dxf, *out);
   constexpr double kPerMetre = 1e3;
   const DL_Attributes by_layer("0", 256, -1, "BYLAYER", 1.0);
@@ -193,11 +187,8 @@ std::string export_curve(const ContactGroup& group, const v1::Recognition& answe
   if (!span) return path + ": not written: the touched places span no piece of the curve";
   const std::vector<ExportedPlace> places = places_of(*model, *span);
   if (*kind == ExportKind::Dxf) return write_dxf(*model, places, span->closed, path);
-  errno = 0;
-  std::ofstream file(path, std::ios::trunc);
-  file << (*kind == ExportKind::Csv ? as_csv(places) : as_json(answer, places, span->closed))
-       << std::flush;
-  return file ? "" : not_written(path);
+  return write_file(
+      path, *kind == ExportKind::Csv ? as_csv(places) : as_json(answer, places, span->closed));
 }
 
 }  // namespace palpate

@@ -25,7 +25,7 @@ std::string with_sigma(double value, double sigma);
 /// Six significant digits.
 std::string number(double value);
 
-/// A unit of length that suits a magnitude: m, mm or um.
+/// A unit of length that suits a magnitude: m, mm, um or nm.
 struct LengthUnit {
   std::string_view name;
   double per_m = 1.0;

@@ -81,6 +81,10 @@ class Files(unittest.TestCase):
         code, out, err = run(TOOL, "fti", csv)
         self.assertEqual((code, out), (2, ""))
         self.assertIn("there is no command fti", err)
+        for name in ("", f"{self.folder}/"):
+            code, out, err = run(TOOL, "keygen", name)
+            self.assertEqual((code, out), (2, ""))
+            self.assertIn("names no file", err)
         for option in ("--plot", "--plot-invariants", "--export"):
             ending = ".dxf" if option == "--export" else ".svg"
             code, _, err = run(TOOL, "fit", csv, "--sigma", "1e-5", option, self.folder / "none" / ("a" + ending))

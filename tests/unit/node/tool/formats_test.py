@@ -99,6 +99,9 @@ class Formats(unittest.TestCase):
         self.check((names + rows).replace("\r\n", "\r"))
         self.check("x_mm|y_mm\n" + self.rows(1e3, "|"))
         self.assertIn("FILE:3:3: y '#N/A': not a number", self.refused("x_mm,y_mm\n1,2\n3,#N/A\n"))
+        # In the first column it is no comment, that would leave the row out in silence.
+        for cell in ("#N/A", "#DIV/0!", "#VALUE!"):
+            self.assertIn(f"FILE:3:1: x '{cell}': not a number", self.refused(f"x_mm,y_mm\n1,2\n{cell},3\n"))
 
     def test_numbers_as_machines_write_them(self):
         # Fortran's exponents; commas between quotes, where commas part the columns too.
@@ -361,7 +364,7 @@ class Formats(unittest.TestCase):
                               ("x_mm,y_mm\n1,2\n1,\n", "FILE:3:3: y '': nothing is there; leave out rows"),
                               ("1 2\n3 4 5\n", "FILE:2:5: 3 fields instead of 2"),
                               ("1 2 3 4\n", "FILE:1:1: 4 columns without a line of names"),
-                              ("1\n2\n", "FILE:1:1: 1 columns without a line of names"),
+                              ("1\n2\n", "FILE:1:1: 1 column without a line of names"),
                               ("x,force\n1,2\n", "FILE:1:1: no columns of two coordinates"),
                               ("x,y,x_pos\n1,2,3\n", "FILE:1:1: column x_pos comes twice"),
                               ("x,y,patch\n1,2,one\n", "FILE:2:5: patch 'one': not a whole number"),
