@@ -28,6 +28,12 @@ bool all_have_sigma(const ContactGroup& group) {
   });
 }
 
+std::size_t samples_of(const ContactGroup& group) {
+  std::size_t samples = 0;
+  for (const ContactRun& run : group.runs) samples += run.samples.size();
+  return samples;
+}
+
 /// Whether a stroke of it leads to and fro instead of along the part.
 bool has_no_order(const std::vector<Finding>& findings) {
   return std::any_of(findings.begin(), findings.end(),
@@ -61,8 +67,11 @@ Result<std::vector<FitInput>> read_fit_input(const std::string& file,
     FitInput input{std::move(group), read.value->notes, {}, false};
     input.noise_is_known = all_have_sigma(input.group);
     std::vector<Finding> findings = check_group(input.group, sigma_m);
-    // What is no stroke is not read as one, unless that or the patches were said.
-    if (!options.touches && !read.value->has_patches && has_no_order(findings)) {
+    // What is no stroke is not read as one, unless that or the patches were said. The memory counts
+    // its touches at each one that comes: ten times as many take a hundred times as long.
+    constexpr std::size_t kMostTouches = 20'000;  // about a second
+    if (!options.touches && !read.value->has_patches && has_no_order(findings) &&
+        samples_of(input.group) <= kMostTouches) {
       part_into_touches(input.group);
       findings = check_group(input.group, sigma_m);
       input.warnings.emplace_back(

@@ -265,6 +265,9 @@ class Formats(unittest.TestCase):
             self.assertIn("in no order are --touches", self.notes)
         self.check(shuffled, "--touches")
         self.assertEqual(self.err, "")
+        # So many that touches would take minutes stay a stroke, and that it is none is told.
+        self.fit("x_m,y_m\n" + "".join(f"{x},{y}\n" for x, y in rows * 100))
+        self.assertIn("1 patch goes to and fro over the whole extent", self.err)
         path = self.folder / "shuffled.csv"
         path.write_text(shuffled)
         code, out, _ = run(TOOL, "check", path)
