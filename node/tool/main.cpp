@@ -37,13 +37,16 @@ CLI::Validator positive_number() { return number_check("POSITIVE", false); }
 CLI::Validator non_negative_number() { return number_check("NONNEGATIVE", true); }
 
 CLI::Validator number_within(double lowest, double highest) {
-  const std::string bounds = (std::ostringstream() << lowest << " to " << highest).str();
-  const auto check = [lowest, highest, bounds](const std::string& text) -> std::string {
+  std::ostringstream bounds;
+  bounds << lowest << " to " << highest;
+  std::ostringstream name;  // as CLI::Range has it, which the manual pages read
+  name << "FLOAT in [" << lowest << " - " << highest << "]";
+  const auto check = [lowest, highest, why = bounds.str()](const std::string& text) -> std::string {
     double value = 0.0;
     const bool good = CLI::detail::lexical_cast(text, value) && value >= lowest && value <= highest;
-    return good ? "" : "\"" + text + "\" is no number from " + bounds;
+    return good ? "" : "\"" + text + "\" is no number from " + why;
   };
-  return CLI::Validator(check, bounds);
+  return CLI::Validator(check, name.str());
 }
 
 void add_connection_flags(CLI::App& command, const char* flag, const char* help,
