@@ -15,7 +15,7 @@
 namespace palpate {
 
 int complain(const std::string& why, int exit_code) {
-  std::cerr << "palpate: " << why << "\n";
+  std::cerr << "palpate: " << printable_path(why) << "\n";
   return exit_code;
 }
 

@@ -137,7 +137,8 @@ int place(const FitCommand& fit, const std::vector<FitInput>& inputs, bool json)
     if (json) {
       std::cout << json_line(match);
     } else {
-      std::cout << separator << group.file << ", " << group.name << ": " << part_match_text(match);
+      std::cout << separator << printable_path(group.file) << ", " << group.name << ": "
+                << part_match_text(match);
       separator = "\n";
     }
   }
@@ -250,7 +251,7 @@ int run(FitCommand& fit) {
     if (json) {
       std::cout << with_notes(text, notes);
     } else {
-      std::cout << (number > 0 ? "\n" : "") << group.file << ": " << text;
+      std::cout << (number > 0 ? "\n" : "") << printable_path(group.file) << ": " << text;
       const bool is_found = answer.status() == v1::RECOGNITION_STATUS_RECOGNIZED &&
                             answer.curve_class() != v1::CURVE_CLASS_UNCLASSIFIED;
       if (fit.given_class.empty() && !is_found) {

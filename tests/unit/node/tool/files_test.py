@@ -91,6 +91,18 @@ class Files(unittest.TestCase):
             self.assertEqual(code, 1, err)
             self.assertIn("a" + ending + ": cannot be written: No such file or directory", err)
 
+    def test_names_of_files_are_shown_on_one_line_and_obeyed_by_no_terminal(self):
+        csv = self.folder / "Stück 1\n\x1b[31m\u009b2J.csv"
+        csv.write_text(HEADER + "".join(f"p,0,{0.001 * i},0\n" for i in range(50)))
+        code, out, err = run(TOOL, "fit", csv, "--format", "text", "--sigma", "1e-5")
+        self.assertEqual(code, 0, err)
+        self.assertTrue(out.startswith(f"{self.folder}/Stück 1\\x0a\\x1b[31m\\xc2\\x9b2J.csv: group p"), out)
+        csv.write_text(HEADER + "p,0,nan,0\n")
+        code, out, err = run(TOOL, "fit", csv)
+        self.assertEqual(code, 2)
+        self.assertIn("Stück 1\\x0a\\x1b[31m\\xc2\\x9b2J.csv:2:5: x_m 'nan'", err)
+        self.assertEqual(len(err.splitlines()), 1)
+
     def test_few_samples_and_curves_of_no_class_get_advice(self):
         code, out, err = run(TOOL, "fit", "-", "--format", "text", text_in=HEADER + "p,0,1,2\n")
         self.assertEqual(code, 0, err)
