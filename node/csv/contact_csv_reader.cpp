@@ -8,8 +8,9 @@
 
 #include "node/csv/contact_csv.h"
 #include "node/csv/csv_columns.h"
+#include "node/csv/text_lines.h"
 #include "node/files/bounded_file.h"
-#include "node/files/printable.h"
+#include "node/files/counted.h"
 #include "node/wire/topics.h"
 
 namespace palpate {
@@ -19,6 +20,8 @@ using csv::Column;
 using csv::kColumnCount;
 using csv::kColumnNames;
 using csv::kRequiredColumns;
+using csv::shown;
+using csv::trim;
 
 // The bounds of node/intake/ingest.h: what the node would refuse is not used offline either.
 constexpr double kMaxCoordinateM = 1e7;
@@ -27,22 +30,6 @@ constexpr double kMaxSigmaM = 1e3;
 constexpr double kMaxTipRadiusM = 1e3;
 constexpr double kMinNormalSigmaRad = 1e-15;
 constexpr double kMostVarianceM2 = kMaxSigmaM * kMaxSigmaM;
-
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
-std::string_view trim(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-/// As it may be shown in an error: short and printable.
-std::string shown(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
-  std::string quoted(1, '\'');
-  quoted.append(printable(text, kLongest)).push_back('\'');
-  return quoted;
-}
 
 class Reader {
  public:
@@ -56,10 +43,13 @@ class Reader {
     bool has_header = false;
     while (error_.empty() && next_line()) {
       if (trim(line_).empty()) continue;
-      if (has_header) {
-        read_row();
-      } else {
+      if (!has_header) {
+        header_ = trim(line_);
         has_header = read_header();
+      } else if (trim(line_) == header_) {
+        fail(line_begin_, csv::kNamesAgain);
+      } else {
+        read_row();
       }
     }
     if (error_.empty() && !has_header) {
@@ -137,8 +127,8 @@ class Reader {
     const std::size_t count = split();
     if (count != width_) {
       fail(count > width_ ? fields_[width_].data() : line_.data() + line_.size(),
-           (count > width_ ? "more than " : std::to_string(count) + " fields instead of ") +
-               std::to_string(width_) + (count > width_ ? " fields" : ""));
+           count > width_ ? "more than " + counted(width_, "field")
+                          : counted(count, "field") + " instead of " + std::to_string(width_));
       return;
     }
     ContactRow row;
@@ -257,7 +247,8 @@ class Reader {
       return fail(text.data(), in_column(column, text) + "beyond what a double can hold");
     }
     if (!std::isfinite(parsed)) {
-      return fail(text.data(), in_column(column, text) + "not a finite number");
+      return fail(text.data(),
+                  in_column(column, text) + "not a finite number; leave out rows without a touch");
     }
     if (parsed < lowest || parsed > highest) {
       char bounds[64];
@@ -273,16 +264,17 @@ class Reader {
   bool whole(Column column, Integer& value) {
     const std::string_view text = optional_field(column);
     if (text.empty() && !is_required(column)) return true;
-    const auto [end, status] = std::from_chars(begin_of(text), text.data() + text.size(), value);
-    if (status == std::errc::result_out_of_range) {
-      return fail(text.data(), in_column(column, text) + "out of range");
+    if (const auto whole = csv::whole_of<Integer>(text)) {
+      value = *whole;
+      return true;
     }
-    if (status != std::errc() || end != text.data() + text.size()) {
-      return fail(text.data(), in_column(column, text) +
-                                   (std::is_signed_v<Integer> ? "not a whole number"
-                                                              : "not a whole number >= 0"));
-    }
-    return true;
+    const std::optional<double> number = csv::number_of(text, false);
+    const bool is_whole = number && std::trunc(*number) == *number;
+    return fail(text.data(),
+                in_column(column, text) +
+                    (is_whole && (std::is_signed_v<Integer> || *number >= 0.0) ? "out of range"
+                     : std::is_signed_v<Integer> ? "not a whole number"
+                                                 : "not a whole number >= 0"));
   }
 
   /// from_chars knows no plus sign; people write it. A second sign is left for it to refuse.
@@ -339,6 +331,7 @@ class Reader {
   std::size_t line_number_ = 0;
   std::string_view line_;
   const char* line_begin_ = nullptr;
+  std::string_view header_;
   std::array<std::string_view, kColumnCount + 1> fields_;
   std::array<std::optional<std::size_t>, kColumnCount> columns_;  ///< place of each in a line
   std::size_t width_ = 0;

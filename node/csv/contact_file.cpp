@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -83,6 +84,35 @@ std::string disagreement_in_patches(const ContactTable& table) {
   return {};
 }
 
+/// Three columns without names of which the first counts 1, 2, 3, ... while both others vary: point
+/// numbers, that would be taken for x. What is wrong, or nothing.
+std::string counts_instead(const csv::PointTable& points, const ContactFileOptions& options) {
+  constexpr std::size_t kFewest = 4;  // two or three numbers count by chance
+  if (!points.has_three_without_names || options.plane != PointPlane::Varying ||
+      points.points.size() < kFewest) {
+    return {};
+  }
+  constexpr double kRounding = 1e-9;  // of the change to metres and back, for numbers of a million
+  const double unit = options.unit_m.value_or(1.0);
+  Eigen::Vector3d low = points.points.front();
+  Eigen::Vector3d high = low;
+  double next = std::round(low.x() / unit);
+  for (const Eigen::Vector3d& point : points.points) {
+    if (std::abs(point.x() / unit - next) > kRounding) return {};
+    next += 1.0;
+    low = low.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  // A scan by even steps along x holds y or z still (point_plane.cpp has the bound).
+  constexpr double kHeldStill = 0.01;
+  const Eigen::Vector2d others = (high - low).tail<2>();
+  if (others.minCoeff() <= kHeldStill * others.maxCoeff()) return {};
+  return "three columns without names, of which the first counts: are these point numbers? Name "
+         "the "
+         "columns in a first line (number,x_mm,y_mm), or choose the plane (--plane xy, xz, yz, "
+         "fit)";
+}
+
 /// Numbers the rows of each probe and object as patches of their own.
 void part_into_touches(ContactTable& table) {
   std::map<std::tuple<std::size_t, std::uint64_t, std::size_t>, std::uint32_t> counts;
@@ -114,8 +144,11 @@ Read parse_contact_file(std::string_view text, std::string_view name,
                                                           : csv::read_points(text, name, options);
   if (!read) return Read::fail(read.error);
   csv::PointTable& points = *read.value;
-  ContactFile file{std::move(points.table), std::move(points.notes)};
+  ContactFile file{std::move(points.table), std::move(points.notes), points.has_patches};
   if (!points.points.empty()) {
+    if (const std::string why = counts_instead(points, options); !why.empty()) {
+      return Read::fail(std::string(name) + ": " + why);
+    }
     const csv::PlanePoints plane = csv::in_plane(points.points, options.plane);
     if (!plane.error.empty()) return Read::fail(std::string(name) + ": " + plane.error);
     for (std::size_t i = 0; i < file.table.rows.size(); ++i) {
@@ -145,6 +178,9 @@ Read read_contact_file(const std::string& path, const ContactFileOptions& option
   const Result<std::string> text = is_standard_input
                                        ? read_bounded(STDIN_FILENO, name, kMostContactFileBytes)
                                        : read_bounded(path, kMostContactFileBytes);
+  if (text) {
+    if (const auto why = csv::no_text_because(*text.value)) return Read::fail(name + ": " + *why);
+  }
   return text ? parse_contact_file(*text.value, name, options) : Read::fail(text.error);
 }
 

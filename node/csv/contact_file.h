@@ -2,8 +2,9 @@
 //
 // Beside the columns of node/csv/contact_csv.h: columns by common names and units (x_mm, "X [um]",
 // pos_y), in any order; two or three columns without names; comma, semicolon, tab, bar or blanks
-// between them; '#' and '%' comments; decimal commas where the separator is none; what spreadsheets
-// write (UTF-16, "sep=;", titles above the names, a row of units below them, empty rows); the probe
+// between them; '#' and '%' comments; decimal commas where the separator is none or between quotes;
+// exponents with D; what spreadsheets write (UTF-16, "sep=;", titles above the names, a row of
+// units below them, empty rows); files joined end to end, with the line of names again; the probe
 // logs of LinuxCNC and grbl. Nothing is guessed in silence: every assumption, and whatever is left
 // out, is a note.
 #pragma once
@@ -47,6 +48,7 @@ struct ContactFileOptions {
 struct ContactFile {
   ContactTable table;
   std::vector<std::string> notes;  ///< what was assumed, left out or changed, a sentence each
+  bool has_patches = false;        ///< the file says where one ends
 };
 
 /// Reads a file, or standard input for "-". Strict: used as a whole or not at all; an error reads

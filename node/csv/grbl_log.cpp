@@ -2,6 +2,7 @@
 
 #include "node/csv/point_reader.h"
 #include "node/csv/text_lines.h"
+#include "node/files/counted.h"
 
 namespace palpate::csv {
 namespace {
@@ -59,13 +60,14 @@ Result<PointTable> read_grbl_log(std::string_view text, std::string_view name,
   if (result.table.rows.empty()) {
     return Read::fail(lines.error(nullptr, "no probing cycle of this grbl log touched anything"));
   }
-  result.notes.push_back("a grbl log: its [PRB:x,y,z:1] lines are the touches" +
-                         (other_lines > 0
-                              ? ", " + std::to_string(other_lines) + " other lines are ignored"
-                              : std::string()));
+  result.notes.push_back(
+      "a grbl log: its [PRB:x,y,z:1] lines are the touches" +
+      (other_lines > 0
+           ? ", " + counted(other_lines, "other line is", "other lines are") + " ignored"
+           : std::string()));
   if (missed > 0) {
-    result.notes.push_back(std::to_string(missed) +
-                           " probing cycles that touched nothing ([PRB:...:0]) are left out");
+    result.notes.push_back("left out: " + counted(missed, "probing cycle") +
+                           " that touched nothing ([PRB:...:0])");
   }
   if (!options.unit_m) {
     result.notes.emplace_back(

@@ -117,7 +117,8 @@ std::string plain(std::string_view name) {
   std::string result;
   for (const char c : name) {
     const bool parts = c == ' ' || c == '-' || c == '_' || c == '[' || c == ']' || c == '(' ||
-                       c == ')' || c == '/' || c == '"' || c == '\'' || c == '.' || c == ':';
+                       c == ')' || c == '/' || c == '"' || c == '\'' || c == '.' || c == ':' ||
+                       c == ',';
     if (!parts) {
       result += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     } else if (!result.empty() && result.back() != '_') {
@@ -141,7 +142,15 @@ bool is_length(PointColumn column) {
 }
 
 std::optional<NamedColumn> column_of(std::string_view name) {
-  const std::string words = plain(name);
+  std::string words = plain(name);
+  // A message's fields, as ROS prints them: field.pose.position.x.
+  constexpr std::string_view kField = "field_";
+  if (const std::size_t place = words.rfind("pose_position_");
+      place != std::string::npos && words.starts_with(kField)) {
+    words.erase(0, place + std::string_view("pose_").size());
+  } else if (words.starts_with("field_point_")) {
+    words.erase(0, kField.size());
+  }
   if (const auto column = alias(words)) {
     // A time without unit may be anything.
     if (*column == PointColumn::Stamp) return std::nullopt;

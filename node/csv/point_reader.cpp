@@ -5,9 +5,11 @@
 #include <map>
 #include <utility>
 
+#include "node/csv/decimal_marks.h"
 #include "node/csv/point_columns.h"
 #include "node/csv/text_fields.h"
 #include "node/csv/text_lines.h"
+#include "node/files/counted.h"
 #include "node/wire/topics.h"
 
 namespace palpate::csv {
@@ -35,10 +37,11 @@ class PointReader {
       if (trim(line).empty()) {
         if (!comment.empty() && !is_known_) comment_ = comment;
         if (mark == std::string_view::npos) gap_ = true;
+        if (is_known_ && is_names(comment)) begin_again();
         continue;
       }
       if (is_known_) {
-        read_row(line);
+        is_names(line) ? begin_again() : read_row(line);
         continue;
       }
       if (const char told = told_separator(line); told != '\0' && preface_.empty()) {
@@ -60,6 +63,7 @@ class PointReader {
       gap_ = false;
       is_known_ = true;
       units_may_follow_ = first == First::Names;
+      if (first == First::Names) names_ = trim(line);
       if (first == First::Numbers) read_row(line);
     }
     if (error_.empty() && !is_known_) error_ = without_names_;
@@ -86,9 +90,8 @@ class PointReader {
   First know_columns(std::string_view line) {
     separator_ = told_separator_ != '\0' ? told_separator_ : separator_of(line);
     split(line);
-    const bool decimal_comma = separator_ != ',';
     const bool is_data = std::all_of(fields_.begin(), fields_.end(), [&](std::string_view field) {
-      return field.empty() || number_of(field, decimal_comma);
+      return field.empty() || number_of(field, true);
     });
     if (!is_data) {
       columns_ = columns_of(fields_);
@@ -106,6 +109,15 @@ class PointReader {
     return First::Numbers;
   }
 
+  bool is_names(std::string_view line) const { return !names_.empty() && trim(line) == names_; }
+
+  /// The line of names again, as when files are joined: another stroke begins.
+  void begin_again() {
+    if (columns_.place(PointColumn::Patch)) fail(lines_.line().data(), std::string(kNamesAgain));
+    gap_ = units_may_follow_ = true;
+    ++names_again_;
+  }
+
   /// numpy.savetxt writes its header as a comment.
   bool know_by_comment() {
     const char data_separator = separator_;
@@ -115,6 +127,7 @@ class PointReader {
       const PointColumns named = columns_of(fields_);
       if (fields_.size() == width_ && named.is_enough() && named.twice.empty()) {
         columns_ = named;
+        names_ = trim(comment_);
         result_.notes.push_back("the last comment before the data names the columns: " +
                                 shown(trim(comment_)));
         separator_ = data_separator;
@@ -130,8 +143,8 @@ class PointReader {
       columns_.places[static_cast<std::size_t>(column)] = place;
     };
     if (width_ != 2 && width_ != 3 && width_ != kLinuxCncAxes) {
-      fail(line.data(), std::to_string(width_) +
-                            " columns without a line of names: 2 are x and y, 3 are x, y and z, 9 "
+      fail(line.data(), counted(width_, "column") +
+                            " without a line of names: 2 are x and y, 3 are x, y and z, 9 "
                             "are a LinuxCNC probe log; name the others in a first line (" +
                             known_columns() + ")");
       return;
@@ -139,6 +152,7 @@ class PointReader {
     stand(PointColumn::X, 0);
     stand(PointColumn::Y, 1);
     if (width_ > 2) stand(PointColumn::Z, 2);
+    result_.has_three_without_names = width_ == 3;
     result_.is_probe_log = width_ == kLinuxCncAxes;
     result_.notes.emplace_back(
         width_ == 2   ? "no line of names: the two columns are x and y"
@@ -167,12 +181,19 @@ class PointReader {
 
   bool length(PointColumn column, const char* what, double lowest, double highest, double& value) {
     const std::string_view text = field(column);
-    const auto parsed = number_of(text, separator_ != ',');
-    if (!parsed) return fail(text.data(), std::string(what) + " " + shown(text) + ": not a number");
-    if (!std::isfinite(*parsed)) {
-      return fail(text.data(), std::string(what) + " " + shown(text) + ": not a finite number");
+    // Between quotes a comma is no separator.
+    const auto parsed = number_of(text, true);
+    if (!parsed || !std::isfinite(*parsed)) {
+      return fail(text.data(),
+                  std::string(what) + " " + shown(text) +
+                      (parsed         ? ": not a finite number"
+                       : text.empty() ? ": nothing is there"
+                                      : ": not a number") +
+                      (parsed || text.empty() ? "; leave out rows without a touch" : ""));
     }
-    uses_decimal_comma_ |= separator_ != ',' && text.find(',') != std::string_view::npos;
+    if (const std::string clash = marks_.take(text); !clash.empty()) {
+      return fail(text.data(), std::string(what) + " " + shown(text) + ": " + clash);
+    }
     value = *parsed * unit_of(column);
     if (value < lowest || value > highest) {
       char bounds[80];
@@ -186,9 +207,10 @@ class PointReader {
   bool whole(PointColumn column, const char* what, Integer& value) {
     const std::string_view text = field(column);
     if (text.empty()) return true;
-    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (status == std::errc() && end == text.data() + text.size()) return true;
-    return fail(text.data(), std::string(what) + " " + shown(text) + ": not a whole number >= 0");
+    const auto parsed = whole_of<Integer>(text);
+    value = parsed.value_or(value);
+    return parsed.has_value() ||
+           fail(text.data(), std::string(what) + " " + shown(text) + ": not a whole number >= 0");
   }
 
   bool name(PointColumn column, const char* what, std::size_t& index) {
@@ -214,7 +236,7 @@ class PointReader {
     if (text.empty()) return true;
     const double unit = columns_.units[static_cast<std::size_t>(PointColumn::Stamp)].value_or(1.0);
     if (unit == 1.0) return whole(PointColumn::Stamp, "stamp_ns", row.sample.stamp_ns);
-    const auto parsed = number_of(text, separator_ != ',');
+    const auto parsed = number_of(text, true);
     constexpr double kMost = 9.2e18;  // that an int64 holds [ns]
     if (!parsed || !(std::abs(*parsed * unit) < kMost)) {
       return fail(text.data(), "time " + shown(text) + ": not a number");
@@ -256,7 +278,7 @@ class PointReader {
     if (fields_.size() == width_ + 1 && fields_.back().empty()) fields_.pop_back();
     if (fields_.size() != width_) {
       fail(fields_.size() > width_ ? fields_[width_].data() : line.data() + line.size(),
-           std::to_string(fields_.size()) + " fields instead of " + std::to_string(width_));
+           counted(fields_.size(), "field") + " instead of " + std::to_string(width_));
       return;
     }
     // Spreadsheets write empty rows as separators alone.
@@ -322,9 +344,11 @@ class PointReader {
       }
       notes.push_back("columns ignored: " + names);
     }
-    if (uses_decimal_comma_) notes.emplace_back("commas are read as decimal points");
+    if (marks_.comma()) notes.emplace_back("commas are read as decimal points");
     if (block_ > 0) {
-      notes.push_back("empty lines part the rows into " + std::to_string(block_ + 1) + " patches");
+      notes.push_back(
+          std::string(names_again_ > 0 ? "empty lines and lines of names" : "empty lines") +
+          " part the rows into " + std::to_string(block_ + 1) + " patches");
     }
     bool names_unit = false;
     for (const PointColumn axis : {PointColumn::X, PointColumn::Y, PointColumn::Z}) {
@@ -350,13 +374,15 @@ class PointReader {
   std::string_view preface_;   ///< the first line before the names that names nothing
   std::string without_names_;  ///< the error where no names follow it
   std::size_t preface_lines_ = 0;
+  std::string_view names_;         ///< the line or comment that names the columns
+  std::size_t names_again_ = 0;    ///< times that it comes again
   char told_separator_ = '\0';     ///< by the file itself
   bool units_may_follow_ = false;  ///< the names were the line before
   bool is_known_ = false;          ///< the columns
   bool gap_ = false;               ///< an empty line came before
   std::uint32_t block_ = 0;        ///< of rows between empty lines
   char separator_ = ',';           ///< ' ' = any blanks
-  bool uses_decimal_comma_ = false;
+  DecimalMarks marks_;
   std::size_t width_ = 0;
   PointColumns columns_;
   std::vector<std::string_view> fields_;

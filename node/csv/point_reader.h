@@ -19,6 +19,7 @@ struct PointTable {
   std::vector<Eigen::Vector3d> points;  ///< where three coordinates were read; else empty [m]
   bool is_probe_log = false;            ///< every row is a touch
   bool has_patches = false;             ///< the file says where patches end
+  bool has_three_without_names = false;  ///< columns
   std::vector<std::string> notes;
 };
 

@@ -46,4 +46,16 @@ std::optional<std::string> utf8_of_utf16(std::string_view text) {
   return result;
 }
 
+std::optional<std::string> no_text_because(std::string_view bytes) {
+  if (bytes.starts_with("\x1F\x8B")) {
+    return "is packed by gzip: unpack it, as in gunzip -c FILE | palpate fit -";
+  }
+  if (bytes.starts_with("PK\x03\x04")) {
+    return "is a zip archive, as spreadsheets (.xlsx, .ods) are: save the sheet as CSV";
+  }
+  if (bytes.starts_with("\xD0\xCF\x11\xE0")) return "is an old Excel file: save the sheet as CSV";
+  if (bytes.starts_with("%PDF-")) return "is a PDF: export the points as text";
+  return std::nullopt;
+}
+
 }  // namespace palpate::csv

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include "node/files/printable.h"
 
@@ -27,6 +30,11 @@ inline std::string shown(std::string_view text) {
   quoted.append(printable(text, kLongest)).push_back('\'');
   return quoted;
 }
+
+/// Of a line of names that comes a second time where patches have numbers.
+inline constexpr std::string_view kNamesAgain =
+    "the names of the columns come again: are these two files in one? Their patches share numbers: "
+    "split the file, or number the patches of the second on";
 
 /// One line after the other, without their ends (LF or CRLF; CR where the text has no LF).
 class TextLines {
@@ -66,24 +74,49 @@ class TextLines {
   std::string_view line_;
 };
 
-/// The whole field as a number, infinities and NaN included; a plus sign may stand before it, and a
-/// comma for the point where that is told.
+/// The whole field as a number, infinities and NaN included; a plus sign may stand before it, a
+/// comma for the point where that is told, and Fortran's D for the E of an exponent.
 inline std::optional<double> number_of(std::string_view text, bool decimal_comma) {
-  std::string with_point;
-  if (decimal_comma) {
-    with_point = text;
-    if (const std::size_t comma = with_point.find(','); comma != std::string::npos) {
-      with_point[comma] = '.';
-    }
-    text = with_point;
+  std::string rewritten;
+  if (const std::size_t comma = text.find(','); decimal_comma && comma != std::string_view::npos) {
+    rewritten = text;
+    rewritten[comma] = '.';
+    text = rewritten;
   }
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   double value = 0.0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || status != std::errc() || end != text.data() + text.size()) {
+  auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto stopped_at = static_cast<std::size_t>(parsed.ptr - text.data());
+  if (parsed.ec == std::errc() && stopped_at < text.size() &&
+      (text[stopped_at] == 'D' || text[stopped_at] == 'd')) {
+    std::string with_e(text);
+    with_e[stopped_at] = 'e';
+    rewritten.swap(with_e);
+    text = rewritten;
+    parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+  }
+  if (text.empty() || parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) {
     return std::nullopt;
   }
   return value;
+}
+
+/// The whole field as a whole number that its type can hold. "3.0" and "3.0e+00" are whole too:
+/// numpy and pandas write columns of whole numbers so.
+template <typename Integer>
+std::optional<Integer> whole_of(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  Integer value = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (status == std::errc() && end == text.data() + text.size()) return value;
+  const std::optional<double> number = number_of(text, false);
+  // A power of two, which a double holds exactly: the first number that the type does not hold.
+  const double beyond = std::ldexp(1.0, std::numeric_limits<Integer>::digits);
+  const double lowest = std::is_signed_v<Integer> ? -beyond : 0.0;
+  if (!number || !(*number >= lowest && *number < beyond) || std::trunc(*number) != *number) {
+    return std::nullopt;
+  }
+  return static_cast<Integer>(*number);
 }
 
 }  // namespace palpate::csv

@@ -24,4 +24,20 @@ inline std::string printable(std::string_view text, std::size_t most = 200) {
   return text.size() > most ? shown + "..." : shown;
 }
 
+/// A file's name as a terminal may show it: as it is, letters of any language too, but without the
+/// characters that a terminal obeys or that end a line.
+inline std::string printable_path(std::string_view path) {
+  std::string shown;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(path[i]);
+    // UTF-8 has the terminal's second set of controls at U+0080 to U+009F.
+    const bool begins_control =
+        byte == 0xC2 && i + 1 < path.size() && static_cast<unsigned char>(path[i + 1]) < 0xA0;
+    const bool is_plain = byte >= 0x20 && byte != 0x7F && !begins_control;
+    shown += is_plain ? std::string(1, path[i]) : printable(path.substr(i, 1));
+    if (begins_control) shown += printable(path.substr(++i, 1));
+  }
+  return shown;
+}
+
 }  // namespace palpate

@@ -4,15 +4,18 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <sstream>
+#include <string>
 
 #include "node/client/connection.h"
+#include "node/files/printable.h"
 #include "node/process/quiet_protobuf.h"
 #include "node/tool/commands/command.h"
 
 namespace palpate {
 
 int complain(const std::string& why, int exit_code) {
-  std::cerr << "palpate: " << why << "\n";
+  std::cerr << "palpate: " << printable_path(why) << "\n";
   return exit_code;
 }
 
@@ -32,6 +35,19 @@ CLI::Validator number_check(const char* name, bool zero_is_good) {
 
 CLI::Validator positive_number() { return number_check("POSITIVE", false); }
 CLI::Validator non_negative_number() { return number_check("NONNEGATIVE", true); }
+
+CLI::Validator number_within(double lowest, double highest) {
+  std::ostringstream bounds;
+  bounds << lowest << " to " << highest;
+  std::ostringstream name;  // as CLI::Range has it, which the manual pages read
+  name << "FLOAT in [" << lowest << " - " << highest << "]";
+  const auto check = [lowest, highest, why = bounds.str()](const std::string& text) -> std::string {
+    double value = 0.0;
+    const bool good = CLI::detail::lexical_cast(text, value) && value >= lowest && value <= highest;
+    return good ? "" : "\"" + text + "\" is no number from " + why;
+  };
+  return CLI::Validator(check, name.str());
+}
 
 void add_connection_flags(CLI::App& command, const char* flag, const char* help,
                           Connection& connection) {
@@ -84,6 +100,13 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    // CLI11 asks for a command where an unknown one was given.
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError) && argc > 1 &&
+        argv[1][0] != '-' && app.get_subcommands().empty()) {
+      return palpate::complain(
+          "there is no command " + palpate::printable(argv[1]) + "; palpate --help lists them",
+          palpate::kUsage);
+    }
     return app.exit(error) == 0 ? palpate::kDone : palpate::kUsage;
   } catch (const std::exception& error) {
     return palpate::complain(error.what(), palpate::kFailed);

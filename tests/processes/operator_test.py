@@ -122,7 +122,7 @@ class Progress(unittest.TestCase):
             record.wait_for(r"\r\x1b\[K\S+a\.rec: [1-9]\d* messages\r\n")
             # Where nobody looks on, nothing is drawn.
             code, _, err = run(TOOL, "record", bus.folder / "b.rec", "--results", bus.results, "--seconds", "0.2")
-            self.assertEqual((code, err), (0, f"{bus.folder}/b.rec: 0 messages\n"))
+            self.assertEqual((code, err), (0, f"{bus.folder}/b.rec: 0 messages: nothing was heard on {bus.results}\n"))
 
 
 if __name__ == "__main__":

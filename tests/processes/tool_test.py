@@ -118,6 +118,14 @@ class Tool(unittest.TestCase):
             code, _, err = run(TOOL, "watch", "--results", bus.results, "--timeout", "0.3")
             self.assertEqual(code, 1)
             self.assertIn("nothing heard", err)
+            path = bus.folder / "nothing.rec"
+            code, _, err = run(TOOL, "record", path, "--results", bus.results, "--seconds", "0.3")
+            self.assertEqual(code, 0)
+            self.assertIn(f"nothing.rec: 0 messages: nothing was heard on {bus.results}", err)
+            bus.start_node()
+            code, _, err = run(TOOL, "watch", "--results", bus.results, "--count", "1", "--timeout", "2", "absent", "gone")
+            self.assertEqual(code, 1)
+            self.assertIn(f"no recognition of group absent, gone heard for 2 s on {bus.results}", err)
 
     def test_list_and_hz_show_the_topics(self):
         with Bus() as bus:

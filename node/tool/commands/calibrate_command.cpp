@@ -1,6 +1,5 @@
 // palpate calibrate: what a probe does to positions, from touches of a known artefact.
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <set>
 #include <string>
@@ -8,6 +7,7 @@
 
 #include "node/files/printable.h"
 #include "node/files/probe_file.h"
+#include "node/files/written_file.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/contact_groups.h"
@@ -79,8 +79,8 @@ Result<std::vector<ArtefactRecording>> read_recordings(const CalibrateCommand& c
 }
 
 int write(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::trunc);
-  return file << text << std::flush ? kDone : complain(path + ": cannot be written", kFailed);
+  const std::string why = write_file(path, text);
+  return why.empty() ? kDone : complain(why, kFailed);
 }
 
 int run(const CalibrateCommand& calibrate) {

@@ -3,7 +3,10 @@
 #include <chrono>
 #include <iostream>
 #include <memory>
+#include <set>
+#include <utility>
 
+#include "node/files/counted.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
 #include "node/tool/commands/command.h"
@@ -46,11 +49,15 @@ int check_file(const CheckCommand& command) {
   }
   for (const ContactGroup& group : contact_groups(command.file, file.value->table)) {
     std::size_t samples = 0;
-    for (const ContactRun& run : group.runs) samples += run.samples.size();
+    std::set<std::pair<std::uint32_t, std::uint32_t>> patches;
+    for (const ContactRun& run : group.runs) {
+      samples += run.samples.size();
+      patches.insert({run.context.probe, run.context.patch});
+    }
     findings.push_back({Severity::Note, "",
                         "group " + group.name + ", object " + std::to_string(group.object) + ": " +
-                            std::to_string(samples) + " samples in " +
-                            std::to_string(group.runs.size()) + " runs",
+                            counted(samples, "sample") + " in " +
+                            counted(patches.size(), "patch", "patches"),
                         ""});
     for (Finding& finding : check_group(group)) findings.push_back(std::move(finding));
   }

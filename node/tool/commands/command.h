@@ -29,6 +29,7 @@ void add_watch_command(CLI::App& app, int& exit_code);
 /// a NaN pass.
 CLI::Validator positive_number();
 CLI::Validator non_negative_number();
+CLI::Validator number_within(double lowest, double highest);
 
 /// Says on standard error what is wrong.
 int complain(const std::string& why, int exit_code);

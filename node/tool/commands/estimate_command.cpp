@@ -2,11 +2,14 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/local/estimator.h"
+#include "node/files/counted.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/contact_groups.h"
@@ -43,6 +46,58 @@ void print_row(const std::string& probe, std::uint32_t patch, std::size_t first,
               sigma(2), sigma(3), estimate.window_samples, estimate.window_arc_m);
 }
 
+/// Why a window gives none, and what to do.
+std::string_view sentence_of(LocalStatus status) {
+  switch (status) {
+    case LocalStatus::TooFewSamples:
+      return "the window has too few samples (--window)";
+    case LocalStatus::NotFinite:
+      return "the samples lie too far from the origin";
+    case LocalStatus::NoExtent:
+      return "the window is no longer than the noise: take a longer one (--window)";
+    case LocalStatus::Unresolved:
+      return "the window lies at too few different places: take a longer one (--window)";
+    case LocalStatus::DoublesBack:
+      return "the samples run back by more than the noise, or turn by more than a right angle: "
+             "take a longer window where they are dense, else a shorter one (--window)";
+    case LocalStatus::TurnsTooFar:
+    case LocalStatus::NotFollowed:
+      return "the window bends more than the estimator follows: take a shorter one (--window)";
+    case LocalStatus::Ok:
+      break;
+  }
+  return "the reason is not known";
+}
+
+/// Windows of a file that gave no estimate, by their reason: said once each at the end. A long
+/// stroke has millions.
+class Refused {
+ public:
+  void add(const ContactRun& run, const std::string& probe, const WindowResult& window) {
+    Reason& reason = reasons_[window.result.status];
+    if (reason.windows++ > 0) return;
+    reason.first = probe + ", patch " + std::to_string(run.context.patch) + ", sample " +
+                   std::to_string(window.first_sample);
+  }
+
+  bool any() const { return !reasons_.empty(); }
+
+  void tell() const {
+    for (const auto& [status, reason] : reasons_) {
+      complain(counted(reason.windows, "window gives", "windows give") + " no estimate, first " +
+                   reason.first + ": " + std::string(sentence_of(status)),
+               kDone);
+    }
+  }
+
+ private:
+  struct Reason {
+    std::size_t windows = 0;
+    std::string first;
+  };
+  std::map<LocalStatus, Reason> reasons_;
+};
+
 int run(EstimateCommand& command) {
   const std::optional<EstimatorKind> kind = estimator_kind_from_name(command.estimator);
   if (!kind) {
@@ -59,7 +114,7 @@ int run(EstimateCommand& command) {
   std::printf(
       "probe,patch,first_sample,x_m,y_m,tangent_rad,kappa_per_m,kappa_s_per_m2,normal_sigma_m,"
       "tangent_sigma_rad,kappa_sigma_per_m,kappa_s_sigma_per_m2,window_samples,window_arc_m\n");
-  std::size_t refused = 0;
+  Refused refused;
   for (const ContactGroup& group : contact_groups(command.file, file.value->table)) {
     if (const std::string note = note_of_unused_detail(group); !note.empty()) {
       complain(command.file + ": " + note, kDone);
@@ -74,7 +129,7 @@ int run(EstimateCommand& command) {
       options.sigma_m = sigma_of(run, command.options.sigma_m);
       if (points.size() < samples_per_estimate(options)) {
         std::cerr << "palpate: " << probe << ", patch " << run.context.patch << ": "
-                  << points.size() << " samples, an estimate takes "
+                  << counted(points.size(), "sample") << ", an estimate takes "
                   << samples_per_estimate(options) << " (--window)\n";
         continue;
       }
@@ -82,18 +137,19 @@ int run(EstimateCommand& command) {
         if (window.result) {
           print_row(probe, run.context.patch, window.first_sample, window.result.estimate);
         } else {
-          std::cerr << "palpate: " << probe << ", patch " << run.context.patch << ", sample "
-                    << window.first_sample << ": no estimate: " << name_of(window.result.status)
-                    << "\n";
-          ++refused;
+          refused.add(run, probe, window);
+        }
+        if (std::ferror(stdout) != 0) {
+          return complain("standard output: cannot be written", kFailed);
         }
       }
     }
   }
+  refused.tell();
   if (std::fflush(stdout) != 0) {
     return complain("standard output: cannot be written", kFailed);
   }
-  return refused == 0 ? kDone : kFailed;
+  return refused.any() ? kFailed : kDone;
 }
 
 }  // namespace
@@ -124,7 +180,7 @@ void add_estimate_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--sigma", estimate->options.sigma_m,
                    "Noise of samples that bring none; 0 = from each window's residuals [m]")
-      ->check(CLI::Range(0.0, 1e3))
+      ->check(number_within(0.0, 1e3))
       ->capture_default_str()
       ->type_name("METRES");
   command->add_option("--degree", estimate->options.jet_degree, "Degree of the jet's polynomial")

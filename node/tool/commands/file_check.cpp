@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "node/files/counted.h"
 #include "node/tool/text/quantity.h"
 
 namespace palpate {
@@ -11,11 +12,6 @@ namespace {
 /// A touched part is larger than its dust and smaller than this. [m]
 constexpr double kLargestObjectM = 2.0;
 constexpr double kSmallestObjectM = 1e-5;
-
-std::string extent_text(double metres) {
-  const LengthUnit unit = length_unit_for(metres);
-  return number(metres * unit.per_m) + " " + std::string(unit.name);
-}
 
 /// The patches of each probe, runs of one patch joined.
 std::map<std::string, std::vector<CheckedPatch>> checked_patches(const ContactGroup& group,
@@ -40,8 +36,8 @@ std::map<std::string, std::vector<CheckedPatch>> checked_patches(const ContactGr
   return probes;
 }
 
-/// Of all samples together: single touches have no extent of their own.
-void judge_extent(const ContactGroup& group, std::vector<Finding>* findings) {
+/// Of all samples together: single touches have no extent of their own. Returns it. [m]
+double judge_extent(const ContactGroup& group, std::vector<Finding>* findings) {
   Vec2 low = group.runs.front().samples.front().position_m;
   Vec2 high = low;
   for (const ContactRun& run : group.runs) {
@@ -51,7 +47,7 @@ void judge_extent(const ContactGroup& group, std::vector<Finding>* findings) {
     }
   }
   const double extent = (high - low).norm();
-  const std::string what = "the samples extend over " + extent_text(extent);
+  const std::string what = "the samples extend over " + text_of_length(extent);
   if (extent > kLargestObjectM) {
     findings->push_back({Severity::Warning, "", what,
                          "were these millimetres? Then say --unit mm (or um, in)", true});
@@ -59,23 +55,66 @@ void judge_extent(const ContactGroup& group, std::vector<Finding>* findings) {
     findings->push_back(
         {Severity::Warning, "", what, "is the unit right? --unit names another", true});
   }
+  return extent;
 }
 
 void judge_stamps(const ContactGroup& group, std::vector<Finding>* findings) {
-  std::map<std::uint32_t, std::int64_t> newest;
+  // Strokes may each have a clock of their own.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::int64_t> newest;
   std::map<std::uint32_t, std::size_t> backwards;
   for (const ContactRun& run : group.runs) {
     for (const ContactSample& sample : run.samples) {
       if (sample.stamp_ns == 0) continue;
-      const auto [last, is_first] = newest.try_emplace(run.context.probe, sample.stamp_ns);
+      const auto [last, is_first] =
+          newest.try_emplace({run.context.probe, run.context.patch}, sample.stamp_ns);
       if (sample.stamp_ns < last->second) ++backwards[run.context.probe];
       last->second = sample.stamp_ns;
     }
   }
   for (const auto& [probe, count] : backwards) {
     findings->push_back({Severity::Error, group.probes[probe],
-                         std::to_string(count) + " stamps earlier than the one before",
+                         counted(count, "stamp") + " earlier than the one before in its patch",
                          "sort the rows of a patch in the order in which they were taken", true});
+  }
+}
+
+/// A radius in millimetres where metres are asked.
+void judge_tips(const ContactGroup& group, double extent, std::vector<Finding>* findings) {
+  // Styli end in balls of up to 30 mm across. A tip may be larger than a bore is wider than it.
+  constexpr double kLargestTipM = 0.015;
+  double radius = 0.0;
+  for (const ContactRun& run : group.runs) radius = std::max(radius, run.context.tip_radius_m);
+  if (extent > 0.0 && radius > std::max(kLargestTipM, extent)) {
+    findings->push_back({Severity::Warning, "",
+                         "a tip radius of " + text_of_length(radius) +
+                             " is larger than all that is touched, " + text_of_length(extent),
+                         "was it in millimetres? --tip-radius is metres whatever the unit", true});
+  }
+}
+
+/// Strokes that are the same to the last bit: one that was saved twice.
+void judge_copies(const std::string& probe, const std::vector<CheckedPatch>& patches,
+                  std::vector<Finding>* findings) {
+  constexpr std::size_t kFewest = 8;  // touches of a coarse machine come again by chance
+  std::map<std::vector<std::pair<double, double>>, std::uint32_t> seen;
+  std::size_t copies = 0;
+  std::string first;
+  for (const CheckedPatch& patch : patches) {
+    if (patch.positions.size() < kFewest) continue;
+    std::vector<std::pair<double, double>> places;
+    for (const Vec2& p : patch.positions) places.emplace_back(p.x(), p.y());
+    const auto [original, is_new] = seen.try_emplace(std::move(places), patch.number);
+    if (is_new) continue;
+    if (copies++ == 0) {
+      first = "patch " + std::to_string(patch.number) + " is one of patch " +
+              std::to_string(original->second);
+    }
+  }
+  if (copies > 0) {
+    findings->push_back({Severity::Error, probe,
+                         counted(copies, "patch is a copy", "patches are copies") +
+                             " of others, sample by sample (" + first + ")",
+                         "leave copies out: their noise is counted as if it were new", true});
   }
 }
 
@@ -83,12 +122,14 @@ void judge_stamps(const ContactGroup& group, std::vector<Finding>* findings) {
 
 std::vector<Finding> check_group(const ContactGroup& group, double sigma_m) {
   std::vector<Finding> findings;
-  judge_extent(group, &findings);
+  const double extent = judge_extent(group, &findings);
+  const bool extent_is_told = !findings.empty();
+  judge_tips(group, extent, &findings);
   judge_stamps(group, &findings);
-  const bool extent_is_told = !findings.empty() && findings.front().probe.empty();
   for (const auto& [probe, patches] : checked_patches(group, sigma_m)) {
     std::vector<Finding> of_probe;
     judge_patches(probe, patches, CheckedSource::File, &of_probe);
+    judge_copies(probe, patches, &of_probe);
     for (Finding& finding : of_probe) {
       // Said once: of all samples, not of each probe again.
       const bool is_extent = finding.what.find("extends over") != std::string::npos;

@@ -36,7 +36,7 @@ void add_file_flags(CLI::App& command, FileFlags& flags) {
   command
       .add_option("--tip-radius", flags.tip_radius_m,
                   "Points are centres of a round tip of this radius, where the file says none [m]")
-      ->check(CLI::Range(0.0, 1e3))
+      ->check(number_within(0.0, 1e3))
       ->capture_default_str()
       ->type_name("METRES")
       ->group(group);

@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include "node/files/printable.h"
 #include "node/files/probe_file.h"
+#include "node/files/written_file.h"
+#include "node/tool/commands/answer_notes.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/commands/fit_input.h"
@@ -19,6 +20,7 @@
 #include "node/tool/drawing/invariant_plot.h"
 #include "node/tool/drawing/svg_plot.h"
 #include "node/tool/part_match.h"
+#include "node/tool/text/advice.h"
 #include "node/tool/text/given_class_text.h"
 #include "node/tool/text/message_json.h"
 #include "node/tool/text/report.h"
@@ -60,7 +62,7 @@ void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
       option->capture_default_str()->type_name("NAME");
     } else if constexpr (!std::is_same_v<Field, bool>) {
       option->capture_default_str()->type_name("NUMBER")->check(
-          CLI::Range(info.lowest, info.highest));
+          number_within(info.lowest, info.highest));
     }
   });
 }
@@ -95,6 +97,7 @@ v1::GivenClassAnswer fit_given(const ContactGroup& group, const FitCommand& fit,
     notes.emplace_back(
         "WARNING: the measured normals do not count: not every sample's noise is known (--sigma)");
   }
+  if (const std::string note = note_of_misfit(answer); !note.empty()) notes.push_back(note);
   if (!files.empty() && answer.sigma_stated()) {
     notes.emplace_back("chi-square counts the probe's white noise alone, not its drift");
   }
@@ -111,12 +114,6 @@ std::string plot_path(const std::string& path, std::size_t number) {
   const std::string stem = path.substr(0, dot);
   const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
   return stem + "-" + std::to_string(number) + ending;
-}
-
-/// What is wrong with writing it, or nothing.
-std::string written(const std::string& path, const std::string& document) {
-  std::ofstream file(path, std::ios::trunc);
-  return file << document << std::flush ? "" : path + ": cannot be written";
 }
 
 /// Places a known part instead of recognising one.
@@ -140,7 +137,8 @@ int place(const FitCommand& fit, const std::vector<FitInput>& inputs, bool json)
     if (json) {
       std::cout << json_line(match);
     } else {
-      std::cout << separator << group.file << ", " << group.name << ": " << part_match_text(match);
+      std::cout << separator << printable_path(group.file) << ", " << group.name << ": "
+                << part_match_text(match);
       separator = "\n";
     }
   }
@@ -233,7 +231,7 @@ int run(FitCommand& fit) {
             invariant_plot(answered.recognition, group.file + ", " + group.name + ", object " +
                                                      std::to_string(group.object));
         const std::string path = plot_path(fit.invariants_plot, number + 1);
-        if (const std::string why = written(path, picture); !why.empty()) {
+        if (const std::string why = write_file(path, picture); !why.empty()) {
           return complain(why, kFailed);
         }
       }
@@ -246,16 +244,25 @@ int run(FitCommand& fit) {
       text = json ? json_line(given) : given_class_text(given);
       answer = given.recognition();
     }
+    if (std::string note = note_of_tip_side(group, answer); !note.empty()) {
+      complain(group.file + ": " + note, kDone);
+      notes.push_back(std::move(note));
+    }
     if (json) {
       std::cout << with_notes(text, notes);
     } else {
-      std::cout << (number > 0 ? "\n" : "") << group.file << ": " << text;
+      std::cout << (number > 0 ? "\n" : "") << printable_path(group.file) << ": " << text;
+      const bool is_found = answer.status() == v1::RECOGNITION_STATUS_RECOGNIZED &&
+                            answer.curve_class() != v1::CURVE_CLASS_UNCLASSIFIED;
+      if (fit.given_class.empty() && !is_found) {
+        std::cout << "  advice       " << advice_text(answer) << "\n";
+      }
       for (const std::string& note : notes) std::cout << "  note         " << note << "\n";
     }
     ++number;
     if (!fit.plot.empty()) {
       const std::string path = plot_path(fit.plot, number);
-      if (const std::string why = written(path, svg_plot(group, answer)); !why.empty()) {
+      if (const std::string why = write_file(path, svg_plot(group, answer)); !why.empty()) {
         return complain(why, kFailed);
       }
     }

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "node/files/counted.h"
 #include "node/files/printable.h"
 #include "node/tool/commands/file_check.h"
 
@@ -27,6 +28,33 @@ bool all_have_sigma(const ContactGroup& group) {
   });
 }
 
+std::size_t samples_of(const ContactGroup& group) {
+  std::size_t samples = 0;
+  for (const ContactRun& run : group.runs) samples += run.samples.size();
+  return samples;
+}
+
+/// Whether a stroke of it leads to and fro instead of along the part.
+bool has_no_order(const std::vector<Finding>& findings) {
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const Finding& finding) { return finding.has_no_order; });
+}
+
+/// Makes every sample a patch of its own.
+void part_into_touches(ContactGroup& group) {
+  std::map<std::uint32_t, std::uint32_t> counts;  // by probe
+  std::vector<ContactRun> touches;
+  for (const ContactRun& run : group.runs) {
+    for (std::size_t i = 0; i < run.samples.size(); ++i) {
+      ContactRun touch{run.context, {run.samples[i]}};
+      if (!run.details.empty()) touch.details = {run.details[i]};
+      touch.context.patch = counts[run.context.probe]++;
+      touches.push_back(std::move(touch));
+    }
+  }
+  group.runs = std::move(touches);
+}
+
 }  // namespace
 
 Result<std::vector<FitInput>> read_fit_input(const std::string& file,
@@ -38,7 +66,19 @@ Result<std::vector<FitInput>> read_fit_input(const std::string& file,
   for (ContactGroup& group : contact_groups(file, read.value->table)) {
     FitInput input{std::move(group), read.value->notes, {}, false};
     input.noise_is_known = all_have_sigma(input.group);
-    for (const Finding& finding : check_group(input.group, sigma_m)) {
+    std::vector<Finding> findings = check_group(input.group, sigma_m);
+    // What is no stroke is not read as one, unless that or the patches were said. The memory counts
+    // its touches at each one that comes: ten times as many take a hundred times as long.
+    constexpr std::size_t kMostTouches = 20'000;  // about a second
+    if (!options.touches && !read.value->has_patches && has_no_order(findings) &&
+        samples_of(input.group) <= kMostTouches) {
+      part_into_touches(input.group);
+      findings = check_group(input.group, sigma_m);
+      input.warnings.emplace_back(
+          "the rows lead to and fro over the whole part, in no order along it: each is taken as a "
+          "touch of its own (as by --touches; --strokes takes them as they stand)");
+    }
+    for (const Finding& finding : findings) {
       if (finding.spoils_answer) input.warnings.push_back(sentence_of(finding));
     }
     inputs.push_back(std::move(input));
@@ -63,20 +103,21 @@ std::vector<std::string> notes_for(const FitInput& input, const MemoryOptions& m
   notes.insert(notes.end(), input.notes.begin(), input.notes.end());
   const auto sizes = patch_sizes(input.group);
   if (added.forgotten > 0) {
-    notes.push_back(std::to_string(added.forgotten) + " samples of the oldest of " +
-                    std::to_string(sizes.size()) + " patches are forgotten (--most-patches)");
+    notes.push_back("forgotten: " + counted(added.forgotten, "sample") + " of the oldest of " +
+                    counted(sizes.size(), "patch", "patches") + " (--most-patches)");
   }
   const auto long_ones = std::count_if(sizes.begin(), sizes.end(), [&](const auto& patch) {
     return patch.second > memory.most_samples_per_patch;
   });
   if (long_ones > 0) {
-    notes.push_back(std::to_string(long_ones) + " patches of more than " +
-                    std::to_string(memory.most_samples_per_patch) +
-                    " samples are used as means of neighbours (--most-samples-per-patch)");
+    notes.push_back("used as means of neighbours: the samples of " +
+                    counted(static_cast<std::size_t>(long_ones), "patch", "patches") +
+                    " of more than " + std::to_string(memory.most_samples_per_patch) +
+                    " (--most-samples-per-patch)");
   }
   if (added.repeated > 0) {
-    notes.push_back(std::to_string(added.repeated) +
-                    " samples at exactly the place of the one before are dropped");
+    notes.push_back("dropped: " + counted(added.repeated, "sample") +
+                    " at exactly the place of the one before");
   }
   return notes;
 }

@@ -16,6 +16,9 @@ std::string probe_name(const std::string& path) {
 }
 
 int run(const std::string& name) {
+  if (name.empty() || name.back() == '/') {
+    return complain("\"" + name + "\" names no file: NAME.secret and NAME.public are made", kUsage);
+  }
   if (!curve_available()) {
     return complain("libzmq was built without CURVE", kFailed);
   }

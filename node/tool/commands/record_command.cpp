@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "node/files/counted.h"
 #include "node/files/recording.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
@@ -84,14 +85,19 @@ int run(const RecordCommand& command) {
     message.payload = frames.payload.to_string();
     good = writer.write(message);
     recorded += good ? 1 : 0;
-    progress.tell([&] { return command.file + ": " + std::to_string(recorded) + " messages"; });
+    progress.tell([&] { return command.file + ": " + counted(recorded, "message"); });
     return good && (command.count == 0 || recorded < command.count);
   });
   progress.end();
   if (!good) {
     return complain(command.file + ": cannot be written", kFailed);
   }
-  std::cerr << command.file << ": " << recorded << " messages\n";
+  std::cerr << command.file << ": " << counted(recorded, "message");
+  if (recorded == 0) {
+    std::cerr << ": nothing was heard on "
+              << (command.contacts.empty() ? command.connection.endpoint : command.contacts);
+  }
+  std::cerr << "\n";
   return kDone;
 }
 

@@ -343,7 +343,7 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--sigma", replay->sigma_m,
                    "CSV: noise of samples that bring none; 0 = not known [m]")
-      ->check(CLI::Range(0.0, 1e3))
+      ->check(number_within(0.0, 1e3))
       ->capture_default_str()
       ->type_name("METRES");
   add_file_flags(*command, replay->flags);

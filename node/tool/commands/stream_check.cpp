@@ -7,6 +7,7 @@
 
 #include "core/local/noise.h"
 #include "core/recognition/samples/dwells.h"
+#include "node/files/counted.h"
 #include "node/security/decode_from.h"
 #include "node/tool/commands/normal_check.h"
 #include "node/tool/text/quantity.h"
@@ -19,15 +20,6 @@ constexpr std::size_t kMostKept = 4096;
 constexpr std::size_t kMostPatches = 256;
 /// More than stand around one part.
 constexpr std::size_t kMostProbes = 64;
-
-std::string length_text(double metres) {
-  const LengthUnit unit = length_unit_for(metres);
-  return number(metres * unit.per_m) + " " + std::string(unit.name);
-}
-
-std::string count_text(std::uint64_t count, const char* what) {
-  return std::to_string(count) + " " + what;
-}
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -247,7 +239,7 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
   constexpr double kLargestPart = 2.0;  // that a touch probe strokes [m]
   constexpr double kSmallestPart = 1e-5;
   if (extent > kLargestPart) {
-    add_spoiling(Severity::Warning, "a patch extends over " + length_text(extent),
+    add_spoiling(Severity::Warning, "a patch extends over " + text_of_length(extent),
                  is_file ? "were these millimetres? Then say --unit mm"
                          : "coordinates are metres: were these millimetres?");
   }
@@ -255,65 +247,70 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
   if (estimated_noise > kLargestNoise || largest_stated > kLargestNoise) {
     add_spoiling(
         Severity::Error,
-        "noise of " + length_text(std::max(estimated_noise, largest_stated)) +
+        "noise of " + text_of_length(std::max(estimated_noise, largest_stated)) +
             " is no touch probe's",
         is_file ? "were these millimetres? Then say --unit mm; --sigma is metres whatever the unit"
                 : "coordinates and sigma_m are metres: were these millimetres?");
   }
   if (extent > 0.0 && extent < kSmallestPart) {
-    add(Severity::Warning, "the longest patch extends over " + length_text(extent),
+    add(Severity::Warning, "the longest patch extends over " + text_of_length(extent),
         "coordinates are metres: were these kilometres, or does the probe dwell?");
   }
   if (jumps > 0) {
     add_spoiling(
-        Severity::Error, count_text(jumps, "jumps of more than 20 spacings within a patch"),
+        Severity::Error, counted(jumps, "jump") + " of more than 20 spacings within a patch",
         is_file ? "give each stroke a patch number of its own (column patch, or an empty line "
                   "between strokes); rows in no order along the part are --touches"
                 : "count patch up by one at each lift-off");
   }
   if (unordered > 0) {
     add_spoiling(
-        Severity::Error, count_text(unordered, "patches go to and fro over their whole extent"),
+        Severity::Error,
+        counted(unordered, "patch goes", "patches go") + " to and fro over the whole extent",
         is_file ? "sort the rows of a stroke along the part; rows in no order are --touches"
                 : "send the samples of a patch in their order along the part; single "
                   "touches are patches of their own");
+    findings->back().has_no_order = true;
   }
   constexpr std::size_t kShort = 20;
   const bool are_touches = is_file && longest <= 1;
   if (are_touches) {
-    add(Severity::Note, count_text(patches.size(), "single touches"), "");
+    add(Severity::Note, counted(patches.size(), "single touch", "single touches"), "");
   } else if (longest < kShort) {
-    add(Severity::Warning, "the longest patch has " + count_text(longest, "samples"),
+    add(Severity::Warning, "the longest patch has " + counted(longest, "sample"),
         "20 samples or more along an arc are needed for its curvature; 100 are good");
   }
   constexpr double kCoarse = 1.0 / 15.0;
   if (longest >= kShort && coarsest > kCoarse) {
     add(Severity::Note,
-        "samples lie a " + number(std::round(1.0 / coarsest)) + "th of their patch apart",
+        "samples lie 1/" + number(std::round(1.0 / coarsest)) + " of their patch apart",
         "sample more densely: noise averages out over the samples");
   }
   constexpr double kFewHoles = 0.01;  // of the samples: dropouts that do no harm
   if (holes > 0) {
     add(static_cast<double>(holes) > kFewHoles * static_cast<double>(samples) ? Severity::Warning
                                                                               : Severity::Note,
-        count_text(holes, "holes of 3 to ") + number(widest) + " typical spacings within a patch",
-        "publish every contact at an even pace along the arc; a real lift-off needs a new patch");
+        counted(holes, "hole") + " of 3 to " + number(widest) + " typical spacings within a patch",
+        is_file ? "a lift-off begins another patch; else give every sample along the arc"
+                : "publish every contact at an even pace along the arc; a real lift-off needs a "
+                  "new patch");
   }
   if (repeated > 0) {
-    add(Severity::Note, count_text(repeated, "samples at exactly the place of the one before"),
-        "they say nothing new and are dropped; publish contacts while the probe moves");
+    add(Severity::Note, counted(repeated, "sample") + " at exactly the place of the one before",
+        is_file ? "they say nothing new and are dropped"
+                : "they say nothing new and are dropped; publish contacts while the probe moves");
   }
   constexpr double kNoiseOff = 2.0;
   if (noise_ratio > kNoiseOff) {
     add(Severity::Warning,
-        "sigma_m says " + length_text(stated_noise) + ", the samples scatter by " +
-            length_text(estimated_noise),
+        "sigma_m says " + text_of_length(stated_noise) + ", the samples scatter by " +
+            text_of_length(estimated_noise),
         "state the noise as it is, or 0 to have it estimated: covariances and classes depend on "
         "it");
   } else if (noise_ratio > 0.0) {
     add(Severity::Note,
-        "sigma_m says " + length_text(stated_noise) + ", the samples scatter by " +
-            length_text(estimated_noise),
+        "sigma_m says " + text_of_length(stated_noise) + ", the samples scatter by " +
+            text_of_length(estimated_noise),
         "as it should be");
   }
   judge_normals(probe, patches, findings);
@@ -328,7 +325,7 @@ std::vector<Finding> StreamCheck::findings() const {
   for (const auto& [key, count] : rejected_) {
     findings.push_back(
         {Severity::Error, key.first,
-         count_text(count, "messages rejected: ") + v1::RejectReason_Name(key.second),
+         counted(count, "message") + " rejected: " + v1::RejectReason_Name(key.second),
          cure_of(key.second)});
   }
   for (const auto& entry : probes_) {
@@ -338,30 +335,31 @@ std::vector<Finding> StreamCheck::findings() const {
       findings.push_back({severity, name, std::move(what), std::move(cure)});
     };
     add(Severity::Note,
-        count_text(probe.messages, "messages, ") + count_text(probe.samples, "samples, ") +
-            count_text(probe.patches.size(), "patches"),
+        counted(probe.messages, "message") + ", " + counted(probe.samples, "sample") + ", " +
+            counted(probe.patches.size(), "patch", "patches"),
         "");
     if (probe.without_epoch > 0) {
-      add(Severity::Error, count_text(probe.without_epoch, "messages without header.epoch"),
+      add(Severity::Error, counted(probe.without_epoch, "message") + " without header.epoch",
           "set it to a random number at each start: else a restart looks like old messages");
     }
     if (probe.sequence.gaps() > 0) {
       add(Severity::Warning,
-          count_text(probe.sequence.gaps(), "gaps in seq, ") +
-              count_text(probe.sequence.missing(), "messages lost"),
+          counted(probe.sequence.gaps(), "gap") + " in seq, " +
+              counted(probe.sequence.missing(), "message") + " lost",
           "count seq up by one a message from 0; raise the high-water mark where messages are "
           "dropped");
     }
     if (probe.stamps_missing > 0) {
-      add(Severity::Warning, count_text(probe.stamps_missing, "samples without stamp_ns"),
+      add(Severity::Warning, counted(probe.stamps_missing, "sample") + " without stamp_ns",
           "stamp each sample with Unix time in nanoseconds, when it was taken");
     }
     if (probe.stamps_backwards > 0) {
-      add(Severity::Error, count_text(probe.stamps_backwards, "stamps earlier than the one before"),
+      add(Severity::Error,
+          counted(probe.stamps_backwards, "stamp") + " earlier than the one before",
           "send samples in the order in which they were taken");
     }
     if (probe.stamps_in_future > 0) {
-      add(Severity::Error, count_text(probe.stamps_in_future, "stamps in the future"),
+      add(Severity::Error, counted(probe.stamps_in_future, "stamp") + " in the future",
           "stamp_ns is Unix time in nanoseconds; synchronise the clocks");
     }
     constexpr std::int64_t kLongAgo = 3'600'000'000'000;

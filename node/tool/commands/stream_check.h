@@ -23,6 +23,7 @@ struct Finding {
   /// An answer from these samples would be wrong or worth less, whatever the recogniser makes of
   /// it.
   bool spoils_answer = false;
+  bool has_no_order = false;  ///< rows of a stroke lead to and fro instead of along the part
 };
 
 /// What is kept of a patch for judgement.

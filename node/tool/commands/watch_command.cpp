@@ -262,9 +262,15 @@ class Watch {
       } else if (command_.timeout_s > 0.0 &&
                  now - heard > std::chrono::duration<double>(command_.timeout_s)) {
         output_->refresh(now, silent_s, true);
-        return complain("nothing heard for " + number(command_.timeout_s) + " s on " +
-                            command_.connection.endpoint,
-                        kFailed);
+        std::string groups;
+        for (const std::string& group : command_.groups) {
+          groups += (groups.empty() ? " of group " : ", ") + printable(group);
+        }
+        const bool is_alive = silent_s <= command_.timeout_s;
+        return complain(
+            (is_alive ? "no recognition" + groups + " heard for " : "nothing heard for ") +
+                number(command_.timeout_s) + " s on " + command_.connection.endpoint,
+            kFailed);
       }
       if (result.recognition != nullptr) {
         ++recognitions;

@@ -2,12 +2,14 @@
 
 #include <dxflib/dl_dxf.h>
 
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "node/files/written_file.h"
 #include "node/tool/drawing/curve_model.h"
 #include "node/tool/text/recognition_text.h"
 
@@ -113,8 +115,9 @@ void write_frame_after(DL_Dxf& dxf, DL_WriterA& out) {
 std::string write_dxf(const CurveModel& model, const std::vector<ExportedPlace>& places,
                       bool closed, const std::string& path) {
   DL_Dxf dxf;
+  errno = 0;
   const std::unique_ptr<DL_WriterA> out(dxf.out(path.c_str(), DL_Codes::AC1015));
-  if (out == nullptr) return path + ": cannot be written";
+  if (out == nullptr) return cannot_be_written(path);
   write_frame_before(dxf, *out);
   constexpr double kPerMetre = 1e3;
   const DL_Attributes by_layer("0", 256, -1, "BYLAYER", 1.0);
@@ -170,6 +173,10 @@ std::string export_curve(const ContactGroup& group, const v1::Recognition& answe
                          const std::string& path) {
   const auto kind = export_kind(path);
   if (!kind) return path + ": ends in none of .csv, .json, .dxf";
+  if (answer.status() == v1::RECOGNITION_STATUS_RECOGNIZED &&
+      answer.curve_class() == v1::CURVE_CLASS_UNCLASSIFIED) {
+    return path + ": not written: the samples are no curve of the known classes";
+  }
   const auto model = model_of(answer);
   if (!model) return path + ": not written: no curve was found (" + status_text(answer) + ")";
   std::vector<Vec2> touched;
@@ -180,10 +187,8 @@ std::string export_curve(const ContactGroup& group, const v1::Recognition& answe
   if (!span) return path + ": not written: the touched places span no piece of the curve";
   const std::vector<ExportedPlace> places = places_of(*model, *span);
   if (*kind == ExportKind::Dxf) return write_dxf(*model, places, span->closed, path);
-  std::ofstream file(path, std::ios::trunc);
-  file << (*kind == ExportKind::Csv ? as_csv(places) : as_json(answer, places, span->closed))
-       << std::flush;
-  return file ? "" : path + ": cannot be written";
+  return write_file(
+      path, *kind == ExportKind::Csv ? as_csv(places) : as_json(answer, places, span->closed));
 }
 
 }  // namespace palpate

@@ -1,9 +1,11 @@
 #include "node/tool/drawing/svg_plot.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <string>
 
 #include "node/tool/drawing/colours.h"
 #include "node/tool/drawing/drawing.h"
@@ -74,14 +76,22 @@ std::string axes_svg(const View& view) {
   const LengthUnit unit = length_unit_for((view.high() - view.low()).maxCoeff());
   std::string svg;
   const double step = tick_step((view.high().x() - view.low().x()) * unit.per_m, 7.0);
+  std::array<std::string, 2> titles;
   for (int axis = 0; axis < 2; ++axis) {
     const double from = view.low()[axis] * unit.per_m;
     const double to = view.high()[axis] * unit.per_m;
-    for (double k = std::ceil(from / step); k * step <= to; k += 1.0) {
+    const double offset = tick_offset(from, to, step);
+    titles[static_cast<std::size_t>(axis)] =
+        axis_title(axis == 0 ? "x" : "y", offset, step, std::string(unit.name).c_str());
+    // Counted: far from the origin a tick may be no number beside the one before.
+    const double first = std::ceil((from - offset) / step) * step;
+    const double last = to - offset;
+    for (int k = 0; first + k * step <= last; ++k) {
       Vec2 place = view.low();
-      place[axis] = k * step / unit.per_m;
+      const double value = std::abs(first + k * step) < 1e-6 * step ? 0.0 : first + k * step;
+      place[axis] = (value + offset) / unit.per_m;
       const Vec2 at = view(place);
-      const std::string label = number(k * step == 0.0 ? 0.0 : k * step);
+      const std::string label = number(value);
       if (axis == 0) {
         svg += formatted("<line class=\"grid\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>\n",
                          at.x(), kTop, at.x(), kHeight - kBottom);
@@ -95,13 +105,12 @@ std::string axes_svg(const View& view) {
       }
     }
   }
-  const std::string name(unit.name);
-  svg += formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">x [%s]</text>\n",
-                   0.5 * (kLeft + kWidth - kRight), kHeight - 18.0, name.c_str());
+  svg += formatted("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%s</text>\n",
+                   0.5 * (kLeft + kWidth - kRight), kHeight - 18.0, titles[0].c_str());
   svg += formatted(
-      "<text x=\"20\" y=\"%.1f\" text-anchor=\"middle\" transform=\"rotate(-90 20 %.1f)\">y "
-      "[%s]</text>\n",
-      0.5 * (kTop + kHeight - kBottom), 0.5 * (kTop + kHeight - kBottom), name.c_str());
+      "<text x=\"20\" y=\"%.1f\" text-anchor=\"middle\" transform=\"rotate(-90 20 "
+      "%.1f)\">%s</text>\n",
+      0.5 * (kTop + kHeight - kBottom), 0.5 * (kTop + kHeight - kBottom), titles[1].c_str());
   svg += formatted(
       "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"none\" "
       "stroke=\"#888\"/>\n",

@@ -109,8 +109,10 @@ std::string advice_text(const v1::Recognition& answer) {
       return "Too few samples yet (" + std::to_string(answer.sample_count()) + "): keep stroking.";
     case v1::RECOGNITION_STATUS_RECOGNIZED:
       return answer.curve_class() == v1::CURVE_CLASS_UNCLASSIFIED
-                 ? "None of the known classes explains the samples: the part has another shape, or "
-                   "the patches lie on several pieces of it."
+                 ? "None of the known classes explains the samples: the part has another shape, "
+                   "the "
+                   "patches lie on several pieces of it, or a stroke leaves it (through the air, "
+                   "over an edge)."
                  : "The part is " + with_article(answer.curve_class()) +
                        ": its shape and place are known. No further touch is needed.";
     case v1::RECOGNITION_STATUS_AMBIGUOUS:

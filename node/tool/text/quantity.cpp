@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 
 namespace palpate {
 namespace {
@@ -37,13 +38,19 @@ std::string with_sigma(double value, double sigma) {
 }
 
 LengthUnit length_unit_for(double magnitude_m) {
-  constexpr LengthUnit kUnits[] = {{"m", 1.0}, {"mm", 1e3}, {"um", 1e6}};
-  for (const LengthUnit& unit : kUnits) {
-    if (magnitude_m * unit.per_m >= 1.0) {
-      return unit;
-    }
+  if (magnitude_m == 0.0) return {"m", 1.0};
+  constexpr LengthUnit kUnits[] = {{"m", 1.0}, {"mm", 1e3}, {"um", 1e6}, {"nm", 1e9}};
+  // The micrometre is what people measure in: nothing is in nanometres before it must be.
+  constexpr double kLeast[] = {1.0, 1.0, 0.1, 0.0};
+  for (std::size_t i = 0; i < std::size(kUnits); ++i) {
+    if (magnitude_m * kUnits[i].per_m >= kLeast[i]) return kUnits[i];
   }
-  return magnitude_m > 0.0 ? kUnits[2] : kUnits[0];
+  return kUnits[0];  // NaN
+}
+
+std::string text_of_length(double metres) {
+  const LengthUnit unit = length_unit_for(metres);
+  return number(metres * unit.per_m) + " " + std::string(unit.name);
 }
 
 }  // namespace palpate

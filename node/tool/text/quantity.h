@@ -26,11 +26,14 @@ std::string with_sigma(double value, double sigma);
 /// Six significant digits.
 std::string number(double value);
 
-/// A unit of length that suits the magnitude: m, mm or um.
+/// A unit of length that suits the magnitude: m, mm, um or nm.
 struct LengthUnit {
   std::string_view name;
   double per_m = 1.0;
 };
 LengthUnit length_unit_for(double magnitude_m);
+
+/// "25 mm": six digits, in the unit of length_unit_for().
+std::string text_of_length(double metres);
 
 }  // namespace palpate

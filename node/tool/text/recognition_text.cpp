@@ -68,6 +68,7 @@ void add_line(std::string& text, const char* label, const std::string& value) {
 }
 
 void add_hypotheses(const v1::Recognition& answer, bool noise_is_known, std::string& text) {
+  if (answer.hypotheses().empty()) return;
   constexpr double kWorthShowing = 1e-9;
   if (noise_is_known) {
     add_row(text, "  %-24s %12s %14s %6s  %s\n", "hypothesis", "probability", "chi2", "dof",
@@ -282,7 +283,11 @@ std::string report_text(const v1::Recognition& answer, bool noise_is_known) {
   const LengthUnit unit = length_unit_for(answer.sigma_m());
   std::string noise =
       "sigma " + number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name);
-  if (!noise_is_known) noise += ", estimated from the samples";
+  if (answer.sigma_m() == 0.0) {
+    noise = "not known yet";
+  } else if (!noise_is_known) {
+    noise += ", estimated from the samples";
+  }
   if (answer.noise_correlation_m() > 0.0) {
     noise += ", correlated over " + number(answer.noise_correlation_m() * 1e3) + " mm of arc";
   }

@@ -20,6 +20,14 @@ TEST(Printable, NothingThatATerminalObeysPasses) {
   }
 }
 
+TEST(Printable, PathsKeepTheirLettersButNothingThatATerminalObeys) {
+  EXPECT_EQ(printable_path("a/St\xc3\xbc\x63k \xe2\x86\x92 1.csv"),
+            "a/St\xc3\xbc\x63k \xe2\x86\x92 1.csv");
+  EXPECT_EQ(printable_path("\x1b[2Ja\nb\x7f\xc2\x9b\xc2\xb5m"),
+            "\\x1b[2Ja\\x0ab\\x7f\\xc2\\x9b\xc2\xb5m");
+  EXPECT_EQ(printable_path("\xc2"), "\xc2");
+}
+
 TEST(Printable, NoLongerThanAsked) { EXPECT_EQ(printable("abcdef", 3), "abc..."); }
 
 }  // namespace

@@ -144,6 +144,8 @@ class Calibrate(unittest.TestCase):
                 (("--ellipse", "0.02,0.03"), ring, 2, "a >= b"),
                 (("--circle", "0.025"), "probe,patch,x_m,y_m\np,0,nan,0\n", 2, "standard input:2:5:"),
                 (("--circle", "0.025"), ellipse(0.025, 0.025, 1, count=6), 1, "fewer than 12"),
+                (("--circle", "0.025", "--output", "/dev/null/p"), ring, 1, "/dev/null/p: cannot be written: Not a directory"),
+                (("--circle", "0.025", "--plot", "/dev/null/p"), ring, 1, "/dev/null/p: cannot be written: Not a directory"),
                 (("--circle", "0.025"), ring + ellipse(0.025, 0.025, 1, probe="q").partition("\n")[2], 2, "p q")):
             done = run(TOOL, "calibrate", *arguments, "-", text_in=text)
             self.assertEqual(done[0], code, (arguments, done))

@@ -2,6 +2,7 @@
 import csv
 import io
 import math
+import re
 import unittest
 
 from programs import TOOL, run
@@ -51,6 +52,14 @@ class Estimate(unittest.TestCase):
         self.assertEqual(code, 0)
         self.assertEqual(len(out.splitlines()), 1)
         self.assertIn("20 samples, an estimate takes 75", err)
+
+    def test_windows_without_an_estimate_are_counted_not_told_one_by_one(self):
+        dwell = "probe,patch,x_m,y_m\n" + "".join(f"p,3,{1e-3 * (i // 400)},0\n" for i in range(4000))
+        code, out, err = run(TOOL, "estimate", "-", "--window", 75, text_in=dwell)
+        self.assertEqual(code, 1)
+        self.assertLess(len(err.splitlines()), 5)
+        told = sum(map(int, re.findall(r"palpate: (\d+) windows? gives? no estimate, first p, patch 3, sample \d+: ", err)))
+        self.assertEqual(told + len(out.splitlines()) - 1, len(range(0, 4000 - 75 + 1, 4)))
 
     def test_bad_usage_and_bad_files_exit_with_2(self):
         for arguments in (["-", "--estimator", "guess"], ["-", "--window", "2"], []):

@@ -1,6 +1,7 @@
 """Files and outputs that are not what they should be: a clear error, a bound, an exit code."""
 import os
 import pathlib
+import random
 import subprocess
 import tempfile
 import unittest
@@ -69,6 +70,53 @@ class Files(unittest.TestCase):
         self.assertEqual(code, 2, err)
         self.assertIn("port", err)
 
+    def test_numbers_commands_and_places_that_are_none(self):
+        csv = self.folder / "line.csv"
+        csv.write_text(HEADER + "".join(f"p,0,{0.001 * i},0\n" for i in range(50)))
+        for option in ("--sigma", "--tip-radius", "--recognized-probability"):
+            for number in ("nan", "inf", "-1", "one"):
+                code, out, err = run(TOOL, "fit", csv, f"{option}={number}")
+                self.assertEqual((code, out), (2, ""), err)
+                self.assertRegex(err, option + '.*"' + number + '" is no number from 0 to ')
+        code, out, err = run(TOOL, "fti", csv)
+        self.assertEqual((code, out), (2, ""))
+        self.assertIn("there is no command fti", err)
+        for name in ("", f"{self.folder}/"):
+            code, out, err = run(TOOL, "keygen", name)
+            self.assertEqual((code, out), (2, ""))
+            self.assertIn("names no file", err)
+        for option in ("--plot", "--plot-invariants", "--export"):
+            ending = ".dxf" if option == "--export" else ".svg"
+            code, _, err = run(TOOL, "fit", csv, "--sigma", "1e-5", option, self.folder / "none" / ("a" + ending))
+            self.assertEqual(code, 1, err)
+            self.assertIn("a" + ending + ": cannot be written: No such file or directory", err)
+
+    def test_names_of_files_are_shown_on_one_line_and_obeyed_by_no_terminal(self):
+        csv = self.folder / "Stück 1\n\x1b[31m\u009b2J.csv"
+        csv.write_text(HEADER + "".join(f"p,0,{0.001 * i},0\n" for i in range(50)))
+        code, out, err = run(TOOL, "fit", csv, "--format", "text", "--sigma", "1e-5")
+        self.assertEqual(code, 0, err)
+        self.assertTrue(out.startswith(f"{self.folder}/Stück 1\\x0a\\x1b[31m\\xc2\\x9b2J.csv: group p"), out)
+        csv.write_text(HEADER + "p,0,nan,0\n")
+        code, out, err = run(TOOL, "fit", csv)
+        self.assertEqual(code, 2)
+        self.assertIn("Stück 1\\x0a\\x1b[31m\\xc2\\x9b2J.csv:2:5: x_m 'nan'", err)
+        self.assertEqual(len(err.splitlines()), 1)
+
+    def test_few_samples_and_curves_of_no_class_get_advice(self):
+        code, out, err = run(TOOL, "fit", "-", "--format", "text", text_in=HEADER + "p,0,1,2\n")
+        self.assertEqual(code, 0, err)
+        self.assertIn("noise        not known yet", out)
+        self.assertIn("advice       Too few samples yet", out)
+        self.assertNotIn("hypothesis", out)
+        rng = random.Random(3)
+        edge = HEADER + "".join(f"p,0,{2e-5 * i + rng.gauss(0, 2e-5)},{2e-5 * abs(i % 500 - 250) + rng.gauss(0, 2e-5)}\n"
+                                for i in range(1000))
+        code, out, err = run(TOOL, "fit", "-", "--format", "text", "--export", self.folder / "edge.csv", text_in=edge)
+        self.assertEqual(code, 1)
+        self.assertIn("not written: the samples are no curve of the known classes", err)
+        self.assertIn("a stroke leaves it (through the air, over an edge)", out)
+
     def test_a_full_disk(self):
         csv = self.folder / "line.csv"
         csv.write_text(HEADER + "".join(f"p,0,{0.001 * i},0\n" for i in range(50)))
@@ -81,7 +129,7 @@ class Files(unittest.TestCase):
         os.symlink("/dev/full", self.folder / "plot.svg")
         code, _, err = run(TOOL, "fit", csv, "--plot", self.folder / "plot.svg")
         self.assertEqual(code, 1)
-        self.assertIn("cannot be written", err)
+        self.assertIn("cannot be written: No space left on device", err)
 
 
 if __name__ == "__main__":

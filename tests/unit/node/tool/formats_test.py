@@ -99,6 +99,60 @@ class Formats(unittest.TestCase):
         self.check((names + rows).replace("\r\n", "\r"))
         self.check("x_mm|y_mm\n" + self.rows(1e3, "|"))
         self.assertIn("FILE:3:3: y '#N/A': not a number", self.refused("x_mm,y_mm\n1,2\n3,#N/A\n"))
+        # In the first column it is no comment, that would leave the row out in silence.
+        for cell in ("#N/A", "#DIV/0!", "#VALUE!"):
+            self.assertIn(f"FILE:3:1: x '{cell}': not a number", self.refused(f"x_mm,y_mm\n1,2\n{cell},3\n"))
+
+    def test_numbers_as_machines_write_them(self):
+        # Fortran's exponents; commas between quotes, where commas part the columns too.
+        self.check("x_m,y_m\n" + self.rows(digits="{:.9E}").replace("E", "D"))
+        self.check('"Nr","X [mm]","Y [mm]"\r\n' + "".join(
+            f'"{k}","{1e3 * x:.5f}","{1e3 * y:.5f}"\r\n'.replace(".", ",") for k, (x, y) in enumerate(WHOLE)))
+        self.assertIn("commas are read as decimal points", self.notes)
+        self.check('"X, mm";"Y, mm";"a ""note"""\n' + self.rows(1e3, ";").replace("\n", ';"5"" tip; long"\n'))
+        # Whole numbers as numpy and pandas write them, by our own names and by others.
+        for names in ("probe,patch,stamp_ns,x_m,y_m\n", "probe,stroke,stamp_ns,x_m,y_m\n"):
+            self.check(names + "".join(f"p,0.0,{1.7e18 + 1e6 * k:.18e},{x!r},{y!r}\n" for k, (x, y) in enumerate(WHOLE)))
+            for bad in ("0.5", "-1.0", "4294967296", "nan", "1e300"):
+                self.assertIn(f"FILE:2:3: patch '{bad}': ", self.refused(names + f"p,{bad},1,0,0\n"))
+        # What ROS prints of a pose's topic.
+        self.check("%time,field.header.seq,field.pose.position.x,field.pose.position.y,field.pose.orientation.x\n" +
+                   "".join(f"17{k},{k},{x!r},{y!r},0\n" for k, (x, y) in enumerate(WHOLE)))
+        self.assertIn("columns ignored: time, field.header.seq, field.pose.orientation.x", self.notes)
+
+    def test_marks_of_thousands_are_not_taken_for_decimal_marks(self):
+        self.assertIn("FILE:3:2: x '1,234': numbers before have a decimal point",
+                      self.refused('x_mm,y_mm\n"987.5","1"\n"1,234","1"\n'))
+        self.assertIn("FILE:3:1: x '1.234': numbers before have a decimal comma",
+                      self.refused("x_mm;y_mm\n987,5;1\n1.234;1\n"))
+
+    def test_a_line_of_names_that_comes_again_begins_a_stroke(self):
+        first, second = ("".join(f"{1e3 * x:.6f};{1e3 * y:.6f}\n" for x, y in stroke) for stroke in ellipse())
+        for names in ("x_mm;y_mm\n", "X;Y\nmm;mm\n", "# x_mm;y_mm\n"):
+            answer = self.check(names + first + names + second)
+            self.assertIn("part the rows into 2 patches", self.notes)
+            self.assertEqual({c["patch"] for c in answer["contacts"]}, {0, 1})
+        # Where patches have numbers, it is not known whether they are the same.
+        for names in ("patch,x_m,y_m\n", "probe,patch,x_m,y_m\n"):
+            row = "0,0,1\n" if names.startswith("patch") else "p,0,0,1\n"
+            self.assertIn("FILE:3:1: the names of the columns come again", self.refused(names + row + names + row))
+
+    def test_point_numbers_without_a_name_are_not_taken_for_x(self):
+        numbered = "".join(f"{k} {1e3 * x:.6f} {1e3 * y:.6f}\n" for k, (x, y) in enumerate(WHOLE, 1))
+        self.assertIn("are these point numbers?", self.refused(numbered, "--unit", "mm"))
+        self.check("n x_mm y_mm\n" + numbered)
+        # As x is scanned by even steps: y is held still.
+        self.fit("".join(f"{k} 0 {5 + math.sin(k / 10):.6f}\n" for k in range(60)), "--unit", "mm")
+        self.assertIn("the plane is xz", self.notes)
+
+    def test_files_that_are_no_text(self):
+        for start, told in ((b"\x1f\x8b\x08", "gunzip -c"), (b"PK\x03\x04", "save the sheet as CSV"),
+                            (b"\xd0\xcf\x11\xe0", "save the sheet as CSV"), (b"%PDF-1.7", "export the points")):
+            path = self.folder / "points.bin"
+            path.write_bytes(start + bytes(100))
+            code, out, err = run(TOOL, "fit", path)
+            self.assertEqual((code, out), (2, ""))
+            self.assertIn(told, err)
 
     def test_titles_above_the_names_and_units_below_them(self):
         self.check("Part: bracket 12\nDate: 2026-11-22, 10:15\n\nx_mm,y_mm\n" + self.rows(1e3))
@@ -154,7 +208,7 @@ class Formats(unittest.TestCase):
             self.assertEqual(int(answer["sample_count"]), 12)
             self.assertIn("taken as millimetres", self.notes)
             self.assertIn("every row is a touch of its own", self.notes)
-        self.assertIn("1 probing cycles that touched nothing", self.notes)
+        self.assertIn("left out: 1 probing cycle that touched nothing", self.notes)
         self.assertIn(f"{2 + 2 * 12} other lines are ignored", self.notes)
         self.assertRegex(self.refused("[PRB:1.0,2.0:1]\n"), r"FILE:1:13: three coordinates")
 
@@ -193,26 +247,68 @@ class Formats(unittest.TestCase):
 
     def test_strokes_without_patch_numbers_are_told(self):
         self.fit("x_m,y_m\n" + "".join(f"{x},{y}\n" for stroke in ellipse() for x, y in stroke))
-        self.assertIn("jumps", self.err)
+        self.assertIn("1 jump of", self.err)
         self.assertIn("column patch", self.err)
 
     def test_rows_in_no_order_are_told(self):
         rows = WHOLE[:]
         random.Random(2).shuffle(rows)
         shuffled = "x_m,y_m\n" + "".join(f"{x},{y}\n" for x, y in rows)
-        answer = self.fit(shuffled)
-        self.assertIn("1 patches go to and fro over their whole extent", self.err)
-        self.assertIn("in no order are --touches", "".join(answer["notes"]))
+        self.check(shuffled)
+        self.assertIn("WARNING", self.err)
+        self.assertIn("each is taken as a touch of its own", self.err)
+        self.assertIn("WARNING: the rows lead to and fro", self.notes)
+        for arguments, text in ((("--strokes",), shuffled),
+                                ((), "x_m,y_m,patch\n" + "".join(f"{x},{y},0\n" for x, y in rows))):
+            self.fit(text, *arguments)
+            self.assertIn("1 patch goes to and fro over the whole extent", self.err)
+            self.assertIn("in no order are --touches", self.notes)
         self.check(shuffled, "--touches")
         self.assertEqual(self.err, "")
+        # So many that touches would take minutes stay a stroke, and that it is none is told.
+        self.fit("x_m,y_m\n" + "".join(f"{x},{y}\n" for x, y in rows * 100))
+        self.assertIn("1 patch goes to and fro over the whole extent", self.err)
         path = self.folder / "shuffled.csv"
         path.write_text(shuffled)
-        self.assertEqual(run(TOOL, "check", path)[0], 1)
+        code, out, _ = run(TOOL, "check", path)
+        self.assertEqual(code, 1)
+        self.assertIn("1 patch goes to and fro", out)
         # Once round the part, densely sampled with much noise between: that is an order.
         dense = "x_m,y_m\n" + "".join(f"{A * math.cos(t)},{B * math.sin(t)}\n" for t in
                                       (2 * math.pi * i / 40 for i in range(40)))
         self.fit(dense)
         self.assertEqual(self.err, "")
+
+    def test_two_strokes_row_by_row_are_told_apart_from_one(self):
+        # Means of neighbours, of more than 1024, would lie between the strokes: an ellipse of less than half the size.
+        strokes = ellipse(count=1000)
+        self.check("x_m,y_m\n" + "".join(f"{x!r},{y!r}\n" for pair in zip(*strokes) for x, y in pair))
+        self.assertIn("in no order along it", self.err)
+
+    def test_a_tip_radius_in_millimetres_where_metres_are_asked_is_told(self):
+        text = "x_m,y_m\n" + self.rows()
+        self.fit(text, "--tip-radius", 3)
+        self.assertIn("WARNING: a tip radius of 3 m is larger than all that is touched", self.notes)
+        self.assertIn("--tip-radius is metres", self.err)
+        # A ball of 20 mm nearly fills a bore.
+        self.fit("x_m,y_m\n" + "".join(f"{0.0004 * math.cos(k)},{0.0004 * math.sin(k)}\n" for k in range(40)),
+                 "--touches", "--tip-radius", 0.01)
+        self.assertNotIn("larger than all", self.err)
+
+    def test_strokes_that_were_saved_twice_are_told(self):
+        stroke = ellipse()[0]
+        text = "x_m,y_m,patch\n" + "".join(f"{x!r},{y!r},{k}\n" for k in (0, 3) for x, y in stroke)
+        self.fit(text)
+        self.assertIn("1 patch is a copy of others, sample by sample (patch 3 is one of patch 0)", self.err)
+
+    def test_strokes_may_each_have_a_clock_of_their_own(self):
+        def stamped(patches):
+            return "x_m,y_m,patch,t_s\n" + "".join(f"{x!r},{y!r},{patches * k},{0.001 * i}\n" for k, stroke in
+                                                   enumerate(ellipse()) for i, (x, y) in enumerate(stroke))
+        self.check(stamped(1))
+        self.assertEqual(self.err, "")
+        self.fit(stamped(0))
+        self.assertIn("1 stamp earlier than the one before in its patch", self.err)
 
     def test_the_noise_of_many_samples_is_that_of_one(self):
         # More than 1024 of a patch are used as means: what is said of the noise is of the samples.
@@ -246,11 +342,11 @@ class Formats(unittest.TestCase):
         self.assertNotIn("forgotten", self.notes)
         answer = self.fit(text, "--most-patches", "64")
         self.assertEqual(int(answer["sample_count"]), 64 * 9)
-        self.assertIn("234 samples of the oldest of 90 patches are forgotten", self.notes)
+        self.assertIn("forgotten: 234 samples of the oldest of 90 patches", self.notes)
 
     def test_what_is_merged_or_dropped_is_said(self):
         self.fit("x_m,y_m\n" + self.rows() + self.rows().splitlines()[-1] + "\n")
-        self.assertIn("1 samples at exactly the place", self.notes)
+        self.assertIn("dropped: 1 sample at exactly the place", self.notes)
         self.fit("x_m,y_m\n" + self.rows(), "--most-samples-per-patch", "100")
         self.assertIn("means of neighbours", self.notes)
 
@@ -267,10 +363,11 @@ class Formats(unittest.TestCase):
         for text, message in (("x,y\n", "FILE:1:1: no samples after the header line"),
                               ("# nothing\n", "FILE:1:1: no samples: the file is empty"),
                               ("x_mm,y_mm\n1,2\n1,two\n", "FILE:3:3: y 'two': not a number"),
-                              ("x_mm;y_mm\n1;2\n1;nan\n", "FILE:3:3: y 'nan': not a finite number"),
+                              ("x_mm;y_mm\n1;2\n1;nan\n", "FILE:3:3: y 'nan': not a finite number; leave out rows"),
+                              ("x_mm,y_mm\n1,2\n1,\n", "FILE:3:3: y '': nothing is there; leave out rows"),
                               ("1 2\n3 4 5\n", "FILE:2:5: 3 fields instead of 2"),
                               ("1 2 3 4\n", "FILE:1:1: 4 columns without a line of names"),
-                              ("1\n2\n", "FILE:1:1: 1 columns without a line of names"),
+                              ("1\n2\n", "FILE:1:1: 1 column without a line of names"),
                               ("x,force\n1,2\n", "FILE:1:1: no columns of two coordinates"),
                               ("x,y,x_pos\n1,2,3\n", "FILE:1:1: column x_pos comes twice"),
                               ("x,y,patch\n1,2,one\n", "FILE:2:5: patch 'one': not a whole number"),
@@ -290,7 +387,7 @@ class Formats(unittest.TestCase):
             f"{1e3 * x},{1e3 * y},{1000 - k}\n" for k, (x, y) in enumerate(p for s in ellipse() for p in s)))
         code, out, _ = run(TOOL, "check", path)
         self.assertEqual(code, 1, out)
-        for told in ("jumps", "221 stamps earlier", "extend over", "--unit mm", "not fit"):
+        for told in ("1 jump of", "221 stamps earlier", "extend over", "--unit mm", "not fit"):
             self.assertIn(told, out)
         self.assertEqual(run(TOOL, "check", self.folder / "absent")[0], 2)
 

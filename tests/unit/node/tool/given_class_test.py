@@ -18,7 +18,14 @@ def touches(points):
 
 def fit(text, *arguments):
     code, out, err = run(TOOL, "fit", "--format", "json", *arguments, "-", text_in=text)
-    return code, [json_format.Parse(line, given_class_pb2.GivenClassAnswer()) for line in out.splitlines()], err
+    return code, [json_format.Parse(line, given_class_pb2.GivenClassAnswer(), ignore_unknown_fields=True)
+                  for line in out.splitlines()], err
+
+
+def notes_of(text, *arguments):
+    code, out, err = run(TOOL, "fit", "--format", "json", *arguments, "-", text_in=text)
+    assert code == 0, err
+    return "\n".join(json.loads(out).get("notes", []))
 
 
 SQUARE = [(0.51, 0.2), (0.5, 0.21), (0.49, 0.2), (0.5, 0.19)]
@@ -51,6 +58,41 @@ class GivenClass(unittest.TestCase):
         code, text, _ = run(TOOL, "fit", "--format", "text", "--class", "circle", "-", text_in=touches(points))
         self.assertEqual(code, 0)
         self.assertIn("peak to valley", text)
+
+    def test_residuals_beyond_the_stated_noise_are_no_circle_that_is_known(self):
+        points = [(0.02 * math.cos(t), 0.02 * math.sin(t)) for t in (2 * math.pi * i / 12 for i in range(12))]
+        points[4] = (points[4][0] * 1.05, points[4][1] * 1.05)
+        for sigma, status, doubt in (("1e-3", recognition_pb2.RECOGNITION_STATUS_RECOGNIZED,
+                                      recognition_pb2.RECOGNITION_DOUBT_UNSPECIFIED),
+                                     ("1e-5", recognition_pb2.RECOGNITION_STATUS_AMBIGUOUS,
+                                      recognition_pb2.RECOGNITION_DOUBT_MISFIT)):
+            _, (answer,), _ = fit(touches(points), "--class", "circle", "--sigma", sigma)
+            self.assertEqual((answer.recognition.status, answer.recognition.doubt), (status, doubt))
+            self.assertEqual(answer.status, given_class_pb2.GIVEN_CLASS_STATUS_FITTED)
+        notes = notes_of(touches(points), "--class", "circle", "--sigma", "1e-5")
+        self.assertRegex(notes, r"WARNING: the residuals are larger than the stated noise .* Sample 5 lies furthest off")
+        # Without it the circle is known again; three touches leave no residual, but rounding's.
+        _, (answer,), _ = fit(touches(points), "--class", "circle", "--sigma", "1e-5", "--leave-out", "5")
+        self.assertEqual(answer.recognition.status, recognition_pb2.RECOGNITION_STATUS_RECOGNIZED)
+        _, (answer,), _ = fit(touches(points[:3]), "--class", "circle", "--sigma", "1e-9")
+        self.assertNotEqual(answer.recognition.doubt, recognition_pb2.RECOGNITION_DOUBT_MISFIT)
+
+    def test_the_side_of_tips_on_a_circle_is_never_left_to_rounding(self):
+        # Centres of tips of 1 mm at 9 mm: a pin of 8 mm, or a bore of 10 mm, by rounding alone.
+        for count in range(4, 24):
+            points = [(0.05 + 0.009 * math.cos(t), 0.009 * math.sin(t))
+                      for t in (0.3 + 2 * math.pi * i / count for i in range(count))]
+            for arguments in (("--class", "circle"), ("--class", "circle", "--sigma", "1e-5")):
+                _, (answer,), _ = fit(touches(points), "--tip-radius", "0.001", *arguments)
+                self.assertAlmostEqual(answer.recognition.parameters.a, 0.008, delta=1e-12)
+        for arguments in (("--class", "circle"), ("--sigma", "1e-5")):
+            notes = notes_of(touches(points), "--tip-radius", "0.001", *arguments)
+            self.assertIn("taken to lie within the circle (a pin); of a bore the radius is 10 mm", notes)
+            self.assertNotIn("WARNING", notes_of(touches(points), *arguments))
+        stroke = "probe,patch,x_m,y_m,material_side\n" + "".join(f"p,0,{x!r},{y!r},right\n" for x, y in points)
+        _, (answer,), _ = fit(stroke, "--tip-radius", "0.001", "--class", "circle")
+        self.assertAlmostEqual(answer.recognition.parameters.a, 0.010, delta=1e-12)
+        self.assertNotIn("WARNING", notes_of(stroke, "--tip-radius", "0.001", "--class", "circle"))
 
     def test_measured_normals_count_where_the_noise_is_known(self):
         rows = [(0.02 * math.cos(t) + 0.1, 0.02 * math.sin(t), math.cos(t), math.sin(t)) for t in (0.3, 1.5)]

@@ -25,6 +25,9 @@ TEST(Quantity, PicksTheUnitThatGivesANumberOfOneOrMore) {
   EXPECT_EQ(length_unit_for(2.0).name, "m");
   EXPECT_EQ(length_unit_for(0.02).name, "mm");
   EXPECT_EQ(length_unit_for(2e-5).name, "um");
+  EXPECT_EQ(length_unit_for(2e-7).name, "um");
+  EXPECT_EQ(length_unit_for(2e-8).name, "nm");
+  EXPECT_EQ(length_unit_for(2e-11).name, "nm");
   EXPECT_EQ(length_unit_for(0.0).name, "m");
 }
 

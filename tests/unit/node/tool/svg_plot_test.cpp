@@ -3,6 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 #include "tests/unit/node/tool/answered_scene.h"
@@ -46,6 +53,34 @@ TEST(SvgPlot, ShowsEverySampleTheCurveTheFrameAndTheContactsOfEveryClass) {
     EXPECT_THAT(svg, HasSubstr("times enlarged"));
     EXPECT_THAT(svg, Not(HasSubstr("nan")));
     EXPECT_THAT(svg, Not(HasSubstr("inf")));
+  }
+}
+
+TEST(SvgPlot, LabelsTellTheTicksOfAnAxisApartHoweverFarFromTheOrigin) {
+  const std::regex label("text-anchor=\"(middle|end)\">(-?[0-9][^<]*)<");
+  for (const double size : {1e-9, 1e-6, 0.03, 1e4}) {
+    for (const double far : {0.0, 1.0, -1.0, 1e4, 9.9e6, -9.9e6}) {
+      ContactGroup group{"far.csv", "probe", 0, {"probe"}, {{}}};
+      for (int i = 0; i <= 20; ++i) {
+        const double t = 0.3 * i;
+        group.runs[0].samples.push_back(
+            {Vec2(far + size * std::cos(t), 2.0 * far + size * std::sin(t))});
+      }
+      const std::string svg = svg_plot(group, v1::Recognition());
+      std::map<std::string, std::vector<std::string>> labels;  // by axis
+      for (std::sregex_iterator at(svg.begin(), svg.end(), label), end; at != end; ++at) {
+        labels[(*at)[1]].push_back((*at)[2]);
+      }
+      // Of doubles: what lies a few of their steps apart has no ticks between that could differ.
+      if (size < 1e-13 * std::abs(far)) continue;
+      for (auto& [axis, texts] : labels) {
+        EXPECT_GE(texts.size(), 2U) << axis << " " << size << " " << far;
+        std::sort(texts.begin(), texts.end());
+        EXPECT_EQ(std::adjacent_find(texts.begin(), texts.end()), texts.end())
+            << texts.front() << " comes twice: " << size << " " << far;
+        for (const std::string& text : texts) EXPECT_LE(text.size(), 8U) << text;
+      }
+    }
   }
 }
 
