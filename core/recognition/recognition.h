@@ -74,11 +74,13 @@ struct Recognition {
   /// stands for them.
   std::size_t dwelling_count = 0;
   std::size_t forgotten_count = 0;  ///< samples of this object that had to make room for others
-  /// Samples of this object with a normal or a covariance of which the answer does not use all: of
-  /// a covariance the mean noise counts; a normal counts in full at a touch by itself where every
-  /// noise is known, elsewhere the side of a round tip that it shows.
+  /// Samples of this object with a normal or a covariance of which shape, pose and their covariance
+  /// do not hold all. Every noise must be known, and the class be found by likelihood; a normal
+  /// along a stroke counts unless neighbours err together, or it is beyond any noise. (Odds of the
+  /// classes hold covariances, and normals of touches by themselves.)
   std::size_t simplified_count = 0;
-  double sigma_m = 0.0;              ///< noise of a sample, given or estimated [m]
+  /// Noise of a sample, given or estimated; of one with a covariance, across the curve. [m]
+  double sigma_m = 0.0;
   double noise_correlation_m = 0.0;  ///< correlation length of the residuals; 0 = white [m]
   /// Of the most probable hypothesis: the covariance that white noise of the stated size leaves,
   /// and what it would be multiplied by were noise that the residuals tell, neighbours that err

@@ -64,7 +64,7 @@ struct NormalAtFoot {
 /// the curve puts beside the touch, where the curve has turned on. `turn_along`: [rad over a
 /// normalised length].
 inline double normal_weight(const FitPoint& point, double turn_along) {
-  const double of_place = turn_along / point.inverse_sigma;
+  const double of_place = turn_along * point.along_over_across / point.inverse_sigma;
   const double own = 1.0 / point.inverse_normal_sigma;
   return 1.0 / std::sqrt(own * own + of_place * of_place);
 }

@@ -28,9 +28,23 @@ struct FitPoint {
   /// is known. (Along a stroke the positions tell the direction.)
   Vec2 normal = Vec2::Zero();
   double inverse_normal_sigma = 0.0;  ///< 1 / (deviation of its direction [rad]); 0 = none
+  double along_over_across = 1.0;  ///< noise along the curve over that across it, inverse_sigma's
   /// Deviation of the tangent, along which a tip is taken off [rad]; infinite where no smooth model
   /// tells it.
   double tangent_sigma = std::numeric_limits<double>::infinity();
+};
+
+/// What a probe says more of a point, where every noise is known; normalised, in the frame. What
+/// counts in an answer is taken out: what is left does not.
+struct PointDetail {
+  /// [xx, xy, yy] of the position's noise; zeros = alike in all directions.
+  Eigen::Vector3d covariance = Eigen::Vector3d::Zero();
+  /// Measured normal of a point in a stroke, as FitPoint's of a touch alone; 0 = none.
+  Vec2 normal = Vec2::Zero();
+  double inverse_normal_sigma = 0.0;
+  double contacts = 1.0;  ///< that the point stands for
+
+  bool says_more() const { return covariance.x() > 0.0 || inverse_normal_sigma > 0.0; }
 };
 
 /// Points of all patches of an object. Normalised to their principal axes and extent, so that
@@ -41,6 +55,9 @@ struct FitData {
   std::vector<PatchSpan> patches;
   Pose2 frame;         ///< centre of the points' extents, x along the longer principal axis
   double scale = 1.0;  ///< half extent of the points [m]
+  std::vector<PointDetail> details = {};  ///< of the points; empty where none says more
+  /// The normals of points in strokes are the points' own: they leave residuals too.
+  bool normals_along_strokes = false;
 
   std::span<const FitPoint> patch(std::size_t i) const {
     return std::span(points).subspan(patches[i].begin, patches[i].size());
@@ -50,8 +67,8 @@ struct FitData {
 /// The samples in memory as fit points. `default_sigma_m` is the noise of samples that bring none;
 /// `sigma_known` receives whether every point then has one (points without get 1, normalised: only
 /// their ratios count until the noise is estimated). A noise below the rounding of the coordinates
-/// is raised to it. Tip radii become offsets. Empty patches are left out. Normals are those of
-/// patches of a single sample, where every point's noise is known.
+/// is raised to it. Tip radii become offsets. Empty patches are left out. Normals and covariances
+/// are set where every point's noise is known.
 FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma_m,
                       bool* sigma_known);
 
@@ -59,11 +76,11 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
 /// where none are merged.
 double noise_over_means(std::span<const StoredPatch> patches, double default_sigma_m);
 
-/// Whether a patch is a touch by itself with a measured normal that tells a direction.
-bool is_directed_touch(const StoredPatch& patch);
-
 /// How many measurements a curve leaves residuals of: a place a point, and the normals. O(patches).
 std::size_t residual_count(const FitData& data);
+
+/// Contacts with a detail that does not count.
+std::size_t contacts_with_details(const FitData& data);
 
 /// Root mean square of the points' noise, in normalised units. At least one point.
 double rms_sigma(const FitData& data);
