@@ -13,7 +13,9 @@ struct Ring {
   double radius_m = 0.0;
 };
 
-/// Prints the probe's terms, the full turn's axes and arcs of 60 to 180 degrees in markdown.
-void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostream& out);
+/// Prints the probe's terms, the full turn's axes and arcs of 60 to 180 degrees in markdown, and
+/// how many answers to so many `simulations` of the recording are wrong; none are made of one or 0.
+void print_qualified_part(const Ring& ring, const EllipsePart& part, int simulations,
+                          std::ostream& out);
 
 }  // namespace palpate::bench
