@@ -59,8 +59,9 @@ class Recognizer {
 
   /// Appends samples of one patch in their order along the arc. `details`: normals and covariances
   /// of the samples, or nothing. A normal tells on which side of a round tip the surface lies, and
-  /// of a touch alone in its patch, where every noise is known, the curve's direction there; the
-  /// noise that counts is the samples' sigma_m, which is a covariance's mean (mean_sigma_m).
+  /// where every noise is known the curve's direction there; a covariance tells the noise across
+  /// the curve. Beside one a sample's sigma_m is its mean (mean_sigma_m).
+  /// Recognition::simplified_count says what does not count.
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples,
                 std::span<const SampleDetail> details = {});
 

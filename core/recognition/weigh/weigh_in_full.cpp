@@ -11,12 +11,12 @@ namespace palpate {
 namespace {
 
 /// The data with the noise that lies across the best class's curve, as every class is then judged
-/// by; nullopt where no point has a covariance, or no class is placed on all points.
+/// by; nullopt where the path told it of all points, or no class is placed on all points.
 std::optional<FitData> weighed_across(const Weighing& w, const FitData& data) {
   const auto b = static_cast<std::size_t>(w.best);
-  const bool any = std::any_of(data.details.begin(), data.details.end(),
-                               [](const PointDetail& d) { return d.covariance.x() > 0.0; });
-  if (!any || !w.canonical[b] || !w.fits[b]->on_all) {
+  const bool any_left = std::any_of(w.data.details.begin(), w.data.details.end(),
+                                    [](const PointDetail& d) { return d.covariance.x() > 0.0; });
+  if (!any_left || !w.canonical[b] || !w.fits[b]->on_all) {
     return std::nullopt;
   }
   FitData weighed = data;

@@ -169,6 +169,35 @@ TEST(StrokesInFull, ShapeAndCovarianceAreThoseOfTheGivenClass) {
   }
 }
 
+// No path tells their direction: the class does, once it is known.
+TEST(StrokesInFull, TouchesAloneAreWeighedAcrossTheCurve) {
+  auto rng = test::test_rng();
+  for (const int count : {9, 14}) {
+    Stroked part;
+    part.arcs = {{0.1, 5.7}};
+    part.samples = count;
+    part.longer = 10.0;
+    part.sigma_m = 1e-5;
+    const std::vector<Stroke> touched = stroke(part, rng);
+    std::vector<Stroke> touches;
+    for (std::size_t i = 0; i < touched[0].samples.size(); ++i) {
+      touches.push_back({{touched[0].samples[i]}, {touched[0].details[i]}});
+    }
+    const GivenFit expected = given(CurveClass::Ellipse, touches);
+    const Recognition answer = recognise(touches);
+    ASSERT_EQ(answer.shape.curve_class, CurveClass::Ellipse) << count;
+    EXPECT_EQ(answer.simplified_count, 0U);
+    EXPECT_EQ(answer.outlier_count, 0U);
+    EXPECT_NEAR(answer.hypotheses.front().chi2, expected.chi2, 1e-2);
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      const double deviation = std::sqrt(expected.covariance(k, k));
+      EXPECT_NEAR(answer.shape.values[k], expected.shape.values[k], 0.02 * deviation);
+      EXPECT_GE(std::sqrt(answer.covariance(k, k)), 0.98 * deviation);
+      EXPECT_LE(std::sqrt(answer.covariance(k, k)), 1.1 * deviation);
+    }
+  }
+}
+
 // The covariance is the bound with what is told, so that this says how near the errors come to it.
 TEST(StrokesInFull, ErrorsHaveTheLawOfTheirCovariance) {
   auto rng = test::test_rng();
