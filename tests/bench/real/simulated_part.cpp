@@ -1,6 +1,7 @@
 #include "tests/bench/real/simulated_part.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 namespace palpate::bench {
