@@ -20,7 +20,9 @@ Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
     return hypothesis;
   }
   hypothesis.chi2 = w.fits[i]->chi2;
-  hypothesis.dof = static_cast<int>(residual_count(w.data)) - degrees_of_freedom(curve_class);
+  const std::size_t normals = curve_class == w.best ? w.stroke_normals : 0;
+  hypothesis.dof =
+      static_cast<int>(residual_count(w.data) + normals) - degrees_of_freedom(curve_class);
   hypothesis.at_limit = w.fits[i]->at_limit;
   if (const auto& canonical = w.canonical[i]) {
     hypothesis.shape = canonical->shape;

@@ -70,6 +70,7 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   FitData kept = data;
   kept.points.clear();
   kept.patches.clear();
+  kept.details.clear();
   std::size_t dropped = 0;
   double squares_of_kept = 0.0;
   double squares_of_dropped = 0.0;
@@ -88,6 +89,7 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
         run = 0;
         squares_of_kept += square;
         kept.points.push_back(data.points[i]);
+        if (!data.details.empty()) kept.details.push_back(data.details[i]);
       }
     }
     kept.patches.push_back({begin, kept.points.size()});

@@ -75,11 +75,13 @@ struct Recognition {
   /// for them; it is not counted here.
   std::size_t dwelling_count = 0;
   std::size_t forgotten_count = 0;  ///< samples of this object dropped to make room for others
-  /// Samples of this object whose normal or covariance is used only in part. Of a covariance only
-  /// the mean noise is used. A normal is used fully at a single touch if the noise of every sample
-  /// is known; elsewhere it only shows the side of a round tip.
+  /// Samples of this object whose normal or covariance is used only in part in shape, pose and their
+  /// covariance. All of it is used if every noise is known and the class is found by likelihood,
+  /// except normals along strokes where neighbours err together, and single normals beyond any
+  /// noise. (The odds of the classes include covariances, and normals of single touches.)
   std::size_t simplified_count = 0;
-  double sigma_m = 0.0;              ///< noise of a sample, stated or estimated [m]
+  /// Noise of a sample, stated or estimated; of one with a covariance, across the curve. [m]
+  double sigma_m = 0.0;
   double noise_correlation_m = 0.0;  ///< correlation length of the residuals; 0 = white [m]
   /// Of the most probable hypothesis: its covariance if all noise is white and of the stated size.
   ShapePoseCovariance white_covariance;

@@ -20,7 +20,7 @@
 #include "core/recognition/tree_answer.h"
 #include "core/recognition/tree_beside.h"
 #include "core/recognition/weigh/contenders.h"
-#include "core/recognition/weigh/weigh.h"
+#include "core/recognition/weigh/weigh_in_full.h"
 
 namespace palpate {
 namespace {
@@ -48,15 +48,6 @@ bool are_touches(std::span<const StoredPatch> patches) {
     return patch.samples.size() == 1;
   });
   return 2 * lone > static_cast<std::ptrdiff_t>(patches.size());
-}
-
-/// Samples that say more than a position and of which all of that counts: touches by themselves
-/// with a measured normal and noise alike in all directions.
-std::size_t counted_in_full(std::span<const StoredPatch> patches) {
-  return static_cast<std::size_t>(
-      std::count_if(patches.begin(), patches.end(), [](const StoredPatch& patch) {
-        return is_directed_touch(patch) && !(patch.details.front().covariance_m2.x() > 0.0);
-      }));
 }
 
 /// Whether the points lie at so many different places.
@@ -175,12 +166,12 @@ class Recognizer::Impl {
   }
 
   Recognition recognize() {
-    in_full_ = 0;
+    unused_.reset();
     Recognition answer = look();
     answer.sample_count = memory_.sample_count();
     answer.dwelling_count = clean_.dwelling_count();
     answer.forgotten_count = forgotten_;
-    answer.simplified_count = simplified_ - in_full_;
+    answer.simplified_count = unused_.value_or(simplified_);
     return answer;
   }
 
@@ -207,9 +198,6 @@ class Recognizer::Impl {
     answer = options_.method == RecognitionMethod::Tree
                  ? by_tree(data, sigma_known, patches)
                  : by_likelihood(data, sigma_known, patches, sought);
-    if (options_.method == RecognitionMethod::MaximumLikelihood && sigma_known) {
-      in_full_ = counted_in_full(patches);
-    }
     // Touches in no order whose noise nobody states lie about any curve, if the noise is large
     // enough.
     if (!sigma_known && are_touches(clean) && answer.sigma_m > kLargestNoise * data.scale) {
@@ -246,6 +234,9 @@ class Recognizer::Impl {
     Recognition answer = answer_by_likelihood(
         w, moments, {options_.recognized_probability, options_.determined_fraction}, stored);
     answer.outlier_count = stored - w.data.points.size();
+    if (sigma_known) {
+      unused_ = contacts_with_details(w.data);
+    }
     answer.contacts =
         contacts_.of(weighed.patches ? *weighed.patches : patches, w.sides, weighed.outliers,
                      contact_options(told_deviation_m(moments, w.data.scale)));
@@ -312,7 +303,7 @@ class Recognizer::Impl {
   Weighed weigh_without_outliers(const FitData& data, bool sigma_known,
                                  std::span<const StoredPatch> patches,
                                  std::span<const SidedStart> starts, Starts which) const {
-    Weighed weighed{weigh(data, sigma_known, patches, weigh_options(), starts), {}, {}};
+    Weighed weighed{weigh_in_full(data, sigma_known, patches, weigh_options(), starts), {}, {}};
     Weighing& w = weighed.w;
     if (const auto kept =
             without_outliers(w, data, sigma_known, options_.false_outlier_probability)) {
@@ -322,7 +313,7 @@ class Recognizer::Impl {
       for (SidedStart& sided : nearer) {
         sided.start.no_conic = false;  // among the outliers
       }
-      w = weigh(*kept, sigma_known, patches, weigh_options(), nearer);
+      w = weigh_in_full(*kept, sigma_known, patches, weigh_options(), nearer);
       weighed.outliers = left_out(data, *kept);
     }
     return weighed;
@@ -372,9 +363,9 @@ class Recognizer::Impl {
 
   RecognizerOptions options_;
   SampleMemory memory_;
-  std::size_t forgotten_ = 0;   ///< samples, since the object began
-  std::size_t simplified_ = 0;  ///< likewise
-  std::size_t in_full_ = 0;     ///< of these, how many count in full in the answer
+  std::size_t forgotten_ = 0;          ///< samples, since the object began
+  std::size_t simplified_ = 0;         ///< likewise, those with details
+  std::optional<std::size_t> unused_;  ///< of these, those that the answer leaves some of out
   CleanPatches clean_;
   PatchContacts contacts_;
   std::optional<Last> last_;

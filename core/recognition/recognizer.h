@@ -62,9 +62,9 @@ class Recognizer {
 
   /// Appends samples of one patch, in their order along the arc. `details`: normal and covariance
   /// of each sample; empty, or as many as samples. A normal shows on which side of a round tip the
-  /// surface lies. At a single touch (a patch of one sample) it also measures the curve's
-  /// direction, if the noise of every sample is known. The recognition uses a sample's sigma_m as
-  /// its noise; for a sample with a covariance it must be mean_sigma_m of the covariance.
+  /// surface lies and, if the noise of every sample is known, the curve's direction. A covariance
+  /// gives the noise across the curve. For a sample with a covariance, sigma_m must be its
+  /// mean_sigma_m. Recognition::simplified_count says what is not used.
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples,
                 std::span<const SampleDetail> details = {});
 

@@ -66,7 +66,7 @@ struct NormalAtFoot {
 /// noise along the curve moves the foot to where the curve's normal has turned. `turn_along`: [rad
 /// over a normalised length].
 inline double normal_weight(const FitPoint& point, double turn_along) {
-  const double of_place = turn_along / point.inverse_sigma;
+  const double of_place = turn_along * point.along_over_across / point.inverse_sigma;
   const double own = 1.0 / point.inverse_normal_sigma;
   return 1.0 / std::sqrt(own * own + of_place * of_place);
 }

@@ -58,8 +58,27 @@ std::optional<Extents> extents_of(std::span<const StoredPatch> patches) {
   return Extents{{centre.x(), centre.y(), angle}, 0.5 * (high - low).maxCoeff()};
 }
 
-/// Copies the normals of single touches.
-void set_normals(std::span<const StoredPatch> patches, FitData* data) {
+/// True if a normal shows a direction: its standard deviation is below that of a direction anywhere
+/// in half a turn, pi / sqrt(12).
+bool tells_direction(const SampleDetail& detail) {
+  constexpr double kAnywhere = 0.9069;  // [rad]
+  return detail.normal_sigma_rad > 0.0 && detail.normal_sigma_rad < kAnywhere;
+}
+
+/// Covariance [xx, xy, yy] of a stored sample, the mean of its contacts; normalised, in the frame.
+Eigen::Vector3d covariance_in_frame(const Eigen::Vector3d& c, const StoredSample& sample,
+                                    const FitData& data) {
+  Eigen::Matrix2d in_world;
+  in_world << c.x(), c.y(), c.y(), c.z();
+  Eigen::Matrix2d axes;  // of the frame, in the world
+  axes << data.frame.rotate(Vec2::UnitX()), data.frame.rotate(Vec2::UnitY());
+  const double unit = data.scale * data.scale * sample.weight;
+  const Eigen::Matrix2d there = axes.transpose() * in_world * axes / unit;
+  return {there(0, 0), there(0, 1), there(1, 1)};
+}
+
+/// Copies normals and covariances.
+void set_details(std::span<const StoredPatch> patches, FitData* data) {
   // A direction known to rounding would be more precise than the computed normal of a curve. [rad]
   constexpr double kLeastSigma = 1e-7;
   auto span = data->patches.begin();
@@ -67,11 +86,24 @@ void set_normals(std::span<const StoredPatch> patches, FitData* data) {
     if (patch.samples.empty()) {
       continue;
     }
-    if (is_directed_touch(patch)) {
-      const SampleDetail& detail = patch.details.front();
-      FitPoint& point = data->points[span->begin];
-      point.normal = data->frame.rotate_back(detail.normal);
-      point.inverse_normal_sigma = 1.0 / std::max(detail.normal_sigma_rad, kLeastSigma);
+    for (std::size_t k = 0; k < patch.details.size(); ++k) {
+      const SampleDetail& detail = patch.details[k];
+      FitPoint& point = data->points[span->begin + k];
+      const bool alone = patch.samples.size() == 1;
+      PointDetail said;
+      if (tells_direction(detail)) {
+        (alone ? point.normal : said.normal) = data->frame.rotate_back(detail.normal);
+        (alone ? point.inverse_normal_sigma : said.inverse_normal_sigma) =
+            1.0 / std::max(detail.normal_sigma_rad, kLeastSigma);
+      }
+      if (detail.covariance_m2.x() > 0.0) {
+        said.covariance = covariance_in_frame(detail.covariance_m2, patch.samples[k], *data);
+      }
+      said.contacts = patch.samples[k].contacts;
+      if (said.says_more()) {
+        data->details.resize(data->points.size());
+        data->details[span->begin + k] = said;
+      }
     }
     ++span;
   }
@@ -79,22 +111,25 @@ void set_normals(std::span<const StoredPatch> patches, FitData* data) {
 
 }  // namespace
 
-bool is_directed_touch(const StoredPatch& patch) {
-  // Standard deviation of a direction anywhere in half a turn, pi / sqrt(12): no information. [rad]
-  constexpr double kAnywhere = 0.9069;
-  if (patch.samples.size() != 1 || patch.details.empty()) {
-    return false;
-  }
-  const double sigma = patch.details.front().normal_sigma_rad;
-  return sigma > 0.0 && sigma < kAnywhere;
-}
-
 std::size_t residual_count(const FitData& data) {
   std::size_t count = data.points.size();
+  if (data.normals_along_strokes) {
+    return count + static_cast<std::size_t>(std::count_if(
+                       data.points.begin(), data.points.end(),
+                       [](const FitPoint& point) { return point.inverse_normal_sigma > 0.0; }));
+  }
   for (const PatchSpan& patch : data.patches) {
     count += patch.size() == 1 && data.points[patch.begin].inverse_normal_sigma > 0.0 ? 1 : 0;
   }
   return count;
+}
+
+std::size_t contacts_with_details(const FitData& data) {
+  double count = 0.0;
+  for (const PointDetail& detail : data.details) {
+    count += detail.says_more() ? detail.contacts : 0.0;
+  }
+  return static_cast<std::size_t>(std::lround(count));
 }
 
 double rms_sigma(const FitData& data) {
@@ -187,7 +222,7 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
     }
     return data;
   }
-  set_normals(patches, &data);
+  set_details(patches, &data);
   return data;
 }
 

@@ -28,9 +28,24 @@ struct FitPoint {
   /// every point is known. (Along a stroke the positions show the direction.)
   Vec2 normal = Vec2::Zero();
   double inverse_normal_sigma = 0.0;  ///< 1 / (standard deviation of its direction [rad]); 0 = none
+  /// Ratio of the noise along the curve to that across it, which is inverse_sigma's.
+  double along_over_across = 1.0;
   /// Standard deviation of the tangent's direction, which matters where a tip is removed; infinite
   /// if no smooth model gives it. [rad]
   double tangent_sigma = std::numeric_limits<double>::infinity();
+};
+
+/// What a probe states in addition about a point, if every noise is known; normalised, in the
+/// frame. What an answer uses is taken out: the rest is not used.
+struct PointDetail {
+  /// Covariance [xx, xy, yy] of the position; zeros = alike in all directions.
+  Eigen::Vector3d covariance = Eigen::Vector3d::Zero();
+  /// Measured normal of a point in a stroke, as FitPoint's of a single touch; 0 = none.
+  Vec2 normal = Vec2::Zero();
+  double inverse_normal_sigma = 0.0;
+  double contacts = 1.0;  ///< that the point stands for
+
+  bool says_more() const { return covariance.x() > 0.0 || inverse_normal_sigma > 0.0; }
 };
 
 /// Points of all patches of an object, in the frame of their principal axes and in units of their
@@ -41,6 +56,9 @@ struct FitData {
   std::vector<PatchSpan> patches;
   Pose2 frame;         ///< centre of the points' box, x along the longer principal axis
   double scale = 1.0;  ///< half the longer side of that box [m]
+  std::vector<PointDetail> details = {};  ///< one per point; empty if no point has any
+  /// True if the normals of points in strokes are among the residuals.
+  bool normals_along_strokes = false;
 
   std::span<const FitPoint> patch(std::size_t i) const {
     return std::span(points).subspan(patches[i].begin, patches[i].size());
@@ -51,8 +69,8 @@ struct FitData {
 /// not known [m]. `sigma_known` receives whether every point has a noise. If not, all points get
 /// noise 1 (normalised) over the root of their weight: only ratios count until the noise is
 /// estimated. Noise below the rounding of the coordinates is raised to it. Tip radii become
-/// offsets. Empty patches are left out. Normals are kept only for patches of a single sample, and
-/// only if every noise is known.
+/// offsets. Empty patches are left out. Normals and covariances are kept only if every noise is
+/// known.
 FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma_m,
                       bool* sigma_known);
 
@@ -60,11 +78,11 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
 /// 1 if none are merged.
 double noise_over_means(std::span<const StoredPatch> patches, double default_sigma_m);
 
-/// True if a patch is a single touch with a measured normal precise enough to show a direction.
-bool is_directed_touch(const StoredPatch& patch);
-
 /// Number of residuals: one per point, plus one per normal. O(patches).
 std::size_t residual_count(const FitData& data);
+
+/// Number of contacts with a detail that is not used.
+std::size_t contacts_with_details(const FitData& data);
 
 /// Root mean square of the points' noise, normalised. Needs at least one point.
 double rms_sigma(const FitData& data);

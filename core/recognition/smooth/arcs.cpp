@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/recognition/smooth/across_noise.h"
+
 namespace palpate {
 namespace {
 
@@ -25,6 +27,9 @@ bool estimate_noise(FitData* data, SmoothModel* smooth) {
 Arcs smooth_arcs(FitData data, bool sigma_known) {
   Arcs arcs;
   arcs.smooth = fit_smooth_model(&data, sigma_known);
+  if (!data.details.empty() && weigh_across_path(arcs.smooth, &data)) {
+    arcs.smooth = fit_smooth_model(&data, sigma_known);
+  }
   arcs.sigma_known = sigma_known || estimate_noise(&data, &arcs.smooth);
   arcs.sigma = rms_sigma(data);
   arcs.data = std::move(data);

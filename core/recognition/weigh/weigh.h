@@ -57,6 +57,9 @@ struct Weighing {
   double white_variance = 1.0;      ///< of the white noise, in units of sigma^2
   double counted_chi2 = 0.0;        ///< chi-square of `best` for the misfit test (misfit_of)
   double correlation_length = 0.0;  ///< normalised; 0 = white
+  /// Normals along strokes that chi-square, shape, pose and covariance of `best` hold, no others'
+  /// (best_in_full.h).
+  std::size_t stroke_normals = 0;
 };
 
 /// `data`: from make_fit_data. Follows core/README.md, "Refinement and the bound" and "The

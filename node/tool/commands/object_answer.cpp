@@ -120,10 +120,10 @@ Answered recognise(const FitInput& input, const RecognizerOptions& options,
   notes.insert(notes.end(), probe_notes.begin(), probe_notes.end());
   if (const std::size_t count = answer.recognition.simplified_count; count > 0) {
     notes.push_back(std::to_string(count) +
-                    " samples have a normal or a covariance that does not count in full: of a "
-                    "covariance the mean noise does, of a normal along a stroke, or where not "
-                    "every noise is known, the side of a round tip (palpate fit --class uses all "
-                    "of it)");
+                    " samples have a normal or a covariance that does not count in full: both need "
+                    "the noise of every sample, and normals along a stroke a class whose "
+                    "residuals err independently of their neighbours'; the side of a round tip "
+                    "counts (palpate fit --class uses all of it)");
   }
   return answer;
 }

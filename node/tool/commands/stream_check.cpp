@@ -10,6 +10,7 @@
 #include "node/files/counted.h"
 #include "node/security/decode_from.h"
 #include "node/tool/commands/normal_check.h"
+#include "node/tool/commands/tip_check.h"
 #include "node/tool/text/quantity.h"
 
 namespace palpate {
@@ -313,6 +314,7 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
             text_of_length(estimated_noise),
         "as it should be");
   }
+  judge_tips(probe, patches, source, findings);
   judge_normals(probe, patches, findings);
   if (samples > 0 && largest_stated == 0.0) {
     add(Severity::Note, "sigma_m is 0: the noise is estimated",

@@ -28,7 +28,7 @@ constexpr const char* kAbout =
       frame are x_m, y_m. The data are not part of this repository.
   bench_real --ring RING --ring-radius 0.0525 --ellipse-part FILE --semi-axes 0.065445,0.0525 --tip-radius 0.00475
       the same part by a probe that is qualified on a ring (part "ellip1" of that set), touched on the
-      same surface, beside the answers without that.)";
+      same surface, beside the answers without that. --simulations 20 adds what is to be expected.)";
 
 /// The makers of the data state no tolerance of the part. A round figure: half of the +-0.1 mm that
 /// is usual for plates of that size cut without special care.
@@ -79,6 +79,12 @@ int main(int argc, char** argv) {
   ring_file->needs(app.add_option("--ring-radius", ring_radius, "Of the ring [m]")
                        ->check(CLI::PositiveNumber)
                        ->needs(ring_file));
+  int simulations = 0;
+  app.add_option("--simulations", simulations,
+                 "Simulated recordings with errors drawn from the probe's file: how many answers a "
+                 "95 % region is to leave wrong, from 2 on")
+      ->check(CLI::NonNegativeNumber)
+      ->needs(ring_file);
   CLI11_PARSE(app, argc, argv);
   try {
     if (!file) {
@@ -94,7 +100,7 @@ int main(int argc, char** argv) {
     if (ring) {
       palpate::bench::Ring artefact{palpate::bench::read_recording(*ring), ring_radius};
       if (tip_radius) artefact.recording.context.tip_radius_m = *tip_radius;
-      palpate::bench::print_qualified_part(artefact, ellipse, std::cout);
+      palpate::bench::print_qualified_part(artefact, ellipse, simulations, std::cout);
       return 0;
     }
     palpate::bench::print_local_coverage(ellipse, std::cout);

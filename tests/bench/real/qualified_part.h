@@ -14,7 +14,9 @@ struct Ring {
 };
 
 /// Prints the probe's terms, the axes from the full turn, and arcs of 60 to 180 degrees, in
-/// markdown.
-void print_qualified_part(const Ring& ring, const EllipsePart& part, std::ostream& out);
+/// markdown; and how many answers to so many `simulations` of the recording are wrong (0 or 1: none
+/// are made).
+void print_qualified_part(const Ring& ring, const EllipsePart& part, int simulations,
+                          std::ostream& out);
 
 }  // namespace palpate::bench

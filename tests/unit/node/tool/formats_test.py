@@ -236,6 +236,13 @@ class Formats(unittest.TestCase):
         self.assertIn("not from the columns' names", self.notes)
         self.assertEqual(self.err, "")
 
+    def test_a_tip_radius_in_millimetres_where_metres_are_asked_is_told(self):
+        metres = "x_m,y_m\n" + "".join(f"{x:.7f},{y:.7f}\n" for x, y in WHOLE)
+        self.fit(metres, "--tip-radius", 3)
+        self.assertIn("centres of a tip of radius 3 m", self.notes)
+        self.fit(metres, "--tip-radius", 0.003)
+        self.assertNotIn("centres of a tip", self.notes)
+
     def test_a_noise_in_millimetres_where_metres_are_asked_is_told(self):
         millimetres = "x_mm,y_mm\n" + "".join(f"{1e3 * x:.4f},{1e3 * y:.4f}\n" for x, y in WHOLE)
         for touches in ((), ("--touches",)):

@@ -1,6 +1,7 @@
 """palpate fit --class, called as a user calls it."""
 import json
 import math
+import random
 import unittest
 
 from google.protobuf import json_format
@@ -111,12 +112,19 @@ class GivenClass(unittest.TestCase):
         _, out, _ = run(TOOL, "fit", "--format", "json", "--class", "circle", "-", text_in=text)
         self.assertIn("the measured normals do not count", out)
         self.assertEqual(json.loads(out)["status"], "GIVEN_CLASS_STATUS_TOO_FEW_POINTS")
-        # Where the class is sought they do not count along a stroke, and that is said too.
-        many = text.splitlines()[0] + "\n" + "".join(
-            f"p,0,{0.02 * math.cos(0.05 * i)!r},{0.02 * math.sin(0.05 * i)!r},1,0,0.01\n" for i in range(40))
-        _, out, _ = run(TOOL, "fit", "--format", "json", "--sigma", "1e-6", "-", text_in=many)
-        answer = json.loads(out)
-        self.assertTrue(any("40 samples have a normal" in note for note in answer["notes"]))
+        # Where the class is sought they count as well, but where neighbours may err together, and that is said; and
+        # normals of another curve are a misfit.
+        noise = random.Random(1)
+        def stroke(turn):
+            angles = [0.05 * i for i in range(40)]
+            return text.splitlines()[0] + "\n" + "".join(
+                f"p,0,{0.02 * math.cos(t) + noise.gauss(0, 1e-6)!r},{0.02 * math.sin(t) + noise.gauss(0, 1e-6)!r},"
+                f"{math.cos(turn * t)!r},{math.sin(turn * t)!r},0.01\n" for t in angles)
+        for turn, told, said in ((1, (), False), (1, ("--unqualified-probe",), True), (0, (), False)):
+            _, out, _ = run(TOOL, "fit", "--format", "json", "--sigma", "1e-6", *told, "-", text_in=stroke(turn))
+            answer = json.loads(out)
+            self.assertEqual(any("40 samples have a normal" in note for note in answer.get("notes", [])), said)
+            self.assertEqual(answer["doubt"] == "RECOGNITION_DOUBT_MISFIT", turn == 0)
         alone = text.splitlines()[0] + "\n" + "".join(
             f"p,{i},{0.02 * math.cos(0.5 * i)!r},{0.02 * math.sin(0.5 * i)!r},{math.cos(0.5 * i)!r},{math.sin(0.5 * i)!r},0.01\n"
             for i in range(12))

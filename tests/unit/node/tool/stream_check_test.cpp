@@ -128,6 +128,15 @@ TEST(StreamCheck, MillimetresAreSuspected) {
   EXPECT_TRUE(has(findings, Severity::Warning, "a patch extends over"));
 }
 
+TEST(StreamCheck, ATipOfMillimetresAsMetresIsSaid) {
+  const auto with_tip = [](double radius_m) {
+    return findings_of(
+        [&](std::size_t, v1::ContactBatch& batch) { batch.set_tip_radius_m(radius_m); });
+  };
+  EXPECT_TRUE(has(with_tip(4.75), Severity::Warning, "centres of a tip of radius 4.75 m"));
+  EXPECT_FALSE(has(with_tip(4.75e-3), Severity::Warning, "centres of a tip"));
+}
+
 TEST(StreamCheck, AnUnevenPaceIsHoles) {
   // Every other batch starts seven spacings late.
   double late = 0.0;

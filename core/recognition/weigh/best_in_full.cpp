@@ -1,0 +1,167 @@
+#include "core/recognition/weigh/best_in_full.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/numerics/negligible.h"
+#include "core/numerics/normal_law.h"
+#include "core/recognition/fit/measured_normal.h"
+#include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/smooth/across_noise.h"
+
+namespace palpate {
+namespace {
+
+/// The normals of points in strokes as the points' own.
+void give_normals(FitData* data) {
+  for (std::size_t i = 0; i < data->details.size(); ++i) {
+    const PointDetail& detail = data->details[i];
+    if (detail.inverse_normal_sigma > 0.0) {
+      data->points[i].normal = detail.normal;
+      data->points[i].inverse_normal_sigma = detail.inverse_normal_sigma;
+      data->normals_along_strokes = true;
+    }
+  }
+}
+
+/// Weighs points with covariances by the noise across a curve at their feet.
+void weigh_across_curve(const CanonicalFit& placed, FitData* data) {
+  const double rounding = rounding_level(*data);
+  for (std::size_t i = 0; i < data->details.size(); ++i) {
+    PointDetail detail = data->details[i];
+    weigh_across(data->frame.rotate_back(placed.points[i].normal), rounding, &detail,
+                 &data->points[i]);
+  }
+}
+
+struct PlacedInFull {
+  ClassFit fit;
+  CanonicalFit canonical;
+};
+
+/// To the optimum with weights of the curve found, as the fit of a given class has them. Each walk
+/// leaves of the weights' error about the noise over the radius of curvature.
+std::optional<PlacedInFull> placed_in_full(PlacedInFull start, FitData* data) {
+  constexpr int kMostWalks = 10;
+  constexpr double kSame = 1e-6;  // of chi-square: a thousandth of a deviation
+  PlacedInFull placed = std::move(start);
+  for (int walk = 0; walk < kMostWalks; ++walk) {
+    weigh_across_curve(placed.canonical, data);
+    const auto fit = polish(placed.fit, *data);
+    auto canonical = fit ? to_canonical(*fit, *data) : std::nullopt;
+    if (!canonical) {
+      return std::nullopt;
+    }
+    const bool same = std::abs(fit->chi2 - placed.fit.chi2) <= kSame;
+    placed = {*fit, *std::move(canonical)};
+    if (same) {
+      break;
+    }
+  }
+  return placed;
+}
+
+/// The normals of strokes that the curve leaves beyond noise, single ones: more than one in 20, and
+/// two, are a misfit, as of samples (outliers.cpp).
+std::vector<std::size_t> wrong_normals(const CanonicalFit& placed, const FitData& data) {
+  constexpr std::size_t kOneIn = 20;
+  constexpr std::size_t kMost = 2;
+  std::vector<double> misses;
+  for (std::size_t i = 0; i < data.details.size(); ++i) {
+    if (data.details[i].inverse_normal_sigma > 0.0) {
+      misses.push_back(std::abs(placed.points[i].normal_residual));
+    }
+  }
+  const auto middle = misses.begin() + static_cast<std::ptrdiff_t>(misses.size() / 2);
+  std::nth_element(misses.begin(), middle, misses.end());
+  const double limit = kNegligibleDeviations * std::max(1.0, *middle / kMedianOfNormal);
+  std::vector<std::size_t> wrong;
+  for (std::size_t i = 0; i < data.details.size(); ++i) {
+    if (data.details[i].inverse_normal_sigma > 0.0 &&
+        std::abs(placed.points[i].normal_residual) > limit) {
+      wrong.push_back(i);
+    }
+  }
+  return wrong.size() <= kMost + misses.size() / kOneIn ? wrong : std::vector<std::size_t>{};
+}
+
+/// Reduced points with the normals of their samples: each turned from the path's as they are in the
+/// mean, so that how the path turns from sample to sample does not matter.
+FitData reduced_with_normals(const Weighing& w, const FitData& data) {
+  FitData reduced = w.reduced;
+  std::vector<double> information(reduced.points.size(), 0.0);
+  std::vector<double> turn(reduced.points.size(), 0.0);
+  for (std::size_t i = 0; i < data.details.size(); ++i) {
+    const FitPoint& point = data.points[i];
+    if (data.details[i].inverse_normal_sigma > 0.0 && has_normal(point) &&
+        !point.tangent.isZero()) {
+      const std::size_t k = w.smooth.nearest_reduced[i];
+      const double weight = point.inverse_normal_sigma * point.inverse_normal_sigma;
+      information[k] += weight;
+      turn[k] -= weight * normal_miss(point.normal, left_of(point.tangent));
+    }
+  }
+  for (std::size_t k = 0; k < reduced.points.size(); ++k) {
+    FitPoint& point = reduced.points[k];
+    if (information[k] > 0.0 && !point.tangent.isZero()) {
+      point.normal = Eigen::Rotation2Dd(turn[k] / information[k]) * left_of(point.tangent);
+      point.inverse_normal_sigma = std::sqrt(information[k]);
+      reduced.normals_along_strokes = true;
+    }
+  }
+  return reduced;
+}
+
+}  // namespace
+
+Weighing best_in_full(Weighing w, const FitData& data) {
+  const auto b = static_cast<std::size_t>(w.best);
+  if (!w.canonical[b] || !w.fits[b]->on_all) {
+    return w;
+  }
+  FitData full = w.data;
+  for (std::size_t i = 0; i < full.details.size(); ++i) {
+    full.details[i].covariance = data.details[i].covariance;
+  }
+  if (!w.correlated && !(w.correlation_length > 0.0)) {
+    give_normals(&full);
+  }
+  auto placed = placed_in_full({*w.fits[b], *w.canonical[b]}, &full);
+  const auto wrong = placed && full.normals_along_strokes ? wrong_normals(placed->canonical, full)
+                                                          : std::vector<std::size_t>{};
+  for (const std::size_t i : wrong) {
+    full.points[i].inverse_normal_sigma = 0.0;
+  }
+  if (!wrong.empty()) {
+    placed = placed_in_full(*std::move(placed), &full);
+  }
+  if (!placed) {  // no curve of the class has these places and normals
+    w.counted_chi2 = std::numeric_limits<double>::infinity();
+    return w;
+  }
+  if (full.normals_along_strokes) {
+    w.reduced = reduced_with_normals(w, full);
+    w.best_on_reduced = to_canonical(settled(*w.coarse[b], w.reduced), w.reduced);
+    w.best_evidence =
+        w.best_on_reduced ? evidence_of(*w.best_on_reduced, w.reduced, w.inflation) : std::nullopt;
+    w.stroke_normals = residual_count(full) - residual_count(w.data);
+  }
+  for (std::size_t i = 0; i < full.details.size(); ++i) {
+    PointDetail& left = w.data.details[i];
+    left.covariance.setZero();
+    if (has_normal(full.points[i])) {
+      left.inverse_normal_sigma = 0.0;
+    }
+  }
+  w.counted_chi2 += placed->fit.chi2 - w.fits[b]->chi2;
+  w.fits[b] = std::move(placed->fit);
+  w.canonical[b] = std::move(placed->canonical);
+  return w;
+}
+
+}  // namespace palpate

@@ -1,0 +1,45 @@
+#include "core/recognition/weigh/weigh_in_full.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/recognition/smooth/across_noise.h"
+#include "core/recognition/weigh/best_in_full.h"
+
+namespace palpate {
+namespace {
+
+/// The data with the noise that lies across the best class's curve, as every class is then judged
+/// by; nullopt where the path told it of all points, or no class is placed on all points.
+std::optional<FitData> weighed_across(const Weighing& w, const FitData& data) {
+  const auto b = static_cast<std::size_t>(w.best);
+  const bool any_left = std::any_of(w.data.details.begin(), w.data.details.end(),
+                                    [](const PointDetail& d) { return d.covariance.x() > 0.0; });
+  if (!any_left || !w.canonical[b] || !w.fits[b]->on_all) {
+    return std::nullopt;
+  }
+  FitData weighed = data;
+  const double rounding = rounding_level(data);
+  for (std::size_t i = 0; i < data.details.size(); ++i) {
+    const Vec2 normal = data.frame.rotate_back(w.canonical[b]->points[i].normal);
+    weigh_across(normal, rounding, &weighed.details[i], &weighed.points[i]);
+  }
+  return weighed;
+}
+
+}  // namespace
+
+Weighing weigh_in_full(const FitData& data, bool sigma_known, std::span<const StoredPatch> patches,
+                       const WeighOptions& options, std::span<const SidedStart> starts) {
+  Weighing w = weigh(data, sigma_known, patches, options, starts);
+  if (data.details.empty()) {
+    return w;
+  }
+  if (const auto across = weighed_across(w, data)) {
+    w = weigh(*across, sigma_known, patches, options, starts);
+  }
+  return best_in_full(std::move(w), data);
+}
+
+}  // namespace palpate
