@@ -75,10 +75,11 @@ struct Recognition {
   /// for them; it is not counted here.
   std::size_t dwelling_count = 0;
   std::size_t forgotten_count = 0;  ///< samples of this object dropped to make room for others
-  /// Samples of this object whose normal or covariance is used only in part in shape, pose and their
-  /// covariance. All of it is used if every noise is known and the class is found by likelihood,
-  /// except normals along strokes where neighbours err together, and single normals beyond any
-  /// noise. (The odds of the classes include covariances, and normals of single touches.)
+  /// Samples of this object whose normal or covariance is used only in part in shape, pose and
+  /// their covariance. All of it is used if every noise is known and the class is found by
+  /// likelihood, except normals along strokes where neighbours err together, and single normals
+  /// beyond any noise. (The odds of the classes include covariances, and normals of single
+  /// touches.)
   std::size_t simplified_count = 0;
   /// Noise of a sample, stated or estimated; of one with a covariance, across the curve. [m]
   double sigma_m = 0.0;
