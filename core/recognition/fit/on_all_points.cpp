@@ -101,78 +101,16 @@ void carry_to_all(const SmoothModel& smooth, PolynomialFit* curve) {
   curve->t = std::move(t);
 }
 
-/// Places along a curve in runs, each within a circle: of most runs a point need only see that.
-class PlacesAlong {
- public:
-  PlacesAlong(const PolynomialCoefficients& c, std::vector<double> parameters)
-      : t_(std::move(parameters)) {
-    for (const double t : t_) {
-      positions_.push_back(position_at(c, t));
-    }
-    for (std::size_t begin = 0; begin < t_.size(); begin += kRun) {
-      Run run{begin, std::min(begin + kRun, t_.size()), positions_[begin], 0.0};
-      run.centre = positions_[begin + (run.end - begin) / 2];
-      for (std::size_t k = begin; k < run.end; ++k) {
-        run.radius = std::max(run.radius, (positions_[k] - run.centre).norm());
-      }
-      runs_.push_back(run);
-    }
-  }
-
-  double nearest(const Vec2& point) {
-    // From that of the point before, which is seldom far.
-    double least = (positions_[last_] - point).norm();
-    for (const Run& run : runs_) {
-      if ((run.centre - point).squaredNorm() > (least + run.radius) * (least + run.radius)) {
-        continue;
-      }
-      for (std::size_t k = run.begin; k < run.end; ++k) {
-        if ((positions_[k] - point).squaredNorm() < least * least) {
-          least = (positions_[k] - point).norm();
-          last_ = k;
-        }
-      }
-    }
-    return t_[last_];
-  }
-
- private:
-  static constexpr std::size_t kRun = 32;  // of 1,000 places as many runs as places in a run
-  struct Run {
-    std::size_t begin = 0;
-    std::size_t end = 0;
-    Vec2 centre;
-    double radius = 0.0;
-  };
-  std::vector<double> t_;
-  std::vector<Vec2> positions_;
-  std::vector<Run> runs_;
-  std::size_t last_ = 0;
-};
-
-/// The parameters of the nearest of places along the curve, for all points: where one that is
-/// followed from its reduced point ends on the wrong arm of a bend.
+/// The parameters of the nearest feet, for all points: where one that is followed from its reduced
+/// point ends on the wrong arm of a bend, or on a cusp, where every way ends.
 void seek_feet(std::span<const FitPoint> points, PolynomialFit* curve) {
-  // Reduced points lie densest where sections end; two places more between neighbours.
-  constexpr int kPlaces = 3;
-  std::vector<double> sorted = curve->t;
-  std::sort(sorted.begin(), sorted.end());
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-  std::vector<double> parameters;
-  for (std::size_t k = 0; k < sorted.size(); ++k) {
-    const double step = k + 1 < sorted.size() ? (sorted[k + 1] - sorted[k]) / kPlaces : 0.0;
-    for (int i = 0; i < (step > 0.0 ? kPlaces : 1); ++i) {
-      parameters.push_back(sorted[k] + i * step);
-    }
-  }
-  PlacesAlong places(curve->coefficients, std::move(parameters));
   curve->t.clear();
   for (const FitPoint& point : points) {
-    curve->t.push_back(places.nearest(point.position));
+    curve->t.push_back(nearest_parameter(curve->coefficients, point.position));
   }
 }
 
-/// How the points' feet are found from the reduced points'.
+/// How the points' feet are found: from the reduced points', or anywhere.
 enum class Feet { Followed, Sought };
 
 /// A fit on the reduced points, not refined on all points yet.

@@ -10,6 +10,15 @@ namespace {
 /// round. What lets neighbours lie on opposite sides of a curve turns half of them.
 constexpr std::size_t kOneIn = 10;
 
+/// Of a few points one may: a quarter of them, where the chord of its neighbours goes round a bend
+/// that is sharper than they are apart.
+constexpr std::size_t kFewestWithOne = 4;
+
+/// True if so many of a patch's points that show a direction go against the others.
+bool turns(std::size_t against, std::size_t points) {
+  return against * kOneIn > points && !(against == 1 && points >= kFewestWithOne);
+}
+
 /// Whether all points lie on one branch of a hyperbola: on one side of its conjugate axis.
 bool on_one_branch(const ConicCoefficients& q, std::span<const FitPoint> points) {
   const double d = discriminant(q);
@@ -75,7 +84,7 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
         left += cross(travel, conic_gradient(q, fit.feet[data.patches[p].begin + i])) >= 0.0;
       }
     }
-    if (std::min(left, told - left) * kOneIn > told) {
+    if (turns(std::min(left, told - left), told)) {
       return false;
     }
   }
@@ -93,7 +102,7 @@ bool is_touchable(const PolynomialFit& fit, const FitData& data) {
         forward += fit.t[i + lag] >= fit.t[i];
       }
     }
-    if (std::min(forward, told - forward) * kOneIn > told) {
+    if (turns(std::min(forward, told - forward), told)) {
       return false;
     }
   }

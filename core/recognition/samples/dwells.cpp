@@ -49,6 +49,17 @@ double step_ratio(const Places& places, const Block& of) {
   return of.square > 0.0 ? steps / (n - 1.0) / (2.0 * of.square) : 1.0;
 }
 
+/// True if a step tends to go back on the step before it. Of places in random order the mean
+/// product of successive steps is -1/2 of their mean square; on a way there and back, as over a
+/// cusp, it is at least 1/2, though the ratio above may be 1: half way is the limit.
+bool goes_back_and_forth(std::span<const Block> blocks) {
+  double products = 0.0;
+  for (std::size_t b = 2; b < blocks.size(); ++b) {
+    products += (blocks[b].mean - blocks[b - 1].mean).dot(blocks[b - 1].mean - blocks[b - 2].mean);
+  }
+  return products < 0.0;
+}
+
 /// Motion over a length l with noise s gives the ratio 2 s^2 / (2 s^2 + l^2 / 12). This limit is l
 /// = 6 s: over such a length a curve deviates from its mean by less than the mean's uncertainty.
 constexpr double kLeastRatio = 0.4;
@@ -97,7 +108,7 @@ class SlowStretch {
   /// A jitter that neighbouring samples share shows no order from block to block.
   bool is_still() const {
     return step_ratio(samples_, whole()) > kLeastRatio ||
-           (blocks_.size() >= kFewestMeans &&
+           (blocks_.size() >= kFewestMeans && goes_back_and_forth(blocks_) &&
             step_ratio(blocks_, block_of(blocks_, 0, blocks_.size())) > kLeastRatio);
   }
 

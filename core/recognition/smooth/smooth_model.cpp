@@ -63,10 +63,17 @@ struct SectionFit {
   ChordFrame frame;
   OrthogonalPolynomials polynomials;
   int degree = 0;  ///< chosen by the criterion
+  /// True if the criterion chooses a degree at least two below the highest possible one even if it
+  /// takes the noise from the residuals. Otherwise a higher degree might leave less: the residuals
+  /// may be what the polynomial misses of the curve (few samples on a long arc), and show no noise.
+  /// Two, because an arc that is nearly symmetric gains only from every second degree. Nor do
+  /// samples show noise that are no graph over their chord.
+  bool shows_noise = false;
 
   /// Two degrees more than the criterion chose: terms that are not yet significant in one patch may
   /// distinguish classes when there are several patches.
   int reduced_degree() const { return std::min(degree + 2, polynomials.degree()); }
+  bool lacks_degrees() const { return degree + 2 > polynomials.degree(); }
 };
 
 /// The noise used to choose a section's degree.
@@ -74,6 +81,36 @@ struct Noise {
   bool known = true;      ///< otherwise the criterion profiles it
   double variance = 1.0;  ///< in units of the stated variance
 };
+
+/// True if the samples turn too far to be a graph over their chord: by more than two radians, as
+/// the chords between the means of their thirds show, which turn a third as much. Sections are cut
+/// before that, except where their samples are few. Samples that scatter about a place show no
+/// turn: along an even stroke a chord is 3.5 times as long as the scatter of a third about its
+/// mean, which is a third of the stroke over sqrt(12); of noise alone it is as long at most.
+bool is_no_graph(std::span<const FitPoint> points) {
+  constexpr double kLargestTurn = 2.0 / 3.0;  // rad, of chords between thirds
+  constexpr double kOfMotion = 2.0;           // chord over scatter, between 1 and 3.5
+  const std::size_t n = points.size();
+  double scatter = 0.0;
+  const auto mean_of = [&](std::size_t begin, std::size_t end) {
+    Vec2 sum = Vec2::Zero();
+    for (std::size_t i = begin; i < end; ++i) {
+      sum += points[i].position;
+    }
+    const Vec2 mean = sum / static_cast<double>(end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      scatter += (points[i].position - mean).squaredNorm() / static_cast<double>(n);
+    }
+    return mean;
+  };
+  const Vec2 first = mean_of(0, n / 3);
+  const Vec2 middle = mean_of(n / 3, n - n / 3);
+  const Vec2 before = middle - first;
+  const Vec2 after = mean_of(n - n / 3, n) - middle;
+  const double least = kOfMotion * kOfMotion * scatter;
+  return before.squaredNorm() > least && after.squaredNorm() > least &&
+         std::abs(std::atan2(cross(before, after), before.dot(after))) > kLargestTurn;
+}
 
 std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& section,
                                       const Noise& noise) {
@@ -107,18 +144,25 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
     w[i] /= 1.0 + slope * slope;
   }
   SectionFit fit{section, frame, OrthogonalPolynomials(x, w, y, highest), 1};
-  double best = std::numeric_limits<double>::infinity();
   const double count = static_cast<double>(n);
-  for (int d = 1; d <= highest; ++d) {
-    const double chi2 =
-        std::max(fit.polynomials.residual_sum(d), std::numeric_limits<double>::min());
-    const double criterion =
-        (noise.known ? chi2 / noise.variance : count * std::log(chi2)) + (d + 1) * std::log(count);
-    if (criterion < best) {
-      best = criterion;
-      fit.degree = d;
+  const auto choose = [&](bool noise_known) {
+    int degree = 1;
+    double best = std::numeric_limits<double>::infinity();
+    for (int d = 1; d <= highest; ++d) {
+      const double chi2 =
+          std::max(fit.polynomials.residual_sum(d), std::numeric_limits<double>::min());
+      const double criterion = (noise_known ? chi2 / noise.variance : count * std::log(chi2)) +
+                               (d + 1) * std::log(count);
+      if (criterion < best) {
+        best = criterion;
+        degree = d;
+      }
     }
-  }
+    return degree;
+  };
+  const int by_residuals = choose(false);
+  fit.degree = noise.known ? choose(true) : by_residuals;
+  fit.shows_noise = by_residuals + 2 <= highest && !is_no_graph(points);
   return fit;
 }
 
@@ -195,20 +239,20 @@ bool is_no_noise(double chi2, int dof, double variance) {
                                        2.0 * kNegligibleLogOdds);
 }
 
-/// The quietest sections: those of lowest variance that have a quarter of all degrees of freedom. A
-/// few badly followed sections do not raise their variance, and it does not depend on the stated
-/// noise, which may be too low.
+/// The quietest sections: those of lowest variance that have a quarter of all degrees of freedom,
+/// if noise is stated among sections whose residuals show it. A few badly followed sections do not
+/// raise their variance, and it does not depend on the stated noise, which may be too low.
 struct QuietSections {
   double highest = 1.0;  ///< largest variance among them, in units of the stated one
   double chi2 = 0.0;     ///< of all of them
   int dof = 0;
 };
 
-QuietSections quiet_of(const std::vector<Section>& sections) {
+QuietSections quiet_of(const std::vector<Section>& sections, bool sigma_known) {
   std::vector<std::pair<double, int>> ratios;
   int whole = 0;
   for (const Section& section : sections) {
-    if (section.dof() > 0) {
+    if (section.dof() > 0 && (section.fit->shows_noise || !sigma_known)) {
       ratios.emplace_back(section.chi2() / section.dof(), section.dof());
       whole += section.dof();
     }
@@ -226,17 +270,40 @@ QuietSections quiet_of(const std::vector<Section>& sections) {
   return quiet;
 }
 
-/// True if the polynomial does not follow a section, because only some of its samples lie in a
-/// bend. By chance this happens to fewer than one section in a million, and then costs only time.
-bool is_not_followed(const Section& section, double variance) {
+/// What a section is held against.
+struct Yardstick {
+  double variance = 1.0;  ///< of the noise, in units of the stated one
+  /// The noise is stated, or sections with degrees to spare show it: the others may do without a
+  /// polynomial.
+  bool shown_elsewhere = true;
+};
+
+/// True if the polynomial does not follow a section: it leaves more than noise, because only some
+/// of its samples lie in a bend (by chance this happens to fewer than one section in a million, and
+/// then costs only time), or its samples are too few for the two degrees more that reduced points
+/// need, so that it may swing between them (next to a cusp).
+bool is_not_followed(const Section& section, const Yardstick& noise) {
   const int dof = section.dof();
-  return dof > 0 && is_no_noise(section.chi2(), dof, variance);
+  return dof > 0 && (is_no_noise(section.chi2(), dof, noise.variance) ||
+                     (noise.shown_elsewhere && section.fit->lacks_degrees()));
 }
 
-void cut_until_followed(const FitData& data, Section section, const Noise& noise, double variance,
-                        std::vector<Section>* sections) {
+/// True if most degrees of freedom are those of sections that have degrees to spare.
+bool mostly_with_degrees(const std::vector<Section>& sections) {
+  int with = 0;
+  int lacking = 0;
+  for (const Section& section : sections) {
+    if (section.fit) {
+      (section.fit->lacks_degrees() ? lacking : with) += section.dof();
+    }
+  }
+  return with > lacking;
+}
+
+void cut_until_followed(const FitData& data, Section section, const Noise& noise,
+                        const Yardstick& yardstick, std::vector<Section>* sections) {
   const PatchSpan points = section.points;
-  if (!is_not_followed(section, variance)) {
+  if (!is_not_followed(section, yardstick)) {
     sections->push_back(std::move(section));
     return;
   }
@@ -246,20 +313,20 @@ void cut_until_followed(const FitData& data, Section section, const Noise& noise
   }
   const std::size_t middle = points.begin + points.size() / 2;
   for (const PatchSpan& half : {PatchSpan{points.begin, middle}, PatchSpan{middle, points.end}}) {
-    cut_until_followed(data, {half, fit_section(data, half, noise)}, noise, variance, sections);
+    cut_until_followed(data, {half, fit_section(data, half, noise)}, noise, yardstick, sections);
   }
 }
 
 /// Halves the sections that are not followed until all are followed or too short for a polynomial.
 std::vector<Section> followed(const FitData& data, std::vector<Section> sections,
-                              const Noise& noise, double variance) {
+                              const Noise& noise, const Yardstick& yardstick) {
   if (std::none_of(sections.begin(), sections.end(),
-                   [&](const Section& section) { return is_not_followed(section, variance); })) {
+                   [&](const Section& section) { return is_not_followed(section, yardstick); })) {
     return sections;
   }
   std::vector<Section> result;
   for (Section& section : sections) {
-    cut_until_followed(data, std::move(section), noise, variance, &result);
+    cut_until_followed(data, std::move(section), noise, yardstick, &result);
   }
   return result;
 }
@@ -300,15 +367,16 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known) {
   model.reduced.scale = data->scale;
   Noise noise{sigma_known, 1.0};
   std::vector<Section> sections = smoothed(*data, noise);
-  QuietSections quiet = quiet_of(sections);
+  QuietSections quiet = quiet_of(sections, sigma_known);
   if (sigma_known && is_no_noise(quiet.chi2, quiet.dof, 1.0)) {
     // The stated noise is too low everywhere: with it, the fits would follow the noise itself.
     noise.variance = quiet.chi2 / quiet.dof;
     sections = smoothed(*data, noise);
-    quiet = quiet_of(sections);
+    quiet = quiet_of(sections, sigma_known);
   }
-  sections = followed(*data, std::move(sections), noise,
-                      sigma_known ? std::max(quiet.highest, 1.0) : quiet.highest);
+  const Yardstick yardstick{sigma_known ? std::max(quiet.highest, 1.0) : quiet.highest,
+                            sigma_known || mostly_with_degrees(sections)};
+  sections = followed(*data, std::move(sections), noise, yardstick);
 
   auto section = sections.begin();
   for (const PatchSpan& patch : data->patches) {

@@ -73,6 +73,28 @@ TEST_F(Dwells, AStrokeThatSlowsDownHasNone) {
   EXPECT_TRUE(dwells_of(samples).empty());
 }
 
+TEST_F(Dwells, AWayOverACuspHasNone) {
+  // Even steps of t in (t^2, t^3): next to the cusp it moves slowly, goes there and back along
+  // almost the same way, and is not still.
+  for (const int count : {200, 529, 2000}) {
+    std::vector<StoredSample> samples;
+    for (int i = 0; i < count; ++i) {
+      const double t = -1.0 + 2.0 * i / (count - 1);
+      samples.push_back(sample_at(kPart * Vec2(t * t, 1.8 * t * t * t - 0.58 * t * t) + noise()));
+    }
+    for (const PatchSpan& dwell : dwells_of(samples)) {
+      Vec2 low = samples[dwell.begin].position_m;
+      Vec2 high = low;
+      for (std::size_t i = dwell.begin; i < dwell.end; ++i) {
+        low = low.cwiseMin(samples[i].position_m);
+        high = high.cwiseMax(samples[i].position_m);
+      }
+      // The farthest of so many samples of one place are some seven deviations apart.
+      EXPECT_LT((high - low).maxCoeff(), 10.0 * kNoise) << count;
+    }
+  }
+}
+
 TEST_F(Dwells, AreFoundToASampleOrTwoWhateverTheirNoise) {
   for (const double fresh : {1.0, 0.1, 1e-3, 1e-9}) {
     for (const std::size_t standing : {40U, 200U, 2000U}) {
