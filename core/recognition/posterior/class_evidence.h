@@ -21,11 +21,14 @@ struct ClassEvidence {
   /// log of the marginal likelihood over the likelihood at the optimum: what the prior leaves of
   /// it.
   double log_occam = 0.0;
-  /// Of that, what lies about the mode.
+  /// Of that, what lies about the modes.
   double log_occam_of_mode = 0.0;
+  /// log of what all modes have over what this one has: arms that no way joins (prior_starts.h).
+  double log_all_modes = 0.0;
   /// log of the evidence over a line's, where that was asked (straight_paths.h).
   std::optional<double> log_over_line;
   bool prior_mode_sought = false;
+  bool at_limit = false;  ///< of a conic that fits no better than the parabola (conic_limit.h)
   /// The same with all of the prior at this shape: what is left is what the place and direction of
   /// the touch cost every curve.
   double log_occam_of_touch = 0.0;
@@ -55,6 +58,12 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
 /// out in the prior's tails, in a valley with a place of as good a fit that the prior expects, but
 /// too long and too bent to be walked along. `evidence`: of one node.
 ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least);
+
+/// That of the best mode that the prior leads to along the path of another class. `evidence`: its
+/// touch along the patch, and the chi-square that `log_occam` is to count from. nullopt where no
+/// mode comes near the points.
+std::optional<ClassEvidence> from_prior(ClassEvidence evidence, CurveClass path_class,
+                                        const TouchedCurve& path, const FitData& data);
 
 /// The same at the mode of `before`, where that holds more: another fit of the class to the same
 /// data, at the same inflation.

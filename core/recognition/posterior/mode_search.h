@@ -39,10 +39,9 @@ TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve
 std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
                                            double inflation, double least_chi2);
 
-/// The mode that the prior leads to: from a noise that hides the shape, followed as that is lowered
-/// to what it is, as long as it holds more than `log_least`. A fit far out in the prior's tails
-/// lies in a valley too narrow and too bent for its noise to be walked along. `start`: its place
-/// and feet count.
+/// The mode that a shape of the prior leads to (prior_starts.h), if it holds more than `log_least`:
+/// the noise is lowered from what the shape leaves to what it is. A fit far out in the prior's
+/// tails lies in a valley too narrow and too bent for its noise to be walked along.
 std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data,
                                                 const TouchedCurve& start, double log_least);
 

@@ -52,10 +52,6 @@ TouchedVector prior_centre(CurveClass curve_class);
 /// The coordinate that the place is; -1 where all places are alike.
 int place_coordinate(CurveClass curve_class);
 
-/// What the prior expects: the size at its centre, the other coordinates as far out as their
-/// scales. `arm`, `bend`: of their signs are the place and the spline's c.
-TouchedVector expected_coordinates(CurveClass curve_class, double arm, double bend);
-
 /// log of the length that z[0] is the logarithm of, over the size of the part.
 double log_length_over_size(CurveClass curve_class);
 
