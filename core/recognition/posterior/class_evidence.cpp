@@ -3,23 +3,16 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "core/numerics/small_cholesky.h"
 #include "core/recognition/posterior/mode_search.h"
+#include "core/recognition/posterior/prior_starts.h"
 
 namespace palpate {
 namespace {
-
-/// Place and feet of the curve that the prior expects, touched on the arm of this sign.
-TouchedCurve expected(const Touch& touch, const TouchedCurve& like, double arm) {
-  constexpr int kBend = 3;  // the coordinate c of the spline
-  TouchedCurve start;
-  start.z = expected_coordinates(touch.curve_class, arm, like.z[kBend]);
-  const auto shape = shape_at(touch.curve_class, start.z, touch.shape);
-  start.t.assign(like.t.size(), shape ? shape->t : 0.0);
-  return start;
-}
 
 /// Laplace's formula at a mode.
 void set_mode(TouchedCurve mode, ClassEvidence* evidence) {
@@ -35,6 +28,72 @@ void set_mode(TouchedCurve mode, ClassEvidence* evidence) {
       0.5 * (evidence->fitted_chi2 - mode.chi2 - std::log(of_touch.determinant()));
   evidence->mode = 0;
   evidence->nodes = {{std::move(mode), 1.0}};
+}
+
+/// The best mode of every arm, by arm_of().
+struct ArmMass {
+  std::size_t arm = 0;
+  double log_mass = 0.0;
+};
+
+void keep_best(ArmMass mass, std::vector<ArmMass>* of_arms) {
+  const auto same = std::find_if(of_arms->begin(), of_arms->end(),
+                                 [&](const ArmMass& other) { return other.arm == mass.arm; });
+  if (same == of_arms->end()) {
+    of_arms->push_back(mass);
+  } else {
+    same->log_mass = std::max(same->log_mass, mass.log_mass);
+  }
+}
+
+void set_log_all_modes(double log_all, ClassEvidence* evidence) {
+  evidence->log_all_modes = log_all;
+  evidence->log_occam += log_all;
+  evidence->log_occam_of_mode += log_all;
+}
+
+/// The evidence of the modes that the prior leads to, at the best one, where they have more than
+/// `least`, and of the mode that it has, if any.
+void take_prior_modes(const Touch& touch, CurveClass path_class, const TouchedCurve& path,
+                      const FitData& data, double least, ClassEvidence* evidence) {
+  constexpr double kTold = 4.0;  // log: less than a fiftieth of the best is not told
+  // log over `least`, e^-9 of the best class: what is left of a fiftieth. A class of less, which
+  // the most probable start led to, is not worth the time of others.
+  constexpr double kWorthMore = 5.0;
+  bool further = false;
+  const double half_chi2 = 0.5 * evidence->fitted_chi2;
+  std::vector<ArmMass> of_arms;
+  double best = -std::numeric_limits<double>::infinity();
+  if (!evidence->nodes.empty()) {
+    best = log_mass(evidence->nodes[evidence->mode].curve);
+    of_arms.push_back(
+        {arm_of(touch, evidence->touch, evidence->nodes[evidence->mode].curve.z), best});
+  }
+  for (const PriorStart& start : prior_starts(touch, path_class, path)) {
+    if (further && !(evidence->log_occam > least + kWorthMore)) {
+      break;
+    }
+    further = true;
+    auto mode = followed_from_prior(start.touch, data, start.curve,
+                                    std::max(best - kTold, least - half_chi2));
+    if (!mode) {
+      continue;
+    }
+    const double mass = log_mass(*mode);
+    keep_best({arm_of(touch, start.touch, mode->z), mass}, &of_arms);
+    if (mass > best) {
+      best = mass;
+      evidence->touch = start.touch;
+      set_mode(*std::move(mode), evidence);
+    }
+  }
+  double sum = 0.0;
+  for (const ArmMass& arm : of_arms) {
+    sum += std::exp(arm.log_mass - best);
+  }
+  if (sum > 0.0) {
+    set_log_all_modes(std::log(sum), evidence);
+  }
 }
 
 }  // namespace
@@ -75,34 +134,34 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
 
 ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least) {
   evidence.prior_mode_sought = true;
-  const TouchedCurve fitted = evidence.nodes[evidence.mode].curve;
   const CurveClass curve_class = evidence.touch.curve_class;
-  const Touch touch = along_patch(evidence.touch, data);
-  const auto take = [&](double arm) {
-    const double least_mass = std::max(evidence.log_occam, least) - 0.5 * evidence.fitted_chi2;
-    const TouchedCurve start = expected(touch, fitted, arm);
-    if (auto mode = followed_from_prior(touch, data, start, least_mass)) {
-      evidence.touch = touch;
-      set_mode(*std::move(mode), &evidence);
-    }
-  };
-  const int place = place_coordinate(curve_class);
-  const double arm = place < 0 ? 0.0 : fitted.z[place];
-  take(arm);
-  if (curve_class == CurveClass::SemiCubicalParabola) {
-    take(-arm);  // no way leads over the cusp, which has no tangent
-  }
+  const TouchedCurve fitted = evidence.nodes[evidence.mode].curve;
+  take_prior_modes(along_patch(evidence.touch, data), curve_class, fitted, data, least, &evidence);
   return evidence;
 }
 
+std::optional<ClassEvidence> from_prior(ClassEvidence evidence, CurveClass path_class,
+                                        const TouchedCurve& path, const FitData& data) {
+  evidence.prior_mode_sought = true;
+  take_prior_modes(Touch(evidence.touch), path_class, path, data,
+                   -std::numeric_limits<double>::infinity(), &evidence);
+  return !evidence.nodes.empty() && is_of_optimum(evidence) ? std::optional(std::move(evidence))
+                                                            : std::nullopt;
+}
+
 ClassEvidence at_better_mode(ClassEvidence evidence, const ClassEvidence& before) {
-  const TouchedCurve& mode = before.nodes[before.mode].curve;
   evidence.prior_mode_sought = before.prior_mode_sought;
-  if (before.prior_mode_sought && before.nodes.size() == 1 &&
-      log_mass(mode) > log_mass(evidence.nodes[evidence.mode].curve)) {
+  if (!before.prior_mode_sought) {
+    return evidence;
+  }
+  const TouchedCurve& mode = before.nodes[before.mode].curve;
+  const double others = std::expm1(before.log_all_modes);  // over what that mode has
+  const double gain = log_mass(mode) - log_mass(evidence.nodes[evidence.mode].curve);
+  if (gain > 0.0) {
     evidence.touch = before.touch;
     set_mode(mode, &evidence);
   }
+  set_log_all_modes(std::log1p(others * std::exp(std::min(gain, 0.0))), &evidence);
   return evidence;
 }
 

@@ -20,11 +20,15 @@ struct ClassEvidence {
   double fitted_chi2 = 0.0;  ///< chi-square at the optimum of the likelihood
   /// log of (evidence / likelihood at the optimum): what the prior leaves of the likelihood.
   double log_occam = 0.0;
-  /// The part of it that belongs to the mode by Laplace's formula.
+  /// The part of it that belongs to the modes by Laplace's formula.
   double log_occam_of_mode = 0.0;
+  /// log of (mass of all modes / mass of this one): arms that no path joins (prior_starts.h).
+  double log_all_modes = 0.0;
   /// log of (evidence / evidence of the line), if it was computed (straight_paths.h).
   std::optional<double> log_over_line;
   bool prior_mode_sought = false;
+  bool at_limit =
+      false;  ///< true for a conic that fits no better than the parabola (conic_limit.h)
   /// The same if all of the prior were at this shape: only place and direction of the touch remain,
   /// whose cost is the same for every curve.
   double log_occam_of_touch = 0.0;
@@ -55,6 +59,12 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
 /// prior's tails, in a valley that is too long and bent to be walked along, while another place of
 /// the valley fits as well and is expected by the prior. `evidence` must have one node.
 ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least);
+
+/// The evidence at the best mode that the prior leads to along the path of another class.
+/// `evidence`: its touch along the patch, and the chi-square that `log_occam` counts from. nullopt
+/// if no mode comes near the points.
+std::optional<ClassEvidence> from_prior(ClassEvidence evidence, CurveClass path_class,
+                                        const TouchedCurve& path, const FitData& data);
 
 /// The evidence at the mode of `before`, if it is larger. `before`: another fit of the class to the
 /// same data, with the same inflation.

@@ -56,26 +56,53 @@ TouchedMatrix root_of(const TouchedCurve& curve, int fixed) {
   return fixed < 0 ? curve.root : root_without(curve.root, fixed);
 }
 
+namespace {
+
+/// Where a Gauss-Newton step down the potential leads, coordinate `fixed` (or -1) staying.
+struct Step {
+  TouchedVector by = TouchedVector::Zero();  ///< in units of the widths
+  double gain = 0.0;                         ///< of the potential, as the linear model has it
+};
+
+Step step_from(const Touch& touch, const TouchedCurve& curve, int fixed) {
+  // From slice to slice the way is short.
+  const TouchedMatrix root = fixed < 0 ? step_root(touch, curve) : root_of(curve, fixed);
+  TouchedVector slope = curve.gradient - prior_gradient(touch, curve);
+  if (fixed >= 0) {
+    slope[fixed] = 0.0;
+  }
+  const TouchedVector by = solve_cholesky(root, slope);
+  return {by, 0.5 * slope.dot(by)};
+}
+
+/// Back into the valley: a step along it ends beside where it bends. nullopt where that does not
+/// lead below `highest` either.
+std::optional<TouchedCurve> corrected(const Touch& touch, const FitData& data,
+                                      const TouchedCurve& beside, double highest) {
+  const Step step = step_from(touch, beside, -1);
+  auto there = curve_at(touch, beside.z - step.by.cwiseProduct(beside.widths), beside, data);
+  return there && potential(*there) < highest ? std::move(there) : std::nullopt;
+}
+
+}  // namespace
+
 TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed,
                      int most_steps, double settled) {
-  double halving = 1.0;
+  double part = 1.0;
   for (int i = 0; i < most_steps; ++i) {
-    // From slice to slice the way is short.
-    const TouchedMatrix root = fixed < 0 ? step_root(touch, curve) : root_of(curve, fixed);
-    TouchedVector slope = curve.gradient - prior_gradient(touch, curve);
-    if (fixed >= 0) {
-      slope[fixed] = 0.0;
-    }
-    const TouchedVector step = solve_cholesky(root, slope);
-    if (!(0.5 * halving * slope.dot(step) > settled)) {
+    const Step step = step_from(touch, curve, fixed);
+    if (!(part * step.gain > settled)) {
       break;
     }
-    auto there = curve_at(touch, curve.z - halving * step.cwiseProduct(curve.widths), curve, data);
+    auto there = curve_at(touch, curve.z - part * step.by.cwiseProduct(curve.widths), curve, data);
+    if (there && !(potential(*there) < potential(curve)) && fixed < 0) {
+      there = corrected(touch, data, *there, potential(curve));
+    }
     if (there && potential(*there) < potential(curve)) {
       curve = std::move(*there);
-      halving = std::min(1.0, 2.0 * halving);
+      part = std::min(1.0, 2.0 * part);
     } else {
-      halving *= 0.25;
+      part *= 0.25;
     }
   }
   return curve;
@@ -127,15 +154,20 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
 
 std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data,
                                                 const TouchedCurve& start, double log_least) {
-  constexpr double kHidden = 0.1;  // half extents
   // Of the deviation, from level to level: what settles to within half a unit of the potential at
   // one is within four deviations of the next one's valley.
   constexpr double kLevel = 0.25;
   constexpr double kOnTheWay = 0.5;
   constexpr int kStepsPerLevel = 3;  // bounds the time
   const double full = touch.weight;
-  touch.weight = std::min(full, rms_sigma(data) / kHidden);
   std::optional<TouchedCurve> curve = curve_at(touch, start.z, start, data);
+  if (!curve) {
+    return std::nullopt;
+  }
+  // At the first level chi-square is the number of points.
+  const double n = static_cast<double>(residual_count(data));
+  touch.weight = full * std::min(1.0, std::sqrt(n / curve->chi2));
+  curve = counted(*std::move(curve), touch.weight / full);
   while (curve) {
     const bool last = !(touch.weight < full);
     curve = descend(touch, data, *std::move(curve), -1, last ? kStepsFromFit : kStepsPerLevel,

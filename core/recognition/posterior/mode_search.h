@@ -41,10 +41,9 @@ TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve
 std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
                                            double inflation, double least_chi2);
 
-/// The mode reached from the prior: starts with a noise that hides the shape and follows the mode
-/// while the noise is lowered to its true value, as long as the mode holds more than `log_least`.
-/// Reason: a fit far out in the prior's tails lies in a valley that is too narrow and bent to be
-/// walked along. Of `start` only place and feet are used.
+/// The mode that a shape of the prior leads to (prior_starts.h), if it holds more than `log_least`.
+/// The noise is lowered step by step from what the shape leaves to its true value. Reason: a fit
+/// far out in the prior's tails lies in a valley that is too narrow and bent to be walked along.
 std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data,
                                                 const TouchedCurve& start, double log_least);
 

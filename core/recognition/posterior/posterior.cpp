@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/numerics/negligible.h"
+#include "core/recognition/posterior/conic_limit.h"
 #include "core/recognition/posterior/slices.h"
 #include "core/recognition/posterior/straight_paths.h"
 
@@ -14,13 +15,6 @@ namespace palpate {
 namespace {
 
 constexpr double kNone = -std::numeric_limits<double>::infinity();
-
-/// log of the prior's density by m = e^2 - 1 next to the parabola, beyond it over on this side:
-/// ellipses have 1, hyperbolas Cauchy's law about 1 cut at 0 (touched_coordinates.cpp).
-double log_density_ratio_at_parabola(CurveClass beyond) {
-  const double of_hyperbolas = std::log(0.5 / (0.75 * kPi));
-  return beyond == CurveClass::Hyperbola ? of_hyperbolas : -of_hyperbolas;
-}
 
 /// The mode of the spline across c = 0, if there is one.
 std::optional<ClassEvidence> rival_of(const ClassFit& spline, const FitData& reduced,
@@ -93,6 +87,11 @@ bool add_straight_paths(const ClassFits& fits, const FitData& reduced, const Lik
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     auto& evidence = evidences->classes[i];
+    if (i != kLine && !evidence && fits[i] && fits[i]->at_limit) {
+      evidence = line;  // where it was touched
+      evidence->at_limit = true;
+      evidence->log_occam_of_mode = kNone;
+    }
     if (!evidence || i == kLine) {
       continue;
     }
@@ -114,7 +113,9 @@ constexpr double kUnseenLogOdds = 9.0;
 /// so much that it is seen beside `best`.
 void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced,
                     const Likelihood& likelihood, double best, Evidences* evidences) {
-  constexpr double kWorthAMode = 2.0;  // log odds: a factor of seven
+  constexpr double kWorthAMode = 2.0;   // log odds: a factor of seven
+  constexpr double kWorthOthers = 4.0;  // log odds: a fiftieth
+  constexpr double kLeftToPrior = 0.1;  // of a coordinate: a deviation of a third of the prior's
   auto& found = evidences->classes[i];
   if (!found || found->prior_mode_sought) {
     return;
@@ -124,9 +125,40 @@ void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced
   const double told =
       log_evidence(likelihood, *evidences, static_cast<CurveClass>(i), fits[i]->chi2);
   const double seen_from = best - kUnseenLogOdds;
-  if (gain > kWorthAMode && told + gain > seen_from) {
+  // Data that leave a cubic's shape open are such as its other arms have.
+  const int all = shape_coordinates(found->touch.curve_class) + 2;
+  const bool other_arms = (kCubics & class_bit(found->touch.curve_class)) != 0 &&
+                          found->determined < all - kLeftToPrior && told > best - kWorthOthers;
+  if ((gain > kWorthAMode || other_arms) && told + gain > seen_from) {
     const double seen_occam = found->log_occam + seen_from - told;
     found = with_prior_mode(*std::move(found), reduced, seen_occam);
+  }
+}
+
+constexpr std::array kConics = {std::pair(CurveClass::Ellipse, CurveClass::Hyperbola),
+                                std::pair(CurveClass::Hyperbola, CurveClass::Ellipse)};
+
+/// Of conics that fit no better than the parabola, where that might be seen, and where the other
+/// side of it does not tell what is beyond (probabilities_of).
+void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
+                double best, Evidences before, Evidences* evidences) {
+  constexpr auto kParabola = static_cast<std::size_t>(CurveClass::Parabola);
+  const auto& parabola = evidences->classes[kParabola];
+  if (!parabola || !fits[kParabola] ||
+      !(log_evidence(likelihood, *evidences, CurveClass::Parabola, fits[kParabola]->chi2) >
+        best - kUnseenLogOdds)) {
+    return;
+  }
+  for (const auto& [beyond, inside] : kConics) {
+    const auto b = static_cast<std::size_t>(beyond);
+    const auto& conic = evidences->classes[static_cast<std::size_t>(inside)];
+    if (!fits[b] || !fits[b]->at_limit || (conic && tells_eccentricity(*conic))) {
+      continue;
+    }
+    evidences->on_reduced_chi2[b] = parabola->fitted_chi2;
+    evidences->classes[b] = before.classes[b] && before.on_reduced_chi2[b] == parabola->fitted_chi2
+                                ? std::move(before.classes[b])
+                                : evidence_at_limit(beyond, *parabola, reduced);
   }
 }
 
@@ -210,6 +242,8 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
     }
     add_prior_modes(fits, reduced, likelihood,
                     log_evidence_of_free_form(likelihood, evidences, smooth.chi2), &evidences);
+    add_limits(fits, reduced, likelihood, best, same_noise ? std::move(before) : Evidences{},
+               &evidences);
   }
   return evidences;
 }
@@ -272,23 +306,25 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
   log_of[0] = log_evidence_of_free_form(likelihood, evidences, smooth_chi2);
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
-    if (fits[i] && !fits[i]->at_limit) {
+    const auto& evidence = evidences.classes[i];
+    if (fits[i] && evidence && fits[i]->at_limit == evidence->at_limit) {
       log_of[i] = log_evidence(likelihood, evidences, curve_class, fits[i]->chi2);
     }
   }
   // Both modes of the spline.
   const double share = rival_share(fits, likelihood, evidences);
   log_of[static_cast<std::size_t>(CurveClass::CubicSpline)] -= std::log1p(-share);
-  for (const auto& [beyond, inside] : {std::pair(CurveClass::Ellipse, CurveClass::Hyperbola),
-                                       std::pair(CurveClass::Hyperbola, CurveClass::Ellipse)}) {
+  const auto& parabola = evidences.classes[static_cast<std::size_t>(CurveClass::Parabola)];
+  for (const auto& [beyond, inside] : kConics) {
     const auto b = static_cast<std::size_t>(beyond);
     const auto i = static_cast<std::size_t>(inside);
-    if (fits[b] && fits[i] && fits[b]->at_limit && std::isfinite(log_of[i])) {
+    if (fits[b] && fits[b]->at_limit && !std::isfinite(log_of[b]) && parabola && fits[i] &&
+        std::isfinite(log_of[i])) {
       // To first order chi-square goes on beyond the parabola as it came: a normal law's tail.
       const double rise = likelihood.counted(fits[b]->chi2) - likelihood.counted(fits[i]->chi2);
       const double tail = 0.5 * std::erfc(std::sqrt(0.5 * std::max(rise, 0.0)));
       log_of[b] = log_of[i] - std::log1p(-tail) + std::log(std::max(tail, 1e-300)) +
-                  log_density_ratio_at_parabola(beyond);
+                  log_density_ratio_at_parabola(beyond, *parabola);
     }
   }
   if (likelihood.coherent_or_other || evidences.shared_or_other) {

@@ -211,7 +211,7 @@ std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& da
         slices == Slices::ForMoment ? Walk{0.5 * deviation, 0.05} : Walk{deviation, 0.5};
     log_integral = integrate(data, how, &evidence).value_or(log_integral);
   }
-  evidence.log_occam = log_integral + 0.5 * evidence.fitted_chi2;
+  evidence.log_occam = log_integral + 0.5 * evidence.fitted_chi2 + evidence.log_all_modes;
   return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
 }
 

@@ -6,160 +6,10 @@
 #include <limits>
 #include <vector>
 
-#include "core/curves/curve.h"
-#include "core/recognition/posterior/touched_coordinates.h"
+#include "core/recognition/posterior/prior_lattice.h"
 
 namespace palpate {
 namespace {
-
-/// Points of a lattice rule in the unit cube, i -> ((i + 1/2) / n) (1, a, a^2 mod n): a of least
-/// error for these integrals among all of so many points. [1]
-struct Lattice {
-  int points = 1;
-  int generator = 1;
-};
-
-/// As many as leave an error of about a tenth, at any noise; a fifth of the spline's evidence.
-Lattice lattice_of(int dimensions) {
-  switch (dimensions) {
-    case 0:
-      return {1, 1};
-    case 1:
-      return {12, 1};
-    case 2:
-      return {34, 9};
-    default:
-      return {127, 81};
-  }
-}
-
-/// A coordinate's value and how fast the unit interval's runs there.
-struct Mapped {
-  double value = 0.0;
-  double rate = 1.0;
-};
-
-/// [0, 1] to itself, slow at both ends: what is periodic so, a lattice integrates well (I. Sloan
-/// and S. Joe, "Lattice methods for multiple integration", 1994).
-Mapped slow_at_ends(double u) { return {u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u)}; }
-
-/// [0, 1] to angles in [from, to], and those to their tangents.
-Mapped tangent(double u, double from, double to, double scale) {
-  const Mapped part = slow_at_ends(u);
-  const double value = std::tan(from + (to - from) * part.value);
-  return {scale * value, scale * (to - from) * (1.0 + value * value) * part.rate};
-}
-/// Everywhere; one side of 0, where the other is its image in a mirror.
-Mapped everywhere(double u, double scale) { return tangent(u, -0.5 * kPi, 0.5 * kPi, scale); }
-Mapped one_side(double u, double scale) { return tangent(u, 0.0, 0.5 * kPi, scale); }
-
-/// The coordinates of a shape but its size, and what of the cube one of the space about it takes.
-struct Place {
-  TouchedVector z = TouchedVector::Zero();
-  double rate = 1.0;
-};
-
-/// Of a point of the unit cube. Dense where curvature passes through 0.
-Place place_at(CurveClass curve_class, const std::array<double, 3>& u) {
-  Place place;
-  place.z = prior_centre(curve_class);
-  // Twice the width of a normal law as high is where the tails begin.
-  const TouchedVector scale = 2.0 * prior_widths(curve_class, place.z);
-  const auto set = [&](int k, const Mapped& mapped) {
-    place.z[k] = mapped.value;
-    place.rate *= mapped.rate;
-  };
-  switch (curve_class) {
-    case CurveClass::Ellipse: {
-      const Mapped part = slow_at_ends(u[1]);
-      set(1, slow_at_ends(u[0]));
-      set(2, {0.5 * kPi * part.value, 0.5 * kPi * part.rate});
-      break;
-    }
-    case CurveClass::Hyperbola: {
-      const Mapped away = tangent(u[0], -0.25 * kPi, 0.5 * kPi, 1.0);  // of m from 1, m > 0
-      set(1, {1.0 + away.value, away.rate});
-      set(2, one_side(u[1], scale[2]));
-      break;
-    }
-    case CurveClass::Parabola:
-      set(1, one_side(u[0], scale[1]));
-      break;
-    case CurveClass::CubicalParabola:
-    case CurveClass::SemiCubicalParabola:
-      set(1, everywhere(u[0], scale[1]));
-      set(2, one_side(u[1], scale[2]));
-      break;
-    case CurveClass::CubicSpline: {
-      set(1, everywhere(u[0], scale[1]));
-      set(2, one_side(u[1], scale[2]));
-      // On either side of the inflection, 3 (a t)^2 = a c.
-      const double inflection = 3.0 * place.z[2] * place.z[2];
-      const double side = u[2] < 0.5 ? -1.0 : 1.0;
-      const Mapped away = one_side(std::abs(2.0 * u[2] - 1.0), std::hypot(scale[3], inflection));
-      set(3, {inflection + side * away.value, away.rate});
-      break;
-    }
-    default:
-      break;
-  }
-  return place;
-}
-
-/// A shape of the prior: curvature and its rate where it was touched, the length of its size being
-/// that of the prior's centre, and the part of the prior that it stands for.
-struct Shape {
-  double curvature = 0.0;
-  double rate = 0.0;
-  double weight = 0.0;
-};
-
-std::vector<Shape> shapes_of(CurveClass curve_class) {
-  const int own = shape_coordinates(curve_class);
-  const Lattice lattice = lattice_of(own - 1);
-  const TouchedShape like{Eigen::Vector3d::Ones(), 0.0};
-  std::vector<Shape> shapes;
-  double sum = 0.0;
-  for (int i = 0; i < lattice.points; ++i) {
-    std::array<double, 3> u{};
-    double at = (i + 0.5) / lattice.points;
-    for (double& part : u) {
-      part = at - std::floor(at);
-      at = lattice.generator * part;
-    }
-    const Place place = place_at(curve_class, u);
-    const auto shape = shape_at(curve_class, place.z, like);
-    const auto curve = shape ? make_curve(curve_class, shape->values) : std::nullopt;
-    if (!curve || !(place.rate > 0.0)) {
-      continue;  // an end of the cube
-    }
-    const LocalGeometry local = geometry(*curve, shape->t);
-    const TouchedVector widths = prior_widths(curve_class, place.z);
-    const double weight =
-        place.rate * std::exp(log_prior(curve_class, place.z)) / widths.segment(1, own - 1).prod();
-    if (std::isfinite(local.kappa) && std::isfinite(local.kappa_s)) {
-      shapes.push_back({std::abs(local.kappa), std::abs(local.kappa_s), weight});
-      sum += weight;
-    }
-  }
-  for (Shape& shape : shapes) {
-    shape.weight /= sum;
-  }
-  return shapes;
-}
-
-const std::vector<Shape>& shapes(CurveClass curve_class) {
-  static const auto all = [] {
-    std::array<std::vector<Shape>, 9> result;
-    for (const CurveClass each : kCurveClasses) {
-      if (each != CurveClass::Line) {
-        result[static_cast<std::size_t>(each)] = shapes_of(each);
-      }
-    }
-    return result;
-  }();
-  return all[static_cast<std::size_t>(curve_class)];
-}
 
 /// Gauss and Legendre's rule of ten points over [0, 1].
 constexpr int kRule = 10;
@@ -280,9 +130,9 @@ double log_evidence_over_line(CurveClass curve_class, const BendOfLine& bend) {
   const double farthest_curvature = beyond + std::abs(bend.curvature);
   const double farthest_rate = beyond + std::abs(bend.rate);
   double sum = 0.0;
-  for (const Shape& shape : shapes(curve_class)) {
-    const double k = shape.curvature / bend.curvature_sigma;
-    const double q = shape.rate / bend.rate_sigma;
+  for (const PriorShape& shape : prior_shapes(curve_class)) {
+    const double k = std::abs(shape.curvature) / bend.curvature_sigma;
+    const double q = std::abs(shape.rate) / bend.rate_sigma;
     const double by_curvature = farthest_curvature / k;
     const double most = std::min(by_curvature * by_curvature, farthest_rate / q);
     const double end = std::isfinite(most) ? most / (1.0 + most) : 1.0;

@@ -241,33 +241,6 @@ int place_coordinate(CurveClass curve_class) {
   }
 }
 
-TouchedVector expected_coordinates(CurveClass curve_class, double arm, double bend) {
-  TouchedVector z = prior_centre(curve_class);
-  switch (curve_class) {
-    case CurveClass::Ellipse:
-      z.segment<2>(1) << 0.5, 0.5 * kPi;
-      break;
-    case CurveClass::Parabola:
-      z[1] = std::copysign(kSlope.scale, arm);
-      break;
-    case CurveClass::Hyperbola:
-      z[2] = std::copysign(kSlope.scale, arm);
-      break;
-    case CurveClass::CubicalParabola:
-      z[2] = std::copysign(kPlaceFromInflection.scale, arm);
-      break;
-    case CurveClass::CubicSpline:
-      z[3] = std::copysign(kBend.scale, bend);
-      [[fallthrough]];
-    case CurveClass::SemiCubicalParabola:
-      z[2] = std::copysign(kPlaceFromCusp.scale, arm);
-      break;
-    default:
-      break;
-  }
-  return z;
-}
-
 TouchedVector prior_widths(CurveClass curve_class, const TouchedVector& z) {
   TouchedVector widths = TouchedVector::Zero();
   switch (curve_class) {
@@ -302,8 +275,9 @@ TouchedVector prior_widths(CurveClass curve_class, const TouchedVector& z) {
       break;
   }
   const int own = shape_coordinates(curve_class);
-  widths[own] = kCauchyWidth;             // offset, in half extents
-  widths[own + 1] = kPi * kUniformWidth;  // turn: any direction, either way of travel
+  widths[own] = kCauchyWidth;  // offset, in half extents
+  // Turn: any direction. A line is the same either way of travel; what bends is not.
+  widths[own + 1] = (curve_class == CurveClass::Line ? kPi : 2.0 * kPi) * kUniformWidth;
   return widths;
 }
 

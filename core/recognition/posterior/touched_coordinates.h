@@ -54,10 +54,6 @@ TouchedVector prior_centre(CurveClass curve_class);
 /// Index of the coordinate of the place; -1 if all places are alike.
 int place_coordinate(CurveClass curve_class);
 
-/// A typical curve of the prior: the size at its centre, the other coordinates at their scales. The
-/// signs of `arm` and `bend` are those of the place and of the spline's c.
-TouchedVector expected_coordinates(CurveClass curve_class, double arm, double bend);
-
 /// log of (length whose logarithm is z[0] / size of the part).
 double log_length_over_size(CurveClass curve_class);
 

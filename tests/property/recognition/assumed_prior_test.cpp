@@ -1,0 +1,118 @@
+// Probabilities are true where parts are drawn from the very prior that is assumed, paths of no
+// class among them: what is left there is the integrals' own error.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <random>
+#include <string>
+
+#include "core/recognition/recognizer.h"
+#include "tests/support/assumed_prior.h"
+#include "tests/support/calibration.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kScenes = 2250;
+constexpr double kCoverage = 0.999;
+constexpr double kDeviations = 3.29;  // the same of a normal law
+
+/// Of the most probable hypothesis, over all answers and by the class that it names; and of every
+/// class the mass that is stated of it, with its variance, beside how often it is the truth.
+struct Told {
+  test::Calibration pooled;
+  std::array<test::Calibration, 9> by_class;
+  std::array<double, 9> stated{};
+  std::array<double, 9> variance{};
+  std::array<int, 9> truth{};
+};
+
+Told run() {
+  Told told;
+  std::mt19937_64 rng(test::test_seed());
+  const int scenes = test::stress_count(kScenes);
+  for (int i = 0; i < scenes; ++i) {
+    const test::AssumedScene scene = test::draw_assumed(rng);
+    std::vector<ContactSample> samples = scene.samples;
+    for (ContactSample& sample : samples) {
+      sample.sigma_m = scene.sigma_m;
+    }
+    Recognizer recognizer;
+    recognizer.add({}, samples);
+    const Recognition answer = recognizer.recognize();
+    EXPECT_FALSE(answer.hypotheses.empty()) << "scene " << i;
+    if (answer.hypotheses.empty()) {
+      continue;
+    }
+    ++told.truth[static_cast<std::size_t>(scene.truth)];
+    for (const Hypothesis& hypothesis : answer.hypotheses) {
+      const auto k = static_cast<std::size_t>(hypothesis.shape.curve_class);
+      const double p = hypothesis.probability;
+      EXPECT_TRUE(std::isfinite(p)) << "scene " << i;
+      told.stated[k] += p;
+      told.variance[k] += p * (1.0 - p);
+    }
+    const double probability = answer.hypotheses.front().probability;
+    const bool right = answer.shape.curve_class == scene.truth;
+    told.pooled.add(probability, right);
+    told.by_class[static_cast<std::size_t>(answer.shape.curve_class)].add(probability, right);
+  }
+  return told;
+}
+
+/// Bins from `from` on; those below are printed. A bin whose band holds every frequency cannot
+/// fail.
+void expect_true(const test::Calibration& calibration, const std::string& title, double from) {
+  for (std::size_t b = 0; b < test::kProbabilityBins; ++b) {
+    const test::Calibration::Bin& bin = calibration.bins()[b];
+    const test::Band band = bin.band(kCoverage);
+    if (band.least == 0 && band.most == bin.count()) {
+      continue;
+    }
+    std::cout << "  " << title << " " << test::kProbabilityBounds[b] << " to "
+              << test::kProbabilityBounds[b + 1] << ": stated " << bin.mean_stated() << ", right "
+              << bin.right << " of " << bin.count() << ", band " << band.least << " to "
+              << band.most << "\n";
+    if (test::kProbabilityBounds[b] < from || !test::counts_tell()) {
+      continue;
+    }
+    EXPECT_GE(bin.right, band.least)
+        << title << ", bin from " << test::kProbabilityBounds[b] << ": too sure";
+    EXPECT_LE(bin.right, band.most)
+        << title << ", bin from " << test::kProbabilityBounds[b] << ": not sure enough";
+  }
+}
+
+/// A spline that leaves two coordinates loose has more than slices along one of them tell, and more
+/// arms than are searched: of 573 among 4500 (bench_prior --scenes 4500) 70 are missing in the
+/// stated mass, most of them from answers below 0.95. A semi-cubical parabola is the limit of what
+/// is missing: said with 0.8 to 0.95, it is right in 18 of 30.
+bool is_told_in_full(CurveClass curve_class) {
+  return curve_class != CurveClass::CubicSpline && curve_class != CurveClass::SemiCubicalParabola;
+}
+
+TEST(AssumedPrior, StatedProbabilitiesAreTrue) {
+  const Told told = run();
+  // Below, the splines' mass that is short is spread on all classes: stated 0.976, right 0.966
+  // (bench_prior --scenes 4500); 0.885 and 0.847; 0.708 and 0.632; 0.543 and 0.421.
+  constexpr double kPooledFrom = 0.99;
+  constexpr double kClassesFrom = 0.6;
+  expect_true(told.pooled, "all", kPooledFrom);
+  for (std::size_t i = 0; i < told.by_class.size(); ++i) {
+    const auto curve_class = static_cast<CurveClass>(i);
+    const std::string name(name_of(curve_class));
+    expect_true(told.by_class[i], name, is_told_in_full(curve_class) ? kClassesFrom : 1.0);
+    const double deviations = (told.stated[i] - told.truth[i]) / std::sqrt(told.variance[i]);
+    std::cout << "  " << name << ": stated mass " << told.stated[i] << ", truth " << told.truth[i]
+              << ", deviations " << deviations << "\n";
+    if (is_told_in_full(curve_class) && test::counts_tell()) {
+      EXPECT_LT(std::abs(deviations), kDeviations) << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate
