@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "core/numerics/small_cholesky.h"
+#include "core/numerics/work_budget.h"
 
 namespace palpate {
 
@@ -26,6 +27,10 @@ struct MinimiseOptions {
   double first_damping = 1e-8;
   /// Ends where the linear model leaves more than this: so far off nothing is to be told.
   double out_of_reach = std::numeric_limits<double>::infinity();
+  /// What steps are counted in, and end with; nullptr: `iterations` alone bounds them.
+  WorkBudget* work = nullptr;
+  WorkKind row = WorkKind::PolynomialRow;  ///< of `rows` by each try
+  std::size_t rows = 0;
 };
 
 struct MinimiseSummary {
@@ -45,6 +50,7 @@ struct MinimiseSummary {
 /// and may have
 ///   Vector bend(const Vector& step) const;  // J^T r'', r'' the second derivatives along `step`
 /// without which the steps are those of Levenberg and Marquardt alone.
+/// Where `options.work` is spent, it stays where it has come to; it always looks at `*x`.
 /// Directions that leave the residuals as they are may be among the parameters: the damping takes
 /// care of them.
 template <typename Problem>
@@ -61,6 +67,13 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
   constexpr double kNothing = 1e-3;
 
   MinimiseSummary summary;
+  const auto count = [&] {
+    if (options.work != nullptr) {
+      options.work->spend(options.row, options.rows);
+      options.work->spend(WorkKind::FitStep, 1);
+    }
+  };
+  count();
   summary.initial_chi2 = summary.chi2 = problem->chi2_at(*x);
   if (!std::isfinite(summary.chi2)) {
     return summary;
@@ -76,7 +89,8 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
   linearise();
   double damping = options.first_damping;
   double growth = 2.0;
-  while (summary.iterations < options.iterations) {
+  while (summary.iterations < options.iterations &&
+         (options.work == nullptr || options.work->allows())) {
     ++summary.iterations;
     Matrix damped = information;
     damped.diagonal() += damping * diagonal;
@@ -111,6 +125,7 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
       }
     }
     const Vector there = *x + step;
+    count();
     const double chi2 = problem->chi2_at(there);
     const double gain = summary.chi2 - chi2;
     if (gain > 0.0) {

@@ -8,6 +8,7 @@
 #include "core/curves/pose2.h"
 #include "core/curves/shape_parameters.h"
 #include "core/invariants/named_invariant.h"
+#include "core/numerics/work_budget.h"
 #include "core/recognition/localized_contact.h"
 #include "core/recognition/tree/decision.h"
 
@@ -22,6 +23,8 @@ enum class RecognitionStatus {
 /// Why an answer is AMBIGUOUS; the first that applies, in this order.
 enum class Doubt {
   None,
+  WorkLimit,  ///< the work that an answer may take was spent before all was looked at
+              ///< (work_limit.h)
   FormError,  ///< residuals are correlated along the arc: form error, or a class not known here
   SeveralClasses,  ///< no class is probable enough
   AtLimit,         ///< the class fits best where it turns into another
@@ -85,6 +88,7 @@ struct Recognition {
   /// together and stated form error so much more white noise.
   ShapePoseCovariance white_covariance;
   double covariance_inflation = 1.0;
+  WorkBudget work;  ///< that the answer took, and whether there was more to do
 };
 
 }  // namespace palpate

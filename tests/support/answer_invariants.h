@@ -26,7 +26,8 @@ TouchedPlaces places_of(std::span<const Vec2> positions);
 /// The first invariant that the answer breaks, in words; empty where it keeps all:
 /// probabilities in [0, 1] that sum to 1 within 1e-9, no NaN; covariances symmetric and positive
 /// semidefinite to rounding where their entries are finite; contacts finite; never RECOGNIZED from
-/// fewer distinct places than its class asks for, nor where the extent is at rounding.
+/// fewer distinct places than its class asks for, nor where the extent is at rounding; no more work
+/// than is allowed, and where that was not enough, AMBIGUOUS for it.
 std::string broken_invariant(const Recognition& answer, const TouchedPlaces& places);
 
 }  // namespace palpate::test

@@ -9,6 +9,9 @@
 namespace palpate {
 namespace {
 
+// Blocks overlap by half.
+constexpr std::size_t kBlocksOfSample = 2;
+
 /// Half of it determines a quartic with three samples to spare.
 constexpr std::size_t kBlock = 16;
 
@@ -136,7 +139,7 @@ double parabola_scale_m(std::span<const Vec2> samples, std::size_t length,
 /// looked for only where a residual is larger than noise leaves any in 19 of 20 patches, or
 /// where the noise is above that of the third differences.
 void look_for_spiked_noise(std::span<const Vec2> samples, double largest, double threshold,
-                           BlockSurvey* survey) {
+                           BlockSurvey* survey, WorkBudget& work) {
   constexpr double kAlarms = 0.05;  // of patches, which then cost a look
   // Three standard deviations of the quantile for 111 samples: sqrt(q (1 - q) / m) over its density
   // and itself is 2.0 / sqrt(m), and what neighbouring differences share makes it 2.3 / sqrt(m).
@@ -149,6 +152,7 @@ void look_for_spiked_noise(std::span<const Vec2> samples, double largest, double
   if (largest <= quiet && survey->sigma_m <= kAboveDifferences * low_noise_of(samples, sizes)) {
     return;
   }
+  work.spend(WorkKind::SpikeRow, kRowsOfParabola * samples.size());
   // Spikes lengthen the chords and what is taken for noise: the shortest blocks that resolve their
   // own scale.
   double scale_m = 0.0;
@@ -182,7 +186,9 @@ bool turns_back(const ResidualBlock& block, double sigma_m) {
   return block.backtrack_m() > kBacktrackSigmas * std::sqrt(2.0) * sigma_m;
 }
 
-BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold) {
+BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold,
+                          WorkBudget& work) {
+  work.spend(WorkKind::SpikeRow, kBlocksOfSample * samples.size());
   BlockSurvey survey;
   survey.length = std::min(kBlock, samples.size());
   Blocks blocks = fit_blocks(samples, survey.length, sigma_m);
@@ -204,7 +210,7 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
     // long blocks must be, and half of each lies near a parabola.
     std::vector<double> sizes;
     survey.length = block_length(samples, low_noise_of(samples, sizes));
-    look_for_spiked_noise(samples, blocks.largest, threshold, &survey);
+    look_for_spiked_noise(samples, blocks.largest, threshold, &survey, work);
     survey.is_any_off = survey.is_noise_spiked;
     if (!survey.is_noise_spiked) {
       survey.status = LocalStatus::Unresolved;
@@ -217,7 +223,7 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
       blocks.backtrack_m > kBacktrackSigmas * std::sqrt(2.0) * survey.sigma_m;
   survey.is_any_off = blocks.largest > threshold || (is_resolved() && is_out_of_order);
   if (!(sigma_m > 0.0)) {
-    look_for_spiked_noise(samples, blocks.largest, threshold, &survey);
+    look_for_spiked_noise(samples, blocks.largest, threshold, &survey, work);
   }
   return survey;
 }

@@ -9,6 +9,7 @@
 
 #include "core/local/local_status.h"
 #include "core/local/residual_block.h"
+#include "core/numerics/work_budget.h"
 
 namespace palpate {
 
@@ -22,7 +23,9 @@ struct BlockSurvey {
 
 /// Blocks of 16 samples, or twice that and so on where those span less than 20 sigma. `sigma_m`: 0
 /// = not known. `threshold`: standard deviations beyond which a sample is off.
-BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold);
+/// Counts in `work`.
+BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold,
+                          WorkBudget& work);
 
 /// Residual beyond which a sample is off the block's quartic: noise, or form that no quartic has.
 /// [m]

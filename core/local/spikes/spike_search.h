@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/local/spikes/block_survey.h"
+#include "core/numerics/work_budget.h"
 
 namespace palpate {
 
@@ -19,8 +20,9 @@ struct SpikeSearch {
 /// samples, and where more than an eighth would leave, from the half nearest to a common parabola.
 /// A block in which no more than half join, or which turns by more than 45 degrees, says nothing.
 /// No block condemns what goes on beyond its own samples, a bend or a step; each sample is judged
-/// by the block that loses least. `sigma_m`: 0 = by the residuals of samples that joined.
+/// by the block that loses least. `sigma_m`: 0 = by the residuals of samples that joined. Blocks
+/// that `work` does not go to say nothing.
 SpikeSearch search_spikes(std::span<const Vec2> samples, const BlockSurvey& survey, double sigma_m,
-                          double threshold);
+                          double threshold, WorkBudget& work);
 
 }  // namespace palpate

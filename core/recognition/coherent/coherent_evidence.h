@@ -1,6 +1,7 @@
 // The evidence of a class where what it leaves may be coherent deviation as well as noise.
 #pragma once
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/posterior/class_evidence.h"
 #include "core/recognition/posterior/likelihood.h"
@@ -16,6 +17,6 @@ namespace palpate {
 /// be: data then tell them apart no better than they tell the deviation to be small. O(points).
 double log_coherent_evidence(const Likelihood& likelihood, const ClassEvidence& evidence,
                              const CanonicalFit& placed, const FitData& reduced, double sigma,
-                             double samples, double chi2, double scatter);
+                             double samples, double chi2, double scatter, WorkBudget& work);
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/polynomial_fit.h"
 #include "core/recognition/samples/fit_data.h"
 
@@ -26,7 +27,8 @@ struct AxisFit {
 /// Minimises over theta (and x0), the coefficients of y eliminated by linear least squares at every
 /// step (variable projection: G. Golub and V. Pereyra, 1973), so that the long valleys of short
 /// arcs are walked in one or two dimensions. O(points) per iteration.
-AxisFit refine_axis(std::span<const FitPoint> points, AxisFit start, int max_iterations);
+AxisFit refine_axis(std::span<const FitPoint> points, AxisFit start, int max_iterations,
+                    WorkBudget& work);
 
 /// Gives every point of each patch the arm that suits the fit: both all-one-arm and a change of arm
 /// at some point are tried. Returns whether any arm changed. Arm models only.

@@ -9,6 +9,7 @@
 
 #include "core/curves/curve_class.h"
 #include "core/numerics/negligible.h"
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/implicit_fit.h"
 #include "core/recognition/fit/polynomial_fit.h"
 #include "core/recognition/fit/polynomial_search.h"
@@ -61,7 +62,8 @@ struct WarmStart;
 /// `classes` leaves out may be missing. `out_of_reach`: beyond this chi-square it is not
 /// asked how well a class fits. Where points are many, searches go through few of them, twice at
 /// most: beside them each point costs a bounded number of steps.
-ClassFits fit_classes(const FitData& reduced, const WarmStart* start = nullptr,
+/// Where `work` is spent, line and circle are there, the others as far as they have come.
+ClassFits fit_classes(const FitData& reduced, WorkBudget& work, const WarmStart* start = nullptr,
                       unsigned classes = kAllClasses,
                       double out_of_reach = std::numeric_limits<double>::infinity());
 

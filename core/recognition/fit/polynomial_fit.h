@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/polynomial_problem.h"
 #include "core/recognition/fit/refine_effort.h"
 #include "core/recognition/samples/fit_data.h"
@@ -25,8 +26,8 @@ struct PolynomialFit {
 /// of t leave the curve as it is; the damping takes care of them. `start.t` must hold a parameter
 /// near each point's foot point. O(points) per iteration.
 PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
-                                const PolynomialFit& start, int side,
-                                const RefineEffort& effort = {});
+                                const PolynomialFit& start, int side, const RefineEffort& effort,
+                                WorkBudget& work);
 
 /// Whether two fits to the same points ended in the same optimum: chi-squares alike and directions
 /// of the cubic axis alike, as far as the optimiser's tolerance goes.

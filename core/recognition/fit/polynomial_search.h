@@ -29,20 +29,20 @@ struct PolynomialFits {
 
 /// Exhaustive coarse search, valleys walked, the best of each refined with coarse effort; of the
 /// cubics, unless it is `out_of_reach` (as fit_classes).
-PolynomialFits search_polynomials(const FitData& reduced,
-                                  double out_of_reach = std::numeric_limits<double>::infinity());
+PolynomialFits search_polynomials(const FitData& reduced, double out_of_reach, WorkBudget& work);
 
 /// The parabola alone, which the conics need at their limit.
-PolynomialFits search_parabola(const FitData& reduced);
+PolynomialFits search_parabola(const FitData& reduced, WorkBudget& work);
 
 /// The same from earlier fits, whose t must be those of `reduced` (warm_start.h): no search. Fits
 /// that were out by far stay as they are, their chi2 that of the new points. `out_of_reach`: as
 /// above, of all of them.
 PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts,
-                                  double out_of_reach = std::numeric_limits<double>::infinity());
+                                  double out_of_reach, WorkBudget& work);
 
 /// The last resort where nothing fits: refines thoroughly every seed of the models with arms, whose
 /// sharp bends make narrow valleys, and the best of the others.
-void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFits* fits);
+void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFits* fits,
+                       WorkBudget& work);
 
 }  // namespace palpate

@@ -47,7 +47,8 @@ bool is_of_optimum(const ClassEvidence& evidence) {
 }
 
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
-                                         double inflation) {
+                                         double inflation, WorkBudget& work) {
+  work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
   auto touch = touch_of(fit, data);
   if (!touch) {
     return std::nullopt;
@@ -69,11 +70,12 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
   ClassEvidence evidence;
   evidence.touch = *touch;
   evidence.fitted_chi2 = first->chi2;
-  set_mode(descend(*touch, data, std::move(*first), -1, kStepsFromFit), &evidence);
+  set_mode(descend(*touch, data, std::move(*first), -1, work, kStepsFromFit), &evidence);
   return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
 }
 
-ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least) {
+ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least,
+                              WorkBudget& work) {
   evidence.prior_mode_sought = true;
   const TouchedCurve fitted = evidence.nodes[evidence.mode].curve;
   const CurveClass curve_class = evidence.touch.curve_class;
@@ -81,7 +83,7 @@ ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, doubl
   const auto take = [&](double arm) {
     const double least_mass = std::max(evidence.log_occam, least) - 0.5 * evidence.fitted_chi2;
     const TouchedCurve start = expected(touch, fitted, arm);
-    if (auto mode = followed_from_prior(touch, data, start, least_mass)) {
+    if (auto mode = followed_from_prior(touch, data, start, least_mass, work)) {
       evidence.touch = touch;
       set_mode(*std::move(mode), &evidence);
     }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/posterior/touched_curve.h"
 
 namespace palpate {
@@ -48,13 +49,14 @@ bool is_of_optimum(const ClassEvidence& evidence);
 /// times. nullopt where the fit is no curve of its class in canonical coordinates in double
 /// precision: a vertex so far away has no share in the prior. O(points).
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
-                                         double inflation);
+                                         double inflation, WorkBudget& work);
 
 /// The same at the mode that the prior leads to, where that holds more, and more than `least`, the
 /// log of what the prior leaves of the likelihood: a fit may be at an optimum of the likelihood far
 /// out in the prior's tails, in a valley with a place of as good a fit that the prior expects, but
 /// too long and too bent to be walked along. `evidence`: of one node.
-ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least);
+ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least,
+                              WorkBudget& work);
 
 /// The same at the mode of `before`, where that holds more: another fit of the class to the same
 /// data, at the same inflation.

@@ -57,7 +57,7 @@ TouchedMatrix root_of(const TouchedCurve& curve, int fixed) {
 }
 
 TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed,
-                     int most_steps, double settled) {
+                     WorkBudget& work, int most_steps, double settled) {
   double halving = 1.0;
   for (int i = 0; i < most_steps; ++i) {
     // From slice to slice the way is short.
@@ -67,9 +67,10 @@ TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve
       slope[fixed] = 0.0;
     }
     const TouchedVector step = solve_cholesky(root, slope);
-    if (!(0.5 * halving * slope.dot(step) > settled)) {
+    if (!(0.5 * halving * slope.dot(step) > settled) || !work.allows()) {
       break;
     }
+    work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
     auto there = curve_at(touch, curve.z - halving * step.cwiseProduct(curve.widths), curve, data);
     if (there && potential(*there) < potential(curve)) {
       curve = std::move(*there);
@@ -82,7 +83,7 @@ TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve
 }
 
 std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
-                                           double inflation, double least_chi2) {
+                                           double inflation, double least_chi2, WorkBudget& work) {
   // The noise is lowered from what the start leaves to what it is: at each level the valley is wide
   // enough to be walked along.
   constexpr int kStepsPerLevel = 12;
@@ -101,6 +102,7 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
     return std::nullopt;
   }
   touch->weight = 1.0 / std::sqrt(inflation);
+  work.spend(WorkKind::PosteriorRow, 2 * rows_of_curve(data));
   auto curve = curve_at(*touch, start, data);
   if (!curve) {
     return std::nullopt;
@@ -108,12 +110,16 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
   const double full = touch->weight;
   double weight = full * std::min(1.0, std::sqrt(n / curve->chi2));
   while (weight < full) {
+    if (!work.allows()) {
+      return std::nullopt;
+    }
     touch->weight = weight;
+    work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
     curve = curve_at(*touch, curve->z, *curve, data);
     if (!curve) {
       return std::nullopt;
     }
-    curve = descend(*touch, data, *std::move(curve), -1, kStepsPerLevel);
+    curve = descend(*touch, data, *std::move(curve), -1, work, kStepsPerLevel);
     if (curve->chi2 > kLost * n) {
       return std::nullopt;
     }
@@ -121,12 +127,13 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
   }
   touch->weight = full;
   curve = curve_at(*touch, curve->z, *curve, data);
-  return curve ? std::optional(descend(*touch, data, *std::move(curve), -1, kStepsFromFit))
+  return curve ? std::optional(descend(*touch, data, *std::move(curve), -1, work, kStepsFromFit))
                : std::nullopt;
 }
 
 std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data,
-                                                const TouchedCurve& start, double log_least) {
+                                                const TouchedCurve& start, double log_least,
+                                                WorkBudget& work) {
   constexpr double kHidden = 0.1;  // half extents
   // Of the deviation, from level to level: what settles to within half a unit of the potential at
   // one is within four deviations of the next one's valley.
@@ -135,10 +142,11 @@ std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data
   constexpr int kStepsPerLevel = 3;  // bounds the time
   const double full = touch.weight;
   touch.weight = std::min(full, rms_sigma(data) / kHidden);
+  work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
   std::optional<TouchedCurve> curve = curve_at(touch, start.z, start, data);
-  while (curve) {
+  while (curve && work.allows()) {
     const bool last = !(touch.weight < full);
-    curve = descend(touch, data, *std::move(curve), -1, last ? kStepsFromFit : kStepsPerLevel,
+    curve = descend(touch, data, *std::move(curve), -1, work, last ? kStepsFromFit : kStepsPerLevel,
                     last ? kSettledPotential : kOnTheWay);
     // Less noise leaves no more of it.
     if (!(log_mass(*curve) > log_least)) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/posterior/class_evidence.h"
 #include "core/recognition/posterior/free_form.h"
@@ -34,7 +35,8 @@ struct Evidences {
 };
 
 /// Of no class yet, but of free-form paths.
-Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood);
+Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
+                             WorkBudget& work);
 
 /// log of the evidence of free-form paths.
 double log_evidence_of_free_form(const Likelihood& likelihood, const Evidences& evidences,
@@ -49,13 +51,13 @@ double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
 /// `before`: of the same points; what has not changed since is taken from it.
 Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
-                       const Likelihood& likelihood, Evidences before = {});
+                       const Likelihood& likelihood, Evidences before, WorkBudget& work);
 
 /// The same with quadrature for the classes whose share is not negligible, where there are several;
 /// and the spline's other mode. `margin`: log odds that keep the best from being RECOGNIZED.
 Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits& on_reduced,
                      double smooth_chi2, const FitData& reduced, const Likelihood& likelihood,
-                     double margin);
+                     double margin, WorkBudget& work);
 
 /// Posterior probabilities, all classes alike probable before. A conic that has no optimum on its
 /// own side of the parabola has the mass that the other side's optimum leaves there.

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/posterior/class_evidence.h"
 
 namespace palpate {
@@ -16,8 +17,9 @@ enum class Slices {
 
 /// The same evidence, integrated by slices along the coordinate that is left the widest, where that
 /// takes any; by Laplace's formula where not. `evidence`: of the same data, at any inflation.
-/// nullopt where it turns out to be that of no optimum. At most some forty slices.
+/// nullopt where it turns out to be that of no optimum. At most some forty slices, and no more than
+/// `work` goes on.
 std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& data,
-                                       double inflation, Slices slices);
+                                       double inflation, Slices slices, WorkBudget& work);
 
 }  // namespace palpate

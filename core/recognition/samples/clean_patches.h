@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/samples/sample_memory.h"
 
 namespace palpate {
@@ -12,8 +13,10 @@ namespace palpate {
 class CleanPatches {
  public:
   /// Looks at the patches of a memory. `default_sigma_m`: noise of samples that state none; 0 = not
-  /// known. `false_alarm`: as spikes_of().
-  void look_at(const std::vector<StoredPatch>& patches, double default_sigma_m, double false_alarm);
+  /// known. `false_alarm`, `work`: as spikes_of(). A patch in which `work` ended is looked at
+  /// again.
+  void look_at(const std::vector<StoredPatch>& patches, double default_sigma_m, double false_alarm,
+               WorkBudget& work);
 
   /// The patches looked at, the samples of each dwell at their mean (dwells.h), and each patch cut
   /// where it turns back over itself (passes.h).

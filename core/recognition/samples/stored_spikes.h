@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/samples/sample_memory.h"
 
 namespace palpate {
@@ -15,8 +16,9 @@ inline constexpr std::size_t kLongestRunOfSpikes = 3;
 
 /// find_spikes (core/local/spikes/spikes.h) on the positions of one patch, noise by the patch
 /// itself: one flag per sample. `false_alarm`: probability that a patch without spikes loses any
-/// sample.
-std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_alarm);
+/// sample. As far as `work` goes.
+std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_alarm,
+                            WorkBudget& work);
 
 /// The samples that are no spikes; one flag each.
 std::vector<StoredSample> without_spikes(std::span<const StoredSample> samples,

@@ -25,6 +25,7 @@ struct StrungTouches {
 /// no side that a probe could have said. nullopt where there is no run. `default_sigma_m`: of
 /// samples that bring none; `classes`: by bit 1 << CurveClass.
 std::optional<StrungTouches> strung_touches(std::span<const StoredPatch> patches,
-                                            double default_sigma_m, unsigned classes);
+                                            double default_sigma_m, unsigned classes,
+                                            WorkBudget& work);
 
 }  // namespace palpate

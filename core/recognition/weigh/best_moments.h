@@ -19,6 +19,10 @@ struct BestMoments {
 };
 
 /// Once for an answer: of several weighings only that which it is told from needs them.
-BestMoments moments_of_best(const Weighing& weighing);
+BestMoments moments_of_best(const Weighing& weighing, WorkBudget& work);
+
+/// What residuals tell of a smooth deviation, to a factor of the root of two and no less, so that
+/// windows are not made anew wherever a sample changes it a little. [m]
+double told_deviation_m(const BestMoments& moments, double scale_m);
 
 }  // namespace palpate

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/warm_start.h"
 #include "core/recognition/posterior/posterior.h"
 #include "core/recognition/samples/sample_memory.h"
@@ -41,6 +42,7 @@ struct SidedFits {
 struct Judged {
   const Arcs& arcs;
   const Likelihood& likelihood;
+  WorkBudget& work;
   Evidences of_paths;              ///< with that of free-form paths, under this law
   unsigned classes = kAllClasses;  ///< by bit 1 << CurveClass
   double out_of_reach =

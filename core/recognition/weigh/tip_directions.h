@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/smooth/smooth_model.h"
 
@@ -25,14 +26,14 @@ enum class DirectionsOf { UntoldPoints, KeptPoints, AllPoints };
 /// sense is that of the whole patch's travel along the curve; a patch that shows none gets the
 /// curve's. Returns the largest angle by which one has turned. [rad]
 double set_directions(DirectionsOf which, const CanonicalFit& curve, const SmoothModel& smooth,
-                      FitData* touches);
+                      FitData* touches, WorkBudget& work);
 
 /// The sides to which the patches bend (tip_sides.h): as they turn by themselves, where that is
 /// certain, else as the curve through the tips' centres bends beside them.
-std::vector<double> bends_of(const CanonicalFit& curve, const FitData& touches);
+std::vector<double> bends_of(const CanonicalFit& curve, const FitData& touches, WorkBudget& work);
 
 /// Whether the patches travel along the curve as its parameter rises (1) or falls (-1); 0 where
 /// they show no direction.
-std::vector<double> senses_of(const CanonicalFit& curve, const FitData& touches);
+std::vector<double> senses_of(const CanonicalFit& curve, const FitData& touches, WorkBudget& work);
 
 }  // namespace palpate

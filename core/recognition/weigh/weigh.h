@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/warm_start.h"
@@ -61,8 +62,10 @@ struct Weighing {
 };
 
 /// `data` from make_fit_data. Follows core/README.md, "Refinement and the bound" and "Evidence".
+/// Where `work` is spent, it says what has been found by then.
 /// `starts`: what an earlier weighing of fewer samples of the same patches left, or nothing.
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
-               const WeighOptions& options = {}, std::span<const SidedStart> starts = {});
+               WorkBudget& work, const WeighOptions& options = {},
+               std::span<const SidedStart> starts = {});
 
 }  // namespace palpate

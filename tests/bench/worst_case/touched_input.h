@@ -90,7 +90,8 @@ InputRecipe mutated(InputRecipe recipe, std::mt19937_64& rng, InputKind kind,
 TouchedInput input_of(const InputRecipe& recipe);
 
 /// A clean ellipse, touched all around in as many patches of as many samples as the input has.
-TouchedInput clean_ellipse_like(const TouchedInput& input);
+/// `seed`: of its noise.
+TouchedInput clean_ellipse_like(const TouchedInput& input, std::uint32_t seed = 1);
 
 /// The recipe on one line.
 std::string to_text(const InputRecipe& recipe);
