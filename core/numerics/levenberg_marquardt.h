@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "core/numerics/small_cholesky.h"
+#include "core/numerics/work_budget.h"
 
 namespace palpate {
 
@@ -27,6 +28,10 @@ struct MinimiseOptions {
   double first_damping = 1e-8;
   /// Stop if the linear model predicts a chi-square above this: the fit cannot become relevant.
   double out_of_reach = std::numeric_limits<double>::infinity();
+  /// What steps are counted in, and end with; nullptr: `iterations` alone bounds them.
+  WorkBudget* work = nullptr;
+  WorkKind row = WorkKind::PolynomialRow;  ///< of `rows` by each try
+  std::size_t rows = 0;
 };
 
 struct MinimiseSummary {
@@ -62,6 +67,13 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
   constexpr double kNothing = 1e-3;
 
   MinimiseSummary summary;
+  const auto count = [&] {
+    if (options.work != nullptr) {
+      options.work->spend(options.row, options.rows);
+      options.work->spend(WorkKind::FitStep, 1);
+    }
+  };
+  count();
   summary.initial_chi2 = summary.chi2 = problem->chi2_at(*x);
   if (!std::isfinite(summary.chi2)) {
     return summary;
@@ -77,7 +89,8 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
   linearise();
   double damping = options.first_damping;
   double growth = 2.0;
-  while (summary.iterations < options.iterations) {
+  while (summary.iterations < options.iterations &&
+         (options.work == nullptr || options.work->allows())) {
     ++summary.iterations;
     Matrix damped = information;
     damped.diagonal() += damping * diagonal;
@@ -112,6 +125,7 @@ MinimiseSummary minimise(Problem* problem, Eigen::Matrix<double, Problem::kParam
       }
     }
     const Vector there = *x + step;
+    count();
     const double chi2 = problem->chi2_at(there);
     const double gain = summary.chi2 - chi2;
     if (gain > 0.0) {

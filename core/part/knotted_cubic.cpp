@@ -166,7 +166,8 @@ Vec2 KnottedCubic::left(double t) const {
 KnottedCubicFit fit_single_cubic(const FitData& data) {
   FitData points = data;
   const SmoothModel smooth = fit_smooth_model(&points, true);
-  const ClassFits fits = fit_classes(smooth.reduced);
+  WorkBudget unbounded;
+  const ClassFits fits = fit_classes(smooth.reduced, unbounded);
   KnottedCubicFit best;
   best.chi2 = std::numeric_limits<double>::infinity();
   for (const CurveClass curve_class : {CurveClass::CubicSpline, CurveClass::SemiCubicalParabola,
@@ -175,7 +176,8 @@ KnottedCubicFit fit_single_cubic(const FitData& data) {
     if (!coarse || !coarse->polynomial) {
       continue;
     }
-    const auto refined = refine_on_all(settled(*coarse, smooth.reduced), smooth, points);
+    const auto refined = refine_on_all(settled(*coarse, smooth.reduced, RivalOf::Best, unbounded),
+                                       smooth, points, kOnAllEffort, unbounded);
     PolynomialFit polynomial =
         refined && refined->polynomial ? *refined->polynomial : *coarse->polynomial;
     if (polynomial.t.size() != points.points.size()) {

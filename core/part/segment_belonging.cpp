@@ -275,7 +275,8 @@ double noise_of(const StoredPatch& patch, double sigma_m) {
 SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, double significance) {
   SegmentBelonging result;
   constexpr double kFalseSpikes = 0.01;  // probability that a patch without spikes loses a sample
-  const std::vector<bool> is_spike = spikes_of(patch.samples, kFalseSpikes);
+  WorkBudget unbounded;
+  const std::vector<bool> is_spike = spikes_of(patch.samples, kFalseSpikes, unbounded);
   StoredPatch kept = without_spikes(patch, is_spike);
   std::vector<std::size_t> numbers;  // of the samples kept
   for (std::size_t i = 0; i < is_spike.size(); ++i) {

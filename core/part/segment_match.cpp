@@ -28,7 +28,8 @@ struct CleanPatches {
 CleanPatches clean_patches(std::span<const StoredPatch> patches, double false_alarm) {
   CleanPatches clean;
   for (const StoredPatch& patch : patches) {
-    clean.is_spike.push_back(spikes_of(patch.samples, false_alarm));
+    WorkBudget unbounded;
+    clean.is_spike.push_back(spikes_of(patch.samples, false_alarm, unbounded));
     clean.patches.push_back(without_spikes(patch, clean.is_spike.back()));
   }
   return clean;

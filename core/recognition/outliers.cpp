@@ -105,4 +105,16 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   return kept;
 }
 
+std::vector<bool> left_out(const FitData& all, const FitData& kept) {
+  std::vector<bool> flags(all.points.size(), true);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < flags.size() && next < kept.points.size(); ++i) {
+    if (all.points[i].position == kept.points[next].position) {
+      flags[i] = false;
+      ++next;
+    }
+  }
+  return flags;
+}
+
 }  // namespace palpate

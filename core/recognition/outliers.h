@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/recognition/weigh/weigh.h"
 
@@ -15,5 +16,8 @@ namespace palpate {
 /// the residuals themselves determine the noise.
 std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,
                                         bool sigma_known, double false_outlier_probability);
+
+/// One flag per point of `all`: not in `kept`, which has the others in their order.
+std::vector<bool> left_out(const FitData& all, const FitData& kept);
 
 }  // namespace palpate

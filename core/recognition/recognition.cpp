@@ -20,6 +20,8 @@ std::string_view name_of(Doubt doubt) {
       return "undetermined";
     case Doubt::TreeRejects:
       return "tree_rejects";
+    case Doubt::WorkLimit:
+      return "work_limit";
     case Doubt::FewPlaces:
       return "few_places";
   }

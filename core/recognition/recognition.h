@@ -8,6 +8,7 @@
 #include "core/curves/pose2.h"
 #include "core/curves/shape_parameters.h"
 #include "core/invariants/named_invariant.h"
+#include "core/numerics/work_budget.h"
 #include "core/recognition/localized_contact.h"
 #include "core/recognition/tree/decision.h"
 
@@ -23,6 +24,8 @@ enum class RecognitionStatus {
 /// AtLimit if more than a tenth of the samples were set aside as spikes.)
 enum class Doubt {
   None,
+  WorkLimit,  ///< the work that an answer may take was spent before all was looked at
+              ///< (work_limit.h)
   FormError,  ///< residuals are correlated along the arc: form error, or a class not known here
   SeveralClasses,  ///< no class is probable enough
   AtLimit,         ///< the best fit lies where the class turns into another one
@@ -89,6 +92,7 @@ struct Recognition {
   /// Factor on white_covariance if larger noise, correlated residuals and stated form error are all
   /// counted as additional white noise.
   double covariance_inflation = 1.0;
+  WorkBudget work;  ///< that the answer took, and whether there was more to do
 };
 
 }  // namespace palpate

@@ -21,6 +21,7 @@
 #include "core/recognition/tree_beside.h"
 #include "core/recognition/weigh/contenders.h"
 #include "core/recognition/weigh/weigh_in_full.h"
+#include "core/recognition/work_limit.h"
 
 namespace palpate {
 namespace {
@@ -86,35 +87,15 @@ bool have_extent(const FitData& data) {
   return rounding_level(data) < kMostRounding && data.scale > kSmallest && data.scale < kLargest;
 }
 
+/// Of all work, kept from the search for spikes for the classes.
+constexpr double kShareOfClasses = 0.7;
+
 /// What speaks against an answer that nothing has spoken against yet.
 void doubt(Recognition* answer, Doubt doubt) {
   if (answer->status == RecognitionStatus::Recognized) {
     answer->status = RecognitionStatus::Ambiguous;
     answer->doubt = doubt;
   }
-}
-
-/// What residuals tell of a smooth deviation, to a factor of the root of two and no less, so that
-/// windows are not made anew wherever a sample changes it a little. [m]
-double told_deviation_m(const BestMoments& moments, double scale_m) {
-  constexpr double kSteps = 2.0;  // to a factor of two
-  return moments.coherent_deviation > 0.0
-             ? scale_m *
-                   std::exp2(std::ceil(kSteps * std::log2(moments.coherent_deviation)) / kSteps)
-             : 0.0;
-}
-
-/// One flag per point of `all`: not in `kept`, which has the others in their order.
-std::vector<bool> left_out(const FitData& all, const FitData& kept) {
-  std::vector<bool> flags(all.points.size(), true);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < flags.size() && next < kept.points.size(); ++i) {
-    if (all.points[i].position == kept.points[next].position) {
-      flags[i] = false;
-      ++next;
-    }
-  }
-  return flags;
 }
 
 }  // namespace
@@ -167,7 +148,13 @@ class Recognizer::Impl {
 
   Recognition recognize() {
     unused_.reset();
-    Recognition answer = look();
+    WorkBudget work = work_limit(memory_.patches());
+    Recognition answer = look(work);
+    if (work.was_cut() && answer.status != RecognitionStatus::Collecting) {
+      answer.status = RecognitionStatus::Ambiguous;
+      answer.doubt = Doubt::WorkLimit;
+    }
+    answer.work = work;
     answer.sample_count = memory_.sample_count();
     answer.dwelling_count = clean_.dwelling_count();
     answer.forgotten_count = forgotten_;
@@ -177,9 +164,12 @@ class Recognizer::Impl {
 
  private:
   /// All but what the memory counts.
-  Recognition look() {
+  Recognition look(WorkBudget& work) {
     Recognition answer;
-    clean_.look_at(memory_.patches(), options_.sigma_m, options_.false_outlier_probability);
+    {
+      const WorkBudget::Reserve for_classes(work, kShareOfClasses);
+      clean_.look_at(memory_.patches(), options_.sigma_m, options_.false_outlier_probability, work);
+    }
     const std::vector<StoredPatch>& clean = clean_.clean();
     bool sigma_known = false;
     FitData data = make_fit_data(clean, options_.sigma_m, &sigma_known);
@@ -188,7 +178,7 @@ class Recognizer::Impl {
     if (!have_places(data, fewest) || !have_extent(data)) {
       return answer;
     }
-    const auto strung = strung_touches(clean, options_.sigma_m, options_.classes);
+    const auto strung = strung_touches(clean, options_.sigma_m, options_.classes, work);
     if (strung) {
       data = make_fit_data(strung->patches, options_.sigma_m, &sigma_known);
     }
@@ -197,7 +187,7 @@ class Recognizer::Impl {
         strung ? std::span<const SidedStart>(strung->starts) : std::span<const SidedStart>();
     answer = options_.method == RecognitionMethod::Tree
                  ? by_tree(data, sigma_known, patches)
-                 : by_likelihood(data, sigma_known, patches, sought);
+                 : by_likelihood(data, sigma_known, patches, sought, work);
     // Touches in no order whose noise nobody states lie about any curve, if the noise is large
     // enough.
     if (!sigma_known && are_touches(clean) && answer.sigma_m > kLargestNoise * data.scale) {
@@ -223,14 +213,20 @@ class Recognizer::Impl {
   /// `patches`: those that the data are of; `sought`: what stringing them has found.
   Recognition by_likelihood(const FitData& data, bool sigma_known,
                             std::span<const StoredPatch> patches,
-                            std::span<const SidedStart> sought) {
-    Weighed weighed = weigh_once_more(data, sigma_known, patches, sought);
+                            std::span<const SidedStart> sought, WorkBudget& work) {
+    Weighed weighed = weigh_once_more(data, sigma_known, patches, sought, work);
     const std::size_t stored = clean_.moved_count();
-    if (stored > data.points.size()) {
-      weighed = with_explained(std::move(weighed));
+    if (stored > data.points.size() && !work.was_cut()) {
+      weighed = with_explained(std::move(weighed), work);
+    }
+    if (work.was_cut()) {
+      last_.reset();  // what was found by then may be far from what there is
     }
     const Weighing& w = weighed.w;
-    const BestMoments moments = moments_of_best(w);
+    BestMoments moments = moments_of_best(w, work);
+    if (work.was_cut()) {
+      moments = {};  // a part of a valley is no moment: what the noise leaves is told
+    }
     Recognition answer = answer_by_likelihood(
         w, moments, {options_.recognized_probability, options_.determined_fraction}, stored);
     answer.outlier_count = stored - w.data.points.size();
@@ -275,8 +271,8 @@ class Recognizer::Impl {
   /// that was out.
   /// `sought`: by_likelihood's.
   Weighed weigh_once_more(const FitData& data, bool sigma_known,
-                          std::span<const StoredPatch> patches,
-                          std::span<const SidedStart> sought) {
+                          std::span<const StoredPatch> patches, std::span<const SidedStart> sought,
+                          WorkBudget& work) {
     constexpr double kGrowth = 1.25;  // ten searches while a patch grows tenfold
     // Probability: of what had less, a search leaves the fit rough (weigh/contenders.cpp).
     const double out = std::exp(-log_odds(options_.recognized_probability) - 0.5 * kLeastError);
@@ -285,15 +281,16 @@ class Recognizer::Impl {
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
     if (warm) {
       Weighed weighed =
-          weigh_without_outliers(data, sigma_known, patches, last_->starts, Starts::OfLast);
+          weigh_without_outliers(data, sigma_known, patches, last_->starts, Starts::OfLast, work);
       const Weighing& w = weighed.w;
-      if (last_->probabilities[static_cast<std::size_t>(w.best)] > out) {
+      if (last_->probabilities[static_cast<std::size_t>(w.best)] > out || !work.allows()) {
         last_->starts = w.starts;
         last_->probabilities = w.probabilities;
         return weighed;
       }
     }
-    Weighed weighed = weigh_without_outliers(data, sigma_known, patches, sought, Starts::OfSearch);
+    Weighed weighed =
+        weigh_without_outliers(data, sigma_known, patches, sought, Starts::OfSearch, work);
     last_ = Last{weighed.w.starts, weighed.w.probabilities, samples, data.patches.size()};
     return weighed;
   }
@@ -302,19 +299,24 @@ class Recognizer::Impl {
 
   Weighed weigh_without_outliers(const FitData& data, bool sigma_known,
                                  std::span<const StoredPatch> patches,
-                                 std::span<const SidedStart> starts, Starts which) const {
-    Weighed weighed{weigh_in_full(data, sigma_known, patches, weigh_options(), starts), {}, {}};
+                                 std::span<const SidedStart> starts, Starts which,
+                                 WorkBudget& work) const {
+    Weighed weighed{
+        weigh_in_full(data, sigma_known, patches, work, weigh_options(), starts), {}, {}};
     Weighing& w = weighed.w;
-    if (const auto kept =
-            without_outliers(w, data, sigma_known, options_.false_outlier_probability)) {
+    const auto kept = without_outliers(w, data, sigma_known, options_.false_outlier_probability);
+    if (kept && work.allows()) {
       // A search is not followed: the outliers may have led it astray.
       std::vector<SidedStart> nearer =
           which == Starts::OfSearch ? std::vector<SidedStart>{} : std::move(w.starts);
       for (SidedStart& sided : nearer) {
         sided.start.no_conic = false;  // among the outliers
       }
-      w = weigh_in_full(*kept, sigma_known, patches, weigh_options(), nearer);
-      weighed.outliers = left_out(data, *kept);
+      Weighing again = weigh_in_full(*kept, sigma_known, patches, work, weigh_options(), nearer);
+      if (!work.was_cut()) {  // else the one before says more
+        w = std::move(again);
+        weighed.outliers = left_out(data, *kept);
+      }
     }
     return weighed;
   }
@@ -325,7 +327,7 @@ class Recognizer::Impl {
   }
 
   /// Weighed again with the spikes that the best class explains, where the class stands then.
-  Weighed with_explained(Weighed weighed) const {
+  Weighed with_explained(Weighed weighed, WorkBudget& work) const {
     const Weighing& w = weighed.w;
     const auto& best = w.canonical[static_cast<std::size_t>(w.best)];
     const auto curve = best ? make_curve(w.best, best->shape.values) : std::nullopt;
@@ -335,18 +337,24 @@ class Recognizer::Impl {
     const double noise_m = residual_noise_m(w);
     const double limit = two_sided_normal_quantile(options_.false_outlier_probability /
                                                    static_cast<double>(clean_.moved_count()));
+    if (!work.allows()) {
+      return weighed;
+    }
+    work.spend(WorkKind::PlacedRow, clean_.moved_count());
     auto more = with_explained_spikes(clean_.moved(), clean_.clean(), *curve, best->world_T_curve,
                                       noise_m, limit);
     if (!more) {
       return weighed;
     }
-    if (auto strung = strung_touches(*more, options_.sigma_m, options_.classes)) {
+    if (auto strung = strung_touches(*more, options_.sigma_m, options_.classes, work)) {
       more = std::move(strung->patches);
     }
     bool sigma_known = false;
     const FitData data = make_fit_data(*more, options_.sigma_m, &sigma_known);
-    Weighed again = weigh_without_outliers(data, sigma_known, *more, last_->starts, Starts::OfLast);
-    if (again.w.best != w.best || !again.w.canonical[static_cast<std::size_t>(again.w.best)]) {
+    Weighed again =
+        weigh_without_outliers(data, sigma_known, *more, last_->starts, Starts::OfLast, work);
+    if (work.was_cut() || again.w.best != w.best ||
+        !again.w.canonical[static_cast<std::size_t>(again.w.best)]) {
       return weighed;
     }
     again.patches = std::move(more);

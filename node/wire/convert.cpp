@@ -100,6 +100,8 @@ v1::RecognitionDoubt to_wire(Doubt doubt) {
       return v1::RECOGNITION_DOUBT_TREE_REJECTS;
     case Doubt::FewPlaces:
       return v1::RECOGNITION_DOUBT_FEW_PLACES;
+    case Doubt::WorkLimit:
+      return v1::RECOGNITION_DOUBT_WORK_LIMIT;
   }
   return v1::RECOGNITION_DOUBT_UNSPECIFIED;
 }

@@ -123,6 +123,13 @@ std::string broken_invariant(const Recognition& answer, const TouchedPlaces& pla
   if (!broken.empty()) {
     return broken;
   }
+  if (answer.work.spent() > answer.work.most()) {
+    return "more work than an answer may take";
+  }
+  if (answer.work.was_cut() && answer.status != RecognitionStatus::Collecting &&
+      (answer.status != RecognitionStatus::Ambiguous || answer.doubt != Doubt::WorkLimit)) {
+    return "the work was cut, and the answer does not say so";
+  }
   if (answer.status != RecognitionStatus::Recognized) {
     return {};
   }

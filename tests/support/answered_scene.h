@@ -8,6 +8,7 @@
 #include "core/recognition/weigh/weigh.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/scene_data.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate::test {
 
@@ -22,8 +23,9 @@ inline AnsweredScene answered(const Scene& scene) {
   const std::vector<StoredPatch> patches = stored_patches(scene, scene.sigma_m);
   bool sigma_known = false;
   const FitData data = make_fit_data(patches, 0.0, &sigma_known);
-  const std::vector<SidedStart> starts = weigh(data, sigma_known, patches).starts;
-  AnsweredScene answered{weigh(data, sigma_known, patches, {}, starts), {}};
+  const std::vector<SidedStart> starts =
+      weigh(data, sigma_known, patches, test::unbounded_work()).starts;
+  AnsweredScene answered{weigh(data, sigma_known, patches, test::unbounded_work(), {}, starts), {}};
   answered.contacts = PatchContacts().of(patches, answered.weighing.sides, {}, {});
   return answered;
 }

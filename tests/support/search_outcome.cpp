@@ -13,6 +13,7 @@
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/smooth/smooth_model.h"
 #include "tests/support/placed_fit.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate::test {
 namespace {
@@ -101,11 +102,12 @@ bool is_still(CurveClass curve_class, const ClassFit& fit) {
 SearchOutcome outcome(const SearchCase& search_case, bool on_all) {
   const Prepared prepared = prepare(search_case);
   const auto optimum = [&](const ClassFit& start) -> std::optional<ClassFit> {
-    const ClassFit there = settled(start, prepared.reduced);
+    const ClassFit there = settled(start, prepared.reduced, RivalOf::Best, test::unbounded_work());
     if (!is_what_it_says(there, prepared.reduced)) {
       return std::nullopt;
     }
-    return on_all ? refine_on_all(there, prepared.smooth, prepared.data, kPolishEffort)
+    return on_all ? refine_on_all(there, prepared.smooth, prepared.data, kPolishEffort,
+                                  test::unbounded_work())
                   : std::optional(there);
   };
   SearchOutcome result;
@@ -113,10 +115,11 @@ SearchOutcome outcome(const SearchCase& search_case, bool on_all) {
   const auto truth = optimum(start);
   result.counted = truth.has_value();
   result.refused =
-      !truth && is_still(search_case.scene.curve_class, settled(start, prepared.reduced));
+      !truth && is_still(search_case.scene.curve_class,
+                         settled(start, prepared.reduced, RivalOf::Best, test::unbounded_work()));
   result.truth_chi2 = chi2_of(truth);
   const auto i = static_cast<std::size_t>(search_case.scene.curve_class);
-  const auto found = fit_classes(prepared.reduced)[i];
+  const auto found = fit_classes(prepared.reduced, test::unbounded_work())[i];
   result.found_chi2 = found ? chi2_of(optimum(*found)) : kInfinity;
   result.curve = std::isfinite(result.found_chi2);
   return result;

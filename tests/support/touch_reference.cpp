@@ -17,6 +17,7 @@
 #include "core/recognition/weigh/contenders.h"
 #include "tests/support/placed_fit.h"
 #include "tests/support/scene_data.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate::test {
 namespace {
@@ -54,7 +55,7 @@ using Optima = std::array<std::vector<ClassFit>, 9>;
 /// Moves a start to its optimum, and a spline's rival to its own, if it is a curve of its class.
 void follow(const ClassFit& start, const FitData& data, Optima* optima) {
   std::vector<ClassFit>& of_class = (*optima)[static_cast<std::size_t>(start.curve_class)];
-  ClassFit there = settled(start, data, RivalOf::Best);
+  ClassFit there = settled(start, data, RivalOf::Best, test::unbounded_work());
   if (there.rival) {
     ClassFit rival = there;
     rival.polynomial = there.rival;
@@ -103,7 +104,7 @@ double detour_of(const ClassFit& fit, const FitData& data) {
 void follow_part(const LoneTouches& touches, std::size_t every, std::size_t first,
                  const FitData& data, Optima* optima) {
   const FitData part = data_of(touches, every, first);
-  const ClassFits found = fit_classes(part);
+  const ClassFits found = fit_classes(part, test::unbounded_work());
   for (const auto& fit : found) {
     if (!fit || fit->at_limit) {
       continue;
@@ -142,7 +143,7 @@ TouchReference reference_of(const LoneTouches& touches) {
   Arcs arcs = smooth_arcs(data_of(touches, 1, 0), true);
   const FitData& data = arcs.smooth.reduced;  // every touch stands for itself
   Optima optima;
-  const ClassFits searched = fit_classes(data);
+  const ClassFits searched = fit_classes(data, test::unbounded_work());
   for (const auto& fit : searched) {
     if (fit && !fit->at_limit) {
       follow(*fit, data, &optima);
@@ -171,7 +172,7 @@ TouchReference reference_of(const LoneTouches& touches) {
 
   const Likelihood likelihood = likelihood_of(arcs, 0.0);
   const auto truth = static_cast<std::size_t>(scene.curve_class);
-  const Evidences of_paths = evidences_of_paths(arcs.smooth, likelihood);
+  const Evidences of_paths = evidences_of_paths(arcs.smooth, likelihood, test::unbounded_work());
   TouchReference reference;
   reference.chi2.fill(kInfinity);
   reference.compares_all = true;
@@ -190,8 +191,8 @@ TouchReference reference_of(const LoneTouches& touches) {
       const double detour = detour_of(optimum, data);
       ClassFits alone;
       alone[i] = optimum;
-      const Evidences evidences =
-          evidences_of(alone, alone, arcs.smooth, data, likelihood, of_paths);
+      const Evidences evidences = evidences_of(alone, alone, arcs.smooth, data, likelihood,
+                                               of_paths, test::unbounded_work());
       const double log_of = log_evidence(likelihood, evidences, curve_class, optimum.chi2) -
                             static_cast<double>(points.size()) * std::log(detour);
       if (detour >= kNeedle) {
@@ -218,9 +219,10 @@ TouchReference reference_of(const LoneTouches& touches) {
     }
   }
   take_limits(&fits);
-  Evidences evidences = evidences_of(fits, fits, arcs.smooth, data, likelihood, of_paths);
+  Evidences evidences =
+      evidences_of(fits, fits, arcs.smooth, data, likelihood, of_paths, test::unbounded_work());
   evidences = integrated(std::move(evidences), fits, fits, arcs.smooth.chi2, data, likelihood,
-                         log_odds(kRecognized));
+                         log_odds(kRecognized), test::unbounded_work());
   reference.probabilities = probabilities_of(fits, arcs.smooth.chi2, likelihood, evidences);
   if (const auto placed_truth = fits[truth] ? to_canonical(*fits[truth], data) : std::nullopt) {
     reference.knows_shape = is_determined(placed_truth->shape, placed_truth->covariance, data.scale,

@@ -9,7 +9,10 @@
 namespace palpate {
 namespace {
 
-/// Half of the samples determine a quartic with three samples to spare.
+// Blocks overlap by half.
+constexpr std::size_t kBlocksOfSample = 2;
+
+/// Half of it determines a quartic with three samples to spare.
 constexpr std::size_t kBlock = 16;
 
 /// The noise counts as at least kFormFactor * slope^4 * extent. This is what a quartic leaves of a
@@ -139,11 +142,11 @@ double parabola_scale_m(std::span<const Vec2> samples, std::size_t length,
 /// parabola. The check is made only if a residual is larger than the largest one that noise leaves
 /// in 19 of 20 patches, or if the noise exceeds that of the third differences.
 void look_for_spiked_noise(std::span<const Vec2> samples, double largest, double threshold,
-                           BlockSurvey* survey) {
-  constexpr double kAlarms = 0.05;  // of the clean patches, which then cost this check
-  // Three standard deviations of the quantile for 111 samples. sqrt(q (1 - q) / m), divided by its
-  // density and by itself, is 2.0 / sqrt(m); the correlation of neighbouring differences makes it
-  // 2.3 / sqrt(m). Above it the check is made.
+                           BlockSurvey* survey, WorkBudget& work) {
+  constexpr double kAlarms = 0.05;  // of patches, which then cost a look
+  // Three standard deviations of the quantile for 111 samples: sqrt(q (1 - q) / m) over its density
+  // and itself is 2.0 / sqrt(m), and what neighbouring differences share makes it 2.3 / sqrt(m).
+  // Beyond it a patch costs a look.
   constexpr double kAboveDifferences = 1.7;
   // Three standard deviations of the median of seven blocks' scales; a scale from 16 samples has a
   // relative error of 0.36.
@@ -153,8 +156,9 @@ void look_for_spiked_noise(std::span<const Vec2> samples, double largest, double
   if (largest <= quiet && survey->sigma_m <= kAboveDifferences * low_noise_of(samples, sizes)) {
     return;
   }
-  // Spikes lengthen the chords and enlarge the estimated noise. Therefore: the shortest blocks that
-  // are long compared with their own scale.
+  work.spend(WorkKind::SpikeRow, kRowsOfParabola * samples.size());
+  // Spikes lengthen the chords and what is taken for noise: the shortest blocks that resolve their
+  // own scale.
   double scale_m = 0.0;
   for (std::size_t length = std::min(kBlock, survey->length);; length *= 2) {
     length = std::min(length, survey->length);
@@ -186,7 +190,9 @@ bool turns_back(const ResidualBlock& block, double sigma_m) {
   return block.backtrack_m() > kBacktrackSigmas * std::sqrt(2.0) * sigma_m;
 }
 
-BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold) {
+BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold,
+                          WorkBudget& work) {
+  work.spend(WorkKind::SpikeRow, kBlocksOfSample * samples.size());
   BlockSurvey survey;
   survey.length = std::min(kBlock, samples.size());
   Blocks blocks = fit_blocks(samples, survey.length, sigma_m);
@@ -208,7 +214,7 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
     // determine how long blocks must be, and half of each block lies near a parabola.
     std::vector<double> sizes;
     survey.length = block_length(samples, low_noise_of(samples, sizes));
-    look_for_spiked_noise(samples, blocks.largest, threshold, &survey);
+    look_for_spiked_noise(samples, blocks.largest, threshold, &survey, work);
     survey.is_any_off = survey.is_noise_spiked;
     if (!survey.is_noise_spiked) {
       survey.status = LocalStatus::Unresolved;
@@ -221,7 +227,7 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
       blocks.backtrack_m > kBacktrackSigmas * std::sqrt(2.0) * survey.sigma_m;
   survey.is_any_off = blocks.largest > threshold || (is_resolved() && is_out_of_order);
   if (!(sigma_m > 0.0)) {
-    look_for_spiked_noise(samples, blocks.largest, threshold, &survey);
+    look_for_spiked_noise(samples, blocks.largest, threshold, &survey, work);
   }
   return survey;
 }

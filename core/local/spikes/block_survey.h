@@ -9,6 +9,7 @@
 
 #include "core/local/local_status.h"
 #include "core/local/residual_block.h"
+#include "core/numerics/work_budget.h"
 
 namespace palpate {
 
@@ -23,7 +24,8 @@ struct BlockSurvey {
 
 /// Fits blocks of 16 samples, or of 32, 64 ... if those span less than 20 sigma. `sigma_m`: 0 =
 /// unknown. A sample whose residual exceeds `threshold` standard deviations is off.
-BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold);
+BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold,
+                          WorkBudget& work);
 
 /// The residual beyond which a sample is off its block's quartic. It allows for noise, and for form
 /// that no quartic can follow. [m]

@@ -39,8 +39,13 @@ struct Block {
 
 class Search {
  public:
-  Search(std::span<const Vec2> samples, const BlockSurvey& survey, double threshold)
-      : samples_(samples), threshold_(threshold), length_(survey.length), sigma_m_(survey.sigma_m) {
+  Search(std::span<const Vec2> samples, const BlockSurvey& survey, double threshold,
+         WorkBudget& work)
+      : samples_(samples),
+        threshold_(threshold),
+        length_(survey.length),
+        sigma_m_(survey.sigma_m),
+        work_(work) {
     for_each_block(samples.size(), length_, std::max<std::size_t>(length_ / 4, 1),
                    [&](std::size_t start) {
                      blocks_.emplace_back();
@@ -99,6 +104,7 @@ class Search {
   /// a quartic, which then bend to a spike.
   LocalStatus fit(const Block& block) {
     constexpr int kDegreeOfFew = 3;
+    work_.spend(WorkKind::SpikeRow, length_);
     const auto used = static_cast<std::size_t>(std::ranges::count(block.use, 1));
     const int degree = 4 * used >= 3 * length_ ? ResidualBlock::kDegree : kDegreeOfFew;
     return residuals_.fit(part(block), block.use, degree);
@@ -109,10 +115,15 @@ class Search {
   void settle_blocks() {
     for (Block& block : blocks_) {
       block.use.assign(length_, 1);
+      block.is_settled = false;
+      if (!work_.allows()) {
+        continue;
+      }
       block.is_settled = settle(&block, length_ / 8) && !turns_back(residuals_, sigma_m_);
       if (block.is_settled) {
         continue;
       }
+      work_.spend(WorkKind::SpikeRow, block.half.empty() ? kRowsOfParabola * length_ : 0);
       if (block.half.empty() && parabola_.fit(part(block))) {
         const auto half = parabola_.nearer_half();
         block.half.assign(half.begin(), half.end());
@@ -214,6 +225,7 @@ class Search {
   double threshold_;
   std::size_t length_;
   double sigma_m_;
+  WorkBudget& work_;
   std::vector<Block> blocks_;
   ResidualBlock residuals_;
   LeastMedianParabola parabola_;
@@ -222,8 +234,8 @@ class Search {
 }  // namespace
 
 SpikeSearch search_spikes(std::span<const Vec2> samples, const BlockSurvey& survey, double sigma_m,
-                          double threshold) {
-  Search search(samples, survey, threshold);
+                          double threshold, WorkBudget& work) {
+  Search search(samples, survey, threshold, work);
   if (!(sigma_m > 0.0)) {
     search.refine_noise();
   }

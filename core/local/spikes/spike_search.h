@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/local/spikes/block_survey.h"
+#include "core/numerics/work_budget.h"
 
 namespace palpate {
 
@@ -25,6 +26,6 @@ struct SpikeSearch {
 /// step. Each sample is judged by the block that removes fewest samples. `sigma_m`: 0 = estimate it
 /// from the residuals of the samples that joined.
 SpikeSearch search_spikes(std::span<const Vec2> samples, const BlockSurvey& survey, double sigma_m,
-                          double threshold);
+                          double threshold, WorkBudget& work);
 
 }  // namespace palpate

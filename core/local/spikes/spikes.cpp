@@ -73,9 +73,11 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
   constexpr int kMostDoublings = 2;
   int doublings = 0;
   BlockSurvey survey;
+  WorkBudget unbounded;
+  WorkBudget& work = options.work != nullptr ? *options.work : unbounded;
   for (int pass = 0; pass < kMostPasses && kept.samples.size() >= kFewestSamples; ++pass) {
     if (doublings == 0) {
-      survey = survey_blocks(kept.samples, options.sigma_m, result.threshold);
+      survey = survey_blocks(kept.samples, options.sigma_m, result.threshold, work);
     }
     if (pass == 0) {
       result.status = survey.status;
@@ -84,12 +86,13 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
       break;
     }
     result.sigma_m = survey.sigma_m;
-    if (!survey.is_any_off && !survey.is_noise_spiked) {
+    if ((!survey.is_any_off && !survey.is_noise_spiked) || !work.allows()) {
       break;
     }
     BlockSurvey longer = survey;
     longer.length = std::min(survey.length << doublings, kept.samples.size());
-    SpikeSearch found = search_spikes(kept.samples, longer, options.sigma_m, result.threshold);
+    SpikeSearch found =
+        search_spikes(kept.samples, longer, options.sigma_m, result.threshold, work);
     if (doublings > 0) {
       spare_runs(survey.length / 2, &found.is_spike);
     }

@@ -34,7 +34,7 @@ Whitened whitened(const std::vector<DriftStep>& steps, const Drift& drift) {
 
 double log_coherent_evidence(const Likelihood& likelihood, const ClassEvidence& evidence,
                              const CanonicalFit& placed, const FitData& reduced, double sigma,
-                             double samples, double chi2, double scatter) {
+                             double samples, double chi2, double scatter, WorkBudget& work) {
   const std::vector<DriftStep> steps = drift_steps(placed, reduced, sigma);
   double white = 0.0;
   double whole = 0.0;
@@ -53,9 +53,12 @@ double log_coherent_evidence(const Likelihood& likelihood, const ClassEvidence& 
   // times around.
   constexpr double kFactor = 4.0;
   constexpr int kLengths = 5;
+  // A residual alone, beside a row of all unknowns.
+  constexpr std::size_t kScalars = 8;
   std::vector<double> logs;
   for (double variance = 1.0 / samples; variance <= samples; variance *= kFactor) {
     for (int k = 0; k < kLengths; ++k) {
+      work.spend(WorkKind::PlacedRow, steps.size() / kScalars);
       logs.push_back(log_of(whitened(steps, {std::sqrt(variance), std::ldexp(whole, -k)})));
     }
   }

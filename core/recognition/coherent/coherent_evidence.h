@@ -1,6 +1,7 @@
 // Evidence of a class if its residuals may be a coherent deviation as well as noise.
 #pragma once
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/posterior/class_evidence.h"
 #include "core/recognition/posterior/likelihood.h"
@@ -18,6 +19,6 @@ namespace palpate {
 /// noise of the typical point, normalised. O(points).
 double log_coherent_evidence(const Likelihood& likelihood, const ClassEvidence& evidence,
                              const CanonicalFit& placed, const FitData& reduced, double sigma,
-                             double samples, double chi2, double scatter);
+                             double samples, double chi2, double scatter, WorkBudget& work);
 
 }  // namespace palpate

@@ -42,7 +42,7 @@ std::optional<Left> left_by(const std::vector<CoherentStep>& steps, const Drift&
 
 std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassEvidence& evidence,
                                         const FitData& reduced, const Likelihood& likelihood,
-                                        double sigma, double scatter) {
+                                        double sigma, double scatter, WorkBudget& work) {
   const CurveClass curve_class = placed.shape.curve_class;
   const auto curve = make_curve(curve_class, placed.shape.values);
   const int coordinates = shape_coordinates(curve_class) + 2;
@@ -57,6 +57,7 @@ std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassE
     step.row.head<kUnknowns>() = by_coordinates.transpose() * by_shape_pose;
     step.at.variance *= likelihood.inflation();  // stated form error counts as noise
   }
+  work.spend(WorkKind::DriftRow, steps.size());
   const auto none = left_by(steps, {});
   if (!none) {
     return std::nullopt;
@@ -68,6 +69,10 @@ std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassE
   double prior = 0.0;
   for (double deviation = 1.0 / most; deviation <= most; deviation *= 2.0) {
     for (int halvings = 1; halvings <= kMostHalvings; ++halvings) {
+      if (!work.allows()) {
+        return std::nullopt;
+      }
+      work.spend(WorkKind::DriftRow, steps.size());
       const Drift drift{deviation, std::ldexp(longest, -halvings)};
       const auto left = left_by(steps, drift);
       // The largest offsets leave the smallest chi-square.
@@ -79,6 +84,7 @@ std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassE
             !sum.counts(size.log_prior + noise.log_evidence(least) - 0.5 * left->log_determinant)) {
           continue;
         }
+        work.spend(WorkKind::OffsetCell, 1);
         if (const auto cells = offset_cells(*left, size, noise, scatter)) {
           least = std::max(least, cells->chi2.back());
           for (const double log_weight : cells->log_weight) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/posterior/class_evidence.h"
 #include "core/recognition/posterior/likelihood.h"
@@ -17,6 +18,6 @@ namespace palpate {
 /// coherent_moment() has none.
 std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassEvidence& evidence,
                                         const FitData& reduced, const Likelihood& likelihood,
-                                        double sigma, double scatter);
+                                        double sigma, double scatter, WorkBudget& work);
 
 }  // namespace palpate

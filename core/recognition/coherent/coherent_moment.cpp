@@ -14,8 +14,11 @@ namespace {
 
 constexpr int kOffsets = offsets_to(kHighestOrder);
 
-/// The residuals under a drift, with shape and pose (flat prior) as linear functions of the
-/// offset's coefficients c, about the estimate.
+/// A row of so many orders costs twice one of those that tell classes apart.
+constexpr std::size_t kRowsOfMoment = 2;
+
+/// What a drift leaves, and shape and pose, of which nothing is expected: about the estimate, and
+/// linear in the offset's coefficients c.
 struct ShapeAndLeft : LeftByDrift<kHighestOrder> {
   UnknownsMatrix covariance = UnknownsMatrix::Zero();  ///< of shape and pose, given c
   Unknowns away = Unknowns::Zero();
@@ -95,7 +98,7 @@ struct OverSizes {
 };
 
 OverSizes over_all_sizes(const std::vector<CoherentStep>& steps, Eigen::Index unknowns, int rank,
-                         const NoiseLaw& noise, double scatter, double samples) {
+                         const NoiseLaw& noise, double scatter, double samples, WorkBudget& work) {
   double squares = 0.0;
   for (const CoherentStep& step : steps) {
     squares += step.at.residual * step.at.residual;
@@ -112,6 +115,11 @@ OverSizes over_all_sizes(const std::vector<CoherentStep>& steps, Eigen::Index un
   double prior = 0.0;
   for (int i = 0; i < kDeviations && deviation > least; ++i, deviation *= 0.5) {
     for (int halvings = 1; halvings <= kMostHalvings; ++halvings) {
+      if (!work.allows()) {
+        return {};
+      }
+      work.spend(WorkKind::DriftRow, kRowsOfMoment * steps.size());
+      work.spend(WorkKind::OffsetCell, 1 + kLargestOffset - kLeastOffset);
       const Drift drift{deviation, std::ldexp(longest, -halvings)};
       const ShapeAndLeft left = left_by(white_rows<kHighestOrder>(steps, drift), unknowns, rank);
       for (int power = kLeastOffset; power <= kLargestOffset; ++power) {
@@ -129,7 +137,7 @@ OverSizes over_all_sizes(const std::vector<CoherentStep>& steps, Eigen::Index un
 
 std::optional<CoherentMoment> coherent_moment(const CanonicalFit& placed, const FitData& reduced,
                                               const Likelihood& likelihood, double sigma,
-                                              double scatter) {
+                                              double scatter, WorkBudget& work) {
   const CurveClass curve_class = placed.shape.curve_class;
   const auto curve = make_curve(curve_class, placed.shape.values);
   const int rank = degrees_of_freedom(curve_class);
@@ -140,7 +148,7 @@ std::optional<CoherentMoment> coherent_moment(const CanonicalFit& placed, const 
   const std::vector<CoherentStep> steps = coherent_steps(placed, reduced, *curve, sigma);
   const Eigen::Index unknowns = placed.covariance.rows();
   const auto [mixture, log_prior] =
-      over_all_sizes(steps, unknowns, rank, noise, scatter, likelihood.samples);
+      over_all_sizes(steps, unknowns, rank, noise, scatter, likelihood.samples, work);
   const auto& [top, total] = mixture.weights;
   if (!(total > 0.0)) {
     return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/posterior/likelihood.h"
 #include "core/recognition/samples/fit_data.h"
@@ -29,6 +30,6 @@ struct CoherentMoment {
 /// a variance, or normals at touches. O(points), in at most 46 passes.
 std::optional<CoherentMoment> coherent_moment(const CanonicalFit& placed, const FitData& reduced,
                                               const Likelihood& likelihood, double sigma,
-                                              double scatter);
+                                              double scatter, WorkBudget& work);
 
 }  // namespace palpate

@@ -14,19 +14,25 @@ namespace palpate {
 namespace {
 
 template <PolynomialModel kModel>
-AxisFit refine(std::span<const FitPoint> points, AxisFit fit, int max_iterations) {
+AxisFit refine(std::span<const FitPoint> points, AxisFit fit, int max_iterations,
+               WorkBudget& work) {
   using Residuals = AxisResiduals<kModel>;
   const Residuals residuals(points, fit.arms);
   // A start for the refinement proper: chi-square to a tenth is plenty.
   constexpr double kChi2Tolerance = 0.1;
-  constexpr double kFirstDamping = 1e-6;
   Eigen::Matrix<double, Residuals::NUM_PARAMETERS, 1> x;
   x[0] = fit.theta;
   if constexpr (Residuals::kArms) {
     x[1] = fit.x0;
   }
-  fit.chi2 =
-      minimise_residuals(residuals, {max_iterations, kChi2Tolerance, kFirstDamping}, &x).chi2;
+  fit.chi2 = minimise_residuals(residuals,
+                                {.iterations = max_iterations,
+                                 .chi2_tolerance = kChi2Tolerance,
+                                 .work = &work,
+                                 .row = WorkKind::AxisRow,
+                                 .rows = points.size()},
+                                &x)
+                 .chi2;
   fit.theta = x[0];
   if constexpr (Residuals::kArms) {
     fit.x0 = x[1];
@@ -91,18 +97,21 @@ double verticality(const FitPoint& point, const Vec2& axis) {
   return std::max(std::abs(point.tangent.dot(axis)), kLeast);
 }
 
-AxisFit refine_axis(std::span<const FitPoint> points, AxisFit start, int max_iterations) {
+AxisFit refine_axis(std::span<const FitPoint> points, AxisFit start, int max_iterations,
+                    WorkBudget& work) {
   switch (start.model) {
     case PolynomialModel::Parabola:
-      return refine<PolynomialModel::Parabola>(points, std::move(start), max_iterations);
+      return refine<PolynomialModel::Parabola>(points, std::move(start), max_iterations, work);
     case PolynomialModel::CubicalParabola:
-      return refine<PolynomialModel::CubicalParabola>(points, std::move(start), max_iterations);
+      return refine<PolynomialModel::CubicalParabola>(points, std::move(start), max_iterations,
+                                                      work);
     case PolynomialModel::SemiCubicalParabola:
-      return refine<PolynomialModel::SemiCubicalParabola>(points, std::move(start), max_iterations);
+      return refine<PolynomialModel::SemiCubicalParabola>(points, std::move(start), max_iterations,
+                                                          work);
     case PolynomialModel::CubicSpline:
       break;
   }
-  return refine<PolynomialModel::CubicSpline>(points, std::move(start), max_iterations);
+  return refine<PolynomialModel::CubicSpline>(points, std::move(start), max_iterations, work);
 }
 
 bool reassign_arms(std::span<const FitPoint> points, std::span<const PatchSpan> patches,

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/polynomial_fit.h"
 #include "core/recognition/samples/fit_data.h"
 
@@ -27,7 +28,8 @@ struct AxisFit {
 /// Minimises over theta (and x0). Linear least squares eliminates the coefficients of y at every
 /// step (variable projection: G. Golub and V. Pereyra, 1973), so that the long valleys of short
 /// arcs have one or two dimensions only. O(points) per iteration.
-AxisFit refine_axis(std::span<const FitPoint> points, AxisFit start, int max_iterations);
+AxisFit refine_axis(std::span<const FitPoint> points, AxisFit start, int max_iterations,
+                    WorkBudget& work);
 
 /// Assigns to every point of each patch the arm that suits the fit. It tries one arm for the whole
 /// patch and a change of arm at each point. Returns whether any arm changed. Arm models only.

@@ -12,6 +12,9 @@
 namespace palpate {
 namespace {
 
+/// That are carried from points to others: a parabola, the cubics, a spline's rival.
+constexpr std::size_t kPolynomials = 5;
+
 ClassFit implicit_class(CurveClass curve_class, const ImplicitFit& fit) {
   ClassFit result;
   result.curve_class = curve_class;
@@ -31,7 +34,7 @@ ClassFit polynomial_class(CurveClass curve_class, const PolynomialFit& fit) {
 /// As fit_classes, searched on all points or from `starts`; nullopt where these fitted and nothing
 /// does any more.
 std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& reduced,
-                                   unsigned classes, double out_of_reach) {
+                                   unsigned classes, double out_of_reach, WorkBudget& work) {
   constexpr int side = 0;
   const RefineEffort near_enough{100, 1, 1e-3, out_of_reach};  // what is plausible is settled later
   const std::span<const FitPoint> points(reduced.points);
@@ -41,26 +44,28 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
   };
 
   set(implicit_class(CurveClass::Line,
-                     refine_line(points, algebraic_line(points), side, near_enough)));
-  const ImplicitFit circle = refine_circle(points, algebraic_circle(points), side, near_enough);
+                     refine_line(points, algebraic_line(points), side, near_enough, work)));
+  const ImplicitFit circle =
+      refine_circle(points, algebraic_circle(points), side, near_enough, work);
   set(implicit_class(CurveClass::Circle, circle));
 
   PolynomialFits polynomials =
-      starts != nullptr          ? follow_polynomials(reduced, *starts, out_of_reach)
-      : (classes & kCubics) != 0 ? search_polynomials(reduced, out_of_reach)
-                                 : search_parabola(reduced);
+      starts != nullptr          ? follow_polynomials(reduced, *starts, out_of_reach, work)
+      : (classes & kCubics) != 0 ? search_polynomials(reduced, out_of_reach, work)
+                                 : search_parabola(reduced, work);
   // The algebraic start serves unless it led to a conic that nothing touches, or one that a limit
   // betters; then the limits are the starts.
   const bool started = starts != nullptr && starts->conic;
   RefineEffort on_all = kOnAllEffort;
   on_all.out_of_reach = out_of_reach;
-  ImplicitFit conic = started ? refine_conic(points, *starts->conic, side, on_all)
-                              : refine_conic(points, algebraic_conic(points), side, near_enough);
+  ImplicitFit conic = started
+                          ? refine_conic(points, *starts->conic, side, on_all, work)
+                          : refine_conic(points, algebraic_conic(points), side, near_enough, work);
   bool usable = is_touchable(conic, reduced);
   double least_chi2 = conic.chi2;  // of any conic, touchable or not
   const auto also_from = [&](double chi2, const ConicCoefficients& start) {
-    if (!started && (!usable || chi2 < conic.chi2)) {
-      const ImplicitFit other = refine_conic(points, start, side, near_enough);
+    if (!started && (!usable || chi2 < conic.chi2) && work.allows()) {
+      const ImplicitFit other = refine_conic(points, start, side, near_enough, work);
       least_chi2 = std::min(least_chi2, other.chi2);
       if (is_touchable(other, reduced) && (!usable || other.chi2 < conic.chi2)) {
         conic = other;
@@ -85,7 +90,7 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
   const bool conic_fits = fits_well(polynomials.lowest_chi2, residuals);
   const bool line_fits = fits(result[static_cast<std::size_t>(CurveClass::Line)]);
   if (starts == nullptr && !line_fits) {  // a line is the limit of all
-    refine_every_seed(reduced, out_of_reach, &polynomials);
+    refine_every_seed(reduced, out_of_reach, &polynomials, work);
   } else if (starts != nullptr && !starts->every_seed && !conic_fits &&
              !fits(polynomials.cubical_parabola) && !fits(polynomials.semi_cubical_parabola) &&
              !fits(polynomials.cubic_spline)) {
@@ -152,7 +157,8 @@ const std::optional<PolynomialFit>& polynomial_of(CurveClass curve_class,
 }
 
 /// Fits to few of the points as they are on all of them.
-ClassFits placed_on(ClassFits fits, const FitData& few, const FitData& all) {
+ClassFits placed_on(ClassFits fits, const FitData& few, const FitData& all, WorkBudget& work) {
+  work.spend(WorkKind::PlacedRow, fits.size() * all.points.size());
   const PolynomialFits carried = carried_to(warm_start_from(fits, few), all);
   for (auto& fit : fits) {
     if (fit && fit->implicit) {
@@ -171,7 +177,8 @@ ClassFits placed_on(ClassFits fits, const FitData& few, const FitData& all) {
 
 /// Fits to few of the points followed on all of them.
 ClassFits followed_on(const ClassFits& found, const FitData& few, const FitData& all,
-                      unsigned classes, double out_of_reach) {
+                      unsigned classes, double out_of_reach, WorkBudget& work) {
+  work.spend(WorkKind::PlacedRow, kPolynomials * all.points.size());
   PolynomialFits carried = carried_to(warm_start_from(found, few), all);
   if (carried.parabola) {
     carried.conic = conic_of_parabola(*carried.parabola);  // the limit, if none is nearer
@@ -183,12 +190,14 @@ ClassFits followed_on(const ClassFits& found, const FitData& few, const FitData&
     }
   }
   carried.every_seed = true;  // not asked to fit: what does not is for the caller to see
-  return *fits_from(&carried, all, classes, out_of_reach);
+  return *fits_from(&carried, all, classes, out_of_reach, work);
 }
 
 /// The polynomials among them that fitted the few, settled on all from feet wherever these are:
 /// near a sharp bend the nearest of some places may be on the other arm.
-ClassFits settled_from_feet(const ClassFits& found, const FitData& few, const FitData& all) {
+ClassFits settled_from_feet(const ClassFits& found, const FitData& few, const FitData& all,
+                            WorkBudget& work) {
+  work.spend(WorkKind::PlacedRow, kPolynomials * all.points.size());
   const PolynomialFits carried = carried_to(warm_start_from(found, few), all);
   const std::size_t residuals = residual_count(few);
   const auto with_feet = [&](PolynomialFit fit) {
@@ -207,7 +216,8 @@ ClassFits settled_from_feet(const ClassFits& found, const FitData& few, const Fi
       } else {
         start.rival.reset();
       }
-      result[static_cast<std::size_t>(fit->curve_class)] = settled(start, all, RivalOf::Other);
+      result[static_cast<std::size_t>(fit->curve_class)] =
+          settled(start, all, RivalOf::Other, work);
     }
   }
   return result;
@@ -249,25 +259,26 @@ ClassFits better_of(ClassFits a, const ClassFits& b) {
 
 /// fit_classes() without a start, of points that are many.
 ClassFits searched_on_few(const FitData& few, const FitData& all, unsigned classes,
-                          double out_of_reach) {
-  ClassFits found = *fits_from(nullptr, few, classes, out_of_reach);
+                          double out_of_reach, WorkBudget& work) {
+  ClassFits found = *fits_from(nullptr, few, classes, out_of_reach, work);
   if (leaves_more_than_noise(found, few)) {
-    return placed_on(std::move(found), few, all);
+    return placed_on(std::move(found), few, all, work);
   }
-  ClassFits fits = followed_on(found, few, all, classes, out_of_reach);
-  if (!any_fits(found, few) || any_fits(fits, all)) {
+  ClassFits fits = followed_on(found, few, all, classes, out_of_reach, work);
+  if (!any_fits(found, few) || any_fits(fits, all) || !work.allows()) {
     return fits;
   }
-  fits = better_of(std::move(fits), settled_from_feet(found, few, all));
-  if (any_fits(fits, all)) {
+  fits = better_of(std::move(fits), settled_from_feet(found, few, all, work));
+  if (any_fits(fits, all) || !work.allows()) {
     return fits;
   }
   // What fits the few and not all was not told by them: once more with those that it misses most.
   const FitData more = few_and_missed(all, squares_of_best(fits, all.points));
-  const ClassFits again = *fits_from(nullptr, more, classes, out_of_reach);
-  fits = better_of(std::move(fits), followed_on(again, more, all, classes, out_of_reach));
-  return any_fits(fits, all) ? fits
-                             : better_of(std::move(fits), settled_from_feet(again, more, all));
+  const ClassFits again = *fits_from(nullptr, more, classes, out_of_reach, work);
+  fits = better_of(std::move(fits), followed_on(again, more, all, classes, out_of_reach, work));
+  return any_fits(fits, all) || !work.allows()
+             ? fits
+             : better_of(std::move(fits), settled_from_feet(again, more, all, work));
 }
 
 }  // namespace
@@ -289,24 +300,26 @@ ConicCoefficients conic_of_parabola(const PolynomialFit& fit) {
   return q.normalized();
 }
 
-ClassFits fit_classes(const FitData& reduced, const WarmStart* start, unsigned classes,
-                      double out_of_reach) {
+ClassFits fit_classes(const FitData& reduced, WorkBudget& work, const WarmStart* start,
+                      unsigned classes, double out_of_reach) {
   const auto few = few_of(reduced);
   if (start != nullptr) {
     if (few && start->polynomials.every_seed) {
+      work.spend(WorkKind::PlacedRow, kPolynomials * few->points.size());
       const PolynomialFits carried = carried_to(*start, *few);
-      ClassFits found = *fits_from(&carried, *few, classes, out_of_reach);
+      ClassFits found = *fits_from(&carried, *few, classes, out_of_reach, work);
       if (leaves_more_than_noise(found, *few)) {
-        return placed_on(std::move(found), *few, reduced);
+        return placed_on(std::move(found), *few, reduced, work);
       }
     }
+    work.spend(WorkKind::PlacedRow, kPolynomials * reduced.points.size());
     const PolynomialFits carried = carried_to(*start, reduced);
-    if (auto fits = fits_from(&carried, reduced, classes, out_of_reach)) {
+    if (auto fits = fits_from(&carried, reduced, classes, out_of_reach, work)) {
       return *std::move(fits);
     }
   }
-  return few ? searched_on_few(*few, reduced, classes, out_of_reach)
-             : *fits_from(nullptr, reduced, classes, out_of_reach);
+  return few ? searched_on_few(*few, reduced, classes, out_of_reach, work)
+             : *fits_from(nullptr, reduced, classes, out_of_reach, work);
 }
 
 }  // namespace palpate

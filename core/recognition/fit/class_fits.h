@@ -9,6 +9,7 @@
 
 #include "core/curves/curve_class.h"
 #include "core/numerics/negligible.h"
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/implicit_fit.h"
 #include "core/recognition/fit/polynomial_fit.h"
 #include "core/recognition/fit/polynomial_search.h"
@@ -61,7 +62,7 @@ struct WarmStart;
 /// search. Classes not in `classes` may be missing. A fit whose chi-square is above `out_of_reach`
 /// is not refined. If there are many points, the searches use only a few of them, in at most two
 /// rounds; apart from that each point costs a bounded number of steps.
-ClassFits fit_classes(const FitData& reduced, const WarmStart* start = nullptr,
+ClassFits fit_classes(const FitData& reduced, WorkBudget& work, const WarmStart* start = nullptr,
                       unsigned classes = kAllClasses,
                       double out_of_reach = std::numeric_limits<double>::infinity());
 

@@ -220,7 +220,8 @@ class SphereResiduals {
 
 template <int K>
 ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
-                   const ConicCoefficients& start, int side, const RefineEffort& effort) {
+                   const ConicCoefficients& start, int side, const RefineEffort& effort,
+                   WorkBudget& work) {
   const Eigen::Matrix<double, K, 1> start_in_model = basis.transpose() * start;
   const SphereResiduals<K> residuals(points, basis, start_in_model, side);
   Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
@@ -230,7 +231,10 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
                           .chi2_tolerance = effort.chi2_tolerance,
                           .relative_tolerance = effort.relative_tolerance(residuals.NumResiduals()),
                           .coarse_above = most_chi2_of_noise(points),
-                          .out_of_reach = effort.out_of_reach},
+                          .out_of_reach = effort.out_of_reach,
+                          .work = &work,
+                          .row = WorkKind::ConicRow,
+                          .rows = points.size()},
                          &step);
   return {residuals.coefficients(step), summary.chi2, summary.iterations, side,
           residuals.feet(step)};
@@ -383,18 +387,18 @@ ImplicitFit placed_on(std::span<const FitPoint> points, ImplicitFit fit) {
 }
 
 ImplicitFit refine_conic(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
-                         const RefineEffort& effort) {
-  return refine<6>(points, conic_basis(), start, side, effort);
+                         const RefineEffort& effort, WorkBudget& work) {
+  return refine<6>(points, conic_basis(), start, side, effort, work);
 }
 
 ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficients& start,
-                          int side, const RefineEffort& effort) {
-  return refine<4>(points, circle_basis(), start, side, effort);
+                          int side, const RefineEffort& effort, WorkBudget& work) {
+  return refine<4>(points, circle_basis(), start, side, effort, work);
 }
 
 ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
-                        const RefineEffort& effort) {
-  return refine<3>(points, line_basis(), start, side, effort);
+                        const RefineEffort& effort, WorkBudget& work) {
+  return refine<3>(points, line_basis(), start, side, effort, work);
 }
 
 }  // namespace palpate

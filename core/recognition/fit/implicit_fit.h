@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/curves/algebraic/canonical_conic.h"
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/refine_effort.h"
 #include "core/recognition/samples/fit_data.h"
 
@@ -30,11 +31,11 @@ ConicCoefficients algebraic_line(std::span<const FitPoint> points);
 /// coefficients move on the unit sphere of the model's subspace, so that the passage from ellipse
 /// through parabola to hyperbola, or from circle to line, is smooth.
 ImplicitFit refine_conic(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
-                         const RefineEffort& effort = {});
+                         const RefineEffort& effort, WorkBudget& work);
 ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficients& start,
-                          int side, const RefineEffort& effort = {});
+                          int side, const RefineEffort& effort, WorkBudget& work);
 ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
-                        const RefineEffort& effort = {});
+                        const RefineEffort& effort, WorkBudget& work);
 
 /// The unchanged fit with the foot points and chi-square of these surface points.
 ImplicitFit placed_on(std::span<const FitPoint> points, ImplicitFit fit);

@@ -141,11 +141,11 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
 /// The fit's own parts refined, their sides as they are. A hopeless rival of what is not the best
 /// keeps its place.
 ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const RefineEffort& effort,
-                      RivalOf rival = RivalOf::Best) {
+                      RivalOf rival, WorkBudget& work) {
   if (fit.polynomial) {
     const auto refine = [&](PolynomialFit& part, const RefineEffort& with) {
       const int side = part.side;
-      part = refine_polynomial(polynomial_model(fit), points, part, side, with);
+      part = refine_polynomial(polynomial_model(fit), points, part, side, with, work);
     };
     refine(*fit.polynomial, effort);
     if (fit.rival &&
@@ -164,10 +164,10 @@ ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const Refi
   const int side = fit.implicit->side;
   RefineEffort to_the_end = effort;
   to_the_end.chi2_tolerance = RefineEffort{}.chi2_tolerance;
-  fit.implicit = fit.curve_class == CurveClass::Line ? refine_line(points, start, side, to_the_end)
-                 : fit.curve_class == CurveClass::Circle
-                     ? refine_circle(points, start, side, to_the_end)
-                     : refine_conic(points, start, side, to_the_end);
+  fit.implicit =
+      fit.curve_class == CurveClass::Line     ? refine_line(points, start, side, to_the_end, work)
+      : fit.curve_class == CurveClass::Circle ? refine_circle(points, start, side, to_the_end, work)
+                                              : refine_conic(points, start, side, to_the_end, work);
   fit.chi2 = fit.implicit->chi2;
   return fit;
 }
@@ -186,13 +186,15 @@ bool is_what_it_says(const ClassFit& fit, const FitData& data) {
          is_touchable(*fit.implicit, data);
 }
 
-ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival) {
+ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival, WorkBudget& work) {
   const RefineEffort& effort = rival == RivalOf::Best ? kBestOnReducedEffort : kOnReducedEffort;
-  return refine_parts(fit, reduced.points, effort, rival);
+  return refine_parts(fit, reduced.points, effort, rival, work);
 }
 
-double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data) {
+double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data,
+                   WorkBudget& work) {
   const std::span<const FitPoint> points(data.points);
+  work.spend(fit.polynomial ? WorkKind::PolynomialRow : WorkKind::ConicRow, points.size());
   std::vector<double> distances;
   if (fit.polynomial) {
     PolynomialFit curve = *fit.polynomial;
@@ -212,15 +214,20 @@ double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData
 }
 
 std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& smooth,
-                                      const FitData& data, const RefineEffort& effort) {
+                                      const FitData& data, const RefineEffort& effort,
+                                      WorkBudget& work) {
   const std::span<const FitPoint> points(data.points);
-  ClassFit refined = refine_parts(start_on_all(fit, smooth, points), points, effort);
+  work.spend(WorkKind::PlacedRow, points.size());
+  ClassFit refined =
+      refine_parts(start_on_all(fit, smooth, points), points, effort, RivalOf::Best, work);
   // All points can leave no more than the reduced ones and the smooth model do: some feet are on
   // the wrong arm of a bend.
   const std::size_t reduced = residual_count(smooth.reduced);
   if (fit.polynomial && fits_well(fit.chi2, reduced) &&
-      !fits_well(refined.chi2 - smooth.chi2, reduced)) {
-    ClassFit again = refine_parts(start_on_all(fit, smooth, points, Feet::Sought), points, effort);
+      !fits_well(refined.chi2 - smooth.chi2, reduced) && work.allows()) {
+    work.spend(WorkKind::PlacedRow, points.size());
+    ClassFit again = refine_parts(start_on_all(fit, smooth, points, Feet::Sought), points, effort,
+                                  RivalOf::Best, work);
     if (again.chi2 < refined.chi2) {
       refined = std::move(again);
     }
@@ -228,13 +235,14 @@ std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& sm
   return is_what_it_says(refined, data) ? std::optional(refined) : std::nullopt;
 }
 
-std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data) {
+std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data, WorkBudget& work) {
   assert(fit.on_all);
   ClassFit start = fit;
   if (start.rival && is_same_curve(*start.polynomial, *start.rival)) {
     start.rival.reset();  // one optimum: it need not be walked to twice
   }
-  const ClassFit polished = refine_parts(std::move(start), data.points, kPolishEffort);
+  const ClassFit polished =
+      refine_parts(std::move(start), data.points, kPolishEffort, RivalOf::Best, work);
   return is_what_it_says(polished, data) ? std::optional(polished) : std::nullopt;
 }
 

@@ -15,20 +15,21 @@ bool is_what_it_says(const ClassFit& fit, const FitData& data);
 enum class RivalOf { Best, Other };
 
 /// Refines a fit to its optimum on the reduced points.
-ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival = RivalOf::Best);
+ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival, WorkBudget& work);
 
 /// Chi-square of all points for an unchanged fit to the reduced points. O(points).
-double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data);
+double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data,
+                   WorkBudget& work);
 
 /// Refines a fit to the reduced points, preferably a settled one, on all points. nullopt if its
 /// optimum there is not such a curve (an ellipse that turned into a hyperbola, or into a needle
 /// around straight points). O(points) per iteration.
 std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& smooth,
-                                      const FitData& data,
-                                      const RefineEffort& effort = kOnAllEffort);
+                                      const FitData& data, const RefineEffort& effort,
+                                      WorkBudget& work);
 
 /// Refines a fit on all points to its optimum, up to rounding; nullopt as above. O(points) per
 /// iteration.
-std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data);
+std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data, WorkBudget& work);
 
 }  // namespace palpate

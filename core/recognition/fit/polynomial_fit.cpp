@@ -16,7 +16,7 @@ namespace {
 template <PolynomialModel kModel>
 void minimise_from(typename PolynomialProblem<kModel>::Vector* x,
                    PolynomialProblem<kModel>* problem, std::span<const FitPoint> points,
-                   const RefineEffort& effort, PolynomialFit* fit) {
+                   const RefineEffort& effort, PolynomialFit* fit, WorkBudget& work) {
   // The solver also stops where a step is refused for next to nothing, as happens along the
   // directions that affine changes of t leave free. Starting afresh, with the damping of the new
   // place, tells a stop from an optimum.
@@ -41,7 +41,10 @@ void minimise_from(typename PolynomialProblem<kModel>::Vector* x,
                                               .chi2_tolerance = left * effort.chi2_tolerance,
                                               .relative_tolerance = effort.relative_tolerance(n),
                                               .coarse_above = most_chi2_of_noise(points),
-                                              .out_of_reach = effort.out_of_reach});
+                                              .out_of_reach = effort.out_of_reach,
+                                              .work = &work,
+                                              .row = WorkKind::PolynomialRow,
+                                              .rows = points.size()});
     if (start_number == 0) {
       fit->chi2 = summary.initial_chi2;
     }
@@ -59,16 +62,16 @@ void minimise_from(typename PolynomialProblem<kModel>::Vector* x,
 
 template <PolynomialModel kModel>
 PolynomialFit refine(std::span<const FitPoint> points, const PolynomialFit& start, int side,
-                     const RefineEffort& effort) {
+                     const RefineEffort& effort, WorkBudget& work) {
   using Problem = PolynomialProblem<kModel>;
   constexpr double kWorthASearch = 1.0;  // of chi-square: odds change by 1.6
   Problem problem(points, start.t, side);
   typename Problem::Vector x = Problem::parameters(start.coefficients);
   PolynomialFit fit;
   fit.chi2 = std::numeric_limits<double>::infinity();
-  minimise_from<kModel>(&x, &problem, points, effort, &fit);
+  minimise_from<kModel>(&x, &problem, points, effort, &fit, work);
   if (effort.seek_feet && std::isfinite(fit.chi2) && problem.seek_feet() > kWorthASearch) {
-    minimise_from<kModel>(&x, &problem, points, effort, &fit);
+    minimise_from<kModel>(&x, &problem, points, effort, &fit, work);
   }
   fit.coefficients = Problem::coefficients(x);
   fit.side = side;
@@ -79,16 +82,17 @@ PolynomialFit refine(std::span<const FitPoint> points, const PolynomialFit& star
 }  // namespace
 
 PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
-                                const PolynomialFit& start, int side, const RefineEffort& effort) {
+                                const PolynomialFit& start, int side, const RefineEffort& effort,
+                                WorkBudget& work) {
   switch (model) {
     case PolynomialModel::Parabola:
-      return refine<PolynomialModel::Parabola>(points, start, side, effort);
+      return refine<PolynomialModel::Parabola>(points, start, side, effort, work);
     case PolynomialModel::CubicalParabola:
-      return refine<PolynomialModel::CubicalParabola>(points, start, side, effort);
+      return refine<PolynomialModel::CubicalParabola>(points, start, side, effort, work);
     case PolynomialModel::SemiCubicalParabola:
-      return refine<PolynomialModel::SemiCubicalParabola>(points, start, side, effort);
+      return refine<PolynomialModel::SemiCubicalParabola>(points, start, side, effort, work);
     case PolynomialModel::CubicSpline:
-      return refine<PolynomialModel::CubicSpline>(points, start, side, effort);
+      return refine<PolynomialModel::CubicSpline>(points, start, side, effort, work);
   }
   return start;
 }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/polynomial_problem.h"
 #include "core/recognition/fit/refine_effort.h"
 #include "core/recognition/samples/fit_data.h"
@@ -25,8 +26,8 @@ struct PolynomialFit {
 /// change the curve; the damping handles these free directions. `start.t` must hold a parameter
 /// near each point's foot point. O(points) per iteration.
 PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
-                                const PolynomialFit& start, int side,
-                                const RefineEffort& effort = {});
+                                const PolynomialFit& start, int side, const RefineEffort& effort,
+                                WorkBudget& work);
 
 /// True if two fits to the same points ended in the same optimum: chi-square and the direction of
 /// the cubic axis agree within the optimiser's tolerance.

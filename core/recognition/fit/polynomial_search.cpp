@@ -27,14 +27,14 @@ RefineEffort coarse(double out_of_reach) {
 /// refine_axis, the arms reassigned until they stay. Each lowers chi-square, so that none comes
 /// back; what still changes after so many lies where the arms cross, as near to one as to another.
 AxisFit refine_axis_and_arms(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
-                             AxisFit fit, int max_iterations) {
+                             AxisFit fit, int max_iterations, WorkBudget& work) {
   constexpr int kMostReassignments = 5;
-  fit = refine_axis(points, std::move(fit), max_iterations);
-  for (int i = 0; i < kMostReassignments && !fit.arms.empty(); ++i) {
+  fit = refine_axis(points, std::move(fit), max_iterations, work);
+  for (int i = 0; i < kMostReassignments && !fit.arms.empty() && work.allows(); ++i) {
     if (!reassign_arms(points, patches, &fit)) {
       break;
     }
-    fit = refine_axis(points, std::move(fit), max_iterations);
+    fit = refine_axis(points, std::move(fit), max_iterations, work);
   }
   return fit;
 }
@@ -51,10 +51,15 @@ bool is_same_valley(const AxisFit& a, const AxisFit& b) {
 constexpr int kMostIterations = 15;
 
 /// Walks the valleys of all seeds on the reduced points; best first.
-std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& reduced) {
+std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& reduced,
+                          WorkBudget& work) {
   std::vector<AxisFit> walked;
   for (const AxisFit& seed : seeds) {
-    AxisFit fit = refine_axis_and_arms(reduced.points, reduced.patches, seed, kMostIterations);
+    if (!work.allows()) {
+      break;
+    }
+    AxisFit fit =
+        refine_axis_and_arms(reduced.points, reduced.patches, seed, kMostIterations, work);
     if (std::isfinite(fit.chi2)) {
       walked.push_back(std::move(fit));
     }
@@ -65,30 +70,32 @@ std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& redu
   return walked;
 }
 
-PolynomialFit refined(const AxisFit& walked, const FitData& reduced, double out_of_reach) {
+PolynomialFit refined(const AxisFit& walked, const FitData& reduced, double out_of_reach,
+                      WorkBudget& work) {
   return refine_polynomial(walked.model, reduced.points, to_polynomial(walked, reduced.points),
-                           kSurfacePoints, coarse(out_of_reach));
+                           kSurfacePoints, coarse(out_of_reach), work);
 }
 
 /// Walks the seeds; the best of them, refined on the reduced points.
 std::optional<PolynomialFit> best_of(std::vector<AxisFit>* seeds, const FitData& reduced,
-                                     double out_of_reach) {
-  *seeds = walk(*seeds, reduced);
+                                     double out_of_reach, WorkBudget& work) {
+  *seeds = walk(*seeds, reduced, work);
   return seeds->empty() ? std::nullopt
-                        : std::optional(refined(seeds->front(), reduced, out_of_reach));
+                        : std::optional(refined(seeds->front(), reduced, out_of_reach, work));
 }
 
 /// The spline on the other side of c = 0.
-PolynomialFit refined_twin(const AxisFit& walked, const FitData& reduced, double out_of_reach) {
+PolynomialFit refined_twin(const AxisFit& walked, const FitData& reduced, double out_of_reach,
+                           WorkBudget& work) {
   return refined(refine_axis_and_arms(reduced.points, reduced.patches,
-                                      twin_of(walked, reduced.points), kMostIterations),
-                 reduced, out_of_reach);
+                                      twin_of(walked, reduced.points), kMostIterations, work),
+                 reduced, out_of_reach, work);
 }
 
 /// Walks the splines' valleys, and lets the other models start beside the splines found: near c = 0
 /// splines come in pairs with a semi-cubical parabola between the two.
-void add_relatives(const FitData& reduced, PolynomialSeeds* seeds) {
-  seeds->cubic_spline = walk(seeds->cubic_spline, reduced);
+void add_relatives(const FitData& reduced, PolynomialSeeds* seeds, WorkBudget& work) {
+  seeds->cubic_spline = walk(seeds->cubic_spline, reduced, work);
   for (const AxisFit& spline : seeds->cubic_spline) {
     seeds->semi_cubical_parabola.push_back(semi_cubical_near(spline, reduced.points));
   }
@@ -106,13 +113,13 @@ struct SplinePair {
 };
 
 SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced,
-                      double out_of_reach) {
+                      double out_of_reach, WorkBudget& work) {
   SplinePair pair;
   if (walked.empty()) {
     return pair;
   }
-  pair.best = refined(walked.front(), reduced, out_of_reach);
-  pair.rival = refined_twin(walked.front(), reduced, out_of_reach);
+  pair.best = refined(walked.front(), reduced, out_of_reach, work);
+  pair.rival = refined_twin(walked.front(), reduced, out_of_reach, work);
   if (pair.rival->chi2 < pair.best->chi2) {
     std::swap(pair.best, pair.rival);
   }
@@ -128,16 +135,16 @@ void keep_better(std::optional<PolynomialFit>* best, PolynomialFit fit) {
 /// A class can be no worse than its limits: starts from them too where it is. Limits above
 /// `highest_chi2` do not matter.
 void start_from_limits(const FitData& reduced, double highest_chi2, double out_of_reach,
-                       PolynomialFits* fits) {
+                       PolynomialFits* fits, WorkBudget& work) {
   for (const auto* limit :
        {&fits->parabola, &fits->cubical_parabola, &fits->semi_cubical_parabola}) {
     if (*limit && (*limit)->chi2 <= highest_chi2 &&
-        (!fits->cubic_spline || (*limit)->chi2 < fits->cubic_spline->chi2)) {
+        (!fits->cubic_spline || (*limit)->chi2 < fits->cubic_spline->chi2) && work.allows()) {
       PolynomialFit start = **limit;
       normalise_parameter(PolynomialModel::CubicSpline, &start);
       keep_better(&fits->cubic_spline,
                   refine_polynomial(PolynomialModel::CubicSpline, reduced.points, start,
-                                    kSurfacePoints, coarse(out_of_reach)));
+                                    kSurfacePoints, coarse(out_of_reach), work));
     }
   }
 }
@@ -168,46 +175,54 @@ PolynomialFit semi_cubical_at(const PolynomialFit& spline, std::span<const FitPo
 
 /// Nor need a limit be worse than what the class has come to: the valleys of a cusp are narrow, and
 /// the spline, which has one coefficient more, may be through where its limit is not.
-void start_from_spline(const FitData& reduced, double out_of_reach, PolynomialFits* fits) {
+void start_from_spline(const FitData& reduced, double out_of_reach, PolynomialFits* fits,
+                       WorkBudget& work) {
   std::optional<PolynomialFit>& limit = fits->semi_cubical_parabola;
-  if (!limit || !fits->cubic_spline || limit->chi2 <= fits->cubic_spline->chi2) {
+  if (!limit || !fits->cubic_spline || limit->chi2 <= fits->cubic_spline->chi2 || !work.allows()) {
     return;
   }
   const PolynomialFit start = semi_cubical_at(*fits->cubic_spline, reduced.points);
   if (start.chi2 < limit->chi2) {
     keep_better(&limit, refine_polynomial(PolynomialModel::SemiCubicalParabola, reduced.points,
-                                          start, kSurfacePoints, coarse(out_of_reach)));
+                                          start, kSurfacePoints, coarse(out_of_reach), work));
   }
 }
 
 }  // namespace
 
-PolynomialFits search_polynomials(const FitData& reduced, double out_of_reach) {
+PolynomialFits search_polynomials(const FitData& reduced, double out_of_reach, WorkBudget& work) {
   PolynomialFits fits;
-  add_graph_seeds(reduced.points, &fits.seeds);
-  add_arm_seeds(reduced.points, reduced.patches, &fits.seeds);
-  add_relatives(reduced, &fits.seeds);
+  if (!work.allows()) {
+    return fits;
+  }
+  add_graph_seeds(reduced.points, &fits.seeds, work);
+  add_arm_seeds(reduced.points, reduced.patches, &fits.seeds, work);
+  add_relatives(reduced, &fits.seeds, work);
   // Conics start from it too.
-  fits.parabola = best_of(&fits.seeds.parabola, reduced, kInfinity);
-  fits.cubical_parabola = best_of(&fits.seeds.cubical_parabola, reduced, out_of_reach);
-  fits.semi_cubical_parabola = best_of(&fits.seeds.semi_cubical_parabola, reduced, out_of_reach);
-  SplinePair pair = fit_spline(fits.seeds.cubic_spline, reduced, out_of_reach);
+  fits.parabola = best_of(&fits.seeds.parabola, reduced, kInfinity, work);
+  fits.cubical_parabola = best_of(&fits.seeds.cubical_parabola, reduced, out_of_reach, work);
+  fits.semi_cubical_parabola =
+      best_of(&fits.seeds.semi_cubical_parabola, reduced, out_of_reach, work);
+  SplinePair pair = fit_spline(fits.seeds.cubic_spline, reduced, out_of_reach, work);
   fits.cubic_spline = std::move(pair.best);
   fits.rival = std::move(pair.rival);
-  start_from_limits(reduced, kInfinity, out_of_reach, &fits);
-  start_from_spline(reduced, out_of_reach, &fits);
+  start_from_limits(reduced, kInfinity, out_of_reach, &fits, work);
+  start_from_spline(reduced, out_of_reach, &fits, work);
   return fits;
 }
 
-PolynomialFits search_parabola(const FitData& reduced) {
+PolynomialFits search_parabola(const FitData& reduced, WorkBudget& work) {
   PolynomialFits fits;
-  add_graph_seeds(reduced.points, &fits.seeds);
-  fits.parabola = best_of(&fits.seeds.parabola, reduced, kInfinity);
+  if (!work.allows()) {
+    return fits;
+  }
+  add_graph_seeds(reduced.points, &fits.seeds, work);
+  fits.parabola = best_of(&fits.seeds.parabola, reduced, kInfinity, work);
   return fits;
 }
 
 PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& starts,
-                                  double out_of_reach) {
+                                  double out_of_reach, WorkBudget& work) {
   // A step or two; what was plausible goes as far as it takes to stay so, and not to need a search.
   constexpr RefineEffort kFollow{5, 1, 1e-2};
   constexpr RefineEffort kFarther{8, 1, 1e-2};
@@ -221,12 +236,13 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
   const auto follow = [&](const std::optional<PolynomialFit>& start,
                           PolynomialModel model) -> std::optional<PolynomialFit> {
     if (!start || start->chi2 > highest_chi2) {
+      work.spend(WorkKind::PolynomialRow, start ? reduced.points.size() : 0);
       return start ? std::optional(placed_on(reduced.points, *start)) : std::nullopt;
     }
     const bool was_plausible = start->chi2 <= starts.lowest_chi2 + kPlausible;
     RefineEffort effort = was_plausible ? kFarther : kFollow;
     effort.out_of_reach = out_of_reach;
-    return refine_polynomial(model, reduced.points, *start, kSurfacePoints, effort);
+    return refine_polynomial(model, reduced.points, *start, kSurfacePoints, effort, work);
   };
   fits.parabola = follow(starts.parabola, PolynomialModel::Parabola);
   fits.cubical_parabola = follow(starts.cubical_parabola, PolynomialModel::CubicalParabola);
@@ -240,11 +256,12 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
       std::swap(fits.rival, fits.cubic_spline);
     }
   }
-  start_from_limits(reduced, highest_chi2, out_of_reach, &fits);
+  start_from_limits(reduced, highest_chi2, out_of_reach, &fits, work);
   return fits;
 }
 
-void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFits* fits) {
+void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFits* fits,
+                       WorkBudget& work) {
   // As many as bound the time of what no class fits.
   constexpr std::size_t kMostSeeds = 4;
   // Data that leave a conic possible tell no cubic from it.
@@ -271,23 +288,24 @@ void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFi
       }
     };
     // The search has refined the first.
-    for (std::size_t i = 1; i < std::min(seeds.size(), kMostSeeds) && !arrived(); ++i) {
-      keep(refined(seeds[i], reduced, out_of_reach));
+    for (std::size_t i = 1; i < std::min(seeds.size(), kMostSeeds) && !arrived() && work.allows();
+         ++i) {
+      keep(refined(seeds[i], reduced, out_of_reach, work));
       if (seeds[i].model == PolynomialModel::CubicSpline) {
-        keep(refined_twin(seeds[i], reduced, out_of_reach));
+        keep(refined_twin(seeds[i], reduced, out_of_reach, work));
       }
     }
-    if (!arrived()) {
+    if (!arrived() && work.allows()) {
       keep(refine_polynomial(seeds.front().model, reduced.points, **best, kSurfacePoints,
-                             thorough(out_of_reach)));
+                             thorough(out_of_reach), work));
     }
   };
   improve(&fits->parabola, fits->seeds.parabola);
   improve(&fits->cubical_parabola, fits->seeds.cubical_parabola);
   improve(&fits->semi_cubical_parabola, fits->seeds.semi_cubical_parabola);
-  start_from_limits(reduced, kInfinity, out_of_reach, fits);
+  start_from_limits(reduced, kInfinity, out_of_reach, fits, work);
   improve(&fits->cubic_spline, fits->seeds.cubic_spline);
-  start_from_spline(reduced, out_of_reach, fits);
+  start_from_spline(reduced, out_of_reach, fits, work);
 }
 
 }  // namespace palpate

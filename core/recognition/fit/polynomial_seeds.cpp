@@ -115,6 +115,13 @@ class ArmSearch {
     }
   }
 
+  /// Sums over patches of all patterns that one vertex is tried with, and for each the residuals'.
+  static std::size_t sums(std::span<const PatchSpan> patches) {
+    constexpr std::size_t kOfResiduals = 8;  // patches, by its time
+    const std::size_t enumerated = std::min(kMostEnumerated, patches.size());
+    return enumerated > 0 ? (patches.size() + kOfResiduals) << (enumerated - 1) : 0;
+  }
+
   /// How many minima are worth a walk.
   std::size_t most_seeds() const {
     return any_lone_ ? PolynomialSeeds::kLoneArmSeeds : PolynomialSeeds::kArmSeeds;
@@ -270,10 +277,11 @@ class ArmSearch {
 
 }  // namespace
 
-void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds) {
+void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds, WorkBudget& work) {
   // 2.5 degrees: half a step puts the far end of a needle off by its width where that is a fiftieth
   // of its length.
   constexpr std::size_t kDirections = 72;
+  work.spend(WorkKind::SeedRow, kDirections * points.size());
   std::vector<Candidate> parabolas(kDirections);
   std::vector<Candidate> cubics(kDirections);
   for (std::size_t d = 0; d < kDirections; ++d) {
@@ -296,11 +304,13 @@ void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds) {
 }
 
 void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
-                   PolynomialSeeds* seeds) {
+                   PolynomialSeeds* seeds, WorkBudget& work) {
   // 7.5 degrees: half a step moves a point at the far end across the axis by a fifteenth of the
   // way, about as much as half a cell of vertices does.
   constexpr std::size_t kDirections = 48;
   constexpr std::size_t kVertices = ArmSearch::kVertexDistances.size();
+  work.spend(WorkKind::SeedRow,
+             kDirections * kVertices * (points.size() + ArmSearch::sums(patches)));
   ArmSearch search(points, patches);
   std::vector<Candidate> semi_cubicals(kDirections * kVertices);
   std::vector<Candidate> splines(kDirections * kVertices);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/axis_fit.h"
 #include "core/recognition/samples/fit_data.h"
 
@@ -25,13 +26,13 @@ struct PolynomialSeeds {
 
 /// Seeds of parabola and cubical parabola. For a trial direction of the axis they are graphs y(x)
 /// with linear coefficients. O(directions * points).
-void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds);
+void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds, WorkBudget& work);
 
 /// Seeds of semi-cubical parabola and spline. For a trial direction and vertex abscissa x0 they are
 /// linear in t = +-sqrt(x - x0), given the arm (the sign of t) of each patch. O(directions *
 /// vertices * (points + 2^patches)), with at most 2^3 patterns of arms: patches beyond the four
 /// longest take the arm that fits the curve through these better.
 void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
-                   PolynomialSeeds* seeds);
+                   PolynomialSeeds* seeds, WorkBudget& work);
 
 }  // namespace palpate

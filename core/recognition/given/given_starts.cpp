@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/curves/algebraic/canonical_conic.h"
 #include "core/curves/algebraic/canonical_cubic.h"
@@ -146,8 +147,11 @@ const std::vector<AxisFit>& seeds_of(CurveClass curve_class, const PolynomialSee
 }
 
 void add_polynomials(CurveClass curve_class, const FitData& data, std::vector<GivenStart>* starts) {
-  const PolynomialFits fits =
-      curve_class == CurveClass::Parabola ? search_parabola(data) : search_polynomials(data);
+  constexpr double kNoneOutOfReach = std::numeric_limits<double>::infinity();
+  WorkBudget unbounded;
+  const PolynomialFits fits = curve_class == CurveClass::Parabola
+                                  ? search_parabola(data, unbounded)
+                                  : search_polynomials(data, kNoneOutOfReach, unbounded);
   const auto add = [&](const std::optional<PolynomialFit>& fit) {
     if (fit) {
       add_polynomial(curve_class, fit->coefficients, data, starts);
@@ -173,7 +177,7 @@ void add_polynomials(CurveClass curve_class, const FitData& data, std::vector<Gi
   for (const AxisFit& seed : seeds_of(curve_class, fits.seeds)) {
     const PolynomialFit fit =
         refine_polynomial(model_of(curve_class), data.points, to_polynomial(seed, data.points),
-                          kSurfacePoints, kRough);
+                          kSurfacePoints, kRough, unbounded);
     add_polynomial(curve_class, fit.coefficients, data, starts);
   }
 }
@@ -183,6 +187,7 @@ void add_polynomials(CurveClass curve_class, const FitData& data, std::vector<Gi
 std::vector<GivenStart> given_starts(CurveClass curve_class, std::span<const Vec2> points) {
   constexpr int kSurfacePoints = 0;
   const FitData data = seed_data(points, Order::None);
+  WorkBudget unbounded;
   std::vector<GivenStart> starts;
   switch (curve_class) {
     case CurveClass::Unclassified:
@@ -194,14 +199,16 @@ std::vector<GivenStart> given_starts(CurveClass curve_class, std::span<const Vec
     case CurveClass::Circle: {
       const ConicCoefficients algebraic = algebraic_circle(data.points);
       add_conic(curve_class, algebraic, data, &starts);
-      add_conic(curve_class, refine_circle(data.points, algebraic, kSurfacePoints).coefficients,
+      add_conic(curve_class,
+                refine_circle(data.points, algebraic, kSurfacePoints, {}, unbounded).coefficients,
                 data, &starts);
       break;
     }
     case CurveClass::Ellipse:
     case CurveClass::Hyperbola: {
       const ConicCoefficients algebraic = algebraic_conic(data.points);
-      const ImplicitFit refined = refine_conic(data.points, algebraic, kSurfacePoints);
+      const ImplicitFit refined =
+          refine_conic(data.points, algebraic, kSurfacePoints, {}, unbounded);
       add_conic(curve_class, refined.coefficients, data, &starts);
       add_conic(curve_class, algebraic, data, &starts);
       for (const ConicCoefficients& q : conics_of_class(curve_class, data.points)) {

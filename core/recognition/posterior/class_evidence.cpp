@@ -55,7 +55,8 @@ void set_log_all_modes(double log_all, ClassEvidence* evidence) {
 /// The evidence of the modes that the prior leads to, at the best one, where they have more than
 /// `least`, and of the mode that it has, if any.
 void take_prior_modes(const Touch& touch, CurveClass path_class, const TouchedCurve& path,
-                      const FitData& data, double least, ClassEvidence* evidence) {
+                      const FitData& data, double least, ClassEvidence* evidence,
+                      WorkBudget& work) {
   constexpr double kTold = 4.0;  // log: less than a fiftieth of the best is not told
   // log over `least`, e^-9 of the best class: what is left of a fiftieth. A class of less, which
   // the most probable start led to, is not worth the time of others.
@@ -70,12 +71,12 @@ void take_prior_modes(const Touch& touch, CurveClass path_class, const TouchedCu
         {arm_of(touch, evidence->touch, evidence->nodes[evidence->mode].curve.z), best});
   }
   for (const PriorStart& start : prior_starts(touch, path_class, path)) {
-    if (further && !(evidence->log_occam > least + kWorthMore)) {
+    if ((further && !(evidence->log_occam > least + kWorthMore)) || !work.allows()) {
       break;
     }
     further = true;
     auto mode = followed_from_prior(start.touch, data, start.curve,
-                                    std::max(best - kTold, least - half_chi2));
+                                    std::max(best - kTold, least - half_chi2), work);
     if (!mode) {
       continue;
     }
@@ -106,7 +107,8 @@ bool is_of_optimum(const ClassEvidence& evidence) {
 }
 
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
-                                         double inflation) {
+                                         double inflation, WorkBudget& work) {
+  work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
   auto touch = touch_of(fit, data);
   if (!touch) {
     return std::nullopt;
@@ -128,23 +130,26 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
   ClassEvidence evidence;
   evidence.touch = *touch;
   evidence.fitted_chi2 = first->chi2;
-  set_mode(descend(*touch, data, std::move(*first), -1, kStepsFromFit), &evidence);
+  set_mode(descend(*touch, data, std::move(*first), -1, work, kStepsFromFit), &evidence);
   return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
 }
 
-ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least) {
+ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least,
+                              WorkBudget& work) {
   evidence.prior_mode_sought = true;
   const CurveClass curve_class = evidence.touch.curve_class;
   const TouchedCurve fitted = evidence.nodes[evidence.mode].curve;
-  take_prior_modes(along_patch(evidence.touch, data), curve_class, fitted, data, least, &evidence);
+  take_prior_modes(along_patch(evidence.touch, data), curve_class, fitted, data, least, &evidence,
+                   work);
   return evidence;
 }
 
 std::optional<ClassEvidence> from_prior(ClassEvidence evidence, CurveClass path_class,
-                                        const TouchedCurve& path, const FitData& data) {
+                                        const TouchedCurve& path, const FitData& data,
+                                        WorkBudget& work) {
   evidence.prior_mode_sought = true;
   take_prior_modes(Touch(evidence.touch), path_class, path, data,
-                   -std::numeric_limits<double>::infinity(), &evidence);
+                   -std::numeric_limits<double>::infinity(), &evidence, work);
   return !evidence.nodes.empty() && is_of_optimum(evidence) ? std::optional(std::move(evidence))
                                                             : std::nullopt;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/posterior/touched_curve.h"
 
 namespace palpate {
@@ -52,19 +53,21 @@ bool is_of_optimum(const ClassEvidence& evidence);
 /// multiplied by `inflation`. nullopt if double precision cannot hold the fit in canonical
 /// coordinates: a vertex so far away has no share in the prior. O(points).
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
-                                         double inflation);
+                                         double inflation, WorkBudget& work);
 
 /// The evidence at the mode that is reached from the prior, if it is larger than `evidence` and
 /// than `least` (log of what the prior leaves of the likelihood). A fit may lie far out in the
 /// prior's tails, in a valley that is too long and bent to be walked along, while another place of
 /// the valley fits as well and is expected by the prior. `evidence` must have one node.
-ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least);
+ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least,
+                              WorkBudget& work);
 
 /// The evidence at the best mode that the prior leads to along the path of another class.
 /// `evidence`: its touch along the patch, and the chi-square that `log_occam` counts from. nullopt
 /// if no mode comes near the points.
 std::optional<ClassEvidence> from_prior(ClassEvidence evidence, CurveClass path_class,
-                                        const TouchedCurve& path, const FitData& data);
+                                        const TouchedCurve& path, const FitData& data,
+                                        WorkBudget& work);
 
 /// The evidence at the mode of `before`, if it is larger. `before`: another fit of the class to the
 /// same data, with the same inflation.

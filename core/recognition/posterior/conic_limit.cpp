@@ -28,14 +28,15 @@ double log_density_ratio_at_parabola(CurveClass beyond, const ClassEvidence& par
 }
 
 std::optional<ClassEvidence> evidence_at_limit(CurveClass curve_class,
-                                               const ClassEvidence& parabola, const FitData& data) {
+                                               const ClassEvidence& parabola, const FitData& data,
+                                               WorkBudget& work) {
   ClassEvidence evidence;
   evidence.at_limit = true;
   evidence.touch = along_patch(parabola.touch, data);
   evidence.touch.curve_class = curve_class;
   evidence.fitted_chi2 = parabola.fitted_chi2;
   const TouchedCurve& path = parabola.nodes[parabola.mode].curve;
-  return from_prior(std::move(evidence), CurveClass::Parabola, path, data);
+  return from_prior(std::move(evidence), CurveClass::Parabola, path, data, work);
 }
 
 bool tells_eccentricity(const ClassEvidence& conic) {

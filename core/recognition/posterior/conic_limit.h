@@ -15,7 +15,8 @@ double log_density_ratio_at_parabola(CurveClass beyond, const ClassEvidence& par
 /// The evidence of a conic that fits no better than the parabola: its mode lies where the prior
 /// leads to. nullopt where none comes near the points.
 std::optional<ClassEvidence> evidence_at_limit(CurveClass curve_class,
-                                               const ClassEvidence& parabola, const FitData& data);
+                                               const ClassEvidence& parabola, const FitData& data,
+                                               WorkBudget& work);
 
 /// Whether the data tell m so narrowly that what lies beyond the parabola is a normal law's tail:
 /// all five coordinates of this conic are determined.

@@ -87,15 +87,17 @@ std::optional<TouchedCurve> corrected(const Touch& touch, const FitData& data,
 }  // namespace
 
 TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed,
-                     int most_steps, double settled) {
+                     WorkBudget& work, int most_steps, double settled) {
   double part = 1.0;
   for (int i = 0; i < most_steps; ++i) {
     const Step step = step_from(touch, curve, fixed);
-    if (!(part * step.gain > settled)) {
+    if (!(part * step.gain > settled) || !work.allows()) {
       break;
     }
+    work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
     auto there = curve_at(touch, curve.z - part * step.by.cwiseProduct(curve.widths), curve, data);
     if (there && !(potential(*there) < potential(curve)) && fixed < 0) {
+      work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
       there = corrected(touch, data, *there, potential(curve));
     }
     if (there && potential(*there) < potential(curve)) {
@@ -109,7 +111,7 @@ TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve
 }
 
 std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
-                                           double inflation, double least_chi2) {
+                                           double inflation, double least_chi2, WorkBudget& work) {
   // The noise is lowered from what the start leaves to what it is: at each level the valley is wide
   // enough to be walked along.
   constexpr int kStepsPerLevel = 12;
@@ -128,6 +130,7 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
     return std::nullopt;
   }
   touch->weight = 1.0 / std::sqrt(inflation);
+  work.spend(WorkKind::PosteriorRow, 2 * rows_of_curve(data));
   auto curve = curve_at(*touch, start, data);
   if (!curve) {
     return std::nullopt;
@@ -135,12 +138,16 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
   const double full = touch->weight;
   double weight = full * std::min(1.0, std::sqrt(n / curve->chi2));
   while (weight < full) {
+    if (!work.allows()) {
+      return std::nullopt;
+    }
     touch->weight = weight;
+    work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
     curve = curve_at(*touch, curve->z, *curve, data);
     if (!curve) {
       return std::nullopt;
     }
-    curve = descend(*touch, data, *std::move(curve), -1, kStepsPerLevel);
+    curve = descend(*touch, data, *std::move(curve), -1, work, kStepsPerLevel);
     if (curve->chi2 > kLost * n) {
       return std::nullopt;
     }
@@ -148,18 +155,20 @@ std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitD
   }
   touch->weight = full;
   curve = curve_at(*touch, curve->z, *curve, data);
-  return curve ? std::optional(descend(*touch, data, *std::move(curve), -1, kStepsFromFit))
+  return curve ? std::optional(descend(*touch, data, *std::move(curve), -1, work, kStepsFromFit))
                : std::nullopt;
 }
 
 std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data,
-                                                const TouchedCurve& start, double log_least) {
+                                                const TouchedCurve& start, double log_least,
+                                                WorkBudget& work) {
   // Of the deviation, from level to level: what settles to within half a unit of the potential at
   // one is within four deviations of the next one's valley.
   constexpr double kLevel = 0.25;
   constexpr double kOnTheWay = 0.5;
   constexpr int kStepsPerLevel = 3;  // bounds the time
   const double full = touch.weight;
+  work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
   std::optional<TouchedCurve> curve = curve_at(touch, start.z, start, data);
   if (!curve) {
     return std::nullopt;
@@ -168,9 +177,9 @@ std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data
   const double n = static_cast<double>(residual_count(data));
   touch.weight = full * std::min(1.0, std::sqrt(n / curve->chi2));
   curve = counted(*std::move(curve), touch.weight / full);
-  while (curve) {
+  while (curve && work.allows()) {
     const bool last = !(touch.weight < full);
-    curve = descend(touch, data, *std::move(curve), -1, last ? kStepsFromFit : kStepsPerLevel,
+    curve = descend(touch, data, *std::move(curve), -1, work, last ? kStepsFromFit : kStepsPerLevel,
                     last ? kSettledPotential : kOnTheWay);
     // Less noise leaves no more of it.
     if (!(log_mass(*curve) > log_least)) {

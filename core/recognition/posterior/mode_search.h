@@ -3,11 +3,19 @@
 
 #include <optional>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/posterior/touched_curve.h"
 
 namespace palpate {
 
-/// -log(likelihood times prior).
+/// Work of one curve in touched coordinates: of its points, and of the small systems that are
+/// solved beside them, which are six more.
+inline std::size_t rows_of_curve(const FitData& data) {
+  constexpr std::size_t kRowsOfSystems = 6;
+  return data.points.size() + kRowsOfSystems;
+}
+
+/// -log of likelihood times prior.
 double potential(const TouchedCurve& curve);
 
 /// log of the determinant of root root^T.
@@ -32,19 +40,21 @@ inline constexpr double kSettledPotential = 2e-2;
 
 /// Gauss-Newton steps down the potential, with coordinate `fixed` held (-1: none).
 TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed,
-                     int most_steps = kStepsFromBeside, double settled = kSettledPotential);
+                     WorkBudget& work, int most_steps = kStepsFromBeside,
+                     double settled = kSettledPotential);
 
 /// The mode of likelihood times prior downhill from `start`, which need not be an optimum. nullopt
 /// if no mode comes near the points, or if double precision cannot hold `start` as a curve of its
 /// class. Noise variances are multiplied by `inflation`. `least_chi2`: lower bound on chi-square of
 /// any curve of the class.
 std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
-                                           double inflation, double least_chi2);
+                                           double inflation, double least_chi2, WorkBudget& work);
 
 /// The mode that a shape of the prior leads to (prior_starts.h), if it holds more than `log_least`.
 /// The noise is lowered step by step from what the shape leaves to its true value. Reason: a fit
 /// far out in the prior's tails lies in a valley that is too narrow and bent to be walked along.
 std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data,
-                                                const TouchedCurve& start, double log_least);
+                                                const TouchedCurve& start, double log_least,
+                                                WorkBudget& work);
 
 }  // namespace palpate

@@ -18,7 +18,7 @@ constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 /// The mode of the spline across c = 0, if there is one.
 std::optional<ClassEvidence> rival_of(const ClassFit& spline, const FitData& reduced,
-                                      double inflation) {
+                                      double inflation, WorkBudget& work) {
   if (!spline.rival || is_same_curve(*spline.polynomial, *spline.rival)) {
     return std::nullopt;
   }
@@ -27,7 +27,7 @@ std::optional<ClassEvidence> rival_of(const ClassFit& spline, const FitData& red
   fit.chi2 = spline.rival->chi2;
   fit.polynomial = spline.rival;
   const auto canonical = to_canonical(fit, reduced);
-  return canonical ? evidence_of(*canonical, reduced, inflation) : std::nullopt;
+  return canonical ? evidence_of(*canonical, reduced, inflation, work) : std::nullopt;
 }
 
 /// Whether the slices of one mode of the spline run through another.
@@ -42,7 +42,11 @@ bool holds(const ClassEvidence& mode, const ClassEvidence& other) {
 
 }  // namespace
 
-Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood) {
+Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
+                             WorkBudget& work) {
+  constexpr std::size_t kRowsOfSection = 6;  // its systems, whatever its points
+  work.spend(WorkKind::PathRow,
+             smooth.reduced.points.size() + kRowsOfSection * smooth.sections.size());
   Evidences evidences;
   evidences.inflation = likelihood.inflation();
   evidences.free_form = free_form(smooth, evidences.inflation);
@@ -70,12 +74,15 @@ namespace {
 /// What a class has in paths that are nearly straight, where the line is in question: all that
 /// counts of it, or more than lies about its fit. Whether it is.
 bool add_straight_paths(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
-                        double best, Evidences* evidences) {
+                        double best, Evidences* evidences, WorkBudget& work) {
+  // One class's quadrature, beside an offset's cell: 235,000 instructions (callgrind).
+  constexpr std::size_t kCellsOfClass = 46;
   constexpr auto kLine = static_cast<std::size_t>(CurveClass::Line);
   const auto& line = evidences->classes[kLine];
   if (!line || !fits[kLine] ||
       !(log_evidence(likelihood, *evidences, CurveClass::Line, fits[kLine]->chi2) >
-        best - kNegligibleLogOdds)) {
+        best - kNegligibleLogOdds) ||
+      !work.allows()) {
     return false;
   }
   const auto bend = bend_of_line(*line, fits[kLine]->chi2, reduced, likelihood);
@@ -96,6 +103,7 @@ bool add_straight_paths(const ClassFits& fits, const FitData& reduced, const Lik
       continue;
     }
     if (!evidence->log_over_line) {
+      work.spend(WorkKind::OffsetCell, kCellsOfClass);
       evidence->log_over_line = log_evidence_over_line(curve_class, *bend);
     }
     const double of_fit = likelihood.log_evidence(fits[i]->chi2, 0.0, evidence->determined);
@@ -112,7 +120,8 @@ constexpr double kUnseenLogOdds = 9.0;
 /// The class's mode that the prior leads to, where it might have more there than about its fit, and
 /// so much that it is seen beside `best`.
 void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced,
-                    const Likelihood& likelihood, double best, Evidences* evidences) {
+                    const Likelihood& likelihood, double best, Evidences* evidences,
+                    WorkBudget& work) {
   constexpr double kWorthAMode = 2.0;   // log odds: a factor of seven
   constexpr double kWorthOthers = 4.0;  // log odds: a fiftieth
   constexpr double kLeftToPrior = 0.1;  // of a coordinate: a deviation of a third of the prior's
@@ -129,9 +138,9 @@ void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced
   const int all = shape_coordinates(found->touch.curve_class) + 2;
   const bool other_arms = (kCubics & class_bit(found->touch.curve_class)) != 0 &&
                           found->determined < all - kLeftToPrior && told > best - kWorthOthers;
-  if ((gain > kWorthAMode || other_arms) && told + gain > seen_from) {
+  if ((gain > kWorthAMode || other_arms) && told + gain > seen_from && work.allows()) {
     const double seen_occam = found->log_occam + seen_from - told;
-    found = with_prior_mode(*std::move(found), reduced, seen_occam);
+    found = with_prior_mode(*std::move(found), reduced, seen_occam, work);
   }
 }
 
@@ -141,7 +150,7 @@ constexpr std::array kConics = {std::pair(CurveClass::Ellipse, CurveClass::Hyper
 /// Of conics that fit no better than the parabola, where that might be seen, and where the other
 /// side of it does not tell what is beyond (probabilities_of).
 void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
-                double best, Evidences before, Evidences* evidences) {
+                double best, Evidences before, Evidences* evidences, WorkBudget& work) {
   constexpr auto kParabola = static_cast<std::size_t>(CurveClass::Parabola);
   const auto& parabola = evidences->classes[kParabola];
   if (!parabola || !fits[kParabola] ||
@@ -152,19 +161,19 @@ void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood&
   for (const auto& [beyond, inside] : kConics) {
     const auto b = static_cast<std::size_t>(beyond);
     const auto& conic = evidences->classes[static_cast<std::size_t>(inside)];
-    if (!fits[b] || !fits[b]->at_limit || (conic && tells_eccentricity(*conic))) {
+    if (!fits[b] || !fits[b]->at_limit || (conic && tells_eccentricity(*conic)) || !work.allows()) {
       continue;
     }
     evidences->on_reduced_chi2[b] = parabola->fitted_chi2;
     evidences->classes[b] = before.classes[b] && before.on_reduced_chi2[b] == parabola->fitted_chi2
                                 ? std::move(before.classes[b])
-                                : evidence_at_limit(beyond, *parabola, reduced);
+                                : evidence_at_limit(beyond, *parabola, reduced, work);
   }
 }
 
 /// The same of all that `fits` has, the best last: alone, it has all of the mass at any mode.
 void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
-                     double log_of_free_form, Evidences* evidences) {
+                     double log_of_free_form, Evidences* evidences, WorkBudget& work) {
   const auto told = [&](std::size_t i) {
     return fits[i] ? log_evidence(likelihood, *evidences, static_cast<CurveClass>(i), fits[i]->chi2)
                    : kNone;
@@ -178,13 +187,13 @@ void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likeli
   for (std::size_t i = 1; i < fits.size(); ++i) {
     if (i != best) {
       add_prior_mode(i, fits, reduced, likelihood, std::max(log_of_best, log_of_free_form),
-                     evidences);
+                     evidences, work);
       alone = alone && told(i) < log_of_best - kUnseenLogOdds;
     }
   }
   if (!alone) {
     add_prior_mode(best, fits, reduced, likelihood, std::max(log_of_best, log_of_free_form),
-                   evidences);
+                   evidences, work);
   }
 }
 
@@ -192,7 +201,7 @@ void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likeli
 
 Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
-                       const Likelihood& likelihood, Evidences before) {
+                       const Likelihood& likelihood, Evidences before, WorkBudget& work) {
   const double inflation = likelihood.inflation();
   const bool same_noise = inflation == before.inflation;
   Evidences evidences;
@@ -200,7 +209,7 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
     evidences.inflation = inflation;
     evidences.free_form = before.free_form;
   } else {
-    evidences = evidences_of_paths(smooth, likelihood);
+    evidences = evidences_of_paths(smooth, likelihood, work);
   }
   evidences.log_shared = before.log_shared;
   evidences.shared_or_other = before.shared_or_other;
@@ -226,14 +235,14 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
       evidences.on_reduced[i] = std::move(before.on_reduced[i]);
       evidences.classes[i] = std::move(before.classes[i]);
     } else if ((evidences.on_reduced[i] = to_canonical(*on_reduced[i], reduced))) {
-      evidences.classes[i] = evidence_of(*evidences.on_reduced[i], reduced, inflation);
+      evidences.classes[i] = evidence_of(*evidences.on_reduced[i], reduced, inflation, work);
       if (same_noise && evidences.classes[i] && before.classes[i]) {
         evidences.classes[i] = at_better_mode(*std::move(evidences.classes[i]), *before.classes[i]);
       }
     }
     best = std::max(best, log_evidence(likelihood, evidences, curve_class, fits[i]->chi2));
   }
-  if (!add_straight_paths(fits, reduced, likelihood, best, &evidences)) {
+  if (!add_straight_paths(fits, reduced, likelihood, best, &evidences, work)) {
     for (auto& evidence : evidences.classes) {
       if (evidence && evidence->log_over_line) {
         evidence->log_over_line.reset();
@@ -241,16 +250,17 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
       }
     }
     add_prior_modes(fits, reduced, likelihood,
-                    log_evidence_of_free_form(likelihood, evidences, smooth.chi2), &evidences);
+                    log_evidence_of_free_form(likelihood, evidences, smooth.chi2), &evidences,
+                    work);
     add_limits(fits, reduced, likelihood, best, same_noise ? std::move(before) : Evidences{},
-               &evidences);
+               &evidences, work);
   }
   return evidences;
 }
 
 Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits& on_reduced,
                      double smooth_chi2, const FitData& reduced, const Likelihood& likelihood,
-                     double margin) {
+                     double margin, WorkBudget& work) {
   // Slices seldom change a mass by ten: with ten times that, what cannot keep the best from being
   // RECOGNIZED stays out.
   const double matters_within = margin + std::log(100.0);
@@ -270,7 +280,8 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
     return log_evidence > kNone && log_evidence >= *best - matters_within;
   };
   const bool spline_is_best = best == log_of.begin() + kSpline && on_reduced[kSpline]->rival;
-  if (std::count_if(log_of.begin(), log_of.end(), matters) < 2 && !spline_is_best) {
+  if ((std::count_if(log_of.begin(), log_of.end(), matters) < 2 && !spline_is_best) ||
+      !work.allows()) {
     return evidences;  // however wide, one class has all of the mass
   }
   for (const CurveClass curve_class : kCurveClasses) {
@@ -278,7 +289,8 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
     if (!matters(log_of[i]) || evidences.classes[i]->log_over_line) {
       continue;
     }
-    auto evidence = by_slices(*evidences.classes[i], reduced, evidences.inflation, Slices::ForMass);
+    auto evidence =
+        by_slices(*evidences.classes[i], reduced, evidences.inflation, Slices::ForMass, work);
     if (!evidence) {
       continue;
     }
@@ -288,12 +300,12 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   if (matters(log_of[kSpline]) && !evidences.classes[kSpline]->log_over_line) {
     // Of a class that is only one of several, Laplace's formula tells the other mode's share well
     // enough.
-    evidences.rival = rival_of(*on_reduced[kSpline], reduced, evidences.inflation);
+    evidences.rival = rival_of(*on_reduced[kSpline], reduced, evidences.inflation, work);
     if (evidences.rival && holds(*evidences.classes[kSpline], *evidences.rival)) {
       evidences.rival.reset();
     } else if (evidences.rival && spline_is_best) {
-      evidences.rival =
-          by_slices(*std::move(evidences.rival), reduced, evidences.inflation, Slices::ForMass);
+      evidences.rival = by_slices(*std::move(evidences.rival), reduced, evidences.inflation,
+                                  Slices::ForMass, work);
     }
   }
   return evidences;

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/posterior/class_evidence.h"
 #include "core/recognition/posterior/free_form.h"
@@ -34,7 +35,8 @@ struct Evidences {
 };
 
 /// The evidence of free-form paths alone, of no class yet.
-Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood);
+Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
+                             WorkBudget& work);
 
 /// log of the evidence of free-form paths.
 double log_evidence_of_free_form(const Likelihood& likelihood, const Evidences& evidences,
@@ -50,13 +52,13 @@ double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
 /// is copied.
 Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
-                       const Likelihood& likelihood, Evidences before = {});
+                       const Likelihood& likelihood, Evidences before, WorkBudget& work);
 
 /// The evidences with quadrature for the classes whose share matters, if there are several, and for
 /// the spline's other mode. `margin`: log odds below which the best is not RECOGNIZED.
 Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits& on_reduced,
                      double smooth_chi2, const FitData& reduced, const Likelihood& likelihood,
-                     double margin);
+                     double margin, WorkBudget& work);
 
 /// Posterior probabilities, with equal priors for all classes. If a conic has no optimum on its own
 /// side of the parabola, it gets the mass that the optimum on the other side leaves there.

@@ -16,7 +16,7 @@ namespace {
 
 /// The curve with coordinate k moved to `value`, the others at their best.
 std::optional<TouchedCurve> slice(const Touch& touch, const FitData& data, const TouchedCurve& from,
-                                  int k, double value) {
+                                  int k, double value, WorkBudget& work) {
   // The others follow as the linear model says.
   const double moved = (value - from.z[k]) / from.widths[k];
   TouchedVector pull = from.root * from.root.row(k).transpose();
@@ -26,8 +26,9 @@ std::optional<TouchedCurve> slice(const Touch& touch, const FitData& data, const
   for (const double part : {1.0, 0.0}) {
     TouchedVector z = from.z + part * step.cwiseProduct(from.widths);
     z[k] = value;
+    work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
     if (auto curve = curve_at(touch, z, from, data)) {
-      return descend(touch, data, std::move(*curve), k);
+      return descend(touch, data, std::move(*curve), k, work);
     }
   }
   return std::nullopt;
@@ -59,7 +60,7 @@ struct Walk {
 /// Slices from `start` (not included) in one direction, until nothing of the `highest` log density
 /// seen is left or the class ends.
 std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& start, int k,
-                        double direction, const Walk& how, double* highest) {
+                        double direction, const Walk& how, double* highest, WorkBudget& work) {
   // A normal law ends after four steps of its deviation; a loose coordinate's are doubled.
   constexpr std::size_t kMostSlices = 14;
   constexpr int kMostTries = 20;
@@ -73,11 +74,11 @@ std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& st
   double step = direction * how.step;
   for (int tried = 0; tried < kMostTries && slices.size() < kMostSlices; ++tried) {
     const double room = longest - std::abs(last->curve.z[k] - start.curve.z[k]);
-    if (!(room > 0.0)) {
+    if (!(room > 0.0) || !work.allows()) {
       break;
     }
     const double length = std::copysign(std::min(std::abs(step), room), step);
-    auto curve = slice(touch, data, last->curve, k, last->curve.z[k] + length);
+    auto curve = slice(touch, data, last->curve, k, last->curve.z[k] + length, work);
     if (!curve) {
       step *= 0.5;  // towards the end of the class
       continue;
@@ -144,7 +145,8 @@ int widest_coordinate(const Touch& touch, const TouchedCurve& best, const Touche
 
 /// log of the integral over the widest coordinate, by trapezoids between slices, which become the
 /// nodes. nullopt where the class is a single slice wide.
-std::optional<double> integrate(const FitData& data, const Walk& how, ClassEvidence* evidence) {
+std::optional<double> integrate(const FitData& data, const Walk& how, ClassEvidence* evidence,
+                                WorkBudget& work) {
   const int k = evidence->widest;
   TouchedCurve mode = evidence->nodes[evidence->mode].curve;
   const double density = log_density(mode, k);
@@ -152,8 +154,8 @@ std::optional<double> integrate(const FitData& data, const Walk& how, ClassEvide
   slices.push_back({std::move(mode), density});
   const Slice start = slices.front();
   double top = density;
-  std::vector<Slice> behind = walk(evidence->touch, data, start, k, -1.0, how, &top);
-  std::vector<Slice> ahead = walk(evidence->touch, data, start, k, 1.0, how, &top);
+  std::vector<Slice> behind = walk(evidence->touch, data, start, k, -1.0, how, &top, work);
+  std::vector<Slice> ahead = walk(evidence->touch, data, start, k, 1.0, how, &top, work);
   const std::size_t middle = behind.size();
   slices.insert(slices.begin(), std::make_move_iterator(behind.rbegin()),
                 std::make_move_iterator(behind.rend()));
@@ -186,17 +188,18 @@ std::optional<double> integrate(const FitData& data, const Walk& how, ClassEvide
 }  // namespace
 
 std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& data,
-                                       double inflation, Slices slices) {
+                                       double inflation, Slices slices, WorkBudget& work) {
   TouchedCurve mode = std::move(evidence.nodes[evidence.mode].curve);
   const double weight = 1.0 / std::sqrt(inflation);
   if (const double ratio = weight / evidence.touch.weight; ratio != 1.0) {
     evidence.touch.weight = weight;
     evidence.fitted_chi2 *= ratio * ratio;
+    work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
     auto counted = curve_at(evidence.touch, mode.z, mode, data);
     if (!counted) {
       return std::nullopt;
     }
-    mode = descend(evidence.touch, data, *std::move(counted), -1, kStepsFromFit);
+    mode = descend(evidence.touch, data, *std::move(counted), -1, work, kStepsFromFit);
   }
   const TouchedMatrix covariance = inverse_cholesky(mode.root);
   const int k = widest_coordinate(evidence.touch, mode, covariance, data, slices);
@@ -209,7 +212,7 @@ std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& da
     const double deviation = std::sqrt(covariance(k, k)) * mode.widths[k];
     const Walk how =
         slices == Slices::ForMoment ? Walk{0.5 * deviation, 0.05} : Walk{deviation, 0.5};
-    log_integral = integrate(data, how, &evidence).value_or(log_integral);
+    log_integral = integrate(data, how, &evidence, work).value_or(log_integral);
   }
   evidence.log_occam = log_integral + 0.5 * evidence.fitted_chi2 + evidence.log_all_modes;
   return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;

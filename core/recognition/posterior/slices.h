@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/posterior/class_evidence.h"
 
 namespace palpate {
@@ -18,6 +19,6 @@ enum class Slices {
 /// Laplace's formula. `evidence`: of the same data, at any inflation. nullopt if it was not at an
 /// optimum. At most about forty slices.
 std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& data,
-                                       double inflation, Slices slices);
+                                       double inflation, Slices slices, WorkBudget& work);
 
 }  // namespace palpate

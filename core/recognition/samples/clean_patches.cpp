@@ -61,8 +61,8 @@ std::vector<std::size_t> returns_among_all(std::span<const StoredSample> all,
 /// found without spikes. And where a stroke turns back, no polynomial follows it and good samples
 /// look like spikes, so spikes are searched again in each pass.
 void clean_passes(StoredPatch patch, double false_alarm, std::vector<StoredPatch>* passes,
-                  std::vector<StoredPatch>* clean) {
-  const std::vector<bool> is_spike = spikes_of(patch.samples, false_alarm);
+                  std::vector<StoredPatch>* clean, WorkBudget& work) {
+  const std::vector<bool> is_spike = spikes_of(patch.samples, false_alarm, work);
   StoredPatch rest = without_spikes(patch, is_spike);
   const std::vector<std::size_t> returns = returns_of(rest.samples);
   if (returns.empty()) {
@@ -72,14 +72,14 @@ void clean_passes(StoredPatch patch, double false_alarm, std::vector<StoredPatch
   }
   *passes = passes_of(patch, returns_among_all(patch.samples, is_spike, returns));
   for (const StoredPatch& pass : *passes) {
-    clean->push_back(without_spikes(pass, spikes_of(pass.samples, false_alarm)));
+    clean->push_back(without_spikes(pass, spikes_of(pass.samples, false_alarm, work)));
   }
 }
 
 }  // namespace
 
 void CleanPatches::look_at(const std::vector<StoredPatch>& patches, double default_sigma_m,
-                           double false_alarm) {
+                           double false_alarm, WorkBudget& work) {
   seen_.resize(patches.size());
   moved_.clear();
   clean_.clear();
@@ -91,8 +91,11 @@ void CleanPatches::look_at(const std::vector<StoredPatch>& patches, double defau
     Seen& seen = seen_[p];
     if (!(seen.version == now.version) || seen.is_one_place != now.is_one_place) {
       clean_passes(moving(patch, now.is_one_place, default_sigma_m), false_alarm, &now.moved,
-                   &now.clean);
+                   &now.clean, work);
       seen = std::move(now);
+      if (work.was_cut()) {
+        seen.version = PatchVersion{};  // none that has a sample
+      }
     }
     moved_.insert(moved_.end(), seen.moved.begin(), seen.moved.end());
     clean_.insert(clean_.end(), seen.clean.begin(), seen.clean.end());

@@ -4,7 +4,8 @@
 
 namespace palpate {
 
-std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_alarm) {
+std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_alarm,
+                            WorkBudget& work) {
   std::vector<Vec2> positions;
   positions.reserve(samples.size());
   for (const StoredSample& sample : samples) {
@@ -12,7 +13,7 @@ std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_
   }
   std::vector<bool> is_spike(samples.size(), false);
   for (const std::size_t i :
-       find_spikes(positions, {.false_alarms_per_patch = false_alarm}).indices) {
+       find_spikes(positions, {.false_alarms_per_patch = false_alarm, .work = &work}).indices) {
     is_spike[i] = true;
   }
   return is_spike;

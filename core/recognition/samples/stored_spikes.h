@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/samples/sample_memory.h"
 
 namespace palpate {
@@ -17,7 +18,8 @@ inline constexpr std::size_t kLongestRunOfSpikes = 3;
 /// Runs find_spikes (core/local/spikes/spikes.h) on the positions of one patch; the noise comes
 /// from the patch itself. One flag per sample. `false_alarm`: probability that a patch without
 /// spikes loses any sample.
-std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_alarm);
+std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_alarm,
+                            WorkBudget& work);
 
 /// The samples without a flag. One flag per sample.
 std::vector<StoredSample> without_spikes(std::span<const StoredSample> samples,

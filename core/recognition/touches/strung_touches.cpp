@@ -139,20 +139,20 @@ std::optional<PlacedCurve> best_of(const ClassFits& fits, const Arcs& arcs, unsi
 /// A curve by which to order the touches. `start` receives the fits if every class was searched and
 /// one fits.
 std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, unsigned classes,
-                                         std::optional<WarmStart>* start) {
+                                         std::optional<WarmStart>* start, WorkBudget& work) {
   const Arcs arcs = smooth_arcs(data, sigma_known);
   const FitData& reduced = arcs.smooth.reduced;
   // A conic gives the order, whatever other classes fit, if it explains the touches within their
   // noise and does not go back and forth between them (as the two sides of a needle would).
   std::optional<PlacedCurve> conic =
-      best_of(fit_classes(reduced, nullptr, classes & ~kCubics), arcs, ~kCubics);
+      best_of(fit_classes(reduced, work, nullptr, classes & ~kCubics), arcs, ~kCubics);
   const bool orders = conic && arcs.sigma_known &&
                       fits_well(conic->chi2, residual_count(reduced)) &&
                       length_of(conic->touches_m) <= kDetour * shortest_tree(conic->touches_m);
   if (orders || (classes & kCubics) == 0) {
     return conic;
   }
-  const ClassFits fits = fit_classes(reduced, nullptr, classes);
+  const ClassFits fits = fit_classes(reduced, work, nullptr, classes);
   WarmStart found = warm_start_from(fits, reduced);
   if (arcs.sigma_known && !found.polynomials.every_seed) {
     *start = std::move(found);
@@ -308,7 +308,7 @@ std::optional<Strung> strung_by_way(std::span<const StoredPatch> patches, const 
 
 /// Joins touches in the order along the curve that explains them best; nullopt if there is none.
 std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, const Indices& lone,
-                                      double default_sigma_m, unsigned classes) {
+                                      double default_sigma_m, unsigned classes, WorkBudget& work) {
   std::vector<StoredPatch> sought;
   for (const StoredPatch& patch : patches) {
     if (patch.samples.size() > 1) {
@@ -326,7 +326,7 @@ std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, cons
   bool sigma_known = false;
   const FitData data = make_fit_data(sought, default_sigma_m, &sigma_known);
   Strung result(patches.size());
-  const auto found = curve_through(data, sigma_known, classes, &result.start);
+  const auto found = curve_through(data, sigma_known, classes, &result.start, work);
   if (!found) {
     return std::nullopt;
   }
@@ -350,14 +350,15 @@ std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, cons
 }  // namespace
 
 std::optional<StrungTouches> strung_touches(std::span<const StoredPatch> patches,
-                                            double default_sigma_m, unsigned classes) {
+                                            double default_sigma_m, unsigned classes,
+                                            WorkBudget& work) {
   const Indices lone = lone_patches(patches);
   if (lone.size() < kRun) {
     return std::nullopt;
   }
   auto strung = strung_by_way(patches, lone, default_sigma_m);
   if (!strung) {
-    strung = strung_by_curve(patches, lone, default_sigma_m, classes);
+    strung = strung_by_curve(patches, lone, default_sigma_m, classes, work);
   }
   if (!strung || strung->runs.empty()) {
     return std::nullopt;

@@ -28,6 +28,7 @@ struct StrungTouches {
 /// patch number of its first touch and no material side. nullopt if there is no run.
 /// `default_sigma_m`: noise of samples that state none [m]. `classes`: bit 1 << CurveClass of each.
 std::optional<StrungTouches> strung_touches(std::span<const StoredPatch> patches,
-                                            double default_sigma_m, unsigned classes);
+                                            double default_sigma_m, unsigned classes,
+                                            WorkBudget& work);
 
 }  // namespace palpate

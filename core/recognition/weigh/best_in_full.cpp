@@ -46,20 +46,20 @@ struct PlacedInFull {
 
 /// To the optimum with weights of the curve found, as the fit of a given class has them. Each walk
 /// leaves of the weights' error about the noise over the radius of curvature.
-std::optional<PlacedInFull> placed_in_full(PlacedInFull start, FitData* data) {
+std::optional<PlacedInFull> placed_in_full(PlacedInFull start, FitData* data, WorkBudget& work) {
   constexpr int kMostWalks = 10;
   constexpr double kSame = 1e-6;  // of chi-square: a thousandth of a deviation
   PlacedInFull placed = std::move(start);
   for (int walk = 0; walk < kMostWalks; ++walk) {
     weigh_across_curve(placed.canonical, data);
-    const auto fit = polish(placed.fit, *data);
+    const auto fit = polish(placed.fit, *data, work);
     auto canonical = fit ? to_canonical(*fit, *data) : std::nullopt;
     if (!canonical) {
       return std::nullopt;
     }
     const bool same = std::abs(fit->chi2 - placed.fit.chi2) <= kSame;
     placed = {*fit, *std::move(canonical)};
-    if (same) {
+    if (same || !work.allows()) {
       break;
     }
   }
@@ -119,7 +119,7 @@ FitData reduced_with_normals(const Weighing& w, const FitData& data) {
 
 }  // namespace
 
-Weighing best_in_full(Weighing w, const FitData& data) {
+Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work) {
   const auto b = static_cast<std::size_t>(w.best);
   if (!w.canonical[b] || !w.fits[b]->on_all) {
     return w;
@@ -131,14 +131,14 @@ Weighing best_in_full(Weighing w, const FitData& data) {
   if (!w.correlated && !(w.correlation_length > 0.0)) {
     give_normals(&full);
   }
-  auto placed = placed_in_full({*w.fits[b], *w.canonical[b]}, &full);
+  auto placed = placed_in_full({*w.fits[b], *w.canonical[b]}, &full, work);
   const auto wrong = placed && full.normals_along_strokes ? wrong_normals(placed->canonical, full)
                                                           : std::vector<std::size_t>{};
   for (const std::size_t i : wrong) {
     full.points[i].inverse_normal_sigma = 0.0;
   }
   if (!wrong.empty()) {
-    placed = placed_in_full(*std::move(placed), &full);
+    placed = placed_in_full(*std::move(placed), &full, work);
   }
   if (!placed) {  // no curve of the class has these places and normals
     w.counted_chi2 = std::numeric_limits<double>::infinity();
@@ -146,9 +146,11 @@ Weighing best_in_full(Weighing w, const FitData& data) {
   }
   if (full.normals_along_strokes) {
     w.reduced = reduced_with_normals(w, full);
-    w.best_on_reduced = to_canonical(settled(*w.coarse[b], w.reduced), w.reduced);
-    w.best_evidence =
-        w.best_on_reduced ? evidence_of(*w.best_on_reduced, w.reduced, w.inflation) : std::nullopt;
+    w.best_on_reduced =
+        to_canonical(settled(*w.coarse[b], w.reduced, RivalOf::Best, work), w.reduced);
+    w.best_evidence = w.best_on_reduced
+                          ? evidence_of(*w.best_on_reduced, w.reduced, w.inflation, work)
+                          : std::nullopt;
     w.stroke_normals = residual_count(full) - residual_count(w.data);
   }
   for (std::size_t i = 0; i < full.details.size(); ++i) {

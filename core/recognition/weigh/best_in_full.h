@@ -12,6 +12,6 @@ namespace palpate {
 /// is worth beside that: none along a stroke counts. Single normals that the curve leaves beyond
 /// any noise are left aside. `w.data` is left with the details that do not count. `data`: of the
 /// same points, with the covariances. O(points).
-Weighing best_in_full(Weighing w, const FitData& data);
+Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work);
 
 }  // namespace palpate

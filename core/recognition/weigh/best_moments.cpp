@@ -13,8 +13,9 @@ namespace {
 std::optional<ShapePoseCovariance> covariance_of_valley(const ClassEvidence& evidence,
                                                         const CanonicalFit& on_reduced,
                                                         const CanonicalFit& best,
-                                                        const FitData& reduced, double inflation) {
-  const auto valley = by_slices(evidence, reduced, inflation, Slices::ForMoment);
+                                                        const FitData& reduced, double inflation,
+                                                        WorkBudget& work) {
+  const auto valley = by_slices(evidence, reduced, inflation, Slices::ForMoment, work);
   if (!valley || valley->widest < 0) {
     return std::nullopt;
   }
@@ -42,20 +43,20 @@ ShapePoseCovariance with_coherence(const CoherentMoment& coherent,
 
 }  // namespace
 
-BestMoments moments_of_best(const Weighing& w) {
+BestMoments moments_of_best(const Weighing& w, WorkBudget& work) {
   BestMoments result;
   const auto& best = w.canonical[static_cast<std::size_t>(w.best)];
   if (!w.best_evidence || !w.best_on_reduced || !best) {
     return result;
   }
-  result.moment =
-      covariance_of_valley(*w.best_evidence, *w.best_on_reduced, *best, w.reduced, w.inflation);
+  result.moment = covariance_of_valley(*w.best_evidence, *w.best_on_reduced, *best, w.reduced,
+                                       w.inflation, work);
   if (result.moment) {
     result.white_moment = *result.moment / w.inflation;
   }
   if (w.correlated) {
     const auto coherent =
-        coherent_moment(*w.best_on_reduced, w.reduced, w.stated, w.sigma, w.smooth.chi2);
+        coherent_moment(*w.best_on_reduced, w.reduced, w.stated, w.sigma, w.smooth.chi2, work);
     if (coherent) {
       result.coherent_deviation = std::sqrt(coherent->probability) * coherent->deviation;
       result.moment = with_coherence(*coherent, result.moment, best->covariance, w.inflation,
@@ -63,6 +64,14 @@ BestMoments moments_of_best(const Weighing& w) {
     }
   }
   return result;
+}
+
+double told_deviation_m(const BestMoments& moments, double scale_m) {
+  constexpr double kSteps = 2.0;  // to a factor of two
+  return moments.coherent_deviation > 0.0
+             ? scale_m *
+                   std::exp2(std::ceil(kSteps * std::log2(moments.coherent_deviation)) / kSteps)
+             : 0.0;
 }
 
 }  // namespace palpate

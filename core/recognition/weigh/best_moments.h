@@ -19,7 +19,11 @@ struct BestMoments {
   double coherent_deviation = 0.0;
 };
 
-/// To be called once per answer, for the final weighing only.
-BestMoments moments_of_best(const Weighing& weighing);
+/// Once for an answer: of several weighings only that which it is told from needs them.
+BestMoments moments_of_best(const Weighing& weighing, WorkBudget& work);
+
+/// What residuals tell of a smooth deviation, to a factor of the root of two and no less, so that
+/// windows are not made anew wherever a sample changes it a little. [m]
+double told_deviation_m(const BestMoments& moments, double scale_m);
 
 }  // namespace palpate

@@ -78,9 +78,9 @@ Contenders with_conic_mode(Contenders contenders, const Ground& ground, unsigned
   const double first = reduced.frame.theta + 0.5 * kApart - start->world_T_curve.theta;
   std::optional<ClassFit> best;
   double least = 0.0;
-  for (int i = 0; i < kDirections; ++i) {
-    const auto mode =
-        posterior_mode(as_ellipse(*start, first + kApart * i), reduced, inflation, least_chi2);
+  for (int i = 0; i < kDirections && ground.work.allows(); ++i) {
+    const auto mode = posterior_mode(as_ellipse(*start, first + kApart * i), reduced, inflation,
+                                     least_chi2, ground.work);
     const double potential = mode ? 0.5 * mode->chi2 - mode->log_prior : 0.0;
     if (!mode || (best && potential >= least)) {
       continue;
@@ -97,7 +97,7 @@ Contenders with_conic_mode(Contenders contenders, const Ground& ground, unsigned
     contenders.coarse[kEllipse] = std::move(best);
     contenders.evidences =
         evidences_of(contenders.fits, contenders.coarse, ground.arcs.smooth, reduced,
-                     ground.likelihood, std::move(contenders.evidences));
+                     ground.likelihood, std::move(contenders.evidences), ground.work);
   }
   contenders.no_conic = !contenders.evidences.classes[kEllipse];
   return contenders;

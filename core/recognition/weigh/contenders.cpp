@@ -40,13 +40,14 @@ ClassFit out(const ClassFit& coarse) {
 }
 
 /// A class at its very optimum on all points, from its optimum on the reduced ones.
-ClassFit polished(const ClassFit& settled, const SmoothModel& smooth, const FitData& data) {
+ClassFit polished(const ClassFit& settled, const SmoothModel& smooth, const FitData& data,
+                  WorkBudget& work) {
   std::optional<ClassFit> fit;
   if (!settled.rival) {
-    fit = refine_on_all(settled, smooth, data, kPolishEffort);
-  } else if (const auto refined = refine_on_all(settled, smooth, data)) {
+    fit = refine_on_all(settled, smooth, data, kPolishEffort, work);
+  } else if (const auto refined = refine_on_all(settled, smooth, data, kOnAllEffort, work)) {
     // Not at once: the rival may be on its way to the same optimum.
-    fit = polish(*refined, data);
+    fit = polish(*refined, data, work);
   }
   ClassFit result = fit.value_or(out(settled));
   result.polished = true;
@@ -57,25 +58,26 @@ ClassFit polished(const ClassFit& settled, const SmoothModel& smooth, const FitD
 /// best (`trusted`), it is left at its optimum there; otherwise (sections bent too sharply to be
 /// followed to the noise, feet on the wrong arm) it has another one, or none.
 ClassFit weighed(const ClassFit& coarse, const FitData& reduced, bool trusted,
-                 const SmoothModel& smooth, const FitData& data) {
+                 const SmoothModel& smooth, const FitData& data, WorkBudget& work) {
   constexpr double kAgreement = 1.0;  // of chi-square: odds are right to a factor of 1.6
   if (trusted && is_what_it_says(coarse, reduced)) {
     ClassFit fit = coarse;
-    fit.chi2 = chi2_on_all(coarse, smooth, data);
+    fit.chi2 = chi2_on_all(coarse, smooth, data, work);
     fit.weighed = true;
     if (std::abs(fit.chi2 - (coarse.chi2 + smooth.chi2)) <= kAgreement) {
       return fit;
     }
   }
-  return refine_on_all(coarse, smooth, data).value_or(out(coarse));
+  return refine_on_all(coarse, smooth, data, kOnAllEffort, work).value_or(out(coarse));
 }
 
 /// Takes w->coarse of a class to its optimum on the reduced points, unless it is there, or leaves
 /// more than any noise after all that a search has tried: that is no curve of the class.
-const ClassFit& settle(std::size_t i, RivalOf rival, const FitData& reduced, Contenders* w) {
+const ClassFit& settle(std::size_t i, RivalOf rival, const FitData& reduced, Contenders* w,
+                       WorkBudget& work) {
   if (w->coarse[i]->chi2 <= most_chi2_of_noise(reduced.points) &&
       (!w->fits[i]->weighed || (rival == RivalOf::Best && w->coarse[i]->rival))) {
-    w->coarse[i] = settled(*w->coarse[i], reduced, rival);
+    w->coarse[i] = settled(*w->coarse[i], reduced, rival, work);
   }
   return *w->coarse[i];
 }
@@ -137,9 +139,10 @@ CurveClass most_probable(const ClassProbabilities& probabilities) {
 }
 
 Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
-  const auto& [arcs, reduced, likelihood, out_of_reach] = ground;
+  const auto& [arcs, reduced, work, likelihood, out_of_reach] = ground;
   const auto& [data, smooth, sigma_known, sigma] = arcs;
-  w.evidences = evidences_of(w.fits, w.coarse, smooth, reduced, likelihood, std::move(w.evidences));
+  w.evidences =
+      evidences_of(w.fits, w.coarse, smooth, reduced, likelihood, std::move(w.evidences), work);
   // Where the smooth model itself misfits, neither it nor the reduced points can be trusted that
   // far.
   const double misfit_ratio = std::max(1.0, smooth.noise_ratio() * smooth.noise_ratio());
@@ -148,13 +151,13 @@ Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
   // twice as much as for the best, and kLeastError anyhow.
   double error = misfit_ratio * kLeastError;
   bool trusted = true;
-  for (bool changed = true; changed;) {
+  for (bool changed = true; changed && work.allows();) {
     changed = false;
     const auto b = static_cast<std::size_t>(best_class(w.fits, likelihood, w.evidences));
     auto& best = w.fits[b];
     if (best && !best->polished && w.coarse[b]->chi2 <= out_of_reach) {
       const double told = best->chi2;
-      best = polished(settle(b, RivalOf::Best, reduced, &w), smooth, data);
+      best = polished(settle(b, RivalOf::Best, reduced, &w, work), smooth, data, work);
       if (std::isfinite(best->chi2)) {
         error = std::max(error, 2.0 * (told - best->chi2));
         const double settled_chi2 = w.coarse[b]->chi2 + smooth.chi2;
@@ -168,8 +171,9 @@ Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
     for (std::size_t i = 0; i < w.fits.size(); ++i) {
       auto& fit = w.fits[i];
       if (fit && !fit->weighed && !fit->at_limit && !is_of_straight_paths(w.evidences, i) &&
-          is_plausible(*fit, highest, margin, error, likelihood, w.evidences)) {
-        fit = weighed(settle(i, RivalOf::Other, reduced, &w), reduced, trusted, smooth, data);
+          is_plausible(*fit, highest, margin, error, likelihood, w.evidences) && work.allows()) {
+        fit = weighed(settle(i, RivalOf::Other, reduced, &w, work), reduced, trusted, smooth, data,
+                      work);
         changed = true;
       }
     }
@@ -183,16 +187,17 @@ Contenders decided(Contenders w, const Ground& ground, double margin) {
   const FitData& reduced = ground.reduced;
   const Likelihood& likelihood = ground.likelihood;
   while (true) {
-    w.evidences =
-        evidences_of(w.fits, w.coarse, arcs.smooth, reduced, likelihood, std::move(w.evidences));
+    w.evidences = evidences_of(w.fits, w.coarse, arcs.smooth, reduced, likelihood,
+                               std::move(w.evidences), ground.work);
     w.evidences = integrated(std::move(w.evidences), w.fits, w.coarse, arcs.smooth.chi2, reduced,
-                             likelihood, margin);
+                             likelihood, margin, ground.work);
     const auto i = static_cast<std::size_t>(most_probable(probabilities_of(w, ground)));
     auto& fit = w.fits[i];
-    if (!fit || fit->polished || fit->at_limit) {
+    if (!fit || fit->polished || fit->at_limit || !ground.work.allows()) {
       return w;
     }
-    fit = polished(settle(i, RivalOf::Best, reduced, &w), arcs.smooth, arcs.data);
+    fit = polished(settle(i, RivalOf::Best, reduced, &w, ground.work), arcs.smooth, arcs.data,
+                   ground.work);
     take_limits(&w.fits);
   }
 }

@@ -1,6 +1,7 @@
 // Refines the classes that may win on all points until the winner is known.
 #pragma once
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/posterior/posterior.h"
 #include "core/recognition/smooth/arcs.h"
@@ -16,6 +17,7 @@ inline constexpr double kLeastError = 4.0;
 struct Ground {
   const Arcs& arcs;
   const FitData& reduced;  ///< the arcs' reduced points, as surface points
+  WorkBudget& work;
   Likelihood likelihood;
   double out_of_reach;  ///< chi-square on the reduced points (posterior/out_of_reach.h)
 };

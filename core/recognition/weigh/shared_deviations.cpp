@@ -56,7 +56,7 @@ void weigh_on_reduced(std::size_t i, const Ground& ground, Contenders* w) {
   evidences.classes[i].reset();
   if ((evidences.on_reduced[i] = to_canonical(*w->coarse[i], ground.reduced))) {
     evidences.classes[i] =
-        evidence_of(*evidences.on_reduced[i], ground.reduced, evidences.inflation);
+        evidence_of(*evidences.on_reduced[i], ground.reduced, evidences.inflation, ground.work);
   }
 }
 
@@ -70,12 +70,16 @@ Contenders with_shared_deviations(Contenders w, const Ground& ground, bool of_an
   }
   LogEvidences gain{};
   for (const std::size_t i : classes) {
+    if (!ground.work.allows()) {
+      return w;
+    }
     weigh_on_reduced(i, ground, &w);
     const auto& evidence = w.evidences.classes[i];
-    const auto own =
-        evidence ? log_coherent_gain(*w.evidences.on_reduced[i], *evidence, ground.reduced,
-                                     ground.likelihood, ground.arcs.sigma, ground.arcs.smooth.chi2)
-                 : std::nullopt;
+    const auto own = evidence
+                         ? log_coherent_gain(*w.evidences.on_reduced[i], *evidence, ground.reduced,
+                                             ground.likelihood, ground.arcs.sigma,
+                                             ground.arcs.smooth.chi2, ground.work)
+                         : std::nullopt;
     if (i == classes.front()) {
       gain.fill(own.value_or(0.0));
     } else if (own) {

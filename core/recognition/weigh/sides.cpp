@@ -19,9 +19,9 @@ namespace {
 
 /// The classes followed from where they were with the tips on these sides, or sought.
 ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
-                           const FitData& reduced, unsigned classes,
+                           const FitData& reduced, const Judged& by,
                            double out_of_reach = std::numeric_limits<double>::infinity()) {
-  return fit_classes(reduced, start_for(starts, sides), classes, out_of_reach);
+  return fit_classes(reduced, by.work, start_for(starts, sides), by.classes, out_of_reach);
 }
 
 /// The class that a way stands or falls with, by the evidence of all, and its optimum on the
@@ -29,8 +29,8 @@ ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const i
 bool settle_candidate(const Judged& by, Way* way) {
   const SmoothModel& smooth = by.arcs.smooth;
   const ClassFits told = as_told(way->fits, smooth);
-  way->evidences =
-      evidences_of(told, way->fits, smooth, way->reduced, by.likelihood, std::move(way->evidences));
+  way->evidences = evidences_of(told, way->fits, smooth, way->reduced, by.likelihood,
+                                std::move(way->evidences), by.work);
   const CurveClass before = way->candidate;
   way->candidate = best_class(told, by.likelihood, way->evidences);
   if (way->candidate == before) {
@@ -41,7 +41,7 @@ bool settle_candidate(const Judged& by, Way* way) {
   if (const auto& fit = way->fits[static_cast<std::size_t>(way->candidate)]) {
     const bool may_win =
         !tells_noise(by.arcs, by.likelihood) || fits_well(fit->chi2, residual_count(way->reduced));
-    way->settled = settled(*fit, way->reduced, may_win ? RivalOf::Best : RivalOf::Other);
+    way->settled = settled(*fit, way->reduced, may_win ? RivalOf::Best : RivalOf::Other, by.work);
   }
   return true;
 }
@@ -54,12 +54,13 @@ std::optional<ClassFit> seen_by_all(const ClassFit& settled, const FitData& redu
   const SmoothModel& smooth = by.arcs.smooth;
   if (is_what_it_says(settled, reduced)) {
     ClassFit fit = settled;
-    fit.chi2 = chi2_on_all(settled, smooth, by.arcs.data);
+    fit.chi2 = chi2_on_all(settled, smooth, by.arcs.data, by.work);
     if (std::abs(fit.chi2 - (settled.chi2 + smooth.chi2)) <= kSame) {
       return fit;
     }
   }
-  return refine_on_all(settled, smooth, by.arcs.data);
+  return by.work.allows() ? refine_on_all(settled, smooth, by.arcs.data, kOnAllEffort, by.work)
+                          : std::nullopt;
 }
 
 /// The same, and on all points. What was refined before is not once more.
@@ -97,10 +98,10 @@ bool is_as_near(const Way& way, CurveClass before, double chi2, const Judged& by
     return true;
   }
   const auto& fit = way.fits[static_cast<std::size_t>(before)];
-  const auto refined =
-      fit && before != way.candidate
-          ? refine_on_all(settled(*fit, way.reduced, RivalOf::Other), by.arcs.smooth, by.arcs.data)
-          : std::nullopt;
+  const auto refined = fit && before != way.candidate
+                           ? refine_on_all(settled(*fit, way.reduced, RivalOf::Other, by.work),
+                                           by.arcs.smooth, by.arcs.data, kOnAllEffort, by.work)
+                           : std::nullopt;
   return refined && refined->chi2 <= chi2;
 }
 
@@ -122,7 +123,7 @@ bool directions_may_explain(const ClassFit& settled, const FitData& touches,
 /// compared with one another. A part whose walls are two curves that differ by little more than
 /// coherent errors may is told no better than these are known.
 double log_evidence_of(const Way& way, const Judged& by) {
-  const auto& [arcs, likelihood, of_paths, classes, out_of_reach] = by;
+  const auto& [arcs, likelihood, work, of_paths, classes, out_of_reach] = by;
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   const auto placed = way.refined ? to_canonical(*way.settled, way.reduced) : std::nullopt;
   if (!placed) {
@@ -130,11 +131,11 @@ double log_evidence_of(const Way& way, const Judged& by) {
   }
   auto evidence = way.evidences.classes[static_cast<std::size_t>(way.candidate)];
   if (!evidence) {
-    evidence = evidence_of(*placed, way.reduced, likelihood.inflation());
+    evidence = evidence_of(*placed, way.reduced, likelihood.inflation(), work);
   }
   return evidence ? log_coherent_evidence(likelihood, *evidence, *placed, way.reduced, arcs.sigma,
                                           static_cast<double>(arcs.data.points.size()),
-                                          way.refined->chi2, arcs.smooth.chi2)
+                                          way.refined->chi2, arcs.smooth.chi2, work)
                   : kNone;
 }
 
@@ -150,7 +151,7 @@ class CurveOfCentres {
       sought_ = true;
       const FitData& centres = by_.arcs.smooth.reduced;
       Way way;
-      way.fits = fit_classes_from(starts_, sides_, centres, by_.classes);
+      way.fits = fit_classes_from(starts_, sides_, centres, by_);
       way.reduced = centres;
       way.evidences = by_.of_paths;
       settle_candidate(by_, &way);
@@ -190,7 +191,7 @@ Way fit_along(FitData touches, std::span<const int> sides, const Judged& by,
               std::span<const SidedStart> starts) {
   const SmoothModel& smooth = by.arcs.smooth;
   FitData reduced = on_surface(touches, sides);
-  ClassFits fits = fit_classes_from(starts, sides, reduced, by.classes, by.out_of_reach);
+  ClassFits fits = fit_classes_from(starts, sides, reduced, by, by.out_of_reach);
   if (std::none_of(fits.begin(), fits.end(),
                    [&](const auto& fit) { return fit && fit->chi2 <= by.out_of_reach; })) {
     Way way;  // nothing that could be, whatever directions and evidence say
@@ -205,7 +206,8 @@ Way fit_along(FitData touches, std::span<const int> sides, const Judged& by,
   // third of a radian to a ninth of what they were. What is not even halved they do not leave.
   constexpr double kLeastGain = 2.0;
   for (int round = 0; round < kRounds; ++round) {
-    if (!way.settled || !directions_may_explain(*way.settled, touches, smooth)) {
+    if (!way.settled || !directions_may_explain(*way.settled, touches, smooth) ||
+        !by.work.allows()) {
       break;
     }
     // (a candidate that is no such curve on all points says nothing about the directions of all)
@@ -219,12 +221,12 @@ Way fit_along(FitData touches, std::span<const int> sides, const Judged& by,
       break;
     }
     const DirectionsOf which = swayed ? DirectionsOf::AllPoints : DirectionsOf::KeptPoints;
-    if (set_directions(which, *curve, smooth, &touches) < kSettledTurn) {
+    if (set_directions(which, *curve, smooth, &touches, by.work) < kSettledTurn) {
       break;
     }
     FitData nearer = on_surface(touches, sides);
     const WarmStart start = warm_start_from(way.fits, way.reduced);
-    ClassFits again = fit_classes(nearer, &start, by.classes, by.out_of_reach);
+    ClassFits again = fit_classes(nearer, by.work, &start, by.classes, by.out_of_reach);
     const double before = way.settled->chi2;
     Way next = way_of(std::move(again), std::move(nearer), by);
     if (swayed && !is_as_near(next, way.candidate, way.refined->chi2 + kAgreement, by)) {
@@ -248,11 +250,13 @@ Way fit_way(const FitData& touches, std::span<const int> sides, const Judged& by
   const SmoothModel& smooth = by.arcs.smooth;
   Way way = fit_along(touches, sides, by, starts);
   if (start_for(starts, sides) != nullptr || agrees(way, smooth) || !way.settled ||
-      !directions_may_explain(*way.settled, touches, smooth) || !centres->get()) {
+      !directions_may_explain(*way.settled, touches, smooth) || !by.work.allows() ||
+      !centres->get()) {
     return way;
   }
   FitData turned = touches;
-  if (set_directions(DirectionsOf::AllPoints, *centres->get(), smooth, &turned) < kSettledTurn) {
+  if (set_directions(DirectionsOf::AllPoints, *centres->get(), smooth, &turned, by.work) <
+      kSettledTurn) {
     return way;
   }
   std::vector<SidedStart> from;
@@ -274,15 +278,17 @@ struct Directed {
 
 /// What the tips do not show by themselves comes from the curve of their centres.
 Directed directed(std::span<const StoredPatch> patches, const SmoothModel& smooth,
-                  CurveOfCentres* centres) {
+                  CurveOfCentres* centres, WorkBudget& work) {
   Directed result{smooth.reduced, {}, {}};
   const bool untold = has_untold_tips(smooth);
-  if (untold || has_uncertain_bends(smooth)) {
+  if ((untold || has_uncertain_bends(smooth)) && work.allows()) {
     if (const auto& curve = centres->get()) {
-      set_directions(DirectionsOf::UntoldPoints, *curve, smooth, &result.touches);
-      result.bends = bends_of(*curve, result.touches);
-      if (untold) {
-        result.senses = senses_of(*curve, result.touches);
+      set_directions(DirectionsOf::UntoldPoints, *curve, smooth, &result.touches, work);
+      if (work.allows()) {
+        result.bends = bends_of(*curve, result.touches, work);
+      }
+      if (untold && work.allows()) {
+        result.senses = senses_of(*curve, result.touches, work);
       }
     }
   }
@@ -339,18 +345,22 @@ void take_most_probable(const Judged& by, SidedFits* sided) {
 SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Judged& by,
                          std::span<const SidedStart> starts) {
   CurveOfCentres centres(by, starts);
-  const auto [touches, bends, senses] = directed(patches, by.arcs.smooth, &centres);
+  const auto [touches, bends, senses] = directed(patches, by.arcs.smooth, &centres, by.work);
   SidedFits sided;
   const auto all_sides = possible_sides(patches, touches, bends, senses);
   if (!has_tips(touches.points)) {
     Way way;
     way.sides = all_sides.front();
     way.reduced = on_surface(touches, way.sides);
-    way.fits = fit_classes_from(starts, way.sides, way.reduced, by.classes, by.out_of_reach);
+    way.fits = fit_classes_from(starts, way.sides, way.reduced, by, by.out_of_reach);
     sided.ways.push_back(std::move(way));
     return sided;
   }
+  // The first, from outside the bends, is the most probable beforehand.
   for (const std::vector<int>& sides : all_sides) {
+    if (!sided.ways.empty() && !by.work.allows()) {
+      break;
+    }
     sided.ways.push_back(fit_way(touches, sides, by, starts, &centres));
     sided.ways.back().sides = sides;
   }
@@ -364,7 +374,7 @@ bool lie_otherwise(const Judged& by, SidedFits* sided) {
     return false;
   }
   for (Way& way : sided->ways) {
-    if (way.settled) {
+    if (way.settled && by.work.allows()) {
       way.evidences = by.of_paths;
       take_candidate(by, &way);
     }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/warm_start.h"
 #include "core/recognition/posterior/posterior.h"
 #include "core/recognition/samples/sample_memory.h"
@@ -41,7 +42,8 @@ struct SidedFits {
 struct Judged {
   const Arcs& arcs;
   const Likelihood& likelihood;
-  Evidences of_paths;              ///< with the evidence of free-form paths, for this likelihood
+  WorkBudget& work;
+  Evidences of_paths;              ///< with that of free-form paths, under this law
   unsigned classes = kAllClasses;  ///< by bit 1 << CurveClass
   /// As in fit_classes(), for all sides.
   double out_of_reach = std::numeric_limits<double>::infinity();

@@ -9,13 +9,24 @@
 namespace palpate {
 namespace {
 
-/// The curve's directions at the feet of the touches' points, in their frame; zero on a cusp. Feet
-/// of the tips' centres, from which the curve is seen the same however little of it bends: a
-/// surface point that is a little off may have its foot on the other side of a sharp bend.
-std::vector<Vec2> directions_of(const Curve& curve, const CanonicalFit& fit,
-                                const FitData& touches) {
+/// A foot sought on a cubic is one of the roots of a polynomial: 18,000 instructions, beside some
+/// 1,800 of a point that is placed (callgrind).
+constexpr std::size_t kRowsOfCubicFoot = 10;
+
+/// The curve's directions at the feet of the touches' points, in their frame; zero on a cusp, and
+/// where `work` is spent. Feet of the tips' centres, from which the curve is seen the same however
+/// little of it bends: a surface point that is a little off may have its foot on the other side of
+/// a sharp bend.
+std::vector<Vec2> directions_of(const Curve& curve, const CanonicalFit& fit, const FitData& touches,
+                                WorkBudget& work) {
+  const bool cubic = (kCubics & class_bit(fit.shape.curve_class)) != 0;
   std::vector<Vec2> directions;
   for (const FitPoint& point : touches.points) {
+    if (!work.allows()) {
+      directions.emplace_back(0.0, 0.0);
+      continue;
+    }
+    work.spend(WorkKind::PlacedRow, cubic ? kRowsOfCubicFoot : 1);
     const Vec2 local =
         fit.world_T_curve.to_local(touches.frame * Vec2(touches.scale * point.position));
     const Vec2 along = derivatives(curve, foot_point(curve, local).t).first;
@@ -76,13 +87,13 @@ bool has_uncertain_bends(const SmoothModel& smooth) {
 }
 
 double set_directions(DirectionsOf which, const CanonicalFit& fit, const SmoothModel& smooth,
-                      FitData* touches) {
+                      FitData* touches, WorkBudget& work) {
   const auto curve = make_curve(fit.shape.curve_class, fit.shape.values);
   double largest = 0.0;
   if (!curve) {
     return largest;
   }
-  const std::vector<Vec2> directions = directions_of(*curve, fit, *touches);
+  const std::vector<Vec2> directions = directions_of(*curve, fit, *touches, work);
   auto section = smooth.sections.begin();
   for (const PatchSpan& patch : touches->patches) {
     // As the smooth model saw it travelled: sides are told by that, and a sense that followed each
@@ -106,13 +117,13 @@ double set_directions(DirectionsOf which, const CanonicalFit& fit, const SmoothM
   return largest;
 }
 
-std::vector<double> bends_of(const CanonicalFit& fit, const FitData& touches) {
+std::vector<double> bends_of(const CanonicalFit& fit, const FitData& touches, WorkBudget& work) {
   std::vector<double> bends = turns_of(touches);
   const auto curve = make_curve(fit.shape.curve_class, fit.shape.values);
   if (!curve) {
     return bends;
   }
-  const std::vector<Vec2> directions = directions_of(*curve, fit, touches);
+  const std::vector<Vec2> directions = directions_of(*curve, fit, touches, work);
   for (std::size_t p = 0; p < bends.size(); ++p) {
     if (certain_turn(touches.patch(p))) {
       continue;
@@ -126,10 +137,10 @@ std::vector<double> bends_of(const CanonicalFit& fit, const FitData& touches) {
   return bends;
 }
 
-std::vector<double> senses_of(const CanonicalFit& fit, const FitData& touches) {
+std::vector<double> senses_of(const CanonicalFit& fit, const FitData& touches, WorkBudget& work) {
   std::vector<double> senses(touches.patches.size(), 0.0);
   if (const auto curve = make_curve(fit.shape.curve_class, fit.shape.values)) {
-    const std::vector<Vec2> directions = directions_of(*curve, fit, touches);
+    const std::vector<Vec2> directions = directions_of(*curve, fit, touches, work);
     for (std::size_t p = 0; p < senses.size(); ++p) {
       senses[p] = sense_of(directions, touches, touches.patches[p]);
     }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/smooth/smooth_model.h"
 
@@ -25,14 +26,14 @@ enum class DirectionsOf { UntoldPoints, KeptPoints, AllPoints };
 /// travel along the curve; a patch that shows none gets the curve's sense. Returns the largest turn
 /// of a tangent. [rad]
 double set_directions(DirectionsOf which, const CanonicalFit& curve, const SmoothModel& smooth,
-                      FitData* touches);
+                      FitData* touches, WorkBudget& work);
 
 /// The sides to which the patches bend (tip_sides.h), > 0 for left: from their own turn if it is
 /// significant, else from the curvature of the curve through the tip centres.
-std::vector<double> bends_of(const CanonicalFit& curve, const FitData& touches);
+std::vector<double> bends_of(const CanonicalFit& curve, const FitData& touches, WorkBudget& work);
 
 /// For each patch: 1 if it travels along the curve with increasing parameter, -1 if against it, 0
 /// if it shows no direction.
-std::vector<double> senses_of(const CanonicalFit& curve, const FitData& touches);
+std::vector<double> senses_of(const CanonicalFit& curve, const FitData& touches, WorkBudget& work);
 
 }  // namespace palpate

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/numerics/negligible.h"
@@ -15,6 +16,10 @@
 
 namespace palpate {
 namespace {
+
+/// Of all work, kept from the search for the verdict on what it has found: the classes' refinement
+/// on all points, their evidence and its integrals.
+constexpr double kShareOfVerdict = 0.3;
 
 /// log odds that keep a class from being RECOGNIZED.
 double margin_of(const WeighOptions& options) {
@@ -165,21 +170,24 @@ Weighing told(Arcs&& arcs, SidedFits&& sided, Contenders contenders, const Groun
 }  // namespace
 
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
-               const WeighOptions& options, std::span<const SidedStart> starts) {
+               WorkBudget& work, const WeighOptions& options, std::span<const SidedStart> starts) {
+  work.spend(WorkKind::Sample, data.points.size());
   Arcs arcs = smooth_arcs(std::move(data), sigma_known);
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
-  const Evidences of_paths = evidences_of_paths(arcs.smooth, stated);
+  const Evidences of_paths = evidences_of_paths(arcs.smooth, stated, work);
   const double hopeless = options.unqualified_probe ? std::numeric_limits<double>::infinity()
                                                     : out_of_reach(arcs, stated, of_paths);
+  std::optional<WorkBudget::Reserve> for_verdict(std::in_place, work, kShareOfVerdict);
   SidedFits sided =
-      fit_over_sides(patches, {arcs, stated, of_paths, options.classes, hopeless}, starts);
+      fit_over_sides(patches, {arcs, stated, work, of_paths, options.classes, hopeless}, starts);
+  for_verdict.reset();
   const auto contending_way = [&](const Ground& ground, const Evidences& paths) {
     Way& way = sided.ways[sided.taken];
     // Where there are several they may have to be judged again.
     ClassFits fits = sided.ways.size() > 1 ? way.fits : std::move(way.fits);
     return contending(std::move(fits), no_conic(starts, way.sides), ground, options, paths);
   };
-  const Ground at_first{arcs, sided.way().reduced, stated, hopeless};
+  const Ground at_first{arcs, sided.way().reduced, work, stated, hopeless};
   Contenders contenders = contending_way(at_first, of_paths);
   std::optional<Placed> best_placed = best_on_all(contenders, at_first);
   SeenDeviation seen = best_placed
@@ -190,11 +198,11 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   seen.correlated = seen.correlated || options.unqualified_probe;
   const Likelihood likelihood = seen.likelihood.value_or(stated);
   const Evidences of_seen_paths =
-      seen.likelihood ? evidences_of_paths(arcs.smooth, likelihood) : Evidences{};
+      seen.likelihood ? evidences_of_paths(arcs.smooth, likelihood, work) : Evidences{};
   const bool otherwise =
       seen.likelihood &&
-      lie_otherwise({arcs, likelihood, of_seen_paths, options.classes, hopeless}, &sided);
-  const Ground ground{arcs, sided.way().reduced, likelihood, hopeless};
+      lie_otherwise({arcs, likelihood, work, of_seen_paths, options.classes, hopeless}, &sided);
+  const Ground ground{arcs, sided.way().reduced, work, likelihood, hopeless};
   if (otherwise) {
     contenders = contending_way(ground, of_seen_paths);
     best_placed.reset();

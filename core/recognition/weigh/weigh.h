@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/warm_start.h"
@@ -66,6 +67,7 @@ struct Weighing {
 /// posterior". `starts`: those of an earlier weighing of fewer samples of the same patches, or
 /// empty.
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
-               const WeighOptions& options = {}, std::span<const SidedStart> starts = {});
+               WorkBudget& work, const WeighOptions& options = {},
+               std::span<const SidedStart> starts = {});
 
 }  // namespace palpate

@@ -31,15 +31,17 @@ std::optional<FitData> weighed_across(const Weighing& w, const FitData& data) {
 }  // namespace
 
 Weighing weigh_in_full(const FitData& data, bool sigma_known, std::span<const StoredPatch> patches,
-                       const WeighOptions& options, std::span<const SidedStart> starts) {
-  Weighing w = weigh(data, sigma_known, patches, options, starts);
+                       WorkBudget& work, const WeighOptions& options,
+                       std::span<const SidedStart> starts) {
+  Weighing w = weigh(data, sigma_known, patches, work, options, starts);
   if (data.details.empty()) {
     return w;
   }
-  if (const auto across = weighed_across(w, data)) {
-    w = weigh(*across, sigma_known, patches, options, starts);
+  const auto across = weighed_across(w, data);
+  if (across && work.allows()) {
+    w = weigh(*across, sigma_known, patches, work, options, starts);
   }
-  return best_in_full(std::move(w), data);
+  return work.allows() ? best_in_full(std::move(w), data, work) : w;
 }
 
 }  // namespace palpate

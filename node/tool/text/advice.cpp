@@ -96,6 +96,9 @@ std::string ambiguous(const v1::Recognition& answer) {
              "the recognition tree's path where it stays so.";
     case v1::RECOGNITION_DOUBT_FEW_PLACES:
       return "So few touches fit by chance: touch it at eight places, or state their noise.";
+    case v1::RECOGNITION_DOUBT_WORK_LIMIT:
+      return "The samples are too hard to look at in full within the work that an answer may take: "
+             "check that all patches lie on one curve, and state noise, tip and material side.";
     default:
       return "Not certain yet: touch further round.";
   }

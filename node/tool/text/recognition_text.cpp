@@ -211,6 +211,8 @@ std::string_view sentence_of(v1::RecognitionDoubt doubt) {
       return "the recognition tree rejects the class that all samples together are";
     case v1::RECOGNITION_DOUBT_FEW_PLACES:
       return "touched at so few places that they may fit by chance";
+    case v1::RECOGNITION_DOUBT_WORK_LIMIT:
+      return "the work that an answer may take was spent before all was looked at";
     default:
       return "no reason given";
   }

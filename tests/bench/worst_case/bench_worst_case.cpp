@@ -9,6 +9,7 @@
 // Costs are processor times of this thread, the least of three runs, so that a busy machine matters
 // little.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -16,18 +17,20 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <tuple>
-#include <utility>
 #include <vector>
 
+#include "core/recognition/work_limit.h"
 #include "node/csv/contact_csv.h"
 #include "tests/bench/options/bench_options.h"
 #include "tests/bench/options/thread_time.h"
+#include "tests/bench/worst_case/csv_input.h"
 #include "tests/bench/worst_case/touched_input.h"
+#include "tests/bench/worst_case/work_prices.h"
 
 namespace {
 
 using namespace palpate;
+using bench::input_from;
 using bench::InputRecipe;
 using bench::thread_us;
 using bench::TouchedInput;
@@ -40,7 +43,15 @@ constexpr int kPatience = 20;
 /// Share of new starts from the worst input found so far; the others are random.
 constexpr double kFromWorst = 0.3;
 
-double cost_once_us(const TouchedInput& input) {
+struct Cost {
+  double us = 0.0;
+  WorkBudget work;
+
+  /// Counted work over what may be counted.
+  double share() const { return work.spent() / work.most(); }
+};
+
+Cost cost_once(const TouchedInput& input) {
   Recognizer recognizer;
   for (const bench::TouchedPatch& patch : input) {
     recognizer.add(patch.context, patch.samples);
@@ -48,25 +59,25 @@ double cost_once_us(const TouchedInput& input) {
   const double start = thread_us();
   const Recognition answer = recognizer.recognize();
   const double us = thread_us() - start;
-  return answer.sample_count > 0 ? us : 0.0;
+  return {answer.sample_count > 0 ? us : 0.0, answer.work};
 }
 
-double cost_us(const TouchedInput& input) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kRepetitions; ++i) {
-    least = std::min(least, cost_once_us(input));
+Cost cost_of(const TouchedInput& input, int repetitions = kRepetitions) {
+  Cost cost = cost_once(input);
+  for (int i = 1; i < repetitions; ++i) {
+    cost.us = std::min(cost.us, cost_once(input).us);
   }
-  return least;
+  return cost;
 }
 
 /// Cost of the clean ellipse with that many samples in each of that many patches; each is measured
 /// once.
-double clean_cost_us(const TouchedInput& input) {
-  static std::map<std::vector<std::size_t>, double> known;
+const Cost& clean_cost(const TouchedInput& input) {
+  static std::map<std::vector<std::size_t>, Cost> known;
   std::vector<std::size_t> sizes;
   for (const bench::TouchedPatch& patch : input) sizes.push_back(patch.samples.size());
-  const auto [found, is_new] = known.try_emplace(sizes, 0.0);
-  if (is_new) found->second = cost_us(bench::clean_ellipse_like(input));
+  const auto [found, is_new] = known.try_emplace(sizes);
+  if (is_new) found->second = cost_of(bench::clean_ellipse_like(input));
   return found->second;
 }
 
@@ -74,17 +85,18 @@ struct Found {
   InputRecipe recipe;
   double us = 0.0;
   double ratio = 0.0;
+  double share = 0.0;  ///< of the work that may be counted
 };
 
 /// The cost; nullopt if a first measurement shows that it is not above `ratio`.
 std::optional<Found> measured(const InputRecipe& recipe, double ratio) {
   const TouchedInput input = bench::input_of(recipe);
-  const double clean = clean_cost_us(input);
-  const double once = cost_once_us(input);
-  if (once <= ratio * clean) return std::nullopt;
-  const double us = std::min({once, cost_once_us(input), cost_once_us(input)});
+  const double clean = clean_cost(input).us;
+  const Cost once = cost_once(input);
+  if (once.us <= ratio * clean) return std::nullopt;
+  const double us = std::min(once.us, cost_of(input, kRepetitions - 1).us);
   if (us <= ratio * clean) return std::nullopt;
-  return Found{recipe, us, us / clean};
+  return Found{recipe, us, us / clean, once.share()};
 }
 
 ContactTable table_of(const TouchedInput& input) {
@@ -98,44 +110,63 @@ ContactTable table_of(const TouchedInput& input) {
   return table;
 }
 
-std::optional<TouchedInput> input_from(const std::string& path) {
-  const Result<ContactTable> table = read_contact_csv(path);
-  if (!table) {
-    std::fprintf(stderr, "bench_worst_case: %s\n", table.error.c_str());
-    return std::nullopt;
-  }
-  // In the order of the file, as the tool does; all groups and objects of a file are one here.
-  TouchedInput input;
-  std::map<std::tuple<std::size_t, std::size_t, std::uint64_t, std::uint32_t>, std::size_t> places;
-  for (const ContactRow& row : table.value->rows) {
-    const auto [place, is_new] =
-        places.try_emplace({row.group, row.probe, row.object, row.context.patch}, input.size());
-    if (is_new) {
-      PatchContext context = row.context;
-      context.patch = static_cast<std::uint32_t>(input.size());
-      input.push_back({context, {}});
-    }
-    input[place->second].samples.push_back(row.sample);
-  }
-  return input;
-}
-
 int run_files(const std::vector<std::string>& files) {
-  std::printf("%-40s %8s %8s %12s %12s %8s\n", "file", "patches", "samples", "us", "ellipse us",
-              "ratio");
+  std::printf("%-40s %8s %8s %12s %12s %8s %12s %12s\n", "file", "patches", "samples", "us",
+              "ellipse us", "ratio", "work, share", "ellipse's");
   for (const std::string& file : files) {
     const auto input = input_from(file);
     if (!input) return 2;
-    const double us = cost_us(*input);
-    const double clean = clean_cost_us(*input);
-    std::printf("%-40s %8zu %8zu %12.0f %12.0f %8.1f\n", file.c_str(), input->size(),
-                bench::sample_count(*input), us, clean, us / clean);
+    const Cost cost = cost_of(*input);
+    const Cost& clean = clean_cost(*input);
+    std::printf("%-40s %8zu %8zu %12.0f %12.0f %8.1f %12.3f %12.3f\n", file.c_str(), input->size(),
+                bench::sample_count(*input), cost.us, clean.us, cost.us / clean.us, cost.share(),
+                clean.share());
     std::fflush(stdout);
   }
   return 0;
 }
 
+/// Random inputs of the kind, each beside its clean ellipse.
+int measure_prices(int tries, std::uint64_t seed, bench::InputKind kind, int most_samples) {
+  std::mt19937_64 rng(seed);
+  std::vector<bench::CountedTime> measured;
+  for (int i = 0; i < tries; ++i) {
+    const TouchedInput input = bench::input_of(bench::random_recipe(rng, kind, most_samples));
+    for (const Cost& cost : {cost_of(input), clean_cost(input)}) {
+      if (cost.us > 0.0) measured.push_back({cost.us, cost.work.counts()});
+    }
+  }
+  bench::print_prices(measured);
+  return 0;
+}
+
+/// The counted work of clean ellipses, the middle one of some, beside what work_limit.h says.
+int measure_ellipses() {
+  constexpr std::array kPatches = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
+  constexpr std::array kSamples = {1, 8, 16, 32, 64, 128, 256, 512, 1024};  // of a patch
+  constexpr std::uint32_t kSeeds = 9;
+  std::printf("%8s %8s %12s %12s %8s\n", "patches", "samples", "work", "work_limit.h", "ratio");
+  for (const int patches : kPatches) {
+    for (const int samples : kSamples) {
+      const std::vector<ContactSample> any(static_cast<std::size_t>(samples));
+      const TouchedInput like(static_cast<std::size_t>(patches), {{}, any});
+      std::array<double, kSeeds> work{};
+      for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+        work.at(seed) = cost_once(bench::clean_ellipse_like(like, seed + 1)).work.spent();
+      }
+      std::sort(work.begin(), work.end());
+      const double told = work_of_clean_ellipse(bench::sample_count(like), like.size());
+      std::printf("%8d %8d %12.0f %12.0f %8.2f\n", patches, samples * patches, work[kSeeds / 2],
+                  told, work[kSeeds / 2] / told);
+      std::fflush(stdout);
+    }
+  }
+  return 0;
+}
+
 struct Options {
+  bool prices = false;
+  bool ellipses = false;
   double seconds = 60.0;
   int tries = std::numeric_limits<int>::max();
   std::uint64_t seed = 1;
@@ -178,8 +209,9 @@ int search(const Options& options, bench::InputKind kind, const std::string& pro
     current = *found;
     if (current.ratio > worst.ratio) {
       worst = current;
-      std::printf("try %ld, %.0f s: ratio %.1f, %.0f us: %s\n", tries, elapsed(), worst.ratio,
-                  worst.us, bench::to_text(worst.recipe).c_str());
+      std::printf("try %ld, %.0f s: ratio %.1f, %.0f us, work %.2f of its limit: %s\n", tries,
+                  elapsed(), worst.ratio, worst.us, worst.share,
+                  bench::to_text(worst.recipe).c_str());
       std::fflush(stdout);
     }
   }
@@ -198,14 +230,16 @@ int search(const Options& options, bench::InputKind kind, const std::string& pro
   std::sort(ratios_of_starts.begin(), ratios_of_starts.end());
   std::printf(
       "\n%ld tries, %zu random starts (median ratio %.1f, highest %.1f)\n"
-      "worst: %.1f times a clean ellipse of as many samples and patches (%.0f us beside %.0f us)\n "
+      "worst: %.1f times a clean ellipse of as many samples and patches (%.0f us beside %.0f us), "
+      "work %.2f "
+      "of its limit\n "
       " %s\nin %s; its instructions:\n"
       "  valgrind --tool=callgrind --toggle-collect='palpate::Recognizer::recognize()' %s --once "
       "%s\n",
       tries, ratios_of_starts.size(),
       ratios_of_starts.empty() ? 0.0 : ratios_of_starts[ratios_of_starts.size() / 2],
       ratios_of_starts.empty() ? 0.0 : ratios_of_starts.back(), worst.ratio, worst.us,
-      clean_cost_us(input), bench::to_text(worst.recipe).c_str(), options.save.c_str(),
+      clean_cost(input).us, worst.share, bench::to_text(worst.recipe).c_str(), options.save.c_str(),
       program.c_str(), options.save.c_str());
   return 0;
 }
@@ -220,6 +254,10 @@ int main(int argc, char** argv) {
           bench::BenchOptions("The worst case of recognize(), searched for, or of given files")
               .files(files, "CSV files to measure instead of searching")
               .text("--once", once, "One recognize() of this CSV file and nothing else")
+              .flag("--prices", options.prices,
+                    "What each kind of counted work costs, over random inputs")
+              .flag("--ellipses", options.ellipses,
+                    "Counted work of clean ellipses beside what the limit takes it to be")
               .number("--seconds", options.seconds, "End of the search")
               .number("--tries", options.tries, "Most inputs that are tried")
               .seed(options.seed)
@@ -233,7 +271,7 @@ int main(int argc, char** argv) {
   if (!once.empty()) {
     const auto input = input_from(once);
     if (!input) return 2;
-    std::printf("%.0f us\n", cost_once_us(*input));
+    std::printf("%.0f us\n", cost_once(*input).us);
     return 0;
   }
   const auto kind = bench::input_kind(options.kind);
@@ -241,5 +279,11 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "bench_worst_case: no kind is called %s\n", options.kind.c_str());
     return 2;
   }
+  if (options.prices) {
+    constexpr int kTries = 500;
+    return measure_prices(std::min(options.tries, kTries), options.seed, *kind,
+                          options.most_samples);
+  }
+  if (options.ellipses) return measure_ellipses();
   return files.empty() ? search(options, *kind, argv[0]) : run_files(files);
 }

@@ -406,11 +406,11 @@ TouchedInput input_of(const InputRecipe& r) {
   return input;
 }
 
-TouchedInput clean_ellipse_like(const TouchedInput& input) {
+TouchedInput clean_ellipse_like(const TouchedInput& input, std::uint32_t seed) {
   constexpr double kA_m = 0.025;
   constexpr double kB_m = 0.0175;
   constexpr double kSigma_m = 2.5e-5;
-  std::mt19937_64 rng(1);
+  std::mt19937_64 rng(seed);
   std::normal_distribution<double> noise(0.0, kSigma_m);
   TouchedInput clean;
   for (std::size_t k = 0; k < input.size(); ++k) {

@@ -89,7 +89,7 @@ InputRecipe mutated(InputRecipe recipe, std::mt19937_64& rng, InputKind kind,
 TouchedInput input_of(const InputRecipe& recipe);
 
 /// A clean ellipse, touched all around, with as many patches and samples as the input.
-TouchedInput clean_ellipse_like(const TouchedInput& input);
+TouchedInput clean_ellipse_like(const TouchedInput& input, std::uint32_t seed = 1);
 
 /// The recipe on one line.
 std::string to_text(const InputRecipe& recipe);

@@ -8,6 +8,7 @@
 #include "core/recognition/fit/on_all_points.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate {
 namespace {
@@ -26,11 +27,13 @@ TEST_P(CanonicalFitOf, ExactPointsGiveShapeAndPoseBack) {
     const double sigma_m = 1e-7;
     FitData data = test::fit_data(scene, sigma_m);
     const SmoothModel smooth = fit_smooth_model(&data, true);
-    const ClassFits fits = fit_classes(smooth.reduced);
-    const auto refined = refine_on_all(
-        settled(*fits[static_cast<std::size_t>(GetParam())], smooth.reduced), smooth, data);
+    const ClassFits fits = fit_classes(smooth.reduced, test::unbounded_work());
+    const auto refined =
+        refine_on_all(settled(*fits[static_cast<std::size_t>(GetParam())], smooth.reduced,
+                              RivalOf::Best, test::unbounded_work()),
+                      smooth, data, kOnAllEffort, test::unbounded_work());
     ASSERT_TRUE(refined.has_value());
-    const auto polished = polish(*refined, data);
+    const auto polished = polish(*refined, data, test::unbounded_work());
     ASSERT_TRUE(polished.has_value());
     const auto canonical = to_canonical(*polished, data);
     ASSERT_TRUE(canonical.has_value());
@@ -70,9 +73,11 @@ TEST_P(CanonicalFitOf, CovarianceIsPositiveAndScalesWithTheNoise) {
   const auto covariance_for = [&](double factor) {
     FitData data = test::fit_data(scene, factor * scene.sigma_m);
     const SmoothModel smooth = fit_smooth_model(&data, true);
-    const ClassFits fits = fit_classes(smooth.reduced);
-    const auto refined = refine_on_all(
-        settled(*fits[static_cast<std::size_t>(GetParam())], smooth.reduced), smooth, data);
+    const ClassFits fits = fit_classes(smooth.reduced, test::unbounded_work());
+    const auto refined =
+        refine_on_all(settled(*fits[static_cast<std::size_t>(GetParam())], smooth.reduced,
+                              RivalOf::Best, test::unbounded_work()),
+                      smooth, data, kOnAllEffort, test::unbounded_work());
     return to_canonical(*refined, data)->covariance;
   };
   const ShapePoseCovariance one = covariance_for(1.0);

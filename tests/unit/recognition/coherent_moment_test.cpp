@@ -12,6 +12,7 @@
 #include "core/curves/ellipse.h"
 #include "tests/support/ellipse_bound.h"
 #include "tests/support/test_rng.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate {
 namespace {
@@ -141,7 +142,8 @@ TEST(CoherentMoment, IsThatOfErrorsDrawnFromItsLaw) {
       const int runs = test::stress_count(200);
       for (int run = 0; run < runs; ++run) {
         const Eigen::VectorXd off = fit(shared(scene, rng) + noise(scene, rng), &scene);
-        const auto told = coherent_moment(scene.placed, scene.data, likelihood, kSigma, kScatter);
+        const auto told = coherent_moment(scene.placed, scene.data, likelihood, kSigma, kScatter,
+                                          test::unbounded_work());
         ASSERT_TRUE(told);
         const Eigen::MatrixXd moment = told->moment;
         const double square = off.dot(moment.ldlt().solve(off));
@@ -174,7 +176,8 @@ TEST(CoherentMoment, WhiteNoiseIsSeldomTakenForMore) {
   constexpr double kOdds = 10.0;
   for (int run = 0; run < runs; ++run) {
     fit(noise(scene, rng), &scene);
-    const auto told = coherent_moment(scene.placed, scene.data, law(), kSigma, kScatter);
+    const auto told =
+        coherent_moment(scene.placed, scene.data, law(), kSigma, kScatter, test::unbounded_work());
     ASSERT_TRUE(told);
     taken += told->probability > kOdds / (1.0 + kOdds) ? 1 : 0;
   }
@@ -186,7 +189,8 @@ TEST(CoherentMoment, WithoutWhatIsSharedIsNoMoreThanTheBound) {
   std::mt19937_64 rng = test::test_rng();
   Touched scene = touched(2.0 * kPi);
   fit(noise(scene, rng), &scene);
-  const auto told = coherent_moment(scene.placed, scene.data, law(), kSigma, kScatter);
+  const auto told =
+      coherent_moment(scene.placed, scene.data, law(), kSigma, kScatter, test::unbounded_work());
   ASSERT_TRUE(told);
   EXPECT_LT(told->probability, 0.5);
   // Whatever is shared adds to it.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/recognition/fit/class_fits.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate {
 namespace {
@@ -101,7 +102,7 @@ FitData along_a_sharp_spline(std::size_t points) {
 
 TEST(FewPoints, LeadToBothArmsOfASharpBend) {
   const FitData all = along_a_sharp_spline(600);
-  const ClassFits fits = fit_classes(all);
+  const ClassFits fits = fit_classes(all, test::unbounded_work());
   const auto& spline = fits[static_cast<std::size_t>(CurveClass::CubicSpline)];
   ASSERT_TRUE(spline);
   EXPECT_TRUE(fits_well(spline->chi2, all.points.size())) << spline->chi2;
@@ -118,7 +119,7 @@ TEST(FewPoints, OfNoClassAreOnlyPlacedOnAll) {
     all.points.push_back(point);
   }
   all.patches.push_back({0, all.points.size()});
-  const ClassFits fits = fit_classes(all);
+  const ClassFits fits = fit_classes(all, test::unbounded_work());
   for (const auto& fit : fits) {
     if (!fit) {
       continue;
@@ -131,7 +132,7 @@ TEST(FewPoints, OfNoClassAreOnlyPlacedOnAll) {
 
 TEST(FewPoints, LeadToTheCurveOfAll) {
   const FitData all = around_a_circle(8, 40);
-  const ClassFits fits = fit_classes(all);
+  const ClassFits fits = fit_classes(all, test::unbounded_work());
   const auto& circle = fits[static_cast<std::size_t>(CurveClass::Circle)];
   ASSERT_TRUE(circle);
   EXPECT_LT(circle->chi2, 1e-6);

@@ -8,6 +8,7 @@
 #include "core/recognition/fit/polynomial_fit.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate {
 namespace {
@@ -29,7 +30,8 @@ TEST(ImplicitFit, ExactPointsAreFittedExactly) {
     for (int i = 0; i < 50; ++i) {
       const test::Scene scene = test::random_scene(curve_class, options, rng);
       const FitData data = test::fit_data(scene, 1e-9);
-      const ImplicitFit fit = refine_conic(data.points, algebraic_conic(data.points), 0);
+      const ImplicitFit fit =
+          refine_conic(data.points, algebraic_conic(data.points), 0, {}, test::unbounded_work());
       // 222 points, residuals in units of 1e-9 m: rounding of 1e-16 of positions ten sizes away.
       EXPECT_LT(fit.chi2, 222.0 * 1e-10);
     }
@@ -48,10 +50,12 @@ TEST(PolynomialFit, RefinementFindsExactCurvesFromTheSearch) {
       const test::Scene scene = test::random_scene(curve_class, options, rng);
       FitData data = test::fit_data(scene, 1e-6);
       const SmoothModel smooth = fit_smooth_model(&data, true);
-      const ClassFits fits = fit_classes(smooth.reduced);
+      const ClassFits fits = fit_classes(smooth.reduced, test::unbounded_work());
       const auto& fit = fits[static_cast<std::size_t>(curve_class)];
       ASSERT_TRUE(fit.has_value());
-      const auto refined = refine_on_all(settled(*fit, smooth.reduced), smooth, data);
+      const auto refined =
+          refine_on_all(settled(*fit, smooth.reduced, RivalOf::Best, test::unbounded_work()),
+                        smooth, data, kOnAllEffort, test::unbounded_work());
       ++scenes;
       // Less than a thousandth of sigma = 1e-6 m off, root mean square.
       found += refined && refined->chi2 < 222.0 * 1e-6 ? 1 : 0;
@@ -69,9 +73,10 @@ TEST(PolynomialFit, InformationMatchesFiniteDifferencesOfTheResiduals) {
   const test::Scene scene = test::random_scene(CurveClass::Parabola, options, rng);
   FitData data = test::fit_data(scene, scene.sigma_m);
   const SmoothModel smooth = fit_smooth_model(&data, true);
-  const ClassFits fits = fit_classes(smooth.reduced);
-  const auto refined = refine_on_all(
-      settled(*fits[static_cast<std::size_t>(CurveClass::Parabola)], smooth.reduced), smooth, data);
+  const ClassFits fits = fit_classes(smooth.reduced, test::unbounded_work());
+  const auto refined = refine_on_all(settled(*fits[static_cast<std::size_t>(CurveClass::Parabola)],
+                                             smooth.reduced, RivalOf::Best, test::unbounded_work()),
+                                     smooth, data, kOnAllEffort, test::unbounded_work());
   ASSERT_TRUE(refined.has_value());
   const PolynomialFit& fit = *refined->polynomial;
   const auto chi2_of = [&](const PolynomialCoefficients& c) {

@@ -12,6 +12,7 @@
 
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate {
 namespace {
@@ -24,7 +25,7 @@ struct Fitted {
   explicit Fitted(const test::Scene& scene) {
     FitData data = test::fit_data(scene, scene.sigma_m);
     smooth = fit_smooth_model(&data, true);
-    fits = fit_classes(smooth.reduced);
+    fits = fit_classes(smooth.reduced, test::unbounded_work());
   }
   std::optional<CanonicalFit> canonical(CurveClass curve_class) const {
     const auto& fit = fits[static_cast<std::size_t>(curve_class)];
@@ -42,8 +43,10 @@ test::Scene scene_of(CurveClass curve_class, double arc, double sigma, int patch
 }
 
 std::optional<ClassEvidence> sliced(const CanonicalFit& fit, const FitData& data) {
-  auto laplace = evidence_of(fit, data, 1.0);
-  return laplace ? by_slices(*std::move(laplace), data, 1.0, Slices::ForMass) : std::nullopt;
+  auto laplace = evidence_of(fit, data, 1.0, test::unbounded_work());
+  return laplace
+             ? by_slices(*std::move(laplace), data, 1.0, Slices::ForMass, test::unbounded_work())
+             : std::nullopt;
 }
 
 /// log of the mean of exp(-(chi2 - fitted) / 2) over the prior, on a grid over shape, offset and
@@ -155,8 +158,8 @@ TEST(ClassEvidence, ABetterProbeLeavesLessOfThePrior) {
     const auto fit = Fitted(scene).canonical(curve_class);
     ASSERT_TRUE(fit.has_value());
     const FitData reduced = Fitted(scene).smooth.reduced;
-    const auto evidence = evidence_of(*fit, reduced, 1.0);
-    const auto coarser = evidence_of(*fit, reduced, 100.0);
+    const auto evidence = evidence_of(*fit, reduced, 1.0, test::unbounded_work());
+    const auto coarser = evidence_of(*fit, reduced, 100.0, test::unbounded_work());
     ASSERT_TRUE(evidence && coarser);
     const double per_decade = (coarser->log_occam - evidence->log_occam) / std::log(10.0);
     EXPECT_NEAR(per_decade, degrees_of_freedom(curve_class), 0.1) << name_of(curve_class);
@@ -201,8 +204,8 @@ TEST(Posterior, SumsToOneAndFollowsTheEvidence) {
     }
   }
   Likelihood likelihood;
-  const Evidences evidences =
-      evidences_of(fits, fitted.fits, fitted.smooth, fitted.smooth.reduced, likelihood);
+  const Evidences evidences = evidences_of(fits, fitted.fits, fitted.smooth, fitted.smooth.reduced,
+                                           likelihood, {}, test::unbounded_work());
   const ClassProbabilities p = probabilities_of(fits, fitted.smooth.chi2, likelihood, evidences);
   EXPECT_NEAR(std::accumulate(p.begin(), p.end(), 0.0), 1.0, 1e-12);
   EXPECT_GT(p[static_cast<std::size_t>(CurveClass::Ellipse)], 0.95);
@@ -231,8 +234,8 @@ TEST(FreeForm, PathsOfNoClassAreTakenAndRoughOnesCost) {
     }
   }
   Likelihood likelihood;
-  const Evidences evidences =
-      evidences_of(fits, fitted.fits, fitted.smooth, fitted.smooth.reduced, likelihood);
+  const Evidences evidences = evidences_of(fits, fitted.fits, fitted.smooth, fitted.smooth.reduced,
+                                           likelihood, {}, test::unbounded_work());
   EXPECT_GT(probabilities_of(fits, fitted.smooth.chi2, likelihood, evidences)[0], 0.95);
   // Noise a tenth as large determines more of the path, at a price.
   EXPECT_LT(free_form(fitted.smooth, 0.01).log_occam, paths.log_occam);

@@ -8,6 +8,7 @@
 #include "core/recognition/smooth/turning_sections.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate {
 namespace {
@@ -46,13 +47,15 @@ TEST(SmoothModel, ReducedPointsTellWhatAllPointsTell) {
       const test::Scene scene = scene_of(curve_class, rng);
       FitData data = test::fit_data(scene, scene.sigma_m);
       const SmoothModel model = fit_smooth_model(&data, true);
-      const ClassFits fits = fit_classes(model.reduced);
+      const ClassFits fits = fit_classes(model.reduced, test::unbounded_work());
       const auto& fit = fits[static_cast<std::size_t>(curve_class)];
       ASSERT_TRUE(fit.has_value());
       if (fit->at_limit) {
         continue;
       }
-      const auto refined = refine_on_all(settled(*fit, model.reduced), model, data);
+      const auto refined =
+          refine_on_all(settled(*fit, model.reduced, RivalOf::Best, test::unbounded_work()), model,
+                        data, kOnAllEffort, test::unbounded_work());
       if (!refined) {
         continue;  // straight points: no such conic
       }

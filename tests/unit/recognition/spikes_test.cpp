@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/support/test_rng.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate {
 namespace {
@@ -31,7 +32,7 @@ TEST(Spikes, CleanArcsLoseAlmostNothing) {
   std::size_t flagged = 0;
   constexpr int kTrials = 300;
   for (int trial = 0; trial < kTrials; ++trial) {
-    const auto spikes = spikes_of(arc(120, 0.1, rng), 0.01);
+    const auto spikes = spikes_of(arc(120, 0.1, rng), 0.01, test::unbounded_work());
     flagged += static_cast<std::size_t>(std::count(spikes.begin(), spikes.end(), true));
   }
   // One scene in a hundred may lose a sample: the mean and five standard deviations of that law.
@@ -53,7 +54,7 @@ TEST(Spikes, NineInTenAreFoundEvenWhereAThirdOfSamplesAreSpikes) {
             (50.0 + 100.0 * uniform(rng)) * kSigma * Vec2(std::cos(angle), std::sin(angle));
       }
     }
-    samples = without_spikes(samples, spikes_of(samples, 0.01));
+    samples = without_spikes(samples, spikes_of(samples, 0.01, test::unbounded_work()));
     std::size_t left = 0;
     for (const StoredSample& sample : samples) {
       left += std::abs(sample.position_m.norm() - 0.1) > 8.0 * kSigma ? 1 : 0;
@@ -67,16 +68,17 @@ TEST(Spikes, NineInTenAreFoundEvenWhereAThirdOfSamplesAreSpikes) {
 
 TEST(Spikes, SharpBendsAndStraightEdgesAndDwellingAreNone) {
   std::mt19937_64 rng = test::test_rng();
-  const auto bend = spikes_of(arc(60, 0.01, rng), 0.01);  // 12 degrees from sample to sample
+  const auto bend = spikes_of(arc(60, 0.01, rng), 0.01,
+                              test::unbounded_work());  // 12 degrees from sample to sample
   EXPECT_LE(std::count(bend.begin(), bend.end(), true), 1);
   std::vector<StoredSample> line;
   for (int i = 0; i < 50; ++i) {
     line.push_back({{1e-3 * i, 0.0}, 0.0, 1.0});
   }
-  const auto straight = spikes_of(line, 0.01);
+  const auto straight = spikes_of(line, 0.01, test::unbounded_work());
   EXPECT_EQ(std::count(straight.begin(), straight.end(), true), 0);
   const std::vector<StoredSample> dwelling(50, StoredSample{{1.0, 2.0}, 0.0, 1.0});
-  const auto dwell = spikes_of(dwelling, 0.01);
+  const auto dwell = spikes_of(dwelling, 0.01, test::unbounded_work());
   EXPECT_EQ(std::count(dwell.begin(), dwell.end(), true), 0);
 }
 

@@ -7,6 +7,7 @@
 #include "core/recognition/fit/on_all_points.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate {
 namespace {
@@ -31,7 +32,7 @@ TEST_P(WeighingOf, WhatIsPublishedIsRefinedOnAllPoints) {
   for_each_scene(GetParam(), [](const test::Scene& scene) {
     for (const bool sigma_known : {true, false}) {
       FitData data = test::fit_data(scene, sigma_known ? scene.sigma_m : 1.0);
-      const Weighing w = weigh(std::move(data), sigma_known, {});
+      const Weighing w = weigh(std::move(data), sigma_known, {}, test::unbounded_work());
       const auto best = static_cast<std::size_t>(w.best);
       if (w.fits[best]) {
         EXPECT_TRUE(w.fits[best]->on_all || w.fits[best]->at_limit);
@@ -56,15 +57,15 @@ TEST_P(WeighingOf, ChiSquareIsThatOfTheOptimumOnAllPoints) {
   for_each_scene(GetParam(), [&](const test::Scene& scene) {
     FitData data = test::fit_data(scene, scene.sigma_m);
     const SmoothModel smooth = fit_smooth_model(&data, true);
-    const ClassFits fits = fit_classes(smooth.reduced);
+    const ClassFits fits = fit_classes(smooth.reduced, test::unbounded_work());
     const auto& fit = fits[static_cast<std::size_t>(GetParam())];
     if (!fit || fit->at_limit) {
       return;
     }
-    const ClassFit coarse = settled(*fit, smooth.reduced);
-    const auto refined = refine_on_all(coarse, smooth, data);
+    const ClassFit coarse = settled(*fit, smooth.reduced, RivalOf::Best, test::unbounded_work());
+    const auto refined = refine_on_all(coarse, smooth, data, kOnAllEffort, test::unbounded_work());
     const double told = coarse.chi2 + smooth.chi2;
-    const double on_all = chi2_on_all(coarse, smooth, data);
+    const double on_all = chi2_on_all(coarse, smooth, data, test::unbounded_work());
     // Where the two agree, as weigh() asks, the optimum is nowhere else.
     if (refined && std::abs(on_all - told) <= 1.0 && std::abs(told - refined->chi2) <= 4.0) {
       EXPECT_NEAR(on_all, refined->chi2, 2.0);

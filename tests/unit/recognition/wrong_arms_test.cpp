@@ -7,6 +7,7 @@
 
 #include "core/recognition/fit/polynomial_fit.h"
 #include "tests/support/test_rng.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate {
 namespace {
@@ -42,9 +43,12 @@ TEST(WrongArms, AreLeftForTheRightOnes) {
     }
     for (const PolynomialModel model :
          {PolynomialModel::SemiCubicalParabola, PolynomialModel::CubicSpline}) {
-      const double least = refine_polynomial(model, points, right, 0).chi2;
+      const double least =
+          refine_polynomial(model, points, right, 0, {}, test::unbounded_work()).chi2;
       // A foot is sought where its point is three deviations off: each may leave as much.
-      EXPECT_LE(refine_polynomial(model, points, flipped, 0).chi2, least + 9.0 * flips) << scene;
+      EXPECT_LE(refine_polynomial(model, points, flipped, 0, {}, test::unbounded_work()).chi2,
+                least + 9.0 * flips)
+          << scene;
     }
   }
   EXPECT_GT(wrong, 20);  // of some 180 that are flipped

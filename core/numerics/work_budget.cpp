@@ -1,0 +1,37 @@
+#include "core/numerics/work_budget.h"
+
+namespace palpate {
+
+// Processor time, as `bench_worst_case --prices` measures it, to some tens of percent. Changing one
+// changes which answers are cut, on every machine alike.
+double price_of(WorkKind kind) {
+  switch (kind) {
+    case WorkKind::PolynomialRow:
+      return 1.0;
+    case WorkKind::ConicRow:
+      return 1.7;
+    case WorkKind::FitStep:
+      return 6.0;
+    case WorkKind::AxisRow:
+      return 0.3;
+    case WorkKind::SeedRow:
+      return 0.2;
+    case WorkKind::PlacedRow:
+      return 4.0;
+    case WorkKind::PathRow:
+      return 7.0;
+    case WorkKind::PosteriorRow:
+      return 3.4;
+    case WorkKind::DriftRow:
+      return 0.8;
+    case WorkKind::OffsetCell:
+      return 10.0;
+    case WorkKind::SpikeRow:
+      return 0.65;
+    case WorkKind::Sample:
+      break;
+  }
+  return 1.0;
+}
+
+}  // namespace palpate

@@ -1,0 +1,52 @@
+#include "core/recognition/work_limit.h"
+
+#include <algorithm>
+
+namespace palpate {
+namespace {
+
+/// Over the work of a clean ellipse. Twice what a planner can wait for, eight: strokes of a round
+/// tip with drift and lobes, which are recognised today, take more than six (qualification_test).
+constexpr double kMostWork = 16.0;
+
+/// Of that, for what is always done: as much as two take in all, for what is done of one weighing
+/// in any case, and of the one that has begun when the rest is spent.
+constexpr double kAlways = 2.0;
+
+/// Touches one at a time, over strokes of as many samples: no neighbours tell a tip's direction,
+/// the arms or the order, so that what is sought is sought for each again. What touches that are
+/// recognised take (lone_touches_test) must be allowed.
+constexpr double kOfTouches = 6.0;
+
+}  // namespace
+
+// By `bench_worst_case --ellipses`, right to a fifth for most sizes.
+double work_of_clean_ellipse(std::size_t samples, std::size_t patches) {
+  const auto n = static_cast<double>(samples);
+  const auto p = static_cast<double>(patches);
+  // Every sample is read, smoothed, and stands in the best class's last steps.
+  constexpr double kOfSample = 10.3;
+  // The search goes through the points that stand for samples: through all samples where these are
+  // few; a dozen of a patch; 64 of many patches, which are then followed on all.
+  const double by_samples = 2500.0 + 150.0 * n + 1500.0 * p;
+  const double of_few_patches = 6000.0 + 6000.0 * p;
+  const double of_some_patches = 20000.0 + 2500.0 * p;
+  const double of_many_patches = 57000.0 + 200.0 * p;
+  return kOfSample * n + std::min({by_samples, of_few_patches, of_some_patches, of_many_patches});
+}
+
+WorkBudget work_limit(std::span<const StoredPatch> patches) {
+  std::size_t samples = 0;
+  std::size_t lone = 0;
+  for (const StoredPatch& patch : patches) {
+    samples += patch.samples.size();
+    lone += patch.samples.size() == 1 ? 1 : 0;
+  }
+  const double by_strokes = work_of_clean_ellipse(samples, patches.size());
+  const double clean = 2 * lone > patches.size() ? kOfTouches * by_strokes : by_strokes;
+  WorkBudget work(kMostWork * clean, kAlways * clean);
+  work.spend(WorkKind::Sample, samples);
+  return work;
+}
+
+}  // namespace palpate
