@@ -87,8 +87,8 @@ bool have_extent(const FitData& data) {
   return rounding_level(data) < kMostRounding && data.scale > kSmallest && data.scale < kLargest;
 }
 
-/// Of all work, kept from the search for spikes for the classes.
-constexpr double kShareOfClasses = 0.7;
+/// Half of all work is kept from the search for spikes for the classes.
+constexpr double kShareOfClasses = 0.5;
 
 /// What speaks against an answer that nothing has spoken against yet.
 void doubt(Recognition* answer, Doubt doubt) {
@@ -170,6 +170,7 @@ class Recognizer::Impl {
       const WorkBudget::Reserve for_classes(work, kShareOfClasses);
       clean_.look_at(memory_.patches(), options_.sigma_m, options_.false_outlier_probability, work);
     }
+    work.raise_to(work_limit(clean_.moved()));  // a stroke there and back is several patches
     const std::vector<StoredPatch>& clean = clean_.clean();
     bool sigma_known = false;
     FitData data = make_fit_data(clean, options_.sigma_m, &sigma_known);
