@@ -29,6 +29,7 @@ using palpate::PointDetails;
 
 std::vector<std::string> curve_classes() {
   std::vector<std::string> names;
+  names.reserve(palpate::kCurveClasses.size());
   for (const palpate::CurveClass known : palpate::kCurveClasses) {
     names.emplace_back(palpate::name_of(known));
   }

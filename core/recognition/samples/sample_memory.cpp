@@ -1,7 +1,6 @@
 #include "core/recognition/samples/sample_memory.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -69,12 +68,30 @@ std::size_t contacts_of(const StoredPatch& patch) {
   return static_cast<std::size_t>(count);
 }
 
+MemoryOptions at_least_usable(MemoryOptions options) {
+  // Fewer samples than these determine no class: a spline takes six, and two speak against it.
+  constexpr std::size_t kFewestSamples = 8;
+  options.most_samples_per_patch = std::max(options.most_samples_per_patch, kFewestSamples);
+  options.most_patches = std::max<std::size_t>(options.most_patches, 1);
+  options.most_lone_touches = std::max<std::size_t>(options.most_lone_touches, 1);
+  return options;
+}
+
 }  // namespace
+
+SampleMemory::SampleMemory(const MemoryOptions& options) : options_(at_least_usable(options)) {}
 
 AddResult SampleMemory::add(const PatchContext& context, std::span<const ContactSample> samples,
                             std::span<const SampleDetail> details) {
-  assert(details.empty() || details.size() == samples.size());
   AddResult result;
+  if (!(context.tip_radius_m >= 0.0) || !std::isfinite(context.tip_radius_m)) {
+    result.rejected_tip_radius = samples.size();
+    return result;
+  }
+  if (!details.empty() && details.size() != samples.size()) {
+    result.rejected_detail = samples.size();
+    return result;
+  }
   auto place = std::find_if(patches_.begin(), patches_.end(), [&](const StoredPatch& patch) {
     return patch.context.probe == context.probe && patch.context.patch == context.patch;
   });

@@ -13,6 +13,7 @@
 
 namespace palpate {
 
+/// Bounds of the memory. Fewer samples than 8, and no patch or touch at all, count as 8 and 1.
 struct MemoryOptions {
   /// Most samples of a patch. When a patch is full, its dwells are merged (dwells.h). If that frees
   /// less than a quarter, neighbours are merged pairwise, and from then on the patch stores means
@@ -34,9 +35,10 @@ struct AddResult {
   std::size_t accepted = 0;
   std::size_t rejected_not_finite = 0;
   std::size_t rejected_negative_sigma = 0;
-  std::size_t rejected_detail = 0;  ///< normal or covariance not sound (is_sound)
-  std::size_t detailed = 0;         ///< accepted samples with a normal or a covariance
-  std::size_t forgotten = 0;        ///< earlier contacts lost with patches that were forgotten
+  std::size_t rejected_detail = 0;      ///< normal or covariance not sound (is_sound), or too few
+  std::size_t rejected_tip_radius = 0;  ///< of a patch whose tip radius is negative or not finite
+  std::size_t detailed = 0;             ///< accepted samples with a normal or a covariance
+  std::size_t forgotten = 0;            ///< earlier contacts lost with patches that were forgotten
   std::size_t repeated = 0;  ///< at exactly the place of the sample before: refused, nothing new
 
   AddResult& operator+=(const AddResult& other) {
@@ -44,6 +46,7 @@ struct AddResult {
     rejected_not_finite += other.rejected_not_finite;
     rejected_negative_sigma += other.rejected_negative_sigma;
     rejected_detail += other.rejected_detail;
+    rejected_tip_radius += other.rejected_tip_radius;
     detailed += other.detailed;
     forgotten += other.forgotten;
     repeated += other.repeated;
@@ -53,10 +56,11 @@ struct AddResult {
 
 class SampleMemory {
  public:
-  explicit SampleMemory(const MemoryOptions& options = {}) : options_(options) {}
+  explicit SampleMemory(const MemoryOptions& options = {});
 
   /// Appends to the patch of that probe and number, or begins it. `details`: one per sample, or
-  /// empty. Amortised O(samples + patches).
+  /// empty; another number of them, or an invalid tip radius, rejects all samples. Amortised
+  /// O(samples + patches).
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples,
                 std::span<const SampleDetail> details = {});
 

@@ -97,7 +97,7 @@ bool is_no_graph(std::span<const FitPoint> points) {
     for (std::size_t i = begin; i < end; ++i) {
       sum += points[i].position;
     }
-    const Vec2 mean = sum / static_cast<double>(end - begin);
+    Vec2 mean = sum / static_cast<double>(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       scatter += (points[i].position - mean).squaredNorm() / static_cast<double>(n);
     }

@@ -243,5 +243,33 @@ TEST(SampleMemory, ANormalOfOneOfTwoIsNoneOfTheirMean) {
   }
 }
 
+TEST(SampleMemory, WhatCannotBeUsedIsRefusedAndCounted) {
+  const std::vector<ContactSample> samples(3, ContactSample{Vec2(0.1, 0.2), 1e-5, 0});
+  SampleMemory memory;
+  for (const double radius :
+       {-1e-3, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_EQ(memory.add({.tip_radius_m = radius}, samples).rejected_tip_radius, 3U) << radius;
+  }
+  const std::vector<SampleDetail> too_few(2);
+  EXPECT_EQ(memory.add({}, samples, too_few).rejected_detail, 3U);
+  EXPECT_EQ(memory.sample_count(), 0U);
+}
+
+TEST(SampleMemory, BoundsOfNothingLeaveRoomForOne) {
+  MemoryOptions options;
+  options.most_samples_per_patch = options.most_patches = options.most_lone_touches = 0;
+  SampleMemory memory(options);
+  std::size_t forgotten = 0;
+  for (std::uint32_t patch = 0; patch < 20; ++patch) {
+    for (std::uint32_t i = 0; i < 1 + 20 * (patch % 2); ++i) {
+      const ContactSample sample{Vec2(1e-3 * i, patch), 1e-5, 0};
+      forgotten += memory.add({.patch = patch}, {&sample, 1}).forgotten;
+    }
+  }
+  // The last began as a touch, which took the place of the touch before.
+  EXPECT_EQ(memory.patches().size(), 1U);
+  EXPECT_EQ(memory.sample_count() + forgotten, 10U * (1 + 21));
+}
+
 }  // namespace
 }  // namespace palpate
