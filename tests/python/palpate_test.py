@@ -162,7 +162,9 @@ class Fit(unittest.TestCase):
     def test_a_patch_of_a_list_may_have_no_normals(self):
         points, normals = touches_with_normals(9, 0.01, seed=8)
         result = palpate.fit([points[:4], points[4:]], sigma=SIGMA, unit="mm", normals=[None, normals[4:]], normal_sigma=0.01)
-        self.assertEqual((result.sample_count, result.simplified_count), (9, 5))
+        self.assertEqual((result.sample_count, result.simplified_count), (9, 0))
+        without = palpate.fit([points[:4], points[4:]], sigma=SIGMA, unit="mm")
+        self.assertNotEqual(result.covariance.tolist(), without.covariance.tolist())
 
     def test_an_answer_goes_to_other_processes(self):
         import copy
@@ -212,8 +214,8 @@ class Fit(unittest.TestCase):
         self.assertEqual(np.isnan(residuals).tolist(), [False, True, True])
 
     def test_a_class_at_its_limit_to_another_has_no_shape(self):
-        t = np.linspace(0.2, 1.4, 100)
-        result = palpate.fit(np.column_stack([25 * np.cos(t) + 10, 17.5 * np.sin(t) - 3]).astype(int), unit="mm")
+        t = np.linspace(0.3, 1.2, 100)
+        result = palpate.fit(np.column_stack([35 * np.cos(t) + 10, 24 * np.sin(t) - 3]).astype(int), unit="mm")
         self.assertEqual(result.doubt, "several_classes")
         self.assertEqual(result.params, {})
         self.assertTrue(all(map(math.isnan, result.pose)))
@@ -463,6 +465,13 @@ with palpate.Planner(RESULTS) as planner, palpate.Probe("finger", CONTACTS, unit
         if answer.sample_count == 24:
             break
     print(round(1e3 * answer.parameters.a, 1), answer.simplified_count, round(1e6 * answer.sigma_m, 3))
+    # More than a message takes: in two.
+    t = np.linspace(0, 6, 900)
+    inward_of_many = -np.column_stack([np.cos(t), np.sin(t)])
+    probe.new_object()
+    probe.send(-15 * inward_of_many, inward_of_many, 0.02, 1e-6 * np.eye(2))
+    while answer.sample_count != 900:
+        answer = planner.receive(timeout=20)
     try:
         probe.send(points, 2 * inward, 0.02)
     except ValueError as error:

@@ -19,6 +19,9 @@ from .result import units
 
 CONTACTS = "tcp://127.0.0.1:5581"
 RESULTS = "tcp://127.0.0.1:5582"
+# Of a message: a node accepts 1024 samples and 65,536 bytes by default; what is not samples takes less than 500 bytes.
+_MOST_SAMPLES = 1000
+_MOST_BYTES = 65_000
 
 
 def _secure(socket: zmq.Socket, secret_key: str | None, server_key: str | None) -> None:
@@ -107,6 +110,10 @@ class _Details:
         self._sigmas = np.broadcast_to(normal_sigma, count) if normal_sigma.size else normal_sigma
         self._covariances = np.broadcast_to(covariances, (count, 2, 2)) if covariances.size else covariances
 
+    def most_bytes(self) -> int:
+        """Most bytes of a sample in a message (contact.proto)."""
+        return 40 + (27 if self._normals.size else 0) + (27 if self._covariances.size else 0)
+
     def of(self, i: int) -> dict[str, float]:
         fields = {}
         if self._normals.size and self._normals[i].any():
@@ -170,7 +177,7 @@ class Probe(_Peer):
         if points.shape[1] != 2 or not np.isfinite(points).all():
             raise ValueError("points must be finite, of shape (n, 2)")
         said = _Details(len(points), *details(normals, normal_sigma, covariances, self._scale))
-        most = 1000  # samples per message; by default a node accepts 1024
+        most = min(_MOST_SAMPLES, _MOST_BYTES // said.most_bytes())  # samples of a message
         for start in range(0, len(points), most):
             del self._batch.samples[:]
             now = time.time_ns()

@@ -331,8 +331,8 @@ class Formats(unittest.TestCase):
             self.assertNotIn("beyond", picture.read_text())
 
     def test_a_class_at_its_limit_to_another_shows_no_shape(self):
-        text = "x_mm,y_mm\n" + "".join(f"{int(25 * math.cos(t) + 10)},{int(17.5 * math.sin(t) - 3)}\n"
-                                       for t in (0.2 + 1.2 * i / 99 for i in range(100)))
+        text = "x_mm,y_mm\n" + "".join(f"{int(35 * math.cos(t) + 10)},{int(24 * math.sin(t) - 3)}\n"
+                                       for t in (0.3 + 0.9 * i / 99 for i in range(100)))
         answer = self.fit(text)
         best = answer["hypotheses"][0]
         self.assertTrue(best["at_limit"], answer)
