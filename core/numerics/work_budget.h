@@ -45,14 +45,6 @@ class WorkBudget {
     spent_ += price_of(kind) * static_cast<double>(count);
   }
 
-  /// Raises the bound to that of `larger`, if it is higher.
-  void raise_to(const WorkBudget& larger) {
-    if (larger.most_ > most_) {
-      most_ = larger.most_;
-      ceiling_ = larger.ceiling_;
-    }
-  }
-
   /// Whether there is work left for what can be left out.
   bool allows() {
     const bool allowed = spent_ < ceiling_;

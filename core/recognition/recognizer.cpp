@@ -170,7 +170,6 @@ class Recognizer::Impl {
       const WorkBudget::Reserve for_classes(work, kShareOfClasses);
       clean_.look_at(memory_.patches(), options_.sigma_m, options_.false_outlier_probability, work);
     }
-    work.raise_to(work_limit(clean_.moved()));  // a stroke there and back is several patches
     const std::vector<StoredPatch>& clean = clean_.clean();
     bool sigma_known = false;
     FitData data = make_fit_data(clean, options_.sigma_m, &sigma_known);
