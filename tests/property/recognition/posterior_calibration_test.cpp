@@ -4,10 +4,10 @@
 
 #include <array>
 #include <cmath>
-#include <iostream>
 #include <string>
 
 #include "tests/support/calibration.h"
+#include "tests/support/expect_calibrated.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/scene_prior.h"
 #include "tests/support/test_rng.h"
@@ -45,39 +45,18 @@ Calibrations run(const test::ScenePrior& prior, bool sigma_known) {
   return result;
 }
 
-/// A bin with few answers, whose band contains every frequency, says nothing and cannot fail.
-void expect_true(const test::Calibration& calibration, const std::string& title, double from) {
-  for (std::size_t b = 0; b < test::kProbabilityBins; ++b) {
-    const test::Calibration::Bin& bin = calibration.bins()[b];
-    const test::Band band = bin.band(kCoverage);
-    if (band.least == 0 && band.most == bin.count()) {
-      continue;
-    }
-    std::cout << "  " << title << " " << test::kProbabilityBounds[b] << " to "
-              << test::kProbabilityBounds[b + 1] << ": stated " << bin.mean_stated() << ", right "
-              << bin.right << " of " << bin.count() << ", band " << band.least << " to "
-              << band.most << "\n";
-    if (test::kProbabilityBounds[b] < from) {
-      continue;  // printed only
-    }
-    EXPECT_GE(bin.right, band.least)
-        << title << ", bin from " << test::kProbabilityBounds[b] << ": too sure";
-    EXPECT_LE(bin.right, band.most)
-        << title << ", bin from " << test::kProbabilityBounds[b] << ": not sure enough";
-  }
-}
-
 void expect_true(const Calibrations& calibrations) {
   // Below these bounds several classes fit, and their prior masses decide. There the scenes differ
   // from the prior: their places end where the parts do, while the prior has tails; and the
   // integral of a class that is wide in two directions is too small.
   constexpr double kPooledFrom = 0.6;
   constexpr double kClassesFrom = 0.95;
-  expect_true(calibrations.pooled, "all", kPooledFrom);
+  test::expect_calibrated(calibrations.pooled, "all", kPooledFrom, kCoverage);
   // No scene is of no class here: what is stated about "unclassified" is true under another prior.
   for (std::size_t i = 1; i < calibrations.by_class.size(); ++i) {
-    expect_true(calibrations.by_class[i], std::string(name_of(static_cast<CurveClass>(i))),
-                kClassesFrom);
+    test::expect_calibrated(calibrations.by_class[i],
+                            std::string(name_of(static_cast<CurveClass>(i))), kClassesFrom,
+                            kCoverage);
   }
   // Otherwise the bins above would say nothing about sure answers.
   EXPECT_GT(calibrations.pooled.bins().back().count(), test::stress_count(kScenes) / 4);
