@@ -20,8 +20,10 @@ class Hostile(unittest.TestCase):
             with Client(servers.url) as client:
                 gateway_status(client, "press", "down")
                 deadline = time.monotonic() + 10
-                while not gateway_status(client, "press", "down").places:
+                while not (begun := gateway_status(client, "press", "down")).places:
                     self.assertLess(time.monotonic(), deadline)
+                # A server that has just started may be slow to make the consumer.
+                restarts_before = begun.places[0].restarts
                 before_kb = memory_kb(down)
                 honest = Probe(None, "finger", "hand")
                 sent = 0
@@ -56,9 +58,9 @@ class Hostile(unittest.TestCase):
                 growth_kb = memory_kb(down) - before_kb
                 place = status.places[0]
                 print(f"{place.hostile} hostile messages on the place's subjects, {place.rejected} rejected by the node, "
-                      f"{place.answered} contacts answered, {place.restarts} new beginnings, {growth_kb / 1024:+.1f} MB")
+                      f"{place.answered} contacts answered, {place.restarts - restarts_before} new beginnings, {growth_kb / 1024:+.1f} MB")
                 self.assertGreater(place.hostile, HOSTILE / 10)
-                self.assertEqual(place.restarts, 0)
+                self.assertEqual(place.restarts, restarts_before, down.log_path.read_text())
                 self.assertIsNone(down.poll())
                 self.assertLess(growth_kb, MOST_GROWTH_KB)
                 self.assertEqual(stop(down)[0], 0)
