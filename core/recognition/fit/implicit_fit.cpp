@@ -382,6 +382,12 @@ ImplicitFit placed_on(std::span<const FitPoint> points, ImplicitFit fit) {
     const double residual = signed_distance(fit.coefficients, points[i].position, &fit.feet[i]) *
                             points[i].inverse_sigma;
     fit.chi2 += residual * residual;
+    if (has_normal(points[i])) {
+      const Vec2 normal = conic_gradient(fit.coefficients, fit.feet[i]).normalized();
+      const double turned = weight_of_normal(fit.coefficients, fit.feet[i], points[i]) *
+                            normal_miss(points[i].normal, normal);
+      fit.chi2 += turned * turned;
+    }
   }
   return fit;
 }

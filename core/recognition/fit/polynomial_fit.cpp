@@ -116,6 +116,12 @@ PolynomialFit placed_on(std::span<const FitPoint> points, PolynomialFit fit) {
     const double residual = placed.signed_distance * points[i].inverse_sigma;
     fit.t[i] = placed.t;
     fit.chi2 += residual * residual;
+    if (has_normal(points[i])) {
+      const double turned =
+          weight_of_normal(fit.coefficients, placed, points[i]) *
+          normal_miss(points[i].normal, normal_at(fit.coefficients, placed).normal);
+      fit.chi2 += turned * turned;
+    }
   }
   return fit;
 }
