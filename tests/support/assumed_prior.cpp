@@ -21,9 +21,10 @@ constexpr int kSamples = 111;
 /// prior's factors are independent, but for an ellipse's direction.
 class CoordinateLaw {
  public:
-  CoordinateLaw(CurveClass curve_class, int k) {
+  CoordinateLaw(Chart chart, int k) {
     constexpr int kSteps = 200000;
-    TouchedVector centre = prior_centre(curve_class);
+    const CurveClass curve_class = chart.curve_class;
+    TouchedVector centre = prior_centre(chart);
     if (curve_class == CurveClass::Ellipse) {
       centre[1] = 1.0;  // of a direction nothing is told at the parabola's limit
     }
@@ -33,11 +34,11 @@ class CoordinateLaw {
       // The size's tails are exponential, the others' are powers.
       const double part = (i + 0.5) / kSteps;
       TouchedVector z = centre;
-      z[k] += k == 0 ? 40.0 * (part - 0.5) : 2.0 * std::tan(kPi * (part - 0.5));
+      z[k] += k == 0 && !chart.as_arc ? 40.0 * (part - 0.5) : 2.0 * std::tan(kPi * (part - 0.5));
       if (curve_class == CurveClass::Hyperbola && k == 1 && z[k] <= 0.0) {
         continue;
       }
-      const double density = std::exp(log_prior(curve_class, z) - log_prior(curve_class, centre));
+      const double density = std::exp(log_prior(chart, z) - log_prior(chart, centre));
       if (!places_.empty()) {
         sum += 0.5 * (density + last) * (z[k] - places_.back());
       }
@@ -60,23 +61,23 @@ class CoordinateLaw {
   std::vector<double> sums_;
 };
 
-/// The prior of a class, whose lengths are in half extents of what is touched.
-class ClassLaw {
+/// The prior in one set of coordinates, whose lengths are in half extents of what is touched.
+class ChartLaw {
  public:
-  explicit ClassLaw(CurveClass curve_class) : class_(curve_class) {
-    for (int k = 0; k < shape_coordinates(curve_class); ++k) {
-      if (curve_class != CurveClass::Ellipse || k == 0) {
-        coordinates_.emplace_back(curve_class, k);
+  explicit ChartLaw(Chart chart) : chart_(chart) {
+    for (int k = 0; k < shape_coordinates(chart.curve_class); ++k) {
+      if (chart.curve_class != CurveClass::Ellipse || k == 0) {
+        coordinates_.emplace_back(chart, k);
       }
     }
   }
 
   std::optional<TouchedShape> draw(std::mt19937_64& rng) const {
-    TouchedVector z = prior_centre(class_);
+    TouchedVector z = prior_centre(chart_);
     for (std::size_t k = 0; k < coordinates_.size(); ++k) {
       z[static_cast<Eigen::Index>(k)] = coordinates_[k](rng);
     }
-    if (class_ == CurveClass::Ellipse) {
+    if (chart_.curve_class == CurveClass::Ellipse) {
       z[1] = uniform(rng, 0.0, 1.0);
       const auto density = [&] {
         return std::pow(std::sin(z[2]), 2) + z[1] * std::pow(std::cos(z[2]), 2);
@@ -87,12 +88,29 @@ class ClassLaw {
     }
     TouchedShape like;
     like.values[0] = uniform(rng, -1.0, 1.0) < 0.0 ? -1.0 : 1.0;
-    return shape_at(class_, z, like);
+    return shape_at(chart_, z, like);
   }
 
  private:
-  CurveClass class_;
+  Chart chart_;
   std::vector<CoordinateLaw> coordinates_;
+};
+
+/// The prior of a class. Half of the spline's is one of arcs.
+class ClassLaw {
+ public:
+  explicit ClassLaw(CurveClass curve_class) {
+    charts_.emplace_back(Chart{curve_class});
+    if (curve_class == CurveClass::CubicSpline) charts_.emplace_back(Chart{curve_class, true});
+  }
+
+  std::optional<TouchedShape> draw(std::mt19937_64& rng) const {
+    return charts_[std::uniform_int_distribution<std::size_t>(0, charts_.size() - 1)(rng)].draw(
+        rng);
+  }
+
+ private:
+  std::vector<ChartLaw> charts_;
 };
 
 /// Half of the longer side of the points' box along their principal axes.

@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/numerics/negligible.h"
 #include "core/numerics/small_cholesky.h"
+#include "core/recognition/posterior/arc_coordinates.h"
 #include "core/recognition/posterior/mode_search.h"
 #include "core/recognition/posterior/prior_starts.h"
 
@@ -21,6 +23,7 @@ void set_mode(TouchedCurve mode, ClassEvidence* evidence) {
   evidence->log_prior = mode.log_prior;
   evidence->log_occam = log_mass(mode) + 0.5 * evidence->fitted_chi2;
   evidence->log_occam_of_mode = evidence->log_occam;
+  evidence->log_all_modes = 0.0;
   const int own = shape_coordinates(evidence->touch.curve_class);
   const Eigen::Matrix<double, 2, kMostCoordinates> touch_rows = mode.root.middleRows<2>(own);
   const Eigen::Matrix2d of_touch = touch_rows * touch_rows.transpose();
@@ -47,9 +50,10 @@ void keep_best(ArmMass mass, std::vector<ArmMass>* of_arms) {
 }
 
 void set_log_all_modes(double log_all, ClassEvidence* evidence) {
+  const double more = log_all - evidence->log_all_modes;
   evidence->log_all_modes = log_all;
-  evidence->log_occam += log_all;
-  evidence->log_occam_of_mode += log_all;
+  evidence->log_occam += more;
+  evidence->log_occam_of_mode += more;
 }
 
 /// The evidence of the modes that the prior leads to, at the best one, where they have more than
@@ -67,21 +71,26 @@ void take_prior_modes(const Touch& touch, CurveClass path_class, const TouchedCu
   double best = -std::numeric_limits<double>::infinity();
   if (!evidence->nodes.empty()) {
     best = log_mass(evidence->nodes[evidence->mode].curve);
-    of_arms.push_back(
-        {arm_of(touch, evidence->touch, evidence->nodes[evidence->mode].curve.z), best});
+    const TouchedCurve& mode = evidence->nodes[evidence->mode].curve;
+    of_arms.push_back({arm_of(touch, evidence->touch, mode), best});
+    if (const double others = std::expm1(evidence->log_all_modes); others > 0.0) {
+      Touch other = evidence->touch;  // add_arc
+      other.as_arc = !other.as_arc;
+      of_arms.push_back({arm_of(touch, other, mode), best + std::log(others)});
+    }
   }
   for (const PriorStart& start : prior_starts(touch, path_class, path)) {
     if ((further && !(evidence->log_occam > least + kWorthMore)) || !work.allows()) {
       break;
     }
-    further = true;
+    further = further || !start.touch.as_arc;
     auto mode = followed_from_prior(start.touch, data, start.curve,
                                     std::max(best - kTold, least - half_chi2), work);
     if (!mode) {
       continue;
     }
     const double mass = log_mass(*mode);
-    keep_best({arm_of(touch, start.touch, mode->z), mass}, &of_arms);
+    keep_best({arm_of(touch, start.touch, *mode), mass}, &of_arms);
     if (mass > best) {
       best = mass;
       evidence->touch = start.touch;
@@ -97,6 +106,44 @@ void take_prior_modes(const Touch& touch, CurveClass path_class, const TouchedCu
   }
 }
 
+/// The fit in touched coordinates; nullopt if they do not hold it. Coordinates of a vertex far away
+/// lose digits. What is left must still tell the points apart as well as the noise does.
+std::optional<TouchedCurve> held_by(const Touch& touch, const CanonicalFit& fit, double fitted_chi2,
+                                    const FitData& data, WorkBudget& work) {
+  constexpr double kPartRounding = 1e-3;  // of a chi-square that has no chance
+  work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
+  auto curve = curve_at(touch, fit, data);
+  const double rounding = static_cast<double>(residual_count(data)) + kPartRounding * fitted_chi2;
+  return curve && std::abs(curve->chi2 - fitted_chi2) <= rounding ? std::move(curve) : std::nullopt;
+}
+
+/// Whether the data tell the sign of a spline's c, and not only its square.
+bool tells_bend(const TouchedCurve& spline) {
+  constexpr int kBend = 3;  // the coordinate c
+  const double deviation =
+      std::sqrt(inverse_cholesky(spline.root)(kBend, kBend)) * spline.widths[kBend];
+  return spline.z[kBend] * spline.z[kBend] > 2.0 * kTailOfDensity * deviation * deviation;
+}
+
+/// The half of the spline's prior that is one of arcs: the mode there of the same fit.
+void add_arc(const CanonicalFit& fit, const FitData& data, ClassEvidence* evidence,
+             WorkBudget& work) {
+  Touch touch = evidence->touch;
+  touch.as_arc = true;
+  auto curve = held_by(touch, fit, evidence->fitted_chi2, data, work);
+  if (!curve || !shape_at(touch.chart(), curve->z, touch.shape)) {
+    return;
+  }
+  curve = descend(touch, data, *std::move(curve), -1, work, kStepsFromFit);
+  const double from_vertex = log_mass(evidence->nodes[evidence->mode].curve);
+  const double as_arc = log_mass(*curve);
+  if (as_arc > from_vertex) {
+    evidence->touch = touch;
+    set_mode(*std::move(curve), evidence);
+  }
+  set_log_all_modes(std::log1p(std::exp(-std::abs(as_arc - from_vertex))), evidence);
+}
+
 }  // namespace
 
 bool is_of_optimum(const ClassEvidence& evidence) {
@@ -108,29 +155,28 @@ bool is_of_optimum(const ClassEvidence& evidence) {
 
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
                                          double inflation, WorkBudget& work) {
-  work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
   auto touch = touch_of(fit, data);
   if (!touch) {
     return std::nullopt;
   }
   touch->weight = 1.0 / std::sqrt(inflation);
-  auto first = curve_at(*touch, fit, data);
   double fitted_chi2 = 0.0;
   for (const FittedPoint& point : fit.points) {
     fitted_chi2 += point.residual * point.residual + point.normal_residual * point.normal_residual;
   }
-  fitted_chi2 /= inflation;
-  // Canonical coordinates of a vertex far away lose digits. What is left must still tell the points
-  // apart as well as the noise does.
-  constexpr double kPartRounding = 1e-3;  // of a chi-square that has no chance
-  const double rounding = static_cast<double>(residual_count(data)) + kPartRounding * fitted_chi2;
-  if (!first || !(std::abs(first->chi2 - fitted_chi2) <= rounding)) {
+  auto first = held_by(*touch, fit, fitted_chi2 / inflation, data, work);
+  if (!first) {
     return std::nullopt;
   }
   ClassEvidence evidence;
   evidence.touch = *touch;
   evidence.fitted_chi2 = first->chi2;
+  const TouchedVector z = first->z;
   set_mode(descend(*touch, data, std::move(*first), -1, work, kStepsFromFit), &evidence);
+  if (touch->curve_class == CurveClass::CubicSpline &&
+      (is_seen_as_arc(z[2], z[3]) || tells_bend(evidence.nodes[evidence.mode].curve))) {
+    add_arc(fit, data, &evidence, work);
+  }
   return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
 }
 
@@ -139,8 +185,9 @@ ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, doubl
   evidence.prior_mode_sought = true;
   const CurveClass curve_class = evidence.touch.curve_class;
   const TouchedCurve fitted = evidence.nodes[evidence.mode].curve;
-  take_prior_modes(along_patch(evidence.touch, data), curve_class, fitted, data, least, &evidence,
-                   work);
+  Touch touch = along_patch(evidence.touch, data);
+  touch.as_arc = false;
+  take_prior_modes(touch, curve_class, fitted, data, least, &evidence, work);
   return evidence;
 }
 
@@ -152,6 +199,30 @@ std::optional<ClassEvidence> from_prior(ClassEvidence evidence, CurveClass path_
                    -std::numeric_limits<double>::infinity(), &evidence, work);
   return !evidence.nodes.empty() && is_of_optimum(evidence) ? std::optional(std::move(evidence))
                                                             : std::nullopt;
+}
+
+ClassEvidence with_mode_at_cusp(ClassEvidence spline, const ClassEvidence& semi_cubical,
+                                const FitData& data, WorkBudget& work) {
+  const TouchedCurve& from = semi_cubical.nodes[semi_cubical.mode].curve;
+  Touch touch = semi_cubical.touch;
+  touch.curve_class = spline.touch.curve_class;
+  TouchedVector z = from.z;
+  z.tail<2>() = from.z.segment<2>(3);  // offset and turn come after c
+  z[3] = 1e-9;                         // a spline's c is not 0
+  work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
+  auto mode = curve_at(touch, z, from, data);
+  if (!mode) {
+    return spline;
+  }
+  mode = descend(touch, data, *std::move(mode), -1, work, kStepsFromFit);
+  const double before = log_mass(spline.nodes[spline.mode].curve) + spline.log_all_modes;
+  const double gain = log_mass(*mode) - before;
+  if (gain > 0.0) {
+    spline.touch = touch;
+    set_mode(*std::move(mode), &spline);
+    set_log_all_modes(std::log1p(std::exp(-gain)), &spline);
+  }
+  return spline;
 }
 
 ClassEvidence at_better_mode(ClassEvidence evidence, const ClassEvidence& before) {

@@ -69,6 +69,11 @@ std::optional<ClassEvidence> from_prior(ClassEvidence evidence, CurveClass path_
                                         const TouchedCurve& path, const FitData& data,
                                         WorkBudget& work);
 
+/// The spline's evidence at the mode that it has at c = 0, where the semi-cubical parabola has its
+/// own, if that holds more. Slices and searches may miss it: the valley between is long.
+ClassEvidence with_mode_at_cusp(ClassEvidence spline, const ClassEvidence& semi_cubical,
+                                const FitData& data, WorkBudget& work);
+
 /// The evidence at the mode of `before`, if it is larger. `before`: another fit of the class to the
 /// same data, with the same inflation.
 ClassEvidence at_better_mode(ClassEvidence evidence, const ClassEvidence& before);

@@ -8,7 +8,7 @@ namespace {
 
 /// Of a conic that is no parabola, up to a constant.
 double log_density(CurveClass curve_class, const TouchedVector& z) {
-  return log_prior(curve_class, z) - std::log(prior_widths(curve_class, z).head<3>().prod());
+  return log_prior({curve_class}, z) - std::log(prior_widths({curve_class}, z).head<3>().prod());
 }
 
 }  // namespace

@@ -12,13 +12,13 @@ namespace {
 
 /// By the coordinates in units of the widths.
 TouchedVector prior_gradient(const Touch& touch, const TouchedCurve& curve) {
-  return log_prior_gradient(touch.curve_class, curve.z).cwiseProduct(curve.widths);
+  return log_prior_gradient(touch.chart(), curve.z).cwiseProduct(curve.widths);
 }
 
 /// The root for a step down the potential, with the curvature that the prior's tails have. From
 /// three quarters of a normal law's on, a step by that is nearly as long.
 TouchedMatrix step_root(const Touch& touch, const TouchedCurve& curve) {
-  const TouchedVector less = TouchedVector::Ones() - tail_weights(touch.curve_class, curve.z);
+  const TouchedVector less = TouchedVector::Ones() - tail_weights(touch.chart(), curve.z);
   if (less.maxCoeff() < 0.25) {
     return curve.root;
   }

@@ -15,7 +15,7 @@ using ShapePose = Eigen::Matrix<double, kMostCoordinates, 1>;
 
 /// [shape; x; y; theta] in the normalised frame of a curve at coordinates z.
 std::optional<ShapePose> shape_pose_at(const Touch& touch, const TouchedVector& z) {
-  const auto shape = shape_at(touch.curve_class, z, touch.shape);
+  const auto shape = shape_at(touch.chart(), z, touch.shape);
   const auto curve = shape ? make_curve(touch.curve_class, shape->values) : std::nullopt;
   if (!curve) {
     return std::nullopt;
@@ -54,6 +54,11 @@ Eigen::Matrix<double, 6, 6> jacobian_at(const Touch& touch, const TouchedCurve& 
     const auto g = shape_pose_at(touch, behind);
     if (f && g) {
       jacobian.col(k) = curve.widths[k] / (2.0 * kStep) * difference(touch.curve_class, *f, *g);
+    } else if (const auto here = shape_pose_at(touch, curve.z); here && (f || g)) {
+      // One-sided at the class's end.
+      const ShapePose step =
+          f ? difference(touch.curve_class, *f, *here) : difference(touch.curve_class, *here, *g);
+      jacobian.col(k) = curve.widths[k] / kStep * step;
     }
   }
   return jacobian;

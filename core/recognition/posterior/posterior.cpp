@@ -33,10 +33,10 @@ std::optional<ClassEvidence> rival_of(const ClassFit& spline, const FitData& red
 /// Whether the slices of one mode of the spline run through another.
 bool holds(const ClassEvidence& mode, const ClassEvidence& other) {
   constexpr int kBend = 3;  // the coordinate c
-  if (mode.widest != kBend) {
+  if (mode.widest != kBend || mode.touch.as_arc) {
     return false;
   }
-  const double c = coordinates_of(other.touch.curve_class, other.touch.shape)[kBend];
+  const double c = coordinates_of(mode.touch.chart(), other.touch.shape)[kBend];
   return c >= mode.nodes.front().curve.z[kBend] && c <= mode.nodes.back().curve.z[kBend];
 }
 
@@ -144,6 +144,27 @@ void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced
   }
 }
 
+/// A spline has nearly as much where its c is nothing as the semi-cubical parabola that it is
+/// there.
+void add_mode_at_cusp(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
+                      double best, Evidences* evidences, WorkBudget& work) {
+  constexpr double kMissing = 2.0;  // log odds: what c and the place may cost beside none
+  constexpr auto kCusp = static_cast<std::size_t>(CurveClass::SemiCubicalParabola);
+  constexpr auto kSpline = static_cast<std::size_t>(CurveClass::CubicSpline);
+  auto& spline = evidences->classes[kSpline];
+  const auto& cusp = evidences->classes[kCusp];
+  if (!spline || !cusp || !fits[kSpline] || !fits[kCusp] || !work.allows()) {
+    return;
+  }
+  const double of_cusp =
+      log_evidence(likelihood, *evidences, CurveClass::SemiCubicalParabola, fits[kCusp]->chi2);
+  const double of_spline =
+      log_evidence(likelihood, *evidences, CurveClass::CubicSpline, fits[kSpline]->chi2);
+  if (of_cusp > std::max(of_spline + kMissing, best - kUnseenLogOdds)) {
+    spline = with_mode_at_cusp(*std::move(spline), *cusp, reduced, work);
+  }
+}
+
 constexpr std::array kConics = {std::pair(CurveClass::Ellipse, CurveClass::Hyperbola),
                                 std::pair(CurveClass::Hyperbola, CurveClass::Ellipse)};
 
@@ -195,6 +216,8 @@ void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likeli
     add_prior_mode(best, fits, reduced, likelihood, std::max(log_of_best, log_of_free_form),
                    evidences, work);
   }
+  add_mode_at_cusp(fits, reduced, likelihood, std::max(log_of_best, log_of_free_form), evidences,
+                   work);
 }
 
 }  // namespace

@@ -59,9 +59,9 @@ struct Place {
 /// Of a point of the unit cube. Dense where curvature passes through 0.
 Place place_at(CurveClass curve_class, const std::array<double, 3>& u) {
   Place place;
-  place.z = prior_centre(curve_class);
+  place.z = prior_centre({curve_class});
   // Twice the width of a normal law as high is where the tails begin.
-  const TouchedVector scale = 2.0 * prior_widths(curve_class, place.z);
+  const TouchedVector scale = 2.0 * prior_widths({curve_class}, place.z);
   const auto set = [&](int k, const Mapped& mapped) {
     place.z[k] = mapped.value;
     place.rate *= mapped.rate;
@@ -117,15 +117,15 @@ std::vector<PriorShape> shapes_of(CurveClass curve_class) {
       at = lattice.generator * part;
     }
     const Place place = place_at(curve_class, u);
-    const auto shape = shape_at(curve_class, place.z, like);
+    const auto shape = shape_at({curve_class}, place.z, like);
     const auto curve = shape ? make_curve(curve_class, shape->values) : std::nullopt;
     if (!curve || !(place.rate > 0.0)) {
       continue;  // an end of the cube
     }
     const LocalGeometry local = geometry(*curve, shape->t);
-    const TouchedVector widths = prior_widths(curve_class, place.z);
-    const double weight =
-        place.rate * std::exp(log_prior(curve_class, place.z)) / widths.segment(1, own - 1).prod();
+    const TouchedVector widths = prior_widths({curve_class}, place.z);
+    const double weight = place.rate * std::exp(log_prior({curve_class}, place.z)) /
+                          widths.segment(1, own - 1).prod();
     if (std::isfinite(local.kappa) && std::isfinite(local.kappa_s)) {
       shapes.push_back({place.z, local.kappa, local.kappa_s, weight});
       sum += weight;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/curves/curve.h"
+#include "core/recognition/posterior/arc_coordinates.h"
 #include "core/recognition/posterior/prior_lattice.h"
 
 namespace palpate {
@@ -64,6 +65,22 @@ Sided bent_like(double curvature, Sided shape) {
   return shape;
 }
 
+/// An arc like the path to third order, by nearly its length, seen along this sense of travel. The
+/// second derivative along it is the least with which x, across the third derivative, bends as a
+/// spline's does, and by a quarter of what is expected; none on a circle that bends to the right.
+Sided arc_like(double curvature, double rate, double travel) {
+  const double bend = 0.25 * law_of_arc(0).scale;
+  const double seen = travel * curvature;
+  const double third = std::hypot(seen * seen, rate);
+  // x'' = (alpha gamma + kappa^3) / |third|.
+  const double lacking = bend * third - seen * seen * seen;
+  Sided shape;
+  shape.z.head<4>() << (lacking > 0.0 && rate != 0.0 ? lacking / rate : 0.0), seen, -seen * seen,
+      rate;
+  shape.travel = travel;
+  return shape;
+}
+
 /// Which arm, side and sense of travel: between them no way leads downhill.
 std::size_t sector_of(CurveClass curve_class, const Sided& shape) {
   constexpr int kBend = 3;  // the spline's c
@@ -111,7 +128,7 @@ std::optional<PriorStart> start_at(const Touch& touch, const Sided& shape,
   if (touch.curve_class == CurveClass::CubicalParabola) {
     start.touch.shape.values[0] = shape.leading;
   }
-  const auto at = shape_at(touch.curve_class, shape.z, start.touch.shape);
+  const auto at = shape_at(touch.chart(), shape.z, start.touch.shape);
   const auto curve = at ? make_curve(touch.curve_class, at->values) : std::nullopt;
   if (!curve) {
     return std::nullopt;
@@ -203,13 +220,28 @@ std::vector<PriorStart> prior_starts(const Touch& touch, CurveClass path_class,
       starts.push_back(*std::move(start));
     }
   }
+  if (curve_class == CurveClass::CubicSpline) {
+    Touch as_arc = touch;
+    as_arc.as_arc = true;
+    // Between the two lie the cubical parabolas, where a spline's t is not defined.
+    for (const double travel : {-1.0, 1.0}) {
+      if (auto start = start_at(as_arc, arc_like(curvature, local.kappa_s, travel), feet)) {
+        starts.insert(starts.begin(), *std::move(start));
+      }
+    }
+  }
   return starts;
 }
 
 // Where it is not straight a curve keeps the side that it bends to, and so its sense of travel.
-std::size_t arm_of(const Touch& along, const Touch& touch, const TouchedVector& z) {
+// Arcs have that half of the spline's prior which has no arms.
+std::size_t arm_of(const Touch& along, const Touch& touch, const TouchedCurve& mode) {
+  constexpr std::size_t kArcs = 4;
   const bool with = touch.tangent.dot(along.tangent) > 0.0;
-  const bool ahead = z[2] > 0.0;
+  const bool ahead = mode.shape.t > 0.0;
+  if (touch.as_arc) {
+    return kArcs;
+  }
   switch (touch.curve_class) {
     case CurveClass::CubicalParabola:  // half a turn takes it to itself
       return (with == ahead ? 1U : 0U) + (touch.shape.values[0] > 0.0 ? 2U : 0U);

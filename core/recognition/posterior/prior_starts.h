@@ -23,6 +23,6 @@ std::vector<PriorStart> prior_starts(const Touch& touch, CurveClass path_class,
 
 /// On which arm of its class a curve lies that is touched along the path of `along`: arms that no
 /// way joins have numbers of their own, as far as cubics have such.
-std::size_t arm_of(const Touch& along, const Touch& touch, const TouchedVector& z);
+std::size_t arm_of(const Touch& along, const Touch& touch, const TouchedCurve& mode);
 
 }  // namespace palpate

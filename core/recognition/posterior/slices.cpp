@@ -125,7 +125,7 @@ int widest_coordinate(const Touch& touch, const TouchedCurve& best, const Touche
     const double deviation = std::sqrt(covariance(k, k)) * best.widths[k];
     const bool conic = curve_class == CurveClass::Ellipse || curve_class == CurveClass::Hyperbola;
     const bool ends_at_zero =
-        (curve_class == CurveClass::CubicSpline && k == 3) || (conic && k == 1);
+        (curve_class == CurveClass::CubicSpline && !touch.as_arc && k == 3) || (conic && k == 1);
     double nonlinear = deviation / kLinear;
     // A class ends there (m = 0), or the data resolve the square alone (c of the spline): slices,
     // as far as they go, would come to it.

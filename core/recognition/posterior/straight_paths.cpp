@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/curves/pose2.h"
+#include "core/recognition/posterior/arc_coordinates.h"
 #include "core/recognition/posterior/prior_lattice.h"
 
 namespace palpate {
@@ -64,6 +66,26 @@ Rule over_highest(const Rule& curvature, const Rule& rate, const BendOfLine& ben
     }
   }
   return 0.25 * sum;
+}
+
+/// The mean over a spline that is an arc (arc_coordinates.h), over the highest likelihood. Nearly
+/// straight, the rate of curvature is the third derivative across. Shares of the prior up to so
+/// much are uniform: those of |x| < s tan(p) are sin(p) and 2 p / pi by laws of 2 and of 1 degrees
+/// of freedom.
+double mean_over_arcs(const Rule& places, const Rule& weights, double farthest_curvature,
+                      double farthest_rate, const BendOfLine& bend) {
+  const double of_curvature = law_of_arc(1).scale / bend.curvature_sigma;
+  const double of_rate = law_of_arc(3).scale / bend.rate_sigma;
+  const double curvature_share = std::sin(std::atan(farthest_curvature / of_curvature));
+  const double rate_share = 2.0 / kPi * std::atan(farthest_rate / of_rate);
+  const Rule rate = of_rate * (0.5 * kPi * rate_share * places).tan();
+  double sum = 0.0;
+  for (int i = 0; i < kRule; ++i) {
+    const double share = curvature_share * places[i];
+    const double curvature = of_curvature * share / std::sqrt(1.0 - share * share);
+    sum += weights[i] * (weights * over_highest(Rule::Constant(curvature), rate, bend)).sum();
+  }
+  return curvature_share * rate_share * sum;
 }
 
 }  // namespace
@@ -140,6 +162,9 @@ double log_evidence_over_line(CurveClass curve_class, const BendOfLine& bend) {
     const Rule inverse_square = v / (1.0 - v);
     sum += shape.weight * end *
            (weights * over_highest(k * inverse_square.sqrt(), q * inverse_square, bend)).sum();
+  }
+  if (curve_class == CurveClass::CubicSpline) {
+    sum = 0.5 * (sum + mean_over_arcs(places, weights, farthest_curvature, farthest_rate, bend));
   }
   return log_highest(bend) + std::log(sum);
 }

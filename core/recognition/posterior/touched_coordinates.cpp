@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/curves/pose2.h"
+#include "core/recognition/posterior/arc_coordinates.h"
+#include "core/recognition/posterior/student_law.h"
 
 namespace palpate {
 namespace {
@@ -19,26 +20,6 @@ const double kUniformWidth = 1.0 / std::sqrt(2.0 * kPi);
 const double kLogSize = 0.5 * std::log(20.0);
 /// Of the normal law as high: the density is 1 / 2 at the centre.
 const double kSizeWidth = 2.0 * kUniformWidth;
-
-/// Student's law of `freedom` degrees of freedom about 0.
-struct StudentLaw {
-  int freedom = 1;
-  double scale = 1.0;
-
-  /// Of (1 + x^2)^(-(freedom + 1) / 2).
-  static double integral(int freedom) {
-    return freedom == 1   ? kPi
-           : freedom == 2 ? 2.0
-                          : integral(freedom - 2) * (freedom - 2.0) / (freedom - 1.0);
-  }
-  /// Of the normal law as high.
-  double width() const { return scale * integral(freedom) * kUniformWidth; }
-  /// log of the density over the one at 0.
-  double log(double x) const {
-    return -0.5 * (freedom + 1.0) * std::log1p(x * x / (scale * scale));
-  }
-  double derivative(double x) const { return -(freedom + 1.0) * x / (scale * scale + x * x); }
-};
 
 /// Far out on its arms every class is straight, and so is what is very large. Parts end, and what
 /// is touched is not much smaller than they are: the tails are such that curvature has a density
@@ -135,12 +116,16 @@ int shape_coordinates(CurveClass curve_class) {
   }
 }
 
-TouchedVector coordinates_of(CurveClass curve_class, const TouchedShape& shape) {
+TouchedVector coordinates_of(Chart chart, const TouchedShape& shape) {
   TouchedVector z = TouchedVector::Zero();
   const double a = shape.values[0];
   const double b = shape.values[1];
   const double t = shape.t;
-  switch (curve_class) {
+  if (chart.as_arc) {
+    z.head<4>() = arc_coordinates_of({shape.values, t});
+    return z;
+  }
+  switch (chart.curve_class) {
     case CurveClass::Circle:
       z[0] = std::log(a);
       break;
@@ -171,11 +156,15 @@ TouchedVector coordinates_of(CurveClass curve_class, const TouchedShape& shape) 
   return z;
 }
 
-std::optional<TouchedShape> shape_at(CurveClass curve_class, const TouchedVector& z,
+std::optional<TouchedShape> shape_at(Chart chart, const TouchedVector& z,
                                      const TouchedShape& like) {
+  if (chart.as_arc) {
+    const auto place = spline_at(z.head<4>());
+    return place ? std::optional(TouchedShape{place->abc, place->t}) : std::nullopt;
+  }
   TouchedShape shape;
   shape.t = like.t;  // line and circle: all places are alike
-  switch (curve_class) {
+  switch (chart.curve_class) {
     case CurveClass::Circle:
       shape.values[0] = std::exp(z[0]);
       break;
@@ -210,7 +199,7 @@ std::optional<TouchedShape> shape_at(CurveClass curve_class, const TouchedVector
     case CurveClass::SemiCubicalParabola:
     case CurveClass::CubicSpline: {
       const double a = std::exp(-0.5 * z[0]);
-      const double c = curve_class == CurveClass::CubicSpline ? z[3] / a : 0.0;
+      const double c = chart.curve_class == CurveClass::CubicSpline ? z[3] / a : 0.0;
       shape = {{a, z[1], c}, z[2] / a};
       break;
     }
@@ -220,12 +209,15 @@ std::optional<TouchedShape> shape_at(CurveClass curve_class, const TouchedVector
   return shape.values.allFinite() && std::isfinite(shape.t) ? std::optional(shape) : std::nullopt;
 }
 
-TouchedVector prior_centre(CurveClass curve_class) {
+TouchedVector prior_centre(Chart chart) {
   TouchedVector centre = TouchedVector::Zero();
-  if (shape_coordinates(curve_class) > 0) {
-    centre[0] = log_length_over_size(curve_class) + kLogSize;
+  if (chart.as_arc) {
+    return centre;
   }
-  centre[1] = curve_class == CurveClass::Hyperbola ? 1.0 : 0.0;
+  if (shape_coordinates(chart.curve_class) > 0) {
+    centre[0] = log_length_over_size(chart.curve_class) + kLogSize;
+  }
+  centre[1] = chart.curve_class == CurveClass::Hyperbola ? 1.0 : 0.0;
   return centre;
 }
 
@@ -241,7 +233,8 @@ int place_coordinate(CurveClass curve_class) {
   }
 }
 
-TouchedVector prior_widths(CurveClass curve_class, const TouchedVector& z) {
+TouchedVector prior_widths(Chart chart, const TouchedVector& z) {
+  const CurveClass curve_class = chart.curve_class;
   TouchedVector widths = TouchedVector::Zero();
   switch (curve_class) {
     case CurveClass::Circle:
@@ -275,13 +268,28 @@ TouchedVector prior_widths(CurveClass curve_class, const TouchedVector& z) {
       break;
   }
   const int own = shape_coordinates(curve_class);
+  if (chart.as_arc) {
+    for (int k = 0; k < own; ++k) {
+      widths[k] = law_of_arc(k).width();
+    }
+  }
   widths[own] = kCauchyWidth;  // offset, in half extents
   // Turn: any direction. A line is the same either way of travel; what bends is not.
   widths[own + 1] = (curve_class == CurveClass::Line ? kPi : 2.0 * kPi) * kUniformWidth;
   return widths;
 }
 
-double log_prior(CurveClass curve_class, const TouchedVector& z) {
+double log_prior(Chart chart, const TouchedVector& z) {
+  const CurveClass curve_class = chart.curve_class;
+  if (chart.as_arc) {
+    // Half of the spline's; an arc is the same travelled either way, and one of them has a
+    // spline's t.
+    double sum = 0.0;
+    for (int k = 0; k < shape_coordinates(curve_class); ++k) {
+      sum += law_of_arc(k).log(z[k]);
+    }
+    return sum;
+  }
   switch (curve_class) {
     case CurveClass::Circle:
       return log_size(curve_class, z[0]);
@@ -299,14 +307,21 @@ double log_prior(CurveClass curve_class, const TouchedVector& z) {
       return log_size(curve_class, z[0]) + kSlope.log(z[1]) + kPlaceFromCusp.log(z[2]);
     case CurveClass::CubicSpline:
       return log_size(curve_class, z[0]) + kSlope.log(z[1]) + kPlaceFromCusp.log(z[2]) +
-             kBend.log(z[3]);
+             kBend.log(z[3]) - std::numbers::ln2;
     default:
       return 0.0;
   }
 }
 
-TouchedVector log_prior_gradient(CurveClass curve_class, const TouchedVector& z) {
+TouchedVector log_prior_gradient(Chart chart, const TouchedVector& z) {
+  const CurveClass curve_class = chart.curve_class;
   TouchedVector gradient = TouchedVector::Zero();
+  if (chart.as_arc) {
+    for (int k = 0; k < shape_coordinates(curve_class); ++k) {
+      gradient[k] = law_of_arc(k).derivative(z[k]);
+    }
+    return gradient;
+  }
   if (shape_coordinates(curve_class) > 0) {
     gradient[0] = log_size_derivative(curve_class, z[0]);
   }
@@ -347,14 +362,15 @@ TouchedVector log_prior_gradient(CurveClass curve_class, const TouchedVector& z)
 // -log of each tailed law is concave in the square of the distance from its centre: the parabola
 // about the centre with the slope that it has at z is above it (D. Hunter and K. Lange, "A tutorial
 // on MM algorithms", 2004).
-TouchedVector tail_weights(CurveClass curve_class, const TouchedVector& z) {
+TouchedVector tail_weights(Chart chart, const TouchedVector& z) {
+  const CurveClass curve_class = chart.curve_class;
   TouchedVector weights = TouchedVector::Ones();
   if (shape_coordinates(curve_class) == 0) {
     return weights;
   }
-  const TouchedVector slope = log_prior_gradient(curve_class, z);
-  const TouchedVector widths = prior_widths(curve_class, z);
-  const TouchedVector centre = prior_centre(curve_class);
+  const TouchedVector slope = log_prior_gradient(chart, z);
+  const TouchedVector widths = prior_widths(chart, z);
+  const TouchedVector centre = prior_centre(chart);
   // The other coordinates of an ellipse have no tails.
   const int tailed = curve_class == CurveClass::Ellipse ? 1 : shape_coordinates(curve_class);
   for (int k = 0; k < tailed; ++k) {

@@ -20,6 +20,12 @@ struct TouchedShape {
   double t = 0.0;                                    ///< curve parameter of the place
 };
 
+/// One set of coordinates: a class's own, or those of a spline as an arc (arc_coordinates.h).
+struct Chart {
+  CurveClass curve_class = CurveClass::Unclassified;
+  bool as_arc = false;
+};
+
 /// Ratio of a parameter of a curve of size `scale` to that of the same curve of size 1. `index`: in
 /// the order of parameter_letters, or -1 for the curve parameter t.
 double parameter_scale(CurveClass curve_class, int index, double scale);
@@ -37,19 +43,19 @@ int shape_coordinates(CurveClass curve_class);
 ///   parabola: log p, tangent's direction
 ///   cubical parabola: log L (a = +-1 / L^2), c, place t / L
 ///   semi-cubical parabola, spline: log L (a = 1 / sqrt(L)), b, place t / sqrt(L) (and c / sqrt(L))
-TouchedVector coordinates_of(CurveClass curve_class, const TouchedShape& shape);
+/// and for half of the spline's prior those of an arc.
+TouchedVector coordinates_of(Chart chart, const TouchedShape& shape);
 
 /// The inverse. `like` supplies what the coordinates do not contain: the sign of a cubical
 /// parabola's a, and the place on a line or circle. nullopt outside the class.
-std::optional<TouchedShape> shape_at(CurveClass curve_class, const TouchedVector& z,
-                                     const TouchedShape& like);
+std::optional<TouchedShape> shape_at(Chart chart, const TouchedVector& z, const TouchedShape& like);
 
 /// Width of each coordinate's prior: standard deviation of the normal law with the same height at
 /// the centre. Includes offset and turn, which are the same for every class.
-TouchedVector prior_widths(CurveClass curve_class, const TouchedVector& z);
+TouchedVector prior_widths(Chart chart, const TouchedVector& z);
 
 /// The maximum of the prior.
-TouchedVector prior_centre(CurveClass curve_class);
+TouchedVector prior_centre(Chart chart);
 
 /// Index of the coordinate of the place; -1 if all places are alike.
 int place_coordinate(CurveClass curve_class);
@@ -57,16 +63,17 @@ int place_coordinate(CurveClass curve_class);
 /// log of (length whose logarithm is z[0] / size of the part).
 double log_length_over_size(CurveClass curve_class);
 
-/// log of (prior density at z / prior density at its centre).
-double log_prior(CurveClass curve_class, const TouchedVector& z);
+/// log of (prior density at z / density that a normal law of the widths has at its centre): 0 at
+/// the prior's centre, and for a spline that is no arc the log of 1 / 2.
+double log_prior(Chart chart, const TouchedVector& z);
 
 /// Derivatives of log_prior by the coordinates.
-TouchedVector log_prior_gradient(CurveClass curve_class, const TouchedVector& z);
+TouchedVector log_prior_gradient(Chart chart, const TouchedVector& z);
 
 /// Weights for steps in a heavy tail. Along each coordinate -log_prior lies below a parabola that
 /// touches it at z. The weight is that parabola's curvature relative to the normal law of the same
 /// width, at most 1. It is small in a heavy tail, where steps with the normal law's curvature would
 /// hardly move.
-TouchedVector tail_weights(CurveClass curve_class, const TouchedVector& z);
+TouchedVector tail_weights(Chart chart, const TouchedVector& z);
 
 }  // namespace palpate

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/curves/curve.h"
 #include "core/numerics/triangular_root.h"
@@ -78,10 +79,10 @@ std::optional<Motions> motions_at(const Touch& touch, const TouchedVector& z) {
     for (const int side : {0, 1}) {
       TouchedVector there = z;
       there[k] += side == 0 ? -kStep : kStep;
-      auto shape = shape_at(touch.curve_class, there, touch.shape);
+      auto shape = shape_at(touch.chart(), there, touch.shape);
       const bool outside = !shape;
       if (outside) {
-        shape = shape_at(touch.curve_class, z, touch.shape);  // one-sided at the class's limit
+        shape = shape_at(touch.chart(), z, touch.shape);  // one-sided at the class's limit
       }
       const auto curve = shape ? make_curve(touch.curve_class, shape->values) : std::nullopt;
       if (!curve) {
@@ -120,6 +121,26 @@ struct Moving {
   const Eigen::Matrix<double, 2, 3>& by_shape_at;
 };
 
+/// How places of an arc move with each of its coordinates (arc_coordinates.h), and their
+/// derivatives by t: the touched place and its tangent stay.
+struct ArcMotions {
+  Eigen::Matrix<double, 2, 4> of_place;
+  Eigen::Matrix<double, 2, 4> by_t;
+};
+
+ArcMotions arc_motions(const CurveDerivatives& at, double t_from_touch) {
+  const double speed = at.first.norm();
+  const Vec2 tangent = at.first / speed;
+  const double s = t_from_touch * speed;
+  const double s2 = 0.5 * s * s;
+  ArcMotions motions;
+  motions.of_place << s2 * tangent, s2 * left_of(tangent), s / 3.0 * s2 * tangent,
+      s / 3.0 * s2 * left_of(tangent);
+  motions.by_t << s * tangent, s * left_of(tangent), s2 * tangent, s2 * left_of(tangent);
+  motions.by_t *= speed;
+  return motions;
+}
+
 /// The measured normals' part of chi-square and its derivatives, the feet found. On its own, so
 /// that points without do not pay.
 [[gnu::noinline]] void add_normals(const Touch& touch, const FitData& data, const Moving& moving,
@@ -148,7 +169,12 @@ struct Moving {
         position_by_parameters(canonical, curve->t[i]) - by_shape_at;
     const Eigen::Matrix<double, 2, 3> by_shape_and_t = shape_rate(canonical, curve->t[i]);
     TouchedVector row = TouchedVector::Zero();
+    const ArcMotions of_arc = arc_motions(at, curve->t[i] - curve->shape.t);
     for (int k = 0; k < own; ++k) {
+      if (touch.as_arc) {
+        row[k] = there.turn_by(of_arc.of_place.col(k), of_arc.by_t.col(k));
+        continue;
+      }
       const auto j = static_cast<std::size_t>(k);
       row[k] = there.turn_by(
           by_shape * motions.shape[j] - motions.turn[j] * lever - motions.t[j] * at.first,
@@ -166,7 +192,7 @@ struct Moving {
 /// Feet, chi-square and derivatives of `curve`, whose z, shape and starting t are set.
 bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
   const auto canonical = make_curve(touch.curve_class, curve->shape.values);
-  const auto motions = motions_at(touch, curve->z);
+  const auto motions = touch.as_arc ? std::optional(Motions{}) : motions_at(touch, curve->z);
   if (!canonical || !motions) {
     return false;
   }
@@ -178,8 +204,8 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
   const Vec2 tangent = at.first / speed;
   Pose2& pose = curve->frame_T_curve;
   pose = pose_of(touch, curve->z, *canonical, curve->shape.t);
-  curve->widths = prior_widths(touch.curve_class, curve->z);
-  curve->log_prior = log_prior(touch.curve_class, curve->z);
+  curve->widths = prior_widths(touch.chart(), curve->z);
+  curve->log_prior = log_prior(touch.chart(), curve->z);
   curve->chi2 = 0.0;
   // By coordinate k of the shape, a place moves by its own part and, with the touched place, by
   // -shift_k - turn_k * lever.
@@ -217,8 +243,16 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
       rows(r, column) = -weight * value * curve->widths[column];
       curve->gradient[column] += residual * rows(r, column);
     };
-    for (std::size_t k = 0; k < own; ++k) {
-      set(k, by_shape.dot(motions->shape[k]) - normal.dot(shift[k]) - motions->turn[k] * lever);
+    if (touch.as_arc) {
+      const Eigen::RowVector4d of_arc =
+          normal.transpose() * arc_motions(at, foot.t - curve->shape.t).of_place;
+      for (std::size_t k = 0; k < own; ++k) {
+        set(k, of_arc[static_cast<Eigen::Index>(k)]);
+      }
+    } else {
+      for (std::size_t k = 0; k < own; ++k) {
+        set(k, by_shape.dot(motions->shape[k]) - normal.dot(shift[k]) - motions->turn[k] * lever);
+      }
     }
     set(own, normal.dot(offset_direction));
     set(own + 1, lever);
@@ -257,7 +291,10 @@ std::optional<Touch> touch_of(const CanonicalFit& fit, const FitData& data) {
   }
   const CurveDerivatives at = derivatives(*curve, touch.shape.t);
   const double speed = at.first.norm();
-  if (!(speed > 0.0)) {
+  // A fit so far from its vertex that rounding moves places by a thousandth of their extent tells
+  // nothing, though its residuals may be 0.
+  constexpr double kFarthest = 1e-3 / std::numeric_limits<double>::epsilon();
+  if (!(speed > 0.0) || !(at.position.norm() < kFarthest)) {
     return std::nullopt;
   }
   const Pose2 pose = data.frame.inverse() * fit.world_T_curve;
@@ -289,7 +326,7 @@ Touch along_patch(Touch touch, const FitData& data) {
 std::optional<TouchedCurve> curve_at(const Touch& touch, const CanonicalFit& fit,
                                      const FitData& data) {
   TouchedCurve curve;
-  curve.z = coordinates_of(touch.curve_class, touch.shape);
+  curve.z = coordinates_of(touch.chart(), touch.shape);
   curve.shape = touch.shape;
   curve.t.reserve(data.points.size());
   for (const FittedPoint& point : fit.points) {
@@ -301,7 +338,7 @@ std::optional<TouchedCurve> curve_at(const Touch& touch, const CanonicalFit& fit
 
 std::optional<TouchedCurve> curve_at(const Touch& touch, const TouchedVector& z,
                                      const TouchedCurve& from, const FitData& data) {
-  const auto shape = shape_at(touch.curve_class, z, touch.shape);
+  const auto shape = shape_at(touch.chart(), z, touch.shape);
   if (!shape) {
     return std::nullopt;
   }

@@ -16,6 +16,7 @@ namespace palpate {
 /// relative to it and are 0 for that fit.
 struct Touch {
   CurveClass curve_class = CurveClass::Unclassified;
+  bool as_arc = false;           ///< its coordinates: Chart
   TouchedShape shape;            ///< of that fit
   Vec2 place = Vec2::Zero();     ///< normalised frame
   Vec2 tangent = Vec2::UnitX();  ///< direction of increasing t
@@ -23,6 +24,8 @@ struct Touch {
   /// Weights of measured normals, one per point; empty without normals. They come from the fit and
   /// stay fixed for trial curves.
   std::vector<double> normal_weights = {};
+
+  Chart chart() const { return {curve_class, as_arc}; }
 };
 
 /// A curve of the class near the touch, with the points' feet and the linear model about it.

@@ -30,6 +30,22 @@ Recognition recognised(const test::AssumedScene& scene, bool sigma_known) {
   return recognizer.recognize();
 }
 
+/// From here on an answer that is wrong is listed.
+constexpr double kSure = 0.99;
+
+void print_wrong(int number, const test::AssumedScene& scene, const Recognition& answer) {
+  std::printf("scene %d, sigma/half extent %.1e:", number, scene.sigma);
+  for (const Hypothesis& hypothesis : answer.hypotheses) {
+    if (hypothesis.shape.curve_class == scene.truth || &hypothesis == &answer.hypotheses.front()) {
+      std::printf(" %s%s P %.2g, chi-square %.1f;",
+                  std::string(name_of(hypothesis.shape.curve_class)).c_str(),
+                  hypothesis.shape.curve_class == scene.truth ? " (the truth)" : "",
+                  hypothesis.probability, hypothesis.chi2);
+    }
+  }
+  std::printf("\n");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -66,6 +82,7 @@ int main(int argc, char** argv) {
       const CurveClass named = answer.shape.curve_class;
       pooled.add(probability, named == truth);
       by_class[static_cast<std::size_t>(named)].add(probability, named == truth);
+      if (probability >= kSure && named != truth) print_wrong(i, scene, answer);
     }
   }
   std::printf("%d scenes, seed %llu\n%-24s %-11s %7s %9s %9s   %s\n", scenes,

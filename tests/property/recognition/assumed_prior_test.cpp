@@ -64,19 +64,18 @@ Told run() {
   return told;
 }
 
-/// A spline that leaves two coordinates loose has more than slices along one of them tell, and more
-/// arms than are searched: of 573 among 4500 (bench_prior --scenes 4500) 70 are missing in the
-/// stated mass, most of them from answers below 0.95. A semi-cubical parabola is the limit of what
-/// is missing: said with 0.8 to 0.95, it is right in 18 of 30.
+/// A spline that leaves two coordinates loose has more than slices along one of them tell: of 4500
+/// scenes 409 are splines, and the stated mass is 447; the cubical parabola, one limit of it, lacks
+/// as much. What is said of the semi-cubical parabola, the other one, is said of few scenes, and
+/// with 0.99 to 0.999 it is right in 5 of 7 (bench_prior --scenes 4500).
 bool is_told_in_full(CurveClass curve_class) {
   return curve_class != CurveClass::CubicSpline && curve_class != CurveClass::SemiCubicalParabola;
 }
 
 TEST(AssumedPrior, StatedProbabilitiesAreTrue) {
   const Told told = run();
-  // Below, the splines' mass that is short is spread on all classes: stated 0.976, right 0.966
-  // (bench_prior --scenes 4500); 0.885 and 0.847; 0.708 and 0.632; 0.543 and 0.421.
-  constexpr double kPooledFrom = 0.99;
+  // Below, the spline's mass is spread on other classes: stated 0.544, right 0.492 of 252.
+  constexpr double kPooledFrom = 0.6;
   constexpr double kClassesFrom = 0.6;
   const double none = 1.0;  // with few scenes bins are only printed
   test::expect_calibrated(told.pooled, "all", test::counts_tell() ? kPooledFrom : none, kCoverage);

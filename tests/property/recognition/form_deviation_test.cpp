@@ -120,8 +120,11 @@ constexpr Setting kSettings[] = {
 
 TEST(FormDeviation, StatedItMakesRecognizedAnswersRight) {
   std::mt19937_64 rng = test::test_rng();
+  // Of shorter arcs such deviations leave neither an ellipse nor a spline's arc the only one.
+  constexpr int kLongArc = 120;
   Count all_stated;
   Count all_unstated;
+  Count long_stated;
   std::cout
       << "ellipse arcs with form error; RECOGNIZED, wrong, mean normalised squared error (law: "
       << kDof << "), beyond the 95 % ellipsoid of it; stated | not stated\n";
@@ -147,6 +150,9 @@ TEST(FormDeviation, StatedItMakesRecognizedAnswersRight) {
         print(unstated);
         std::cout << "\n";
         all_stated += stated;
+        if (degrees >= kLongArc) {
+          long_stated += stated;
+        }
         all_unstated += unstated;
       }
     }
@@ -162,8 +168,8 @@ TEST(FormDeviation, StatedItMakesRecognizedAnswersRight) {
   EXPECT_LT(100 * all_stated.wrong, all_stated.recognized);
   EXPECT_LE(all_stated.squares, kDof * all_stated.ellipses);
   EXPECT_LE(all_stated.beyond, 0.05 * all_stated.ellipses);
-  // ... though most scenes are still recognised,
-  EXPECT_GT(2 * all_stated.recognized, all_stated.scenes);
+  // ... though two in three long arcs are still recognised,
+  EXPECT_GT(3 * long_stated.recognized, 2 * long_stated.scenes);
   // and these scenes are not harmless.
   EXPECT_GT(100 * all_unstated.wrong, all_unstated.recognized);
   EXPECT_GT(all_unstated.squares, kDof * all_unstated.ellipses);

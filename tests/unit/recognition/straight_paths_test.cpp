@@ -22,7 +22,7 @@ double student(int freedom, double scale, std::mt19937_64& rng) {
 /// A shape drawn from the prior as core/README.md states it, its size the expected one.
 TouchedVector drawn(CurveClass curve_class, std::mt19937_64& rng) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  TouchedVector z = prior_centre(curve_class);
+  TouchedVector z = prior_centre({curve_class});
   switch (curve_class) {
     case CurveClass::Ellipse:
       z[1] = uniform(rng);
@@ -66,6 +66,18 @@ double over_line(const BendOfLine& bend, double curvature_off, double rate_off) 
              : std::exp(0.5 * (of_line - off));
 }
 
+/// The same, the mean over either side of the line and either sense of the rate.
+double over_line_on_all_sides(const BendOfLine& bend, double curvature, double rate) {
+  double sum = 0.0;
+  for (const double side : {-1.0, 1.0}) {
+    for (const double rate_side : {-1.0, 1.0}) {
+      sum +=
+          0.25 * over_line(bend, curvature - side * bend.curvature, rate - rate_side * bend.rate);
+    }
+  }
+  return sum;
+}
+
 struct Mean {
   double value = 0.0;
   double error = 0.0;  ///< its standard error
@@ -79,7 +91,7 @@ Mean mean_over_prior(CurveClass curve_class, const BendOfLine& bend, std::mt1993
   double squares = 0.0;
   for (int i = 0; i < shapes; ++i) {
     const auto shape =
-        shape_at(curve_class, drawn(curve_class, rng), {Eigen::Vector3d::Ones(), 0.0});
+        shape_at({curve_class}, drawn(curve_class, rng), {Eigen::Vector3d::Ones(), 0.0});
     const auto curve = shape ? make_curve(curve_class, shape->values) : std::nullopt;
     if (!curve) {
       continue;
@@ -92,12 +104,12 @@ Mean mean_over_prior(CurveClass curve_class, const BendOfLine& bend, std::mt1993
       const double size = std::exp(log_size);
       const double k = local.kappa / size / bend.curvature_sigma;
       const double q = local.kappa_s / (size * size) / bend.rate_sigma;
-      for (const double side : {-1.0, 1.0}) {
-        for (const double rate_side : {-1.0, 1.0}) {
-          over_sizes += 0.125 * secant * secant * kStep *
-                        over_line(bend, k - side * bend.curvature, q - rate_side * bend.rate);
-        }
-      }
+      over_sizes += 0.5 * secant * secant * kStep * over_line_on_all_sides(bend, k, q);
+    }
+    if (curve_class == CurveClass::CubicSpline) {  // half are arcs
+      const double k = student(2, 2.0 / std::sqrt(20.0), rng) / bend.curvature_sigma;
+      const double q = student(1, 0.3, rng) / bend.rate_sigma;
+      over_sizes = 0.5 * (over_sizes + over_line_on_all_sides(bend, k, q));
     }
     sum += over_sizes;
     squares += over_sizes * over_sizes;

@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
+#include <vector>
 
+#include "core/curves/curve.h"
+#include "core/recognition/posterior/arc_coordinates.h"
 #include "core/recognition/posterior/touched_curve.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
@@ -30,35 +35,35 @@ TouchedShape random_shape(CurveClass curve_class, std::mt19937_64& rng) {
   }
 }
 
-class TouchedCoordinatesOf : public testing::TestWithParam<CurveClass> {};
+class TouchedCoordinatesOf : public testing::TestWithParam<Chart> {};
 
 TEST_P(TouchedCoordinatesOf, ThereAndBack) {
   std::mt19937_64 rng = test::test_rng();
   for (int i = 0; i < 100; ++i) {
-    const TouchedShape shape = random_shape(GetParam(), rng);
+    const TouchedShape shape = random_shape(GetParam().curve_class, rng);
     const auto back = shape_at(GetParam(), coordinates_of(GetParam(), shape), shape);
     ASSERT_TRUE(back.has_value());
-    const auto letters = static_cast<int>(parameter_letters(GetParam()).size());
+    const auto letters = static_cast<int>(parameter_letters(GetParam().curve_class).size());
     for (int k = 0; k < letters; ++k) {
       // Logarithms and squares of numbers of order 1: a few roundings.
       EXPECT_NEAR(back->values[k], shape.values[k], 1e-14 * (1.0 + std::abs(shape.values[k])));
     }
-    if (shape_coordinates(GetParam()) > letters) {  // the place is a coordinate
+    if (shape_coordinates(GetParam().curve_class) > letters) {  // the place is a coordinate
       EXPECT_NEAR(wrap_angle(back->t - shape.t), 0.0, 1e-13);
     }
   }
 }
 
 /// Integral over coordinate k of the prior's density, the others at the centre.
-double mass_along(CurveClass curve_class, TouchedVector centre, int k, double low, double high) {
+double mass_along(Chart chart, TouchedVector centre, int k, double low, double high) {
   constexpr int kSteps = 400000;
-  const double at_centre = log_prior(curve_class, centre);
-  const double width = prior_widths(curve_class, centre)[k];
+  const double at_centre = log_prior(chart, centre);
+  const double width = prior_widths(chart, centre)[k];
   double sum = 0.0;
   for (int i = 0; i < kSteps; ++i) {
     TouchedVector z = centre;
     z[k] = low + (i + 0.5) * (high - low) / kSteps;
-    sum += std::exp(log_prior(curve_class, z) - at_centre);
+    sum += std::exp(log_prior(chart, z) - at_centre);
   }
   return sum * (high - low) / kSteps / (width * std::sqrt(2.0 * kPi));
 }
@@ -74,33 +79,37 @@ TEST(TouchedCoordinates, EveryFactorOfThePriorIsADensity) {
     return z;
   };
   TouchedVector z = centre_of(CurveClass::Circle);
-  EXPECT_NEAR(mass_along(CurveClass::Circle, z, 0, -40, 40), 1.0, 1e-6);
+  EXPECT_NEAR(mass_along({CurveClass::Circle}, z, 0, -40, 40), 1.0, 1e-6);
   z = centre_of(CurveClass::Parabola);
-  EXPECT_NEAR(mass_along(CurveClass::Parabola, z, 0, -40, 40), 1.0, 1e-6);
-  EXPECT_NEAR(mass_along(CurveClass::Parabola, z, 1, -kFar, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass_along({CurveClass::Parabola}, z, 0, -40, 40), 1.0, 1e-6);
+  EXPECT_NEAR(mass_along({CurveClass::Parabola}, z, 1, -kFar, kFar), 1.0, kTail);
   const TouchedVector spline = centre_of(CurveClass::CubicSpline);
-  EXPECT_NEAR(mass_along(CurveClass::CubicSpline, spline, 0, -40, 40), 1.0, 1e-6);
-  EXPECT_NEAR(mass_along(CurveClass::CubicSpline, spline, 1, -kFar, kFar), 1.0, kTail);
-  EXPECT_NEAR(mass_along(CurveClass::CubicSpline, spline, 2, -kFar, kFar), 1.0, kTail);
-  EXPECT_NEAR(mass_along(CurveClass::CubicSpline, spline, 3, -kFar, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass_along({CurveClass::CubicSpline}, spline, 0, -40, 40), 1.0, 1e-6);
+  EXPECT_NEAR(mass_along({CurveClass::CubicSpline}, spline, 1, -kFar, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass_along({CurveClass::CubicSpline}, spline, 2, -kFar, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass_along({CurveClass::CubicSpline}, spline, 3, -kFar, kFar), 1.0, kTail);
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_NEAR(mass_along({CurveClass::CubicSpline, true}, TouchedVector::Zero(), k, -kFar, kFar),
+                1.0, kTail);
+  }
   z = centre_of(CurveClass::CubicalParabola);
   // Cubical parabola: half for either sign of a; a place and the one opposite are the same curve.
-  EXPECT_NEAR(mass_along(CurveClass::CubicalParabola, z, 0, -40, 40), 0.5, 1e-6);
-  EXPECT_NEAR(mass_along(CurveClass::CubicalParabola, z, 1, -kFar, kFar), 1.0, kTail);
-  EXPECT_NEAR(mass_along(CurveClass::CubicalParabola, z, 2, -kFar, kFar), 2.0, 2.0 * kTail);
+  EXPECT_NEAR(mass_along({CurveClass::CubicalParabola}, z, 0, -40, 40), 0.5, 1e-6);
+  EXPECT_NEAR(mass_along({CurveClass::CubicalParabola}, z, 1, -kFar, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass_along({CurveClass::CubicalParabola}, z, 2, -kFar, kFar), 2.0, 2.0 * kTail);
   // Ellipse: m over (0, 1); half a turn of directions is all of them, whatever the ellipse.
   TouchedVector ellipse = centre_of(CurveClass::Ellipse);
   ellipse[2] = 0.5 * kPi;
   for (const double m : {0.01, 0.3, 0.99}) {
     ellipse[1] = m;
-    EXPECT_NEAR(mass_along(CurveClass::Ellipse, ellipse, 2, 0.0, kPi), 1.0, 1e-6) << m;
+    EXPECT_NEAR(mass_along({CurveClass::Ellipse}, ellipse, 2, 0.0, kPi), 1.0, 1e-6) << m;
   }
   ellipse[1] = 0.5;
-  EXPECT_NEAR(mass_along(CurveClass::Ellipse, ellipse, 1, 0.0, 1.0), 1.0, 1e-6);
+  EXPECT_NEAR(mass_along({CurveClass::Ellipse}, ellipse, 1, 0.0, 1.0), 1.0, 1e-6);
   TouchedVector hyperbola = centre_of(CurveClass::Hyperbola);
   hyperbola[1] = 1.0;
-  EXPECT_NEAR(mass_along(CurveClass::Hyperbola, hyperbola, 1, 0.0, kFar), 1.0, kTail);
-  EXPECT_NEAR(mass_along(CurveClass::Hyperbola, hyperbola, 2, -kFar, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass_along({CurveClass::Hyperbola}, hyperbola, 1, 0.0, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass_along({CurveClass::Hyperbola}, hyperbola, 2, -kFar, kFar), 1.0, kTail);
 }
 
 TEST_P(TouchedCoordinatesOf, DerivativesOfChiSquareAreThoseOfDifferences) {
@@ -110,20 +119,22 @@ TEST_P(TouchedCoordinatesOf, DerivativesOfChiSquareAreThoseOfDifferences) {
     test::SceneOptions options;
     options.patches = 2;
     options.sigma_over_size = 1e-3;
-    const test::Scene scene = test::random_scene(GetParam(), options, rng);
+    const test::Scene scene = test::random_scene(GetParam().curve_class, options, rng);
     FitData data = test::fit_data(scene, scene.sigma_m);
     CanonicalFit truth;
-    truth.shape = {GetParam(), scene.values};
+    truth.shape = {GetParam().curve_class, scene.values};
     truth.world_T_curve = scene.world_T_curve;
     for (const auto& patch : scene.t) {
       for (const double t : patch) {
         truth.points.push_back({t, 0.0, Vec2::Zero()});
       }
     }
-    const auto touch = touch_of(truth, data);
-    const auto curve = touch ? curve_at(*touch, truth, data) : std::nullopt;
+    auto touch = touch_of(truth, data);
+    ASSERT_TRUE(touch.has_value());
+    touch->as_arc = GetParam().as_arc;
+    const auto curve = curve_at(*touch, truth, data);
     ASSERT_TRUE(curve.has_value());
-    for (int k = 0; k < shape_coordinates(GetParam()) + 2; ++k) {
+    for (int k = 0; k < shape_coordinates(GetParam().curve_class) + 2; ++k) {
       constexpr double kStep = 1e-6;
       TouchedVector ahead = curve->z;
       TouchedVector behind = curve->z;
@@ -143,9 +154,47 @@ TEST_P(TouchedCoordinatesOf, DerivativesOfChiSquareAreThoseOfDifferences) {
   EXPECT_GT(compared, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllClasses, TouchedCoordinatesOf, testing::ValuesIn(kCurveClasses),
+// --- The spline as an arc
+
+TEST(ArcCoordinates, AreTheTermsOfTheSeriesAlongTheTangent) {
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < 100; ++i) {
+    const TouchedShape shape = random_shape(CurveClass::CubicSpline, rng);
+    const Curve spline = make_curve(CurveClass::CubicSpline, shape.values).value();
+    const CurveDerivatives at = derivatives(spline, shape.t);
+    const Vec2 tangent = at.first.normalized();
+    const ArcCoordinates z = arc_coordinates_of({shape.values, shape.t});
+    for (const double s : {-1.0, 0.3, 2.0}) {
+      const Vec2 away = position(spline, shape.t + s / at.first.norm()) - at.position;
+      const Vec2 of_series =
+          s * Vec2::UnitX() + s * s / 2.0 * z.head<2>() + s * s * s / 6.0 * z.tail<2>();
+      EXPECT_NEAR(away.dot(tangent), of_series.x(), 1e-12 * (1.0 + z.norm()));
+      EXPECT_NEAR(cross(tangent, away), of_series.y(), 1e-12 * (1.0 + z.norm()));
+    }
+  }
+}
+
+TEST(ArcCoordinates, EndAtParabolasAndCubicalParabolas) {
+  EXPECT_FALSE(spline_at({0.3, 0.2, 0.0, 0.0}).has_value());
+  // The second derivative along the third: x would be a straight function of t.
+  EXPECT_FALSE(spline_at({0.2, 0.4, 0.1, 0.2}).has_value());
+  EXPECT_TRUE(spline_at({0.2, -0.4, 0.1, 0.2}).has_value() !=
+              spline_at({-0.2, 0.4, 0.1, 0.2}).has_value())
+      << "one of both senses of travel";
+}
+
+std::vector<Chart> all_charts() {
+  std::vector<Chart> charts(kCurveClasses.size());
+  std::transform(kCurveClasses.begin(), kCurveClasses.end(), charts.begin(),
+                 [](CurveClass curve_class) { return Chart{curve_class}; });
+  charts.push_back({CurveClass::CubicSpline, true});
+  return charts;
+}
+
+INSTANTIATE_TEST_SUITE_P(AllClasses, TouchedCoordinatesOf, testing::ValuesIn(all_charts()),
                          [](const auto& param_info) {
-                           return std::string(name_of(param_info.param));
+                           return std::string(name_of(param_info.param.curve_class)) +
+                                  (param_info.param.as_arc ? "_as_arc" : "");
                          });
 
 }  // namespace

@@ -1,0 +1,67 @@
+#include "core/recognition/posterior/arc_coordinates.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/curves/pose2.h"
+
+namespace palpate {
+
+ArcCoordinates arc_coordinates_of(const SplinePlace& place) {
+  const double a = place.abc[0];
+  const double b = place.abc[1];
+  const double t = place.t;
+  const Vec2 first(2.0 * t, (3.0 * a * t + 2.0 * b) * t + place.abc[2]);
+  const double speed = first.norm();
+  const Vec2 tangent = first / speed;
+  const Vec2 normal = left_of(tangent);
+  const Vec2 second = Vec2(2.0, 6.0 * a * t + 2.0 * b) / (speed * speed);
+  const Vec2 third = Vec2(0.0, 6.0 * a) / (speed * speed * speed);
+  return {second.dot(tangent), second.dot(normal), third.dot(tangent), third.dot(normal)};
+}
+
+// The third derivative has the direction of y; x has none of it, and its second derivative by t is
+// 2.
+std::optional<SplinePlace> spline_at(const ArcCoordinates& z) {
+  const Vec2 second = z.head<2>();
+  const double third = z.tail<2>().norm();
+  if (!(third > 0.0)) {
+    return std::nullopt;  // a parabola
+  }
+  const Vec2 y = z.tail<2>() / third;
+  const Vec2 x = -left_of(y);
+  const double x_second = second.dot(x);
+  if (!(x_second > 0.0)) {
+    return std::nullopt;
+  }
+  const double rate = std::sqrt(2.0 / x_second);  // of s by t
+  SplinePlace place;
+  place.t = 0.5 * rate * x.x();
+  const double a = rate * rate * rate * third / 6.0;
+  const double b = 0.5 * rate * rate * second.dot(y) - 3.0 * a * place.t;
+  const double c = rate * y.x() - (3.0 * a * place.t + 2.0 * b) * place.t;
+  place.abc << a, b, c;
+  // Near a cubical parabola x, y are small differences of large terms. Of the finest noise, a
+  // hundred millionth of the touched extent, a thousandth may be rounding.
+  constexpr double kMostTerms = 1e-11 / std::numeric_limits<double>::epsilon();
+  const double t = std::abs(place.t);
+  const double terms = ((a * t + std::abs(b) + 1.0) * t + std::abs(c)) * t;
+  return terms < kMostTerms ? std::optional(place) : std::nullopt;
+}
+
+// A part is 1 to 20 half extents of what is touched, sqrt(20) half way. Each term of the series
+// moves the end of an arc that is as long by about as much: s^2 / 2 z = s, s^3 / 6 z = s. Parts of
+// size S are expected as its square or its inverse square: the tails are those powers.
+StudentLaw law_of_arc(int k) {
+  constexpr double kSize2 = 20.0;
+  static const StudentLaw second{2, 2.0 / std::sqrt(kSize2)};
+  static const StudentLaw third{1, 6.0 / kSize2};
+  return k < 2 ? second : third;
+}
+
+// Inflections: 3 (a t)^2 = a c.
+bool is_seen_as_arc(double place_from_vertex, double bend) {
+  return 4.0 * bend > 3.0 * place_from_vertex * place_from_vertex;
+}
+
+}  // namespace palpate
