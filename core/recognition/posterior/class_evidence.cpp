@@ -83,9 +83,9 @@ void take_prior_modes(const Touch& touch, CurveClass path_class, const TouchedCu
     if ((further && !(evidence->log_occam > least + kWorthMore)) || !work.allows()) {
       break;
     }
-    further = further || !start.touch.as_arc;
     auto mode = followed_from_prior(start.touch, data, start.curve,
                                     std::max(best - kTold, least - half_chi2), work);
+    further = further || mode || !start.touch.as_arc;  // an arc may end at a cubical parabola
     if (!mode) {
       continue;
     }

@@ -65,19 +65,19 @@ Sided bent_like(double curvature, Sided shape) {
   return shape;
 }
 
-/// An arc like the path to third order, by nearly its length, seen along this sense of travel. The
-/// second derivative along it is the least with which x, across the third derivative, bends as a
-/// spline's does, and by a quarter of what is expected; none on a circle that bends to the right.
-Sided arc_like(double curvature, double rate, double travel) {
+/// The arc that the path is to third order, by nearly its length, travelled so that it bends to the
+/// left. The second derivative along it is the least with which x, across the third derivative,
+/// bends as a spline's does, and by a quarter of what is expected.
+Sided arc_like(double curvature, double rate) {
   const double bend = 0.25 * law_of_arc(0).scale;
-  const double seen = travel * curvature;
+  const double seen = std::abs(curvature);
   const double third = std::hypot(seen * seen, rate);
   // x'' = (alpha gamma + kappa^3) / |third|.
   const double lacking = bend * third - seen * seen * seen;
   Sided shape;
   shape.z.head<4>() << (lacking > 0.0 && rate != 0.0 ? lacking / rate : 0.0), seen, -seen * seen,
       rate;
-  shape.travel = travel;
+  shape.travel = std::copysign(1.0, curvature);
   return shape;
 }
 
@@ -212,22 +212,19 @@ std::vector<PriorStart> prior_starts(const Touch& touch, CurveClass path_class,
   std::sort(feet.begin(), feet.end(),
             [](const AlongPath& a, const AlongPath& b) { return a.s < b.s; });
   std::vector<PriorStart> starts;
+  if (curve_class == CurveClass::CubicSpline) {
+    Touch as_arc = touch;
+    as_arc.as_arc = true;
+    if (auto start = start_at(as_arc, arc_like(curvature, local.kappa_s), feet)) {
+      starts.push_back(*std::move(start));
+    }
+  }
   for (const Scored& scored : best) {
     if (!std::isfinite(scored.score) || starts.size() == kMostStarts) {
       break;
     }
     if (auto start = start_at(touch, scored.shape, feet)) {
       starts.push_back(*std::move(start));
-    }
-  }
-  if (curve_class == CurveClass::CubicSpline) {
-    Touch as_arc = touch;
-    as_arc.as_arc = true;
-    // Between the two lie the cubical parabolas, where a spline's t is not defined.
-    for (const double travel : {-1.0, 1.0}) {
-      if (auto start = start_at(as_arc, arc_like(curvature, local.kappa_s, travel), feet)) {
-        starts.insert(starts.begin(), *std::move(start));
-      }
     }
   }
   return starts;
