@@ -13,12 +13,12 @@
 #include "core/recognition/outliers.h"
 #include "core/recognition/patch_contacts.h"
 #include "core/recognition/posterior/likelihood_of.h"
+#include "core/recognition/reported_tree_path.h"
 #include "core/recognition/samples/clean_patches.h"
 #include "core/recognition/samples/explained_spikes.h"
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/touches/strung_touches.h"
 #include "core/recognition/tree_answer.h"
-#include "core/recognition/tree_beside.h"
 #include "core/recognition/weigh/contenders.h"
 #include "core/recognition/weigh/weigh_in_full.h"
 #include "core/recognition/work_limit.h"
@@ -168,7 +168,7 @@ class Recognizer::Impl {
     Recognition answer;
     {
       const WorkBudget::Reserve for_classes(work, kShareOfClasses);
-      clean_.look_at(memory_.patches(), options_.sigma_m, options_.false_outlier_probability, work);
+      clean_.update(memory_.patches(), options_.sigma_m, options_.false_outlier_probability, work);
     }
     const std::vector<StoredPatch>& clean = clean_.clean();
     bool sigma_known = false;
@@ -236,7 +236,7 @@ class Recognizer::Impl {
     answer.contacts =
         contacts_.of(weighed.patches ? *weighed.patches : patches, w.sides, weighed.outliers,
                      contact_options(told_deviation_m(moments, w.data.scale)));
-    add_path(tree_beside(w, answer.contacts, options_.tree), &answer);
+    add_path(reported_tree_path(w, answer.contacts, options_.tree), &answer);
     const double p_value = answer.tree_p_values[static_cast<std::size_t>(answer.shape.curve_class)];
     if (p_value < options_.tree.significance) {
       doubt(&answer, Doubt::TreeRejects);

@@ -12,7 +12,7 @@
 
 namespace palpate::test {
 
-/// The inputs of tree_beside().
+/// The inputs of reported_tree_path().
 struct AnsweredScene {
   Weighing weighing;
   std::vector<LocalizedContact> contacts;

@@ -78,8 +78,8 @@ void clean_passes(StoredPatch patch, double false_alarm, std::vector<StoredPatch
 
 }  // namespace
 
-void CleanPatches::look_at(const std::vector<StoredPatch>& patches, double default_sigma_m,
-                           double false_alarm, WorkBudget& work) {
+void CleanPatches::update(const std::vector<StoredPatch>& patches, double default_sigma_m,
+                          double false_alarm, WorkBudget& work) {
   seen_.resize(patches.size());
   moved_.clear();
   clean_.clear();

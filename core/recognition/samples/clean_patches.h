@@ -14,8 +14,8 @@ class CleanPatches {
  public:
   /// Processes the patches of a memory. `default_sigma_m`: noise of samples that state none; 0 =
   /// not known [m]. `false_alarm`: as in spikes_of().
-  void look_at(const std::vector<StoredPatch>& patches, double default_sigma_m, double false_alarm,
-               WorkBudget& work);
+  void update(const std::vector<StoredPatch>& patches, double default_sigma_m, double false_alarm,
+              WorkBudget& work);
 
   /// The patches with each dwell replaced by its mean (dwells.h), cut where they turn back over
   /// themselves (passes.h). Spikes are still in them.

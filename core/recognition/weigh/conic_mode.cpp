@@ -49,16 +49,17 @@ ClassFit as_fit(const TouchedCurve& mode, double inflation) {
 
 }  // namespace
 
-Contenders with_conic_mode(Contenders contenders, const Ground& ground, unsigned classes) {
+Contenders with_conic_mode(Contenders contenders, const EvidenceContext& context,
+                           unsigned classes) {
   constexpr auto kEllipse = static_cast<std::size_t>(CurveClass::Ellipse);
   constexpr auto kHyperbola = static_cast<std::size_t>(CurveClass::Hyperbola);
-  const FitData& reduced = ground.reduced;
-  const double inflation = ground.likelihood.inflation();
+  const FitData& reduced = context.reduced;
+  const double inflation = context.likelihood.inflation();
   const auto& line = contenders.coarse[static_cast<std::size_t>(CurveClass::Line)];
   const auto& circle = contenders.coarse[static_cast<std::size_t>(CurveClass::Circle)];
   const bool wanted =
       (classes & (1U << kEllipse)) != 0 &&
-      static_cast<int>(residual_count(ground.arcs.data)) > degrees_of_freedom(CurveClass::Ellipse);
+      static_cast<int>(residual_count(context.arcs.data)) > degrees_of_freedom(CurveClass::Ellipse);
   const bool has_conic =
       has_optimum(contenders.coarse[kEllipse]) || has_optimum(contenders.coarse[kHyperbola]);
   if (!wanted || has_conic || contenders.no_conic || !circle ||
@@ -78,9 +79,9 @@ Contenders with_conic_mode(Contenders contenders, const Ground& ground, unsigned
   const double first = reduced.frame.theta + 0.5 * kApart - start->world_T_curve.theta;
   std::optional<ClassFit> best;
   double least = 0.0;
-  for (int i = 0; i < kDirections && ground.work.allows(); ++i) {
+  for (int i = 0; i < kDirections && context.work.allows(); ++i) {
     const auto mode = posterior_mode(as_ellipse(*start, first + kApart * i), reduced, inflation,
-                                     least_chi2, ground.work);
+                                     least_chi2, context.work);
     const double potential = mode ? 0.5 * mode->chi2 - mode->log_prior : 0.0;
     if (!mode || (best && potential >= least)) {
       continue;
@@ -93,11 +94,11 @@ Contenders with_conic_mode(Contenders contenders, const Ground& ground, unsigned
   }
   if (best) {
     contenders.fits[kEllipse] = best;
-    contenders.fits[kEllipse]->chi2 += ground.arcs.smooth.chi2;
+    contenders.fits[kEllipse]->chi2 += context.arcs.smooth.chi2;
     contenders.coarse[kEllipse] = std::move(best);
     contenders.evidences =
-        evidences_of(contenders.fits, contenders.coarse, ground.arcs.smooth, reduced,
-                     ground.likelihood, std::move(contenders.evidences), ground.work);
+        evidences_of(contenders.fits, contenders.coarse, context.arcs.smooth, reduced,
+                     context.likelihood, std::move(contenders.evidences), context.work);
   }
   contenders.no_conic = !contenders.evidences.classes[kEllipse];
   return contenders;

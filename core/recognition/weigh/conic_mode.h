@@ -11,6 +11,6 @@ namespace palpate {
 /// not straight, this uses the mode of the ellipse's posterior instead. It starts from the circle,
 /// with the axis in several directions. If no mode comes near, it sets Contenders::no_conic; if
 /// that is set already, it does nothing. `classes`: wanted classes, by bit 1 << CurveClass.
-Contenders with_conic_mode(Contenders contenders, const Ground& ground, unsigned classes);
+Contenders with_conic_mode(Contenders contenders, const EvidenceContext& context, unsigned classes);
 
 }  // namespace palpate

@@ -97,7 +97,7 @@ void take_limits(ClassFits* fits) {
 
 }  // namespace
 
-ClassFits as_told(const ClassFits& coarse, const SmoothModel& smooth) {
+ClassFits with_inferred_chi2(const ClassFits& coarse, const SmoothModel& smooth) {
   ClassFits told = coarse;
   for (auto& fit : told) {
     if (fit) {
@@ -128,8 +128,8 @@ CurveClass best_class(const ClassFits& fits, const Likelihood& likelihood,
   return best;
 }
 
-ClassProbabilities probabilities_of(const Contenders& contenders, const Ground& ground) {
-  return probabilities_of(contenders.fits, ground.arcs.smooth.chi2, ground.likelihood,
+ClassProbabilities probabilities_of(const Contenders& contenders, const EvidenceContext& context) {
+  return probabilities_of(contenders.fits, context.arcs.smooth.chi2, context.likelihood,
                           contenders.evidences);
 }
 
@@ -138,8 +138,8 @@ CurveClass most_probable(const ClassProbabilities& probabilities) {
                                  probabilities.begin());
 }
 
-Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
-  const auto& [arcs, reduced, work, likelihood, out_of_reach] = ground;
+Contenders refine_plausible(Contenders w, const EvidenceContext& context, double margin) {
+  const auto& [arcs, reduced, work, likelihood, out_of_reach] = context;
   const auto& [data, smooth, sigma_known, sigma] = arcs;
   w.evidences =
       evidences_of(w.fits, w.coarse, smooth, reduced, likelihood, std::move(w.evidences), work);
@@ -182,22 +182,22 @@ Contenders refine_plausible(Contenders w, const Ground& ground, double margin) {
   return w;
 }
 
-Contenders decided(Contenders w, const Ground& ground, double margin) {
-  const Arcs& arcs = ground.arcs;
-  const FitData& reduced = ground.reduced;
-  const Likelihood& likelihood = ground.likelihood;
+Contenders decided(Contenders w, const EvidenceContext& context, double margin) {
+  const Arcs& arcs = context.arcs;
+  const FitData& reduced = context.reduced;
+  const Likelihood& likelihood = context.likelihood;
   while (true) {
     w.evidences = evidences_of(w.fits, w.coarse, arcs.smooth, reduced, likelihood,
-                               std::move(w.evidences), ground.work);
+                               std::move(w.evidences), context.work);
     w.evidences = integrated(std::move(w.evidences), w.fits, w.coarse, arcs.smooth.chi2, reduced,
-                             likelihood, margin, ground.work);
-    const auto i = static_cast<std::size_t>(most_probable(probabilities_of(w, ground)));
+                             likelihood, margin, context.work);
+    const auto i = static_cast<std::size_t>(most_probable(probabilities_of(w, context)));
     auto& fit = w.fits[i];
-    if (!fit || fit->polished || fit->at_limit || !ground.work.allows()) {
+    if (!fit || fit->polished || fit->at_limit || !context.work.allows()) {
       return w;
     }
-    fit = polished(settle(i, RivalOf::Best, reduced, &w, ground.work), arcs.smooth, arcs.data,
-                   ground.work);
+    fit = polished(settle(i, RivalOf::Best, reduced, &w, context.work), arcs.smooth, arcs.data,
+                   context.work);
     take_limits(&w.fits);
   }
 }

@@ -14,7 +14,7 @@ namespace palpate {
 inline constexpr double kLeastError = 4.0;
 
 /// What all classes are compared on.
-struct Ground {
+struct EvidenceContext {
   const Arcs& arcs;
   const FitData& reduced;  ///< the arcs' reduced points, as surface points
   WorkBudget& work;
@@ -30,14 +30,14 @@ struct Contenders {
 };
 
 /// Copies the fits to the reduced points, with the chi-square of all points that these imply.
-ClassFits as_told(const ClassFits& coarse, const SmoothModel& smooth);
+ClassFits with_inferred_chi2(const ClassFits& coarse, const SmoothModel& smooth);
 
 /// The class of the highest evidence, without "unclassified". If none has evidence, the one that
 /// fits best; Unclassified if there is none.
 CurveClass best_class(const ClassFits& fits, const Likelihood& likelihood,
                       const Evidences& evidences);
 
-ClassProbabilities probabilities_of(const Contenders& contenders, const Ground& ground);
+ClassProbabilities probabilities_of(const Contenders& contenders, const EvidenceContext& context);
 
 CurveClass most_probable(const ClassProbabilities& probabilities);
 
@@ -45,10 +45,10 @@ CurveClass most_probable(const ClassProbabilities& probabilities);
 /// polishes the best. The others keep the chi-square inferred from the reduced points. Settles the
 /// coarse fit of each class that it touches. `margin`: log odds below which the best is not
 /// RECOGNIZED.
-Contenders refine_plausible(Contenders contenders, const Ground& ground, double margin);
+Contenders refine_plausible(Contenders contenders, const EvidenceContext& context, double margin);
 
 /// Adds the integrals that matter, and takes the most probable class to its optimum on all points.
 /// `margin`: as above.
-Contenders decided(Contenders contenders, const Ground& ground, double margin);
+Contenders decided(Contenders contenders, const EvidenceContext& context, double margin);
 
 }  // namespace palpate

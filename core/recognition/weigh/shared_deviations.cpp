@@ -28,8 +28,8 @@ double log_sum(const LogEvidences& logs) {
 
 /// The classes that such deviations are asked of, the best of all first: what leaves less
 /// chi-square than the best has no more for them to explain, and is given what the best is.
-std::vector<std::size_t> asked(const Contenders& w, const Ground& ground) {
-  const CurveClass best = best_class(w.fits, ground.likelihood, w.evidences);
+std::vector<std::size_t> asked(const Contenders& w, const EvidenceContext& context) {
+  const CurveClass best = best_class(w.fits, context.likelihood, w.evidences);
   if (best == CurveClass::Unclassified) {
     return {};
   }
@@ -39,7 +39,7 @@ std::vector<std::size_t> asked(const Contenders& w, const Ground& ground) {
     const auto i = static_cast<std::size_t>(curve_class);
     const auto& fit = w.fits[i];
     if (fit && !fit->at_limit && std::isfinite(fit->chi2) && fit->chi2 > w.fits[b]->chi2 &&
-        w.coarse[i]->chi2 <= ground.out_of_reach) {
+        w.coarse[i]->chi2 <= context.out_of_reach) {
       classes.push_back(i);
     }
   }
@@ -47,38 +47,38 @@ std::vector<std::size_t> asked(const Contenders& w, const Ground& ground) {
 }
 
 /// Evidence of a class on the reduced points.
-void weigh_on_reduced(std::size_t i, const Ground& ground, Contenders* w) {
+void weigh_on_reduced(std::size_t i, const EvidenceContext& context, Contenders* w) {
   Evidences& evidences = w->evidences;
   if (evidences.classes[i] && evidences.on_reduced_chi2[i] == w->coarse[i]->chi2) {
     return;
   }
   evidences.on_reduced_chi2[i] = w->coarse[i]->chi2;
   evidences.classes[i].reset();
-  if ((evidences.on_reduced[i] = to_canonical(*w->coarse[i], ground.reduced))) {
+  if ((evidences.on_reduced[i] = to_canonical(*w->coarse[i], context.reduced))) {
     evidences.classes[i] =
-        evidence_of(*evidences.on_reduced[i], ground.reduced, evidences.inflation, ground.work);
+        evidence_of(*evidences.on_reduced[i], context.reduced, evidences.inflation, context.work);
   }
 }
 
 }  // namespace
 
-Contenders with_shared_deviations(Contenders w, const Ground& ground, bool of_any_size,
+Contenders with_shared_deviations(Contenders w, const EvidenceContext& context, bool of_any_size,
                                   double margin) {
-  const std::vector<std::size_t> classes = asked(w, ground);
+  const std::vector<std::size_t> classes = asked(w, context);
   if (classes.empty() || (classes.size() < 2 && !of_any_size)) {
     return w;
   }
   LogEvidences gain{};
   for (const std::size_t i : classes) {
-    if (!ground.work.allows()) {
+    if (!context.work.allows()) {
       return w;
     }
-    weigh_on_reduced(i, ground, &w);
+    weigh_on_reduced(i, context, &w);
     const auto& evidence = w.evidences.classes[i];
     const auto own = evidence
-                         ? log_coherent_gain(*w.evidences.on_reduced[i], *evidence, ground.reduced,
-                                             ground.likelihood, ground.arcs.sigma,
-                                             ground.arcs.smooth.chi2, ground.work)
+                         ? log_coherent_gain(*w.evidences.on_reduced[i], *evidence, context.reduced,
+                                             context.likelihood, context.arcs.sigma,
+                                             context.arcs.smooth.chi2, context.work)
                          : std::nullopt;
     if (i == classes.front()) {
       gain.fill(own.value_or(0.0));
@@ -90,13 +90,13 @@ Contenders with_shared_deviations(Contenders w, const Ground& ground, bool of_an
   LogEvidences shared;
   for (std::size_t i = 0; i < white.size(); ++i) {
     const auto& fit = w.fits[i];
-    white[i] = fit && !fit->at_limit ? log_evidence(ground.likelihood, w.evidences,
+    white[i] = fit && !fit->at_limit ? log_evidence(context.likelihood, w.evidences,
                                                     static_cast<CurveClass>(i), fit->chi2)
                                      : kNoEvidence;
     shared[i] = white[i] + gain[i];
   }
   const double paths =
-      log_evidence_of_free_form(ground.likelihood, w.evidences, ground.arcs.smooth.chi2);
+      log_evidence_of_free_form(context.likelihood, w.evidences, context.arcs.smooth.chi2);
   w.evidences.shared_or_other =
       of_any_size && paths > log_sum(white) - margin && log_sum(shared) > paths;
   const double more = w.evidences.shared_or_other ? 0.0 : log_sum(shared) - log_sum(white);
@@ -106,7 +106,7 @@ Contenders with_shared_deviations(Contenders w, const Ground& ground, bool of_an
   for (std::size_t i = 1; i < gain.size(); ++i) {
     w.evidences.log_shared[i] = gain[i] - more;
   }
-  return refine_plausible(std::move(w), ground, margin);
+  return refine_plausible(std::move(w), context, margin);
 }
 
 }  // namespace palpate

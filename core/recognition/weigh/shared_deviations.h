@@ -13,7 +13,7 @@ namespace palpate {
 /// evidence than free paths, it is even odds whether there is such a deviation or another shape.
 /// Otherwise, as for a probe that is trusted, it is another shape. `margin`: log odds below which
 /// the best is not RECOGNIZED.
-Contenders with_shared_deviations(Contenders contenders, const Ground& ground, bool of_any_size,
-                                  double margin);
+Contenders with_shared_deviations(Contenders contenders, const EvidenceContext& context,
+                                  bool of_any_size, double margin);
 
 }  // namespace palpate

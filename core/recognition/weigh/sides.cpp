@@ -19,29 +19,30 @@ namespace {
 
 /// The classes followed from where they were with the tips on these sides, or sought.
 ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
-                           const FitData& reduced, const Judged& by,
+                           const FitData& reduced, const SideContext& by,
                            double out_of_reach = std::numeric_limits<double>::infinity()) {
   return fit_classes(reduced, by.work, start_for(starts, sides), by.classes, out_of_reach);
 }
 
 /// The class that a way stands or falls with, by the evidence of all, and its optimum on the
 /// reduced points. Returns whether it is another than before.
-bool settle_candidate(const Judged& by, Way* way) {
+bool settle_candidate(const SideContext& by, SideChoice* choice) {
   const SmoothModel& smooth = by.arcs.smooth;
-  const ClassFits told = as_told(way->fits, smooth);
-  way->evidences = evidences_of(told, way->fits, smooth, way->reduced, by.likelihood,
-                                std::move(way->evidences), by.work);
-  const CurveClass before = way->candidate;
-  way->candidate = best_class(told, by.likelihood, way->evidences);
-  if (way->candidate == before) {
+  const ClassFits told = with_inferred_chi2(choice->fits, smooth);
+  choice->evidences = evidences_of(told, choice->fits, smooth, choice->reduced, by.likelihood,
+                                   std::move(choice->evidences), by.work);
+  const CurveClass before = choice->candidate;
+  choice->candidate = best_class(told, by.likelihood, choice->evidences);
+  if (choice->candidate == before) {
     return false;
   }
-  way->settled.reset();
-  way->refined.reset();
-  if (const auto& fit = way->fits[static_cast<std::size_t>(way->candidate)]) {
-    const bool may_win =
-        !tells_noise(by.arcs, by.likelihood) || fits_well(fit->chi2, residual_count(way->reduced));
-    way->settled = settled(*fit, way->reduced, may_win ? RivalOf::Best : RivalOf::Other, by.work);
+  choice->settled.reset();
+  choice->refined.reset();
+  if (const auto& fit = choice->fits[static_cast<std::size_t>(choice->candidate)]) {
+    const bool may_win = !tells_noise(by.arcs, by.likelihood) ||
+                         fits_well(fit->chi2, residual_count(choice->reduced));
+    choice->settled =
+        settled(*fit, choice->reduced, may_win ? RivalOf::Best : RivalOf::Other, by.work);
   }
   return true;
 }
@@ -49,7 +50,7 @@ bool settle_candidate(const Judged& by, Way* way) {
 /// The candidate as all points see it: refined on them, or as it is where they tell what the
 /// reduced points do.
 std::optional<ClassFit> seen_by_all(const ClassFit& settled, const FitData& reduced,
-                                    const Judged& by) {
+                                    const SideContext& by) {
   constexpr double kSame = 1.0;  // of chi-square: odds are right to a factor of 1.6
   const SmoothModel& smooth = by.arcs.smooth;
   if (is_what_it_says(settled, reduced)) {
@@ -64,19 +65,19 @@ std::optional<ClassFit> seen_by_all(const ClassFit& settled, const FitData& redu
 }
 
 /// The same, and on all points. What was refined before is not once more.
-void take_candidate(const Judged& by, Way* way) {
-  if (settle_candidate(by, way) && way->settled) {
-    way->refined = seen_by_all(*way->settled, way->reduced, by);
+void take_candidate(const SideContext& by, SideChoice* choice) {
+  if (settle_candidate(by, choice) && choice->settled) {
+    choice->refined = seen_by_all(*choice->settled, choice->reduced, by);
   }
 }
 
-Way way_of(ClassFits fits, FitData reduced, const Judged& by) {
-  Way way;
-  way.fits = std::move(fits);
-  way.reduced = std::move(reduced);
-  way.evidences = by.of_paths;
-  take_candidate(by, &way);
-  return way;
+SideChoice choice_of(ClassFits fits, FitData reduced, const SideContext& by) {
+  SideChoice choice;
+  choice.fits = std::move(fits);
+  choice.reduced = std::move(reduced);
+  choice.evidences = by.of_paths;
+  take_candidate(by, &choice);
+  return choice;
 }
 
 /// Of chi-square: what changes odds less than tenfold.
@@ -84,22 +85,23 @@ constexpr double kAgreement = 4.6;  // 2 ln 10
 
 /// Whether the reduced points, tips taken off, tell of the candidate what all points do: to within
 /// what changes odds less than tenfold.
-bool agrees(const Way& way, const SmoothModel& smooth) {
-  return way.refined && std::abs(way.settled->chi2 + smooth.chi2 - way.refined->chi2) <= kAgreement;
+bool agrees(const SideChoice& choice, const SmoothModel& smooth) {
+  return choice.refined &&
+         std::abs(choice.settled->chi2 + smooth.chi2 - choice.refined->chi2) <= kAgreement;
 }
 
 /// Whether a way leaves no more than `chi2` on all points, by its candidate or the class that was
 /// the candidate before: a class with fewer parameters always leaves more.
-bool is_as_near(const Way& way, CurveClass before, double chi2, const Judged& by) {
-  if (!way.refined) {
+bool is_as_near(const SideChoice& choice, CurveClass before, double chi2, const SideContext& by) {
+  if (!choice.refined) {
     return false;
   }
-  if (way.refined->chi2 <= chi2) {
+  if (choice.refined->chi2 <= chi2) {
     return true;
   }
-  const auto& fit = way.fits[static_cast<std::size_t>(before)];
-  const auto refined = fit && before != way.candidate
-                           ? refine_on_all(settled(*fit, way.reduced, RivalOf::Other, by.work),
+  const auto& fit = choice.fits[static_cast<std::size_t>(before)];
+  const auto refined = fit && before != choice.candidate
+                           ? refine_on_all(settled(*fit, choice.reduced, RivalOf::Other, by.work),
                                            by.arcs.smooth, by.arcs.data, kOnAllEffort, by.work)
                            : std::nullopt;
   return refined && refined->chi2 <= chi2;
@@ -122,27 +124,27 @@ bool directions_may_explain(const ClassFit& settled, const FitData& touches,
 /// log of the evidence of a way's candidate, however free-form paths fare beside it: the ways are
 /// compared with one another. A part whose walls are two curves that differ by little more than
 /// coherent errors may is told no better than these are known.
-double log_evidence_of(const Way& way, const Judged& by) {
+double log_evidence_of(const SideChoice& choice, const SideContext& by) {
   const auto& [arcs, likelihood, work, of_paths, classes, out_of_reach] = by;
   constexpr double kNone = -std::numeric_limits<double>::infinity();
-  const auto placed = way.refined ? to_canonical(*way.settled, way.reduced) : std::nullopt;
+  const auto placed = choice.refined ? to_canonical(*choice.settled, choice.reduced) : std::nullopt;
   if (!placed) {
     return kNone;
   }
-  auto evidence = way.evidences.classes[static_cast<std::size_t>(way.candidate)];
+  auto evidence = choice.evidences.classes[static_cast<std::size_t>(choice.candidate)];
   if (!evidence) {
-    evidence = evidence_of(*placed, way.reduced, likelihood.inflation(), work);
+    evidence = evidence_of(*placed, choice.reduced, likelihood.inflation(), work);
   }
-  return evidence ? log_coherent_evidence(likelihood, *evidence, *placed, way.reduced, arcs.sigma,
-                                          static_cast<double>(arcs.data.points.size()),
-                                          way.refined->chi2, arcs.smooth.chi2, work)
+  return evidence ? log_coherent_evidence(likelihood, *evidence, *placed, choice.reduced,
+                                          arcs.sigma, static_cast<double>(arcs.data.points.size()),
+                                          choice.refined->chi2, arcs.smooth.chi2, work)
                   : kNone;
 }
 
 /// The curve that fits the tips' centres best, sought, or followed, when it is asked for.
 class CurveOfCentres {
  public:
-  CurveOfCentres(const Judged& by, std::span<const SidedStart> starts)
+  CurveOfCentres(const SideContext& by, std::span<const SidedStart> starts)
       : by_(by), starts_(starts), sides_(by.arcs.smooth.reduced.patches.size(), 0) {}
 
   /// Its points are the smooth model's reduced ones; nullopt where no class fits.
@@ -150,13 +152,13 @@ class CurveOfCentres {
     if (!sought_) {
       sought_ = true;
       const FitData& centres = by_.arcs.smooth.reduced;
-      Way way;
-      way.fits = fit_classes_from(starts_, sides_, centres, by_);
-      way.reduced = centres;
-      way.evidences = by_.of_paths;
-      settle_candidate(by_, &way);
-      curve_ = way.settled ? to_canonical(*way.settled, centres) : std::nullopt;
-      start_ = warm_start_from(way.fits, centres);
+      SideChoice choice;
+      choice.fits = fit_classes_from(starts_, sides_, centres, by_);
+      choice.reduced = centres;
+      choice.evidences = by_.of_paths;
+      settle_candidate(by_, &choice);
+      curve_ = choice.settled ? to_canonical(*choice.settled, centres) : std::nullopt;
+      start_ = warm_start_from(choice.fits, centres);
     }
     return curve_;
   }
@@ -172,7 +174,7 @@ class CurveOfCentres {
   }
 
  private:
-  const Judged& by_;
+  const SideContext& by_;
   std::span<const SidedStart> starts_;
   std::vector<int> sides_;
   bool sought_ = false;
@@ -187,36 +189,37 @@ constexpr double kSettledTurn = 1e-3;
 /// one so swayed by noise that tips taken off along it no longer lie as all points do, directions
 /// come from the curve found: one that is off by an angle puts the surface off by half its square
 /// times the tip's radius, so that each round squares the error.
-Way fit_along(FitData touches, std::span<const int> sides, const Judged& by,
-              std::span<const SidedStart> starts) {
+SideChoice fit_along(FitData touches, std::span<const int> sides, const SideContext& by,
+                     std::span<const SidedStart> starts) {
   const SmoothModel& smooth = by.arcs.smooth;
   FitData reduced = on_surface(touches, sides);
   ClassFits fits = fit_classes_from(starts, sides, reduced, by, by.out_of_reach);
   if (std::none_of(fits.begin(), fits.end(),
                    [&](const auto& fit) { return fit && fit->chi2 <= by.out_of_reach; })) {
-    Way way;  // nothing that could be, whatever directions and evidence say
-    way.fits = std::move(fits);
-    way.reduced = std::move(reduced);
-    return way;
+    SideChoice choice;  // nothing that could be, whatever directions and evidence say
+    choice.fits = std::move(fits);
+    choice.reduced = std::move(reduced);
+    return choice;
   }
-  Way way = way_of(std::move(fits), std::move(reduced), by);
+  SideChoice choice = choice_of(std::move(fits), std::move(reduced), by);
   // A third of a radian leads to a millionth within three.
   constexpr int kRounds = 3;
   // Of chi-square by a round: residuals that directions leave fall with the error's square, from a
   // third of a radian to a ninth of what they were. What is not even halved they do not leave.
   constexpr double kLeastGain = 2.0;
   for (int round = 0; round < kRounds; ++round) {
-    if (!way.settled || !directions_may_explain(*way.settled, touches, smooth) ||
+    if (!choice.settled || !directions_may_explain(*choice.settled, touches, smooth) ||
         !by.work.allows()) {
       break;
     }
     // (a candidate that is no such curve on all points says nothing about the directions of all)
-    const bool swayed = way.refined && !agrees(way, smooth);
+    const bool swayed = choice.refined && !agrees(choice, smooth);
     // On all points distances are those of the tips' centres, whatever the directions.
-    const bool of_all = swayed && way.refined->chi2 < way.settled->chi2 + smooth.chi2;
-    const auto curve = of_all                            ? to_canonical(*way.refined, by.arcs.data)
-                       : swayed || has_kept_tips(smooth) ? to_canonical(*way.settled, way.reduced)
-                                                         : std::nullopt;
+    const bool of_all = swayed && choice.refined->chi2 < choice.settled->chi2 + smooth.chi2;
+    const auto curve = of_all ? to_canonical(*choice.refined, by.arcs.data)
+                       : swayed || has_kept_tips(smooth)
+                           ? to_canonical(*choice.settled, choice.reduced)
+                           : std::nullopt;
     if (!curve) {
       break;
     }
@@ -225,47 +228,48 @@ Way fit_along(FitData touches, std::span<const int> sides, const Judged& by,
       break;
     }
     FitData nearer = on_surface(touches, sides);
-    const WarmStart start = warm_start_from(way.fits, way.reduced);
+    const WarmStart start = warm_start_from(choice.fits, choice.reduced);
     ClassFits again = fit_classes(nearer, by.work, &start, by.classes, by.out_of_reach);
-    const double before = way.settled->chi2;
-    Way next = way_of(std::move(again), std::move(nearer), by);
-    if (swayed && !is_as_near(next, way.candidate, way.refined->chi2 + kAgreement, by)) {
+    const double before = choice.settled->chi2;
+    SideChoice next = choice_of(std::move(again), std::move(nearer), by);
+    if (swayed && !is_as_near(next, choice.candidate, choice.refined->chi2 + kAgreement, by)) {
       break;  // led astray
     }
-    way = std::move(next);
-    if (way.settled && tells_noise(by.arcs, by.likelihood) &&
-        way.settled->chi2 > before / kLeastGain &&
-        !fits_well(way.settled->chi2, residual_count(way.reduced))) {
+    choice = std::move(next);
+    if (choice.settled && tells_noise(by.arcs, by.likelihood) &&
+        choice.settled->chi2 > before / kLeastGain &&
+        !fits_well(choice.settled->chi2, residual_count(choice.reduced))) {
       break;
     }
   }
-  return way;
+  return choice;
 }
 
 /// The same; where directions led to no curve that all points have, once more along those of the
 /// curve of the centres, whose normals are nearly the surface's whichever side that is on. What is
 /// followed has been tried along these when it was sought.
-Way fit_way(const FitData& touches, std::span<const int> sides, const Judged& by,
-            std::span<const SidedStart> starts, CurveOfCentres* centres) {
+SideChoice fit_choice(const FitData& touches, std::span<const int> sides, const SideContext& by,
+                      std::span<const SidedStart> starts, CurveOfCentres* centres) {
   const SmoothModel& smooth = by.arcs.smooth;
-  Way way = fit_along(touches, sides, by, starts);
-  if (start_for(starts, sides) != nullptr || agrees(way, smooth) || !way.settled ||
-      !directions_may_explain(*way.settled, touches, smooth) || !by.work.allows() ||
+  SideChoice choice = fit_along(touches, sides, by, starts);
+  if (start_for(starts, sides) != nullptr || agrees(choice, smooth) || !choice.settled ||
+      !directions_may_explain(*choice.settled, touches, smooth) || !by.work.allows() ||
       !centres->get()) {
-    return way;
+    return choice;
   }
   FitData turned = touches;
   if (set_directions(DirectionsOf::AllPoints, *centres->get(), smooth, &turned, by.work) <
       kSettledTurn) {
-    return way;
+    return choice;
   }
   std::vector<SidedStart> from;
   if (const WarmStart* start = centres->start()) {
     from.push_back({{sides.begin(), sides.end()}, *start});
   }
-  Way again = fit_along(std::move(turned), sides, by, from);
-  const bool better = again.refined && (!way.refined || again.refined->chi2 < way.refined->chi2);
-  return better ? again : way;
+  SideChoice again = fit_along(std::move(turned), sides, by, from);
+  const bool better =
+      again.refined && (!choice.refined || again.refined->chi2 < choice.refined->chi2);
+  return better ? again : choice;
 }
 
 /// The reduced points with directions for those that show none, the sides to which the patches
@@ -309,7 +313,7 @@ Directed directed(std::span<const StoredPatch> patches, const SmoothModel& smoot
 }
 
 /// The way of the highest evidence, the first (from outside the bends) at the odds of the prior.
-void take_most_probable(const Judged& by, SidedFits* sided) {
+void take_most_probable(const SideContext& by, SidedFits* sided) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   // A prior (core/README.md, "The prior"): tips that touch a part from within a bend are rare,
   // probes come from outside; whoever touches bores states the side. Were it above the doubt that
@@ -318,17 +322,17 @@ void take_most_probable(const Judged& by, SidedFits* sided) {
   constexpr double kInsideProbability = 0.01;
   sided->taken = 0;
   sided->margin = kInfinity;
-  if (sided->ways.size() < 2) {
+  if (sided->choices.size() < 2) {
     return;
   }
   const double log_price_of_inside = log_odds(1.0 - kInsideProbability);
   double highest = -kInfinity;
   double second = -kInfinity;
-  for (std::size_t i = 0; i < sided->ways.size(); ++i) {
-    const Way& way = sided->ways[i];
+  for (std::size_t i = 0; i < sided->choices.size(); ++i) {
+    const SideChoice& choice = sided->choices[i];
     // A line has no bend to be outside of.
-    const double price = i == 0 || way.candidate == CurveClass::Line ? 0.0 : log_price_of_inside;
-    const double evidence = log_evidence_of(way, by) - price;
+    const double price = i == 0 || choice.candidate == CurveClass::Line ? 0.0 : log_price_of_inside;
+    const double evidence = log_evidence_of(choice, by) - price;
     if (i == 0 || evidence > highest) {
       second = highest;
       highest = evidence;
@@ -342,41 +346,41 @@ void take_most_probable(const Judged& by, SidedFits* sided) {
 
 }  // namespace
 
-SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Judged& by,
+SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext& by,
                          std::span<const SidedStart> starts) {
   CurveOfCentres centres(by, starts);
   const auto [touches, bends, senses] = directed(patches, by.arcs.smooth, &centres, by.work);
   SidedFits sided;
   const auto all_sides = possible_sides(patches, touches, bends, senses);
   if (!has_tips(touches.points)) {
-    Way way;
-    way.sides = all_sides.front();
-    way.reduced = on_surface(touches, way.sides);
-    way.fits = fit_classes_from(starts, way.sides, way.reduced, by, by.out_of_reach);
-    sided.ways.push_back(std::move(way));
+    SideChoice choice;
+    choice.sides = all_sides.front();
+    choice.reduced = on_surface(touches, choice.sides);
+    choice.fits = fit_classes_from(starts, choice.sides, choice.reduced, by, by.out_of_reach);
+    sided.choices.push_back(std::move(choice));
     return sided;
   }
   // The first, from outside the bends, is the most probable beforehand.
   for (const std::vector<int>& sides : all_sides) {
-    if (!sided.ways.empty() && !by.work.allows()) {
+    if (!sided.choices.empty() && !by.work.allows()) {
       break;
     }
-    sided.ways.push_back(fit_way(touches, sides, by, starts, &centres));
-    sided.ways.back().sides = sides;
+    sided.choices.push_back(fit_choice(touches, sides, by, starts, &centres));
+    sided.choices.back().sides = sides;
   }
   sided.centres = centres.next_start();
   take_most_probable(by, &sided);
   return sided;
 }
 
-bool lie_otherwise(const Judged& by, SidedFits* sided) {
+bool rejudge_sides(const SideContext& by, SidedFits* sided) {
   if (!std::isfinite(sided->margin)) {
     return false;
   }
-  for (Way& way : sided->ways) {
-    if (way.settled && by.work.allows()) {
-      way.evidences = by.of_paths;
-      take_candidate(by, &way);
+  for (SideChoice& choice : sided->choices) {
+    if (choice.settled && by.work.allows()) {
+      choice.evidences = by.of_paths;
+      take_candidate(by, &choice);
     }
   }
   const std::size_t before = sided->taken;

@@ -15,7 +15,7 @@
 namespace palpate {
 
 /// The classes fitted for one choice of the tips' sides.
-struct Way {
+struct SideChoice {
   /// For each patch, the side of travel on which the tip centres lie (tip_sides.h).
   std::vector<int> sides;
   ClassFits fits;   ///< of every class, to `reduced`
@@ -28,18 +28,18 @@ struct Way {
 };
 
 struct SidedFits {
-  std::vector<Way> ways;  ///< if sides are not stated, the first is outside the bends
-  std::size_t taken = 0;  ///< index of the most probable one
+  std::vector<SideChoice> choices;  ///< if sides are not stated, the first is outside the bends
+  std::size_t taken = 0;            ///< index of the most probable one
   /// log odds over the next best choice of sides, priors included; infinite if all sides are known.
   double margin = std::numeric_limits<double>::infinity();
   /// Start for following the curve of the tips' centres, if it was needed.
   std::optional<SidedStart> centres;
 
-  const Way& way() const { return ways[taken]; }
+  const SideChoice& choice() const { return choices[taken]; }
 };
 
 /// What the choices of sides are compared by.
-struct Judged {
+struct SideContext {
   const Arcs& arcs;
   const Likelihood& likelihood;
   WorkBudget& work;
@@ -52,13 +52,13 @@ struct Judged {
 /// Fits the classes to the reduced points and chooses the sides of the tips. If sides are not
 /// known, it takes the choice of highest evidence; the first one (outside the bends) has the odds
 /// of the prior. `starts`: as in weigh().
-SidedFits fit_over_sides(std::span<const StoredPatch> patches, const Judged& by,
+SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext& by,
                          std::span<const SidedStart> starts);
 
 /// Compares the choices of sides again under another likelihood than they were fitted by, if sides
 /// are open: a deviation that is more than noise also makes sides harder to tell. The fits stay,
 /// because least squares are the same under both. (Classes out of reach under the first likelihood
 /// stay out: their residuals exceed the largest noise of both.) Returns whether the choice changed.
-bool lie_otherwise(const Judged& by, SidedFits* sided);
+bool rejudge_sides(const SideContext& by, SidedFits* sided);
 
 }  // namespace palpate

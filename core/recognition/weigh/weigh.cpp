@@ -59,26 +59,26 @@ struct Placed {
 
 /// Every class of one way in which the tips may lie, the plausible ones refined on all points.
 /// `no_conic`: as WarmStart's.
-Contenders contending(ClassFits coarse, bool no_conic, const Ground& ground,
+Contenders contending(ClassFits coarse, bool no_conic, const EvidenceContext& context,
                       const WeighOptions& options, const Evidences& of_paths = {}) {
-  const Arcs& arcs = ground.arcs;
+  const Arcs& arcs = context.arcs;
   Contenders contenders;
   contenders.no_conic = no_conic;
   contenders.coarse = testable(std::move(coarse), options.classes, arcs);
-  contenders.fits = as_told(contenders.coarse, arcs.smooth);
+  contenders.fits = with_inferred_chi2(contenders.coarse, arcs.smooth);
   contenders.evidences = of_paths;
-  contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
-  if (!is_sure(probabilities_of(contenders, ground))) {
-    contenders = with_conic_mode(std::move(contenders), ground, options.classes);
+  contenders = refine_plausible(std::move(contenders), context, margin_of(options));
+  if (!is_sure(probabilities_of(contenders, context))) {
+    contenders = with_conic_mode(std::move(contenders), context, options.classes);
   }
   return contenders;
 }
 
 /// The best class, if it was refined on all points.
-std::optional<Placed> best_on_all(const Contenders& contenders, const Ground& ground) {
-  const CurveClass best = best_class(contenders.fits, ground.likelihood, contenders.evidences);
+std::optional<Placed> best_on_all(const Contenders& contenders, const EvidenceContext& context) {
+  const CurveClass best = best_class(contenders.fits, context.likelihood, contenders.evidences);
   const auto& fit = contenders.fits[static_cast<std::size_t>(best)];
-  auto canonical = fit && fit->on_all ? to_canonical(*fit, ground.arcs.data) : std::nullopt;
+  auto canonical = fit && fit->on_all ? to_canonical(*fit, context.arcs.data) : std::nullopt;
   return canonical ? std::optional(Placed{*std::move(canonical), fit->chi2}) : std::nullopt;
 }
 
@@ -87,9 +87,9 @@ std::optional<Placed> best_on_all(const Contenders& contenders, const Ground& gr
 /// On all points where it was refined there, otherwise on the reduced ones. `before`: a class
 /// placed already.
 std::array<std::optional<CanonicalFit>, 9> placed_canonically(
-    const Contenders& contenders, const ClassProbabilities& probabilities, const Ground& ground,
-    std::optional<Placed> before) {
-  const CurveClass best = best_class(contenders.fits, ground.likelihood, contenders.evidences);
+    const Contenders& contenders, const ClassProbabilities& probabilities,
+    const EvidenceContext& context, std::optional<Placed> before) {
+  const CurveClass best = best_class(contenders.fits, context.likelihood, contenders.evidences);
   std::array<std::optional<CanonicalFit>, 9> canonical;
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
@@ -99,12 +99,12 @@ std::array<std::optional<CanonicalFit>, 9> placed_canonically(
       continue;
     }
     if (!fit->on_all) {
-      canonical[i] = to_canonical(*contenders.coarse[i], ground.reduced);
+      canonical[i] = to_canonical(*contenders.coarse[i], context.reduced);
     } else if (before && before->canonical.shape.curve_class == curve_class &&
                before->chi2 == fit->chi2) {
       canonical[i] = std::move(before->canonical);
     } else {
-      canonical[i] = to_canonical(*fit, ground.arcs.data);
+      canonical[i] = to_canonical(*fit, context.arcs.data);
     }
   }
   return canonical;
@@ -112,12 +112,12 @@ std::array<std::optional<CanonicalFit>, 9> placed_canonically(
 
 /// Where all ways in which the tips may lie are to be followed from; the first is the one taken.
 std::vector<SidedStart> starts_of(const SidedFits& sided, const Contenders& contenders) {
-  const Way& taken = sided.way();
+  const SideChoice& taken = sided.choice();
   std::vector<SidedStart> starts{{taken.sides, warm_start_from(contenders.coarse, taken.reduced)}};
   starts.front().start.no_conic = contenders.no_conic;
-  for (const Way& way : sided.ways) {
-    if (&way != &taken) {
-      starts.push_back({way.sides, warm_start_from(way.fits, way.reduced)});
+  for (const SideChoice& choice : sided.choices) {
+    if (&choice != &taken) {
+      starts.push_back({choice.sides, warm_start_from(choice.fits, choice.reduced)});
     }
   }
   if (sided.centres) {
@@ -134,23 +134,23 @@ bool no_conic(std::span<const SidedStart> starts, const std::vector<int>& sides)
 
 /// What the stages say, gathered. `arcs` and `sided` are those that `ground` is of. `best_placed`:
 /// the best class, if it is placed on all points already; `stated`: the law before any was seen.
-Weighing told(Arcs&& arcs, SidedFits&& sided, Contenders contenders, const Ground& ground,
-              const SeenDeviation& seen, const Likelihood& stated,
-              std::optional<Placed> best_placed) {
+Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders,
+                           const EvidenceContext& context, const SeenDeviation& seen,
+                           const Likelihood& stated, std::optional<Placed> best_placed) {
   Weighing w;
-  w.probabilities = probabilities_of(contenders, ground);
+  w.probabilities = probabilities_of(contenders, context);
   w.best = most_probable(w.probabilities);
   w.margin_of_unclassified = margin_of_unclassified(contenders.fits, arcs.smooth.chi2,
-                                                    ground.likelihood, contenders.evidences);
-  w.rival_share = rival_share(contenders.fits, ground.likelihood, contenders.evidences);
+                                                    context.likelihood, contenders.evidences);
+  w.rival_share = rival_share(contenders.fits, context.likelihood, contenders.evidences);
   w.noise_inflation = seen.noise_inflation;
   w.white_variance = seen.white_variance;
   w.correlation_length = seen.correlation_length;
   w.inflation = seen.noise_inflation * seen.few_residuals + stated.coherent_variance;
   const auto b = static_cast<std::size_t>(w.best);
   const auto& best = contenders.fits[b];
-  w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, ground.likelihood);
-  w.canonical = placed_canonically(contenders, w.probabilities, ground, std::move(best_placed));
+  w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, context.likelihood);
+  w.canonical = placed_canonically(contenders, w.probabilities, context, std::move(best_placed));
   w.best_evidence = std::move(contenders.evidences.classes[b]);
   w.best_on_reduced = std::move(contenders.evidences.on_reduced[b]);
   w.stated = stated;
@@ -158,8 +158,8 @@ Weighing told(Arcs&& arcs, SidedFits&& sided, Contenders contenders, const Groun
   w.starts = starts_of(sided, contenders);
   w.fits = std::move(contenders.fits);
   w.coarse = std::move(contenders.coarse);
-  w.sides = std::move(sided.ways[sided.taken].sides);
-  w.reduced = std::move(sided.ways[sided.taken].reduced);
+  w.sides = std::move(sided.choices[sided.taken].sides);
+  w.reduced = std::move(sided.choices[sided.taken].reduced);
   w.sides_margin = sided.margin;
   w.sigma = arcs.sigma;
   w.data = std::move(arcs.data);
@@ -181,14 +181,14 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   SidedFits sided =
       fit_over_sides(patches, {arcs, stated, work, of_paths, options.classes, hopeless}, starts);
   for_verdict.reset();
-  const auto contending_way = [&](const Ground& ground, const Evidences& paths) {
-    Way& way = sided.ways[sided.taken];
+  const auto contenders_of_choice = [&](const EvidenceContext& context, const Evidences& paths) {
+    SideChoice& choice = sided.choices[sided.taken];
     // Where there are several they may have to be judged again.
-    ClassFits fits = sided.ways.size() > 1 ? way.fits : std::move(way.fits);
-    return contending(std::move(fits), no_conic(starts, way.sides), ground, options, paths);
+    ClassFits fits = sided.choices.size() > 1 ? choice.fits : std::move(choice.fits);
+    return contending(std::move(fits), no_conic(starts, choice.sides), context, options, paths);
   };
-  const Ground at_first{arcs, sided.way().reduced, work, stated, hopeless};
-  Contenders contenders = contending_way(at_first, of_paths);
+  const EvidenceContext at_first{arcs, sided.choice().reduced, work, stated, hopeless};
+  Contenders contenders = contenders_of_choice(at_first, of_paths);
   std::optional<Placed> best_placed = best_on_all(contenders, at_first);
   SeenDeviation seen = best_placed
                            ? seen_deviation(arcs, stated, best_placed->chi2, best_placed->canonical,
@@ -201,21 +201,21 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
       seen.likelihood ? evidences_of_paths(arcs.smooth, likelihood, work) : Evidences{};
   const bool otherwise =
       seen.likelihood &&
-      lie_otherwise({arcs, likelihood, work, of_seen_paths, options.classes, hopeless}, &sided);
-  const Ground ground{arcs, sided.way().reduced, work, likelihood, hopeless};
+      rejudge_sides({arcs, likelihood, work, of_seen_paths, options.classes, hopeless}, &sided);
+  const EvidenceContext context{arcs, sided.choice().reduced, work, likelihood, hopeless};
   if (otherwise) {
-    contenders = contending_way(ground, of_seen_paths);
+    contenders = contenders_of_choice(context, of_seen_paths);
     best_placed.reset();
   } else if (seen.likelihood) {
     contenders.evidences = of_seen_paths;
-    contenders = refine_plausible(std::move(contenders), ground, margin_of(options));
+    contenders = refine_plausible(std::move(contenders), context, margin_of(options));
   } else if (seen.correlated) {
-    contenders = with_shared_deviations(std::move(contenders), ground, options.unqualified_probe,
+    contenders = with_shared_deviations(std::move(contenders), context, options.unqualified_probe,
                                         margin_of(options));
   }
-  contenders = decided(std::move(contenders), ground, margin_of(options));
-  return told(std::move(arcs), std::move(sided), std::move(contenders), ground, seen, stated,
-              std::move(best_placed));
+  contenders = decided(std::move(contenders), context, margin_of(options));
+  return assemble_weighing(std::move(arcs), std::move(sided), std::move(contenders), context, seen,
+                           stated, std::move(best_placed));
 }
 
 }  // namespace palpate

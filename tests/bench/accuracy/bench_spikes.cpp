@@ -104,10 +104,11 @@ struct Counts {
     wrong += answer.status == RecognitionStatus::Recognized && !is_right(answer, truth) ? 1 : 0;
     differences.push_back(std::abs(of_truth(answer, truth) - of_truth(told, truth)));
     if (is_right(told, truth) && is_right(answer, truth)) {
-      test::Scene as_told = spiked.scene;
-      as_told.values = told.shape.values;
-      as_told.world_T_curve = told.world_T_curve;
-      const test::JointError error = test::joint_error(answer.hypotheses.front(), as_told);
+      test::Scene with_inferred_chi2 = spiked.scene;
+      with_inferred_chi2.values = told.shape.values;
+      with_inferred_chi2.world_T_curve = told.world_T_curve;
+      const test::JointError error =
+          test::joint_error(answer.hypotheses.front(), with_inferred_chi2);
       squares += test::squared_distance(error);
       components += error.error.size();
     }

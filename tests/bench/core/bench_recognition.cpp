@@ -10,8 +10,8 @@
 #include <random>
 
 #include "core/recognition/fit/class_fits.h"
+#include "core/recognition/reported_tree_path.h"
 #include "core/recognition/smooth/smooth_model.h"
-#include "core/recognition/tree_beside.h"
 #include "tests/support/answered_scene.h"
 #include "tests/support/scene_data.h"
 
@@ -138,7 +138,7 @@ void live_tree(benchmark::State& state) {
   std::size_t i = 0;
   for (auto _ : state) {
     const test::AnsweredScene& scene = scenes[i++ % scenes.size()];
-    benchmark::DoNotOptimize(tree_beside(scene.weighing, scene.contacts, {}));
+    benchmark::DoNotOptimize(reported_tree_path(scene.weighing, scene.contacts, {}));
   }
   state.SetLabel(std::string(name_of(curve_class)) + ", " +
                  std::to_string(contacts / scenes.size()) + " contacts");

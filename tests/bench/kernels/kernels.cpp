@@ -32,7 +32,7 @@
 #include "core/local/spikes/spikes.h"
 #include "core/local/tip_radius.h"
 #include "core/recognition/fit/implicit_fit.h"
-#include "core/recognition/tree_beside.h"
+#include "core/recognition/reported_tree_path.h"
 #include "tests/support/answered_scene.h"
 #include "tests/support/canonical_points.h"
 #include "tests/support/fit_samples.h"
@@ -374,9 +374,10 @@ void add_tree(std::vector<Kernel>* kernels) {
       }
       return all;
     };
-    kernels->push_back(
-        over("tree/live/" + std::string(name_of(curve_class)), kScenes, answered,
-             [](const test::AnsweredScene& s) { return tree_beside(s.weighing, s.contacts, {}); }));
+    kernels->push_back(over("tree/live/" + std::string(name_of(curve_class)), kScenes, answered,
+                            [](const test::AnsweredScene& s) {
+                              return reported_tree_path(s.weighing, s.contacts, {});
+                            }));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "core/recognition/tree_beside.h"
+#include "core/recognition/reported_tree_path.h"
 
 #include <algorithm>
 #include <optional>
@@ -50,8 +50,8 @@ std::vector<std::size_t> spread_out(std::span<const LocalizedContact> contacts) 
 
 }  // namespace
 
-TreeResult tree_beside(const Weighing& w, std::span<const LocalizedContact> contacts,
-                       const RecognitionTreeOptions& options) {
+TreeResult reported_tree_path(const Weighing& w, std::span<const LocalizedContact> contacts,
+                              const RecognitionTreeOptions& options) {
   TreeEffort effort;
   effort.known = [&w](CurveClass curve_class) { return curve_of(w, curve_class); };
   // The logarithm of the chi-square tail falls by at most 1/2 per unit, so this changes a p-value

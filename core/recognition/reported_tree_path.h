@@ -12,7 +12,7 @@ namespace palpate {
 /// The tree's path on the contacts of a weighing, at most five of them. It is only reported. It
 /// does not search: each fit starts from the class's fit to the samples. `places` of the result
 /// belong to the contacts `pooled`.
-TreeResult tree_beside(const Weighing& w, std::span<const LocalizedContact> contacts,
-                       const RecognitionTreeOptions& options);
+TreeResult reported_tree_path(const Weighing& w, std::span<const LocalizedContact> contacts,
+                              const RecognitionTreeOptions& options);
 
 }  // namespace palpate
