@@ -9,9 +9,9 @@
 
 #include "core/numerics/negligible.h"
 #include "core/numerics/small_cholesky.h"
-#include "core/recognition/posterior/arc_coordinates.h"
 #include "core/recognition/posterior/mode_search.h"
 #include "core/recognition/posterior/prior_starts.h"
+#include "core/recognition/prior/arc_coordinates.h"
 
 namespace palpate {
 namespace {

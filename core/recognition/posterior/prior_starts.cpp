@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/curves/curve.h"
-#include "core/recognition/posterior/arc_coordinates.h"
-#include "core/recognition/posterior/prior_lattice.h"
+#include "core/recognition/prior/arc_coordinates.h"
+#include "core/recognition/prior/prior_lattice.h"
 
 namespace palpate {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/curves/pose2.h"
-#include "core/recognition/posterior/arc_coordinates.h"
-#include "core/recognition/posterior/prior_lattice.h"
+#include "core/recognition/prior/arc_coordinates.h"
+#include "core/recognition/prior/prior_lattice.h"
 
 namespace palpate {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/curves/curve.h"
 #include "core/curves/pose2.h"
 #include "core/recognition/fit/canonical_fit.h"
-#include "core/recognition/posterior/touched_coordinates.h"
+#include "core/recognition/prior/touched_coordinates.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {

@@ -1,4 +1,4 @@
-#include "core/recognition/posterior/touched_coordinates.h"
+#include "core/recognition/prior/touched_coordinates.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/curves/curve.h"
-#include "core/recognition/posterior/arc_coordinates.h"
 #include "core/recognition/posterior/touched_curve.h"
+#include "core/recognition/prior/arc_coordinates.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 

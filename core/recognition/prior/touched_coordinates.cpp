@@ -1,11 +1,11 @@
-#include "core/recognition/posterior/touched_coordinates.h"
+#include "core/recognition/prior/touched_coordinates.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "core/recognition/posterior/arc_coordinates.h"
-#include "core/recognition/posterior/student_law.h"
+#include "core/recognition/prior/arc_coordinates.h"
+#include "core/recognition/prior/student_law.h"
 
 namespace palpate {
 namespace {

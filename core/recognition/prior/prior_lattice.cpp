@@ -1,4 +1,4 @@
-#include "core/recognition/posterior/prior_lattice.h"
+#include "core/recognition/prior/prior_lattice.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "core/recognition/posterior/student_law.h"
+#include "core/recognition/prior/student_law.h"
 
 namespace palpate {
 

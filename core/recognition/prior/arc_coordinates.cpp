@@ -1,4 +1,4 @@
-#include "core/recognition/posterior/arc_coordinates.h"
+#include "core/recognition/prior/arc_coordinates.h"
 
 #include <cmath>
 #include <limits>

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/recognition/posterior/touched_coordinates.h"
+#include "core/recognition/prior/touched_coordinates.h"
 
 namespace palpate {
 
