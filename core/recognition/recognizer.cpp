@@ -9,6 +9,7 @@
 
 #include "core/numerics/normal_law.h"
 #include "core/recognition/estimate_stream.h"
+#include "core/recognition/fewest_places.h"
 #include "core/recognition/likelihood_answer.h"
 #include "core/recognition/outliers.h"
 #include "core/recognition/patch_contacts.h"
@@ -26,55 +27,12 @@
 namespace palpate {
 namespace {
 
-/// As many places must speak for or against a class as are left over by its parameters: two. By
-/// chance they lie so near to a curve of it with a probability of about the square of the noise
-/// over their extent.
-constexpr std::size_t kFewestLeftOver = 2;
-
-/// Fewer leave a class, the spline, a family of curves through all of them: it has no evidence that
-/// the others' could be compared with.
-constexpr std::size_t kFewestCompared = 6;
-
-/// Fewer places than this fit almost anything where nobody states the noise, or no class is named.
-/// A spline takes six, and two speak for or against it.
-constexpr std::size_t kFewestPlaces = kFewestCompared + kFewestLeftOver;
-
-/// From so many patches that lie apart there is an answer all the same, if an AMBIGUOUS one: what
-/// could be, and where it would lie. A circle takes three, and one speaks for or against it.
-constexpr std::size_t kFewestPatches = 4;
-
 /// Whether most of the patches are of one sample: no neighbours tell the noise from the shape.
 bool are_touches(std::span<const StoredPatch> patches) {
   const auto lone = std::count_if(patches.begin(), patches.end(), [](const StoredPatch& patch) {
     return patch.samples.size() == 1;
   });
   return 2 * lone > static_cast<std::ptrdiff_t>(patches.size());
-}
-
-/// Whether the points lie at so many different places.
-bool have_places(const FitData& data, std::size_t count) {
-  std::vector<Vec2> places;
-  places.reserve(count);
-  for (const FitPoint& point : data.points) {
-    if (places.size() == count) {
-      break;
-    }
-    if (std::find(places.begin(), places.end(), point.position) == places.end()) {
-      places.push_back(point.position);
-    }
-  }
-  return places.size() == count;
-}
-
-/// At how many its class can be RECOGNIZED, by evidence and of stated noise. A sample that is set
-/// aside is an unknown more.
-std::size_t fewest_places(const Recognition& answer) {
-  const CurveClass curve_class = answer.shape.curve_class;
-  if (curve_class == CurveClass::Unclassified) {
-    return kFewestPlaces;
-  }
-  const auto parameters = static_cast<std::size_t>(degrees_of_freedom(curve_class));
-  return std::max(kFewestCompared, parameters + kFewestLeftOver) + answer.outlier_count;
 }
 
 /// Whether the points spread over an extent that double precision resolves.

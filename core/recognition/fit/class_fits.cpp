@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/recognition/fit/algebraic_fit.h"
 #include "core/recognition/fit/few_points.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/touchable.h"

@@ -20,13 +20,6 @@ struct ImplicitFit {
   std::vector<Vec2> feet;  ///< foot point of every point
 };
 
-/// Starts without a previous fit: the algebraic fit of G. Taubin ("Estimation of planar curves,
-/// surfaces and nonplanar space curves defined by implicit equations", 1991). It weights by
-/// gradients, so that it has no bias towards small ellipses, and costs one 5 x 5 eigenproblem.
-ConicCoefficients algebraic_conic(std::span<const FitPoint> points);
-ConicCoefficients algebraic_circle(std::span<const FitPoint> points);
-ConicCoefficients algebraic_line(std::span<const FitPoint> points);
-
 /// Refines over all conics (5 degrees of freedom), all circles and lines (3), or all lines (2). The
 /// coefficients move on the unit sphere of the model's subspace, so that the passage from ellipse
 /// through parabola to hyperbola, or from circle to line, is smooth.
@@ -52,6 +45,12 @@ double signed_distance_from(const Vec2& foot, const ConicCoefficients& coefficie
 /// Weight of a point's measured normal for this conic; 0 if its foot cannot be followed.
 double weight_of_normal(const ConicCoefficients& coefficients, const Vec2& foot,
                         const FitPoint& point);
+
+/// A conic's polynomial is the product of its coefficients and these: x^2, x y, y^2, x, y, 1.
+using Monomials = Eigen::Matrix<double, 6, 1>;
+inline Monomials monomials(const Vec2& p) {
+  return {p.x() * p.x(), p.x() * p.y(), p.y() * p.y(), p.x(), p.y(), 1.0};
+}
 
 /// The gradient of the conic's polynomial.
 inline Vec2 conic_gradient(const ConicCoefficients& q, const Vec2& p) {

@@ -9,6 +9,7 @@
 #include "core/numerics/small_cholesky.h"
 #include "core/numerics/small_ldlt.h"
 #include "core/numerics/symmetric_eigen.h"
+#include "core/recognition/fit/algebraic_fit.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/implicit_fit.h"
 #include "core/recognition/fit/polynomial_search.h"

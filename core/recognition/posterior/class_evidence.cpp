@@ -206,9 +206,10 @@ ClassEvidence with_mode_at_cusp(ClassEvidence spline, const ClassEvidence& semi_
   const TouchedCurve& from = semi_cubical.nodes[semi_cubical.mode].curve;
   Touch touch = semi_cubical.touch;
   touch.curve_class = spline.touch.curve_class;
+  constexpr double kLeastC = 1e-9;  // a curve of c = 0 is no spline; far below any noise
   TouchedVector z = from.z;
   z.tail<2>() = from.z.segment<2>(3);  // offset and turn come after c
-  z[3] = 1e-9;                         // a spline's c is not 0
+  z[3] = kLeastC;
   work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
   auto mode = curve_at(touch, z, from, data);
   if (!mode) {

@@ -10,6 +10,7 @@
 
 #include "core/numerics/negligible.h"
 #include "core/numerics/orthogonal_polynomials.h"
+#include "core/recognition/smooth/section_fit.h"
 #include "core/recognition/smooth/turning_sections.h"
 
 namespace palpate {
@@ -41,129 +42,6 @@ void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
     ++model->points;  // one measured direction, and one parameter for it
     ++model->parameters;
   }
-}
-
-/// The chord frame of a section: the abscissa runs from -1 to 1, from end to end.
-struct ChordFrame {
-  Vec2 middle;
-  Vec2 axis;
-  double half_length;
-
-  double along(const Vec2& p) const { return (p - middle).dot(axis) / half_length; }
-  double across(const Vec2& p) const { return cross(axis, p - middle); }
-  Vec2 at(double x, double y) const { return middle + half_length * x * axis + y * left_of(axis); }
-  Vec2 tangent(double y_by_x) const {
-    return (half_length * axis + y_by_x * left_of(axis)).normalized();
-  }
-};
-
-/// The polynomial of one section.
-struct SectionFit {
-  PatchSpan section;
-  ChordFrame frame;
-  OrthogonalPolynomials polynomials;
-  int degree = 0;  ///< chosen by the criterion
-  /// True if the criterion chooses a degree at least two below the highest possible one even if it
-  /// takes the noise from the residuals. Otherwise a higher degree might leave less: the residuals
-  /// may be what the polynomial misses of the curve (few samples on a long arc), and show no noise.
-  /// Two, because an arc that is nearly symmetric gains only from every second degree. Nor do
-  /// samples show noise that are no graph over their chord.
-  bool shows_noise = false;
-
-  /// Two degrees more than the criterion chose: terms that are not yet significant in one patch may
-  /// distinguish classes when there are several patches.
-  int reduced_degree() const { return std::min(degree + 2, polynomials.degree()); }
-  bool lacks_degrees() const { return degree + 2 > polynomials.degree(); }
-};
-
-/// The noise used to choose a section's degree.
-struct Noise {
-  bool known = true;      ///< otherwise the criterion profiles it
-  double variance = 1.0;  ///< in units of the stated variance
-};
-
-/// True if the samples turn too far to be a graph over their chord: by more than two radians, as
-/// the chords between the means of their thirds show, which turn a third as much. Sections are cut
-/// before that, except where their samples are few. Samples that scatter about a place show no
-/// turn: along an even stroke a chord is 3.5 times as long as the scatter of a third about its
-/// mean, which is a third of the stroke over sqrt(12); of noise alone it is as long at most.
-bool is_no_graph(std::span<const FitPoint> points) {
-  constexpr double kLargestTurn = 2.0 / 3.0;  // rad, of chords between thirds
-  constexpr double kOfMotion = 2.0;           // chord over scatter, between 1 and 3.5
-  const std::size_t n = points.size();
-  double scatter = 0.0;
-  const auto mean_of = [&](std::size_t begin, std::size_t end) {
-    Vec2 sum = Vec2::Zero();
-    for (std::size_t i = begin; i < end; ++i) {
-      sum += points[i].position;
-    }
-    Vec2 mean = sum / static_cast<double>(end - begin);
-    for (std::size_t i = begin; i < end; ++i) {
-      scatter += (points[i].position - mean).squaredNorm() / static_cast<double>(n);
-    }
-    return mean;
-  };
-  const Vec2 first = mean_of(0, n / 3);
-  const Vec2 middle = mean_of(n / 3, n - n / 3);
-  const Vec2 before = middle - first;
-  const Vec2 after = mean_of(n - n / 3, n) - middle;
-  const double least = kOfMotion * kOfMotion * scatter;
-  return before.squaredNorm() > least && after.squaredNorm() > least &&
-         std::abs(std::atan2(cross(before, after), before.dot(after))) > kLargestTurn;
-}
-
-std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& section,
-                                      const Noise& noise) {
-  const std::span<const FitPoint> points(data.points.data() + section.begin, section.size());
-  const std::size_t n = points.size();
-  if (n < kFewestOfSection) {
-    return std::nullopt;
-  }
-  const Vec2 chord = points.back().position - points.front().position;
-  const double length = chord.norm();
-  if (!(length > 0.0)) {
-    return std::nullopt;
-  }
-  const ChordFrame frame{0.5 * (points.front().position + points.back().position), chord / length,
-                         0.5 * length};
-  std::vector<double> x(n);
-  std::vector<double> y(n);
-  std::vector<double> w(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    x[i] = frame.along(points[i].position);
-    y[i] = frame.across(points[i].position);
-    w[i] = points[i].inverse_sigma * points[i].inverse_sigma;
-  }
-  const int highest = std::min<int>(OrthogonalPolynomials::kMaxDegree, static_cast<int>(n) / 2 - 1);
-
-  // A first fit gives the slopes, which convert residuals across the chord into distances.
-  constexpr int kSlopeDegree = 3;
-  const OrthogonalPolynomials first(x, w, y, std::min(kSlopeDegree, highest));
-  for (std::size_t i = 0; i < n; ++i) {
-    const double slope = first.evaluate(x[i], first.degree()).derivative / frame.half_length;
-    w[i] /= 1.0 + slope * slope;
-  }
-  SectionFit fit{section, frame, OrthogonalPolynomials(x, w, y, highest), 1};
-  const double count = static_cast<double>(n);
-  const auto choose = [&](bool noise_known) {
-    int degree = 1;
-    double best = std::numeric_limits<double>::infinity();
-    for (int d = 1; d <= highest; ++d) {
-      const double chi2 =
-          std::max(fit.polynomials.residual_sum(d), std::numeric_limits<double>::min());
-      const double criterion = (noise_known ? chi2 / noise.variance : count * std::log(chi2)) +
-                               (d + 1) * std::log(count);
-      if (criterion < best) {
-        best = criterion;
-        degree = d;
-      }
-    }
-    return degree;
-  };
-  const int by_residuals = choose(false);
-  fit.degree = noise.known ? choose(true) : by_residuals;
-  fit.shows_noise = by_residuals + 2 <= highest && !is_no_graph(points);
-  return fit;
 }
 
 void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model) {
@@ -218,7 +96,7 @@ struct Section {
 };
 
 /// Fits a section, or its two halves if even a high degree does not follow it (a sharp bend).
-void smooth_section(const FitData& data, const PatchSpan& points, const Noise& noise,
+void smooth_section(const FitData& data, const PatchSpan& points, const SectionNoise& noise,
                     std::vector<Section>* sections) {
   auto whole = fit_section(data, points, noise);
   constexpr int kHighDegree = OrthogonalPolynomials::kMaxDegree - 2;
@@ -300,7 +178,7 @@ bool mostly_with_degrees(const std::vector<Section>& sections) {
   return with > lacking;
 }
 
-void cut_until_followed(const FitData& data, Section section, const Noise& noise,
+void cut_until_followed(const FitData& data, Section section, const SectionNoise& noise,
                         const Yardstick& yardstick, std::vector<Section>* sections) {
   const PatchSpan points = section.points;
   if (!is_not_followed(section, yardstick)) {
@@ -319,7 +197,7 @@ void cut_until_followed(const FitData& data, Section section, const Noise& noise
 
 /// Halves the sections that are not followed until all are followed or too short for a polynomial.
 std::vector<Section> followed(const FitData& data, std::vector<Section> sections,
-                              const Noise& noise, const Yardstick& yardstick) {
+                              const SectionNoise& noise, const Yardstick& yardstick) {
   if (std::none_of(sections.begin(), sections.end(),
                    [&](const Section& section) { return is_not_followed(section, yardstick); })) {
     return sections;
@@ -332,7 +210,7 @@ std::vector<Section> followed(const FitData& data, std::vector<Section> sections
 }
 
 /// All patches, cut where they turn and where a high degree does not follow them.
-std::vector<Section> smoothed(const FitData& data, const Noise& noise) {
+std::vector<Section> smoothed(const FitData& data, const SectionNoise& noise) {
   std::vector<Section> sections;
   for (const PatchSpan& patch : data.patches) {
     if (patch.size() == 0) {
@@ -365,7 +243,7 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known) {
   model.nearest_reduced.resize(data->points.size());
   model.reduced.frame = data->frame;
   model.reduced.scale = data->scale;
-  Noise noise{sigma_known, 1.0};
+  SectionNoise noise{sigma_known, 1.0};
   std::vector<Section> sections = smoothed(*data, noise);
   QuietSections quiet = quiet_of(sections, sigma_known);
   if (sigma_known && is_no_noise(quiet.chi2, quiet.dof, 1.0)) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/recognition/fit/algebraic_fit.h"
 #include "core/recognition/fit/implicit_fit.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/polynomial_fit.h"

@@ -1,0 +1,89 @@
+#include "core/recognition/posterior/prior_modes.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace palpate {
+namespace {
+
+constexpr double kNone = -std::numeric_limits<double>::infinity();
+
+/// The class's mode that the prior leads to, where it might have more there than about its fit, and
+/// so much that it is seen beside `best`.
+void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced,
+                    const Likelihood& likelihood, double best, Evidences* evidences,
+                    WorkBudget& work) {
+  constexpr double kWorthAMode = 2.0;   // log odds: a factor of seven
+  constexpr double kWorthOthers = 4.0;  // log odds: a fiftieth
+  constexpr double kLeftToPrior = 0.1;  // of a coordinate: a deviation of a third of the prior's
+  auto& found = evidences->classes[i];
+  if (!found || found->prior_mode_sought) {
+    return;
+  }
+  // All that a better mode can gain, about, is what the prior takes off this one.
+  const double gain = -found->log_prior;
+  const double told =
+      log_evidence(likelihood, *evidences, static_cast<CurveClass>(i), fits[i]->chi2);
+  const double seen_from = best - kUnseenLogOdds;
+  // Data that leave a cubic's shape open are such as its other arms have.
+  const int all = shape_coordinates(found->touch.curve_class) + 2;
+  const bool other_arms = (kCubics & class_bit(found->touch.curve_class)) != 0 &&
+                          found->determined < all - kLeftToPrior && told > best - kWorthOthers;
+  if ((gain > kWorthAMode || other_arms) && told + gain > seen_from && work.allows()) {
+    const double seen_occam = found->log_occam + seen_from - told;
+    found = with_prior_mode(*std::move(found), reduced, seen_occam, work);
+  }
+}
+
+/// A spline has nearly as much where its c is nothing as the semi-cubical parabola that it is
+/// there.
+void add_mode_at_cusp(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
+                      double best, Evidences* evidences, WorkBudget& work) {
+  constexpr double kMissing = 2.0;  // log odds: what c and the place may cost beside none
+  constexpr auto kCusp = static_cast<std::size_t>(CurveClass::SemiCubicalParabola);
+  constexpr auto kSpline = static_cast<std::size_t>(CurveClass::CubicSpline);
+  auto& spline = evidences->classes[kSpline];
+  const auto& cusp = evidences->classes[kCusp];
+  if (!spline || !cusp || !fits[kSpline] || !fits[kCusp] || !work.allows()) {
+    return;
+  }
+  const double of_cusp =
+      log_evidence(likelihood, *evidences, CurveClass::SemiCubicalParabola, fits[kCusp]->chi2);
+  const double of_spline =
+      log_evidence(likelihood, *evidences, CurveClass::CubicSpline, fits[kSpline]->chi2);
+  if (of_cusp > std::max(of_spline + kMissing, best - kUnseenLogOdds)) {
+    spline = with_mode_at_cusp(*std::move(spline), *cusp, reduced, work);
+  }
+}
+
+}  // namespace
+
+void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
+                     double log_of_free_form, Evidences* evidences, WorkBudget& work) {
+  const auto told = [&](std::size_t i) {
+    return fits[i] ? log_evidence(likelihood, *evidences, static_cast<CurveClass>(i), fits[i]->chi2)
+                   : kNone;
+  };
+  std::size_t best = 1;
+  for (std::size_t i = 2; i < fits.size(); ++i) {
+    best = told(i) > told(best) ? i : best;
+  }
+  const double log_of_best = told(best);
+  bool alone = log_of_free_form < log_of_best - kUnseenLogOdds;
+  for (std::size_t i = 1; i < fits.size(); ++i) {
+    if (i != best) {
+      add_prior_mode(i, fits, reduced, likelihood, std::max(log_of_best, log_of_free_form),
+                     evidences, work);
+      alone = alone && told(i) < log_of_best - kUnseenLogOdds;
+    }
+  }
+  if (!alone) {
+    add_prior_mode(best, fits, reduced, likelihood, std::max(log_of_best, log_of_free_form),
+                   evidences, work);
+  }
+  add_mode_at_cusp(fits, reduced, likelihood, std::max(log_of_best, log_of_free_form), evidences,
+                   work);
+}
+
+}  // namespace palpate
