@@ -7,8 +7,6 @@
 namespace palpate {
 namespace {
 
-constexpr double kNone = -std::numeric_limits<double>::infinity();
-
 /// The class's mode that the prior leads to, where it might have more there than about its fit, and
 /// so much that it is seen beside `best`.
 void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced,
@@ -63,7 +61,7 @@ void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likeli
                      double log_of_free_form, Evidences* evidences, WorkBudget& work) {
   const auto told = [&](std::size_t i) {
     return fits[i] ? log_evidence(likelihood, *evidences, static_cast<CurveClass>(i), fits[i]->chi2)
-                   : kNone;
+                   : -std::numeric_limits<double>::infinity();
   };
   std::size_t best = 1;
   for (std::size_t i = 2; i < fits.size(); ++i) {
