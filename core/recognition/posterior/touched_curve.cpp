@@ -165,20 +165,22 @@ ArcMotions arc_motions(const CurveDerivatives& at, double t_from_touch) {
       continue;
     }
     const Vec2 lever = left_of(foot.position - at.position);
-    const Eigen::Matrix<double, 2, 3> by_shape =
-        position_by_parameters(canonical, curve->t[i]) - by_shape_at;
-    const Eigen::Matrix<double, 2, 3> by_shape_and_t = shape_rate(canonical, curve->t[i]);
     TouchedVector row = TouchedVector::Zero();
-    const ArcMotions of_arc = arc_motions(at, curve->t[i] - curve->shape.t);
-    for (int k = 0; k < own; ++k) {
-      if (touch.as_arc) {
+    if (touch.as_arc) {
+      const ArcMotions of_arc = arc_motions(at, curve->t[i] - curve->shape.t);
+      for (int k = 0; k < own; ++k) {
         row[k] = there.turn_by(of_arc.of_place.col(k), of_arc.by_t.col(k));
-        continue;
       }
-      const auto j = static_cast<std::size_t>(k);
-      row[k] = there.turn_by(
-          by_shape * motions.shape[j] - motions.turn[j] * lever - motions.t[j] * at.first,
-          by_shape_and_t * motions.shape[j] - motions.turn[j] * left_of(foot.first));
+    } else {
+      const Eigen::Matrix<double, 2, 3> by_shape =
+          position_by_parameters(canonical, curve->t[i]) - by_shape_at;
+      const Eigen::Matrix<double, 2, 3> by_shape_and_t = shape_rate(canonical, curve->t[i]);
+      for (int k = 0; k < own; ++k) {
+        const auto j = static_cast<std::size_t>(k);
+        row[k] = there.turn_by(
+            by_shape * motions.shape[j] - motions.turn[j] * lever - motions.t[j] * at.first,
+            by_shape_and_t * motions.shape[j] - motions.turn[j] * left_of(foot.first));
+      }
     }
     row[own] = there.turn_by(offset_direction, Vec2::Zero());
     row[own + 1] = there.turn_by(lever, left_of(foot.first));
@@ -235,8 +237,6 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
     const double residual = weight * away.dot(normal);
     curve->chi2 += residual * residual;
     const double lever = normal.dot(left_of(foot.position - at.position));
-    const Eigen::RowVector3d by_shape =
-        normal.transpose() * position_by_parameters(*canonical, foot.t);
     const auto r = static_cast<Eigen::Index>(i % kRows);
     const auto set = [&](std::size_t k, double value) {
       const auto column = static_cast<Eigen::Index>(k);
@@ -250,6 +250,8 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
         set(k, of_arc[static_cast<Eigen::Index>(k)]);
       }
     } else {
+      const Eigen::RowVector3d by_shape =
+          normal.transpose() * position_by_parameters(*canonical, foot.t);
       for (std::size_t k = 0; k < own; ++k) {
         set(k, by_shape.dot(motions->shape[k]) - normal.dot(shift[k]) - motions->turn[k] * lever);
       }

@@ -7,11 +7,11 @@
 
 namespace palpate {
 
-ArcCoordinates arc_coordinates_of(const SplinePlace& place) {
-  const double a = place.abc[0];
-  const double b = place.abc[1];
-  const double t = place.t;
-  const Vec2 first(2.0 * t, (3.0 * a * t + 2.0 * b) * t + place.abc[2]);
+ArcCoordinates arc_coordinates_of(const TouchedShape& spline) {
+  const double a = spline.values[0];
+  const double b = spline.values[1];
+  const double t = spline.t;
+  const Vec2 first(2.0 * t, (3.0 * a * t + 2.0 * b) * t + spline.values[2]);
   const double speed = first.norm();
   const Vec2 tangent = first / speed;
   const Vec2 normal = left_of(tangent);
@@ -22,7 +22,7 @@ ArcCoordinates arc_coordinates_of(const SplinePlace& place) {
 
 // The third derivative has the direction of y; x has none of it, and its second derivative by t is
 // 2.
-std::optional<SplinePlace> spline_at(const ArcCoordinates& z) {
+std::optional<TouchedShape> spline_at(const ArcCoordinates& z) {
   const Vec2 second = z.head<2>();
   const double third = z.tail<2>().norm();
   if (!(third > 0.0)) {
@@ -35,18 +35,18 @@ std::optional<SplinePlace> spline_at(const ArcCoordinates& z) {
     return std::nullopt;
   }
   const double rate = std::sqrt(2.0 / x_second);  // of s by t
-  SplinePlace place;
-  place.t = 0.5 * rate * x.x();
+  TouchedShape spline;
+  spline.t = 0.5 * rate * x.x();
   const double a = rate * rate * rate * third / 6.0;
-  const double b = 0.5 * rate * rate * second.dot(y) - 3.0 * a * place.t;
-  const double c = rate * y.x() - (3.0 * a * place.t + 2.0 * b) * place.t;
-  place.abc << a, b, c;
+  const double b = 0.5 * rate * rate * second.dot(y) - 3.0 * a * spline.t;
+  const double c = rate * y.x() - (3.0 * a * spline.t + 2.0 * b) * spline.t;
+  spline.values << a, b, c;
   // Near a cubical parabola x, y are small differences of large terms. Of the finest noise, a
   // hundred millionth of the touched extent, a thousandth may be rounding.
   constexpr double kMostTerms = 1e-11 / std::numeric_limits<double>::epsilon();
-  const double t = std::abs(place.t);
+  const double t = std::abs(spline.t);
   const double terms = ((a * t + std::abs(b) + 1.0) * t + std::abs(c)) * t;
-  return terms < kMostTerms ? std::optional(place) : std::nullopt;
+  return terms < kMostTerms ? std::optional(spline) : std::nullopt;
 }
 
 // A part is 1 to 20 half extents of what is touched, sqrt(20) half way. Each term of the series

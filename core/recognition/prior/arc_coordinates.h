@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/recognition/prior/student_law.h"
+#include "core/recognition/prior/touched_coordinates.h"
 
 namespace palpate {
 
@@ -12,19 +13,14 @@ namespace palpate {
 /// position = (s, 0) + s^2 / 2 (z0, z1) + s^3 / 6 (z2, z3).
 using ArcCoordinates = Eigen::Vector4d;
 
-/// A spline's parameters a, b, c and the place t on it.
-struct SplinePlace {
-  Eigen::Vector3d abc = Eigen::Vector3d::Zero();
-  double t = 0.0;
-};
-
-ArcCoordinates arc_coordinates_of(const SplinePlace& place);
+/// `spline`: a, b, c and the place.
+ArcCoordinates arc_coordinates_of(const TouchedShape& spline);
 
 /// The inverse. nullopt where the arc, travelled so, is no spline: parabolas and cubical parabolas
 /// are not, and on the far side of these the spline's t increases the other way. So near to one
 /// that double precision cannot tell them apart there is none either. Lengths in touched half
 /// extents.
-std::optional<SplinePlace> spline_at(const ArcCoordinates& z);
+std::optional<TouchedShape> spline_at(const ArcCoordinates& z);
 
 /// The law of each coordinate, in touched half extents: core/README.md, "The prior".
 StudentLaw law_of_arc(int k);

@@ -122,7 +122,7 @@ TouchedVector coordinates_of(Chart chart, const TouchedShape& shape) {
   const double b = shape.values[1];
   const double t = shape.t;
   if (chart.as_arc) {
-    z.head<4>() = arc_coordinates_of({shape.values, t});
+    z.head<4>() = arc_coordinates_of(shape);
     return z;
   }
   switch (chart.curve_class) {
@@ -159,8 +159,7 @@ TouchedVector coordinates_of(Chart chart, const TouchedShape& shape) {
 std::optional<TouchedShape> shape_at(Chart chart, const TouchedVector& z,
                                      const TouchedShape& like) {
   if (chart.as_arc) {
-    const auto place = spline_at(z.head<4>());
-    return place ? std::optional(TouchedShape{place->abc, place->t}) : std::nullopt;
+    return spline_at(z.head<4>());
   }
   TouchedShape shape;
   shape.t = like.t;  // line and circle: all places are alike

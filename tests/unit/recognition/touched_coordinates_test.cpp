@@ -163,7 +163,7 @@ TEST(ArcCoordinates, AreTheTermsOfTheSeriesAlongTheTangent) {
     const Curve spline = make_curve(CurveClass::CubicSpline, shape.values).value();
     const CurveDerivatives at = derivatives(spline, shape.t);
     const Vec2 tangent = at.first.normalized();
-    const ArcCoordinates z = arc_coordinates_of({shape.values, shape.t});
+    const ArcCoordinates z = arc_coordinates_of(shape);
     for (const double s : {-1.0, 0.3, 2.0}) {
       const Vec2 away = position(spline, shape.t + s / at.first.norm()) - at.position;
       const Vec2 of_series =
