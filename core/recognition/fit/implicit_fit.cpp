@@ -240,6 +240,11 @@ double weight_of_normal(const ConicCoefficients& q, const Vec2& foot, const FitP
   return at.normal.allFinite() && at.is_followed() ? normal_weight(point, at.turn_along()) : 0.0;
 }
 
+double normal_residual(const ConicCoefficients& q, const Vec2& foot, const FitPoint& point) {
+  return weight_of_normal(q, foot, point) *
+         normal_miss(point.normal, conic_gradient(q, foot).normalized());
+}
+
 double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot) {
   // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}, whose first step from the point
   // itself is the first-order (Sampson) foot point.
@@ -295,9 +300,7 @@ ImplicitFit placed_on(std::span<const FitPoint> points, ImplicitFit fit) {
                             points[i].inverse_sigma;
     fit.chi2 += residual * residual;
     if (has_normal(points[i])) {
-      const Vec2 normal = conic_gradient(fit.coefficients, fit.feet[i]).normalized();
-      const double turned = weight_of_normal(fit.coefficients, fit.feet[i], points[i]) *
-                            normal_miss(points[i].normal, normal);
+      const double turned = normal_residual(fit.coefficients, fit.feet[i], points[i]);
       fit.chi2 += turned * turned;
     }
   }

@@ -46,6 +46,10 @@ double signed_distance_from(const Vec2& foot, const ConicCoefficients& coefficie
 double weight_of_normal(const ConicCoefficients& coefficients, const Vec2& foot,
                         const FitPoint& point);
 
+/// What a point's measured normal, of that weight, leaves at its foot.
+double normal_residual(const ConicCoefficients& coefficients, const Vec2& foot,
+                       const FitPoint& point);
+
 /// A conic's polynomial is the product of its coefficients and these: x^2, x y, y^2, x, y, 1.
 using Monomials = Eigen::Matrix<double, 6, 1>;
 inline Monomials monomials(const Vec2& p) {

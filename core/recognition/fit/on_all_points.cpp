@@ -63,20 +63,16 @@ double squares_of_normals(const ClassFit& fit, const SmoothModel& smooth,
     if (!has_normal(points[i])) {
       continue;
     }
-    Vec2 normal;
-    double weight = 0.0;
+    double residual = 0.0;
     if (fit.polynomial) {
       const PlacedPoint foot = place_on(
           *fit.polynomial, fit.polynomial->t[smooth.nearest_reduced[i]], points[i].position);
-      normal = normal_at(fit.polynomial->coefficients, foot).normal;
-      weight = weight_of_normal(fit.polynomial->coefficients, foot, points[i]);
+      residual = normal_residual(fit.polynomial->coefficients, foot, points[i]);
     } else {
       Vec2 foot;
       signed_distance(fit.implicit->coefficients, points[i].position, &foot);
-      normal = conic_gradient(fit.implicit->coefficients, foot).normalized();
-      weight = weight_of_normal(fit.implicit->coefficients, foot, points[i]);
+      residual = normal_residual(fit.implicit->coefficients, foot, points[i]);
     }
-    const double residual = weight * normal_miss(points[i].normal, normal);
     squares += residual * residual;
   }
   return squares;

@@ -117,9 +117,7 @@ PolynomialFit placed_on(std::span<const FitPoint> points, PolynomialFit fit) {
     fit.t[i] = placed.t;
     fit.chi2 += residual * residual;
     if (has_normal(points[i])) {
-      const double turned =
-          weight_of_normal(fit.coefficients, placed, points[i]) *
-          normal_miss(points[i].normal, normal_at(fit.coefficients, placed).normal);
+      const double turned = normal_residual(fit.coefficients, placed, points[i]);
       fit.chi2 += turned * turned;
     }
   }

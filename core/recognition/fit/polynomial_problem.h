@@ -55,6 +55,12 @@ inline double weight_of_normal(const PolynomialCoefficients& c, const PlacedPoin
   return at.is_followed() ? normal_weight(point, at.turn_along()) : 0.0;
 }
 
+/// What a point's measured normal, of that weight, leaves at its foot.
+inline double normal_residual(const PolynomialCoefficients& c, const PlacedPoint& foot,
+                              const FitPoint& point) {
+  return weight_of_normal(c, foot, point) * normal_miss(point.normal, normal_at(c, foot).normal);
+}
+
 /// Orthogonal distances as functions of the model's coefficients, for `minimise`.
 template <PolynomialModel kModel>
 class PolynomialProblem {
