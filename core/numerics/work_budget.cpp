@@ -9,25 +9,27 @@ double price_of(WorkKind kind) {
     case WorkKind::PolynomialRow:
       return 1.0;
     case WorkKind::ConicRow:
-      return 1.7;
+      return 1.85;
+    case WorkKind::SoughtFoot:
+      return 38.0;
     case WorkKind::FitStep:
-      return 6.0;
+      return 3.3;
     case WorkKind::AxisRow:
       return 0.3;
     case WorkKind::SeedRow:
-      return 0.2;
+      return 0.28;
     case WorkKind::PlacedRow:
-      return 4.0;
+      return 3.3;
     case WorkKind::PathRow:
-      return 7.0;
+      return 6.5;
     case WorkKind::PosteriorRow:
-      return 3.4;
+      return 2.9;
     case WorkKind::DriftRow:
-      return 0.8;
+      return 0.95;
     case WorkKind::OffsetCell:
-      return 10.0;
+      return 8.4;
     case WorkKind::SpikeRow:
-      return 0.65;
+      return 0.55;
     case WorkKind::Sample:
       break;
   }

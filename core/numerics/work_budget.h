@@ -12,6 +12,7 @@ namespace palpate {
 enum class WorkKind {
   PolynomialRow,  ///< a point against a polynomial curve: its foot followed, its row of a step
   ConicRow,       ///< a point against a conic, circle or line, likewise
+  SoughtFoot,     ///< a point whose nearest foot is sought anywhere on a polynomial curve
   FitStep,        ///< a step of such a fit, whatever its points: a small system solved
   AxisRow,        ///< a point against a curve that is seen along an axis
   SeedRow,        ///< a point or a sum of points, for one axis and vertex of the coarse search
@@ -23,7 +24,7 @@ enum class WorkKind {
   SpikeRow,       ///< a sample in one fit of the spike search
   Sample,         ///< a sample read, smoothed and told of once
 };
-inline constexpr std::size_t kWorkKinds = 12;
+inline constexpr std::size_t kWorkKinds = 13;
 
 /// In units of one PolynomialRow.
 double price_of(WorkKind kind);

@@ -6,7 +6,7 @@ namespace palpate {
 namespace {
 
 /// Over the work of a clean ellipse. Twice what a planner can wait for, eight: strokes of a round
-/// tip with drift and lobes, which are recognised today, take more than six (qualification_test).
+/// tip with drift and lobes, which are recognised today, take more than ten (qualification_test).
 constexpr double kMostWork = 16.0;
 
 /// Of that, for what is always done: as much as two take in all, for what is done of one weighing
@@ -28,7 +28,7 @@ double work_of_clean_ellipse(std::size_t samples, std::size_t patches) {
   constexpr double kOfSample = 10.3;
   // The search goes through the points that stand for samples: through all samples where these are
   // few; a dozen of a patch; 64 of many patches, which are then followed on all.
-  const double by_samples = 2500.0 + 150.0 * n + 1500.0 * p;
+  const double by_samples = 2500.0 + 350.0 * n + 1500.0 * p;
   const double of_few_patches = 6000.0 + 6000.0 * p;
   const double of_some_patches = 20000.0 + 2500.0 * p;
   const double of_many_patches = 57000.0 + 200.0 * p;

@@ -97,21 +97,29 @@ void carry_to_all(const SmoothModel& smooth, PolynomialFit* curve) {
   curve->t = std::move(t);
 }
 
-/// The parameters of the nearest feet, for all points: where one that is followed from its reduced
-/// point ends on the wrong arm of a bend, or on a cusp, where every way ends.
-void seek_feet(std::span<const FitPoint> points, PolynomialFit* curve) {
-  curve->t.clear();
-  for (const FitPoint& point : points) {
-    curve->t.push_back(nearest_parameter(curve->coefficients, point.position));
+/// For points whose foot, followed from their reduced point, ended on the wrong arm of a bend, or
+/// on a cusp, where every way ends: the parameters of the nearest feet.
+void seek_feet(std::span<const FitPoint> points, PolynomialFit* curve, WorkBudget& work) {
+  // Of a residual, in deviations of the noise, on either side of the curve: what lies nearer than
+  // noise leaves one point in twenty gains next to nothing from another foot, and seeking costs as
+  // much as forty steps of following.
+  constexpr double kFar = 2.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const FitPoint& point = points[i];
+    const double distance = std::abs(place_on(*curve, curve->t[i], point.position).signed_distance);
+    if (std::abs(distance - std::abs(point.offset)) * point.inverse_sigma > kFar) {
+      work.spend(WorkKind::SoughtFoot, 1);
+      curve->t[i] = nearest_parameter(curve->coefficients, point.position);
+    }
   }
 }
 
-/// How the points' feet are found: from the reduced points', or anywhere.
+/// How the points' feet are found: from the reduced points', or anywhere where those are far.
 enum class Feet { Followed, Sought };
 
 /// A fit on the reduced points, not refined on all points yet.
 ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
-                      std::span<const FitPoint> points, Feet feet = Feet::Followed) {
+                      std::span<const FitPoint> points, Feet feet, WorkBudget& work) {
   const bool tips = has_tips(points);
   ClassFit start = fit;
   start.weighed = start.on_all = true;
@@ -123,10 +131,9 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
   }
   for (auto* curve : {&start.polynomial, &start.rival}) {
     if (*curve) {
+      carry_to_all(smooth, &**curve);
       if (feet == Feet::Sought) {
-        seek_feet(points, &**curve);
-      } else {
-        carry_to_all(smooth, &**curve);
+        seek_feet(points, &**curve, work);
       }
       (*curve)->side = tips ? side_of_tips(distances_from(**curve, points), points) : 0;
     }
@@ -214,16 +221,16 @@ std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& sm
                                       WorkBudget& work) {
   const std::span<const FitPoint> points(data.points);
   work.spend(WorkKind::PlacedRow, points.size());
-  ClassFit refined =
-      refine_parts(start_on_all(fit, smooth, points), points, effort, RivalOf::Best, work);
+  ClassFit refined = refine_parts(start_on_all(fit, smooth, points, Feet::Followed, work), points,
+                                  effort, RivalOf::Best, work);
   // All points can leave no more than the reduced ones and the smooth model do: some feet are on
   // the wrong arm of a bend.
   const std::size_t reduced = residual_count(smooth.reduced);
   if (fit.polynomial && fits_well(fit.chi2, reduced) &&
       !fits_well(refined.chi2 - smooth.chi2, reduced) && work.allows()) {
     work.spend(WorkKind::PlacedRow, points.size());
-    ClassFit again = refine_parts(start_on_all(fit, smooth, points, Feet::Sought), points, effort,
-                                  RivalOf::Best, work);
+    ClassFit again = refine_parts(start_on_all(fit, smooth, points, Feet::Sought, work), points,
+                                  effort, RivalOf::Best, work);
     if (again.chi2 < refined.chi2) {
       refined = std::move(again);
     }

@@ -9,9 +9,10 @@ namespace {
 
 constexpr auto kKinds = static_cast<Eigen::Index>(kWorkKinds);
 
-constexpr std::array kNames = {"polynomial row", "conic row",   "fit step",  "axis row",
-                               "seed row",       "placed row",  "path row",  "posterior row",
-                               "drift row",      "offset cell", "spike row", "sample"};
+constexpr std::array kNames = {"polynomial row", "conic row", "sought foot", "fit step",
+                               "axis row",       "seed row",  "placed row",  "path row",
+                               "posterior row",  "drift row", "offset cell", "spike row",
+                               "sample"};
 static_assert(kNames.size() == kWorkKinds);
 
 }  // namespace
