@@ -1,5 +1,6 @@
 // palpate calibrate: what a probe does to positions, from touches of a known artefact.
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <set>
 #include <string>
@@ -83,6 +84,24 @@ int write(const std::string& path, const std::string& text) {
   return why.empty() ? kDone : complain(why, kFailed);
 }
 
+/// Tips touch from outside of the material. Samples that lie within it, by more than their noise
+/// and the lobes, say that it is the other side, or that the artefact has another size.
+std::string note_of_depth(const Qualification& result) {
+  constexpr double kSure = 5.0;  // deviations
+  const NormalOffset& offset = result.probe.offset;
+  const double tip_m = result.probe.tip_radius_m + offset.coefficients_m[0];
+  const double lobes_m = offset.coefficients_m.tail(offset.coefficients_m.size() - 1).norm();
+  const double set_up_m = std::hypot(result.probe.setup_m.value, result.probe.setup_m.deviation);
+  const double deviation_m = std::hypot(std::sqrt(offset.covariance_m2(0, 0)), set_up_m);
+  if (!(tip_m < -kSure * deviation_m - lobes_m)) {
+    return "";
+  }
+  return "the samples lie " + text_of_length(-tip_m) + " within the material: " +
+         (result.bore ? "touch it from within the bore, or leave out --bore"
+                      : "if a bore is touched, say --bore") +
+         "; or the artefact has another size, or the tip radius is not that";
+}
+
 int run(const CalibrateCommand& calibrate) {
   QualificationOrigin origin;
   const Result<Curve> artefact = artefact_of(calibrate, origin.artefact);
@@ -99,6 +118,7 @@ int run(const CalibrateCommand& calibrate) {
   if (!probes.empty()) origin.probe = *probes.begin();
   const Qualification result = qualify(*artefact.value, *recordings.value, calibrate.options);
   if (!is_estimate(result.status)) return complain(why_not(result.status), kFailed);
+  if (const std::string note = note_of_depth(result); !note.empty()) complain(note, kDone);
   const v1::Probe probe = probe_message(result, origin);
   std::cout << (calibrate.format == "json" ? json_line(probe) : qualification_text(result, origin));
   if (!calibrate.output.empty()) {

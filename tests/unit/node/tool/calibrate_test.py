@@ -63,6 +63,15 @@ class Calibrate(unittest.TestCase):
         self.assertFalse(probe.HasField("lag_m"))
         self.assertEqual(xml.dom.minidom.parse(str(plot)).documentElement.tagName, "svg")
 
+    def test_a_bore_that_is_not_told_of_is_noticed(self):
+        for tip, noticed in ((-TIP, True), (TIP, False), (0.0, False)):
+            centres = ellipse(0.025, 0.025, 1, tip=tip).replace(f",{tip}\n", ",0\n")
+            for bore in ((), ("--bore",)):
+                code, _, err = run(TOOL, "calibrate", "--circle", "0.025", *bore, "-", text_in=centres)
+                self.assertEqual(code, 0, err)
+                within = noticed if not bore else tip > 0
+                self.assertEqual("within the material" in err, within, (tip, bore, err))
+
     def test_json_says_what_the_file_says(self):
         path, out = self.calibrated("--format", "json")
         written = text_format.Parse(path.read_text(), probe_pb2.Probe())
