@@ -104,10 +104,11 @@ void seek_feet(std::span<const FitPoint> points, PolynomialFit* curve, WorkBudge
   // noise leaves one point in twenty gains next to nothing from another foot, and seeking costs as
   // much as forty steps of following.
   constexpr double kFar = 2.0;
+  const std::vector<double> distances = distances_from(*curve, points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const FitPoint& point = points[i];
-    const double distance = std::abs(place_on(*curve, curve->t[i], point.position).signed_distance);
-    if (std::abs(distance - std::abs(point.offset)) * point.inverse_sigma > kFar) {
+    const double off = std::abs(distances[i]) - std::abs(point.offset);
+    if (std::abs(off) * point.inverse_sigma > kFar) {
       work.spend(WorkKind::SoughtFoot, 1);
       curve->t[i] = nearest_parameter(curve->coefficients, point.position);
     }
