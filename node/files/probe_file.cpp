@@ -164,8 +164,10 @@ Result<QualifiedProbe> parse_probe(const std::string& text, const std::string& n
   QualifiedProbe probe;
   probe.file = name;
   TextFormat::ParseInfoTree tree;
-  if (std::string error = parse_text(text, name, probe.described, &tree); !error.empty()) {
-    return Result<QualifiedProbe>::fail(std::move(error));
+  if (const std::string error = parse_text(text, name, probe.described, &tree); !error.empty()) {
+    return Result<QualifiedProbe>::fail(
+        in_words(error, name,
+                 "this is no line of a probe file; palpate calibrate --output writes probe files"));
   }
   ProbeCheck check(probe.described, tree, name);
   std::optional<ProbeCharacter> character = check.check();

@@ -42,6 +42,12 @@ std::string parse_text(const std::string& text, const std::string& name,
   return first_error.text().empty() ? name + ": cannot be parsed" : first_error.text();
 }
 
+std::string in_words(std::string error, const std::string& name, std::string_view words) {
+  constexpr std::string_view kPlaceEnd = ": ";
+  const std::size_t said = error.find(kPlaceEnd, name.size()) + kPlaceEnd.size();
+  return error.insert(said, std::string(words) + " (") + ")";
+}
+
 Result<std::string> read_file(const std::string& path) {
   // Far longer than any file that a person writes. [bytes]
   constexpr std::size_t kMostBytes = std::size_t{64} << 20;

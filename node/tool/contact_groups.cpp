@@ -1,8 +1,11 @@
 #include "node/tool/contact_groups.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
+
+#include "node/files/counted.h"
 
 namespace palpate {
 
@@ -46,6 +49,32 @@ std::string note_of_unused_detail(const ContactGroup& group) {
   return "of " + std::to_string(count) +
          " samples with a measured normal or covariance the position and mean noise count alone "
          "(palpate fit --class uses all of it)";
+}
+
+std::string note_of_unused_sigma(const ContactGroup& group, double sigma_m) {
+  constexpr double kRounding = 1e-9;  // of the change to metres
+  if (!(sigma_m > 0.0)) return {};
+  std::size_t samples = 0;
+  std::size_t stated = 0;
+  bool is_another = false;
+  bool has_covariance = false;
+  for (const ContactRun& run : group.runs) {
+    samples += run.samples.size();
+    for (const ContactSample& sample : run.samples) {
+      if (!(sample.sigma_m > 0.0)) continue;
+      ++stated;
+      is_another |= std::abs(sample.sigma_m - sigma_m) > kRounding * sigma_m;
+    }
+    for (const SampleDetail& detail : run.details) has_covariance |= detail.covariance_m2.x() > 0.0;
+  }
+  if (!is_another) return {};
+  const std::string column = has_covariance ? "columns sigma, cov_*" : "column sigma";
+  return stated == samples
+             ? "--sigma is not used: the noise that the file states for every sample (" + column +
+                   ") holds"
+             : "--sigma is used for " + counted(samples - stated, "sample") + " of " +
+                   std::to_string(samples) + ": for the others the noise that the file states (" +
+                   column + ") holds";
 }
 
 AddResult add_group(const ContactGroup& group, Recognizer& recognizer) {

@@ -27,6 +27,9 @@ std::vector<ContactGroup> contact_groups(const std::string& file, const ContactT
 /// mean noise of covariances is; else empty.
 std::string note_of_unused_detail(const ContactGroup& group);
 
+/// If samples state their noise and --sigma says another: a note that theirs holds; else empty.
+std::string note_of_unused_sigma(const ContactGroup& group, double sigma_m);
+
 /// Adds all samples of the group to the recognizer.
 AddResult add_group(const ContactGroup& group, Recognizer& recognizer);
 

@@ -3,14 +3,17 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <sstream>
 #include <string>
 
+#include "core/curves/curve_class.h"
 #include "node/client/connection.h"
 #include "node/files/printable.h"
 #include "node/process/quiet_protobuf.h"
 #include "node/tool/commands/command.h"
+#include "node/tool/commands/usage_error.h"
 
 namespace palpate {
 
@@ -47,6 +50,28 @@ CLI::Validator number_within(double lowest, double highest) {
     return good ? "" : "\"" + text + "\" is no number from " + why;
   };
   return CLI::Validator(check, name.str());
+}
+
+CLI::Validator curve_class_name() {
+  const auto check = [](const std::string& text) -> std::string {
+    const auto named = curve_class_from_name(text);
+    if (named && *named != CurveClass::Unclassified) return "";
+    std::string known;
+    for (const CurveClass one : kCurveClasses) {
+      known += (known.empty() ? "" : ", ") + std::string(name_of(one));
+    }
+    return "\"" + text + "\" is no curve class: " + known;
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator svg_file() {
+  const auto check = [](const std::string& text) -> std::string {
+    const std::string ending = std::filesystem::path(text).extension();
+    const bool good = ending.empty() || CLI::detail::to_lower(ending) == ".svg";
+    return good ? "" : "\"" + text + "\" does not end in .svg: pictures are written as SVG only";
+  };
+  return CLI::Validator(check, "");
 }
 
 void add_connection_flags(CLI::App& command, const char* flag, const char* help,
@@ -100,14 +125,12 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // CLI11 asks for a command where an unknown one was given.
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError) && argc > 1 &&
-        argv[1][0] != '-' && app.get_subcommands().empty()) {
-      return palpate::complain(
-          "there is no command " + palpate::printable(argv[1]) + "; palpate --help lists them",
-          palpate::kUsage);
+    const bool is_help = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
+    if (!is_help) {
+      return palpate::complain(palpate::usage_error(app, error), palpate::kUsage);
     }
-    return app.exit(error) == 0 ? palpate::kDone : palpate::kUsage;
+    app.exit(error);  // prints it
+    return palpate::kDone;
   } catch (const std::exception& error) {
     return palpate::complain(error.what(), palpate::kFailed);
   }

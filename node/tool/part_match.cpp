@@ -118,8 +118,9 @@ Result<ClosedSpline> read_part(const std::string& path) {
 Result<ClosedSpline> parse_part(const std::string& text, const std::string& path) {
   using Loaded = Result<ClosedSpline>;
   v1::Scene scene;
-  if (std::string error = parse_text(text, path, scene); !error.empty()) {
-    return Loaded::fail(std::move(error));
+  if (const std::string error = parse_text(text, path, scene); !error.empty()) {
+    return Loaded::fail(in_words(
+        error, path, "this is no line of a scene file, such as paper_closed_spline.textproto"));
   }
   if (!scene.has_closed_spline()) {
     return Loaded::fail(path + ": has no closed_spline: only such parts can be matched");

@@ -175,6 +175,7 @@ void add_calibrate_command(CLI::App& app, int& exit_code) {
       ->add_option("--output", calibrate->output, "Write the probe file (palpate/v1/probe.proto)")
       ->type_name("FILE");
   command->add_option("--plot", calibrate->plot, "Draw the probe's lobes and the residuals as SVG")
+      ->check(svg_file())
       ->type_name("FILE");
   command
       ->add_option("--format", calibrate->format,

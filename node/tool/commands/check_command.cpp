@@ -1,10 +1,13 @@
 // palpate check: listens to probes in the recognizer's place and says what is wrong with their
 // streams.
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <memory>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "node/files/counted.h"
 #include "node/process/clock.h"
@@ -25,17 +28,30 @@ struct CheckCommand {
   FileFlags flags;
 };
 
-/// Worst first; gives the exit code.
-int print(const std::vector<Finding>& findings) {
+/// Worst first; gives the exit code. `unit_note`: what was assumed of a file's unit.
+int print(const std::vector<Finding>& findings, const std::string& unit_note = "") {
   bool good = true;
+  bool doubtful = false;
   for (const Finding& finding : findings) {
     std::cout << name_of(finding.severity) << "  "
               << (finding.probe.empty() ? "" : finding.probe + ": ") << finding.what
               << (finding.cure.empty() ? "" : "\n         " + finding.cure) << "\n";
     good = good && finding.severity != Severity::Error;
+    doubtful = doubtful || (finding.severity == Severity::Warning && finding.spoils_answer);
   }
-  std::cout << (good ? "fit for the recognizer\n" : "not fit for the recognizer yet\n");
+  std::string verdict = good ? "fit for the recognizer" : "not fit for the recognizer yet";
+  if (good && doubtful) verdict += ", but see the warnings: its answer may be wrong";
+  if (good && !unit_note.empty()) verdict += "; check the unit: " + unit_note;
+  std::cout << verdict << "\n";
   return good ? kDone : kFailed;
+}
+
+/// The note of a unit that was assumed, by the option that it offers.
+std::string unit_note_of(const ContactFile& file) {
+  const auto found = std::find_if(
+      file.notes.begin(), file.notes.end(),
+      [](const std::string& note) { return note.find("(else --unit") != std::string::npos; });
+  return found == file.notes.end() ? "" : *found;
 }
 
 int check_file(const CheckCommand& command) {
@@ -62,7 +78,7 @@ int check_file(const CheckCommand& command) {
     for (Finding& finding : check_group(group)) findings.push_back(std::move(finding));
   }
   sort_findings(&findings);
-  return print(findings);
+  return print(findings, unit_note_of(*file.value));
 }
 
 int run(const CheckCommand& command) {

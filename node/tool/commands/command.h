@@ -31,6 +31,12 @@ CLI::Validator positive_number();
 CLI::Validator non_negative_number();
 CLI::Validator number_within(double lowest, double highest);
 
+/// For options: a class that a curve can be of; the error lists them.
+CLI::Validator curve_class_name();
+
+/// For options: a file for a picture. A name without an ending, such as /dev/stdout, is good too.
+CLI::Validator svg_file();
+
 /// Says on standard error what is wrong.
 int complain(const std::string& why, int exit_code);
 

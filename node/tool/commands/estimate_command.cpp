@@ -119,6 +119,10 @@ int run(EstimateCommand& command) {
     if (const std::string note = note_of_unused_detail(group); !note.empty()) {
       complain(command.file + ": " + note, kDone);
     }
+    if (const std::string note = note_of_unused_sigma(group, command.options.sigma_m);
+        !note.empty()) {
+      complain(command.file + ": " + note, kDone);
+    }
     for (const ContactRun& run : group.runs) {
       const std::string& probe = group.probes[run.context.probe];
       std::vector<Vec2> points;

@@ -57,7 +57,7 @@ void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
     }
     CLI::Option* option = command.add_option(flag, field, info.help)->group("Recognition");
     if constexpr (std::is_same_v<Field, std::vector<std::string>>) {
-      option->delimiter(',')->type_name("CLASS,...");
+      option->delimiter(',')->type_name("CLASS,...")->check(curve_class_name());
     } else if constexpr (std::is_same_v<Field, std::string>) {
       option->capture_default_str()->type_name("NAME");
     } else if constexpr (!std::is_same_v<Field, bool>) {
@@ -171,11 +171,6 @@ int run(FitCommand& fit) {
   if (std::string why = resolve(fit.words, fit.recognizer); !why.empty()) {
     return complain(why, kUsage);
   }
-  if (!fit.given_class.empty() &&
-      curve_class_from_name(fit.given_class).value_or(CurveClass::Unclassified) ==
-          CurveClass::Unclassified) {
-    return complain("--class: no class is called " + printable(fit.given_class), kUsage);
-  }
   if (!fit.part.empty() && !fit.probe_files.empty()) {
     return complain(
         "--probe: not with --part, which places the samples as they are: only the normals of a "
@@ -202,6 +197,12 @@ int run(FitCommand& fit) {
     for (FitInput& input : *read.value) {
       for (const std::string& warning : input.warnings) {
         complain("WARNING: " + input.group.file + ": " + warning, kDone);
+      }
+      std::string note = note_of_unused_sigma(input.group, fit.recognizer.sigma_m);
+      if (!note.empty()) {
+        complain(input.group.file + ": " + note, kDone);
+        // Placing says its notes here, not beside its answers.
+        if (fit.part.empty()) input.notes.push_back(std::move(note));
       }
       inputs.push_back(std::move(input));
     }
@@ -315,6 +316,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
               "--plot", fit->plot,
               "Draw samples, curve, 95 % band, rivals, enlarged residuals and frame as SVG; "
               "further groups go to FILE-2.svg, ...")
+          ->check(svg_file())
           ->type_name("FILE");
   CLI::Option* invariants_plot =
       command
@@ -323,6 +325,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
                        "asked about: what each contact says, and the value of all with its band; "
                        "conics as the line Ip = Ic2 - Ic1 |kappa|^(-2/3); further groups go to "
                        "FILE-2.svg, ...")
+          ->check(svg_file())
           ->type_name("FILE");
   CLI::Option* given =
       command
@@ -333,6 +336,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
               "residuals. Of the options below --sigma and --determined-fraction count; json is "
               "one GivenClassAnswer (palpate/v1/given_class.proto) a line")
           ->excludes(invariants_plot)
+          ->check(curve_class_name())
           ->type_name("CLASS");
   command
       ->add_option(

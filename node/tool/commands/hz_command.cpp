@@ -1,6 +1,9 @@
 // palpate hz: how often the recognizer publishes, topic by topic.
+#include <chrono>
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <string>
 
 #include "node/files/printable.h"
 #include "node/process/stop_signals.h"
@@ -15,12 +18,16 @@ struct HzCommand {
 };
 
 void print(const std::map<std::string, TopicCount>& counts) {
+  const auto now = std::chrono::steady_clock::now();
   for (const auto& [topic, count] : counts) {
     std::printf("%-40s %8.1f Hz  intervals %.1f to %.1f ms  %llu messages",
-                printable(topic).c_str(), count.rate_hz(), 1e3 * count.shortest_s,
+                printable(topic).c_str(), count.rate_hz(now), 1e3 * count.shortest_s,
                 1e3 * count.longest_s, static_cast<unsigned long long>(count.messages));
     if (count.repeats > 0) {
       std::printf(", %llu repeats", static_cast<unsigned long long>(count.repeats));
+    }
+    if (const double silence_s = count.silence_s(now); silence_s > 0.0) {
+      std::printf(", no message for %.0f s", silence_s);
     }
     std::printf("\n");
   }

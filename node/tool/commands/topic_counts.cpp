@@ -1,13 +1,12 @@
 #include "node/tool/commands/topic_counts.h"
 
-#include <google/protobuf/io/coded_stream.h>
-
-#include <algorithm>
+#include <chrono>
+#include <utility>
+#include <vector>
 
 #include "node/wire/endpoint.h"
 #include "node/wire/handshake_watch.h"
 #include "node/wire/socket.h"
-#include "palpate/v1/header.pb.h"
 
 namespace palpate {
 namespace {
@@ -15,44 +14,7 @@ namespace {
 // Ten times what a recognizer with all its groups and probes publishes on.
 constexpr std::size_t kMostTopics = 10'000;
 
-// Every message of the contract begins with its header, whatever else it is.
-bool header_of(std::string_view payload, v1::Header& header) {
-  google::protobuf::io::CodedInputStream stream(
-      reinterpret_cast<const std::uint8_t*>(payload.data()), static_cast<int>(payload.size()));
-  constexpr std::uint32_t kFirstField = 1U << 3U | 2U;  // number 1, of stated length
-  int bytes = 0;
-  if (stream.ReadTag() != kFirstField || !stream.ReadVarintSizeAsInt(&bytes)) return false;
-  stream.PushLimit(bytes);
-  return header.ParseFromCodedStream(&stream);
-}
-
 }  // namespace
-
-double TopicCount::rate_hz() const {
-  const double span = std::chrono::duration<double>(last - first).count();
-  return messages > 1 && span > 0.0 ? static_cast<double>(messages - 1) / span : 0.0;
-}
-
-void TopicCount::take(std::string_view payload, std::chrono::steady_clock::time_point now) {
-  bytes += payload.size();
-  if (v1::Header header; header_of(payload, header)) {
-    if (messages > 0 && header.epoch() == epoch_ && header.seq() == seq_) {
-      ++repeats;
-      return;
-    }
-    epoch_ = header.epoch();
-    seq_ = header.seq();
-  }
-  if (messages == 0) {
-    first = now;
-  } else {
-    const double interval = std::chrono::duration<double>(now - last).count();
-    shortest_s = messages == 1 ? interval : std::min(shortest_s, interval);
-    longest_s = std::max(longest_s, interval);
-  }
-  last = now;
-  ++messages;
-}
 
 Result<std::map<std::string, TopicCount>> count_topics(
     const Connection& connection,

@@ -2,46 +2,87 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "node/tool/drawing/colours.h"
 #include "node/tool/drawing/svg_table.h"
+#include "node/tool/drawing/ticks.h"
 #include "node/tool/text/quantity.h"
 
 namespace palpate {
 namespace {
 
 constexpr double kRound = 480.0;   // side of the polar picture's square [px]
-constexpr double kCircle = 130.0;  // radius of the circle of offset 0 [px]
-constexpr double kReach = 85.0;    // of the largest offset beyond that circle [px]
+constexpr double kCircle = 130.0;  // radius of the circle of the mean offset [px]
+constexpr double kReach = 85.0;    // of the sample that lies farthest off that circle [px]
 constexpr double kStrip = 500.0;   // width of the strip of residuals [px]
 constexpr const char* kSpikeColour = "#c2185b";
 
 /// A point of the polar picture.
-std::string polar(double angle, double offset_px) {
-  const double radius = kCircle + offset_px;
+std::string polar(double angle, double lobe_px) {
+  const double radius = kCircle + lobe_px;
   return formatted("%.1f,%.1f ", 0.5 * kRound + radius * std::cos(angle),
                    0.5 * kRound - radius * std::sin(angle));
 }
 
-/// The offset plus `deviations` standard deviations, all around.
+/// The offset less its mean: a probe whose tip radius was not stated has all of it in the mean, a
+/// hundred times the lobes.
+double lobe_at(const NormalOffset& offset, double normal_angle) {
+  return offset_at(offset, normal_angle) - offset.coefficients_m[0];
+}
+
+/// The lobes plus `deviations` standard deviations, all around.
 std::string ring(const NormalOffset& offset, double deviations, double px_per_m) {
   std::string points;
   constexpr int kSteps = 360;
   for (int i = 0; i < kSteps; ++i) {
     const double phi = 2.0 * kPi * i / kSteps;
     points += polar(
-        phi, px_per_m * (offset_at(offset, phi) + deviations * offset_deviation_at(offset, phi)));
+        phi, px_per_m * (lobe_at(offset, phi) + deviations * offset_deviation_at(offset, phi)));
   }
   return points;
 }
 
-/// Largest value of all samples except spikes. [m]
-double largest(const Qualification& qualification, double QualifiedSample::*field) {
-  double most = 1e-12;
+/// Of each sample, what is left of its distance without the mean offset and that of its set-up. [m]
+std::vector<double> sampled_lobes(const Qualification& qualification) {
+  std::vector<double> lobes;
   for (const QualifiedSample& sample : qualification.samples) {
-    if (!sample.spike) most = std::max(most, std::abs(sample.*field));
+    lobes.push_back(lobe_at(qualification.probe.offset, sample.normal_angle) + sample.residual_m);
+  }
+  return lobes;
+}
+
+/// Largest size of all samples' values except spikes'. [m]
+double largest(const Qualification& qualification, const std::vector<double>& values) {
+  double most = 1e-12;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!qualification.samples[i].spike) most = std::max(most, std::abs(values[i]));
   }
   return most;
+}
+
+/// A length with its name, at the lower left of the polar picture.
+std::string scale_bar(double reach_m, double px_per_m) {
+  constexpr double kLeft = 12.0;
+  constexpr double kBottom = kRound - 40.0;
+  const double length_m = tick_step(reach_m, 2.0);
+  const double right = kLeft + px_per_m * length_m;
+  return formatted("<path d=\"M%.1f,%.1f v8 m0,-4 H%.1f m0,-4 v8\" fill=\"none\" stroke=\"%s\"/>\n",
+                   kLeft, kBottom - 8.0, right, kCurveColour) +
+         formatted("<text x=\"%.1f\" y=\"%.1f\">%s</text>\n", right + 6.0, kBottom,
+                   text_of_length(length_m).c_str());
+}
+
+/// "mean offset beyond the tip radius of 2 mm: -30.0 +- 1.2 um"
+std::string mean_text(const ProbeCharacter& probe) {
+  const double mean_m = probe.offset.coefficients_m[0];
+  const double deviation_m = std::sqrt(probe.offset.covariance_m2(0, 0));
+  const LengthUnit unit = length_unit_for(std::max(std::abs(mean_m), deviation_m));
+  const std::string beyond = probe.tip_radius_m > 0.0
+                                 ? "beyond the tip radius of " + text_of_length(probe.tip_radius_m)
+                                 : "with no tip radius stated";
+  return "mean offset " + beyond + ": " +
+         with_sigma(unit.per_m * mean_m, unit.per_m * deviation_m) + " " + std::string(unit.name);
 }
 
 }  // namespace
@@ -50,7 +91,8 @@ std::string lobes_plot(const Qualification& qualification, const std::string& ti
   constexpr std::size_t kMostDrawn = 4000;
   const std::size_t step = qualification.samples.size() / kMostDrawn + 1;
   const NormalOffset& offset = qualification.probe.offset;
-  const double reach_m = largest(qualification, &QualifiedSample::distance_m);
+  const std::vector<double> lobes = sampled_lobes(qualification);
+  const double reach_m = largest(qualification, lobes);
   const double px_per_m = kReach / reach_m;
   std::string svg = formatted(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" "
@@ -68,7 +110,7 @@ std::string lobes_plot(const Qualification& qualification, const std::string& ti
          "Z M" + ring(offset, -kBand, px_per_m) + "Z\"/>\n";
   for (std::size_t i = 0; i < qualification.samples.size(); i += step) {
     const QualifiedSample& sample = qualification.samples[i];
-    const double px = std::clamp(px_per_m * sample.distance_m, -kReach, kReach);
+    const double px = std::clamp(px_per_m * lobes[i], -kReach, kReach);
     const std::string place = polar(sample.normal_angle, px);
     const std::size_t comma = place.find(',');
     svg += "<circle cx=\"" + place.substr(0, comma) + "\" cy=\"" +
@@ -77,16 +119,20 @@ std::string lobes_plot(const Qualification& qualification, const std::string& ti
   }
   svg += "<polygon fill=\"none\" stroke=\"" + std::string(kCurveColour) +
          "\" stroke-width=\"1.5\" points=\"" + ring(offset, 0.0, px_per_m) + "\"/>\n";
-  const LengthUnit unit = length_unit_for(reach_m);
-  const std::string name(unit.name);
+  svg += scale_bar(reach_m, px_per_m);
+  svg += formatted("<text x=\"12\" y=\"%.0f\">%s (grey circle)</text>\n", kRound - 20.0,
+                   mean_text(qualification.probe).c_str());
   svg += formatted(
-      "<text x=\"12\" y=\"%.0f\">offset by the normal's direction; circle: 0, "
-      "outermost sample: %.3g %s</text>\n",
-      kRound - 4.0, reach_m * unit.per_m, name.c_str());
+      "<text x=\"12\" y=\"%.0f\">lobes: the offset less its mean, by the normal's "
+      "direction</text>\n",
+      kRound - 4.0);
   svg += "</g>\n";
 
   // Residuals over the direction.
-  const double most_m = largest(qualification, &QualifiedSample::residual_m);
+  std::vector<double> residuals;
+  for (const QualifiedSample& sample : qualification.samples)
+    residuals.push_back(sample.residual_m);
+  const double most_m = largest(qualification, residuals);
   const LengthUnit small = length_unit_for(most_m);
   const double left = kRound + 40.0;
   const double middle = 30.0 + 0.5 * kRound;

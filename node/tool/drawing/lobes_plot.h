@@ -1,4 +1,5 @@
-// Draws the lobes of a qualified probe: the offset by direction with its band, and the samples.
+// Draws the lobes of a qualified probe: the offset by direction, less its mean, with its band, and
+// the samples.
 #pragma once
 
 #include <string>
@@ -7,8 +8,8 @@
 
 namespace palpate {
 
-/// An SVG document: a polar picture of the enlarged offset, and the residuals over the direction of
-/// the normal. It shows at most 4,000 samples in each, evenly selected, and says so.
+/// An SVG document: a polar picture of the enlarged lobes with a scale, and the residuals over the
+/// direction of the normal. It shows at most 4,000 samples in each, evenly selected, and says so.
 std::string lobes_plot(const Qualification& qualification, const std::string& title);
 
 }  // namespace palpate

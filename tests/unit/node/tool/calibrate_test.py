@@ -3,6 +3,7 @@ import json
 import math
 import pathlib
 import random
+import re
 import tempfile
 import unittest
 import xml.dom.minidom
@@ -71,6 +72,32 @@ class Calibrate(unittest.TestCase):
                 self.assertEqual(code, 0, err)
                 within = noticed if not bore else tip > 0
                 self.assertEqual("within the material" in err, within, (tip, bore, err))
+
+    def test_the_plot_shows_lobes_without_the_mean(self):
+        # Three lobes of 20 um on a ring. Where no tip radius was stated the mean offset, 2 mm, must not hide them.
+        rng = random.Random(7)
+        text = "x_m,y_m\n"
+        for i in range(400):
+            phi = 2 * math.pi * i / 400
+            r = 0.025 + TIP + 2e-5 * math.cos(3 * phi) + rng.gauss(0, 2e-6)
+            text += f"{r * math.cos(phi)!r},{r * math.sin(phi)!r}\n"
+        for stated, mean in ((), "with no tip radius stated: 2.0"), (("--tip-radius", TIP), "beyond the tip radius of 2 mm: "):
+            path = self.folder / "lobes.svg"
+            code, _, err = run(TOOL, "calibrate", "--circle", "0.025", *stated, "--plot", path, "-", text_in=text)
+            self.assertEqual(code, 0, err)
+            svg = path.read_text()
+            self.assertIn("mean offset " + mean, svg)
+            middle, circle = 240, float(re.search(r'<circle cx="240.0" cy="240.0" r="([\d.]+)" fill="none"', svg)[1])
+            points = [tuple(map(float, point.split(","))) for point in re.search(r'points="([^"]+)"', svg)[1].split()]
+            height = [math.hypot(x - middle, y - middle) - circle for x, y in points]
+            # The scale's bar: its length on paper and in words.
+            left, right, length = re.search(r'M([\d.]+),[\d.]+ v8 m0,-4 H([\d.]+).*\n<text[^>]*>([\d.]+) um</text>', svg).groups()
+            um = (float(right) - float(left)) / float(length)
+            self.assertAlmostEqual(max(height) / um, 20, delta=1)
+            self.assertAlmostEqual(min(height) / um, -20, delta=1)
+            self.assertGreater(max(height), circle / 4)
+            above = [h > 0 for h in height]
+            self.assertEqual(sum(a != b for a, b in zip(above, above[1:] + above[:1])), 6)
 
     def test_json_says_what_the_file_says(self):
         path, out = self.calibrated("--format", "json")
@@ -180,6 +207,12 @@ class Calibrate(unittest.TestCase):
             code, out, err = run(TOOL, "fit", "--probe", str(path), "-", text_in=ellipse(0.03, 0.02, 2))
             self.assertEqual((code, out), (2, ""), text)
             self.assertIn(f"{path}{why}", err)
+        # What is no probe file at all: the parser's words, for programmers, do not come first.
+        for text, place in ((ellipse(0.03, 0.02, 2), ":1:6: "), ("0.1 0.2\n", ":1:1: ")):
+            path.write_text(text)
+            code, out, err = run(TOOL, "fit", "--probe", str(path), "-", text_in=ellipse(0.03, 0.02, 2))
+            self.assertEqual((code, out), (2, ""), err)
+            self.assertIn(f"palpate: {path}{place}this is no line of a probe file; palpate calibrate --output writes", err)
         path.write_text(good)
         self.assertEqual(run(TOOL, "fit", "--probe", str(path), "-", text_in=ellipse(0.03, 0.02, 2))[0], 0)
 

@@ -41,6 +41,11 @@ class Estimate(unittest.TestCase):
         self.assertEqual(first, list(range(0, 200 - 51 + 1, 7)))
         self.assertEqual({row["window_samples"] for row in rows}, {"51"})
 
+    def test_sigma_that_the_file_overrules_is_told(self):
+        rows = "".join(f"p,0,{1e-4 * i},{1e-6 * i * i},2e-5\n" for i in range(80))
+        _, _, err = run(TOOL, "estimate", "--sigma", "1e-3", "-", text_in="probe,patch,x_m,y_m,sigma_m\n" + rows)
+        self.assertIn("palpate: -: --sigma is not used", err)
+
     def test_standard_deviations_grow_with_the_stated_noise(self):
         one = self.rows("--sigma", "1e-6")[0]
         ten = self.rows("--sigma", "1e-5")[0]

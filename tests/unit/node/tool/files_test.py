@@ -1,4 +1,6 @@
 """Files and outputs that are not what they should be: a clear error, a bound, an exit code."""
+import json
+import math
 import os
 import pathlib
 import random
@@ -90,6 +92,43 @@ class Files(unittest.TestCase):
             code, _, err = run(TOOL, "fit", csv, "--sigma", "1e-5", option, self.folder / "none" / ("a" + ending))
             self.assertEqual(code, 1, err)
             self.assertIn("a" + ending + ": cannot be written: No such file or directory", err)
+
+    def test_a_word_that_is_none_gets_the_nearest_that_is(self):
+        lists = " --help lists them\n"
+        for arguments, told in (
+                (["fti", "a.csv"], "there is no command fti, did you mean fit? palpate" + lists),
+                (["sphere"], "there is no command sphere; palpate" + lists),
+                (["--verison"], "there is no option --verison, did you mean --version? palpate" + lists),
+                (["fit", "a.csv", "--tipradius=1e-3"], "there is no option --tipradius of fit, did you mean --tip-radius? palpate fit" + lists),
+                (["fit", "--sgima", "1e-5", "a.csv"], "there is no option --sgima of fit, did you mean --sigma? palpate fit" + lists),
+                (["watch", "--nonsense"], "there is no option --nonsense of watch; palpate watch" + lists),
+                (["check", "--" + 10_000 * "x"], "there is no option --" + 198 * "x" + "... of check; palpate check" + lists),
+                (["fit"], "FILE is required; palpate fit --help says more\n"),
+                (["fit", "a.csv", "--sigma"], "--sigma: 1 required NUMBER:FLOAT in [0 - 1000] missing; palpate fit --help says more\n"),
+                (["estimate", "a.csv", "b.csv"], "The following argument was not expected: b.csv; palpate estimate --help says more\n"),
+                ([], "A subcommand is required; palpate --help says more\n")):
+            code, out, err = run(TOOL, *arguments)
+            self.assertEqual((code, out, err), (2, "", "palpate: " + told))
+        for arguments in (["--help"], ["fit", "--help"], ["--version"]):
+            code, out, err = run(TOOL, *arguments)
+            self.assertEqual((code, err), (0, ""))
+            self.assertTrue(out)
+
+    def test_the_verdict_of_check_tells_an_assumed_unit(self):
+        path = self.folder / "ring.csv"
+        assumed = "; check the unit: no unit is named: taken as metres (else --unit mm, um or in)"
+        doubt = ", but see the warnings: its answer may be wrong"
+        for names, scale, arguments, rest in (("x,y", 1, (), assumed), ("x,y", 1e3, (), doubt + assumed),
+                                              ("x,y", 1e3, ("--unit", "mm"), ""), ("x_mm,y_mm", 1e3, (), "")):
+            rng = random.Random(1)
+            path.write_text(names + "\n" + "".join(
+                f"{scale * (0.02 * math.cos(t) + rng.gauss(0, 2e-5))},{scale * (0.02 * math.sin(t) + rng.gauss(0, 2e-5))}\n"
+                for t in (0.01 * i for i in range(300))))
+            code, out, _ = run(TOOL, "check", path, *arguments)
+            self.assertEqual((code, out.splitlines()[-1]), (0, "fit for the recognizer" + rest), out)
+            # fit takes the same for granted.
+            notes = json.loads(run(TOOL, "fit", "--format", "json", path, *arguments)[1]).get("notes", [])
+            self.assertEqual(any("taken as metres" in note for note in notes), assumed in rest, notes)
 
     def test_names_of_files_are_shown_on_one_line_and_obeyed_by_no_terminal(self):
         csv = self.folder / "Stück 1\n\x1b[31m\u009b2J.csv"

@@ -106,6 +106,23 @@ class Fit(unittest.TestCase):
         estimated, _ = self.answers("-", text_in=text)
         self.assertLess(abs(estimated[0].sigma_m / SIGMA - 1), 5 / math.sqrt(2 * 217))
 
+    def test_sigma_that_the_file_overrules_is_told(self):
+        stated = HEADER + ellipse()
+        mixed = HEADER + "".join(line.replace(repr(SIGMA), "") if i < 10 else line
+                                 for i, line in enumerate(ellipse().splitlines(keepends=True)))
+        none = HEADER + "".join(line.replace(repr(SIGMA), "") for line in ellipse().splitlines(keepends=True))
+        for text, sigma, told in ((stated, 1e-3, "--sigma is not used: the noise that the file states for every sample (column sigma) holds"),
+                                  (mixed, 1e-3, "--sigma is used for 10 samples of 222:"),
+                                  (stated, SIGMA, ""), (none, SIGMA, "")):
+            code, out, err = run(TOOL, "fit", "--format", "json", "--sigma", sigma, "-", text_in=text)
+            self.assertEqual(code, 0, err)
+            notes = json.loads(out).get("notes", [])
+            if told:
+                self.assertIn("palpate: -: " + told, err)
+                self.assertTrue(any(note.startswith(told) for note in notes), notes)
+            self.assertEqual("--sigma is" in err, bool(told), err)
+        self.assertNotIn("--sigma is", run(TOOL, "fit", "-", text_in=stated)[2])
+
     def test_classes_restricts_the_hypotheses(self):
         answers, _ = self.answers("--classes", "circle,parabola", "-", text_in=HEADER + ellipse())
         names = {h.curve_class for h in answers[0].hypotheses}
@@ -165,6 +182,29 @@ class Fit(unittest.TestCase):
             code, out, err = run(TOOL, *arguments)
             self.assertEqual((code, out), (2, ""), arguments)
             self.assertTrue(err, arguments)
+
+    def test_a_class_that_is_none_gets_the_list(self):
+        path = self.write("part.csv", HEADER + ellipse())
+        for option, wrong, shown in (("--class", "cirle", "cirle"), ("--classes", "circle,foo", "foo"),
+                                     ("--class", "unclassified", "unclassified")):
+            code, out, err = run(TOOL, "fit", path, option, wrong)
+            self.assertEqual((code, out), (2, ""))
+            self.assertIn(f'palpate: {option}: "{shown}" is no curve class: line, circle, ellipse, parabola, hyperbola, '
+                          "cubical_parabola, semi_cubical_parabola, cubic_spline", err)
+        self.assertEqual(run(TOOL, "fit", path, "--classes", "Semi-cubical Parabola,circle")[0], 0)
+
+    def test_a_plot_that_is_no_svg_is_refused_before_the_work(self):
+        for command in (["fit", "absent.csv", "--plot"], ["fit", "absent.csv", "--plot-invariants"],
+                        ["calibrate", "absent.csv", "--circle", "0.025", "--plot"]):
+            picture = self.folder / "x.png"
+            code, out, err = run(TOOL, *command, picture)
+            self.assertEqual((code, out), (2, ""))
+            self.assertIn(f'{command[-1]}: "{picture}" does not end in .svg: pictures are written as SVG only', err)
+            self.assertNotIn("absent.csv", err)
+            self.assertFalse(picture.exists())
+        path = self.write("part.csv", HEADER + ellipse())
+        for name in ("x.SVG", "no_ending"):
+            self.assertEqual(run(TOOL, "fit", path, "--plot", self.folder / name)[0], 0)
 
     def test_a_plot_that_cannot_be_written_fails(self):
         path = self.write("part.csv", HEADER + ellipse())

@@ -103,7 +103,7 @@ class Part(unittest.TestCase):
                           ("closed_spline { control_points { x_m: nan } }", "is not finite"),
                           ("closed_spline { control_points { x_m: 1e8 } }", "beyond 10,000 km"),
                           (f"closed_spline {{ {257 * 'control_points { x_m: 1 } '} }}", "at most 256"),
-                          (few, "at least four"), ("closed_spine {}", "1:")):
+                          (few, "at least four"), ("closed_spine {}", ":1:14: this is no line of a scene file")):
             model = self.write("bad.textproto", text)
             code, out, err = run(TOOL, "fit", "--part", model, samples)
             self.assertEqual((code, out), (2, ""))
