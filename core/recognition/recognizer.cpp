@@ -281,7 +281,7 @@ class Recognizer::Impl {
 
   WeighOptions weigh_options() const {
     return {options_.classes, options_.recognized_probability, options_.form_deviation_m,
-            options_.unqualified_probe};
+            options_.unqualified_probe, options_.touched_from};
   }
 
   /// Weighed again with the spikes that the best class explains, where the class stands then.

@@ -42,6 +42,10 @@ struct RecognizerOptions {
   /// include them. False: they are included only where the residuals look correlated.
   /// MaximumLikelihood only; costs a few milliseconds per answer.
   bool unqualified_probe = false;
+  /// Where tips touch that have no stated side. Unknown: the answer is that from outside where the
+  /// samples allow it; it is RECOGNIZED only if they rule out the others. A line has no outside.
+  /// MaximumLikelihood only.
+  TouchedFrom touched_from = TouchedFrom::Unknown;
   /// Probability that a scene without spikes loses a sample to outlier rejection.
   double false_outlier_probability = 0.01;
   /// Classes to consider: bit 1 << CurveClass of each. Default: all.

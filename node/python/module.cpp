@@ -57,6 +57,13 @@ void check_sigmas(const Array& sigma, std::size_t points) {
   }
 }
 
+palpate::TouchedFrom place_called(const std::string& name) {
+  if (name == "unknown") return palpate::TouchedFrom::Unknown;
+  if (name == "outside") return palpate::TouchedFrom::Outside;
+  if (name == "inside") return palpate::TouchedFrom::Inside;
+  throw std::invalid_argument("touched_from: \"" + name + "\" is none of outside, inside, unknown");
+}
+
 palpate::MaterialSide side_called(const std::string& name) {
   if (name == "unspecified") return palpate::MaterialSide::Unspecified;
   if (name == "left") return palpate::MaterialSide::Left;
@@ -146,9 +153,10 @@ class ComputeTime {
 class Recognizer {
  public:
   Recognizer(double sigma_m, const std::vector<std::string>& classes, double form_deviation_m,
-             bool unqualified_probe, std::size_t most_patches, std::size_t most_samples_per_patch)
+             bool unqualified_probe, std::size_t most_patches, std::size_t most_samples_per_patch,
+             const std::string& touched_from)
       : recognizer_(options_of(sigma_m, classes, form_deviation_m, unqualified_probe, most_patches,
-                               most_samples_per_patch)) {}
+                               most_samples_per_patch, touched_from)) {}
 
   /// `points`: n x 2, in metres. `sigma_m`: length n, 1 or 0. The others as in PointDetails.
   /// Returns how many points were accepted.
@@ -218,7 +226,8 @@ class Recognizer {
                                                const std::vector<std::string>& classes,
                                                double form_deviation_m, bool unqualified_probe,
                                                std::size_t most_patches,
-                                               std::size_t most_samples_per_patch) {
+                                               std::size_t most_samples_per_patch,
+                                               const std::string& touched_from) {
     for (const auto& [name, value] :
          {std::pair("sigma", sigma_m), std::pair("form_deviation", form_deviation_m)}) {
       if (!(std::isfinite(value) && value >= 0.0)) {
@@ -229,6 +238,7 @@ class Recognizer {
     options.sigma_m = sigma_m;
     options.form_deviation_m = form_deviation_m;
     options.unqualified_probe = unqualified_probe;
+    options.touched_from = place_called(touched_from);
     options.memory.most_patches = most_patches;
     options.memory.most_lone_touches = std::max(options.memory.most_lone_touches, most_patches);
     options.memory.most_samples_per_patch = most_samples_per_patch;
@@ -342,8 +352,8 @@ py::dict fit_given(const std::string& name, const Array& points, const Array& si
 
 PYBIND11_MODULE(_core, module) {
   py::class_<Recognizer>(module, "Recognizer")
-      .def(py::init<double, const std::vector<std::string>&, double, bool, std::size_t,
-                    std::size_t>())
+      .def(py::init<double, const std::vector<std::string>&, double, bool, std::size_t, std::size_t,
+                    const std::string&>())
       .def("add", &Recognizer::add)
       .def("recognize", &Recognizer::recognize)
       .def("reset", &Recognizer::reset);

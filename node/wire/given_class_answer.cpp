@@ -8,6 +8,7 @@
 #include "core/numerics/negligible.h"
 #include "core/qualification/probe_correction.h"
 #include "core/recognition/given/given_class.h"
+#include "core/recognition/posterior/likelihood.h"
 #include "core/recognition/verdict/determined.h"
 #include "node/wire/convert.h"
 
@@ -71,20 +72,6 @@ std::vector<GivenPoint> points_of(std::span<const ProbedPatch> runs,
   return points;
 }
 
-/// A circle through the centres of round tips is a part's from outside and another's from within:
-/// where nothing tells the side, the search takes the part to lie within (core/README.md), and so
-/// does a circle that is given. The middle of an arc's points lies within its circle.
-void take_circle_for_touched_from_outside(std::vector<GivenPoint>& points) {
-  Vec2 middle = Vec2::Zero();
-  for (const GivenPoint& point : points) {
-    if (!point.into_material.isZero(0.0)) return;
-    middle += point.position_m / static_cast<double>(points.size());
-  }
-  for (GivenPoint& point : points) {
-    if (point.tip_radius_m > 0.0) point.into_material = middle - point.position_m;
-  }
-}
-
 bool is_told(const GivenFit& fit) {
   return fit.status == GivenStatus::Fitted || fit.status == GivenStatus::NotDetermined;
 }
@@ -97,7 +84,7 @@ struct PointsFitted {
 
 PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
                       std::span<const ProbeCharacter* const> probes,
-                      std::span<const std::size_t> left_out, double sigma_m) {
+                      std::span<const std::size_t> left_out, const GivenOptions& options) {
   std::vector<ProbedPatch> raw;
   for (const ContactRun& run : runs) {
     const ProbeCharacter* probe = probes.empty() ? nullptr : probes[run.context.probe];
@@ -110,8 +97,7 @@ PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
   constexpr int kRounds = 2;  // as in recognise_probed
   for (int round = 0;; ++round) {
     fitted.points = points_of(corrected, left_out);
-    if (curve_class == CurveClass::Circle) take_circle_for_touched_from_outside(fitted.points);
-    fitted.fit = fit_given_class(curve_class, fitted.points, {sigma_m});
+    fitted.fit = fit_given_class(curve_class, fitted.points, options);
     if (!probed || !is_told(fitted.fit)) {
       return fitted;
     }
@@ -145,7 +131,8 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
                                         std::span<const ProbeCharacter* const> probes,
                                         std::span<const std::size_t> left_out,
                                         const RecognizerOptions& options) {
-  const auto [points, fit] = fit_runs(curve_class, runs, probes, left_out, options.sigma_m);
+  const auto [points, fit] =
+      fit_runs(curve_class, runs, probes, left_out, {options.sigma_m, options.touched_from});
   const bool fitted = fit.status == GivenStatus::Fitted;
   const bool told = is_told(fit);
   v1::GivenClassAnswer given;
@@ -176,10 +163,13 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
   const bool by_noise = !fit.sigma_stated || fit.dof <= 0 || can_be_noise(fit.chi2, fit.dof);
   const bool determined = fitted && is_determined(fit.shape, fit.covariance, half_extent_m(points),
                                                   options.determined_fraction);
-  answer.set_status(determined && by_noise ? v1::RECOGNITION_STATUS_RECOGNIZED
-                                           : v1::RECOGNITION_STATUS_AMBIGUOUS);
+  const bool one_side = fit.side_log_odds > log_odds(options.recognized_probability);
+  answer.set_status(determined && by_noise && one_side ? v1::RECOGNITION_STATUS_RECOGNIZED
+                                                       : v1::RECOGNITION_STATUS_AMBIGUOUS);
   if (!by_noise) {
     answer.set_doubt(v1::RECOGNITION_DOUBT_MISFIT);
+  } else if (!one_side) {
+    answer.set_doubt(v1::RECOGNITION_DOUBT_TWO_SHAPES);
   } else if (!determined) {
     answer.set_doubt(v1::RECOGNITION_DOUBT_UNDETERMINED);
   }

@@ -34,6 +34,15 @@ std::string resolve(const RecognizerWords& words, RecognizerOptions& recognizer)
     estimator.window = static_cast<int>(words.window);
     estimator.shift = static_cast<int>(words.shift);
   }
+  if (words.touched_from == "unknown") {
+    recognizer.touched_from = TouchedFrom::Unknown;
+  } else if (words.touched_from == "outside") {
+    recognizer.touched_from = TouchedFrom::Outside;
+  } else if (words.touched_from == "inside") {
+    recognizer.touched_from = TouchedFrom::Inside;
+  } else {
+    return "touched_from: expected outside, inside or unknown";
+  }
   recognizer.classes = words.classes.empty() ? ~0U : 0U;
   for (const std::string& name : words.classes) {
     const std::optional<CurveClass> curve_class = curve_class_from_name(name);

@@ -29,6 +29,7 @@ std::string flags_of(const OptionInfo& info);
 struct RecognizerWords {
   std::string method = "ml";
   std::vector<std::string> classes;  ///< empty = all
+  std::string touched_from = "unknown";
   std::string estimator = "sliding";
   std::size_t window = static_cast<std::size_t>(EstimatorOptions{}.window);
   std::size_t shift = static_cast<std::size_t>(EstimatorOptions{}.shift);
@@ -61,6 +62,10 @@ void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& vi
          "Nobody has measured the probe's lobes, radius and drift: let deviations count for which "
          "it has no probe file"},
         recognizer.unqualified_probe);
+  visit({"touched_from",
+         "Where round tips touch of which neither a material side nor a normal tells the side: "
+         "outside (a pin, a boss), inside (a bore) or unknown"},
+        words.touched_from);
   visit({"false_outlier_probability", "Chance that a clean scene loses a sample as a spike", 0, 1},
         recognizer.false_outlier_probability);
   visit({"most_samples_per_patch", "Samples of a patch before neighbours are merged", 8,

@@ -44,6 +44,9 @@ RecognizerOptions options_from(ByteReader& bytes) {
     options.memory.most_samples_per_patch = 8 + static_cast<std::size_t>(bytes.byte());
     options.memory.most_patches = 1 + static_cast<std::size_t>(bytes.below(kMostPatches));
   }
+  if ((choices & 32) != 0) {
+    options.touched_from = (choices & 128) != 0 ? TouchedFrom::Inside : TouchedFrom::Outside;
+  }
   if ((choices & 0xe0) == 0xe0) {
     options.method = RecognitionMethod::Tree;
   }

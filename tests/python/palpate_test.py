@@ -106,6 +106,17 @@ class Fit(unittest.TestCase):
                              material_side="left")
         self.assertAlmostEqual(result.params["a"], 15, places=2)
 
+    def test_touched_from_tells_a_bore(self):
+        t = np.linspace(0, 6, 200)
+        centres = 17 * np.column_stack([np.cos(t), np.sin(t)]) + np.random.default_rng(3).normal(0, 1e-3, (200, 2))
+        for touched_from, radius, status in (("unknown", 15, "ambiguous"), ("outside", 15, "recognized"),
+                                             ("inside", 19, "recognized")):
+            result = palpate.fit(centres, sigma=1e-3, unit="mm", tip_radius=2, touched_from=touched_from)
+            self.assertEqual((result.curve_class, result.status), ("circle", status))
+            self.assertAlmostEqual(result.params["a"], radius, delta=0.01)
+        with self.assertRaisesRegex(ValueError, "touched_from"):
+            palpate.fit(centres, touched_from="within")
+
     def test_residuals_samples_and_feet_lie_on_one_curve(self):
         result = palpate.fit(PATCHES, sigma=SIGMA, unit="mm")
         residuals = result.residuals(np.concatenate(PATCHES))

@@ -62,6 +62,18 @@ double stationarity_of(const Squares<Exact>& squares, const LocalPoints& local, 
   return largest;
 }
 
+/// log odds of one side over the other by their costs, half the sums of squares. Noise that is not
+/// stated may be of any size, alike probable by its logarithm; below the rounding of the
+/// coordinates no residual says anything.
+double log_odds_of_side(double cost, double cost_of_other, const LocalPoints& local, bool stated) {
+  if (stated) {
+    return cost_of_other - cost;
+  }
+  const auto n = static_cast<double>(local.index.size());
+  const double least = 0.5 * n * local.rounding * local.rounding;
+  return 0.5 * n * std::log((cost_of_other + least) / (cost + least));
+}
+
 }  // namespace
 
 std::string_view name_of(GivenStatus status) {
@@ -110,7 +122,8 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
     return fit;
   }
   fit.status = GivenStatus::AtLimit;
-  GivenCandidate found = search_sides(curve_class, *local, points);
+  const SidedCandidate sided = search_sides(curve_class, *local, points, options.touched_from);
+  GivenCandidate found = sided.taken;
   if (!std::isfinite(found.cost)) {
     return fit;
   }
@@ -143,6 +156,9 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   }
   fit.status = GivenStatus::Fitted;
   fit.side = found.side;
+  if (std::isfinite(sided.cost_of_other)) {
+    fit.side_log_odds = log_odds_of_side(found.cost, sided.cost_of_other, *local, stated);
+  }
   fit.stationarity = stationarity_of(descent.squares, *local,
                                      static_cast<std::size_t>(Unknowns(curve_class).count));
   report_curve(placed, descent.squares, *local, &fit);

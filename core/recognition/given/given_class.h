@@ -11,12 +11,16 @@
 #include "core/curves/pose2.h"
 #include "core/curves/shape_parameters.h"
 #include "core/recognition/given/given_point.h"
+#include "core/recognition/samples/contact_sample.h"
 
 namespace palpate {
 
 struct GivenOptions {
   /// Noise of points that state none; 0 = estimate it from the residuals. [m]
   double sigma_m = 0.0;
+  /// Where tips touch that have no known side (GivenPoint). Unknown: the side that fits better, and
+  /// of a circle, which fits alike on both, outside.
+  TouchedFrom touched_from = TouchedFrom::Unknown;
 };
 
 enum class GivenStatus {
@@ -58,6 +62,9 @@ struct GivenFit {
   std::size_t used = 0;       ///< points in use
   std::size_t normals = 0;    ///< normals in use; 0 unless the noise of every point is known
   int side = 0;  ///< tip centres lie left (+1) or right (-1) of increasing t; 0 without tips
+  /// log odds of this side over the other one by the residuals alone: 0 on a circle. Infinite
+  /// without tips, if the points or the options tell the side, and if no curve fits on the other.
+  double side_log_odds = std::numeric_limits<double>::infinity();
   /// Largest |J_k . r| / (|J_k| |r|) over the columns J_k of the Jacobian, r the residuals: 0 at a
   /// stationary point.
   double stationarity = 0.0;

@@ -170,11 +170,35 @@ int votes_against(const GivenCandidate& candidate, const LocalPoints& local,
   return votes;
 }
 
+/// Feet at which the curve bends towards the tip's centre, minus those at which it bends away:
+/// above 0 if tips touch from inside the bends.
+int feet_inside(const GivenCandidate& candidate) {
+  int inside = 0;
+  for (const auto& foot : candidate.curve.feet) {
+    const auto place = canonical_point(candidate.curve.curve_class, candidate.curve.shape, foot);
+    const double bend = candidate.side * inner(left(place.first), place.second);
+    inside += bend > 0.0 ? 1 : bend < 0.0 ? -1 : 0;
+  }
+  return inside;
+}
+
+/// Whether the first of two curves with tips on opposite sides is to be told, where no point tells
+/// the side.
+bool is_preferred(const GivenCandidate& u, const GivenCandidate& v, TouchedFrom touched_from) {
+  const int towards = feet_inside(u) - feet_inside(v);
+  // Both sides of a circle fit alike to rounding, which must not choose; probes come from outside.
+  const bool alike = u.curve.curve_class == CurveClass::Circle;
+  if (towards == 0 || (touched_from == TouchedFrom::Unknown && !alike)) {
+    return is_better(u, v);
+  }
+  return (touched_from == TouchedFrom::Inside) == (towards > 0);
+}
+
 }  // namespace
 
-GivenCandidate search_sides(CurveClass curve_class, const LocalPoints& local,
-                            std::span<const GivenPoint> points) {
-  GivenCandidate best;
+SidedCandidate search_sides(CurveClass curve_class, const LocalPoints& local,
+                            std::span<const GivenPoint> points, TouchedFrom touched_from) {
+  SidedCandidate best;
   int best_votes = 0;
   for (const int side : sides_of(points)) {
     GivenCandidate candidate = search(curve_class, local, std::array{side});
@@ -182,10 +206,21 @@ GivenCandidate search_sides(CurveClass curve_class, const LocalPoints& local,
       continue;
     }
     const int votes = side == 0 ? 0 : votes_against(candidate, local, points);
-    if (!std::isfinite(best.cost) || votes < best_votes ||
-        (votes == best_votes && is_better(candidate, best))) {
-      best = std::move(candidate);
+    if (!std::isfinite(best.taken.cost)) {
+      best.taken = std::move(candidate);
       best_votes = votes;
+      continue;
+    }
+    const bool preferred = votes == best_votes ? is_preferred(candidate, best.taken, touched_from)
+                                               : votes < best_votes;
+    // A line has no bend that could tell.
+    const bool told = votes != best_votes || (touched_from != TouchedFrom::Unknown &&
+                                              feet_inside(candidate) != feet_inside(best.taken));
+    if (!told) {
+      best.cost_of_other = preferred ? best.taken.cost : candidate.cost;
+    }
+    if (preferred) {
+      best.taken = std::move(candidate);
     }
   }
   return best;

@@ -10,6 +10,10 @@ namespace palpate {
 /// Side of the direction of travel on which the material lies.
 enum class MaterialSide { Unspecified, Left, Right };
 
+/// Where round tips touch a part if neither their probe nor a measured normal tells the side:
+/// outside its bends (a pin, a boss), inside them (a bore), or one of these.
+enum class TouchedFrom { Unknown, Outside, Inside };
+
 struct ContactSample {
   Vec2 position_m = Vec2::Zero();
   double sigma_m = 0.0;       ///< 1-sigma isotropic position noise; 0 = not known [m]

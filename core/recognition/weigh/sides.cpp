@@ -125,7 +125,7 @@ bool directions_may_explain(const ClassFit& settled, const FitData& touches,
 /// compared with one another. A part whose walls are two curves that differ by little more than
 /// coherent errors may is told no better than these are known.
 double log_evidence_of(const SideChoice& choice, const SideContext& by) {
-  const auto& [arcs, likelihood, work, of_paths, classes, out_of_reach] = by;
+  const auto& [arcs, likelihood, work, of_paths, classes, out_of_reach, touched_from] = by;
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   const auto placed = choice.refined ? to_canonical(*choice.settled, choice.reduced) : std::nullopt;
   if (!placed) {
@@ -316,32 +316,32 @@ Directed directed(std::span<const StoredPatch> patches, const SmoothModel& smoot
 void take_most_probable(const SideContext& by, SidedFits* sided) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   // A prior (core/README.md, "The prior"): tips that touch a part from within a bend are rare,
-  // probes come from outside; whoever touches bores states the side. Were it above the doubt that
-  // RECOGNIZED leaves (0.05), nothing touched by a tip of which no side is stated could be
-  // RECOGNIZED.
+  // probes come from outside. It says which of the ways that the samples allow is told, not that
+  // the others are excluded: the margin does without it.
   constexpr double kInsideProbability = 0.01;
+  const double log_price_of_others = log_odds(1.0 - kInsideProbability);
   sided->taken = 0;
-  sided->margin = kInfinity;
-  if (sided->choices.size() < 2) {
-    return;
-  }
-  const double log_price_of_inside = log_odds(1.0 - kInsideProbability);
+  std::vector<double> evidences;  // logarithms, by what was measured and stated
   double highest = -kInfinity;
-  double second = -kInfinity;
   for (std::size_t i = 0; i < sided->choices.size(); ++i) {
     const SideChoice& choice = sided->choices[i];
     // A line has no bend to be outside of.
-    const double price = i == 0 || choice.candidate == CurveClass::Line ? 0.0 : log_price_of_inside;
-    const double evidence = log_evidence_of(choice, by) - price;
-    if (i == 0 || evidence > highest) {
-      second = highest;
-      highest = evidence;
+    const bool has_bend = choice.candidate != CurveClass::Line;
+    // The second way has the tips in all bends where the first has them outside, or the reverse:
+    // whoever says the one rules out the other.
+    const bool ruled_out = i == 1 && has_bend && by.touched_from != TouchedFrom::Unknown;
+    evidences.push_back(log_evidence_of(choice, by) - (ruled_out ? kNegligibleLogOdds : 0.0));
+    const double weighed = evidences[i] - (i > 0 && has_bend ? log_price_of_others : 0.0);
+    if (i == 0 || weighed > highest) {
+      highest = weighed;
       sided->taken = i;
-    } else {
-      second = std::max(second, evidence);
     }
   }
-  sided->margin = std::isfinite(second) ? highest - second : kInfinity;
+  double second = -kInfinity;
+  for (std::size_t i = 0; i < evidences.size(); ++i) {
+    second = i == sided->taken ? second : std::max(second, evidences[i]);
+  }
+  sided->margin = std::isfinite(second) ? evidences[sided->taken] - second : kInfinity;
 }
 
 }  // namespace
@@ -351,7 +351,10 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
   CurveOfCentres centres(by, starts);
   const auto [touches, bends, senses] = directed(patches, by.arcs.smooth, &centres, by.work);
   SidedFits sided;
-  const auto all_sides = possible_sides(patches, touches, bends, senses);
+  auto all_sides = possible_sides(patches, touches, bends, senses);
+  if (by.touched_from == TouchedFrom::Inside && all_sides.size() > 1) {
+    std::swap(all_sides[0], all_sides[1]);
+  }
   if (!has_tips(touches.points)) {
     SideChoice choice;
     choice.sides = all_sides.front();
@@ -360,7 +363,7 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
     sided.choices.push_back(std::move(choice));
     return sided;
   }
-  // The first, from outside the bends, is the most probable beforehand.
+  // The first is the most probable beforehand.
   for (const std::vector<int>& sides : all_sides) {
     if (!sided.choices.empty() && !by.work.allows()) {
       break;

@@ -28,9 +28,12 @@ struct SideChoice {
 };
 
 struct SidedFits {
-  std::vector<SideChoice> choices;  ///< if sides are not stated, the first is outside the bends
-  std::size_t taken = 0;            ///< index of the most probable one
-  /// log odds over the next best choice of sides, priors included; infinite if all sides are known.
+  /// If sides are not stated, the first is where tips touch most parts, outside the bends, or
+  /// where TouchedFrom says.
+  std::vector<SideChoice> choices;
+  std::size_t taken = 0;  ///< index of the most probable one
+  /// log odds over the next best choice of sides, by what was measured and stated alone; below 0 if
+  /// another choice fits better, infinite if all sides are known.
   double margin = std::numeric_limits<double>::infinity();
   /// Start for following the curve of the tips' centres, if it was needed.
   std::optional<SidedStart> centres;
@@ -47,11 +50,12 @@ struct SideContext {
   unsigned classes = kAllClasses;  ///< by bit 1 << CurveClass
   /// As in fit_classes(), for all sides.
   double out_of_reach = std::numeric_limits<double>::infinity();
+  TouchedFrom touched_from = TouchedFrom::Unknown;
 };
 
 /// Fits the classes to the reduced points and chooses the sides of the tips. If sides are not
-/// known, it takes the choice of highest evidence; the first one (outside the bends) has the odds
-/// of the prior. `starts`: as in weigh().
+/// known, it takes the choice of highest evidence; the first one has the odds of the prior.
+/// `starts`: as in weigh().
 SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext& by,
                          std::span<const SidedStart> starts);
 

@@ -178,8 +178,9 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   const double hopeless = options.unqualified_probe ? std::numeric_limits<double>::infinity()
                                                     : out_of_reach(arcs, stated, of_paths);
   std::optional<WorkBudget::Reserve> for_verdict(std::in_place, work, kShareOfVerdict);
-  SidedFits sided =
-      fit_over_sides(patches, {arcs, stated, work, of_paths, options.classes, hopeless}, starts);
+  SidedFits sided = fit_over_sides(
+      patches, {arcs, stated, work, of_paths, options.classes, hopeless, options.touched_from},
+      starts);
   for_verdict.reset();
   const auto contenders_of_choice = [&](const EvidenceContext& context, const Evidences& paths) {
     SideChoice& choice = sided.choices[sided.taken];
@@ -200,8 +201,9 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   const Evidences of_seen_paths =
       seen.likelihood ? evidences_of_paths(arcs.smooth, likelihood, work) : Evidences{};
   const bool otherwise =
-      seen.likelihood &&
-      rejudge_sides({arcs, likelihood, work, of_seen_paths, options.classes, hopeless}, &sided);
+      seen.likelihood && rejudge_sides({arcs, likelihood, work, of_seen_paths, options.classes,
+                                        hopeless, options.touched_from},
+                                       &sided);
   const EvidenceContext context{arcs, sided.choice().reduced, work, likelihood, hopeless};
   if (otherwise) {
     contenders = contenders_of_choice(context, of_seen_paths);

@@ -22,6 +22,7 @@ struct WeighOptions {
   double recognized_probability = 0.95;
   double form_deviation_m = 0.0;   ///< as RecognizerOptions::form_deviation_m [m]
   bool unqualified_probe = false;  ///< as RecognizerOptions::unqualified_probe
+  TouchedFrom touched_from = TouchedFrom::Unknown;
 };
 
 struct Weighing {
@@ -47,7 +48,7 @@ struct Weighing {
   std::vector<SidedStart> starts;
   /// For each patch, the assumed side of travel on which the tip centres lie (tip_sides.h).
   std::vector<int> sides;
-  /// log odds over the next best choice of sides, priors included; infinite if all sides are known.
+  /// SidedFits::margin of the sides taken.
   double sides_margin = 0.0;
   CurveClass best = CurveClass::Unclassified;  ///< the most probable, "unclassified" included
   double sigma = 0.0;                          ///< noise of the typical point, normalised

@@ -41,19 +41,20 @@ class Recognizer:
     form_deviation: standard deviation of the part's surface from its ideal curve; 0 = exactly of its class.
     most_patches: patches kept (not counting patches of one point); beyond it the oldest is forgotten.
     most_samples_per_patch: points kept of a patch, at least 8; beyond it neighbours are merged.
-    unqualified_probe: see fit().
+    unqualified_probe, touched_from: see fit().
     """
 
     def __init__(self, sigma: float | None = None, unit: str = "m", classes: str | Iterable[str] = (),
                  form_deviation: float = 0.0, most_patches: int = 64, most_samples_per_patch: int = 1024,
-                 unqualified_probe: bool = False) -> None:
+                 unqualified_probe: bool = False, touched_from: str = "unknown") -> None:
         self._unit = unit
         self._scale = units(unit)
         self._core = _core.Recognizer(self._scale * (0.0 if sigma is None else float(sigma)),
                                       [classes] if isinstance(classes, str) else list(classes),
                                       self._scale * form_deviation, unqualified_probe,
                                       _whole("most_patches", most_patches, 1),
-                                      _whole("most_samples_per_patch", most_samples_per_patch, _LEAST_SAMPLES))
+                                      _whole("most_samples_per_patch", most_samples_per_patch, _LEAST_SAMPLES),
+                                      str(touched_from))
         self._points: list[np.ndarray] = []
         self._drawn = 0
         self._tip_radius = 0.0
@@ -105,7 +106,7 @@ class Recognizer:
 def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_side: str = "unspecified",
         classes: str | Iterable[str] = (), form_deviation: float = 0.0, touches: bool = False,
         most_samples_per_patch: int = 1024, normals=None, normal_sigma: float | None = None,
-        unqualified_probe: bool = False) -> Result:
+        unqualified_probe: bool = False, touched_from: str = "unknown") -> Result:
     """Recognises one object and returns the Result. Raises ValueError if an argument is invalid.
 
     points: an array (n, 2) of one patch, or a list of such arrays.
@@ -117,6 +118,8 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
     form_deviation: standard deviation of the part's surface from its ideal curve, e.g. half of a +- tolerance.
     unqualified_probe: set it if nobody has measured the probe's lobes, tip radius and drift. Uncertainties and class
     probabilities then include such deviations, in any size that the residuals permit.
+    touched_from: where round tips touch if neither material_side nor a normal tells it: "outside" (a pin, a boss),
+    "inside" (a bore) or "unknown".
     normals: measured normals of the surface, in arrays like the points; see Recognizer.add. None in place of an array
     of a list: that patch has none.
     normal_sigma: standard deviation of their directions in radians, one number or (for one patch) one per normal.
@@ -132,7 +135,7 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
         raise ValueError("normals: not as many as points")
     # The whole list is known, so no patch needs to be forgotten.
     recognizer = Recognizer(None, unit, classes, form_deviation, max(64, len(patches)), most_samples_per_patch,
-                            unqualified_probe)
+                            unqualified_probe, touched_from)
     for number, patch in enumerate(patches):
         its_normals = of_patches[number]
         recognizer.add(patch, number, 0, sigma, tip_radius, material_side, its_normals,

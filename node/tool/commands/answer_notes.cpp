@@ -20,7 +20,9 @@ bool tells_side(const ContactRun& run, bool is_alone) {
 
 }  // namespace
 
-std::string note_of_tip_side(const ContactGroup& group, const v1::Recognition& answer) {
+std::string note_of_tip_side(const ContactGroup& group, const v1::Recognition& answer,
+                             TouchedFrom touched_from) {
+  if (touched_from != TouchedFrom::Unknown) return {};
   if (answer.curve_class() != v1::CURVE_CLASS_CIRCLE || !answer.has_parameters()) return {};
   const Vec2 centre(answer.pose().x_m(), answer.pose().y_m());
   const double radius = answer.parameters().a();
@@ -43,7 +45,8 @@ std::string note_of_tip_side(const ContactGroup& group, const v1::Recognition& a
              "taken to lie ") +
          (is_within ? "within the circle (a pin)" : "around the circle (a bore)") + "; of a " +
          (is_within ? "bore" : "pin") + " the radius is " + text_of_length(other) +
-         ". Strokes with a column material_side tell it, and measured normals";
+         ". Say --touched-from " + (is_within ? "outside or inside" : "inside or outside") +
+         "; a column material_side of strokes tells it too, and so do measured normals";
 }
 
 std::string note_of_misfit(const v1::GivenClassAnswer& answer) {

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "core/recognition/samples/contact_sample.h"
 #include "node/tool/contact_groups.h"
 #include "palpate/v1/given_class.pb.h"
 #include "palpate/v1/recognition.pb.h"
@@ -12,7 +13,8 @@ namespace palpate {
 /// That nothing tells on which side of a circle its round tips were, and its radius if they were
 /// on the other; empty where that is told or the answer is no circle. The centres are a circle's
 /// from outside and another one's from within, which fit alike.
-std::string note_of_tip_side(const ContactGroup& group, const v1::Recognition& answer);
+std::string note_of_tip_side(const ContactGroup& group, const v1::Recognition& answer,
+                             TouchedFrom touched_from);
 
 /// That a given class leaves residuals which the stated noise cannot be, and the sample that lies
 /// furthest off; empty where it can.

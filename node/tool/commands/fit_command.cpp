@@ -245,7 +245,8 @@ int run(FitCommand& fit) {
       text = json ? json_line(given) : given_class_text(given);
       answer = given.recognition();
     }
-    if (std::string note = note_of_tip_side(group, answer); !note.empty()) {
+    if (std::string note = note_of_tip_side(group, answer, fit.recognizer.touched_from);
+        !note.empty()) {
       complain(group.file + ": " + note, kDone);
       notes.push_back(std::move(note));
     }

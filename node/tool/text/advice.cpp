@@ -79,7 +79,8 @@ std::string ambiguous(const v1::Recognition& answer) {
              "that "
              "all patches lie on one curve.";
     case v1::RECOGNITION_DOUBT_TWO_SHAPES:
-      return "Two shapes fit alike: touch another place, or let the probe tell its material side.";
+      return "Two shapes fit alike: touch another place, or tell where round tips touch "
+             "(touched_from, or the material side of a stroke).";
     case v1::RECOGNITION_DOUBT_RICHER_CLASS: {
       const v1::CurveClass richer = rival_of(answer);
       return "The samples do not exclude " +

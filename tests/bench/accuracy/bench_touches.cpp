@@ -104,6 +104,8 @@ int main(int argc, char** argv) {
   }
   std::printf("%-22s %5s %4s | %6s %5s %5s %5s | %9s | %7s %7s\n", "class", "count", "tip",
               "scenes", "sure", "recog", "wrong", "err/dev", "ms p50", "max");
+  RecognizerOptions options;
+  options.touched_from = TouchedFrom::Outside;
   for (const int count : counts) {
     for (const double tip : {0.0, 0.05}) {
       for (const CurveClass curve_class : kCurveClasses) {
@@ -112,7 +114,7 @@ int main(int argc, char** argv) {
         for (int i = 0; i < scenes; ++i) {
           std::mt19937_64 rng;
           const LoneTouches touches = scene_of(seed, curve_class, count, i, noise, tip, &rng);
-          Recognizer recognizer;
+          Recognizer recognizer(options);
           const double sigma_m = unstated ? 0.0 : touches.scene.sigma_m;
           if (normals_deg > 0.0) {
             test::add_touches_with_normals(touches, sigma_m, normals_deg * kPi / 180.0, rng,

@@ -1,5 +1,4 @@
-// Recognition from single touches in no order, by points and by round tips whose side is not
-// stated.
+// Recognition from single touches in no order, by points and by round tips, from outside.
 #include "tests/support/lone_touches.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +16,14 @@ namespace {
 
 enum class Noise { Stated, Unstated };
 
+Recognizer touching_from_outside() {
+  RecognizerOptions options;
+  options.touched_from = TouchedFrom::Outside;
+  return Recognizer(options);
+}
+
 Recognition recognise(const test::LoneTouches& touches, Noise noise = Noise::Stated) {
-  Recognizer recognizer;
+  Recognizer recognizer = touching_from_outside();
   test::add_touches(touches, noise == Noise::Stated ? touches.scene.sigma_m : 0.0, &recognizer);
   return recognizer.recognize();
 }
@@ -104,7 +109,7 @@ TEST(LoneTouches, NormalsTellMoreAndNoMoreThanTheySay) {
         Tally plain;
         for (int i = 0; i < scenes; ++i) {
           const test::LoneTouches touches = test::lone_touches(curve_class, count, 1e-3, tip, rng);
-          Recognizer recognizer;
+          Recognizer recognizer = touching_from_outside();
           test::add_touches_with_normals(touches, touches.scene.sigma_m, kNormalSigma, rng,
                                          &recognizer);
           tally.add(recognizer.recognize(), touches.scene);

@@ -58,10 +58,15 @@ TEST(Config, OptionsReachTheRecognizer) {
   v1::NodeConfig config;
   ASSERT_EQ(set_option(config, "form_deviation_m", "5e-5"), "");
   ASSERT_EQ(set_option(config, "unqualified_probe", "true"), "");
+  ASSERT_EQ(set_option(config, "touched_from", "inside"), "");
   const Result<NodeOptions> options = make_options(config);
   ASSERT_TRUE(options) << options.error;
   EXPECT_EQ(options.value->intake.recognizer.form_deviation_m, 5e-5);
   EXPECT_TRUE(options.value->intake.recognizer.unqualified_probe);
+  EXPECT_EQ(options.value->intake.recognizer.touched_from, TouchedFrom::Inside);
+  ASSERT_EQ(set_option(config, "touched_from", "within"), "");
+  EXPECT_THAT(make_options(config).error, HasSubstr("touched_from: expected outside, inside"));
+  ASSERT_EQ(set_option(config, "touched_from", "outside"), "");
   ASSERT_EQ(set_option(config, "form_deviation_m", "-5e-5"), "");
   EXPECT_THAT(make_options(config).error, HasSubstr("form_deviation_m"));
 }

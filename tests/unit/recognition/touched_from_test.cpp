@@ -1,0 +1,161 @@
+// Where round tips touch, if no probe and no normal tells their side: what samples cannot show is
+// not RECOGNIZED, and what is stated holds.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "core/curves/pose2.h"
+#include "core/recognition/given/given_class.h"
+#include "core/recognition/posterior/likelihood.h"
+#include "core/recognition/recognizer.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kSigmaM = 1e-5;
+constexpr double kTipM = 0.003;
+constexpr double kCentresM = 0.030;  // radius of the circle of the tips' centres
+
+Vec2 on_circle(double angle) {
+  return Vec2(0.2, -0.1) + kCentresM * Vec2(std::cos(angle), std::sin(angle));
+}
+
+RecognizerOptions options_with(TouchedFrom touched_from) {
+  RecognizerOptions options;
+  options.touched_from = touched_from;
+  return options;
+}
+
+/// Three strokes, or `touches` single touches, all round a circle, by a tip of untold side.
+Recognition touched_circle(TouchedFrom touched_from, int touches,
+                           MaterialSide side = MaterialSide::Unspecified) {
+  auto rng = test::test_rng();
+  std::normal_distribution<double> normal(0.0, kSigmaM);
+  Recognizer recognizer(options_with(touched_from));
+  const int patches = touches > 0 ? touches : 3;
+  const int samples = touches > 0 ? 1 : 60;
+  for (int patch = 0; patch < patches; ++patch) {
+    std::vector<ContactSample> stroke;
+    for (int i = 0; i < samples; ++i) {
+      const double angle = 2.0 * kPi * (patch + 0.7 * i / samples) / patches;
+      stroke.push_back({on_circle(angle) + Vec2(normal(rng), normal(rng)), kSigmaM, 0});
+    }
+    recognizer.add({0, static_cast<std::uint32_t>(patch), kTipM, side}, stroke);
+  }
+  return recognizer.recognize();
+}
+
+TEST(TouchedFrom, ACircleIsAPinOrABore) {
+  for (const int touches : {0, 8, 12, 60}) {
+    SCOPED_TRACE(touches);
+    const Recognition untold = touched_circle(TouchedFrom::Unknown, touches);
+    ASSERT_EQ(untold.shape.curve_class, CurveClass::Circle);
+    EXPECT_EQ(untold.status, RecognitionStatus::Ambiguous);
+    EXPECT_EQ(untold.doubt, Doubt::TwoShapes) << name_of(untold.doubt);
+    EXPECT_NEAR(untold.shape.values[0], kCentresM - kTipM, 10.0 * kSigmaM);
+    for (const bool inside : {false, true}) {
+      const Recognition told =
+          touched_circle(inside ? TouchedFrom::Inside : TouchedFrom::Outside, touches);
+      ASSERT_EQ(told.shape.curve_class, CurveClass::Circle);
+      EXPECT_EQ(told.status, RecognitionStatus::Recognized) << name_of(told.doubt);
+      EXPECT_NEAR(told.shape.values[0], kCentresM + (inside ? kTipM : -kTipM), 10.0 * kSigmaM);
+    }
+  }
+}
+
+TEST(TouchedFrom, AStatedSideHoldsAgainstIt) {
+  // Against the clock, material on the right: a bore.
+  const Recognition bore = touched_circle(TouchedFrom::Outside, 0, MaterialSide::Right);
+  EXPECT_EQ(bore.status, RecognitionStatus::Recognized) << name_of(bore.doubt);
+  EXPECT_NEAR(bore.shape.values[0], kCentresM + kTipM, 10.0 * kSigmaM);
+}
+
+TEST(TouchedFrom, ALineHasNoOutside) {
+  for (const TouchedFrom from : {TouchedFrom::Unknown, TouchedFrom::Outside, TouchedFrom::Inside}) {
+    auto rng = test::test_rng();
+    std::normal_distribution<double> normal(0.0, kSigmaM);
+    Recognizer recognizer(options_with(from));
+    for (std::uint32_t patch = 0; patch < 3; ++patch) {
+      std::vector<ContactSample> stroke;
+      for (int i = 0; i < 60; ++i) {
+        stroke.push_back(
+            {Vec2(0.03 * patch + 3e-4 * i, 0.0) + Vec2(normal(rng), normal(rng)), kSigmaM, 0});
+      }
+      recognizer.add({0, patch, kTipM}, stroke);
+    }
+    const Recognition answer = recognizer.recognize();
+    ASSERT_EQ(answer.shape.curve_class, CurveClass::Line);
+    EXPECT_NE(answer.status, RecognitionStatus::Recognized);
+    EXPECT_EQ(answer.doubt, Doubt::TwoShapes) << name_of(answer.doubt);
+  }
+}
+
+/// Tips' centres along an ellipse of 40 and 20 mm, touched from one side.
+std::vector<GivenPoint> touched_ellipse(bool inside, double noise_m, double stated_m) {
+  auto rng = test::test_rng();
+  std::normal_distribution<double> normal(0.0, noise_m);
+  std::vector<GivenPoint> points;
+  for (int i = 0; i < 40; ++i) {
+    const double t = 2.0 * kPi * i / 40;
+    const Vec2 place(0.040 * std::cos(t), 0.020 * std::sin(t));
+    const Vec2 out = Vec2(0.020 * std::cos(t), 0.040 * std::sin(t)).normalized();
+    GivenPoint& point = points.emplace_back();
+    point.position_m = place + (inside ? -kTipM : kTipM) * out + Vec2(normal(rng), normal(rng));
+    point.sigma_m = stated_m;
+    point.tip_radius_m = kTipM;
+  }
+  return points;
+}
+
+TEST(GivenTouchedFrom, ResidualsTellTheSideOrDoNot) {
+  const double needed = log_odds(0.95);
+  for (const bool inside : {false, true}) {
+    for (const double stated_m : {0.0, 1e-5}) {
+      const auto points = touched_ellipse(inside, 1e-5, stated_m);
+      const GivenFit fit = fit_given_class(CurveClass::Ellipse, points);
+      ASSERT_EQ(fit.status, GivenStatus::Fitted);
+      EXPECT_NEAR(fit.shape.values[1], 0.020, 1e-4);
+      EXPECT_GT(fit.side_log_odds, needed);
+      EXPECT_TRUE(std::isfinite(fit.side_log_odds));
+    }
+    // Noise of 2 mm hides which side it is.
+    const auto coarse = touched_ellipse(inside, 2e-3, 2e-3);
+    EXPECT_LT(fit_given_class(CurveClass::Ellipse, coarse).side_log_odds, needed);
+    const GivenFit told = fit_given_class(
+        CurveClass::Ellipse, coarse, {0.0, inside ? TouchedFrom::Inside : TouchedFrom::Outside});
+    EXPECT_EQ(told.side_log_odds, std::numeric_limits<double>::infinity());
+    EXPECT_NEAR(told.shape.values[1], 0.020, 0.002);
+  }
+}
+
+TEST(GivenTouchedFrom, ACircleFitsAlikeOnBothSides) {
+  for (const double stated_m : {0.0, 1e-6}) {
+    for (int count = 4; count < 24; ++count) {
+      std::vector<GivenPoint> points(static_cast<std::size_t>(count));
+      for (int i = 0; i < count; ++i) {
+        GivenPoint& point = points[static_cast<std::size_t>(i)];
+        point.position_m = on_circle(0.3 + 2.0 * kPi * i / count);
+        point.sigma_m = stated_m;
+        point.tip_radius_m = kTipM;
+      }
+      const GivenFit untold = fit_given_class(CurveClass::Circle, points);
+      EXPECT_NEAR(untold.shape.values[0], kCentresM - kTipM, 1e-12);
+      EXPECT_LT(std::abs(untold.side_log_odds), 0.01 * count);
+      const GivenFit bore = fit_given_class(CurveClass::Circle, points, {0.0, TouchedFrom::Inside});
+      EXPECT_NEAR(bore.shape.values[0], kCentresM + kTipM, 1e-12);
+      EXPECT_EQ(bore.side_log_odds, std::numeric_limits<double>::infinity());
+      // What a point says of the material holds against the option.
+      points.front().into_material = points.front().position_m - Vec2(0.2, -0.1);
+      const GivenFit stated =
+          fit_given_class(CurveClass::Circle, points, {0.0, TouchedFrom::Outside});
+      EXPECT_NEAR(stated.shape.values[0], kCentresM + kTipM, 1e-12);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate
