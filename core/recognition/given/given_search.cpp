@@ -183,9 +183,9 @@ int feet_inside(const GivenCandidate& candidate) {
 }
 
 /// Whether the first of two curves with tips on opposite sides is to be told, where no point tells
-/// the side.
-bool is_preferred(const GivenCandidate& u, const GivenCandidate& v, TouchedFrom touched_from) {
-  const int towards = feet_inside(u) - feet_inside(v);
+/// the side. `towards`: feet_inside(u) less feet_inside(v).
+bool is_preferred(const GivenCandidate& u, const GivenCandidate& v, int towards,
+                  TouchedFrom touched_from) {
   // Both sides of a circle fit alike to rounding, which must not choose; probes come from outside.
   const bool alike = u.curve.curve_class == CurveClass::Circle;
   if (towards == 0 || (touched_from == TouchedFrom::Unknown && !alike)) {
@@ -211,11 +211,12 @@ SidedCandidate search_sides(CurveClass curve_class, const LocalPoints& local,
       best_votes = votes;
       continue;
     }
-    const bool preferred = votes == best_votes ? is_preferred(candidate, best.taken, touched_from)
-                                               : votes < best_votes;
+    const int towards = feet_inside(candidate) - feet_inside(best.taken);
+    const bool by_votes = votes != best_votes;
+    const bool preferred =
+        by_votes ? votes < best_votes : is_preferred(candidate, best.taken, towards, touched_from);
     // A line has no bend that could tell.
-    const bool told = votes != best_votes || (touched_from != TouchedFrom::Unknown &&
-                                              feet_inside(candidate) != feet_inside(best.taken));
+    const bool told = by_votes || (touched_from != TouchedFrom::Unknown && towards != 0);
     if (!told) {
       best.cost_of_other = preferred ? best.taken.cost : candidate.cost;
     }

@@ -57,19 +57,21 @@ std::vector<std::size_t> returns_among_all(std::span<const StoredSample> all,
   return result;
 }
 
-/// The spikes of each part of a patch, which begins at 0 or at one of `cuts`. One flag per sample.
-std::vector<bool> spikes_of_parts(std::span<const StoredSample> samples,
-                                  std::span<const std::size_t> cuts, double false_alarm,
-                                  WorkBudget& work) {
-  std::vector<bool> is_spike;
-  is_spike.reserve(samples.size());
+bool has_any(const std::vector<bool>& flags) {
+  return std::find(flags.begin(), flags.end(), true) != flags.end();
+}
+
+/// Whether any part of a patch, which begins at 0 or at one of `cuts`, has a spike.
+bool has_spikes_between(std::span<const StoredSample> samples, std::span<const std::size_t> cuts,
+                        double false_alarm, WorkBudget& work) {
   for (std::size_t part = 0; part <= cuts.size(); ++part) {
     const std::size_t begin = part == 0 ? 0 : cuts[part - 1];
     const std::size_t end = part == cuts.size() ? samples.size() : cuts[part];
-    const auto of_part = spikes_of(samples.subspan(begin, end - begin), false_alarm, work);
-    is_spike.insert(is_spike.end(), of_part.begin(), of_part.end());
+    if (has_any(spikes_of(samples.subspan(begin, end - begin), false_alarm, work))) {
+      return true;
+    }
   }
-  return is_spike;
+  return false;
 }
 
 /// Cuts a patch into passes, with and without spikes. Where a stroke turns back, no polynomial
@@ -78,18 +80,16 @@ std::vector<bool> spikes_of_parts(std::span<const StoredSample> samples,
 void clean_passes(StoredPatch patch, double false_alarm, std::vector<StoredPatch>* passes,
                   std::vector<StoredPatch>* clean, WorkBudget& work) {
   const std::vector<std::size_t> seen_returns = returns_of(patch.samples);
-  const auto any = [](const std::vector<bool>& flags) {
-    return std::find(flags.begin(), flags.end(), true) != flags.end();
-  };
   if (!seen_returns.empty() &&
-      !any(spikes_of_parts(patch.samples, seen_returns, false_alarm, work))) {
+      !has_spikes_between(patch.samples, seen_returns, false_alarm, work)) {
     *passes = passes_of(patch, seen_returns);
     *clean = *passes;
     return;
   }
   const std::vector<bool> is_spike = spikes_of(patch.samples, false_alarm, work);
   StoredPatch rest = without_spikes(patch, is_spike);
-  const std::vector<std::size_t> returns = returns_of(rest.samples);
+  const std::vector<std::size_t> returns =
+      has_any(is_spike) ? returns_of(rest.samples) : seen_returns;
   if (returns.empty()) {
     passes->push_back(std::move(patch));
     clean->push_back(std::move(rest));
