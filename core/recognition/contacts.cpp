@@ -171,9 +171,13 @@ void add_contacts(const StoredPatch& patch, std::size_t least_windows, int side,
   const std::size_t fewest = std::max(options.window_samples, kFewestWindowNodes);
   const std::size_t windows = std::clamp<std::size_t>(n / fewest, 1, least_windows);
   const std::size_t longest = n / windows;
+  // Over the window before: a path that could not be followed for long rarely can be at once. So
+  // the windows tried are in all a bounded number of times the path.
+  constexpr std::size_t kGrowth = 2;
+  std::size_t most = longest;
   std::vector<LocalizedContact> found;
   for (std::size_t first = 0; first + std::min(longest, fewest) <= n && longest > 0;) {
-    std::size_t length = std::min(longest, n - first);
+    std::size_t length = std::min(most, n - first);
     LocalResult fit;
     for (bool shortest = false; !fit && !shortest;) {
       const auto shorter = static_cast<std::size_t>(kShrink * static_cast<double>(length));
@@ -185,6 +189,7 @@ void add_contacts(const StoredPatch& patch, std::size_t least_windows, int side,
       }
     }
     first += length;
+    most = std::min(kGrowth * length, longest);
     if (!fit) {
       continue;
     }

@@ -144,7 +144,7 @@ class Recognizer::Impl {
     const std::span<const SidedStart> sought =
         strung ? std::span<const SidedStart>(strung->starts) : std::span<const SidedStart>();
     answer = options_.method == RecognitionMethod::Tree
-                 ? by_tree(data, sigma_known, patches)
+                 ? by_tree(data, sigma_known, patches, work)
                  : by_likelihood(data, sigma_known, patches, sought, work);
     // Touches in no order whose noise nobody states lie about any curve, if the noise is large
     // enough.
@@ -203,14 +203,15 @@ class Recognizer::Impl {
     return answer;
   }
 
-  Recognition by_tree(FitData data, bool sigma_known, std::span<const StoredPatch> patches) {
+  Recognition by_tree(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
+                      WorkBudget& work) {
     const std::size_t outliers = clean_.moved_count() - data.points.size();
     const FitData reduced = fit_smooth_model(&data, sigma_known).reduced;
     const auto contacts_of = [&](const std::vector<int>& sides) {
       return contacts_.of(patches, sides, {}, contact_options());
     };
     Recognition answer =
-        answer_by_tree(possible_sides(patches, reduced, turns_of(reduced)), contacts_of,
+        answer_by_tree(possible_sides(patches, reduced, turns_of(reduced), {}, work), contacts_of,
                        options_.tree, data.scale, options_.determined_fraction);
     answer.outlier_count = outliers;
     return answer;

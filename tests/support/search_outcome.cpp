@@ -65,8 +65,9 @@ Prepared prepare(const SearchCase& search_case) {
   bool sigma_known = true;
   prepared.data = make_fit_data(memory.patches(), 0.0, &sigma_known);
   prepared.smooth = fit_smooth_model(&prepared.data, sigma_known);
-  const auto ways =
-      possible_sides(memory.patches(), prepared.smooth.reduced, turns_of(prepared.smooth.reduced));
+  WorkBudget unbounded;
+  const auto ways = possible_sides(memory.patches(), prepared.smooth.reduced,
+                                   turns_of(prepared.smooth.reduced), {}, unbounded);
   prepared.reduced = on_surface(prepared.smooth.reduced, ways.front());
   return prepared;
 }

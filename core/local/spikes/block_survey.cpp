@@ -85,7 +85,9 @@ struct Blocks {
   double end_gap = 0.0;
 };
 
-Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigma_m) {
+Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigma_m,
+                  WorkBudget& work) {
+  work.spend(WorkKind::SpikeRow, kBlocksOfSample * samples.size());
   Blocks result;
   ResidualBlock block;
   std::vector<double> sizes, largest, floors;
@@ -124,13 +126,14 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigm
 /// How far the nearer halves of the blocks lie from a parabola, as a standard deviation: the median
 /// over at most eight blocks; 0 if no block has a parabola. [m]
 double parabola_scale_m(std::span<const Vec2> samples, std::size_t length,
-                        std::vector<double>& sizes) {
+                        std::vector<double>& sizes, WorkBudget& work) {
   // Bounds the time; the median of so many is good enough (kAboveScale).
   constexpr std::size_t kMostBlocks = 8;
   LeastMedianParabola parabola;
   sizes.clear();
   for_each_block(samples.size(), length, std::max(length, samples.size() / kMostBlocks),
                  [&](std::size_t start) {
+                   work.spend(WorkKind::SpikeRow, kRowsOfParabola * length);
                    if (parabola.fit(samples.subspan(start, length))) {
                      sizes.push_back(parabola.scale_m());
                    }
@@ -156,13 +159,12 @@ void look_for_spiked_noise(std::span<const Vec2> samples, double largest, double
   if (largest <= quiet && survey->sigma_m <= kAboveDifferences * low_noise_of(samples, sizes)) {
     return;
   }
-  work.spend(WorkKind::SpikeRow, kRowsOfParabola * samples.size());
   // Spikes lengthen the chords and what is taken for noise: the shortest blocks that resolve their
   // own scale.
   double scale_m = 0.0;
   for (std::size_t length = std::min(kBlock, survey->length);; length *= 2) {
     length = std::min(length, survey->length);
-    scale_m = parabola_scale_m(samples, length, sizes);
+    scale_m = parabola_scale_m(samples, length, sizes, work);
     if (length == survey->length || (scale_m > 0.0 && block_length(samples, scale_m) <= length)) {
       break;
     }
@@ -192,17 +194,16 @@ bool turns_back(const ResidualBlock& block, double sigma_m) {
 
 BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold,
                           WorkBudget& work) {
-  work.spend(WorkKind::SpikeRow, kBlocksOfSample * samples.size());
   BlockSurvey survey;
   survey.length = std::min(kBlock, samples.size());
-  Blocks blocks = fit_blocks(samples, survey.length, sigma_m);
+  Blocks blocks = fit_blocks(samples, survey.length, sigma_m, work);
   const auto is_resolved = [&] {
     return blocks.status == LocalStatus::Ok &&
            blocks.mean_extent_m > ResidualBlock::kMinExtentSigmas * blocks.sigma_m;
   };
   while (!is_resolved() && survey.length < samples.size()) {
     survey.length = std::min(2 * survey.length, samples.size());
-    blocks = fit_blocks(samples, survey.length, sigma_m);
+    blocks = fit_blocks(samples, survey.length, sigma_m, work);
   }
   survey.status = blocks.status;
   survey.sigma_m = blocks.sigma_m;

@@ -11,7 +11,7 @@
 namespace palpate {
 
 /// What its triples, 150 at most, cost beside one fit of a quartic to the same samples (callgrind).
-inline constexpr std::size_t kRowsOfParabola = 10;
+inline constexpr std::size_t kRowsOfParabola = 16;
 
 /// Least median of squares (P. J. Rousseeuw, "Least median of squares regression", 1984): of the
 /// parabolas through three samples, one from each third of the block, that one whose distance to

@@ -202,8 +202,8 @@ ClassFits settled_from_feet(const ClassFits& found, const FitData& few, const Fi
   const PolynomialFits carried = carried_to(warm_start_from(found, few), all);
   const std::size_t residuals = residual_count(few);
   const auto with_feet = [&](PolynomialFit fit) {
-    work.spend(WorkKind::SoughtFoot, all.points.size());
-    for (std::size_t i = 0; i < all.points.size(); ++i) {
+    for (std::size_t i = 0; i < all.points.size() && work.allows(); ++i) {
+      work.spend(WorkKind::SoughtFoot, 1);
       fit.t[i] = nearest_parameter(fit.coefficients, all.points[i].position);
     }
     return fit;

@@ -108,7 +108,7 @@ void seek_feet(std::span<const FitPoint> points, PolynomialFit* curve, WorkBudge
   for (std::size_t i = 0; i < points.size(); ++i) {
     const FitPoint& point = points[i];
     const double off = std::abs(distances[i]) - std::abs(point.offset);
-    if (std::abs(off) * point.inverse_sigma > kFar) {
+    if (std::abs(off) * point.inverse_sigma > kFar && work.allows()) {
       work.spend(WorkKind::SoughtFoot, 1);
       curve->t[i] = nearest_parameter(curve->coefficients, point.position);
     }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/numerics/negligible.h"
+#include "core/recognition/samples/strokes_together.h"
 
 namespace palpate {
 
@@ -71,6 +73,45 @@ int measured_side(const StoredPatch& patch, const FitData& reduced,
   return std::abs(log_odds) < kNegligibleLogOdds ? 0 : (log_odds > 0.0 ? 1 : -1);
 }
 
+/// For each patch what is said of the surest of those that it runs along with, in its own travel.
+/// `said`: one per patch; the sign is a side of its travel (0 counts as positive), the size says
+/// how sure that is.
+std::vector<double> said_together(std::span<const Alongside> strokes,
+                                  std::span<const double> said) {
+  std::vector<double> surest(said.size(), 0.0);  // by the first of each, in its travel
+  for (std::size_t p = 0; p < said.size(); ++p) {
+    const double by_this = said[p] != 0.0 ? said[p] : std::numeric_limits<double>::min();
+    double& of_all = surest[strokes[p].first];
+    if (std::abs(by_this) > std::abs(of_all)) {
+      of_all = strokes[p].sense * by_this;
+    }
+  }
+  std::vector<double> together(said.size());
+  for (std::size_t p = 0; p < said.size(); ++p) {
+    together[p] = strokes[p].sense * surest[strokes[p].first];
+  }
+  return together;
+}
+
+/// The known sides, with those of patches that run along one whose side is known. Where some are
+/// known that contradict one another, the rest stay open.
+std::vector<int> known_together(std::span<const Alongside> strokes, std::span<const int> known) {
+  std::vector<int> left(known.size(), 0);  // by the first of each: known in its travel
+  std::vector<int> right(known.size(), 0);
+  for (std::size_t p = 0; p < known.size(); ++p) {
+    left[strokes[p].first] += strokes[p].sense * known[p] > 0 ? 1 : 0;
+    right[strokes[p].first] += strokes[p].sense * known[p] < 0 ? 1 : 0;
+  }
+  std::vector<int> together(known.begin(), known.end());
+  for (std::size_t p = 0; p < known.size(); ++p) {
+    const std::size_t first = strokes[p].first;
+    if (known[p] == 0 && (left[first] == 0 || right[first] == 0)) {
+      together[p] = strokes[p].sense * (std::min(left[first], 1) - std::min(right[first], 1));
+    }
+  }
+  return together;
+}
+
 }  // namespace
 
 std::optional<double> certain_turn(std::span<const FitPoint> patch) {
@@ -98,43 +139,56 @@ std::vector<double> turns_of(const FitData& reduced) {
 
 std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
                                              const FitData& reduced, std::span<const double> bends,
-                                             std::span<const double> senses) {
+                                             std::span<const double> senses, WorkBudget& work) {
   std::vector<int> known(reduced.patches.size(), 0);
-  std::vector<int> outside_of_bend(reduced.patches.size(), 0);
-  bool any_unknown = false;
+  std::vector<bool> has_tip(reduced.patches.size(), false);
+  const auto any_unknown = [&] {
+    bool any = false;
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      any = any || (has_tip[i] && known[i] == 0);
+    }
+    return any;
+  };
   std::size_t p = 0;
   for (const StoredPatch& patch : patches) {
     if (patch.samples.empty()) {
       continue;
     }
     if (patch.context.tip_radius_m > 0.0) {
-      // If the path bends left, the tips lie outside, on the right, if the part is convex there.
-      outside_of_bend[p] = bends[p] >= 0.0 ? -1 : 1;
+      has_tip[p] = true;
       const bool lone = patch.samples.size() == 1;
       const int measured = measured_side(patch, reduced, reduced.patch(p));
       known[p] = measured != 0 ? measured : lone ? 0 : stated_side(patch.context.material_side);
-      any_unknown = any_unknown || known[p] == 0;
     }
     ++p;
   }
-  if (!any_unknown) {
+  if (!any_unknown()) {
     return {known};
   }
+  const std::vector<Alongside> strokes = strokes_together(patches, reduced, work);
+  known = known_together(strokes, known);
+  if (!any_unknown()) {
+    return {known};
+  }
+  const std::vector<double> bend = said_together(strokes, bends);
+  const std::vector<double> sense =
+      said_together(strokes, senses.empty() ? std::vector<double>(known.size(), 1.0)
+                                            : std::vector<double>(senses.begin(), senses.end()));
   std::vector<std::vector<int>> ways;
   const auto add = [&](auto side_of) {
     std::vector<int> way(known.size());
     for (std::size_t i = 0; i < known.size(); ++i) {
-      way[i] = known[i] != 0 || outside_of_bend[i] == 0 ? known[i] : side_of(i);
+      way[i] = known[i] != 0 || !has_tip[i] ? known[i] : side_of(i);
     }
     if (std::find(ways.begin(), ways.end(), way) == ways.end()) {
       ways.push_back(std::move(way));
     }
   };
-  add([&](std::size_t i) { return outside_of_bend[i]; });
-  add([&](std::size_t i) { return -outside_of_bend[i]; });
-  const auto left_of_curve = [&](std::size_t i) {
-    return !senses.empty() && senses[i] < 0.0 ? -1 : 1;
-  };
+  // If the path bends left, the tips lie outside, on the right, if the part is convex there.
+  const auto outside_of_bend = [&](std::size_t i) { return bend[i] >= 0.0 ? -1 : 1; };
+  const auto left_of_curve = [&](std::size_t i) { return sense[i] < 0.0 ? -1 : 1; };
+  add([&](std::size_t i) { return outside_of_bend(i); });
+  add([&](std::size_t i) { return -outside_of_bend(i); });
   add([&](std::size_t i) { return left_of_curve(i); });
   add([&](std::size_t i) { return -left_of_curve(i); });
   return ways;

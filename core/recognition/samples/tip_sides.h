@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/samples/fit_data.h"
 #include "core/recognition/samples/sample_memory.h"
 
@@ -23,9 +24,11 @@ std::vector<double> turns_of(const FitData& reduced);
 
 /// The possible sides of the tips: each element has one side per patch, +1 if the tip centres lie
 /// left of travel, -1 right, 0 without a tip. A patch's side is known if measured normals show it
-/// beyond doubt, else if the probe states it. If all sides are known, there is one way. Otherwise
+/// beyond doubt, else if the probe states it, else if it runs along a patch whose side is known
+/// (strokes_together.h). If all sides are known, there is one way. Otherwise
 /// the unknown sides are such that the part is convex everywhere, concave everywhere, or always on
-/// the left or always on the right of the curve, in this order.
+/// the left or always on the right of the curve, in this order. Patches that run together bend as
+/// the one of them that bends most.
 ///
 /// `bends`: side to which each patch bends, > 0 for left. `senses`: < 0 if a patch travels against
 /// the curve; empty if no curve is known: then left and right are those of each patch's own travel.
@@ -33,7 +36,7 @@ std::vector<double> turns_of(const FitData& reduced);
 /// tangent.
 std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
                                              const FitData& reduced, std::span<const double> bends,
-                                             std::span<const double> senses = {});
+                                             std::span<const double> senses, WorkBudget& work);
 
 /// Bound on the error of a surface point after the tip is removed along the tangent's normal: tip
 /// radius times five standard deviations of the direction, at most the radius. `noise`: actual

@@ -80,14 +80,18 @@ SideChoice choice_of(ClassFits fits, FitData reduced, const SideContext& by) {
   return choice;
 }
 
-/// Of chi-square: what changes odds less than tenfold.
-constexpr double kAgreement = 4.6;  // 2 ln 10
+/// Of chi-square: what changes odds less than tenfold, where it is what noise leaves. What leaves
+/// more has its odds by a noise that is as large as its residuals.
+double agreement(double chi2, const SmoothModel& smooth) {
+  constexpr double kTenfold = 4.6;  // 2 ln 10
+  return kTenfold * std::max(1.0, chi2 / smooth.points);
+}
 
 /// Whether the reduced points, tips taken off, tell of the candidate what all points do: to within
 /// what changes odds less than tenfold.
 bool agrees(const SideChoice& choice, const SmoothModel& smooth) {
-  return choice.refined &&
-         std::abs(choice.settled->chi2 + smooth.chi2 - choice.refined->chi2) <= kAgreement;
+  return choice.refined && std::abs(choice.settled->chi2 + smooth.chi2 - choice.refined->chi2) <=
+                               agreement(choice.refined->chi2, smooth);
 }
 
 /// Whether a way leaves no more than `chi2` on all points, by its candidate or the class that was
@@ -110,13 +114,11 @@ bool is_as_near(const SideChoice& choice, CurveClass before, double chi2, const 
 /// Whether directions could be what keeps the curve found from the points.
 bool directions_may_explain(const ClassFit& settled, const FitData& touches,
                             const SmoothModel& smooth) {
-  // The square of a residual that noise may leave.
-  constexpr double kNoise = kNegligibleDeviations * kNegligibleDeviations;
   const double noise = std::max(1.0, smooth.noise_ratio());
-  double most = 0.0;
+  double most = noise * noise * most_of_noise(static_cast<double>(residual_count(touches)));
   for (const FitPoint& point : touches.points) {
     const double off = swayed_by(point, noise) * point.inverse_sigma;
-    most += off * off + kNoise * noise * noise;
+    most += off * off;
   }
   return settled.chi2 <= most;
 }
@@ -232,7 +234,8 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
     ClassFits again = fit_classes(nearer, by.work, &start, by.classes, by.out_of_reach);
     const double before = choice.settled->chi2;
     SideChoice next = choice_of(std::move(again), std::move(nearer), by);
-    if (swayed && !is_as_near(next, choice.candidate, choice.refined->chi2 + kAgreement, by)) {
+    if (swayed && !is_as_near(next, choice.candidate,
+                              choice.refined->chi2 + agreement(choice.refined->chi2, smooth), by)) {
       break;  // led astray
     }
     choice = std::move(next);
@@ -247,13 +250,16 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
 
 /// The same; where directions led to no curve that all points have, once more along those of the
 /// curve of the centres, whose normals are nearly the surface's whichever side that is on. What is
-/// followed has been tried along these when it was sought.
+/// followed has been tried along these when it was sought. What is out on all points, where no
+/// direction matters, beside `highest`, the log evidence of another way, need not be told better.
 SideChoice fit_choice(const FitData& touches, std::span<const int> sides, const SideContext& by,
-                      std::span<const SidedStart> starts, CurveOfCentres* centres) {
+                      std::span<const SidedStart> starts, double highest, CurveOfCentres* centres) {
   const SmoothModel& smooth = by.arcs.smooth;
   SideChoice choice = fit_along(touches, sides, by, starts);
+  choice.log_evidence = log_evidence_of(choice, by);
   if (start_for(starts, sides) != nullptr || agrees(choice, smooth) || !choice.settled ||
-      !directions_may_explain(*choice.settled, touches, smooth) || !by.work.allows() ||
+      !directions_may_explain(*choice.settled, touches, smooth) ||
+      (choice.refined && choice.log_evidence < highest - kNegligibleLogOdds) || !by.work.allows() ||
       !centres->get()) {
     return choice;
   }
@@ -269,7 +275,11 @@ SideChoice fit_choice(const FitData& touches, std::span<const int> sides, const 
   SideChoice again = fit_along(std::move(turned), sides, by, from);
   const bool better =
       again.refined && (!choice.refined || again.refined->chi2 < choice.refined->chi2);
-  return better ? again : choice;
+  if (better) {
+    choice = std::move(again);
+    choice.log_evidence = log_evidence_of(choice, by);
+  }
+  return choice;
 }
 
 /// The reduced points with directions for those that show none, the sides to which the patches
@@ -330,7 +340,7 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
     // The second way has the tips in all bends where the first has them outside, or the reverse:
     // whoever says the one rules out the other.
     const bool ruled_out = i == 1 && has_bend && by.touched_from != TouchedFrom::Unknown;
-    evidences.push_back(log_evidence_of(choice, by) - (ruled_out ? kNegligibleLogOdds : 0.0));
+    evidences.push_back(choice.log_evidence - (ruled_out ? kNegligibleLogOdds : 0.0));
     const double weighed = evidences[i] - (i > 0 && has_bend ? log_price_of_others : 0.0);
     if (i == 0 || weighed > highest) {
       highest = weighed;
@@ -351,7 +361,7 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
   CurveOfCentres centres(by, starts);
   const auto [touches, bends, senses] = directed(patches, by.arcs.smooth, &centres, by.work);
   SidedFits sided;
-  auto all_sides = possible_sides(patches, touches, bends, senses);
+  auto all_sides = possible_sides(patches, touches, bends, senses, by.work);
   if (by.touched_from == TouchedFrom::Inside && all_sides.size() > 1) {
     std::swap(all_sides[0], all_sides[1]);
   }
@@ -364,12 +374,14 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
     return sided;
   }
   // The first is the most probable beforehand.
+  double highest = -std::numeric_limits<double>::infinity();
   for (const std::vector<int>& sides : all_sides) {
     if (!sided.choices.empty() && !by.work.allows()) {
       break;
     }
-    sided.choices.push_back(fit_choice(touches, sides, by, starts, &centres));
+    sided.choices.push_back(fit_choice(touches, sides, by, starts, highest, &centres));
     sided.choices.back().sides = sides;
+    highest = std::max(highest, sided.choices.back().log_evidence);
   }
   sided.centres = centres.next_start();
   take_most_probable(by, &sided);
@@ -385,6 +397,7 @@ bool rejudge_sides(const SideContext& by, SidedFits* sided) {
       choice.evidences = by.of_paths;
       take_candidate(by, &choice);
     }
+    choice.log_evidence = log_evidence_of(choice, by);
   }
   const std::size_t before = sided->taken;
   take_most_probable(by, sided);

@@ -25,6 +25,9 @@ struct SideChoice {
   /// The candidate on all points, unless they agree with the reduced points.
   std::optional<ClassFit> refined;
   Evidences evidences;
+  /// log of the evidence of the candidate, however free-form paths fare beside it; -infinity where
+  /// it is on no points.
+  double log_evidence = -std::numeric_limits<double>::infinity();
 };
 
 struct SidedFits {
