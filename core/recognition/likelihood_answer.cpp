@@ -64,7 +64,10 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
   if (best.at_limit || best.covariance.size() == 0) {
     return Doubt::AtLimit;
   }
-  if (best.dof > 0 && !can_be_noise(w.counted_chi2 / w.noise_inflation, best.dof)) {
+  // A stated noise that nothing but the class's own residuals overrules still speaks against it,
+  // and so do normals on the other side.
+  if (w.noise_told_by_class_alone || w.sides_against_normals ||
+      (best.dof > 0 && !can_be_noise(w.counted_chi2 / w.noise_inflation, best.dof))) {
     return Doubt::Misfit;
   }
   // A second mode with more probability than RECOGNIZED may leave to doubt.

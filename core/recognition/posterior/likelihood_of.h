@@ -20,6 +20,9 @@ struct SeenDeviation {
   /// The likelihood with this deviation, if it is noise or form error rather than another class.
   std::optional<Likelihood> likelihood;
   double noise_inflation = 1.0;  ///< factor on the variances of residuals
+  /// It is larger than stated by the residuals of the class alone: the smooth model, if there is
+  /// one, finds the noise that is stated. The class may be wrong as well.
+  bool told_by_class_alone = false;
   /// Variance of the white noise in it, in units of the arcs' sigma^2.
   double white_variance = 1.0;
   /// Additional factor on covariances: a noise estimated from few residuals may be larger.

@@ -32,10 +32,10 @@ double turn_of(std::span<const FitPoint> patch) {
   return turn;
 }
 
-/// Side of travel to which the measured normals of a patch point, beyond doubt; the tip centres lie
-/// there. 0 if the normals leave a doubt.
-int measured_side(const StoredPatch& patch, const FitData& reduced,
-                  std::span<const FitPoint> path) {
+/// log odds of left of travel over right as the side to which a patch's measured normals point; the
+/// tip centres lie there. 0 without normals.
+double log_odds_of_left(const StoredPatch& patch, const FitData& reduced,
+                        std::span<const FitPoint> path) {
   // Standard deviation of the direction of travel, one error for the whole patch. Reduced points
   // know theirs to a few hundredths; touches take it from a curve that may not be the right one
   // yet. With 0.3 a normal within 51 degrees of the path's normal decides; one farther off decides
@@ -44,7 +44,7 @@ int measured_side(const StoredPatch& patch, const FitData& reduced,
   // Smaller standard deviations add nothing to the error of travel. [rad]
   constexpr double kLeastSigma = 1e-3;
   if (patch.details.empty() || path.empty()) {
-    return 0;
+    return 0.0;
   }
   const ToLocal to_frame(reduced.frame);
   double information = 0.0;
@@ -65,11 +65,17 @@ int measured_side(const StoredPatch& patch, const FitData& reduced,
     to_the_left += weight * left_of(nearest->tangent).dot(reduced.frame.rotate_back(detail.normal));
   }
   if (!(information > 0.0)) {
-    return 0;
+    return 0.0;
   }
-  // Log odds of left over right, by von Mises' law of this concentration about either.
+  // By von Mises' law of this concentration about either side.
   const double concentration = 1.0 / (1.0 / information + kTravelSigma * kTravelSigma);
-  const double log_odds = 2.0 * concentration * to_the_left / information;
+  return 2.0 * concentration * to_the_left / information;
+}
+
+/// That side, beyond doubt; 0 if the normals leave one.
+int measured_side(const StoredPatch& patch, const FitData& reduced,
+                  std::span<const FitPoint> path) {
+  const double log_odds = log_odds_of_left(patch, reduced, path);
   return std::abs(log_odds) < kNegligibleLogOdds ? 0 : (log_odds > 0.0 ? 1 : -1);
 }
 
@@ -192,6 +198,19 @@ std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patche
   add([&](std::size_t i) { return left_of_curve(i); });
   add([&](std::size_t i) { return -left_of_curve(i); });
   return ways;
+}
+
+double log_likelihood_of_normals(std::span<const StoredPatch> patches, const FitData& reduced,
+                                 std::span<const int> sides) {
+  double sum = 0.0;
+  std::size_t p = 0;
+  for (const StoredPatch& patch : patches) {
+    if (!patch.samples.empty()) {
+      sum += 0.5 * sides[p] * log_odds_of_left(patch, reduced, reduced.patch(p));
+      ++p;
+    }
+  }
+  return sum;
 }
 
 double swayed_by(const FitPoint& point, double noise) {

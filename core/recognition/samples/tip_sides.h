@@ -38,6 +38,11 @@ std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patche
                                              const FitData& reduced, std::span<const double> bends,
                                              std::span<const double> senses, WorkBudget& work);
 
+/// log likelihood of these sides by the signs of measured normals, up to a constant. Each patch's
+/// may be too few to be beyond doubt and together tell the side of all.
+double log_likelihood_of_normals(std::span<const StoredPatch> patches, const FitData& reduced,
+                                 std::span<const int> sides);
+
 /// Bound on the error of a surface point after the tip is removed along the tangent's normal: tip
 /// radius times five standard deviations of the direction, at most the radius. `noise`: actual
 /// noise in units of the assumed one.

@@ -234,8 +234,12 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
     ClassFits again = fit_classes(nearer, by.work, &start, by.classes, by.out_of_reach);
     const double before = choice.settled->chi2;
     SideChoice next = choice_of(std::move(again), std::move(nearer), by);
-    if (swayed && !is_as_near(next, choice.candidate,
-                              choice.refined->chi2 + agreement(choice.refined->chi2, smooth), by)) {
+    if (choice.refined && agrees(choice, smooth) && !agrees(next, smooth)) {
+      break;  // worse directions than those that all points agree with
+    }
+    if (choice.refined &&
+        !is_as_near(next, choice.candidate,
+                    choice.refined->chi2 + agreement(choice.refined->chi2, smooth), by)) {
       break;  // led astray
     }
     choice = std::move(next);
@@ -340,7 +344,8 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
     // The second way has the tips in all bends where the first has them outside, or the reverse:
     // whoever says the one rules out the other.
     const bool ruled_out = i == 1 && has_bend && by.touched_from != TouchedFrom::Unknown;
-    evidences.push_back(choice.log_evidence - (ruled_out ? kNegligibleLogOdds : 0.0));
+    evidences.push_back(choice.log_evidence + choice.log_of_normals -
+                        (ruled_out ? kNegligibleLogOdds : 0.0));
     const double weighed = evidences[i] - (i > 0 && has_bend ? log_price_of_others : 0.0);
     if (i == 0 || weighed > highest) {
       highest = weighed;
@@ -379,9 +384,12 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
     if (!sided.choices.empty() && !by.work.allows()) {
       break;
     }
-    sided.choices.push_back(fit_choice(touches, sides, by, starts, highest, &centres));
-    sided.choices.back().sides = sides;
-    highest = std::max(highest, sided.choices.back().log_evidence);
+    const double by_normals = log_likelihood_of_normals(patches, touches, sides);
+    SideChoice choice = fit_choice(touches, sides, by, starts, highest - by_normals, &centres);
+    choice.sides = sides;
+    choice.log_of_normals = by_normals;
+    highest = std::max(highest, choice.log_evidence + by_normals);
+    sided.choices.push_back(std::move(choice));
   }
   sided.centres = centres.next_start();
   take_most_probable(by, &sided);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics/negligible.h"
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/warm_start.h"
 #include "core/recognition/posterior/posterior.h"
@@ -28,6 +29,7 @@ struct SideChoice {
   /// log of the evidence of the candidate, however free-form paths fare beside it; -infinity where
   /// it is on no points.
   double log_evidence = -std::numeric_limits<double>::infinity();
+  double log_of_normals = 0.0;  ///< log_likelihood_of_normals of the sides
 };
 
 struct SidedFits {
@@ -38,6 +40,8 @@ struct SidedFits {
   /// log odds over the next best choice of sides, by what was measured and stated alone; below 0 if
   /// another choice fits better, infinite if all sides are known.
   double margin = std::numeric_limits<double>::infinity();
+  /// The samples ask for sides against which all measured normals together speak beyond doubt.
+  bool against_normals() const { return 2.0 * choice().log_of_normals < -kNegligibleLogOdds; }
   /// Start for following the curve of the tips' centres, if it was needed.
   std::optional<SidedStart> centres;
 

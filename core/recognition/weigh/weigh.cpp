@@ -144,6 +144,7 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
                                                     context.likelihood, contenders.evidences);
   w.rival_share = rival_share(contenders.fits, context.likelihood, contenders.evidences);
   w.noise_inflation = seen.noise_inflation;
+  w.noise_told_by_class_alone = seen.told_by_class_alone;
   w.white_variance = seen.white_variance;
   w.correlation_length = seen.correlation_length;
   w.inflation = seen.noise_inflation * seen.few_residuals + stated.coherent_variance;
@@ -161,6 +162,7 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   w.sides = std::move(sided.choices[sided.taken].sides);
   w.reduced = std::move(sided.choices[sided.taken].reduced);
   w.sides_margin = sided.margin;
+  w.sides_against_normals = sided.against_normals();
   w.sigma = arcs.sigma;
   w.data = std::move(arcs.data);
   w.smooth = std::move(arcs.smooth);

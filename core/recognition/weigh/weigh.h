@@ -50,15 +50,17 @@ struct Weighing {
   std::vector<int> sides;
   /// SidedFits::margin of the sides taken.
   double sides_margin = 0.0;
+  bool sides_against_normals = false;          ///< SidedFits::against_normals
   CurveClass best = CurveClass::Unclassified;  ///< the most probable, "unclassified" included
   double sigma = 0.0;                          ///< noise of the typical point, normalised
   /// Factor on covariances: correlation, misfit, few residuals and stated form error.
   double inflation = 1.0;
   /// Factor on the variances of residuals, without stated form error and few residuals.
   double noise_inflation = 1.0;
-  double white_variance = 1.0;      ///< of the white noise, in units of sigma^2
-  double counted_chi2 = 0.0;        ///< chi-square of `best` for the misfit test (misfit_of)
-  double correlation_length = 0.0;  ///< normalised; 0 = white
+  bool noise_told_by_class_alone = false;  ///< SeenDeviation::told_by_class_alone
+  double white_variance = 1.0;             ///< of the white noise, in units of sigma^2
+  double counted_chi2 = 0.0;               ///< chi-square of `best` for the misfit test (misfit_of)
+  double correlation_length = 0.0;         ///< normalised; 0 = white
   /// Normals along strokes that chi-square, shape, pose and covariance of `best` hold, no others'
   /// (best_in_full.h).
   std::size_t stroke_normals = 0;
