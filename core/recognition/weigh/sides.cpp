@@ -111,16 +111,20 @@ bool is_as_near(const SideChoice& choice, CurveClass before, double chi2, const 
   return refined && refined->chi2 <= chi2;
 }
 
-/// Whether directions could be what keeps the curve found from the points.
-bool directions_may_explain(const ClassFit& settled, const FitData& touches,
+/// Whether directions could be what keeps the settled candidate from the reduced points.
+bool directions_may_explain(const SideChoice& choice, const FitData& touches,
                             const SmoothModel& smooth) {
+  // What all points have without any directions is kept from the reduced ones by theirs.
+  if (choice.refined && fits_well(choice.refined->chi2, static_cast<std::size_t>(smooth.points))) {
+    return true;
+  }
   const double noise = std::max(1.0, smooth.noise_ratio());
   double most = noise * noise * most_of_noise(static_cast<double>(residual_count(touches)));
   for (const FitPoint& point : touches.points) {
     const double off = swayed_by(point, noise) * point.inverse_sigma;
     most += off * off;
   }
-  return settled.chi2 <= most;
+  return choice.settled->chi2 <= most;
 }
 
 /// log of the evidence of a way's candidate, however free-form paths fare beside it: the ways are
@@ -184,6 +188,13 @@ class CurveOfCentres {
   WarmStart start_;
 };
 
+/// What the candidate leaves, on the reduced points with their directions or on all without.
+double least_left(const SideChoice& choice, const SmoothModel& smooth) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const double on_reduced = choice.settled ? choice.settled->chi2 + smooth.chi2 : kNone;
+  return choice.refined ? std::min(on_reduced, choice.refined->chi2) : on_reduced;
+}
+
 /// Directions that turn by less are settled: the surface is off by a millionth of the radius. [rad]
 constexpr double kSettledTurn = 1e-3;
 
@@ -210,8 +221,7 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
   // third of a radian to a ninth of what they were. What is not even halved they do not leave.
   constexpr double kLeastGain = 2.0;
   for (int round = 0; round < kRounds; ++round) {
-    if (!choice.settled || !directions_may_explain(*choice.settled, touches, smooth) ||
-        !by.work.allows()) {
+    if (!choice.settled || !directions_may_explain(choice, touches, smooth) || !by.work.allows()) {
       break;
     }
     // (a candidate that is no such curve on all points says nothing about the directions of all)
@@ -232,7 +242,7 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
     FitData nearer = on_surface(touches, sides);
     const WarmStart start = warm_start_from(choice.fits, choice.reduced);
     ClassFits again = fit_classes(nearer, by.work, &start, by.classes, by.out_of_reach);
-    const double before = choice.settled->chi2;
+    const double before = least_left(choice, smooth);
     SideChoice next = choice_of(std::move(again), std::move(nearer), by);
     if (choice.refined && agrees(choice, smooth) && !agrees(next, smooth)) {
       break;  // worse directions than those that all points agree with
@@ -243,9 +253,9 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
       break;  // led astray
     }
     choice = std::move(next);
-    if (choice.settled && tells_noise(by.arcs, by.likelihood) &&
-        choice.settled->chi2 > before / kLeastGain &&
-        !fits_well(choice.settled->chi2, residual_count(choice.reduced))) {
+    const double after = least_left(choice, smooth);
+    if (tells_noise(by.arcs, by.likelihood) && after > before / kLeastGain &&
+        !fits_well(after, residual_count(by.arcs.data))) {
       break;
     }
   }
@@ -262,7 +272,7 @@ SideChoice fit_choice(const FitData& touches, std::span<const int> sides, const 
   SideChoice choice = fit_along(touches, sides, by, starts);
   choice.log_evidence = log_evidence_of(choice, by);
   if (start_for(starts, sides) != nullptr || agrees(choice, smooth) || !choice.settled ||
-      !directions_may_explain(*choice.settled, touches, smooth) ||
+      !directions_may_explain(choice, touches, smooth) ||
       (choice.refined && choice.log_evidence < highest - kNegligibleLogOdds) || !by.work.allows() ||
       !centres->get()) {
     return choice;
