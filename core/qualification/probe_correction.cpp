@@ -95,7 +95,8 @@ double half_extent(std::span<const ProbedPatch> patches) {
 
 }  // namespace
 
-int material_sign(const Curve& curve, const Pose2& pose, const ProbedPatch& patch) {
+int material_sign(const Curve& curve, const Pose2& pose, const ProbedPatch& patch,
+                  TouchedFrom touched_from) {
   int off = 0;
   int bend = 0;
   for (const ContactSample& sample : patch.samples) {
@@ -109,13 +110,13 @@ int material_sign(const Curve& curve, const Pose2& pose, const ProbedPatch& patc
     const int side = patch.context.material_side == MaterialSide::Left ? 1 : -1;
     if (const int travel = travel_of(curve, pose, patch.samples); travel != 0) return side * travel;
   }
-  return majority(bend);
+  return touched_from == TouchedFrom::Inside ? -majority(bend) : majority(bend);
 }
 
 std::vector<ContactSample> without_offset(const ProbedPatch& patch, const Curve& curve,
-                                          const Pose2& pose) {
+                                          const Pose2& pose, TouchedFrom touched_from) {
   std::vector<ContactSample> samples(patch.samples);
-  const int material = patch.probe == nullptr ? 0 : material_sign(curve, pose, patch);
+  const int material = patch.probe == nullptr ? 0 : material_sign(curve, pose, patch, touched_from);
   if (material == 0) return samples;
   const int travel = has_lag(patch) ? travel_of(curve, pose, patch.samples) : 0;
   for (ContactSample& sample : samples) {
@@ -135,13 +136,14 @@ ProbedPatch as_qualified(ProbedPatch patch) {
 }
 
 ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& pose,
-                                         std::span<const ProbedPatch> patches) {
+                                         std::span<const ProbedPatch> patches,
+                                         TouchedFrom touched_from) {
   const auto size = static_cast<Eigen::Index>(parameter_letters(class_of(curve)).size()) + 3;
   SmallSymmetric information = SmallSymmetric::Zero(size, size);
   std::map<const ProbeCharacter*, Eigen::MatrixXd> by_probe;   // J^T W B
   SmallSymmetric coherent = SmallSymmetric::Zero(size, size);  // J^T W D W J
   for (const ProbedPatch& patch : patches) {
-    const int material = material_sign(curve, pose, patch);
+    const int material = material_sign(curve, pose, patch, touched_from);
     const int travel = has_lag(patch) ? travel_of(curve, pose, patch.samples) : 0;
     // With D_ij = d^2 exp(-|s_i - s_j| / length), the sum over all pairs is a recursion along the
     // patch.
@@ -240,7 +242,8 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
     if (round == kRounds) break;
     for (std::size_t i = 0; i < raw.size(); ++i) {
       // Always from the original samples: only the normals change from round to round.
-      corrected[i].samples = without_offset(raw[i], *curve, result.recognition.world_T_curve);
+      corrected[i].samples =
+          without_offset(raw[i], *curve, result.recognition.world_T_curve, options.touched_from);
     }
     result.corrected = true;
   }
@@ -272,7 +275,8 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
   }
   const std::optional<Curve> curve = curve_of(answer);
   if (!curve || answer.covariance.size() == 0) return result;
-  const ShapePoseCovariance more = covariance_of_probes(*curve, answer.world_T_curve, corrected);
+  const ShapePoseCovariance more =
+      covariance_of_probes(*curve, answer.world_T_curve, corrected, options.touched_from);
   if (more.rows() != answer.covariance.rows()) return result;
   answer.covariance += more;
   best.covariance += more;

@@ -22,15 +22,17 @@ struct ProbedPatch {
 
 /// The side of the material of a patch, seen along increasing curve parameter: +1 left, -1 right, 0
 /// unknown. With a tip radius: the side where the tip centres are not. Without: the stated side, or
-/// else the inner side of the bend.
-int material_sign(const Curve& curve, const Pose2& world_T_curve, const ProbedPatch& patch);
+/// else the inner side of the bend, or the outer one of a part that is touched from inside.
+int material_sign(const Curve& curve, const Pose2& world_T_curve, const ProbedPatch& patch,
+                  TouchedFrom touched_from = TouchedFrom::Unknown);
 
 /// The samples minus the probe's offset along the normals of a curve that fits them. An error e of
 /// the normal causes an error of (slope of the offset) times e: some micrometres for an offset of
 /// 0.1 mm and normals known to 1 degree. A second round, with the curve through the corrected
 /// samples, leaves only the product of two such errors.
 std::vector<ContactSample> without_offset(const ProbedPatch& patch, const Curve& curve,
-                                          const Pose2& world_T_curve);
+                                          const Pose2& world_T_curve,
+                                          TouchedFrom touched_from = TouchedFrom::Unknown);
 
 /// The patch with the probe's tip radius, and with the probe's noise for samples that state none.
 ProbedPatch as_qualified(ProbedPatch patch);
@@ -43,7 +45,8 @@ ProbedPatch as_qualified(ProbedPatch patch);
 /// Unlike `form_deviation_m`, this is no bound over all coherences, because the probe file knows
 /// the length.
 ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& world_T_curve,
-                                         std::span<const ProbedPatch> patches);
+                                         std::span<const ProbedPatch> patches,
+                                         TouchedFrom touched_from = TouchedFrom::Unknown);
 
 /// Factor by which the coherent deviation of the probe files enlarges the covariance of white
 /// noise, for quantities that vary slowly: 1 + the mean over the samples of sum_j D_ij / sigma_i^2.

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "core/numerics/normal_law.h"
+#include "core/qualification/estimated_tip.h"
 #include "core/qualification/offset_evidence.h"
 #include "core/qualification/offset_fit.h"
 #include "core/qualification/setup_constants.h"
@@ -371,6 +373,10 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   const auto spikes = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
   result.probe.spike_probability = rate_of(spikes, used.size());
   if (unknowns.lag_m) result.probe.lag_m = Estimate{*unknowns.lag_m, std::sqrt(lag_variance)};
+  const double nominal_m = result.probe.tip_radius_m;
+  result.probe = with_estimated_tip(std::move(result.probe));
+  const double estimated_m = result.probe.tip_radius_m - nominal_m;
+  result.tip_is_estimated = estimated_m > 0.0;
   result.poses = unknowns.poses;
   result.order_probabilities = evidence.probabilities;
   result.bore = material < 0;
@@ -382,7 +388,7 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
         setup_of(unknowns, sample) +
         about.basis.row(static_cast<Eigen::Index>(i)).dot(unknowns.offset.coefficients_m);
     result.samples.push_back({sample.recording, sample.stroke, sample.number, about.normal_angle[i],
-                              residual + offset, residual, used[i] == 0});
+                              residual + offset - estimated_m, residual, used[i] == 0});
     if (used[i] != 0) {
       touched.push_back(about.normal_angle[i]);
       result.worst_offset_deviation_m =

@@ -42,7 +42,7 @@ struct QualifiedSample {
   std::size_t stroke = 0;
   std::size_t number = 0;     ///< within the stroke
   double normal_angle = 0.0;  ///< of the normal out of the material [rad]
-  double distance_m = 0.0;    ///< out of the material, minus the nominal tip radius
+  double distance_m = 0.0;    ///< out of the material, minus the tip radius
   double residual_m = 0.0;    ///< distance minus the offset
   bool spike = false;
 };
@@ -51,6 +51,9 @@ struct Qualification {
   QualificationStatus status = QualificationStatus::NotFinite;
   /// Valid if Sufficient, Partial or Insufficient; this holds for all that follows.
   ProbeCharacter probe;
+  /// The samples state no tip radius, and that of `probe` is the constant of their distances
+  /// (estimated_tip.h).
+  bool tip_is_estimated = false;
   std::vector<Pose2> poses;  ///< of the artefact, one per recording
   std::vector<QualifiedSample> samples;
   std::vector<double> order_probabilities;  ///< of no harmonics, of harmonics up to 2, up to 3, ...

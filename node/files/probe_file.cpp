@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/qualification/estimated_tip.h"
 #include "node/files/text_format.h"
 
 namespace palpate {
@@ -53,7 +54,7 @@ class ProbeCheck {
       }
       character.lag_m = Estimate{lag.value(), lag.deviation()};
     }
-    return character;
+    return with_estimated_tip(std::move(character));
   }
 
   const std::string& error() const { return error_; }

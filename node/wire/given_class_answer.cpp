@@ -106,11 +106,13 @@ PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
       return fitted;
     }
     if (round == kRounds) {
-      fitted.fit.covariance += covariance_of_probes(*curve, fitted.fit.world_T_curve, corrected);
+      fitted.fit.covariance +=
+          covariance_of_probes(*curve, fitted.fit.world_T_curve, corrected, options.touched_from);
       return fitted;
     }
     for (std::size_t i = 0; i < raw.size(); ++i) {
-      corrected[i].samples = without_offset(raw[i], *curve, fitted.fit.world_T_curve);
+      corrected[i].samples =
+          without_offset(raw[i], *curve, fitted.fit.world_T_curve, options.touched_from);
     }
   }
 }

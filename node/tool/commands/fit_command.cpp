@@ -14,6 +14,7 @@
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/commands/fit_input.h"
+#include "node/tool/commands/measured_group.h"
 #include "node/tool/commands/object_answer.h"
 #include "node/tool/contact_groups.h"
 #include "node/tool/drawing/curve_export.h"
@@ -245,7 +246,8 @@ int run(FitCommand& fit) {
       text = json ? json_line(given) : given_class_text(given);
       answer = given.recognition();
     }
-    if (std::string note = note_of_tip_side(group, answer, fit.recognizer.touched_from);
+    const ContactGroup measured = as_measured(group, probes, answer, fit.recognizer.touched_from);
+    if (std::string note = note_of_tip_side(measured, answer, fit.recognizer.touched_from);
         !note.empty()) {
       complain(group.file + ": " + note, kDone);
       notes.push_back(std::move(note));

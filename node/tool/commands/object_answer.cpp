@@ -5,6 +5,7 @@
 
 #include "core/qualification/probe_correction.h"
 #include "node/files/printable.h"
+#include "node/tool/text/quantity.h"
 #include "node/wire/convert.h"
 
 namespace palpate {
@@ -60,8 +61,15 @@ std::vector<const ProbeCharacter*> characters_of(const ContactGroup& group,
       notes.push_back("WARNING: " + probe->file + ": its qualification was insufficient");
     }
     const double radius = probe->character.tip_radius_m;
-    if (radius > 0.0 && run.context.tip_radius_m > 0.0 && run.context.tip_radius_m != radius) {
-      notes.push_back("the tip radius of " + probe->file + " counts, not that of the samples");
+    const double stated = run.context.tip_radius_m;
+    if (radius > 0.0 && stated > 0.0 && stated != radius) {
+      notes.push_back("the tip radius of " + probe->file + ", " + text_of_length(radius) +
+                      ", counts, not that of the samples, " + text_of_length(stated));
+    } else if (!(radius > 0.0) && stated > 0.0) {
+      notes.push_back("WARNING: " + probe->file +
+                      " is of a probe that tells points of the surface, but the samples state a "
+                      "tip radius: " +
+                      text_of_length(stated) + " is taken off besides the file's offset");
     }
   }
   return characters;

@@ -25,8 +25,7 @@ std::string polar(double angle, double lobe_px) {
                    0.5 * kRound - radius * std::sin(angle));
 }
 
-/// The offset less its mean: a probe whose tip radius was not stated has all of it in the mean, a
-/// hundred times the lobes.
+/// The offset less its mean, which may be many times the lobes.
 double lobe_at(const NormalOffset& offset, double normal_angle) {
   return offset_at(offset, normal_angle) - offset.coefficients_m[0];
 }
@@ -74,11 +73,13 @@ std::string scale_bar(double reach_m, double px_per_m) {
 }
 
 /// "mean offset beyond the tip radius of 2 mm: -30.0 +- 1.2 um"
-std::string mean_text(const ProbeCharacter& probe) {
-  const double mean_m = probe.offset.coefficients_m[0];
+std::string mean_text(const Qualification& qualification) {
+  const ProbeCharacter& probe = qualification.probe;
+  const bool is_stated = probe.tip_radius_m > 0.0 && !qualification.tip_is_estimated;
+  const double mean_m = probe.offset.coefficients_m[0] + (is_stated ? 0.0 : probe.tip_radius_m);
   const double deviation_m = std::sqrt(probe.offset.covariance_m2(0, 0));
   const LengthUnit unit = length_unit_for(std::max(std::abs(mean_m), deviation_m));
-  const std::string beyond = probe.tip_radius_m > 0.0
+  const std::string beyond = is_stated
                                  ? "beyond the tip radius of " + text_of_length(probe.tip_radius_m)
                                  : "with no tip radius stated";
   return "mean offset " + beyond + ": " +
@@ -121,7 +122,7 @@ std::string lobes_plot(const Qualification& qualification, const std::string& ti
          "\" stroke-width=\"1.5\" points=\"" + ring(offset, 0.0, px_per_m) + "\"/>\n";
   svg += scale_bar(reach_m, px_per_m);
   svg += formatted("<text x=\"12\" y=\"%.0f\">%s (grey circle)</text>\n", kRound - 20.0,
-                   mean_text(qualification.probe).c_str());
+                   mean_text(qualification).c_str());
   svg += formatted(
       "<text x=\"12\" y=\"%.0f\">lobes: the offset less its mean, by the normal's "
       "direction</text>\n",

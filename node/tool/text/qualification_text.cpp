@@ -52,8 +52,10 @@ std::string qualification_text(const Qualification& qualification,
   std::string text = "qualified on " + origin.artefact + (qualification.bore ? ", a bore" : "") +
                      ": " + std::string(name_of(qualification.status)) + "\n";
   const auto deviation = [&](Eigen::Index i) { return std::sqrt(offset.covariance_m2(i, i)); };
-  add_line(text, "offset",
-           length_text(offset.coefficients_m[0], deviation(0)) + " out of the material");
+  if (!qualification.tip_is_estimated) {
+    add_line(text, "offset",
+             length_text(offset.coefficients_m[0], deviation(0)) + " out of the material");
+  }
   if (probe.setup_m.value > 0.0) {
     add_line(text, "set-ups",
              "another's offset differs by " +
@@ -63,9 +65,11 @@ std::string qualification_text(const Qualification& qualification,
                       : std::string(", a guess: several recordings tell it")));
   }
   if (probe.tip_radius_m > 0.0) {
-    add_line(text, "tip radius",
-             length_text(probe.tip_radius_m + offset.coefficients_m[0], deviation(0)) +
-                 ", nominal " + length_text(probe.tip_radius_m, 0.0));
+    add_line(
+        text, "tip radius",
+        length_text(probe.tip_radius_m + offset.coefficients_m[0], deviation(0)) +
+            (qualification.tip_is_estimated ? std::string(", estimated: the samples state none")
+                                            : ", nominal " + length_text(probe.tip_radius_m, 0.0)));
   }
   for (int order = 2; order <= offset.order; ++order) {
     const Eigen::Index i = 2 * order - 3;

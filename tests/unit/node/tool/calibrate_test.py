@@ -33,6 +33,19 @@ def ellipse(a, b, seed, count=400, probe="p", turn=2 * math.pi, tip=TIP, more=0.
     return text
 
 
+def touched(radius, inside, seed, turn=2 * math.pi):
+    """A pin or a bore as a CMM says it: the centres of a tip with lobes and noise in mm, two columns, no word of a tip."""
+    rng = random.Random(seed)
+    text = "x_mm,y_mm\n"
+    for i in range(400):
+        t = turn * i / 400
+        phi = t + math.pi if inside else t  # the normal out of the material
+        off = TIP + lobes(phi) + rng.gauss(0, SIGMA)
+        text += f"{12 + 1e3 * (radius * math.cos(t) + off * math.cos(phi)):.5f},"
+        text += f"{-4 + 1e3 * (radius * math.sin(t) + off * math.sin(phi)):.5f}\n"
+    return text
+
+
 class Calibrate(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -126,6 +139,47 @@ class Calibrate(unittest.TestCase):
         for value, truth, i in ((answer.parameters.a, 0.03, 0), (answer.parameters.b, 0.02, 1)):
             self.assertLess(abs(value - truth), 4 * math.sqrt(answer.covariance[i * 5 + i]))
             self.assertLess(math.sqrt(answer.covariance[i * 5 + i]), 1e-5)
+
+    def test_a_tip_that_nobody_stated_is_on_the_side_that_is_touched(self):
+        for inside in (False, True):
+            ring, part, path = self.folder / "ring.csv", self.folder / "part.csv", self.folder / "stylus.probe"
+            ring.write_text(touched(0.025, inside, 1))
+            part.write_text(touched(0.015, inside, 2, turn=2.0))
+            code, out, err = run(TOOL, "calibrate", ring, "--circle", "0.025", *["--bore"] * inside, "--output", path)
+            self.assertEqual(code, 0, err)
+            self.assertIn("tip radius   1.97", out)
+            self.assertIn("estimated: the samples state none", out)
+            side = ("--touched-from", "inside" if inside else "outside")
+
+            def fit(*options):
+                code, out, err = run(TOOL, "fit", part, "--format", "json", "--probe", path, *options)
+                self.assertEqual(code, 0, err)
+                answer = json.loads(out)
+                return answer.get("recognition", answer), answer.get("notes", [])
+
+            for options in (side, (*side, "--tip-radius", "0.002"), (*side, "--class", "circle")):
+                answer, notes = fit(*options)
+                self.assertEqual(answer["curve_class"], "CURVE_CLASS_CIRCLE", options)
+                self.assertEqual(answer["status"], "RECOGNITION_STATUS_RECOGNIZED", options)
+                deviation = math.sqrt(answer["covariance"][0])
+                self.assertLess(abs(answer["parameters"]["a"] - 0.015), 4 * deviation)
+                self.assertLess(deviation, 1e-4)
+                # The radius is in the file: another one is not taken off too, and this is said.
+                said = [note for note in notes if "tip radius" in note]
+                self.assertEqual(len(said), 1 if "--tip-radius" in options else 0, notes)
+                self.assertTrue(all(f"of {path}, 1.97" in note and "the samples, 2 mm" in note for note in said), said)
+            # Where nothing tells the side, a pin and a bore fit alike.
+            self.assertNotEqual(fit()[0]["status"], "RECOGNITION_STATUS_RECOGNIZED")
+
+    def test_surface_points_and_a_tip_contradict_one_another(self):
+        # Less its tip, the probe tells points of the surface, 30 um too deep: no tip has such a radius.
+        path, part = self.folder / "p.probe", ellipse(0.03, 0.02, 2, tip=0.0)
+        code, _, err = run(TOOL, "calibrate", "--circle", "0.025", "--output", path, "-", text_in=ellipse(0.025, 0.025, 1, tip=0.0))
+        self.assertEqual(code, 0, err)
+        self.assertNotIn("tip_radius_m", path.read_text())
+        for tip, said in ((), 0), (("--tip-radius", "0.002"), 1):
+            _, notes = self.fit("--probe", path, *tip, text=part.replace(",0.0\n", ",\n"))
+            self.assertEqual(sum("points of the surface" in note for note in notes), said, notes)
 
     def test_recordings_tell_what_set_ups_differ_by(self):
         rings = [self.folder / f"ring{i}.csv" for i in range(4)]
