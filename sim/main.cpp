@@ -12,6 +12,7 @@
 
 #include "node/client/connection.h"
 #include "node/csv/contact_csv.h"
+#include "node/files/overwritten_input.h"
 #include "node/process/clock.h"
 #include "node/process/quiet_protobuf.h"
 #include "node/process/stop_signals.h"
@@ -233,6 +234,12 @@ struct Player {
 };
 
 int run(const CLI::App& app, const CommandLine& options) {
+  for (const std::string& path : {options.csv, options.truth}) {
+    if (const std::string why = overwrites_input(path, options.scenes); !why.empty()) {
+      std::cerr << "palpate-sim: " << why << "\n";
+      return kUsage;
+    }
+  }
   std::vector<sim::Scene> scenes;
   for (const std::string& path : options.scenes) {
     Result<sim::Scene> scene = sim::read_scene(path);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "node/files/overwritten_input.h"
 #include "node/files/printable.h"
 #include "node/files/probe_file.h"
 #include "node/files/written_file.h"
@@ -106,6 +107,11 @@ int run(const CalibrateCommand& calibrate) {
   QualificationOrigin origin;
   const Result<Curve> artefact = artefact_of(calibrate, origin.artefact);
   if (!artefact) return complain(artefact.error, kUsage);
+  for (const std::string& path : {calibrate.output, calibrate.plot}) {
+    if (const std::string why = overwrites_input(path, calibrate.files); !why.empty()) {
+      return complain(why, kUsage);
+    }
+  }
   std::set<std::string> probes;
   const Result<std::vector<ArtefactRecording>> recordings = read_recordings(calibrate, probes);
   if (!recordings) return complain(recordings.error, kUsage);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "node/files/overwritten_input.h"
 #include "node/files/printable.h"
 #include "node/files/probe_file.h"
 #include "node/files/written_file.h"
@@ -168,6 +169,20 @@ std::string wrong_with_given(const FitCommand& fit, const std::vector<FitInput>&
   return "";
 }
 
+/// What is wrong if a file that is read would be written over, or nothing.
+std::string wrong_with_outputs(const FitCommand& fit, std::size_t groups) {
+  std::vector<std::string> read = fit.files;
+  read.insert(read.end(), fit.probe_files.begin(), fit.probe_files.end());
+  read.push_back(fit.part);
+  for (const std::string& path : {fit.plot, fit.invariants_plot, fit.curve_file}) {
+    for (std::size_t number = 1; !path.empty() && number <= groups; ++number) {
+      std::string why = overwrites_input(plot_path(path, number), read);
+      if (!why.empty()) return why;
+    }
+  }
+  return "";
+}
+
 int run(FitCommand& fit) {
   if (std::string why = resolve(fit.words, fit.recognizer); !why.empty()) {
     return complain(why, kUsage);
@@ -212,6 +227,9 @@ int run(FitCommand& fit) {
     return kUsage;
   }
   if (const std::string why = wrong_with_given(fit, inputs); !why.empty()) {
+    return complain(why, kUsage);
+  }
+  if (const std::string why = wrong_with_outputs(fit, inputs.size()); !why.empty()) {
     return complain(why, kUsage);
   }
   const bool json = fit.format.empty() ? isatty(STDOUT_FILENO) == 0 : fit.format == "json";

@@ -156,6 +156,49 @@ class Files(unittest.TestCase):
         self.assertIn("not written: the samples are no curve of the known classes", err)
         self.assertIn("a stroke leaves it (through the air, over an edge)", out)
 
+    def test_what_is_read_is_not_written_over(self):
+        circle = "".join(f"{math.cos(t / 20)},{math.sin(t / 20)}\n" for t in range(126))
+        part, link, svg = self.folder / "part.csv", self.folder / "link.csv", self.folder / "part.svg"
+        ring, scene = self.folder / "ring.svg", self.folder / "scene.csv"
+        for file in (part, svg, ring):
+            file.write_text("x_m,y_m\n" + circle)
+        scene.write_text((SOURCE / "sim/scenes/two_finger_grasp.textproto").read_text())
+        link.symlink_to(part)
+        os.link(part, self.folder / "hard.csv")
+        # A second object goes to FILE-2.svg.
+        two = self.folder / "a-2.svg"
+        two.write_text("object,patch,x_m,y_m\n" + "".join(f"{k},0,{line}\n" for k in (1, 2) for line in circle.split()))
+        for read, *command in (
+                (part, TOOL, "fit", part, "--export", part),
+                (part, TOOL, "fit", part, "--export", self.folder / "." / "part.csv"),
+                (part, TOOL, "fit", link, "--export", part),
+                (part, TOOL, "fit", part, "--export", link),
+                (part, TOOL, "fit", part, "--export", self.folder / "hard.csv"),
+                (svg, TOOL, "fit", svg, "--plot", svg),
+                (svg, TOOL, "fit", svg, "--class", "circle", "--plot", svg),
+                (svg, TOOL, "fit", svg, "--plot-invariants", svg),
+                (two, TOOL, "fit", two, "--plot", self.folder / "a.svg"),
+                (ring, TOOL, "calibrate", ring, "--circle", "1", "--output", ring),
+                (ring, TOOL, "calibrate", ring, "--circle", "1", "--plot", ring),
+                (scene, SIM, scene, "--csv", scene),
+                (scene, SIM, scene, "--csv", self.folder / "new.csv", "--truth", scene)):
+            before = read.read_bytes()
+            code, out, err = run(*command)
+            self.assertEqual((code, out), (2, ""), (command, err))
+            self.assertIn("not written: it is the file that is read", err)
+            self.assertEqual(read.read_bytes(), before, command)
+        self.assertFalse((self.folder / "a.svg").exists())
+        before = part.read_bytes()
+        with part.open() as stdin:
+            done = subprocess.run([TOOL, "fit", "-", "--export", part], stdin=stdin, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("as standard input", done.stderr)
+        self.assertEqual(part.read_bytes(), before)
+        # Another file of that name's ending may be there already: it is the answer of yesterday.
+        code, _, err = run(TOOL, "fit", part, "--export", ring.with_name("old.csv"))
+        self.assertEqual(code, 0, err)
+        self.assertEqual(run(TOOL, "fit", part, "--export", ring.with_name("old.csv"))[0], 0)
+
     def test_a_full_disk(self):
         csv = self.folder / "line.csv"
         csv.write_text(HEADER + "".join(f"p,0,{0.001 * i},0\n" for i in range(50)))
