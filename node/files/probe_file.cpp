@@ -54,12 +54,32 @@ class ProbeCheck {
       }
       character.lag_m = Estimate{lag.value(), lag.deviation()};
     }
+    if (const char* field = missing()) {
+      error_ = file_ + ": " + field +
+               ": is missing, which palpate calibrate always writes: the file is incomplete";
+      return std::nullopt;
+    }
     return with_estimated_tip(std::move(character));
   }
 
   const std::string& error() const { return error_; }
 
  private:
+  /// The first field that is not there but is in every file of `palpate calibrate`. What is cut off
+  /// would else count as zero: a noise and an uncertainty that nobody measured. The last of them is
+  /// the last line of a file.
+  const char* missing() const {
+    if (probe_.artefact().empty()) return "artefact";
+    if (probe_.sample_count() == 0) return "sample_count";
+    if (probe_.verdict() == v1::QUALIFICATION_VERDICT_UNSPECIFIED) return "verdict";
+    if (probe_.offset_covariance_m2().empty()) return "offset_covariance_m2";
+    if (!probe_.has_sigma_m()) return "sigma_m";
+    if (!probe_.has_deviation_m()) return "deviation_m";
+    if (!probe_.has_deviation_length_m()) return "deviation_length_m";
+    if (!probe_.has_spike_probability()) return "spike_probability";
+    return probe_.has_setup_m() ? nullptr : "setup_m";
+  }
+
   std::nullopt_t fail(const char* field, const std::string& why, int index = -1) {
     const auto* descriptor = probe_.GetDescriptor()->FindFieldByName(field);
     // protobuf aborts if GetLocation gets a repeated field without an index.
@@ -117,7 +137,7 @@ class ProbeCheck {
     const Eigen::Index size = offset.coefficients_m.size();
     offset.covariance_m2 = Eigen::MatrixXd::Zero(size, size);
     const int count = probe_.offset_covariance_m2_size();
-    if (count == 0) return true;
+    if (count == 0) return true;  // missing
     if (count != size * size) {
       fail("offset_covariance_m2",
            "must be " + std::to_string(size * size) + " numbers, " + std::to_string(size) +
@@ -204,8 +224,7 @@ void to_wire(const ProbeCharacter& character, v1::Probe& probe) {
   set(character.deviation_m, *probe.mutable_deviation_m());
   set(character.deviation_length_m, *probe.mutable_deviation_length_m());
   set(character.spike_probability, *probe.mutable_spike_probability());
-  probe.clear_setup_m();
-  if (character.setup_m.value > 0.0) set(character.setup_m, *probe.mutable_setup_m());
+  set(character.setup_m, *probe.mutable_setup_m());
   probe.clear_lag_m();
   if (character.lag_m) set(*character.lag_m, *probe.mutable_lag_m());
 }

@@ -13,6 +13,11 @@ from programs import NODE, SIM, SOURCE, TOOL, run
 
 SCENES = SOURCE / "sim/scenes/calibration"
 
+# All that a file must say: a probe without any error.
+PERFECT = """artefact: "circle 0.025" sample_count: 400 verdict: QUALIFICATION_VERDICT_SUFFICIENT
+offset_covariance_m2: 0 sigma_m { value: 1e-6 } deviation_m {} deviation_length_m {} spike_probability {} setup_m {}
+"""
+
 
 class ProbeFiles(unittest.TestCase):
     def done(self, *command):
@@ -140,10 +145,12 @@ class ProbeFiles(unittest.TestCase):
         with Bus() as bus:
             folder = pathlib.Path(bus.folder)
             good, bad = folder / "good.probe", folder / "bad.probe"
-            good.write_text('name: "stylus"\n')
+            good.write_text('name: "stylus"\n' + PERFECT)
             for text, said in (('name: "stylus"\ntip_radius_m: -1\n', f"{bad}:2: tip_radius_m"),
                                ("tip_radius: 1\n", f"{bad}:1:"),
-                               ('name: "stylus"\n', f"{bad}: name: stylus, and so in {good}")):
+                               ("", f"{bad}: artefact: is missing"),
+                               ('name: "other"\n' + PERFECT.partition("setup_m")[0], f"{bad}: setup_m: is missing"),
+                               ('name: "stylus"\n' + PERFECT, f"{bad}: name: stylus, and so in {good}")):
                 bad.write_text(text)
                 for more in ((), ("--check-config",)):
                     code, _, err = run(NODE, "--probe-files", good, "--probe-files", bad, *more)

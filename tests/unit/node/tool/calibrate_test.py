@@ -267,8 +267,33 @@ class Calibrate(unittest.TestCase):
             code, out, err = run(TOOL, "fit", "--probe", str(path), "-", text_in=ellipse(0.03, 0.02, 2))
             self.assertEqual((code, out), (2, ""), err)
             self.assertIn(f"palpate: {path}{place}this is no line of a probe file; palpate calibrate --output writes", err)
-        path.write_text(good)
-        self.assertEqual(run(TOOL, "fit", "--probe", str(path), "-", text_in=ellipse(0.03, 0.02, 2))[0], 0)
+
+    def test_an_incomplete_probe_file_is_refused(self):
+        path, _ = self.calibrated()
+        whole = path.read_text()
+        part = ellipse(0.03, 0.02, 2)
+        self.assertEqual(run(TOOL, "fit", "--probe", path, "-", text_in=part)[0], 0)
+        for text, field in (
+                ("", "artefact"),
+                ("# nothing but words\n", "artefact"),
+                (re.sub(r"verdict: .*\n", "", whole), "verdict"),
+                (whole.partition("offset_covariance_m2")[0], "offset_covariance_m2"),
+                (whole.partition("sigma_m {")[0], "sigma_m"),
+                (whole.partition("deviation_m {")[0], "deviation_m"),
+                (re.sub(r"deviation_m {[^}]*}", "deviation_m {}", whole.partition("deviation_length_m {")[0]), "deviation_length_m"),
+                (whole.partition("spike_probability {")[0], "spike_probability"),
+                (whole.partition("setup_m {")[0], "setup_m")):
+            self.assertNotEqual(text, whole, field)
+            path.write_text(text)
+            code, out, err = run(TOOL, "fit", "--probe", path, "-", text_in=part)
+            self.assertEqual((code, out), (2, ""), (field, err))
+            self.assertIn(f"palpate: {path}: {field}: is missing", err)
+        # Wherever a file is cut off between two lines.
+        lines = whole.splitlines(keepends=True)
+        for count in range(len(lines)):
+            path.write_text("".join(lines[:count]))
+            code, out, _ = run(TOOL, "fit", "--probe", path, "-", text_in=part)
+            self.assertEqual((code, out), (2, ""), count)
 
 
 if __name__ == "__main__":
