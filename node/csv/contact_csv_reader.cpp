@@ -8,6 +8,7 @@
 
 #include "node/csv/contact_csv.h"
 #include "node/csv/csv_columns.h"
+#include "node/csv/row_detail.h"
 #include "node/csv/text_lines.h"
 #include "node/files/bounded_file.h"
 #include "node/files/counted.h"
@@ -28,7 +29,6 @@ constexpr double kMaxCoordinateM = 1e7;
 constexpr double kMinSigmaM = 1e-15;
 constexpr double kMaxSigmaM = 1e3;
 constexpr double kMaxTipRadiusM = 1e3;
-constexpr double kMinNormalSigmaRad = 1e-15;
 constexpr double kMostVarianceM2 = kMaxSigmaM * kMaxSigmaM;
 
 class Reader {
@@ -156,7 +156,7 @@ class Reader {
         number(Column::Sigma, 0.0, kMaxSigmaM, row.sample.sigma_m) && is_noise(row.sample) &&
         whole(Column::Stamp, row.sample.stamp_ns) && whole(Column::Object, row.object) &&
         number(Column::TipRadius, 0.0, kMaxTipRadiusM, row.context.tip_radius_m) &&
-        side(row.context.material_side) && normal(row.detail) && covariance(row);
+        side(row.context.material_side) && detail(row);
     if (all_read && agrees_with_patch(row)) {
       table_.rows.push_back(row);
     }
@@ -175,46 +175,24 @@ class Reader {
            fail(text.data(), in_column(Column::Sigma, text) + "must be 0 (not known) or >= 1e-15");
   }
 
-  bool normal(SampleDetail& detail) {
-    Vec2 read = Vec2::Zero();
-    double sigma = 0.0;
-    if (!number(Column::NormalX, -2.0, 2.0, read.x()) ||
-        !number(Column::NormalY, -2.0, 2.0, read.y()) ||
-        !number(Column::NormalSigma, 0.0, kPi, sigma)) {
+  bool detail(ContactRow& row) {
+    csv::DetailNumbers read;
+    if (!number(Column::NormalX, -2.0, 2.0, read.normal.x()) ||
+        !number(Column::NormalY, -2.0, 2.0, read.normal.y()) ||
+        !number(Column::NormalSigma, 0.0, kPi, read.normal_sigma_rad) ||
+        !number(Column::CovarianceXx, 0.0, kMostVarianceM2, read.covariance_m2.x()) ||
+        !number(Column::CovarianceXy, -kMostVarianceM2, kMostVarianceM2, read.covariance_m2.y()) ||
+        !number(Column::CovarianceYy, 0.0, kMostVarianceM2, read.covariance_m2.z())) {
       return false;
     }
-    if (read.isZero(0.0) && sigma == 0.0) return true;
-    const bool unit = is_unit(read);
-    if (!unit || sigma < kMinNormalSigmaRad) {
-      const Column column = unit ? Column::NormalSigma : Column::NormalX;
-      const std::string_view text = optional_field(column);
-      return fail(text.empty() ? line_begin_ : text.data(),
-                  in_column(column, text) +
-                      (unit ? "a normal needs its deviation" : "a normal is of unit length"));
-    }
-    detail.normal = as_unit(read);
-    detail.normal_sigma_rad = sigma;
-    return true;
-  }
-
-  bool covariance(ContactRow& row) {
-    Eigen::Vector3d read = Eigen::Vector3d::Zero();
-    if (!number(Column::CovarianceXx, 0.0, kMostVarianceM2, read.x()) ||
-        !number(Column::CovarianceXy, -kMostVarianceM2, kMostVarianceM2, read.y()) ||
-        !number(Column::CovarianceYy, 0.0, kMostVarianceM2, read.z())) {
-      return false;
-    }
-    if (read.isZero(0.0)) return true;
-    constexpr double kLeast = kMinSigmaM * kMinSigmaM;
-    if (!is_covariance(read) || read.x() < kLeast || read.z() < kLeast) {
-      const std::string_view text = optional_field(Column::CovarianceXx);
-      return fail(text.empty() ? line_begin_ : text.data(),
-                  in_column(Column::CovarianceXx, text) +
-                      "cov_xx_m2, cov_xy_m2, cov_yy_m2 are no positive definite covariance");
-    }
-    row.detail.covariance_m2 = read;
-    row.sample.sigma_m = mean_sigma_m(read);
-    return true;
+    const csv::DetailFault fault = csv::take_detail(read, row);
+    if (fault == csv::DetailFault::None) return true;
+    const Column column = fault == csv::DetailFault::Covariance     ? Column::CovarianceXx
+                          : fault == csv::DetailFault::NormalLength ? Column::NormalX
+                                                                    : Column::NormalSigma;
+    const std::string_view text = optional_field(column);
+    return fail(text.empty() ? line_begin_ : text.data(),
+                in_column(column, text) + std::string(csv::words_of(fault)));
   }
 
   std::string_view field(Column column) const {

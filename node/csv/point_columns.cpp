@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "node/csv/contact_file.h"
+#include "node/files/counted.h"
 #include "node/files/printable.h"
 
 namespace palpate {
@@ -81,7 +82,17 @@ constexpr std::array kAliases = {
     Alias{"side", PointColumn::Side},
 };
 
+/// Names that have one form only; their x and y are none of a coordinate.
+constexpr std::array kDetails = {
+    Alias{"normal_x", PointColumn::NormalX},         Alias{"normal_y", PointColumn::NormalY},
+    Alias{"normal_sigma", PointColumn::NormalSigma}, Alias{"cov_xx", PointColumn::CovarianceXx},
+    Alias{"cov_xy", PointColumn::CovarianceXy},      Alias{"cov_yy", PointColumn::CovarianceYy},
+};
+
 std::optional<PointColumn> alias(std::string name) {
+  for (const Alias& detail : kDetails) {
+    if (detail.name == name) return detail.column;
+  }
   // y and z go by x's names.
   PointColumn coordinate = PointColumn::X;
   for (char& c : name) {
@@ -112,6 +123,19 @@ std::optional<double> time_unit_ns(std::string_view name) {
   return std::nullopt;
 }
 
+/// "mm2" or "mm^2". [m^2]
+std::optional<double> area_unit_m2(std::string_view name) {
+  if (!name.ends_with('2')) return std::nullopt;
+  name.remove_suffix(name.ends_with("^2") ? 2 : 1);
+  const auto length = length_unit_m(name);
+  return length ? std::optional(*length * *length) : std::nullopt;
+}
+
+std::optional<double> angle_unit_rad(std::string_view name) {
+  if (name == "rad") return 1.0;
+  return name == "deg" ? std::optional(kPi / 180.0) : std::nullopt;
+}
+
 /// Lower case, words joined by single underscores, brackets and quotes gone.
 std::string plain(std::string_view name) {
   std::string result;
@@ -131,6 +155,8 @@ std::string plain(std::string_view name) {
 
 std::optional<double> unit_for(PointColumn column, std::string_view name) {
   if (column == PointColumn::Stamp) return time_unit_ns(name);
+  if (column == PointColumn::NormalSigma) return angle_unit_rad(name);
+  if (is_area(column)) return area_unit_m2(name);
   return is_length(column) ? length_unit_m(name) : std::nullopt;
 }
 
@@ -139,6 +165,11 @@ std::optional<double> unit_for(PointColumn column, std::string_view name) {
 bool is_length(PointColumn column) {
   return column == PointColumn::X || column == PointColumn::Y || column == PointColumn::Z ||
          column == PointColumn::Sigma || column == PointColumn::TipRadius;
+}
+
+bool is_area(PointColumn column) {
+  return column == PointColumn::CovarianceXx || column == PointColumn::CovarianceXy ||
+         column == PointColumn::CovarianceYy;
 }
 
 std::optional<NamedColumn> column_of(std::string_view name) {
@@ -152,8 +183,8 @@ std::optional<NamedColumn> column_of(std::string_view name) {
     words.erase(0, kField.size());
   }
   if (const auto column = alias(words)) {
-    // A time without unit may be anything.
-    if (*column == PointColumn::Stamp) return std::nullopt;
+    // A time or an angle without unit may be anything.
+    if (*column == PointColumn::Stamp || *column == PointColumn::NormalSigma) return std::nullopt;
     return NamedColumn{*column, std::nullopt};
   }
   const std::size_t last = words.rfind('_');
@@ -170,7 +201,8 @@ std::optional<double> unit_in_brackets(PointColumn column, std::string_view text
 
 std::string known_columns() {
   return "x, y, z, sigma, tip_radius (each with or without a unit: x_mm), stamp_ns (or time_s), "
-         "probe, patch, object, group, material_side";
+         "probe, patch, object, group, material_side, normal_x, normal_y, normal_sigma_rad, "
+         "cov_xx_mm2, cov_xy_mm2, cov_yy_mm2";
 }
 
 bool PointColumns::is_enough() const {
@@ -178,6 +210,55 @@ bool PointColumns::is_enough() const {
              (place(PointColumn::Z) ? 1 : 0) >=
          2;
 }
+
+std::optional<PointColumns> columns_by_number(std::size_t count, std::string& note) {
+  if (count != 2 && count != 3 && count != kLinuxCncAxes) {
+    note = counted(count, "column") +
+           " without a line of names: 2 are x and y, 3 are x, y and z, 9 are a LinuxCNC probe log; "
+           "name the others in a first line (" +
+           known_columns() + ")";
+    return std::nullopt;
+  }
+  note = count == 2   ? "no line of names: the two columns are x and y"
+         : count == 3 ? "no line of names: the three columns are x, y and z"
+                      : "nine columns without names: a LinuxCNC probe log, x, y and z first; its "
+                        "other axes are ignored";
+  PointColumns columns;
+  for (std::size_t axis = 0; axis < std::min<std::size_t>(count, 3); ++axis) {
+    columns.places[axis] = axis;  // X, Y, Z
+  }
+  return columns;
+}
+
+namespace {
+
+/// Leaves out normals and covariances that say too little, and says why.
+void keep_whole_details(PointColumns& columns) {
+  using Kind = std::vector<PointColumn>;
+  const auto has = [&](PointColumn column) { return columns.place(column).has_value(); };
+  const bool in_plane = has(PointColumn::X) && has(PointColumn::Y) && !has(PointColumn::Z);
+  const auto keep = [&](const char* what, const Kind& all, const Kind& needed, const char* names) {
+    if (std::none_of(all.begin(), all.end(), has)) return;
+    const bool is_whole = std::all_of(needed.begin(), needed.end(), has);
+    if (in_plane && is_whole) return;
+    columns.unused_details.push_back(
+        std::string(what) +
+        (is_whole ? " are not used: they are read beside the two coordinates x and y alone"
+                  : " are not used: they need the columns ") +
+        (is_whole ? "" : names));
+    for (const PointColumn column : all) {
+      columns.places[static_cast<std::size_t>(column)] = std::nullopt;
+    }
+  };
+  const Kind normal = {PointColumn::NormalX, PointColumn::NormalY, PointColumn::NormalSigma};
+  keep("normals", normal, normal, "normal_x, normal_y and normal_sigma_rad (or _deg)");
+  keep("covariances",
+       {PointColumn::CovarianceXx, PointColumn::CovarianceXy, PointColumn::CovarianceYy},
+       {PointColumn::CovarianceXx, PointColumn::CovarianceYy},
+       "cov_xx and cov_yy, each with its unit (cov_xx_mm2)");
+}
+
+}  // namespace
 
 PointColumns columns_of(const std::vector<std::string_view>& names) {
   PointColumns columns;
@@ -192,6 +273,7 @@ PointColumns columns_of(const std::vector<std::string_view>& names) {
     place = i;
     columns.units[static_cast<std::size_t>(named->column)] = named->unit;
   }
+  keep_whole_details(columns);
   return columns;
 }
 

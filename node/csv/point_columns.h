@@ -10,10 +10,29 @@
 namespace palpate::csv {
 
 /// What a column of a file of points can hold.
-enum class PointColumn { X, Y, Z, Sigma, TipRadius, Stamp, Probe, Patch, Object, Group, Side };
-inline constexpr std::size_t kPointColumnCount = 11;
+enum class PointColumn {
+  X,
+  Y,
+  Z,
+  Sigma,
+  TipRadius,
+  Stamp,
+  Probe,
+  Patch,
+  Object,
+  Group,
+  Side,
+  NormalX,
+  NormalY,
+  NormalSigma,
+  CovarianceXx,
+  CovarianceXy,
+  CovarianceYy,
+};
+inline constexpr std::size_t kPointColumnCount = 17;
 
 bool is_length(PointColumn column);
+bool is_area(PointColumn column);
 
 struct NamedColumn {
   PointColumn column = PointColumn::X;
@@ -37,6 +56,8 @@ struct PointColumns {
   std::array<std::optional<double>, kPointColumnCount> units;
   std::vector<std::string> ignored;  ///< columns that are none of these
   std::string twice;                 ///< name of a column that comes a second time; else empty
+  /// Why columns of normals or covariances are not used, a sentence each.
+  std::vector<std::string> unused_details;
 
   std::optional<std::size_t> place(PointColumn column) const {
     return places[static_cast<std::size_t>(column)];
@@ -44,6 +65,12 @@ struct PointColumns {
   /// Two coordinates at least.
   bool is_enough() const;
 };
+
+/// LinuxCNC writes the position of nine axes: X Y Z A B C U V W.
+inline constexpr std::size_t kLinuxCncAxes = 9;
+
+/// So many columns without names, and what is assumed of them; nullopt if nothing can be, and why.
+std::optional<PointColumns> columns_by_number(std::size_t count, std::string& note);
 
 PointColumns columns_of(const std::vector<std::string_view>& names);
 

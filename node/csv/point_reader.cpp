@@ -7,6 +7,8 @@
 
 #include "node/csv/decimal_marks.h"
 #include "node/csv/point_columns.h"
+#include "node/csv/point_units.h"
+#include "node/csv/row_detail.h"
 #include "node/csv/text_fields.h"
 #include "node/csv/text_lines.h"
 #include "node/files/counted.h"
@@ -18,9 +20,6 @@ namespace {
 // As node/intake/ingest.h has them too.
 constexpr double kMinSigmaM = 1e-15;
 constexpr double kMaxLengthM = 1e3;  // of sigma and of tip radii
-
-/// LinuxCNC writes the position of nine axes: X Y Z A B C U V W.
-constexpr std::size_t kLinuxCncAxes = 9;
 
 class PointReader {
  public:
@@ -98,6 +97,7 @@ class PointReader {
       if (!columns_.is_enough()) return First::Neither;
       width_ = fields_.size();
       if (!columns_.twice.empty()) fail(line.data(), "column " + columns_.twice + " comes twice");
+      agree_on_unit(line);
       return First::Names;
     }
     width_ = fields_.size();
@@ -107,6 +107,11 @@ class PointReader {
       know_by_width(line);
     }
     return First::Numbers;
+  }
+
+  void agree_on_unit(std::string_view line) {
+    const std::string clash = options_.unit_m ? "" : clash_of_units(columns_);
+    if (!clash.empty()) fail(line.data(), clash);
   }
 
   bool is_names(std::string_view line) const { return !names_.empty() && trim(line) == names_; }
@@ -131,6 +136,7 @@ class PointReader {
         result_.notes.push_back("the last comment before the data names the columns: " +
                                 shown(trim(comment_)));
         separator_ = data_separator;
+        agree_on_unit(comment_);
         return true;
       }
     }
@@ -139,26 +145,16 @@ class PointReader {
   }
 
   void know_by_width(std::string_view line) {
-    const auto stand = [&](PointColumn column, std::size_t place) {
-      columns_.places[static_cast<std::size_t>(column)] = place;
-    };
-    if (width_ != 2 && width_ != 3 && width_ != kLinuxCncAxes) {
-      fail(line.data(), counted(width_, "column") +
-                            " without a line of names: 2 are x and y, 3 are x, y and z, 9 "
-                            "are a LinuxCNC probe log; name the others in a first line (" +
-                            known_columns() + ")");
+    std::string note;
+    const auto columns = columns_by_number(width_, note);
+    if (!columns) {
+      fail(line.data(), note);
       return;
     }
-    stand(PointColumn::X, 0);
-    stand(PointColumn::Y, 1);
-    if (width_ > 2) stand(PointColumn::Z, 2);
+    columns_ = *columns;
     result_.has_three_without_names = width_ == 3;
     result_.is_probe_log = width_ == kLinuxCncAxes;
-    result_.notes.emplace_back(
-        width_ == 2   ? "no line of names: the two columns are x and y"
-        : width_ == 3 ? "no line of names: the three columns are x, y and z"
-                      : "nine columns without names: a LinuxCNC probe log, x, y and z first; its "
-                        "other axes are ignored");
+    result_.notes.push_back(note);
   }
 
   std::string_view field(PointColumn column) const {
@@ -166,17 +162,8 @@ class PointReader {
     return place ? fields_[*place] : std::string_view();
   }
 
-  /// What one of the file's lengths is in metres.
   double unit_of(PointColumn column) const {
-    const auto named = columns_.units[static_cast<std::size_t>(column)];
-    if (options_.unit_m) return *options_.unit_m;
-    if (named) return *named;
-    // One coordinate's unit stands for what names none.
-    for (const PointColumn other : {PointColumn::X, PointColumn::Y, PointColumn::Z}) {
-      if (const auto unit = columns_.units[static_cast<std::size_t>(other)]) return *unit;
-    }
-    constexpr double kMillimetre = 1e-3;
-    return result_.is_probe_log ? kMillimetre : 1.0;
+    return csv::unit_of(columns_, column, options_, result_.is_probe_log);
   }
 
   bool length(PointColumn column, const char* what, double lowest, double highest, double& value) {
@@ -256,19 +243,30 @@ class PointReader {
     return true;
   }
 
-  /// "mm;mm" under the names: the units of the columns.
-  bool know_units() {
-    PointColumns with_units = columns_;
-    for (std::size_t i = 0; i < kPointColumnCount; ++i) {
-      const auto column = static_cast<PointColumn>(i);
-      const auto unit = columns_.place(column) && is_length(column)
-                            ? unit_in_brackets(column, field(column))
-                            : std::nullopt;
-      if (unit && !columns_.units[i]) with_units.units[i] = unit;
-      if (!unit && column <= PointColumn::Z && columns_.place(column)) return false;
+  bool detail(ContactRow& row) {
+    DetailNumbers read;
+    const std::array<std::pair<PointColumn, double*>, 6> numbers = {
+        {{PointColumn::NormalX, &read.normal.x()},
+         {PointColumn::NormalY, &read.normal.y()},
+         {PointColumn::NormalSigma, &read.normal_sigma_rad},
+         {PointColumn::CovarianceXx, &read.covariance_m2.x()},
+         {PointColumn::CovarianceXy, &read.covariance_m2.y()},
+         {PointColumn::CovarianceYy, &read.covariance_m2.z()}}};
+    for (const auto& [column, value] : numbers) {
+      const std::string_view text = field(column);
+      if (text.empty()) continue;
+      const auto parsed = number_of(text, true);
+      const std::string clash = parsed ? marks_.take(text) : "not a number";
+      if (!clash.empty()) return fail(text.data(), shown(text) + ": " + clash);
+      if (!std::isfinite(*parsed)) return fail(text.data(), shown(text) + ": not a finite number");
+      *value = *parsed * unit_of(column);
     }
-    columns_ = with_units;
-    return true;
+    const DetailFault fault = take_detail(read, row);
+    const std::string_view at =
+        field(fault == DetailFault::Covariance     ? PointColumn::CovarianceXx
+              : fault == DetailFault::NormalLength ? PointColumn::NormalX
+                                                   : PointColumn::NormalSigma);
+    return fault == DetailFault::None || fail(at.data(), std::string(words_of(fault)));
   }
 
   void read_row(std::string_view line) {
@@ -286,7 +284,13 @@ class PointReader {
       gap_ = true;
       return;
     }
-    if (std::exchange(units_may_follow_, false) && know_units()) return;
+    if (std::exchange(units_may_follow_, false)) {
+      if (const auto with_units = with_row_of_units(columns_, fields_)) {
+        columns_ = *with_units;
+        agree_on_unit(line);
+        return;
+      }
+    }
     ContactRow row;
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
     int axes = 0;
@@ -323,7 +327,8 @@ class PointReader {
     row.group = row.probe;
     if (!name(PointColumn::Group, "group", row.group) ||
         !whole(PointColumn::Patch, "patch", row.context.patch) ||
-        !whole(PointColumn::Object, "object", row.object) || !stamp(row) || !side(row)) {
+        !whole(PointColumn::Object, "object", row.object) || !stamp(row) || !side(row) ||
+        !detail(row)) {
       return;
     }
     result_.table.rows.push_back(row);
@@ -344,25 +349,15 @@ class PointReader {
       }
       notes.push_back("columns ignored: " + names);
     }
+    notes.insert(notes.end(), columns_.unused_details.begin(), columns_.unused_details.end());
     if (marks_.comma()) notes.emplace_back("commas are read as decimal points");
     if (block_ > 0) {
       notes.push_back(
           std::string(names_again_ > 0 ? "empty lines and lines of names" : "empty lines") +
           " part the rows into " + std::to_string(block_ + 1) + " patches");
     }
-    bool names_unit = false;
-    for (const PointColumn axis : {PointColumn::X, PointColumn::Y, PointColumn::Z}) {
-      const auto named = columns_.units[static_cast<std::size_t>(axis)];
-      names_unit |= named.has_value();
-      if (options_.unit_m && named && *named != *options_.unit_m) {
-        notes.emplace_back("the unit is taken from --unit, not from the columns' names");
-        return;
-      }
-    }
-    if (!options_.unit_m && !names_unit) {
-      notes.emplace_back(result_.is_probe_log
-                             ? "the log names no unit: taken as millimetres (else --unit in)"
-                             : "no unit is named: taken as metres (else --unit mm, um or in)");
+    if (std::string note = note_of_unit(columns_, options_, result_.is_probe_log); !note.empty()) {
+      notes.push_back(std::move(note));
     }
   }
 

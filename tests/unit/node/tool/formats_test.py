@@ -179,6 +179,67 @@ class Formats(unittest.TestCase):
         self.check("x_m,y_m,force_n,colour\n" + self.rows().replace("\n", ",1,red\n"))
         self.assertIn("columns ignored: force_n, colour", self.notes)
 
+    def detailed(self, names, normal_scale=1.0, length=1.0, blank=False):
+        """The ellipse with a measured normal and a covariance of every sample."""
+        text = names + "\n"
+        for patch, stroke in enumerate(ellipse(count=40)):
+            for x, y in stroke:
+                t = math.atan2((y + 0.01) / B, (x - 0.03) / A)
+                n = math.hypot(math.cos(t) / A, math.sin(t) / B)
+                normal = (math.cos(t) / A / n * normal_scale, math.sin(t) / B / n * normal_scale)
+                area = (SIGMA / length) ** 2
+                text += f"{patch},{x / length!r},{y / length!r},{normal[0]!r},{normal[1]!r},0.02,{area!r},0,{area!r}\n"
+        return text
+
+    def test_normals_and_covariances_stand_beside_any_unit(self):
+        for unit, length, area in (("mm", 1e-3, "cov_xx_mm2,cov_xy_mm2,cov_yy_mm2"), ("um", 1e-6, "cov_xx,cov_xy,cov_yy"),
+                                   ("m", 1.0, "cov_xx_m2,cov_xy_m2,cov_yy_m2"), ("mm", 1e-3, "Cov XX [mm^2],Cov XY [mm^2],Cov YY [mm^2]")):
+            answer = self.check(self.detailed(f"patch,x_{unit},y_{unit},normal_x,normal_y,normal_sigma_rad,{area}", length=length))
+            self.assertNotIn("ignored", self.notes)
+            self.assertNotIn("not used", self.notes)
+            self.assertAlmostEqual(answer["sigma_m"], SIGMA, delta=0.3 * SIGMA)
+            given = self.fit(self.detailed(f"patch,x_{unit},y_{unit},normal_x,normal_y,normal_sigma_rad,{area}", length=length),
+                             "--class", "ellipse")
+            self.assertEqual(int(given["normal_count"]), 80)
+            self.assertTrue(given["sigma_stated"])
+        # Degrees, and --unit in place of all that the columns say.
+        text = self.detailed("patch,x_m,y_m,normal_x,normal_y,normal_sigma_deg,cov_xx_m2,cov_xy_m2,cov_yy_m2", length=1e-3)
+        given = self.fit(text, "--class", "ellipse", "--unit", "mm")
+        self.assertAlmostEqual(given["recognition"]["parameters"]["a"], A, delta=1e-4)
+        self.assertTrue(given["sigma_stated"])
+
+    def test_normals_and_covariances_that_say_too_little_are_told_or_refused(self):
+        whole = "patch,x_mm,y_mm,normal_x,normal_y,normal_sigma_rad,cov_xx_mm2,cov_xy_mm2,cov_yy_mm2"
+        for name, note in (("normal_sigma_rad", "normals are not used: they need the columns normal_x, normal_y and normal_sigma_rad"),
+                           ("normal_y", "normals are not used"), ("cov_yy_mm2", "covariances are not used: they need the columns cov_xx and cov_yy")):
+            self.check(self.detailed(whole.replace(name, "else"), length=1e-3))
+            self.assertIn(note, self.notes)
+        self.check(self.detailed(whole, length=1e-3).replace("normal_sigma_rad", "z").replace(",0.02,", ",0,"), "--plane", "xy")
+        self.assertIn("covariances are not used: they are read beside the two coordinates x and y alone", self.notes)
+        for text, why in ((self.detailed(whole, 0.5, 1e-3), ":2:"), (self.detailed(whole, length=1e-3).replace(",0.02,", ",0,"), ":2:"),
+                          (self.detailed(whole, length=1e-3).replace(",0.02,", ",much,"), "much"),
+                          (self.detailed(whole, length=1e-3).replace(",0.02,", ",nan,"), "finite"),
+                          (self.detailed(whole, length=1e-3).replace(",0.02,", ",0.02,-"), "no positive definite covariance")):
+            path = self.folder / "bad.csv"
+            path.write_text(text)
+            code, out, err = run(TOOL, "fit", path)
+            self.assertEqual((code, out), (2, ""), err)
+            self.assertIn(why, err)
+
+    def test_coordinates_of_two_units_are_refused(self):
+        rows = "".join(f"{1e3 * x!r},{1e3 * y!r}\n" for x, y in WHOLE)
+        for names in ("x_mm,y_m\n", "x [um],y [mm]\n", "x,y\nmm,m\n", "# x_mm,y_m\n"):
+            path = self.folder / "two.csv"
+            path.write_text(names + rows)
+            for command in ("fit", "check", "estimate"):
+                code, out, err = run(TOOL, command, path)
+                self.assertNotEqual(code, 0, (names, command))
+                self.assertIn("the coordinates have different units", out + err)
+            self.check(names + rows, "--unit", "mm")
+        # A unit that one column names holds for the other, and the same unit may be called twice.
+        for names in ("x_mm,y\n", "x_mm,y [mm]\n"):
+            self.check(names + rows)
+
     def test_points_of_space_are_brought_into_their_plane(self):
         def cloud(place):
             return "".join("%.9g,%.9g,%.9g\n" % place(x, y) for x, y in WHOLE)

@@ -1,0 +1,76 @@
+#include "node/csv/point_units.h"
+
+#include <array>
+
+namespace palpate::csv {
+namespace {
+
+constexpr std::array<PointColumn, 3> kCoordinates = {PointColumn::X, PointColumn::Y,
+                                                     PointColumn::Z};
+
+std::optional<double> named_unit(const PointColumns& columns, PointColumn column) {
+  return columns.units[static_cast<std::size_t>(column)];
+}
+
+}  // namespace
+
+double unit_of(const PointColumns& columns, PointColumn column, const ContactFileOptions& options,
+               bool is_probe_log) {
+  const auto named = named_unit(columns, column);
+  if (!is_length(column) && !is_area(column)) return named.value_or(1.0);
+  const auto of_kind = [&](double length_m) {
+    return is_area(column) ? length_m * length_m : length_m;
+  };
+  if (options.unit_m) return of_kind(*options.unit_m);
+  if (named) return *named;
+  // One coordinate's unit stands for what names none.
+  for (const PointColumn other : kCoordinates) {
+    if (const auto unit = named_unit(columns, other)) return of_kind(*unit);
+  }
+  constexpr double kMillimetre = 1e-3;
+  return is_probe_log ? of_kind(kMillimetre) : 1.0;
+}
+
+std::optional<PointColumns> with_row_of_units(const PointColumns& columns,
+                                              const std::vector<std::string_view>& fields) {
+  PointColumns with_units = columns;
+  for (std::size_t i = 0; i < kPointColumnCount; ++i) {
+    const auto column = static_cast<PointColumn>(i);
+    const auto place = columns.place(column);
+    if (!place || column == PointColumn::Stamp) continue;
+    const auto unit = unit_in_brackets(column, fields[*place]);
+    if (unit && !columns.units[i]) with_units.units[i] = unit;
+    if (!unit && column <= PointColumn::Z) return std::nullopt;
+  }
+  return with_units;
+}
+
+std::string clash_of_units(const PointColumns& columns) {
+  std::optional<double> first;
+  for (const PointColumn column : kCoordinates) {
+    const auto unit = named_unit(columns, column);
+    if (unit && first && *unit != *first) {
+      return "the coordinates have different units; give them the same one, or say --unit, which "
+             "then holds for every length";
+    }
+    if (unit) first = unit;
+  }
+  return "";
+}
+
+std::string note_of_unit(const PointColumns& columns, const ContactFileOptions& options,
+                         bool is_probe_log) {
+  bool names_unit = false;
+  for (const PointColumn axis : kCoordinates) {
+    const auto named = named_unit(columns, axis);
+    names_unit |= named.has_value();
+    if (options.unit_m && named && *named != *options.unit_m) {
+      return "the unit is taken from --unit, not from the columns' names";
+    }
+  }
+  if (options.unit_m || names_unit) return "";
+  return is_probe_log ? "the log names no unit: taken as millimetres (else --unit in)"
+                      : "no unit is named: taken as metres (else --unit mm, um or in)";
+}
+
+}  // namespace palpate::csv
