@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "core/numerics/normal_law.h"
@@ -103,6 +105,34 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
     return std::nullopt;
   }
   return kept;
+}
+
+std::vector<Vec2> places_set_aside(std::span<const StoredPatch> all,
+                                   std::span<const StoredPatch> used,
+                                   const std::vector<bool>& flagged) {
+  // Strung touches are the same samples in another order: they are known by their places.
+  using Place = std::pair<double, double>;
+  std::multiset<Place> kept;
+  std::size_t number = 0;
+  for (const StoredPatch& patch : used) {
+    for (const StoredSample& sample : patch.samples) {
+      const bool is_out = number < flagged.size() && flagged[number];
+      ++number;
+      if (!is_out) kept.insert({sample.position_m.x(), sample.position_m.y()});
+    }
+  }
+  std::vector<Vec2> places;
+  for (const StoredPatch& patch : all) {
+    for (const StoredSample& sample : patch.samples) {
+      const auto found = kept.find({sample.position_m.x(), sample.position_m.y()});
+      if (found == kept.end()) {
+        places.push_back(sample.position_m);
+      } else {
+        kept.erase(found);
+      }
+    }
+  }
+  return places;
 }
 
 std::vector<bool> left_out(const FitData& all, const FitData& kept) {

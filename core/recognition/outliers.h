@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/recognition/weigh/weigh.h"
@@ -16,6 +17,12 @@ namespace palpate {
 /// the residuals themselves determine the noise.
 std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,
                                         bool sigma_known, double false_outlier_probability);
+
+/// Positions of the samples of `all` that are not in `used`, or flagged there: one flag per sample,
+/// or none at all.
+std::vector<Vec2> places_set_aside(std::span<const StoredPatch> all,
+                                   std::span<const StoredPatch> used,
+                                   const std::vector<bool>& flagged);
 
 /// One flag per point of `all`: not in `kept`, which has the others in their order.
 std::vector<bool> left_out(const FitData& all, const FitData& kept);

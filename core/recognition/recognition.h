@@ -74,6 +74,7 @@ struct Recognition {
   std::vector<std::size_t> pooled_contacts;
   std::size_t sample_count = 0;   ///< samples in memory, outliers included
   std::size_t outlier_count = 0;  ///< samples set aside as spikes
+  std::vector<Vec2> outliers_m;   ///< their positions, of means of neighbours the mean's
   /// Samples that only repeat a place where the probe stood still. One sample, their mean, stands
   /// for them; it is not counted here.
   std::size_t dwelling_count = 0;

@@ -188,6 +188,10 @@ class Recognizer::Impl {
     Recognition answer = answer_by_likelihood(
         w, moments, {options_.recognized_probability, options_.determined_fraction}, stored);
     answer.outlier_count = stored - w.data.points.size();
+    if (answer.outlier_count > 0) {
+      answer.outliers_m = places_set_aside(
+          clean_.moved(), weighed.patches ? *weighed.patches : patches, weighed.outliers);
+    }
     if (sigma_known) {
       unused_ = contacts_with_details(w.data);
     }
@@ -214,6 +218,7 @@ class Recognizer::Impl {
         answer_by_tree(possible_sides(patches, reduced, turns_of(reduced), {}, work), contacts_of,
                        options_.tree, data.scale, options_.determined_fraction);
     answer.outlier_count = outliers;
+    if (outliers > 0) answer.outliers_m = places_set_aside(clean_.moved(), patches, {});
     return answer;
   }
 

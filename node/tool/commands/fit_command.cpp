@@ -223,9 +223,7 @@ int run(FitCommand& fit) {
       inputs.push_back(std::move(input));
     }
   }
-  if (bad) {
-    return kUsage;
-  }
+  if (bad) return kUsage;
   if (const std::string why = wrong_with_given(fit, inputs); !why.empty()) {
     return complain(why, kUsage);
   }
@@ -242,6 +240,7 @@ int run(FitCommand& fit) {
     v1::Recognition answer;
     std::string text;
     std::vector<std::string> notes;
+    std::vector<Vec2> spikes;
     if (fit.given_class.empty()) {
       RecognizerOptions options = fit.recognizer;
       options.memory = memory_for(group, options.memory, fit.patches_are_bounded);
@@ -256,6 +255,7 @@ int run(FitCommand& fit) {
         }
       }
       answer = std::move(answered.wire);
+      spikes = std::move(answered.recognition.outliers_m);
       const bool known = noise_is_known(input, options) || answer.probe_files_size() > 0;
       text = json ? json_line(answer) : report_text(answer, known);
     } else {
@@ -284,13 +284,14 @@ int run(FitCommand& fit) {
     ++number;
     if (!fit.plot.empty()) {
       const std::string path = plot_path(fit.plot, number);
-      if (const std::string why = write_file(path, svg_plot(group, answer)); !why.empty()) {
+      if (const std::string why = write_file(path, svg_plot(measured, answer, spikes));
+          !why.empty()) {
         return complain(why, kFailed);
       }
     }
     if (!fit.curve_file.empty()) {
       const std::string path = plot_path(fit.curve_file, number);
-      if (const std::string why = export_curve(group, answer, path); !why.empty()) {
+      if (const std::string why = export_curve(measured, answer, path); !why.empty()) {
         return complain(why, kFailed);
       }
     }

@@ -25,7 +25,8 @@ double round_gain(double value) {
 }
 
 EnlargedResiduals enlarged_residuals(const CurveModel& model, const ContactGroup& group,
-                                     double sigma_m, double size_m, std::size_t most_lines) {
+                                     double sigma_m, double size_m, std::size_t most_lines,
+                                     std::span<const Vec2> set_aside) {
   constexpr std::size_t kFarPerLine = 10;
   std::size_t count = 0;
   for (const ContactRun& run : group.runs) count += run.samples.size();
@@ -33,6 +34,7 @@ EnlargedResiduals enlarged_residuals(const CurveModel& model, const ContactGroup
   const std::size_t line_step = count / step / most_lines + 1;
   std::vector<SampleResidual> kept;
   EnlargedResiduals result;
+  result.set_aside.assign(set_aside.begin(), set_aside.end());
   std::size_t index = 0;
   double squares = 0.0;
   for (const ContactRun& run : group.runs) {
@@ -41,7 +43,12 @@ EnlargedResiduals enlarged_residuals(const CurveModel& model, const ContactGroup
     const std::vector<SampleResidual> residuals = residuals_of(model, used, sigma_m);
     for (std::size_t i = 0; i < residuals.size(); ++i) {
       if (residuals[i].is_far) {
-        result.far.push_back(used.samples[i].position_m);
+        const ContactSample& sample = used.samples[i];
+        const double near_m = kFarSigmas * (sample.sigma_m > 0.0 ? sample.sigma_m : sigma_m);
+        const bool counts = std::none_of(
+            set_aside.begin(), set_aside.end(),
+            [&](const Vec2& spike) { return (spike - sample.position_m).norm() <= near_m; });
+        if (counts) result.far.push_back(sample.position_m);
       } else if (index++ % line_step == 0) {
         kept.push_back(residuals[i]);
         squares += residuals[i].residual_m * residuals[i].residual_m;

@@ -12,6 +12,7 @@
 #include "node/tool/drawing/enlarged_residuals.h"
 #include "node/tool/drawing/pose_ellipse.h"
 #include "node/tool/drawing/shown_extent.h"
+#include "node/tool/drawing/svg_answer.h"
 #include "node/tool/drawing/svg_table.h"
 #include "node/tool/drawing/ticks.h"
 #include "node/tool/drawing/visible_samples.h"
@@ -236,14 +237,19 @@ std::string residuals_svg(const View& view, const EnlargedResiduals& residuals) 
     const Vec2 end = view(line.end);
     svg += formatted("M%.1f,%.1fL%.1f,%.1f", foot.x(), foot.y(), end.x(), end.y());
   }
-  svg +=
-      formatted("\"/>\n<path class=\"far\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.8\" d=\"",
-                kResidualColour);
-  for (const Vec2& place : residuals.far) {
-    const Vec2 at = view(place);
-    svg += formatted("M%.1f,%.1fl8,8m0,-8l-8,8", at.x() - 4.0, at.y() - 4.0);
-  }
-  return svg + "\"/>\n";
+  svg += "\"/>\n";
+  const auto add_marks = [&](const char* name, const std::vector<Vec2>& places, const char* mark) {
+    svg += formatted("<path class=\"%s\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.8\" d=\"",
+                     name, kResidualColour);
+    for (const Vec2& place : places) {
+      const Vec2 at = view(place);
+      svg += formatted("M%.1f,%.1f", at.x() - 4.0, at.y() - 4.0) + mark;
+    }
+    svg += "\"/>\n";
+  };
+  add_marks("set-aside", residuals.set_aside, "l8,8m0,-8l-8,8");
+  add_marks("far", residuals.far, "m0,4h8m-4,-4v8");
+  return svg;
 }
 
 std::string contacts_svg(const View& view, const v1::Recognition& answer) {
@@ -263,34 +269,6 @@ std::string contacts_svg(const View& view, const v1::Recognition& answer) {
         at.x(), at.y(), kContactColour);
   }
   return svg;
-}
-
-void add_answer(const ContactGroup& group, const v1::Recognition& answer, SvgTable& table) {
-  table.heading(spoken_name(answer.curve_class()));
-  table.words(status_text(answer));
-  table.gap();
-  for (const Quantity& quantity : quantities_of(answer)) table.row(quantity.name, quantity.text);
-  std::string samples = std::to_string(answer.sample_count());
-  if (answer.outlier_count() > 0) {
-    samples += ", " + std::to_string(answer.outlier_count()) + " set aside as spikes";
-  }
-  if (answer.dwelling_count() > 0) {
-    samples += ", " + std::to_string(answer.dwelling_count()) + " while standing still";
-  }
-  table.row("samples", samples);
-  const LengthUnit unit = length_unit_for(answer.sigma_m());
-  table.row("noise", number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name));
-  table.row("group", group.name + ", object " + std::to_string(group.object));
-  // The end of a long path says more than its beginning.
-  constexpr std::size_t kMostOfPath = 36;
-  std::string file = group.file;
-  if (file.size() > kMostOfPath) {
-    file.replace(0, file.size() - kMostOfPath, "...");
-  }
-  table.row("file", file);
-  table.gap();
-  table.words(advice_text(answer));
-  table.gap();
 }
 
 std::string band_label(const DrawnCurve& curve) {
@@ -340,9 +318,12 @@ void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSa
   if (!residuals.lines.empty()) {
     table.key(kResidualColour, "residuals, " + number(residuals.gain) + " times enlarged");
   }
+  if (!residuals.set_aside.empty()) {
+    table.key(kResidualColour, formatted("x: %zu set aside as spikes", residuals.set_aside.size()));
+  }
   if (!residuals.far.empty()) {
     table.key(kResidualColour,
-              formatted("x: %zu beyond %.0f sigma", residuals.far.size(), kFarSigmas));
+              formatted("+: %zu beyond %.0f sigma", residuals.far.size(), kFarSigmas));
   }
   if (visible.left_out > 0) {
     const LengthUnit unit = length_unit_for(visible.cell_m);
@@ -355,18 +336,20 @@ void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSa
 }
 
 EnlargedResiduals residuals_of_picture(const ContactGroup& group, const v1::Recognition& answer,
-                                       const Drawing& drawing, const View& view) {
+                                       const Drawing& drawing, const View& view,
+                                       std::span<const Vec2> set_aside) {
   const std::optional<CurveModel> model =
       drawing.curve ? model_of(answer) : std::optional<CurveModel>();
   if (!model) return {};
   constexpr std::size_t kMostLines = 2000;
   return enlarged_residuals(*model, group, answer.sigma_m(), (view.high() - view.low()).maxCoeff(),
-                            kMostLines);
+                            kMostLines, set_aside);
 }
 
 }  // namespace
 
-std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer) {
+std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer,
+                     std::span<const Vec2> set_aside) {
   const Drawing drawing = make_drawing(group, answer, Curvature::None);
   const View view = view_of(group, answer, drawing);
   // A dot half a pixel from another one cannot be seen.
@@ -374,7 +357,7 @@ std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer) {
   constexpr std::size_t kMostDots = 50000;
   const VisibleSamples visible =
       visible_samples(group, view.metres(kCellPixels), kMostDots, std::size(kPatchColours));
-  const EnlargedResiduals residuals = residuals_of_picture(group, answer, drawing, view);
+  const EnlargedResiduals residuals = residuals_of_picture(group, answer, drawing, view, set_aside);
   SvgTable table(kWidth - kRight + 16.0, kTop + 12.0);
   add_answer(group, answer, table);
   add_keys(group, drawing, visible, residuals, table);

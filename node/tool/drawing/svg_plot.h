@@ -2,6 +2,7 @@
 // enlarged residuals, contacts and frame, and a table of the results.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "node/tool/contact_groups.h"
@@ -11,6 +12,8 @@ namespace palpate {
 
 /// An SVG document of at most a few megabytes. Samples whose dots would coincide are drawn once;
 /// the picture says how many are left out.
-std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer);
+/// `set_aside`: where the samples lie that the answer calls spikes.
+std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer,
+                     std::span<const Vec2> set_aside = {});
 
 }  // namespace palpate

@@ -181,6 +181,31 @@ class Calibrate(unittest.TestCase):
             _, notes = self.fit("--probe", path, *tip, text=part.replace(",0.0\n", ",\n"))
             self.assertEqual(sum("points of the surface" in note for note in notes), said, notes)
 
+    def test_the_picture_shows_samples_as_they_were_measured(self):
+        # Lobes of 40 um, eight times the noise, and an offset of 2 mm where nobody stated the tip.
+        for inside in (False, True):
+            path, part, svg = self.folder / "p.probe", self.folder / "part.csv", self.folder / "part.svg"
+            code, _, err = run(TOOL, "calibrate", "--circle", "0.025", *["--bore"] * inside, "--output", path, "-",
+                               text_in=touched(0.025, inside, 1))
+            self.assertEqual(code, 0, err)
+            part.write_text(touched(0.015, inside, 2, turn=2.0))
+            for options in ((), ("--class", "circle")):
+                code, _, err = run(TOOL, "fit", part, "--probe", path, "--touched-from", "inside" if inside else "outside",
+                                   "--plot", svg, *options)
+                self.assertEqual(code, 0, err)
+                picture = svg.read_text()
+                self.assertIn("residuals, ", picture)
+                self.assertNotIn("beyond 5 sigma", picture)
+                self.assertEqual(re.search(r'<path class="far"[^>]* d="([^"]*)"', picture)[1], "")
+        # A sample that is off is crossed out, with a probe file too.
+        rows = part.read_text().splitlines()
+        x, y = map(float, rows[200].split(","))
+        rows[200] = f"{x + 0.5},{y + 0.5}"
+        part.write_text("\n".join(rows) + "\n")
+        code, _, err = run(TOOL, "fit", part, "--probe", path, "--touched-from", "inside", "--plot", svg, "--class", "circle")
+        self.assertEqual(code, 0, err)
+        self.assertIn("1 beyond 5 sigma", svg.read_text())
+
     def test_recordings_tell_what_set_ups_differ_by(self):
         rings = [self.folder / f"ring{i}.csv" for i in range(4)]
         for i, ring in enumerate(rings):

@@ -131,9 +131,24 @@ TEST(SvgPlot, DrawsSpikesUnlikeSamples) {
   }
   const Recognition answer = test::recognise(scene, scene.sigma_m);
   ASSERT_GE(answer.outlier_count, 3U);  // a clean sample is lost with a probability of 1 %
-  const std::string svg = svg_plot(group_of(scene, "a<b>.csv"), message_of(answer));
-  EXPECT_THAT(svg, HasSubstr("x: 3 beyond 5 sigma"));
-  EXPECT_EQ(count(svg, "l8,8m0,-8l-8,8"), 3U);
+  ASSERT_EQ(answer.outliers_m.size(), answer.outlier_count);
+  for (const std::size_t i : {20U, 50U, 90U}) {
+    EXPECT_EQ(std::count(answer.outliers_m.begin(), answer.outliers_m.end(), scene.patches[0][i]),
+              1);
+  }
+  // Crossed out is what the words call set aside.
+  const ContactGroup group = group_of(scene, "a<b>.csv");
+  const std::string svg = svg_plot(group, message_of(answer), answer.outliers_m);
+  const std::string spikes = std::to_string(answer.outlier_count) + " set aside as spikes";
+  EXPECT_THAT(svg, HasSubstr(", " + spikes));
+  EXPECT_THAT(svg, HasSubstr("x: " + spikes));
+  EXPECT_THAT(svg, Not(HasSubstr("beyond 5 sigma")));
+  EXPECT_EQ(count(svg, "l8,8m0,-8l-8,8"), answer.outlier_count);
+  // What is far off and counts has another sign.
+  const std::string all_count = svg_plot(group, message_of(answer));
+  EXPECT_THAT(all_count, HasSubstr("+: 3 beyond 5 sigma"));
+  EXPECT_EQ(count(all_count, "m0,4h8m-4,-4v8"), 3U);
+  EXPECT_EQ(count(all_count, "l8,8m0,-8l-8,8"), 0U);
 }
 
 TEST(SvgPlot, OfTwoMillionSamplesDrawsThoseThatCanBeSeenAndSaysSo) {

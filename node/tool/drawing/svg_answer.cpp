@@ -1,0 +1,37 @@
+#include "node/tool/drawing/svg_answer.h"
+
+#include "node/tool/text/advice.h"
+#include "node/tool/text/quantity.h"
+#include "node/tool/text/recognition_text.h"
+
+namespace palpate {
+
+void add_answer(const ContactGroup& group, const v1::Recognition& answer, SvgTable& table) {
+  table.heading(spoken_name(answer.curve_class()));
+  table.words(status_text(answer));
+  table.gap();
+  for (const Quantity& quantity : quantities_of(answer)) table.row(quantity.name, quantity.text);
+  std::string samples = std::to_string(answer.sample_count());
+  if (answer.outlier_count() > 0) {
+    samples += ", " + std::to_string(answer.outlier_count()) + " set aside as spikes";
+  }
+  if (answer.dwelling_count() > 0) {
+    samples += ", " + std::to_string(answer.dwelling_count()) + " while standing still";
+  }
+  table.row("samples", samples);
+  const LengthUnit unit = length_unit_for(answer.sigma_m());
+  table.row("noise", number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name));
+  table.row("group", group.name + ", object " + std::to_string(group.object));
+  // The end of a long path says more than its beginning.
+  constexpr std::size_t kMostOfPath = 36;
+  std::string file = group.file;
+  if (file.size() > kMostOfPath) {
+    file.replace(0, file.size() - kMostOfPath, "...");
+  }
+  table.row("file", file);
+  table.gap();
+  table.words(advice_text(answer));
+  table.gap();
+}
+
+}  // namespace palpate

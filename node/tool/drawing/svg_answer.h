@@ -1,0 +1,12 @@
+// What an answer says, in words beside its picture.
+#pragma once
+
+#include "node/tool/contact_groups.h"
+#include "node/tool/drawing/svg_table.h"
+#include "palpate/v1/recognition.pb.h"
+
+namespace palpate {
+
+void add_answer(const ContactGroup& group, const v1::Recognition& answer, SvgTable& table);
+
+}  // namespace palpate
