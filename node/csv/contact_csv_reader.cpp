@@ -6,6 +6,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/recognition/samples/side_words.h"
 #include "node/csv/contact_csv.h"
 #include "node/csv/csv_columns.h"
 #include "node/csv/row_detail.h"
@@ -263,16 +264,12 @@ class Reader {
 
   bool side(MaterialSide& value) {
     const std::string_view text = optional_field(Column::MaterialSide);
-    if (text.empty() || text == "unspecified") {
-      value = MaterialSide::Unspecified;
-    } else if (text == "left") {
-      value = MaterialSide::Left;
-    } else if (text == "right") {
-      value = MaterialSide::Right;
-    } else {
+    const auto read = text.empty() ? MaterialSide::Unspecified : material_side_from_name(text);
+    if (!read) {
       return fail(text.data(),
                   in_column(Column::MaterialSide, text) + "must be left, right or unspecified");
     }
+    value = *read;
     return true;
   }
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <charconv>
 
+#include "core/recognition/samples/side_words.h"
 #include "node/csv/contact_csv.h"
 #include "node/csv/csv_columns.h"
 
@@ -13,18 +14,6 @@ void append(std::string& text, Number value) {
   std::array<char, 32> digits;
   const auto [end, status] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
   text.append(digits.data(), end);
-}
-
-std::string_view name_of(MaterialSide side) {
-  switch (side) {
-    case MaterialSide::Left:
-      return "left";
-    case MaterialSide::Right:
-      return "right";
-    case MaterialSide::Unspecified:
-      break;
-  }
-  return "unspecified";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "core/recognition/samples/side_words.h"
 #include "node/csv/decimal_marks.h"
 #include "node/csv/point_columns.h"
 #include "node/csv/point_units.h"
@@ -234,12 +235,12 @@ class PointReader {
 
   bool side(ContactRow& row) {
     const std::string_view text = field(PointColumn::Side);
-    if (text.empty() || text == "unspecified") return true;
-    if (text != "left" && text != "right") {
+    const auto read = text.empty() ? MaterialSide::Unspecified : material_side_from_name(text);
+    if (!read) {
       return fail(text.data(),
                   "material_side " + shown(text) + ": must be left, right or unspecified");
     }
-    row.context.material_side = text == "left" ? MaterialSide::Left : MaterialSide::Right;
+    row.context.material_side = *read;
     return true;
   }
 

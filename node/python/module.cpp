@@ -17,6 +17,7 @@
 #include "core/curves/curve.h"
 #include "core/recognition/given/given_class.h"
 #include "core/recognition/recognizer.h"
+#include "core/recognition/samples/side_words.h"
 #include "node/python/point_details.h"
 
 namespace py = pybind11;
@@ -58,16 +59,12 @@ void check_sigmas(const Array& sigma, std::size_t points) {
 }
 
 palpate::TouchedFrom place_called(const std::string& name) {
-  if (name == "unknown") return palpate::TouchedFrom::Unknown;
-  if (name == "outside") return palpate::TouchedFrom::Outside;
-  if (name == "inside") return palpate::TouchedFrom::Inside;
+  if (const auto place = palpate::touched_from_from_name(name)) return *place;
   throw std::invalid_argument("touched_from: \"" + name + "\" is none of outside, inside, unknown");
 }
 
 palpate::MaterialSide side_called(const std::string& name) {
-  if (name == "unspecified") return palpate::MaterialSide::Unspecified;
-  if (name == "left") return palpate::MaterialSide::Left;
-  if (name == "right") return palpate::MaterialSide::Right;
+  if (const auto side = palpate::material_side_from_name(name)) return *side;
   throw std::invalid_argument("material_side: \"" + name +
                               "\" is none of left, right, unspecified");
 }

@@ -1,5 +1,7 @@
 #include "node/wire/recognizer_options.h"
 
+#include "core/recognition/samples/side_words.h"
+
 #include <algorithm>
 #include <optional>
 
@@ -34,15 +36,9 @@ std::string resolve(const RecognizerWords& words, RecognizerOptions& recognizer)
     estimator.window = static_cast<int>(words.window);
     estimator.shift = static_cast<int>(words.shift);
   }
-  if (words.touched_from == "unknown") {
-    recognizer.touched_from = TouchedFrom::Unknown;
-  } else if (words.touched_from == "outside") {
-    recognizer.touched_from = TouchedFrom::Outside;
-  } else if (words.touched_from == "inside") {
-    recognizer.touched_from = TouchedFrom::Inside;
-  } else {
-    return "touched_from: expected outside, inside or unknown";
-  }
+  const std::optional<TouchedFrom> touched_from = touched_from_from_name(words.touched_from);
+  if (!touched_from) return "touched_from: expected outside, inside or unknown";
+  recognizer.touched_from = *touched_from;
   recognizer.classes = words.classes.empty() ? ~0U : 0U;
   for (const std::string& name : words.classes) {
     const std::optional<CurveClass> curve_class = curve_class_from_name(name);
