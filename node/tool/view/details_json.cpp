@@ -164,7 +164,9 @@ double touched_size_of(const LiveGroup& group, double drawn_size_m) {
 void write_residuals(const LiveGroup& group, const Drawing& drawing, JsonText& json) {
   const std::optional<CurveModel> model =
       drawing.curve ? model_of(group.answer) : std::optional<CurveModel>();
-  if (!model) return;
+  // The view has no probe files: the curve is of corrected samples, these are as they came, and all
+  // of them would be far from it.
+  if (!model || !group.answer.probe_files().empty()) return;
   constexpr std::size_t kMostLines = 400;
   const double size_m = touched_size_of(group, drawn_size_m(drawing, group));
   const EnlargedResiduals residuals =
