@@ -7,22 +7,10 @@
 #include <vector>
 
 #include "core/numerics/normal_law.h"
+#include "core/numerics/student_quantile.h"
 #include "core/recognition/samples/stored_spikes.h"
 
 namespace palpate {
-namespace {
-
-/// Quantile of Student's law with `dof` degrees of freedom for a normal quantile z: D. Wallace,
-/// "Bounds on normal approximations to Student's and the chi-square distributions", 1959. From five
-/// degrees of freedom on it is right to 4 % down to a probability of 1e-4. Below that it is too
-/// wide, which keeps samples.
-double student_quantile(double z, double dof) {
-  const double widened = z * (8.0 * dof + 3.0) / (8.0 * dof + 1.0);
-  return std::sqrt(dof * std::expm1(widened * widened / dof));
-}
-
-}  // namespace
-
 std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,
                                         bool sigma_known, double false_outlier_probability) {
   const CanonicalFit* fit = nullptr;

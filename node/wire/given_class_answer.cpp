@@ -1,6 +1,7 @@
 #include "node/wire/given_class_answer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -163,14 +164,16 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
   // Deviations are those of the noise alone: of residuals that it cannot have left they say
   // nothing.
   const bool by_noise = !fit.sigma_stated || fit.dof <= 0 || can_be_noise(fit.chi2, fit.dof);
-  const bool determined = fitted && is_determined(fit.shape, fit.covariance, half_extent_m(points),
-                                                  options.determined_fraction);
-  const bool one_side = fit.side_log_odds > log_odds(options.recognized_probability);
-  answer.set_status(determined && by_noise && one_side ? v1::RECOGNITION_STATUS_RECOGNIZED
-                                                       : v1::RECOGNITION_STATUS_AMBIGUOUS);
+  const bool determined =
+      fitted && fit.bounded &&
+      is_determined(fit.shape, fit.covariance, half_extent_m(points), options.determined_fraction);
+  const bool one_shape =
+      !fit.rival || fit.rival->log_odds > log_odds(options.recognized_probability);
+  answer.set_status(determined && by_noise && one_shape ? v1::RECOGNITION_STATUS_RECOGNIZED
+                                                        : v1::RECOGNITION_STATUS_AMBIGUOUS);
   if (!by_noise) {
     answer.set_doubt(v1::RECOGNITION_DOUBT_MISFIT);
-  } else if (!one_side) {
+  } else if (!one_shape) {
     answer.set_doubt(v1::RECOGNITION_DOUBT_TWO_SHAPES);
   } else if (!determined) {
     answer.set_doubt(v1::RECOGNITION_DOUBT_UNDETERMINED);
@@ -187,6 +190,17 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
   *hypothesis.mutable_pose() = answer.pose();
   hypothesis.set_chi2(fit.chi2);
   hypothesis.set_dof(static_cast<std::uint32_t>(std::max(fit.dof, 0)));
+  if (!one_shape) {
+    v1::Hypothesis& first = *answer.mutable_hypotheses(0);
+    first.set_probability(1.0 / (1.0 + std::exp(-fit.rival->log_odds)));
+    v1::Hypothesis& rival = *answer.add_hypotheses();
+    rival.set_curve_class(answer.curve_class());
+    rival.set_probability(1.0 - first.probability());
+    palpate::to_wire(fit.rival->shape, *rival.mutable_parameters());
+    palpate::to_wire(fit.rival->world_T_curve, *rival.mutable_pose());
+    rival.set_chi2(fit.rival->chi2);
+    rival.set_dof(first.dof());
+  }
   answer.set_sigma_m(fit.sigma_m);
   given.set_rms_m(fit.rms_m);
   given.set_peak_to_valley_m(fit.peak_to_valley_m);

@@ -80,11 +80,26 @@ SquareMatrix<T> in_unit_moves(SquareMatrix<T> m, std::size_t n,
   return m;
 }
 
+/// `m` without an unknown: its step is zero.
+template <typename T>
+SquareMatrix<T> without(SquareMatrix<T> m, std::size_t n, int unknown) {
+  if (unknown >= 0) {
+    const auto k = static_cast<std::size_t>(unknown);
+    for (std::size_t i = 0; i < n; ++i) {
+      m[i][k] = T(0.0);
+      m[k][i] = T(0.0);
+    }
+    m[k][k] = T(1.0);
+  }
+  return m;
+}
+
 struct DescentEffort {
   int most_steps = 0;
   double last_step = 0.0;  ///< converged if a step moves the residuals by less
   /// A Newton step shorter than this is taken even if rounding hides the gain.
   double trusted_step = 0.0;
+  int held = -1;  ///< an unknown that stays as it is; none if negative
 };
 
 template <typename T>
@@ -109,10 +124,12 @@ Descent<T> descend(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> point
   while (descent.steps < effort.most_steps && damping < kMostDamping) {
     const Squares<T>& here = descent.squares;
     const auto moves = unit_moves(here.information, n);
-    const auto exact = lower_factor(in_unit_moves(here.hessian, n, moves), n, damping);
-    const auto lower = exact ? exact
-                             : lower_factor(in_unit_moves(here.information, n, moves), n,
-                                            std::max(damping, kLeastDamping));
+    const auto exact =
+        lower_factor(without(in_unit_moves(here.hessian, n, moves), n, effort.held), n, damping);
+    const auto lower =
+        exact ? exact
+              : lower_factor(without(in_unit_moves(here.information, n, moves), n, effort.held), n,
+                             std::max(damping, kLeastDamping));
     if (!lower) {
       damping = std::max(10.0 * damping, kLeastDamping);
       ++descent.steps;
@@ -121,6 +138,9 @@ Descent<T> descend(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> point
     std::array<T, kMostUnknowns> step{};
     for (std::size_t i = 0; i < n; ++i) {
       step[i] = -here.gradient[i] / T(moves[i]);
+    }
+    if (effort.held >= 0) {
+      step[static_cast<std::size_t>(effort.held)] = T(0.0);
     }
     step = solve(*lower, n, step);
     double length = 0.0;

@@ -12,8 +12,10 @@ namespace palpate {
 /// foot. Sets the weight of measured normals from their own variance plus that of the foot's place:
 /// position noise along the curve moves the foot to where the curve's normal has turned. Returns
 /// the largest relative change of a weight.
-double weigh_at_feet(const PlacedCurve<DoubleDouble>& placed, const LocalPoints& local,
+/// For double and DoubleDouble.
+template <typename T>
+double weigh_at_feet(const PlacedCurve<T>& placed, const LocalPoints& local,
                      std::span<const GivenPoint> points, double default_sigma_m,
-                     std::vector<WeighedPoint<DoubleDouble>>* exact);
+                     std::vector<WeighedPoint<T>>* weighed);
 
 }  // namespace palpate

@@ -2,11 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "core/numerics/chi_square.h"
+#include "core/numerics/student_quantile.h"
+#include "core/recognition/given/curve_moves.h"
 #include "core/recognition/given/descent.h"
 #include "core/recognition/given/foot_parameter.h"
 #include "core/recognition/given/foot_weights.h"
+#include "core/recognition/given/given_choice.h"
+#include "core/recognition/given/given_reach.h"
 #include "core/recognition/given/given_report.h"
 #include "core/recognition/given/given_search.h"
 #include "core/recognition/given/local_points.h"
@@ -15,6 +23,9 @@ namespace palpate {
 namespace {
 
 using Exact = DoubleDouble;
+
+/// So many deviations of a normal law the truth is hardly ever off: once in 370 cases.
+constexpr double kReach = 3.0;
 
 /// A line can slide freely: its origin is set to the place nearest to the mean of the points.
 void slide_to_mean(const LocalPoints& local, PlacedCurve<double>* line) {
@@ -62,16 +73,117 @@ double stationarity_of(const Squares<Exact>& squares, const LocalPoints& local, 
   return largest;
 }
 
-/// log odds of one side over the other by their costs, half the sums of squares. Noise that is not
-/// stated may be of any size, alike probable by its logarithm; below the rounding of the
-/// coordinates no residual says anything.
-double log_odds_of_side(double cost, double cost_of_other, const LocalPoints& local, bool stated) {
+/// Variance of the residuals' unit, as the costs have it: 1 if every noise is stated, else
+/// estimated from the residuals. At least what the rounding of the coordinates makes of residuals.
+double variance_of(double cost, int dof, const LocalPoints& local, bool stated) {
+  // Roundings add up where unknowns depend on one another; so much noise hides them all.
+  constexpr double kHides = 1e3;
+  const double least = kHides * local.rounding * to_double(local.exact.front().weight);
+  const double own = stated ? 1.0 : dof > 0 ? 2.0 * cost / dof : 0.0;
+  return std::max(own, least * least);
+}
+
+/// log odds of one minimum over another one. Noise that is not stated may be of any size, alike
+/// probable by its logarithm: integrated over it and over the unknowns, a sum of squares has the
+/// power of -dof / 2. Below the rounding of the coordinates no residual says anything.
+double log_odds_of(const GivenCandidate& one, const GivenCandidate& other, int dof,
+                   const LocalPoints& local, bool stated) {
   if (stated) {
-    return cost_of_other - cost;
+    return other.misfit - one.misfit;
   }
   const auto n = static_cast<double>(local.index.size());
   const double least = 0.5 * n * local.rounding * local.rounding;
-  return 0.5 * n * std::log((cost_of_other + least) / (cost + least));
+  return 0.5 * std::max(dof, 0) * std::log((other.cost + least) / (one.cost + least));
+}
+
+/// The minima, with those that a walk along the valley of the taken one comes through.
+struct Explored {
+  std::vector<GivenCandidate> minima;
+  GivenChoice choice;
+  GivenReach reach;
+};
+
+/// Follows bent valleys of arms, in which descents have not come to an end: their steps are as
+/// short as the valley is straight. Steps along it that hold one parameter reach its lowest place.
+/// (A conic's valley leads to the limit of its class.)
+void follow_valleys(const LocalPoints& local, const GivenNoise& noise, int dof,
+                    std::vector<GivenCandidate>* minima) {
+  constexpr int kMostWalks = 2;
+  for (GivenCandidate& candidate : *minima) {
+    const bool arms = candidate.curve.curve_class == CurveClass::SemiCubicalParabola ||
+                      candidate.curve.curve_class == CurveClass::CubicSpline;
+    for (int walk = 0; arms && walk < kMostWalks && !candidate.settled; ++walk) {
+      const auto lower =
+          reach_of(candidate,
+                   kReach * kReach * variance_of(candidate.cost, dof, local, noise.stated))
+              .lower;
+      if (!lower) {
+        break;
+      }
+      GivenCandidate trial;
+      trial.side = candidate.side;
+      trial.arm = candidate.arm;
+      trial.curve = *lower;
+      trial.points = candidate.points;
+      settle(local, noise, &trial);
+      if (!std::isfinite(trial.cost)) {
+        break;
+      }
+      candidate = std::move(trial);
+    }
+  }
+  std::stable_sort(minima->begin(), minima->end(), is_better);
+}
+
+Explored explore(CurveClass curve_class, const LocalPoints& local, const GivenNoise& noise,
+                 TouchedFrom touched_from, int dof) {
+  constexpr int kMostWalks = 4;
+  Explored explored;
+  explored.minima = search_minima(curve_class, local, noise);
+  follow_valleys(local, noise, dof, &explored.minima);
+  if (explored.minima.empty()) {
+    return explored;
+  }
+  for (int walk = 0; walk < kMostWalks; ++walk) {
+    explored.choice = choose(explored.minima, local, noise.points, touched_from);
+    const GivenCandidate& taken = explored.minima[explored.choice.taken];
+    explored.reach = {};
+    if (!taken.settled || (!noise.stated && dof <= 0)) {
+      break;
+    }
+    const double deviations =
+        noise.stated ? kReach : student_quantile(kReach, static_cast<double>(dof));
+    explored.reach = reach_of(
+        taken, deviations * deviations * variance_of(taken.cost, dof, local, noise.stated));
+    if (!explored.reach.lower) {
+      break;
+    }
+    GivenCandidate lower;
+    lower.side = taken.side;
+    lower.arm = taken.arm;
+    lower.curve = *explored.reach.lower;
+    settle(local, noise, &lower);
+    if (!is_better(lower, taken)) {
+      break;
+    }
+    explored.minima.push_back(std::move(lower));
+    std::stable_sort(explored.minima.begin(), explored.minima.end(), is_better);
+  }
+  return explored;
+}
+
+/// Whether `other` lies outside of where the covariance of the unknowns says that the curve is.
+bool is_outside(const GivenCandidate& taken, const GivenCandidate& other,
+                const ShapePoseCovariance& covariance, double variance) {
+  const auto n = covariance.rows();
+  const auto step = move_between(taken.curve, other.curve).step;
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd unit =
+      scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
+  const Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(step.data(), n).cwiseQuotient(scale);
+  const double outside =
+      chi_square_threshold(std::erfc(kReach / std::numbers::sqrt2), static_cast<int>(n));
+  return !(u.dot(unit.ldlt().solve(u)) <= outside * variance);
 }
 
 }  // namespace
@@ -122,11 +234,15 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
     return fit;
   }
   fit.status = GivenStatus::AtLimit;
-  const SidedCandidate sided = search_sides(curve_class, *local, points, options.touched_from);
-  GivenCandidate found = sided.taken;
-  if (!std::isfinite(found.cost)) {
+  const int dof =
+      static_cast<int>(local->index.size() + local->normals) - degrees_of_freedom(curve_class);
+  const GivenNoise noise{points, options.sigma_m, stated};
+  const auto [minima, choice, reach] =
+      explore(curve_class, *local, noise, options.touched_from, dof);
+  if (minima.empty()) {
     return fit;
   }
+  GivenCandidate found = minima[choice.taken];
   if (curve_class == CurveClass::Line) {
     slide_to_mean(*local, &found.curve);
   }
@@ -156,12 +272,42 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   }
   fit.status = GivenStatus::Fitted;
   fit.side = found.side;
-  if (std::isfinite(sided.cost_of_other)) {
-    fit.side_log_odds = log_odds_of_side(found.cost, sided.cost_of_other, *local, stated);
+  const auto odds_over = [&](std::size_t other) {
+    return log_odds_of(minima[choice.taken], minima[other], dof, *local, stated);
+  };
+  if (choice.other_side) {
+    fit.side_log_odds = odds_over(*choice.other_side);
   }
   fit.stationarity = stationarity_of(descent.squares, *local,
                                      static_cast<std::size_t>(Unknowns(curve_class).count));
-  report_curve(placed, descent.squares, *local, &fit);
+  fit.bounded = reach.bounded;
+  report_place(placed, *local, &fit.shape, &fit.world_T_curve);
+  const ShapePoseCovariance of_unknowns =
+      report_covariance(placed, descent.squares, *local, reach, &fit);
+  const double variance = variance_of(found.cost, dof, *local, stated);
+  std::vector<std::size_t> others = choice.twins;
+  if (choice.other_side) {
+    others.push_back(*choice.other_side);
+  }
+  std::optional<std::size_t> rival;
+  for (const std::size_t twin : others) {
+    if (twin != choice.other_side &&
+        !is_outside(minima[choice.taken], minima[twin], of_unknowns, variance)) {
+      continue;
+    }
+    if (!minima[twin].settled) {
+      // A valley with no end in sight leads away from the curve: there is no other shape to tell.
+      fit.bounded = fit.bounded && odds_over(twin) > 0.5 * kReach * kReach;
+    } else if (!rival || odds_over(twin) < odds_over(*rival)) {
+      rival = twin;
+    }
+  }
+  if (rival) {
+    GivenRival& told = fit.rival.emplace();
+    report_place(exact_of(minima[*rival].curve), *local, &told.shape, &told.world_T_curve);
+    told.log_odds = odds_over(*rival);
+    told.chi2 = 2.0 * minima[*rival].cost / (stated ? 1.0 : variance);
+  }
   report_residuals(&placed, *local, points, &fit);
   report_noise(points, *local, stated, options.sigma_m, 2.0 * to_double(descent.squares.cost),
                &fit);

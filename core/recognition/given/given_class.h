@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -44,13 +45,23 @@ struct GivenResidual {
   double normal_rad = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Another curve of the class that the sum of squares has a minimum at.
+struct GivenRival {
+  ShapeParameters shape;
+  Pose2 world_T_curve;
+  double chi2 = 0.0;  ///< as that of the fit: over the same variances
+  /// log odds of the fit over this one by the residuals alone.
+  double log_odds = 0.0;
+};
+
 struct GivenFit {
   GivenStatus status = GivenStatus::NotFinite;
   ShapeParameters shape;  ///< valid if Fitted or NotDetermined, like all members below
   Pose2 world_T_curve;
-  /// Of [shape; x; y; theta]: the Kanatani-Cramer-Rao bound for the noise stated or estimated. What
-  /// the pose symmetry leaves free has variance 0. All variances are infinite if the noise is
-  /// neither stated nor can be estimated.
+  /// Of [shape; x; y; theta]: the Kanatani-Cramer-Rao bound for the noise stated or estimated.
+  /// Where the sum of squares rises much less than this bound says, it is widened to what the
+  /// residuals allow (given_reach.h). What the pose symmetry leaves free has variance 0. All
+  /// variances are infinite if the noise is neither stated nor can be estimated.
   ShapePoseCovariance covariance;
   std::vector<GivenResidual> residuals;  ///< in the order of the points
   double rms_m = 0.0;                    ///< root mean square distance of the points in use
@@ -65,13 +76,19 @@ struct GivenFit {
   /// log odds of this side over the other one by the residuals alone: 0 on a circle. Infinite
   /// without tips, if the points or the options tell the side, and if no curve fits on the other.
   double side_log_odds = std::numeric_limits<double>::infinity();
+  /// The likeliest other minimum that lies further off than the covariance says; none if there is
+  /// none, or if it is told that the tips lie on the other side.
+  std::optional<GivenRival> rival;
+  /// False if, within three deviations, a shape parameter runs to the end of its class or out of
+  /// sight.
+  bool bounded = true;
   /// Largest |J_k . r| / (|J_k| |r|) over the columns J_k of the Jacobian, r the residuals: 0 at a
   /// stationary point.
   double stationarity = 0.0;
 };
 
 /// Minimises the sum of squared orthogonal distances over all curves of the class, to rounding of
-/// the result. Of several minima it gives the lowest that the starts lead to (given_starts.h).
+/// the result. Of several minima it gives the likeliest that the starts lead to (given_search.h).
 ///
 /// A measured normal adds a residual: its angle to the curve's normal over its standard deviation.
 /// That deviation includes the position noise along the curve, which puts the foot point where the

@@ -36,29 +36,43 @@ SquareMatrix<Exact> inverse_of(const SquareMatrix<Exact>& information, std::size
   return inverse;
 }
 
+/// Of each shape parameter, in metres.
+std::array<double, 3> units_of(CurveClass curve_class, const LocalPoints& local) {
+  const Eigen::Vector3d powers = length_powers(curve_class);
+  std::array<double, 3> units{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    units[i] = std::pow(local.unit_m, powers[static_cast<Eigen::Index>(i)]);  // of 2: exact
+  }
+  return units;
+}
+
 }  // namespace
 
-void report_curve(const PlacedCurve<Exact>& placed, const Squares<Exact>& squares,
-                  const LocalPoints& local, GivenFit* fit) {
-  const Unknowns unknowns(placed.curve_class);
-  const auto n = static_cast<std::size_t>(unknowns.count);
-  const Eigen::Vector3d powers = length_powers(placed.curve_class);
-  std::array<double, 3> units{};
-  fit->shape.curve_class = placed.curve_class;
+void report_place(const PlacedCurve<Exact>& placed, const LocalPoints& local,
+                  ShapeParameters* shape, Pose2* world_T_curve) {
+  shape->curve_class = placed.curve_class;
+  const std::array<double, 3> units = units_of(placed.curve_class, local);
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    units[i] = std::pow(local.unit_m, powers[k]);  // a power of 2: exact
-    fit->shape.values[k] = to_double(Exact(units[i]) * placed.shape[i]);
+    shape->values[static_cast<Eigen::Index>(i)] = to_double(Exact(units[i]) * placed.shape[i]);
   }
   const auto in_world = [&](double middle_m, const Exact& v) {
     return to_double(Exact(middle_m) + Exact(local.unit_m) * v);
   };
-  fit->world_T_curve.x = in_world(local.middle_m.x(), placed.origin.x);
-  fit->world_T_curve.y = in_world(local.middle_m.y(), placed.origin.y);
-  Vec2 axis(to_double(placed.axis.x), to_double(placed.axis.y));
-  fit->world_T_curve.theta =
-      placed.curve_class == CurveClass::Circle ? 0.0 : std::atan2(axis.y(), axis.x());
+  world_T_curve->x = in_world(local.middle_m.x(), placed.origin.x);
+  world_T_curve->y = in_world(local.middle_m.y(), placed.origin.y);
+  world_T_curve->theta = placed.curve_class == CurveClass::Circle
+                             ? 0.0
+                             : std::atan2(to_double(placed.axis.y), to_double(placed.axis.x));
+}
 
+ShapePoseCovariance report_covariance(const PlacedCurve<Exact>& placed,
+                                      const Squares<Exact>& squares, const LocalPoints& local,
+                                      const GivenReach& reach, GivenFit* fit) {
+  const Unknowns unknowns(placed.curve_class);
+  const auto n = static_cast<std::size_t>(unknowns.count);
+  const Eigen::Vector3d powers = length_powers(placed.curve_class);
+  const std::array<double, 3> units = units_of(placed.curve_class, local);
+  const Vec2 axis(to_double(placed.axis.x), to_double(placed.axis.y));
   // [shape; x; y; theta] = by * unknowns
   const Eigen::Index rows = unknowns.shape + 3;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> by(rows,
@@ -91,10 +105,12 @@ void report_curve(const PlacedCurve<Exact>& placed, const Squares<Exact>& square
     open = open || (i < static_cast<std::size_t>(unknowns.shape) &&
                     weight * local.rounding * std::sqrt(to_double(inverse[i][i])) > size);
   }
+  widen(reach, &of_unknowns);
   fit->covariance = by * of_unknowns * by.transpose();
   if (open) {
     fit->status = GivenStatus::NotDetermined;
   }
+  return of_unknowns;
 }
 
 void report_residuals(PlacedCurve<Exact>* placed, const LocalPoints& local,

@@ -4,14 +4,21 @@
 #include <span>
 
 #include "core/recognition/given/given_class.h"
+#include "core/recognition/given/given_reach.h"
 #include "core/recognition/given/local_points.h"
 
 namespace palpate {
 
-/// Sets shape, pose and covariance, in metres and the world frame. Sets NotDetermined where it
-/// applies.
-void report_curve(const PlacedCurve<DoubleDouble>& placed, const Squares<DoubleDouble>& squares,
-                  const LocalPoints& local, GivenFit* fit);
+/// Sets shape and pose, in metres and the world frame.
+void report_place(const PlacedCurve<DoubleDouble>& placed, const LocalPoints& local,
+                  ShapeParameters* shape, Pose2* world_T_curve);
+
+/// Sets the covariance, widened by the reach, and returns it for the unknowns (placed_curve.h).
+/// Sets NotDetermined where it applies.
+ShapePoseCovariance report_covariance(const PlacedCurve<DoubleDouble>& placed,
+                                      const Squares<DoubleDouble>& squares,
+                                      const LocalPoints& local, const GivenReach& reach,
+                                      GivenFit* fit);
 
 /// Sets the residuals of all points, also of those set aside, and rms_m and peak_to_valley_m.
 void report_residuals(PlacedCurve<DoubleDouble>* placed, const LocalPoints& local,

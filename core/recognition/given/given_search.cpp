@@ -4,14 +4,18 @@
 #include <array>
 #include <cmath>
 #include <utility>
-#include <vector>
 
-#include "core/recognition/given/descent.h"
+#include "core/recognition/given/axis_scan.h"
+#include "core/recognition/given/curve_moves.h"
 #include "core/recognition/given/foot_parameter.h"
+#include "core/recognition/given/foot_weights.h"
 #include "core/recognition/given/given_starts.h"
 
 namespace palpate {
 namespace {
+
+/// A good start settles within ten steps; a long valley may take many dozens.
+constexpr DescentEffort kOnFew{80, 1e-6, 0.0};
 
 /// At most `most` points, evenly spaced by index: enough to judge a start.
 std::vector<WeighedPoint<double>> some(std::span<const WeighedPoint<double>> all,
@@ -24,17 +28,17 @@ std::vector<WeighedPoint<double>> some(std::span<const WeighedPoint<double>> all
   return points;
 }
 
-/// Sets every foot to the nearest point of the whole curve. False if the shape is outside the
+/// Moves every foot to the nearest place of the curve beside it. False if the shape is outside the
 /// class.
-bool seat_globally(PlacedCurve<double>* placed, std::span<const WeighedPoint<double>> points) {
+bool seat_nearby(PlacedCurve<double>* placed, std::span<const WeighedPoint<double>> points) {
   const auto curve = curve_of(*placed);
   if (!curve) {
     return false;
   }
-  placed->feet.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const PlaneVector<double> p = placed->to_curve(points[i].position);
-    const FootPoint foot = foot_point(*curve, {p.x, p.y});
+    const double t = t_at(placed->curve_class, placed->feet[i]);
+    const FootPoint foot = foot_point_near(*curve, {p.x, p.y}, t);
     if (!std::isfinite(foot.distance)) {
       return false;
     }
@@ -43,22 +47,49 @@ bool seat_globally(PlacedCurve<double>* placed, std::span<const WeighedPoint<dou
   return true;
 }
 
-/// Settled ones come first, then the lower cost.
-bool is_better(const GivenCandidate& u, const GivenCandidate& v) {
-  return u.settled != v.settled ? u.settled : u.cost < v.cost;
+bool is_on_arm(int arm, const PlacedCurve<double>& placed) {
+  return std::all_of(placed.feet.begin(), placed.feet.end(),
+                     [arm](const PlaneVector<double>& foot) { return arm * foot.x > 0.0; });
 }
 
-void descend_on(std::span<const WeighedPoint<double>> points, const DescentEffort& effort,
-                GivenCandidate* candidate) {
-  const auto seat = [&](PlacedCurve<double>* trial) { return seat_globally(trial, points); };
-  candidate->settled = false;
-  candidate->cost = std::numeric_limits<double>::infinity();
-  if (!seat(&candidate->curve)) {
-    return;
+/// Sets the feet where the candidate has none: on its arm, of a curve whose points are (t^2, ...),
+/// or to the nearest places.
+bool seat_first(std::span<const WeighedPoint<double>> points, GivenCandidate* candidate) {
+  PlacedCurve<double>& placed = candidate->curve;
+  if (candidate->arm == 0) {
+    return seat_globally(&placed, points);
   }
-  const auto descent = descend(&candidate->curve, points, effort, seat);
-  candidate->cost = descent.squares.cost;
-  candidate->settled = descent.settled;
+  double farthest = 0.0;
+  for (const WeighedPoint<double>& point : points) {
+    farthest = std::max(farthest, placed.to_curve(point.position).x);
+  }
+  // So near one another that Newton's method reaches the foot from the nearest one.
+  constexpr int kPlaces = 48;
+  std::array<PlaneVector<double>, kPlaces> places;
+  std::array<double, kPlaces> t{};
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    t[k] = candidate->arm * std::sqrt(farthest) * (static_cast<double>(k) + 0.5) / kPlaces;
+    places[k] = canonical_point<double>(placed.curve_class, placed.shape, {t[k], 0.0}).position;
+  }
+  placed.feet.clear();
+  for (const WeighedPoint<double>& point : points) {
+    const PlaneVector<double> p = placed.to_curve(point.position);
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < kPlaces; ++k) {
+      const PlaneVector<double> away = p - places[k];
+      const double square = inner(away, away);
+      nearest = square < least ? k : nearest;
+      least = std::min(least, square);
+    }
+    placed.feet.push_back({t[nearest], 0.0});
+  }
+  return seat_nearby(&placed, points) && is_on_arm(candidate->arm, placed);
+}
+
+bool is_same_cost(double u, double v) {
+  constexpr double kRounding = 1e-9;  // relative: what it makes of a sum
+  return std::abs(u - v) <= kRounding * v;
 }
 
 /// The points in double precision, with tip centres on that side of the curve.
@@ -78,7 +109,15 @@ std::vector<WeighedPoint<double>> on_side(std::span<const WeighedPoint<DoubleDou
 /// tangent to either side: so there are starts for fewer points than the class has unknowns.
 std::vector<GivenStart> starts_of(CurveClass curve_class, const LocalPoints& local) {
   std::vector<GivenStart> starts = given_starts(curve_class, local.rough);
-  if (local.normals == 0) {
+  std::vector<double> radii;
+  for (const WeighedPoint<DoubleDouble>& point : local.exact) {
+    radii.push_back(to_double(point.offset));
+  }
+  const std::vector<GivenStart> by_axis = starts_by_axis(curve_class, local.rough, radii);
+  starts.insert(starts.end(), by_axis.begin(), by_axis.end());
+  // Twice as many points as the most unknowns: then the scan needs no normals.
+  constexpr std::size_t kEnough = 2 * kMostUnknowns;
+  if (local.normals == 0 || (!by_axis.empty() && local.rough.size() >= kEnough)) {
     return starts;
   }
   // Of the points' extent, which is about 1. So near, a curve has hardly left its tangent.
@@ -97,51 +136,6 @@ std::vector<GivenStart> starts_of(CurveClass curve_class, const LocalPoints& loc
   return starts;
 }
 
-/// The lowest minimum that any start leads to. Its feet are those of all points.
-GivenCandidate search(CurveClass curve_class, const LocalPoints& local,
-                      std::span<const int> sides) {
-  constexpr std::size_t kMostSeedPoints = 64;
-  constexpr std::size_t kMostOnAll = 2;
-  // A good start settles within ten steps; a long valley may take a few dozen.
-  constexpr DescentEffort kOnSome{60, 1e-6, 0.0};
-  constexpr DescentEffort kOnAll{200, 1e-8, 0.0};
-  std::vector<GivenCandidate> found;
-  const std::vector<GivenStart> starts = starts_of(curve_class, local);
-  for (const int side : sides) {
-    const auto all = on_side(local.exact, side);
-    const auto few = some(all, kMostSeedPoints);
-    for (const GivenStart& start : starts) {
-      GivenCandidate candidate;
-      candidate.side = side;
-      candidate.curve.curve_class = curve_class;
-      for (int i = 0; i < 3; ++i) {
-        candidate.curve.shape[i] = start.shape.values[i];
-      }
-      candidate.curve.origin = {start.pose.x, start.pose.y};
-      candidate.curve.axis = {std::cos(start.pose.theta), std::sin(start.pose.theta)};
-      descend_on(few, kOnSome, &candidate);
-      if (std::isfinite(candidate.cost)) {
-        found.push_back(std::move(candidate));
-      }
-    }
-  }
-  std::stable_sort(found.begin(), found.end(), is_better);
-  GivenCandidate best;
-  for (std::size_t i = 0; i < std::min(found.size(), kMostOnAll); ++i) {
-    // Skips a candidate that ended where the first one did.
-    constexpr double kSame = 1e-6;
-    if (i > 0 && found[i].side == found[0].side &&
-        std::abs(found[i].cost - found[0].cost) <= kSame * found[0].cost) {
-      continue;
-    }
-    descend_on(on_side(local.exact, found[i].side), kOnAll, &found[i]);
-    if (is_better(found[i], best)) {
-      best = std::move(found[i]);
-    }
-  }
-  return best;
-}
-
 /// The sides of the curve on which tips may lie.
 std::vector<int> sides_of(std::span<const GivenPoint> points) {
   const bool tips = std::any_of(points.begin(), points.end(), [](const GivenPoint& point) {
@@ -150,81 +144,210 @@ std::vector<int> sides_of(std::span<const GivenPoint> points) {
   return tips ? std::vector<int>{1, -1} : std::vector<int>{0};
 }
 
-/// Points whose stated material (or normal) contradicts the side, minus those that agree.
-int votes_against(const GivenCandidate& candidate, const LocalPoints& local,
-                  std::span<const GivenPoint> points) {
-  int votes = 0;
-  for (std::size_t k = 0; k < local.index.size(); ++k) {
-    const GivenPoint& point = points[local.index[k]];
-    const Vec2 into = point.into_material.isZero() ? Vec2(-point.normal) : point.into_material;
-    if (into.isZero()) {
+/// -log likelihood of the candidate's points, up to a constant. Noise that is not stated is the one
+/// that the residuals have; at least the rounding of the coordinates.
+double misfit_of(const GivenCandidate& candidate, const LocalPoints& local, bool stated) {
+  if (!stated) {
+    const auto n = static_cast<double>(local.index.size());
+    return 0.5 * n * std::log(candidate.cost + 0.5 * n * local.rounding * local.rounding);
+  }
+  double sum = candidate.cost;
+  for (const WeighedPoint<double>& point : candidate.points) {
+    sum -= std::log(point.weight);
+    sum -= point.normal_weight > 0.0 ? std::log(point.normal_weight) : 0.0;
+  }
+  return sum;
+}
+
+PlacedCurve<double> placed_at(const GivenStart& start) {
+  PlacedCurve<double> curve;
+  curve.curve_class = start.shape.curve_class;
+  for (int i = 0; i < 3; ++i) {
+    curve.shape[i] = start.shape.values[i];
+  }
+  curve.origin = {start.pose.x, start.pose.y};
+  curve.axis = {std::cos(start.pose.theta), std::sin(start.pose.theta)};
+  return curve;
+}
+
+/// The minima that the starts lead to on few of the points, the better ones first.
+std::vector<GivenCandidate> minima_on_few(std::span<const GivenStart> starts, int side,
+                                          std::span<const WeighedPoint<double>> few) {
+  std::vector<GivenCandidate> found;
+  std::vector<PlacedCurve<double>> begun;
+  for (const GivenStart& start : starts) {
+    if (start.side != 0 && start.side != side) {
       continue;
     }
-    const auto place_of = canonical_point(candidate.curve.curve_class, candidate.curve.shape,
-                                          candidate.curve.feet[k]);
-    const PlaneVector<double> local_into{inner(candidate.curve.axis, {into.x(), into.y()}),
-                                         inner(left(candidate.curve.axis), {into.x(), into.y()})};
-    // The tip's centre lies opposite the material.
-    votes += candidate.side * inner(left(place_of.first), local_into) > 0.0 ? 1 : -1;
+    GivenCandidate candidate;
+    candidate.side = side;
+    candidate.curve = placed_at(start);
+    const bool again =
+        std::any_of(begun.begin(), begun.end(), [&](const PlacedCurve<double>& other) {
+          bool backwards = false;
+          return is_same_curve(other, candidate.curve, &backwards) && !backwards;
+        });
+    if (again) {
+      continue;
+    }
+    begun.push_back(candidate.curve);
+    candidate.arm = start.arm;
+    descend_on(few, kOnFew, &candidate);
+    if (start.arm != 0) {
+      GivenCandidate nearest = candidate;
+      nearest.arm = 0;
+      if (!std::isfinite(candidate.cost) || !seat_globally(&nearest.curve, few)) {
+        nearest.curve.feet.clear();
+      }
+      descend_on(few, kOnFew, &nearest);
+      // Without tips, the nearer arm is the one that is meant.
+      if (side == 0 || is_same_cost(nearest.cost, candidate.cost)) {
+        candidate = std::move(nearest);
+      } else if (std::isfinite(nearest.cost)) {
+        nearest.misfit = nearest.cost;
+        found.push_back(std::move(nearest));
+      }
+    }
+    candidate.misfit = candidate.cost;
+    if (std::isfinite(candidate.cost)) {
+      found.push_back(std::move(candidate));
+    }
   }
-  return votes;
+  std::stable_sort(found.begin(), found.end(), is_better);
+  return found;
 }
 
-/// Feet at which the curve bends towards the tip's centre, minus those at which it bends away:
-/// above 0 if tips touch from inside the bends.
-int feet_inside(const GivenCandidate& candidate) {
-  int inside = 0;
-  for (const auto& foot : candidate.curve.feet) {
-    const auto place = canonical_point(candidate.curve.curve_class, candidate.curve.shape, foot);
-    const double bend = candidate.side * inner(left(place.first), place.second);
-    inside += bend > 0.0 ? 1 : bend < 0.0 ? -1 : 0;
+/// The misfit on all points of a curve that was found on few of them.
+void look_at_all(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* candidate) {
+  candidate->points = on_side(local.exact, candidate->side);
+  if (!seat_first(candidate->points, candidate)) {
+    candidate->misfit = std::numeric_limits<double>::infinity();
+    return;
   }
-  return inside;
+  if (noise.stated) {
+    weigh_at_feet(candidate->curve, local, noise.points, noise.default_sigma_m, &candidate->points);
+  }
+  candidate->cost =
+      half_squares(&candidate->curve, std::span<const WeighedPoint<double>>(candidate->points));
+  // What a descent that ends with so short steps has not yet gained.
+  candidate->cost =
+      std::max(0.0, candidate->cost - kMostUnknowns * kOnFew.last_step * kOnFew.last_step);
+  candidate->misfit = misfit_of(*candidate, local, noise.stated);
 }
 
-/// Whether the first of two curves with tips on opposite sides is to be told, where no point tells
-/// the side. `towards`: feet_inside(u) less feet_inside(v).
-bool is_preferred(const GivenCandidate& u, const GivenCandidate& v, int towards,
-                  TouchedFrom touched_from) {
-  // Both sides of a circle fit alike to rounding, which must not choose; probes come from outside.
-  const bool alike = u.curve.curve_class == CurveClass::Circle;
-  if (towards == 0 || (touched_from == TouchedFrom::Unknown && !alike)) {
-    return is_better(u, v);
-  }
-  return (touched_from == TouchedFrom::Inside) == (towards > 0);
+/// Whether one of `others` is the same curve with the tips on the same side of it.
+bool is_among(const GivenCandidate& candidate, std::span<const GivenCandidate> others) {
+  return std::any_of(others.begin(), others.end(), [&](const GivenCandidate& other) {
+    bool backwards = false;
+    return candidate.settled == other.settled &&
+           is_same_curve(other.curve, candidate.curve, &backwards) &&
+           candidate.side == (backwards ? -other.side : other.side);
+  });
 }
 
 }  // namespace
 
-SidedCandidate search_sides(CurveClass curve_class, const LocalPoints& local,
-                            std::span<const GivenPoint> points, TouchedFrom touched_from) {
-  SidedCandidate best;
-  int best_votes = 0;
-  for (const int side : sides_of(points)) {
-    GivenCandidate candidate = search(curve_class, local, std::array{side});
-    if (!std::isfinite(candidate.cost)) {
-      continue;
+bool seat_globally(PlacedCurve<double>* placed, std::span<const WeighedPoint<double>> points) {
+  const auto curve = curve_of(*placed);
+  if (!curve) {
+    return false;
+  }
+  placed->feet.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PlaneVector<double> p = placed->to_curve(points[i].position);
+    const FootPoint foot = foot_point(*curve, {p.x, p.y});
+    if (!std::isfinite(foot.distance)) {
+      return false;
     }
-    const int votes = side == 0 ? 0 : votes_against(candidate, local, points);
-    if (!std::isfinite(best.taken.cost)) {
-      best.taken = std::move(candidate);
-      best_votes = votes;
-      continue;
+    placed->feet[i] = parameter_at(placed->curve_class, foot.t);
+  }
+  return true;
+}
+
+void descend_on(std::span<const WeighedPoint<double>> points, const DescentEffort& effort,
+                GivenCandidate* candidate) {
+  const int arm = candidate->arm;
+  const auto seat = [&](PlacedCurve<double>* trial) {
+    return arm == 0 ? seat_globally(trial, points)
+                    : seat_nearby(trial, points) && is_on_arm(arm, *trial);
+  };
+  candidate->settled = false;
+  candidate->cost = std::numeric_limits<double>::infinity();
+  if (!(candidate->curve.feet.size() == points.size() ? seat(&candidate->curve)
+                                                      : seat_first(points, candidate))) {
+    return;
+  }
+  const auto descent = descend(&candidate->curve, points, effort, seat);
+  candidate->cost = descent.squares.cost;
+  candidate->settled = descent.settled;
+}
+
+bool is_better(const GivenCandidate& u, const GivenCandidate& v) {
+  return u.settled != v.settled ? u.settled : u.misfit < v.misfit;
+}
+
+void settle(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* candidate) {
+  constexpr DescentEffort kOnAll{100, 1e-8, 0.0};
+  constexpr int kMostRounds = 10;
+  // Relative: of a weight, then less than that of what the residuals tell of the curve.
+  constexpr double kSame = 1e-6;
+  candidate->points = on_side(local.exact, candidate->side);
+  descend_on(candidate->points, kOnAll, candidate);
+  for (int round = 0; noise.stated && candidate->settled && round < kMostRounds; ++round) {
+    if (weigh_at_feet(candidate->curve, local, noise.points, noise.default_sigma_m,
+                      &candidate->points) <= kSame) {
+      break;
     }
-    const int towards = feet_inside(candidate) - feet_inside(best.taken);
-    const bool by_votes = votes != best_votes;
-    const bool preferred =
-        by_votes ? votes < best_votes : is_preferred(candidate, best.taken, towards, touched_from);
-    // A line has no bend that could tell.
-    const bool told = by_votes || (touched_from != TouchedFrom::Unknown && towards != 0);
-    if (!told) {
-      best.cost_of_other = preferred ? best.taken.cost : candidate.cost;
+    descend_on(candidate->points, kOnAll, candidate);
+  }
+  candidate->misfit = misfit_of(*candidate, local, noise.stated);
+}
+
+std::vector<GivenCandidate> search_minima(CurveClass curve_class, const LocalPoints& local,
+                                          const GivenNoise& noise) {
+  constexpr std::size_t kMostSeedPoints = 64;
+  // Of either side. So many valleys has a short arm of a semi-cubical parabola, seen from few
+  // touches; further ones lie above these.
+  constexpr std::size_t kMostOnAll = 8;
+  constexpr std::size_t kMostUnsettled = 2;
+  // In the logarithm of the likelihood: far beyond what any odds asked for need. From the minimum
+  // on few points to that on all, each unknown gains half of their ratio on average.
+  constexpr double kHopeless = 50.0;
+  const double hopeless = kHopeless + 0.5 * kMostUnknowns *
+                                          static_cast<double>(local.exact.size()) /
+                                          static_cast<double>(kMostSeedPoints);
+  const std::vector<GivenStart> starts = starts_of(curve_class, local);
+  std::vector<GivenCandidate> minima;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const int side : sides_of(noise.points)) {
+    const auto few = some(on_side(local.exact, side), kMostSeedPoints);
+    std::vector<GivenCandidate> distinct;
+    std::size_t settled_left = kMostOnAll;
+    std::size_t unsettled_left = kMostUnsettled;
+    for (GivenCandidate& candidate : minima_on_few(starts, side, few)) {
+      std::size_t& left = candidate.settled ? settled_left : unsettled_left;
+      if (left > 0 && !is_among(candidate, distinct)) {
+        --left;
+        distinct.push_back(std::move(candidate));
+      }
     }
-    if (preferred) {
-      best.taken = std::move(candidate);
+    for (GivenCandidate& candidate : distinct) {
+      look_at_all(local, noise, &candidate);
+    }
+    std::stable_sort(distinct.begin(), distinct.end(), is_better);
+    for (GivenCandidate& candidate : distinct) {
+      if (candidate.misfit > lowest + hopeless) {
+        continue;
+      }
+      settle(local, noise, &candidate);
+      if (std::isfinite(candidate.cost) && !is_among(candidate, minima)) {
+        lowest = candidate.settled ? std::min(lowest, candidate.misfit) : lowest;
+        minima.push_back(std::move(candidate));
+      }
     }
   }
-  return best;
+  std::stable_sort(minima.begin(), minima.end(), is_better);
+  return minima;
 }
 
 }  // namespace palpate

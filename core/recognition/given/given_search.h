@@ -1,32 +1,54 @@
-// Searches the curve of a given class that is nearest to all points, in double precision.
+// Searches the curves of a given class that all points are near to, in double precision.
 #pragma once
 
 #include <limits>
 #include <span>
+#include <vector>
 
+#include "core/recognition/given/descent.h"
 #include "core/recognition/given/local_points.h"
-#include "core/recognition/samples/contact_sample.h"
 
 namespace palpate {
 
 struct GivenCandidate {
   PlacedCurve<double> curve;
   double cost = std::numeric_limits<double>::infinity();
+  /// -log likelihood, up to a constant: the cost, less the logarithms of the weights, which a
+  /// covariance or a normal has at the feet of this curve.
+  double misfit = std::numeric_limits<double>::infinity();
   bool settled = false;  ///< at a minimum
   int side = 0;  ///< side of the curve on which tip centres lie (+1 left, -1 right); 0 without tips
+  /// With tips: all feet are on the arm where t has this sign, though the other arm may be nearer.
+  /// A part may end before its curve comes to the cusp. 0: every foot is the nearest one.
+  int arm = 0;
+  std::vector<WeighedPoint<double>> points = {};  ///< all of them, with the weights at this curve
 };
 
-/// The best curve, and how much worse the best with the tips on the other side is.
-struct SidedCandidate {
-  GivenCandidate taken;
-  /// Cost on the other side; infinite if nothing fits there, or if the side taken is told.
-  double cost_of_other = std::numeric_limits<double>::infinity();
+/// What the search is to know of the points beside their places.
+struct GivenNoise {
+  std::span<const GivenPoint> points;  ///< all, also those set aside
+  double default_sigma_m = 0.0;
+  bool stated = false;  ///< the noise of every point is known
 };
 
-/// With tips, tries both sides and takes the one that the points' stated material supports, else
-/// the one that `touched_from` says, else the one that fits better. The cost is infinite if no
-/// start leads to a curve.
-SidedCandidate search_sides(CurveClass curve_class, const LocalPoints& local,
-                            std::span<const GivenPoint> points, TouchedFrom touched_from);
+/// Sets every foot to the nearest point of the whole curve. False if the shape is outside the
+/// class.
+bool seat_globally(PlacedCurve<double>* placed, std::span<const WeighedPoint<double>> points);
+
+/// Descends from the candidate's curve, and sets its cost and whether it settled. Every foot is the
+/// nearest one, or moves along the arm that the candidate keeps to.
+void descend_on(std::span<const WeighedPoint<double>> points, const DescentEffort& effort,
+                GivenCandidate* candidate);
+
+/// Descends from the candidate's curve on all points, with the weights at its feet.
+void settle(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* candidate);
+
+/// True if the first is to be preferred: settled ones come first, then the lower misfit.
+bool is_better(const GivenCandidate& u, const GivenCandidate& v);
+
+/// All minima that any start leads to, with tips on either side, and valleys without a minimum. The
+/// better ones come first. Their feet are those of all points.
+std::vector<GivenCandidate> search_minima(CurveClass curve_class, const LocalPoints& local,
+                                          const GivenNoise& noise);
 
 }  // namespace palpate

@@ -11,7 +11,9 @@ namespace palpate {
 
 struct GivenStart {
   ShapeParameters shape;
-  Pose2 pose;  ///< in the points' frame
+  Pose2 pose;    ///< in the points' frame
+  int arm = 0;   ///< all points lie where t has this sign; 0 = not known
+  int side = 0;  ///< the tips lie on this side of the curve (+1 left, -1 right); 0 = not known
 };
 
 /// Curves of the class near `points`; the better ones come first. The points may be in any order,

@@ -1,0 +1,200 @@
+#include "core/recognition/given/given_reach.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/recognition/given/curve_moves.h"
+
+namespace palpate {
+namespace {
+
+using Step = std::array<double, kMostUnknowns>;
+
+/// Deviations that differ by less are alike: no more than what ten touches know of their noise.
+constexpr double kAlike = 1.25;
+
+/// Of the rise that is asked: less is what rounding and the last step of a descent can feign.
+constexpr double kNothing = 0.01;
+
+/// A curve with one shape parameter held, the others at their best.
+struct Held {
+  PlacedCurve<double> curve;
+  double rise = 0.0;
+  bool settled = false;
+};
+
+class Walk {
+ public:
+  Walk(const PlacedCurve<double>& minimum, int arm, std::span<const WeighedPoint<double>> points,
+       double asked, GivenReach* reach)
+      : minimum_(minimum),
+        arm_(arm),
+        points_(points),
+        asked_(asked),
+        n_(static_cast<std::size_t>(Unknowns(minimum.curve_class).count)),
+        reach_(reach) {}
+
+  void run() {
+    PlacedCurve<double> at = minimum_;
+    const Squares<double> squares = squares_about(&at, points_);
+    cost_ = squares.cost;
+    moves_ = unit_moves(squares.information, n_);
+    const auto lower = lower_factor(in_unit_moves(squares.information, n_, moves_), n_, 0.0);
+    if (!lower) {
+      return;  // more bent than a double can follow; the deviations tell that by their size
+    }
+    for (int i = 0; i < Unknowns(minimum_.curve_class).shape; ++i) {
+      Step unit{};
+      unit[static_cast<std::size_t>(i)] = 1.0 / moves_[static_cast<std::size_t>(i)];
+      Step along = solve(*lower, n_, unit);
+      const double deviation =
+          std::sqrt(along[static_cast<std::size_t>(i)] / moves_[static_cast<std::size_t>(i)]);
+      if (!(deviation > 0.0) || !std::isfinite(deviation)) {
+        return;
+      }
+      for (std::size_t k = 0; k < n_; ++k) {
+        along[k] = along[k] / moves_[k] / deviation;  // by one deviation of the parameter
+      }
+      for (const double way : {1.0, -1.0}) {
+        follow(i, way, along);
+        if (reach_->lower) {
+          return;
+        }
+      }
+    }
+  }
+
+ private:
+  /// `from` moved by `step`, and from there to the best with the unknown held.
+  std::optional<Held> held_at(const PlacedCurve<double>& from, const Step& step,
+                              int unknown) const {
+    const double value = from.shape[unknown] + step[static_cast<std::size_t>(unknown)];
+    GivenCandidate held;
+    held.arm = arm_;
+    held.curve = from;
+    held.curve.move(step.data());
+    // Where an ellipse's axes have changed places, another one would be held.
+    if (held.curve.shape[unknown] != value) {
+      return std::nullopt;
+    }
+    DescentEffort effort{20, 1e-4 * std::sqrt(asked_), 0.0};
+    effort.held = unknown;
+    descend_on(points_, effort, &held);
+    if (!std::isfinite(held.cost) || held.curve.shape[unknown] != value) {
+      return std::nullopt;
+    }
+    return Held{held.curve, 2.0 * (held.cost - cost_), held.settled};
+  }
+
+  void note(const Held& held) {
+    ReachPoint point;
+    point.step = move_between(minimum_, held.curve).step;
+    // A rise of nothing has no deviation.
+    point.rise = std::max(held.rise, kNothing * asked_);
+    reach_->points.push_back(point);
+  }
+
+  void follow(int unknown, double way, const Step& along) {
+    const double whole = std::sqrt(asked_);
+    const auto scaled = [&](const Step& step, double by) {
+      Step s{};
+      for (std::size_t k = 0; k < n_; ++k) {
+        s[k] = by * step[k];
+      }
+      return s;
+    };
+    const auto straight = held_at(minimum_, scaled(along, way * whole), unknown);
+    if (straight && straight->settled && straight->rise >= asked_ / (kAlike * kAlike) &&
+        straight->rise <= asked_ * kAlike * kAlike) {
+      return;
+    }
+    constexpr int kMostSteps = 40;
+    constexpr double kFirst = 0.25;     // of the way that a linear model goes
+    constexpr double kLeast = 0.01;     // of that way: a shorter step means that there is no way
+    constexpr double kFarthest = 64.0;  // times that way is out of sight
+    constexpr double kGrowth = 1.5;
+    Held here{minimum_, 0.0, true};
+    Held lowest = here;
+    Step ahead = scaled(along, way);  // for one deviation of the parameter
+    double at = 0.0;
+    double length = kFirst * whole;
+    bool ended = false;
+    for (int i = 0; i < kMostSteps && at < kFarthest * whole && !ended; ++i) {
+      const auto next = held_at(here.curve, scaled(ahead, length), unknown);
+      const bool lost = !next || (!next->settled && next->rise > asked_);
+      if (lost && length > kLeast * whole) {
+        length *= 0.25;
+        continue;
+      }
+      if (!next) {
+        // An ellipse beyond the circle is one again, with its axes exchanged.
+        ended = minimum_.curve_class == CurveClass::Ellipse &&
+                here.curve.shape[0] - here.curve.shape[1] <
+                    2.0 * std::abs(ahead[static_cast<std::size_t>(unknown)]) * length;
+        break;
+      }
+      ended = next->rise >= asked_ + lowest.rise;
+      if (!ended || at == 0.0) {
+        at += length;
+        const CurveMove move = move_between(here.curve, next->curve);
+        ahead = scaled(move.step, 1.0 / length);
+        here = *next;
+        lowest = here.rise < lowest.rise ? here : lowest;
+        length *= kGrowth;
+      } else {
+        note(here);
+        here = *next;
+      }
+    }
+    if (lowest.rise < -kNothing * asked_) {
+      reach_->lower = lowest.curve;
+      return;
+    }
+    note(here);
+    reach_->bounded = reach_->bounded && ended;
+  }
+
+  const PlacedCurve<double>& minimum_;
+  int arm_ = 0;
+  std::span<const WeighedPoint<double>> points_;
+  double asked_ = 0.0;
+  std::size_t n_ = 0;
+  GivenReach* reach_;
+  double cost_ = 0.0;
+  std::array<double, kMostUnknowns> moves_{};
+};
+
+}  // namespace
+
+GivenReach reach_of(const GivenCandidate& minimum, double rise) {
+  constexpr std::size_t kMostPoints = 256;
+  GivenReach reach;
+  if (minimum.points.size() <= kMostPoints) {
+    Walk(minimum.curve, minimum.arm, minimum.points, rise, &reach).run();
+    return reach;
+  }
+  const std::size_t stride = (minimum.points.size() + kMostPoints - 1) / kMostPoints;
+  std::vector<WeighedPoint<double>> few;
+  for (std::size_t i = 0; i < minimum.points.size(); i += stride) {
+    few.push_back(minimum.points[i]);
+  }
+  // As much weight as all points have.
+  const double factor =
+      std::sqrt(static_cast<double>(minimum.points.size()) / static_cast<double>(few.size()));
+  for (WeighedPoint<double>& point : few) {
+    point.weight *= factor;
+    point.normal_weight *= factor;
+  }
+  GivenCandidate of_few = minimum;
+  of_few.curve.feet.clear();
+  constexpr DescentEffort kToTheirs{60, 1e-6, 0.0};
+  descend_on(few, kToTheirs, &of_few);
+  if (of_few.settled) {
+    Walk(of_few.curve, minimum.arm, few, rise, &reach).run();
+    reach.lower.reset();  // of a part of the points only
+  }
+  return reach;
+}
+
+}  // namespace palpate
