@@ -11,9 +11,6 @@ namespace {
 
 using Step = std::array<double, kMostUnknowns>;
 
-/// Deviations that differ by less are alike: no more than what ten touches know of their noise.
-constexpr double kAlike = 1.25;
-
 /// Of the rise that is asked: less is what rounding and the last step of a descent can feign.
 constexpr double kNothing = 0.01;
 
@@ -105,8 +102,17 @@ class Walk {
       return s;
     };
     const auto straight = held_at(minimum_, scaled(along, way * whole), unknown);
-    if (straight && straight->settled && straight->rise >= asked_ / (kAlike * kAlike) &&
-        straight->rise <= asked_ * kAlike * kAlike) {
+    if (straight && straight->settled &&
+        straight->rise >= asked_ / (kAlikeDeviations * kAlikeDeviations) &&
+        straight->rise <= asked_ * kAlikeDeviations * kAlikeDeviations) {
+      ReachPoint bend;
+      bend.step = move_between(minimum_, straight->curve).step;
+      for (std::size_t k = 0; k < n_; ++k) {
+        bend.step[k] -= way * whole * along[k];
+      }
+      bend.rise = asked_;
+      bend.bend = true;
+      reach_->points.push_back(bend);
       return;
     }
     constexpr int kMostSteps = 40;

@@ -14,6 +14,7 @@ namespace palpate {
 struct ReachPoint {
   std::array<double, kMostUnknowns> step{};
   double rise = 0.0;
+  bool bend = false;  ///< the step is only what the way to that curve has left the straight way by
 };
 
 struct GivenReach {
@@ -25,27 +26,39 @@ struct GivenReach {
   std::optional<PlacedCurve<double>> lower;
 };
 
+/// Deviations that differ by less are alike: no more than what ten touches know of their noise.
+inline constexpr double kAlikeDeviations = 1.25;
+
 /// Moves each shape parameter either way, with all other unknowns at their best, until the sum of
 /// squares has risen by `rise`. With a linear model the parameter would move by sqrt(rise) of the
-/// deviations that a unit noise gives. Where it does, nothing is noted; a valley that bends or
-/// flattens is followed, and its points are noted. At most 256 points are looked at, for more ones
-/// hide no bend of the valley that few show.
+/// deviations that a unit noise gives. Where it does, only the bend of the way is noted; a valley
+/// that flattens is followed, and its points are noted. At most 256 points are looked at, for more
+/// ones hide no bend of the valley that few show.
 GivenReach reach_of(const GivenCandidate& minimum, double rise);
 
 /// Widens the covariance of the unknowns, for unit noise, until each point of the reach lies no
-/// further than sqrt(its rise) deviations.
+/// further than sqrt(its rise) deviations. Across a valley that only bends, it is widened by the
+/// bend: a point at its end then lies no further than sqrt(2 rise).
 template <typename Matrix>
 void widen(const GivenReach& reach, Matrix* covariance) {
-  for (const ReachPoint& point : reach.points) {
-    const Eigen::Index n = covariance->rows();
-    const Eigen::Map<const Eigen::VectorXd> step(point.step.data(), n);
+  const Eigen::Index n = covariance->rows();
+  const auto square_of = [&](const Eigen::VectorXd& step) {
     const Eigen::VectorXd scale = covariance->diagonal().cwiseSqrt();
     const Eigen::MatrixXd unit =
         scale.cwiseInverse().asDiagonal() * *covariance * scale.cwiseInverse().asDiagonal();
     const Eigen::VectorXd u = step.cwiseQuotient(scale);
-    const double square = u.dot(unit.ldlt().solve(u));
-    // With C + k d d', the square of d becomes s / (1 + k s): the rise for this k.
-    if (square > point.rise && point.rise > 0.0) {
+    return u.dot(unit.ldlt().solve(u));
+  };
+  constexpr double kBent = kAlikeDeviations * kAlikeDeviations - 1.0;
+  for (const ReachPoint& point : reach.points) {
+    const Eigen::VectorXd step = Eigen::Map<const Eigen::VectorXd>(point.step.data(), n);
+    const double square = square_of(step);
+    if (point.bend) {
+      if (square > kBent * point.rise) {
+        *covariance += 1.0 / point.rise * step * step.transpose();
+      }
+    } else if (square > point.rise && point.rise > 0.0) {
+      // With C + k d d', the square of d becomes s / (1 + k s): the rise for this k.
       *covariance += (1.0 / point.rise - 1.0 / square) * step * step.transpose();
     }
   }

@@ -14,8 +14,11 @@
 namespace palpate {
 namespace {
 
+/// So many points show every valley.
+constexpr std::size_t kMostSeedPoints = 64;
+
 /// A good start settles within ten steps; a long valley may take many dozens.
-constexpr DescentEffort kOnFew{80, 1e-6, 0.0};
+constexpr DescentEffort kOnFew{60, 1e-6, 0.0};
 
 /// At most `most` points, evenly spaced by index: enough to judge a start.
 std::vector<WeighedPoint<double>> some(std::span<const WeighedPoint<double>> all,
@@ -267,17 +270,31 @@ bool seat_globally(PlacedCurve<double>* placed, std::span<const WeighedPoint<dou
 void descend_on(std::span<const WeighedPoint<double>> points, const DescentEffort& effort,
                 GivenCandidate* candidate) {
   const int arm = candidate->arm;
-  const auto seat = [&](PlacedCurve<double>* trial) {
-    return arm == 0 ? seat_globally(trial, points)
-                    : seat_nearby(trial, points) && is_on_arm(arm, *trial);
+  // Of many points, which begin near a minimum of few, feet that move along cost a third.
+  const bool near_first = arm == 0 && points.size() > kMostSeedPoints;
+  const auto nearby = [&](PlacedCurve<double>* trial) {
+    return seat_nearby(trial, points) && (arm == 0 || is_on_arm(arm, *trial));
   };
+  const auto globally = [&](PlacedCurve<double>* trial) { return seat_globally(trial, points); };
   candidate->settled = false;
   candidate->cost = std::numeric_limits<double>::infinity();
-  if (!(candidate->curve.feet.size() == points.size() ? seat(&candidate->curve)
-                                                      : seat_first(points, candidate))) {
+  PlacedCurve<double>& curve = candidate->curve;
+  if (curve.feet.size() != points.size() ? !seat_first(points, candidate)
+      : arm == 0 && !near_first          ? !globally(&curve)
+                                         : !nearby(&curve)) {
     return;
   }
-  const auto descent = descend(&candidate->curve, points, effort, seat);
+  auto descent = arm != 0 || near_first ? descend(&curve, points, effort, nearby)
+                                        : descend(&curve, points, effort, globally);
+  if (near_first) {
+    const double cost = descent.squares.cost;
+    if (!globally(&curve)) {
+      return;
+    }
+    if (!is_same_cost(half_squares(&curve, points), cost)) {
+      descent = descend(&curve, points, effort, globally);
+    }
+  }
   candidate->cost = descent.squares.cost;
   candidate->settled = descent.settled;
 }
@@ -305,7 +322,6 @@ void settle(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* c
 
 std::vector<GivenCandidate> search_minima(CurveClass curve_class, const LocalPoints& local,
                                           const GivenNoise& noise) {
-  constexpr std::size_t kMostSeedPoints = 64;
   // Of either side. So many valleys has a short arm of a semi-cubical parabola, seen from few
   // touches; further ones lie above these.
   constexpr std::size_t kMostOnAll = 8;
