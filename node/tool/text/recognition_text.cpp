@@ -202,7 +202,7 @@ std::string_view sentence_of(v1::RecognitionDoubt doubt) {
     case v1::RECOGNITION_DOUBT_MISFIT:
       return "residuals are larger than the noise can be";
     case v1::RECOGNITION_DOUBT_TWO_SHAPES:
-      return "two shapes fit alike (a spline and its twin, or tips on either side)";
+      return "two shapes fit alike (a curve and its twin, or tips on either side)";
     case v1::RECOGNITION_DOUBT_RICHER_CLASS:
       return "the samples do not exclude a class of which this one is a limit";
     case v1::RECOGNITION_DOUBT_UNDETERMINED:
