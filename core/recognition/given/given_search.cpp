@@ -351,8 +351,10 @@ std::vector<GivenCandidate> search_minima(CurveClass curve_class, const LocalPoi
       look_at_all(local, noise, &candidate);
     }
     std::stable_sort(distinct.begin(), distinct.end(), is_better);
-    for (GivenCandidate& candidate : distinct) {
-      if (candidate.misfit > lowest + hopeless) {
+    // The first one of a side is always settled: it tells by how much that side fits worse.
+    for (std::size_t k = 0; k < distinct.size(); ++k) {
+      GivenCandidate& candidate = distinct[k];
+      if (k > 0 && candidate.misfit > lowest + hopeless) {
         continue;
       }
       settle(local, noise, &candidate);
