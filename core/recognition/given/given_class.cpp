@@ -1,5 +1,6 @@
 #include "core/recognition/given/given_class.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -237,8 +238,9 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   const int dof =
       static_cast<int>(local->index.size() + local->normals) - degrees_of_freedom(curve_class);
   const GivenNoise noise{points, options.sigma_m, stated};
-  const auto [minima, choice, reach] =
-      explore(curve_class, *local, noise, options.touched_from, dof);
+  const Explored explored = explore(curve_class, *local, noise, options.touched_from, dof);
+  const std::vector<GivenCandidate>& minima = explored.minima;
+  const GivenChoice& choice = explored.choice;
   if (minima.empty()) {
     return fit;
   }
@@ -280,10 +282,10 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   }
   fit.stationarity = stationarity_of(descent.squares, *local,
                                      static_cast<std::size_t>(Unknowns(curve_class).count));
-  fit.bounded = reach.bounded;
+  fit.bounded = explored.reach.bounded;
   report_place(placed, *local, &fit.shape, &fit.world_T_curve);
   const ShapePoseCovariance of_unknowns =
-      report_covariance(placed, descent.squares, *local, reach, &fit);
+      report_covariance(placed, descent.squares, *local, explored.reach, &fit);
   const double variance = variance_of(found.cost, dof, *local, stated);
   std::vector<std::size_t> others = choice.twins;
   if (choice.other_side) {

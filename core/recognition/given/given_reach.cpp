@@ -12,7 +12,7 @@ namespace {
 using Step = std::array<double, kMostUnknowns>;
 
 /// Of the rise that is asked: less is what rounding and the last step of a descent can feign.
-constexpr double kNothing = 0.01;
+constexpr double kNoRise = 0.01;
 
 /// A curve with one shape parameter held, the others at their best.
 struct Held {
@@ -88,7 +88,7 @@ class Walk {
     ReachPoint point;
     point.step = move_between(minimum_, held.curve).step;
     // A rise of nothing has no deviation.
-    point.rise = std::max(held.rise, kNothing * asked_);
+    point.rise = std::max(held.rise, kNoRise * asked_);
     reach_->points.push_back(point);
   }
 
@@ -153,7 +153,7 @@ class Walk {
         here = *next;
       }
     }
-    if (lowest.rise < -kNothing * asked_) {
+    if (lowest.rise < -kNoRise * asked_) {
       reach_->lower = lowest.curve;
       return;
     }

@@ -1,6 +1,7 @@
 // How far the shape can really be moved before the points object: the profile of the likelihood.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <array>
 #include <optional>
 #include <vector>

@@ -15,7 +15,7 @@ namespace palpate {
 namespace {
 
 /// So many points show every valley.
-constexpr std::size_t kMostSeedPoints = 64;
+constexpr std::size_t kMostSearchedPoints = 64;
 
 /// A good start settles within ten steps; a long valley may take many dozens.
 constexpr DescentEffort kOnFew{60, 1e-6, 0.0};
@@ -271,7 +271,7 @@ void descend_on(std::span<const WeighedPoint<double>> points, const DescentEffor
                 GivenCandidate* candidate) {
   const int arm = candidate->arm;
   // Of many points, which begin near a minimum of few, feet that move along cost a third.
-  const bool near_first = arm == 0 && points.size() > kMostSeedPoints;
+  const bool near_first = arm == 0 && points.size() > kMostSearchedPoints;
   const auto nearby = [&](PlacedCurve<double>* trial) {
     return seat_nearby(trial, points) && (arm == 0 || is_on_arm(arm, *trial));
   };
@@ -331,12 +331,12 @@ std::vector<GivenCandidate> search_minima(CurveClass curve_class, const LocalPoi
   constexpr double kHopeless = 50.0;
   const double hopeless = kHopeless + 0.5 * kMostUnknowns *
                                           static_cast<double>(local.exact.size()) /
-                                          static_cast<double>(kMostSeedPoints);
+                                          static_cast<double>(kMostSearchedPoints);
   const std::vector<GivenStart> starts = starts_of(curve_class, local);
   std::vector<GivenCandidate> minima;
   double lowest = std::numeric_limits<double>::infinity();
   for (const int side : sides_of(noise.points)) {
-    const auto few = some(on_side(local.exact, side), kMostSeedPoints);
+    const auto few = some(on_side(local.exact, side), kMostSearchedPoints);
     std::vector<GivenCandidate> distinct;
     std::size_t settled_left = kMostOnAll;
     std::size_t unsettled_left = kMostUnsettled;
