@@ -1,9 +1,9 @@
 #include "node/wire/recognizer_options.h"
 
-#include "core/recognition/samples/side_words.h"
-
 #include <algorithm>
 #include <optional>
+
+#include "core/recognition/samples/side_words.h"
 
 namespace palpate {
 

@@ -6,20 +6,13 @@
 #include <limits>
 #include <utility>
 
+#include "core/recognition/given/thinned.h"
+
 namespace palpate {
 namespace {
 
-/// Enough of them to see the valleys; the descent from a start takes all.
-template <typename T>
-std::vector<T> few_of(std::span<const T> all) {
-  constexpr std::size_t kMostPoints = 32;
-  const std::size_t stride = (all.size() + kMostPoints - 1) / kMostPoints;
-  std::vector<T> few;
-  for (std::size_t i = 0; i < all.size(); i += stride) {
-    few.push_back(all[i]);
-  }
-  return few;
-}
+/// Enough points to see the valleys; the descent from a start takes all.
+constexpr std::size_t kMostPoints = 32;
 
 constexpr std::size_t kMostColumns = 4;
 
@@ -326,8 +319,8 @@ std::vector<GivenStart> starts_by_axis(CurveClass curve_class, std::span<const V
   if (columns.count == 0) {
     return starts;
   }
-  const std::vector<Vec2> centres = few_of(points);
-  const std::vector<double> taken_off = few_of(radii);
+  const std::vector<Vec2> centres = thinned(points, kMostPoints);
+  const std::vector<double> taken_off = thinned(radii, kMostPoints);
   const auto add = [&](const Scan& scan, std::span<const Graph> graphs, std::span<const Vec2> out) {
     for (std::size_t i = 0; i < std::min(graphs.size(), kMostStarts); ++i) {
       GivenStart start = start_of(curve_class, graphs[i]);

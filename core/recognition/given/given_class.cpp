@@ -1,6 +1,5 @@
 #include "core/recognition/given/given_class.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "core/numerics/chi_square.h"
+#include "core/numerics/mahalanobis.h"
 #include "core/numerics/student_quantile.h"
 #include "core/recognition/given/curve_moves.h"
 #include "core/recognition/given/descent.h"
@@ -178,13 +178,10 @@ bool is_outside(const GivenCandidate& taken, const GivenCandidate& other,
                 const ShapePoseCovariance& covariance, double variance) {
   const auto n = covariance.rows();
   const auto step = move_between(taken.curve, other.curve).step;
-  const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
-  const Eigen::MatrixXd unit =
-      scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
-  const Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(step.data(), n).cwiseQuotient(scale);
   const double outside =
       chi_square_threshold(std::erfc(kReach / std::numbers::sqrt2), static_cast<int>(n));
-  return !(u.dot(unit.ldlt().solve(u)) <= outside * variance);
+  return !(mahalanobis_square(Eigen::Map<const Eigen::VectorXd>(step.data(), n), covariance) <=
+           outside * variance);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/recognition/given/curve_moves.h"
+#include "core/recognition/given/thinned.h"
 
 namespace palpate {
 namespace {
@@ -180,11 +181,8 @@ GivenReach reach_of(const GivenCandidate& minimum, double rise) {
     Walk(minimum.curve, minimum.arm, minimum.points, rise, &reach).run();
     return reach;
   }
-  const std::size_t stride = (minimum.points.size() + kMostPoints - 1) / kMostPoints;
-  std::vector<WeighedPoint<double>> few;
-  for (std::size_t i = 0; i < minimum.points.size(); i += stride) {
-    few.push_back(minimum.points[i]);
-  }
+  std::vector<WeighedPoint<double>> few =
+      thinned<WeighedPoint<double>>(minimum.points, kMostPoints);
   // As much weight as all points have.
   const double factor =
       std::sqrt(static_cast<double>(minimum.points.size()) / static_cast<double>(few.size()));

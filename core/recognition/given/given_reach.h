@@ -1,11 +1,11 @@
 // How far the shape can really be moved before the points object: the profile of the likelihood.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <array>
 #include <optional>
 #include <vector>
 
+#include "core/numerics/mahalanobis.h"
 #include "core/recognition/given/given_search.h"
 
 namespace palpate {
@@ -43,17 +43,10 @@ GivenReach reach_of(const GivenCandidate& minimum, double rise);
 template <typename Matrix>
 void widen(const GivenReach& reach, Matrix* covariance) {
   const Eigen::Index n = covariance->rows();
-  const auto square_of = [&](const Eigen::VectorXd& step) {
-    const Eigen::VectorXd scale = covariance->diagonal().cwiseSqrt();
-    const Eigen::MatrixXd unit =
-        scale.cwiseInverse().asDiagonal() * *covariance * scale.cwiseInverse().asDiagonal();
-    const Eigen::VectorXd u = step.cwiseQuotient(scale);
-    return u.dot(unit.ldlt().solve(u));
-  };
   constexpr double kBent = kAlikeDeviations * kAlikeDeviations - 1.0;
   for (const ReachPoint& point : reach.points) {
     const Eigen::VectorXd step = Eigen::Map<const Eigen::VectorXd>(point.step.data(), n);
-    const double square = square_of(step);
+    const double square = mahalanobis_square(step, *covariance);
     if (point.bend) {
       if (square > kBent * point.rise) {
         *covariance += 1.0 / point.rise * step * step.transpose();

@@ -10,6 +10,7 @@
 #include "core/recognition/given/foot_parameter.h"
 #include "core/recognition/given/foot_weights.h"
 #include "core/recognition/given/given_starts.h"
+#include "core/recognition/given/thinned.h"
 
 namespace palpate {
 namespace {
@@ -19,17 +20,6 @@ constexpr std::size_t kMostSearchedPoints = 64;
 
 /// A good start settles within ten steps; a long valley may take many dozens.
 constexpr DescentEffort kOnFew{60, 1e-6, 0.0};
-
-/// At most `most` points, evenly spaced by index: enough to judge a start.
-std::vector<WeighedPoint<double>> some(std::span<const WeighedPoint<double>> all,
-                                       std::size_t most) {
-  const std::size_t stride = (all.size() + most - 1) / most;
-  std::vector<WeighedPoint<double>> points;
-  for (std::size_t i = 0; i < all.size(); i += stride) {
-    points.push_back(all[i]);
-  }
-  return points;
-}
 
 /// Moves every foot to the nearest place of the curve beside it. False if the shape is outside the
 /// class.
@@ -336,7 +326,7 @@ std::vector<GivenCandidate> search_minima(CurveClass curve_class, const LocalPoi
   std::vector<GivenCandidate> minima;
   double lowest = std::numeric_limits<double>::infinity();
   for (const int side : sides_of(noise.points)) {
-    const auto few = some(on_side(local.exact, side), kMostSearchedPoints);
+    const auto few = thinned<WeighedPoint<double>>(on_side(local.exact, side), kMostSearchedPoints);
     std::vector<GivenCandidate> distinct;
     std::size_t settled_left = kMostOnAll;
     std::size_t unsettled_left = kMostUnsettled;
