@@ -61,7 +61,7 @@ double out_of_reach(const Arcs& arcs, const Likelihood& likelihood, const Eviden
   if (!std::isfinite(chi2)) {
     return kInfinity;
   }
-  const double paths = log_evidence_of_free_form(likelihood, of_paths, smooth.chi2);
+  const double paths = log_evidence_of_unclassified(likelihood, of_paths, smooth.chi2);
   while (likelihood.log_evidence(smooth.chi2 + chi2, 0.0, 0.0) > paths - kNegligibleLogOdds) {
     chi2 *= 2.0;
   }

@@ -54,11 +54,16 @@ Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likeli
   return evidences;
 }
 
-double log_evidence_of_free_form(const Likelihood& likelihood, const Evidences& evidences,
-                                 double smooth_chi2) {
+double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidences& evidences,
+                                    double smooth_chi2) {
   const FreeForm& paths = evidences.free_form;
-  return likelihood.log_evidence(smooth_chi2 + likelihood.inflation() * paths.chi2, paths.log_occam,
-                                 paths.determined);
+  const double log_paths = likelihood.log_evidence(
+      smooth_chi2 + likelihood.inflation() * paths.chi2, paths.log_occam, paths.determined);
+  const double top = std::max(log_paths, evidences.log_near);
+  return std::isfinite(evidences.log_near)
+             ? top +
+                   std::log(0.5 * (std::exp(log_paths - top) + std::exp(evidences.log_near - top)))
+             : log_paths;
 }
 
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
@@ -157,7 +162,7 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
   }
   evidences.log_shared = before.log_shared;
   evidences.shared_or_other = before.shared_or_other;
-  double best = log_evidence_of_free_form(likelihood, evidences, smooth.chi2);
+  double best = log_evidence_of_unclassified(likelihood, evidences, smooth.chi2);
   // The best fits first: what the prior leaves is at most all, so that the rest can be told by
   // chi-square alone.
   std::vector<CurveClass> order(kCurveClasses.begin(), kCurveClasses.end());
@@ -194,7 +199,7 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
       }
     }
     add_prior_modes(fits, reduced, likelihood,
-                    log_evidence_of_free_form(likelihood, evidences, smooth.chi2), &evidences,
+                    log_evidence_of_unclassified(likelihood, evidences, smooth.chi2), &evidences,
                     work);
     add_limits(fits, reduced, likelihood, best, same_noise ? std::move(before) : Evidences{},
                &evidences, work);
@@ -210,7 +215,7 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   const double matters_within = margin + std::log(100.0);
   std::array<double, 9> log_of;
   log_of.fill(kNone);
-  log_of[0] = log_evidence_of_free_form(likelihood, evidences, smooth_chi2);
+  log_of[0] = log_evidence_of_unclassified(likelihood, evidences, smooth_chi2);
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     if (fits[i]) {
@@ -259,7 +264,7 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
                                     const Likelihood& likelihood, const Evidences& evidences) {
   std::array<double, 9> log_of;
   log_of.fill(kNone);
-  log_of[0] = log_evidence_of_free_form(likelihood, evidences, smooth_chi2);
+  log_of[0] = log_evidence_of_unclassified(likelihood, evidences, smooth_chi2);
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     const auto& evidence = evidences.classes[i];
@@ -316,7 +321,7 @@ double margin_of_unclassified(const ClassFits& fits, double smooth_chi2,
                                                     evidence->determined));
     }
   }
-  return log_evidence_of_free_form(likelihood, evidences, smooth_chi2) - highest;
+  return log_evidence_of_unclassified(likelihood, evidences, smooth_chi2) - highest;
 }
 
 double rival_share(const ClassFits& fits, const Likelihood& likelihood,

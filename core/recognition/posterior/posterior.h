@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 
 #include "core/numerics/work_budget.h"
@@ -21,6 +22,9 @@ struct Evidences {
   /// Of the spline's optimum on the other side of c = 0, if that is a separate mode.
   std::optional<ClassEvidence> rival;
   FreeForm free_form;
+  /// log of the evidence of smooth parts near a class, for touches that lie apart
+  /// (weigh/near_parts.h).
+  double log_near = -std::numeric_limits<double>::infinity();
   /// What the evidences were computed with: the factor on noise variances, and each class placed on
   /// the reduced points, with its chi-square there.
   double inflation = 0.0;
@@ -38,9 +42,9 @@ struct Evidences {
 Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
                              WorkBudget& work);
 
-/// log of the evidence of free-form paths.
-double log_evidence_of_free_form(const Likelihood& likelihood, const Evidences& evidences,
-                                 double smooth_chi2);
+/// log of the evidence of "unclassified": free-form paths, or parts near a class.
+double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidences& evidences,
+                                    double smooth_chi2);
 
 /// log of the evidence of a class that was fitted with `chi2`; -infinity if it has none.
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,

@@ -96,7 +96,7 @@ Contenders with_shared_deviations(Contenders w, const EvidenceContext& context, 
     shared[i] = white[i] + gain[i];
   }
   const double paths =
-      log_evidence_of_free_form(context.likelihood, w.evidences, context.arcs.smooth.chi2);
+      log_evidence_of_unclassified(context.likelihood, w.evidences, context.arcs.smooth.chi2);
   w.evidences.shared_or_other =
       of_any_size && paths > log_sum(white) - margin && log_sum(shared) > paths;
   const double more = w.evidences.shared_or_other ? 0.0 : log_sum(shared) - log_sum(white);

@@ -11,6 +11,7 @@
 #include "core/recognition/posterior/out_of_reach.h"
 #include "core/recognition/weigh/conic_mode.h"
 #include "core/recognition/weigh/contenders.h"
+#include "core/recognition/weigh/near_parts.h"
 #include "core/recognition/weigh/shared_deviations.h"
 #include "core/recognition/weigh/sides.h"
 
@@ -218,6 +219,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
                                         margin_of(options));
   }
   contenders = decided(std::move(contenders), context, margin_of(options));
+  contenders = with_near_parts(std::move(contenders), context, margin_of(options));
   return assemble_weighing(std::move(arcs), std::move(sided), std::move(contenders), context, seen,
                            stated, std::move(best_placed));
 }

@@ -138,8 +138,11 @@ TEST(TouchedNormals, ErrorsHaveTheLawOfTheirCovariance) {
   double narrower = 0.0;
   for (int scene = 0; scene < kScenes; ++scene) {
     const std::vector<Touch> touches = touch(part, 9, rng);
-    const Recognition answer = recognise_as(CurveClass::Ellipse, touches);
-    const Recognition plain = recognise_as(CurveClass::Ellipse, without_normals(touches));
+    const Recognition with_normals = recognise_as(CurveClass::Ellipse, touches);
+    const Recognition without = recognise_as(CurveClass::Ellipse, without_normals(touches));
+    // (Once in a thousand scenes the residuals are so large that "unclassified" is more probable.)
+    const Hypothesis& answer = hypothesis_of(with_normals, CurveClass::Ellipse);
+    const Hypothesis& plain = hypothesis_of(without, CurveClass::Ellipse);
     ASSERT_EQ(answer.covariance.rows(), 5);
     ASSERT_EQ(plain.covariance.rows(), 5);
     const Eigen::Matrix2d covariance = answer.covariance.topLeftCorner<2, 2>();

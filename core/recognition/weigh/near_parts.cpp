@@ -1,0 +1,117 @@
+#include "core/recognition/weigh/near_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/numerics/negligible.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kNothing = -std::numeric_limits<double>::infinity();
+
+/// Standard deviations of the touches about the curve, in half extents, alike probable: a factor of
+/// two apart, from where a class can hardly be seen to below kLargestNoise.
+constexpr std::array kScatter = {0.25, 0.125, 0.0625, 0.03125, 0.015625, 0.0078125};
+
+/// Where the noise is not stated, the posterior of a class has a density of 2 for each unit of log
+/// sigma (Likelihood::log_evidence). So much of it lies between a noise that no probe reaches, a
+/// millionth of the half extent, and kLargestNoise.
+const double kLogOfNoises = std::log(2.0 * std::log(kLargestNoise / 1e-6));
+
+bool all_lie_apart(const FitData& data) {
+  return std::all_of(data.patches.begin(), data.patches.end(),
+                     [](const PatchSpan& patch) { return patch.size() == 1; });
+}
+
+double log_add(double a, double b) {
+  const double top = std::max(a, b);
+  return std::isfinite(top) ? top + std::log(std::exp(a - top) + std::exp(b - top)) : top;
+}
+
+/// The same points with `factor` times their noise. What normals are off by where a place is not
+/// known follows (fit/measured_normal.h).
+FitData with_noise(FitData data, double factor) {
+  for (FitPoint& point : data.points) {
+    point.inverse_sigma /= factor;
+  }
+  return data;
+}
+
+/// chi-square of a curve and the logarithm of its residuals' deviations, summed.
+struct Left {
+  double chi2 = 0.0;
+  double log_deviations = 0.0;
+};
+
+Left left_by(const CanonicalFit& placed, const FitData& data) {
+  Left left;
+  for (std::size_t i = 0; i < placed.points.size(); ++i) {
+    const FittedPoint& point = placed.points[i];
+    left.chi2 += point.residual * point.residual + point.normal_residual * point.normal_residual;
+    left.log_deviations -= std::log(data.points[i].inverse_sigma);
+    if (point.normal_weight > 0.0) {
+      left.log_deviations -= std::log(point.normal_weight);
+    }
+  }
+  return left;
+}
+
+/// log of the evidence of the parts near the curve of one class. `least`: less is not computed.
+double log_evidence_near(const ClassFit& coarse, double least, const EvidenceContext& context) {
+  const FitData& reduced = context.reduced;
+  const auto at_curve = to_canonical(coarse, reduced);
+  if (!at_curve) {
+    return kNothing;
+  }
+  const Left at_noise = left_by(*at_curve, reduced);
+  const double n = static_cast<double>(reduced.points.size());
+  const double parts = static_cast<double>(kScatter.size() * kCurveClasses.size());
+  const double of_each = (context.likelihood.sigma_known ? 0.0 : kLogOfNoises) - std::log(parts);
+  const double inflation = context.likelihood.inflation();
+  double sum = kNothing;
+  for (const double scatter : kScatter) {
+    const double factor = std::hypot(1.0, scatter / (context.arcs.sigma * std::sqrt(inflation)));
+    const double most =
+        of_each - n * std::log(factor) - 0.5 * at_noise.chi2 / (inflation * factor * factor);
+    if (!(most > std::max(least, sum - kNegligibleLogOdds)) || !context.work.allows()) {
+      continue;
+    }
+    const FitData scattered = with_noise(reduced, factor);
+    const auto placed = to_canonical(coarse, scattered);
+    const auto evidence =
+        placed ? evidence_of(*placed, scattered, inflation, context.work) : std::nullopt;
+    if (evidence) {
+      const Left left = left_by(*placed, scattered);
+      sum = log_add(sum, of_each - (left.log_deviations - at_noise.log_deviations) -
+                             0.5 * left.chi2 / inflation + evidence->log_occam);
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+Contenders with_near_parts(Contenders w, const EvidenceContext& context, double margin) {
+  w.evidences.log_near = kNothing;
+  const CurveClass best = best_class(w.fits, context.likelihood, w.evidences);
+  const auto& best_fit = w.fits[static_cast<std::size_t>(best)];
+  if (!best_fit || !all_lie_apart(context.arcs.data)) {
+    return w;
+  }
+  // Less than a hundredth of what keeps the best from being RECOGNIZED is not asked for.
+  const double matters = log_evidence(context.likelihood, w.evidences, best, best_fit->chi2) -
+                         margin - std::log(100.0);
+  for (const auto& coarse : w.coarse) {
+    if (coarse && !coarse->at_limit && std::isfinite(coarse->chi2)) {
+      w.evidences.log_near =
+          log_add(w.evidences.log_near, log_evidence_near(*coarse, matters, context));
+    }
+  }
+  return w;
+}
+
+}  // namespace palpate
