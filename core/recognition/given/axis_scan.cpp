@@ -12,7 +12,7 @@ namespace palpate {
 namespace {
 
 /// Enough points to see the valleys; the descent from a start takes all.
-constexpr std::size_t kMostPoints = 32;
+constexpr std::size_t kMostScanned = 32;
 
 constexpr std::size_t kMostColumns = 4;
 
@@ -319,8 +319,8 @@ std::vector<GivenStart> starts_by_axis(CurveClass curve_class, std::span<const V
   if (columns.count == 0) {
     return starts;
   }
-  const std::vector<Vec2> centres = thinned(points, kMostPoints);
-  const std::vector<double> taken_off = thinned(radii, kMostPoints);
+  const std::vector<Vec2> centres = thinned(points, kMostScanned);
+  const std::vector<double> taken_off = thinned(radii, kMostScanned);
   const auto add = [&](const Scan& scan, std::span<const Graph> graphs, std::span<const Vec2> out) {
     for (std::size_t i = 0; i < std::min(graphs.size(), kMostStarts); ++i) {
       GivenStart start = start_of(curve_class, graphs[i]);

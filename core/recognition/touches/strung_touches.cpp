@@ -25,6 +25,11 @@ namespace {
 constexpr std::size_t kRun = 12;
 constexpr double kTurn = 0.6;  // rad
 
+/// A step of the path that turns by no more tells the direction of a touch on it: to half of that,
+/// even if all of it is a corner at the touch. The rounds that remove tips (weigh/sides.cpp) start
+/// from there; the curve of the centres, which turns about an edge with them, may know none. [rad]
+constexpr double kToldTurn = 1.2;
+
 /// Touches used to fit a curve for the order: four for each unknown of a spline. Twice as many if
 /// the noise is not stated: else straight edges may be taken for needles (bench_touches --unstated
 /// --curve line).
@@ -285,8 +290,7 @@ std::optional<Strung> strung_by_way(std::span<const StoredPatch> patches, const 
     }
     std::vector<Place> places;
     for (const OnWay& on_way : *way) {
-      // If a step turns by more than a run may, its direction is not that of the touch.
-      const bool straight = on_way.most_angle - on_way.least_angle <= kTurn;
+      const bool straight = on_way.most_angle - on_way.least_angle <= kToldTurn;
       places.push_back(
           {of_tip[on_way.place], on_way.along, on_way.least_angle, on_way.most_angle,
            straight ? Vec2(std::cos(on_way.angle), std::sin(on_way.angle)) : Vec2(0.0, 0.0),

@@ -7,92 +7,14 @@
 #include <utility>
 
 #include "core/numerics/negligible.h"
-#include "core/recognition/coherent/coherent_evidence.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/samples/tip_sides.h"
-#include "core/recognition/weigh/contenders.h"
+#include "core/recognition/weigh/curve_of_centres.h"
 #include "core/recognition/weigh/tip_directions.h"
 
 namespace palpate {
 namespace {
-
-/// The classes followed from where they were with the tips on these sides, or sought.
-ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
-                           const FitData& reduced, const SideContext& by,
-                           double out_of_reach = std::numeric_limits<double>::infinity()) {
-  return fit_classes(reduced, by.work, start_for(starts, sides), by.classes, out_of_reach);
-}
-
-/// The class that a way stands or falls with, by the evidence of all, and its optimum on the
-/// reduced points. Returns whether it is another than before.
-bool settle_candidate(const SideContext& by, SideChoice* choice) {
-  const SmoothModel& smooth = by.arcs.smooth;
-  const ClassFits told = with_inferred_chi2(choice->fits, smooth);
-  choice->evidences = evidences_of(told, choice->fits, smooth, choice->reduced, by.likelihood,
-                                   std::move(choice->evidences), by.work);
-  const CurveClass before = choice->candidate;
-  choice->candidate = best_class(told, by.likelihood, choice->evidences);
-  if (choice->candidate == before) {
-    return false;
-  }
-  choice->settled.reset();
-  choice->refined.reset();
-  if (const auto& fit = choice->fits[static_cast<std::size_t>(choice->candidate)]) {
-    const bool may_win = !tells_noise(by.arcs, by.likelihood) ||
-                         fits_well(fit->chi2, residual_count(choice->reduced));
-    choice->settled =
-        settled(*fit, choice->reduced, may_win ? RivalOf::Best : RivalOf::Other, by.work);
-  }
-  return true;
-}
-
-/// The candidate as all points see it: refined on them, or as it is where they tell what the
-/// reduced points do.
-std::optional<ClassFit> seen_by_all(const ClassFit& settled, const FitData& reduced,
-                                    const SideContext& by) {
-  constexpr double kSame = 1.0;  // of chi-square: odds are right to a factor of 1.6
-  const SmoothModel& smooth = by.arcs.smooth;
-  if (is_what_it_says(settled, reduced)) {
-    ClassFit fit = settled;
-    fit.chi2 = chi2_on_all(settled, smooth, by.arcs.data, by.work);
-    if (std::abs(fit.chi2 - (settled.chi2 + smooth.chi2)) <= kSame) {
-      return fit;
-    }
-  }
-  return by.work.allows() ? refine_on_all(settled, smooth, by.arcs.data, kOnAllEffort, by.work)
-                          : std::nullopt;
-}
-
-/// The same, and on all points. What was refined before is not once more.
-void take_candidate(const SideContext& by, SideChoice* choice) {
-  if (settle_candidate(by, choice) && choice->settled) {
-    choice->refined = seen_by_all(*choice->settled, choice->reduced, by);
-  }
-}
-
-SideChoice choice_of(ClassFits fits, FitData reduced, const SideContext& by) {
-  SideChoice choice;
-  choice.fits = std::move(fits);
-  choice.reduced = std::move(reduced);
-  choice.evidences = by.of_paths;
-  take_candidate(by, &choice);
-  return choice;
-}
-
-/// Of chi-square: what changes odds less than tenfold, where it is what noise leaves. What leaves
-/// more has its odds by a noise that is as large as its residuals.
-double agreement(double chi2, const SmoothModel& smooth) {
-  constexpr double kTenfold = 4.6;  // 2 ln 10
-  return kTenfold * std::max(1.0, chi2 / smooth.points);
-}
-
-/// Whether the reduced points, tips taken off, tell of the candidate what all points do: to within
-/// what changes odds less than tenfold.
-bool agrees(const SideChoice& choice, const SmoothModel& smooth) {
-  return choice.refined && std::abs(choice.settled->chi2 + smooth.chi2 - choice.refined->chi2) <=
-                               agreement(choice.refined->chi2, smooth);
-}
 
 /// Whether a way leaves no more than `chi2` on all points, by its candidate or the class that was
 /// the candidate before: a class with fewer parameters always leaves more.
@@ -125,74 +47,6 @@ bool directions_may_explain(const SideChoice& choice, const FitData& touches,
     most += off * off;
   }
   return choice.settled->chi2 <= most;
-}
-
-/// log of the evidence of a way's candidate, however free-form paths fare beside it: the ways are
-/// compared with one another. A part whose walls are two curves that differ by little more than
-/// coherent errors may is told no better than these are known.
-double log_evidence_of(const SideChoice& choice, const SideContext& by) {
-  const auto& [arcs, likelihood, work, of_paths, classes, out_of_reach, touched_from] = by;
-  constexpr double kNone = -std::numeric_limits<double>::infinity();
-  const auto placed = choice.refined ? to_canonical(*choice.settled, choice.reduced) : std::nullopt;
-  if (!placed) {
-    return kNone;
-  }
-  auto evidence = choice.evidences.classes[static_cast<std::size_t>(choice.candidate)];
-  if (!evidence) {
-    evidence = evidence_of(*placed, choice.reduced, likelihood.inflation(), work);
-  }
-  return evidence ? log_coherent_evidence(likelihood, *evidence, *placed, choice.reduced,
-                                          arcs.sigma, static_cast<double>(arcs.data.points.size()),
-                                          choice.refined->chi2, arcs.smooth.chi2, work)
-                  : kNone;
-}
-
-/// The curve that fits the tips' centres best, sought, or followed, when it is asked for.
-class CurveOfCentres {
- public:
-  CurveOfCentres(const SideContext& by, std::span<const SidedStart> starts)
-      : by_(by), starts_(starts), sides_(by.arcs.smooth.reduced.patches.size(), 0) {}
-
-  /// Its points are the smooth model's reduced ones; nullopt where no class fits.
-  const std::optional<CanonicalFit>& get() {
-    if (!sought_) {
-      sought_ = true;
-      const FitData& centres = by_.arcs.smooth.reduced;
-      SideChoice choice;
-      choice.fits = fit_classes_from(starts_, sides_, centres, by_);
-      choice.reduced = centres;
-      choice.evidences = by_.of_paths;
-      settle_candidate(by_, &choice);
-      curve_ = choice.settled ? to_canonical(*choice.settled, centres) : std::nullopt;
-      start_ = warm_start_from(choice.fits, centres);
-    }
-    return curve_;
-  }
-
-  /// Where the classes are to be followed from along its directions, once get() has been asked:
-  /// where none fits the centres themselves, a search has shown that. nullptr where one does.
-  const WarmStart* start() const { return start_.polynomials.every_seed ? &start_ : nullptr; }
-
-  /// Where it is to be followed from in the next weighing: tips on neither side; nullopt where
-  /// nobody asked for it.
-  std::optional<SidedStart> next_start() const {
-    return sought_ ? std::optional(SidedStart{sides_, start_}) : std::nullopt;
-  }
-
- private:
-  const SideContext& by_;
-  std::span<const SidedStart> starts_;
-  std::vector<int> sides_;
-  bool sought_ = false;
-  std::optional<CanonicalFit> curve_;
-  WarmStart start_;
-};
-
-/// What the candidate leaves, on the reduced points with their directions or on all without.
-double least_left(const SideChoice& choice, const SmoothModel& smooth) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  const double on_reduced = choice.settled ? choice.settled->chi2 + smooth.chi2 : kNone;
-  return choice.refined ? std::min(on_reduced, choice.refined->chi2) : on_reduced;
 }
 
 /// Directions that turn by less are settled: the surface is off by a millionth of the radius. [rad]
@@ -244,8 +98,8 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
     ClassFits again = fit_classes(nearer, by.work, &start, by.classes, by.out_of_reach);
     const double before = least_left(choice, smooth);
     SideChoice next = choice_of(std::move(again), std::move(nearer), by);
-    if (choice.refined && agrees(choice, smooth) && !agrees(next, smooth)) {
-      break;  // worse directions than those that all points agree with
+    if (!agrees(next, smooth) && disagreement(next, smooth) > disagreement(choice, smooth)) {
+      break;  // worse directions than before, by what all points say
     }
     if (choice.refined &&
         !is_as_near(next, choice.candidate,

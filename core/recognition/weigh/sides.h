@@ -7,30 +7,11 @@
 #include <vector>
 
 #include "core/numerics/negligible.h"
-#include "core/numerics/work_budget.h"
 #include "core/recognition/fit/warm_start.h"
-#include "core/recognition/posterior/posterior.h"
 #include "core/recognition/samples/sample_memory.h"
-#include "core/recognition/smooth/arcs.h"
+#include "core/recognition/weigh/side_choice.h"
 
 namespace palpate {
-
-/// The classes fitted for one choice of the tips' sides.
-struct SideChoice {
-  /// For each patch, the side of travel on which the tip centres lie (tip_sides.h).
-  std::vector<int> sides;
-  ClassFits fits;   ///< of every class, to `reduced`
-  FitData reduced;  ///< the arcs' reduced points, moved to the surface
-  CurveClass candidate = CurveClass::Unclassified;
-  std::optional<ClassFit> settled;  ///< the candidate at its optimum on the reduced points
-  /// The candidate on all points, unless they agree with the reduced points.
-  std::optional<ClassFit> refined;
-  Evidences evidences;
-  /// log of the evidence of the candidate, however free-form paths fare beside it; -infinity where
-  /// it is on no points.
-  double log_evidence = -std::numeric_limits<double>::infinity();
-  double log_of_normals = 0.0;  ///< log_likelihood_of_normals of the sides
-};
 
 struct SidedFits {
   /// If sides are not stated, the first is where tips touch most parts, outside the bends, or
@@ -46,18 +27,6 @@ struct SidedFits {
   std::optional<SidedStart> centres;
 
   const SideChoice& choice() const { return choices[taken]; }
-};
-
-/// What the choices of sides are compared by.
-struct SideContext {
-  const Arcs& arcs;
-  const Likelihood& likelihood;
-  WorkBudget& work;
-  Evidences of_paths;              ///< with that of free-form paths, under this law
-  unsigned classes = kAllClasses;  ///< by bit 1 << CurveClass
-  /// As in fit_classes(), for all sides.
-  double out_of_reach = std::numeric_limits<double>::infinity();
-  TouchedFrom touched_from = TouchedFrom::Unknown;
 };
 
 /// Fits the classes to the reduced points and chooses the sides of the tips. If sides are not

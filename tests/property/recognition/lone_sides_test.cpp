@@ -163,6 +163,52 @@ void add_touches(const Outline& outline, double sigma, std::mt19937_64& rng,
   }
 }
 
+// A tip that rolls over an edge: the walls beside the vertex of this spline are hollow, its radius
+// c^2 / 2 is a tenth of the tip's. The path of the centres turns by 0.9 rad there, within the
+// length of some touches.
+TEST(LoneSides, OverAnEdge) {
+  const Eigen::Vector3d values(31.2, -0.27, 0.022);
+  const auto curve = make_curve(CurveClass::CubicSpline, values);
+  constexpr double kTipRadius = 0.0025;
+  constexpr double kSigma = 5e-6;
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> noise(0.0, kSigma);
+  RecognizerOptions options;
+  options.touched_from = TouchedFrom::Outside;
+  const int scenes = test::stress_count(20);
+  int found = 0;
+  for (int i = 0; i < scenes; ++i) {
+    Recognizer recognizer(options);
+    for (int k = 0; k < 1000; ++k) {
+      // Evenly across the vertex: far from it y is a t^3.
+      const double t = 0.105 * std::cbrt(test::uniform(rng, -1.0, 1.0));
+      const Vec2 normal = left_of(derivatives(*curve, t).first.normalized());
+      const double x = noise(rng);
+      const Vec2 centre = position(*curve, t) + kTipRadius * normal + Vec2(x, noise(rng));
+      const ContactSample touch{centre, kSigma, 0};
+      recognizer.add(
+          {.probe = 0, .patch = static_cast<std::uint32_t>(k), .tip_radius_m = kTipRadius},
+          {&touch, 1});
+    }
+    const Recognition answer = recognizer.recognize();
+    if (!is_placed(answer)) {
+      continue;
+    }
+    ++found;
+    EXPECT_EQ(answer.shape.curve_class, CurveClass::CubicSpline) << i;
+    for (Eigen::Index p = 0; p < 3; ++p) {
+      EXPECT_LE(std::abs(std::abs(answer.shape.values[p]) - std::abs(values[p])),
+                kNegligibleDeviations * std::sqrt(answer.covariance(p, p)))
+          << i << ": " << p;
+    }
+  }
+  std::cout << found << " of " << scenes << " RECOGNIZED\n";
+  if (test::counts_tell()) {
+    // What is asked of all curves whose class the samples determine.
+    EXPECT_GE(found, 0.92 * scenes);
+  }
+}
+
 /// The stated probability that it is a part of no class.
 double unclassified(const Recognition& answer) {
   const Hypothesis* none = test::hypothesis_of(answer, CurveClass::Unclassified);

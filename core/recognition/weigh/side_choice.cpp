@@ -1,0 +1,114 @@
+#include "core/recognition/weigh/side_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/recognition/coherent/coherent_evidence.h"
+#include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/posterior/likelihood_of.h"
+#include "core/recognition/weigh/contenders.h"
+
+namespace palpate {
+namespace {
+
+/// The candidate as all points see it: refined on them, or as it is where they tell what the
+/// reduced points do.
+std::optional<ClassFit> seen_by_all(const ClassFit& settled, const FitData& reduced,
+                                    const SideContext& by) {
+  constexpr double kSame = 1.0;  // of chi-square: odds are right to a factor of 1.6
+  const SmoothModel& smooth = by.arcs.smooth;
+  if (is_what_it_says(settled, reduced)) {
+    ClassFit fit = settled;
+    fit.chi2 = chi2_on_all(settled, smooth, by.arcs.data, by.work);
+    if (std::abs(fit.chi2 - (settled.chi2 + smooth.chi2)) <= kSame) {
+      return fit;
+    }
+  }
+  return by.work.allows() ? refine_on_all(settled, smooth, by.arcs.data, kOnAllEffort, by.work)
+                          : std::nullopt;
+}
+
+}  // namespace
+
+ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
+                           const FitData& reduced, const SideContext& by, double out_of_reach) {
+  return fit_classes(reduced, by.work, start_for(starts, sides), by.classes, out_of_reach);
+}
+
+bool settle_candidate(const SideContext& by, SideChoice* choice) {
+  const SmoothModel& smooth = by.arcs.smooth;
+  const ClassFits told = with_inferred_chi2(choice->fits, smooth);
+  choice->evidences = evidences_of(told, choice->fits, smooth, choice->reduced, by.likelihood,
+                                   std::move(choice->evidences), by.work);
+  const CurveClass before = choice->candidate;
+  choice->candidate = best_class(told, by.likelihood, choice->evidences);
+  if (choice->candidate == before) {
+    return false;
+  }
+  choice->settled.reset();
+  choice->refined.reset();
+  if (const auto& fit = choice->fits[static_cast<std::size_t>(choice->candidate)]) {
+    const bool may_win = !tells_noise(by.arcs, by.likelihood) ||
+                         fits_well(fit->chi2, residual_count(choice->reduced));
+    choice->settled =
+        settled(*fit, choice->reduced, may_win ? RivalOf::Best : RivalOf::Other, by.work);
+  }
+  return true;
+}
+
+void take_candidate(const SideContext& by, SideChoice* choice) {
+  if (settle_candidate(by, choice) && choice->settled) {
+    choice->refined = seen_by_all(*choice->settled, choice->reduced, by);
+  }
+}
+
+SideChoice choice_of(ClassFits fits, FitData reduced, const SideContext& by) {
+  SideChoice choice;
+  choice.fits = std::move(fits);
+  choice.reduced = std::move(reduced);
+  choice.evidences = by.of_paths;
+  take_candidate(by, &choice);
+  return choice;
+}
+
+double agreement(double chi2, const SmoothModel& smooth) {
+  constexpr double kTenfold = 4.6;  // 2 ln 10
+  return kTenfold * std::max(1.0, chi2 / smooth.points);
+}
+
+double disagreement(const SideChoice& choice, const SmoothModel& smooth) {
+  return choice.refined ? std::abs(choice.settled->chi2 + smooth.chi2 - choice.refined->chi2)
+                        : std::numeric_limits<double>::infinity();
+}
+
+bool agrees(const SideChoice& choice, const SmoothModel& smooth) {
+  return choice.refined && disagreement(choice, smooth) <= agreement(choice.refined->chi2, smooth);
+}
+
+double least_left(const SideChoice& choice, const SmoothModel& smooth) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const double on_reduced = choice.settled ? choice.settled->chi2 + smooth.chi2 : kNone;
+  return choice.refined ? std::min(on_reduced, choice.refined->chi2) : on_reduced;
+}
+
+double log_evidence_of(const SideChoice& choice, const SideContext& by) {
+  const auto& [arcs, likelihood, work, of_paths, classes, out_of_reach, touched_from] = by;
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
+  const auto placed = choice.refined ? to_canonical(*choice.settled, choice.reduced) : std::nullopt;
+  if (!placed) {
+    return kNone;
+  }
+  auto evidence = choice.evidences.classes[static_cast<std::size_t>(choice.candidate)];
+  if (!evidence) {
+    evidence = evidence_of(*placed, choice.reduced, likelihood.inflation(), work);
+  }
+  return evidence ? log_coherent_evidence(likelihood, *evidence, *placed, choice.reduced,
+                                          arcs.sigma, static_cast<double>(arcs.data.points.size()),
+                                          choice.refined->chi2, arcs.smooth.chi2, work)
+                  : kNone;
+}
+
+}  // namespace palpate

@@ -1,0 +1,79 @@
+// The classes as they are with the tips on given sides, and the one that this stands or falls with.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/numerics/work_budget.h"
+#include "core/recognition/fit/warm_start.h"
+#include "core/recognition/posterior/posterior.h"
+#include "core/recognition/smooth/arcs.h"
+
+namespace palpate {
+
+/// The classes fitted for one choice of the tips' sides.
+struct SideChoice {
+  /// For each patch, the side of travel on which the tip centres lie (tip_sides.h).
+  std::vector<int> sides;
+  ClassFits fits;   ///< of every class, to `reduced`
+  FitData reduced;  ///< the arcs' reduced points, moved to the surface
+  CurveClass candidate = CurveClass::Unclassified;
+  std::optional<ClassFit> settled;  ///< the candidate at its optimum on the reduced points
+  /// The candidate on all points, unless they agree with the reduced points.
+  std::optional<ClassFit> refined;
+  Evidences evidences;
+  /// log of the evidence of the candidate, however free-form paths fare beside it; -infinity where
+  /// it is on no points.
+  double log_evidence = -std::numeric_limits<double>::infinity();
+  double log_of_normals = 0.0;  ///< log_likelihood_of_normals of the sides
+};
+
+/// What the choices of sides are compared by.
+struct SideContext {
+  const Arcs& arcs;
+  const Likelihood& likelihood;
+  WorkBudget& work;
+  Evidences of_paths;              ///< with that of free-form paths, under this law
+  unsigned classes = kAllClasses;  ///< by bit 1 << CurveClass
+  /// As in fit_classes(), for all sides.
+  double out_of_reach = std::numeric_limits<double>::infinity();
+  TouchedFrom touched_from = TouchedFrom::Unknown;
+};
+
+/// The classes followed from where they were with the tips on these sides, or sought.
+ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
+                           const FitData& reduced, const SideContext& by,
+                           double out_of_reach = std::numeric_limits<double>::infinity());
+
+/// The class that a choice stands or falls with, by the evidence of all, and its optimum on the
+/// reduced points. Returns whether it is another than before.
+bool settle_candidate(const SideContext& by, SideChoice* choice);
+
+/// The same, and on all points. What was refined before is not once more.
+void take_candidate(const SideContext& by, SideChoice* choice);
+
+/// The choice with these fits to these points, its candidate taken.
+SideChoice choice_of(ClassFits fits, FitData reduced, const SideContext& by);
+
+/// Of chi-square: what changes odds less than tenfold, where it is what noise leaves. What leaves
+/// more has its odds by a noise that is as large as its residuals.
+double agreement(double chi2, const SmoothModel& smooth);
+
+/// By how much the reduced points, tips taken off, tell another chi-square of the candidate than
+/// all points do; infinite if it is no curve on all points.
+double disagreement(const SideChoice& choice, const SmoothModel& smooth);
+
+/// Whether the reduced points tell of the candidate what all points do.
+bool agrees(const SideChoice& choice, const SmoothModel& smooth);
+
+/// What the candidate leaves, on the reduced points with their directions or on all without.
+double least_left(const SideChoice& choice, const SmoothModel& smooth);
+
+/// log of the evidence of the candidate, however free-form paths fare beside it: choices are
+/// compared with one another. A part whose walls are two curves that differ by little more than
+/// coherent errors may is told no better than these are known.
+double log_evidence_of(const SideChoice& choice, const SideContext& by);
+
+}  // namespace palpate
