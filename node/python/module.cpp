@@ -342,6 +342,11 @@ py::dict fit_given(const std::string& name, const Array& points, const Array& si
   result["peak_to_valley"] = fit.peak_to_valley_m;
   result["sigma"] = fit.sigma_m;
   result["dof"] = fit.dof;
+  result["bounded"] = fit.bounded;
+  result["rival"] = py::none();
+  if (fit.rival) {
+    result["rival"] = py::make_tuple(fit.rival->shape.values, pose_of(fit.rival->world_T_curve));
+  }
   return result;
 }
 

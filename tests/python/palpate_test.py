@@ -345,6 +345,21 @@ class Fit(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "is no curve class: line, circle"):
                 palpate.models.model(name)
 
+    def test_another_curve_of_a_known_class_is_told(self):
+        # Through four points go two parabolas.
+        points = np.array([[-1.0, 0.2], [-0.4, 0.0], [0.3, 0.05], [1.0, 0.7]])
+        parabola = palpate.models.model("parabola")()
+        self.assertTrue(parabola.estimate(points, 1e-6), parabola.status)
+        self.assertEqual(len(parabola.rival), 4)
+        self.assertGreater(abs(parabola.rival[0] / parabola.params[0] - 1), 0.1)
+        other = palpate.models.model("parabola")()
+        other.params = parabola.rival
+        np.testing.assert_allclose(other.residuals(points), 0, atol=1e-9)
+        circle = palpate.models.model("circle")()
+        self.assertTrue(circle.estimate(points[:3], 1e-6), circle.status)
+        self.assertIsNone(circle.rival)
+        self.assertTrue(circle.bounded)
+
     def test_normals_narrow_what_few_touches_tell_of_a_known_class(self):
         points, normals = touches_with_normals(7, 0.002, seed=4)
         truth = np.array([A, B, *POSE])

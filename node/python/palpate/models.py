@@ -25,6 +25,9 @@ class CurveModel:
     rms: root mean square distance of the points. peak_to_valley: largest less smallest signed distance.
     sigma: standard deviation of a point, stated or estimated.
     The last three are NaN if there is no curve.
+    rival: params of another curve of the class, beyond the covariance, that may be the true one as well (through four points go two
+    parabolas); None if the points exclude every other one.
+    bounded: False if the shape runs to the end of its class, or out of sight, within three standard deviations.
     min_samples: fewest points that determine a curve of the class."""
     curve_class: ClassVar[str]
     min_samples: ClassVar[int]
@@ -35,6 +38,8 @@ class CurveModel:
         """Outcome of estimate(): "fitted", or why it has not succeeded."""
         self.covariance = np.empty((0, 0))
         self.rms = self.peak_to_valley = self.sigma = float("nan")
+        self.rival: np.ndarray | None = None
+        self.bounded = True
 
     def estimate(self, data, sigma=None, normals=None, normal_sigma=None, covariances=None) -> bool:
         """Fits the curve to points (n, 2). Returns True if they determine one curve of the class.
@@ -48,6 +53,8 @@ class CurveModel:
         success = self.status == "fitted"
         self.params = np.array([*fit["params"][:letters], *fit["pose"]]) if success else None
         self.covariance = fit["covariance"] if success else np.empty((0, 0))
+        self.bounded = fit["bounded"]
+        self.rival = np.array([*fit["rival"][0][:letters], *fit["rival"][1]]) if success and fit["rival"] else None
         there_is_one = success or self.status == "not determined"
         self.rms, self.peak_to_valley, self.sigma = (
             fit[name] if there_is_one else float("nan") for name in ("rms", "peak_to_valley", "sigma"))
