@@ -48,6 +48,11 @@ bool have_extent(const FitData& data) {
 /// Half of all work is kept from the search for spikes for the classes.
 constexpr double kShareOfClasses = 0.5;
 
+/// Of all work, kept for the covariance of what is told: an answer that was cut is AMBIGUOUS, but
+/// its uncertainty holds. A deviation of part or probe has 45 sizes, each a pass over the points
+/// that stand for the samples: half a clean ellipse or less, of 7.5 (work_limit.cpp).
+constexpr double kShareOfMoments = 0.5 / 7.5;
+
 /// What speaks against an answer that nothing has spoken against yet.
 void doubt(Recognition* answer, Doubt doubt) {
   if (answer->status == RecognitionStatus::Recognized) {
@@ -172,6 +177,7 @@ class Recognizer::Impl {
   Recognition by_likelihood(const FitData& data, bool sigma_known,
                             std::span<const StoredPatch> patches,
                             std::span<const SidedStart> sought, WorkBudget& work) {
+    std::optional<WorkBudget::Reserve> for_moments(std::in_place, work, kShareOfMoments);
     Weighed weighed = weigh_once_more(data, sigma_known, patches, sought, work);
     const std::size_t stored = clean_.moved_count();
     if (stored > data.points.size() && !work.was_cut()) {
@@ -181,8 +187,9 @@ class Recognizer::Impl {
       last_.reset();  // what was found by then may be far from what there is
     }
     const Weighing& w = weighed.w;
+    for_moments.reset();
     BestMoments moments = moments_of_best(w, work);
-    if (work.was_cut()) {
+    if (!work.allows()) {
       moments = {};  // a part of a valley is no moment: what the noise leaves is told
     }
     Recognition answer = answer_by_likelihood(

@@ -112,16 +112,33 @@ struct SplinePair {
   std::optional<PolynomialFit> rival;
 };
 
+/// Takes a fit among the two best. What it replaces is the rival.
+void take(PolynomialFit fit, SplinePair* pair) {
+  if (!std::isfinite(fit.chi2) || (pair->best && is_same_curve(fit, *pair->best))) {
+    return;
+  }
+  if (!pair->best || fit.chi2 < pair->best->chi2) {
+    std::swap(pair->best, pair->rival);
+    pair->best = std::move(fit);
+  } else if (!pair->rival || fit.chi2 < pair->rival->chi2) {
+    pair->rival = std::move(fit);
+  }
+}
+
+/// Through touches that are fewer than two for each unknown go splines of several valleys, none of
+/// which need be the deepest where the walks end.
+bool several_may_fit(const FitData& reduced) {
+  return reduced.points.size() < std::size_t{2} * degrees_of_freedom(CurveClass::CubicSpline) &&
+         reduced.patches.size() == reduced.points.size();
+}
+
 SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced,
                       double out_of_reach, WorkBudget& work) {
   SplinePair pair;
-  if (walked.empty()) {
-    return pair;
-  }
-  pair.best = refined(walked.front(), reduced, out_of_reach, work);
-  pair.rival = refined_twin(walked.front(), reduced, out_of_reach, work);
-  if (pair.rival->chi2 < pair.best->chi2) {
-    std::swap(pair.best, pair.rival);
+  const std::size_t most = several_may_fit(reduced) ? walked.size() : 1;
+  for (std::size_t i = 0; i < std::min(most, walked.size()) && (i == 0 || work.allows()); ++i) {
+    take(refined(walked[i], reduced, out_of_reach, work), &pair);
+    take(refined_twin(walked[i], reduced, out_of_reach, work), &pair);
   }
   return pair;
 }
