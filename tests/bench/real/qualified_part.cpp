@@ -173,6 +173,7 @@ std::string name_of(Told told) {
 RecognizerOptions options_of(Told told) {
   RecognizerOptions options;
   options.unqualified_probe = told == Told::Unqualified;
+  options.touched_from = TouchedFrom::Outside;  // a pusher pushes
   return options;
 }
 
@@ -255,7 +256,7 @@ void print_simulated(const Recording& whole, const Vec2& centre, const Qualifica
       for (int i = 0; i < kStarts; ++i) {
         const ProbedPatch patch{whole.context, samples_of(arc_of(contacts, centre, degrees, i)),
                                 &probe};
-        add("", recognise_probed({&patch, 1}, {}).recognition, part, &row);
+        add("", recognise_probed({&patch, 1}, options_of(Told::File)).recognition, part, &row);
       }
       recognised.push_back(row.recognised);
       missed.push_back(row.recognised - row.recognised_held);
@@ -313,7 +314,7 @@ void print_qualified_part(const Ring& ring, const EllipsePart& part, int simulat
   const auto answer_to = [&](const std::vector<Vec2>& points, Told told) {
     if (told != Told::File) return recognise(whole.context, points, options_of(told));
     const ProbedPatch patch{whole.context, samples_of(points), &probe};
-    return recognise_probed({&patch, 1}, {}).recognition;
+    return recognise_probed({&patch, 1}, options_of(told)).recognition;
   };
   const Recognition centred = recognise(whole.context, whole.points);
   const Vec2 centre = centred.world_T_curve.translation();
