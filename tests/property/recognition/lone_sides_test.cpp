@@ -242,7 +242,9 @@ TEST(LoneSides, FewTouchesOfASmoothPartOfNoClass) {
     }
   }
   std::cout << wrong << " of " << scenes << " RECOGNIZED as a class, " << stated << " stated\n";
-  EXPECT_LE(wrong, stated + 4.0 * std::sqrt(stated));
+  if (test::counts_tell()) {
+    EXPECT_LE(wrong, stated + 4.0 * std::sqrt(stated));
+  }
 }
 
 }  // namespace
