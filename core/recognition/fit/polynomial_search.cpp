@@ -106,7 +106,7 @@ void add_relatives(const FitData& reduced, PolynomialSeeds* seeds, WorkBudget& w
   }
 }
 
-/// The best spline and the optimum on the other side of c = 0, if there is one.
+/// The best spline and another optimum: on the other side of c = 0, or of another valley.
 struct SplinePair {
   std::optional<PolynomialFit> best;
   std::optional<PolynomialFit> rival;
