@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/numerics/log_add.h"
 #include "core/numerics/negligible.h"
 #include "core/recognition/posterior/conic_limit.h"
 #include "core/recognition/posterior/prior_modes.h"
@@ -59,11 +60,8 @@ double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidence
   const FreeForm& paths = evidences.free_form;
   const double log_paths = likelihood.log_evidence(
       smooth_chi2 + likelihood.inflation() * paths.chi2, paths.log_occam, paths.determined);
-  const double top = std::max(log_paths, evidences.log_near);
-  return std::isfinite(evidences.log_near)
-             ? top +
-                   std::log(0.5 * (std::exp(log_paths - top) + std::exp(evidences.log_near - top)))
-             : log_paths;
+  return std::isfinite(evidences.log_near) ? log_add(log_paths, evidences.log_near) - std::log(2.0)
+                                           : log_paths;
 }
 
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,

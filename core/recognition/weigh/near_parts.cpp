@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
+#include "core/numerics/log_add.h"
 #include "core/numerics/negligible.h"
 
 namespace palpate {
@@ -25,11 +27,6 @@ const double kLogOfNoises = std::log(2.0 * std::log(kLargestNoise / 1e-6));
 bool all_lie_apart(const FitData& data) {
   return std::all_of(data.patches.begin(), data.patches.end(),
                      [](const PatchSpan& patch) { return patch.size() == 1; });
-}
-
-double log_add(double a, double b) {
-  const double top = std::max(a, b);
-  return std::isfinite(top) ? top + std::log(std::exp(a - top) + std::exp(b - top)) : top;
 }
 
 /// The same points with `factor` times their noise. What normals are off by where a place is not
@@ -63,11 +60,7 @@ Left left_by(const CanonicalFit& placed, const FitData& data) {
 /// log of the evidence of the parts near the curve of one class. `least`: less is not computed.
 double log_evidence_near(const ClassFit& coarse, double least, const EvidenceContext& context) {
   const FitData& reduced = context.reduced;
-  const auto at_curve = to_canonical(coarse, reduced);
-  if (!at_curve) {
-    return kNothing;
-  }
-  const Left at_noise = left_by(*at_curve, reduced);
+  std::optional<CanonicalFit> at_noise;
   const double n = static_cast<double>(reduced.points.size());
   const double parts = static_cast<double>(kScatter.size() * kCurveClasses.size());
   const double of_each = (context.likelihood.sigma_known ? 0.0 : kLogOfNoises) - std::log(parts);
@@ -76,9 +69,12 @@ double log_evidence_near(const ClassFit& coarse, double least, const EvidenceCon
   for (const double scatter : kScatter) {
     const double factor = std::hypot(1.0, scatter / (context.arcs.sigma * std::sqrt(inflation)));
     const double most =
-        of_each - n * std::log(factor) - 0.5 * at_noise.chi2 / (inflation * factor * factor);
+        of_each - n * std::log(factor) - 0.5 * coarse.chi2 / (inflation * factor * factor);
     if (!(most > std::max(least, sum - kNegligibleLogOdds)) || !context.work.allows()) {
       continue;
+    }
+    if (!at_noise && !(at_noise = to_canonical(coarse, reduced))) {
+      return kNothing;
     }
     const FitData scattered = with_noise(reduced, factor);
     const auto placed = to_canonical(coarse, scattered);
@@ -86,7 +82,8 @@ double log_evidence_near(const ClassFit& coarse, double least, const EvidenceCon
         placed ? evidence_of(*placed, scattered, inflation, context.work) : std::nullopt;
     if (evidence) {
       const Left left = left_by(*placed, scattered);
-      sum = log_add(sum, of_each - (left.log_deviations - at_noise.log_deviations) -
+      sum = log_add(sum, of_each -
+                             (left.log_deviations - left_by(*at_noise, reduced).log_deviations) -
                              0.5 * left.chi2 / inflation + evidence->log_occam);
     }
   }
