@@ -273,13 +273,14 @@ class Fit(unittest.TestCase):
         self.assertLess(len(done), most)
 
     def test_what_a_call_costs_beside_the_recognition(self):
-        # 30 us at most; where all of Python is slower than on the machine of tests/README.md, so much more.
+        # 30 us at most are meant; overhead.py measures them. A test counts what the time is spent on and no other
+        # work of the machine changes: calls of functions, of which each takes 0.1 to 0.3 us.
         import overhead
-        slower = max(1.0, overhead.least_us(overhead.reference) / overhead.REFERENCE_US)
-        costs = overhead.costs()
-        print({name: f"{us:.1f} us" for name, us in costs.items()}, f"this machine: {slower:.2f}")
-        for name, us in costs.items():
-            self.assertLess(us, 30 * slower, name)
+        counts = {name: overhead.calls(call) for name, call in overhead.what_is_called().items()}
+        print(counts)
+        for name, count in counts.items():
+            self.assertGreater(count, 0, name)
+            self.assertLess(count, 100, name)
 
     def test_many_small_adds_cost_no_more_than_few(self):
         # A picture's points are kept beside: nothing grows with how often was added.
