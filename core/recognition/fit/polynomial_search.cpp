@@ -112,14 +112,37 @@ struct SplinePair {
   std::optional<PolynomialFit> rival;
 };
 
+/// On which side of c = 0 a spline lies.
+bool has_loop(const PolynomialCoefficients& c) {
+  // About the vertex, where the curve stands still along the axis, travel across it is c.
+  const Vec2 across = c.col(3);
+  const double along_by_t = cross(across, Vec2(c.col(1)));
+  const double along_by_t2 = cross(across, Vec2(c.col(2)));
+  return first_derivative(c, -0.5 * along_by_t / along_by_t2).dot(across) < 0.0;
+}
+
+/// Ended in the same valley, on the same side of c = 0, though not at its very end.
+bool is_same_valley(const PolynomialFit& a, const PolynomialFit& b) {
+  constexpr double kSameChi2 = 1e-2;
+  constexpr double kSameAngle = 1e-2;  // rad
+  return std::abs(a.chi2 - b.chi2) <= kSameChi2 * std::max(1.0, a.chi2) &&
+         std::abs(cross(Vec2(a.coefficients.col(3).normalized()),
+                        Vec2(b.coefficients.col(3).normalized()))) <= kSameAngle &&
+         has_loop(a.coefficients) == has_loop(b.coefficients);
+}
+
 /// Takes a fit among the two best. What it replaces is the rival.
 void take(PolynomialFit fit, SplinePair* pair) {
-  if (!std::isfinite(fit.chi2) || (pair->best && is_same_curve(fit, *pair->best))) {
+  if (!std::isfinite(fit.chi2)) {
     return;
   }
   if (!pair->best || fit.chi2 < pair->best->chi2) {
-    std::swap(pair->best, pair->rival);
+    if (!pair->best || !is_same_valley(fit, *pair->best)) {
+      std::swap(pair->best, pair->rival);
+    }
     pair->best = std::move(fit);
+  } else if (is_same_valley(fit, *pair->best)) {
+    return;
   } else if (!pair->rival || fit.chi2 < pair->rival->chi2) {
     pair->rival = std::move(fit);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/curves/curve_class.h"
 #include "core/recognition/fit/seed_moments.h"
 #include "core/recognition/samples/farthest_first.h"
 
@@ -54,6 +55,12 @@ void take_minima(const std::vector<Candidate>& grid, std::size_t vertices, std::
   }
 }
 
+/// Whether the same points share an arm: which arm is called positive is a convention (t -> -t).
+bool are_same_arms(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [same = a.front() * b.front()](double u, double v) { return u == same * v; });
+}
+
 /// Where a patch comes nearest to the vertex along the axis, and by how much both its ends lie
 /// beyond.
 struct Turn {
@@ -97,6 +104,7 @@ class ArmSearch {
     const auto end =
         std::find_if(lone, order_.end(), [&](std::size_t p) { return patches[p].size() != 1; });
     any_lone_ = lone != end;
+    settles_arms_ = are_few_touches(points, patches);
     spread_first(std::span(lone, end));
   }
 
@@ -116,19 +124,24 @@ class ArmSearch {
   }
 
   /// Sums over patches of all patterns that one vertex is tried with, and for each the residuals'.
-  static std::size_t sums(std::span<const PatchSpan> patches) {
+  std::size_t sums() const {
     constexpr std::size_t kOfResiduals = 8;  // patches, by its time
-    const std::size_t enumerated = std::min(kMostEnumerated, patches.size());
-    return enumerated > 0 ? (patches.size() + kOfResiduals) << (enumerated - 1) : 0;
+    const std::size_t enumerated = std::min(kMostEnumerated, patches_.size());
+    const std::size_t once =
+        enumerated > 0 ? (patches_.size() + kOfResiduals) << (enumerated - 1) : 0;
+    return settles_arms_ ? 2 * once : once;
   }
 
   /// How many minima are worth a walk.
   std::size_t most_seeds() const {
-    return any_lone_ ? PolynomialSeeds::kLoneArmSeeds : PolynomialSeeds::kArmSeeds;
+    return settles_arms_ ? PolynomialSeeds::kFewTouchesSeeds
+           : any_lone_   ? PolynomialSeeds::kLoneArmSeeds
+                         : PolynomialSeeds::kArmSeeds;
   }
 
   /// The best arms, point by point, of what `search` has found.
-  std::vector<double> best_arms(const AxisFit& seed) {
+  std::vector<double> best_arms(const AxisFit& seed, WorkBudget& work) {
+    work.spend(WorkKind::SeedRow, points_.size() + sums());
     look_along(seed.theta);
     double best = kNone;
     std::vector<double> arms;
@@ -221,7 +234,22 @@ class ArmSearch {
         }
       }
       function(sum);
+      if (settles_arms_ && settle_arms(&sum)) {
+        function(sum);
+      }
     }
+  }
+
+  /// Gives every patch the arm that suits the curve through all of them. A curve through four
+  /// touches leads past the others where these lie far from the four. Returns whether any changed.
+  bool settle_arms(SeedMoments* sum) {
+    const std::array<double, 4> y = coefficients(*sum);
+    const std::vector<double> before = signs_;
+    *sum = SeedMoments();
+    for (std::size_t p = 0; p < arms_.size(); ++p) {
+      add_on_better_arm(p, y, sum);
+    }
+    return signs_ != before;
   }
 
   /// `y`: the coefficients of y(t).
@@ -264,7 +292,8 @@ class ArmSearch {
   std::span<const FitPoint> points_;
   std::span<const PatchSpan> patches_;
   std::vector<std::size_t> order_;
-  bool any_lone_ = false;  ///< patches of a single point
+  bool any_lone_ = false;      ///< patches of a single point
+  bool settles_arms_ = false;  ///< once more, by the curve through all
   // Along the axis last looked along:
   std::vector<double> x_, y_, w_;
   double least_ = 0.0;  ///< of x_
@@ -275,7 +304,47 @@ class ArmSearch {
   std::vector<double> signs_;
 };
 
+/// Appends the best of the cells that are no minima because a cell beside them is lower with other
+/// arms: each pattern of arms has valleys of its own, and a grid of the best pattern of each cell
+/// shows only those that no other pattern covers.
+void add_other_arms(const std::vector<Candidate>& grid, PolynomialModel model, ArmSearch* search,
+                    std::vector<AxisFit>* seeds, WorkBudget& work) {
+  // As `bench_touches --curve cubic_spline --count 12` has it, the last valleys that are found are
+  // about the fortieth; of four cells three are like one taken already.
+  constexpr std::size_t kMostAdded = 40;
+  constexpr std::size_t kMostTried = 4 * kMostAdded;
+  constexpr double kSameValley = 0.3;  // rad, about two directions of the grid
+  std::vector<const Candidate*> best(grid.size());
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    best[i] = &grid[i];
+  }
+  const std::size_t tried = std::min(kMostTried, best.size());
+  std::partial_sort(best.begin(), best.begin() + static_cast<std::ptrdiff_t>(tried), best.end(),
+                    [](const Candidate* a, const Candidate* b) { return a->cost < b->cost; });
+  std::size_t added = 0;
+  for (std::size_t i = 0; i < tried && added < kMostAdded && std::isfinite(best[i]->cost); ++i) {
+    AxisFit seed{model, best[i]->theta, best[i]->x0, {}, best[i]->cost};
+    seed.arms = search->best_arms(seed, work);
+    const bool known = std::any_of(seeds->begin(), seeds->end(), [&](const AxisFit& other) {
+      return std::abs(std::remainder(other.theta - seed.theta, 2.0 * kPi)) < kSameValley &&
+             are_same_arms(other.arms, seed.arms);
+    });
+    if (!known) {
+      seeds->push_back(std::move(seed));
+      ++added;
+    }
+  }
+}
+
 }  // namespace
+
+bool are_few_touches(std::span<const FitPoint> points, std::span<const PatchSpan> patches) {
+  // With more, the valleys of wrong arms end far above that of the right ones.
+  constexpr int kOfEachUnknown = 5;
+  const auto few =
+      static_cast<std::size_t>(kOfEachUnknown * degrees_of_freedom(CurveClass::CubicSpline));
+  return points.size() == patches.size() && points.size() <= few;
+}
 
 void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds, WorkBudget& work) {
   // 2.5 degrees: half a step puts the far end of a needle off by its width where that is a fiftieth
@@ -309,9 +378,8 @@ void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> 
   // way, about as much as half a cell of vertices does.
   constexpr std::size_t kDirections = 48;
   constexpr std::size_t kVertices = ArmSearch::kVertexDistances.size();
-  work.spend(WorkKind::SeedRow,
-             kDirections * kVertices * (points.size() + ArmSearch::sums(patches)));
   ArmSearch search(points, patches);
+  work.spend(WorkKind::SeedRow, kDirections * kVertices * (points.size() + search.sums()));
   std::vector<Candidate> semi_cubicals(kDirections * kVertices);
   std::vector<Candidate> splines(kDirections * kVertices);
   for (std::size_t d = 0; d < kDirections; ++d) {
@@ -324,8 +392,12 @@ void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> 
               &seeds->cubic_spline);
   for (auto* found : {&seeds->semi_cubical_parabola, &seeds->cubic_spline}) {
     for (AxisFit& seed : *found) {
-      seed.arms = search.best_arms(seed);
+      seed.arms = search.best_arms(seed, work);
     }
+  }
+  // The semi-cubical parabolas start beside the splines too.
+  if (are_few_touches(points, patches)) {
+    add_other_arms(splines, PolynomialModel::CubicSpline, &search, &seeds->cubic_spline, work);
   }
 }
 

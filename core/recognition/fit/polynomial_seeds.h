@@ -18,11 +18,17 @@ struct PolynomialSeeds {
   /// The same if the points are single touches. Each may lie on either arm, so that there are about
   /// twice as many minima as with strokes, whose points lie on one arm.
   static constexpr std::size_t kLoneArmSeeds = 10;
+  /// The same of few touches, which leave more valleys still.
+  static constexpr std::size_t kFewTouchesSeeds = 20;
   std::vector<AxisFit> parabola;
   std::vector<AxisFit> cubical_parabola;
   std::vector<AxisFit> semi_cubical_parabola;
   std::vector<AxisFit> cubic_spline;
 };
+
+/// Whether the points are touches one at a time, and so few that any may lie on either arm of a
+/// curve through the others: each pattern of arms then has valleys of its own.
+bool are_few_touches(std::span<const FitPoint> points, std::span<const PatchSpan> patches);
 
 /// Seeds of parabola and cubical parabola. For a trial direction of the axis they are graphs y(x)
 /// with linear coefficients. O(directions * points).
@@ -31,7 +37,8 @@ void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds, W
 /// Seeds of semi-cubical parabola and spline. For a trial direction and vertex abscissa x0 they are
 /// linear in t = +-sqrt(x - x0), given the arm (the sign of t) of each patch. O(directions *
 /// vertices * (points + 2^patches)), with at most 2^3 patterns of arms: patches beyond the four
-/// longest take the arm that fits the curve through these better.
+/// longest take the arm that fits the curve through these better. Of few touches all arms are then
+/// chosen once more, and splines with other arms than those of the minima are appended.
 void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
                    PolynomialSeeds* seeds, WorkBudget& work);
 

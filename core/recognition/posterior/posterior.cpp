@@ -32,14 +32,29 @@ std::optional<ClassEvidence> rival_of(const ClassFit& spline, const FitData& red
   return canonical ? evidence_of(*canonical, reduced, inflation, work) : std::nullopt;
 }
 
-/// Whether the slices of one mode of the spline run through another.
-bool holds(const ClassEvidence& mode, const ClassEvidence& other) {
+/// The share of a spline's slices about another mode of it; nullopt if they do not run through it.
+std::optional<double> share_in_slices(const ClassEvidence& spline, const ClassEvidence& other,
+                                      const FitData& reduced, WorkBudget& work) {
   constexpr int kBend = 3;  // the coordinate c
-  if (mode.widest != kBend || mode.touch.as_arc) {
-    return false;
+  if (spline.widest != kBend || spline.touch.as_arc) {
+    return std::nullopt;
   }
-  const double c = coordinates_of(mode.touch.chart(), other.touch.shape)[kBend];
-  return c >= mode.nodes.front().curve.z[kBend] && c <= mode.nodes.back().curve.z[kBend];
+  return share_of_other_mode(spline, coordinates_of(spline.touch.chart(), other.touch.shape),
+                             reduced, work);
+}
+
+/// The share of the spline's posterior in a mode that its slices do not run through.
+double share_of_separate_rival(const ClassFits& fits, const Likelihood& likelihood,
+                               const Evidences& evidences) {
+  const auto& spline = fits[static_cast<std::size_t>(CurveClass::CubicSpline)];
+  const auto& own = evidences.classes[static_cast<std::size_t>(CurveClass::CubicSpline)];
+  if (!spline || !own || !evidences.rival || !spline->rival || !std::isfinite(spline->chi2)) {
+    return 0.0;
+  }
+  const double rise = (spline->rival->chi2 - spline->polynomial->chi2) / likelihood.inflation();
+  const double log_ratio = evidences.rival->log_occam - own->log_occam - 0.5 * rise;
+  // The rival fits worse; where its evidence says much more all the same, the two are one mode.
+  return 1.0 / (1.0 + std::exp(-std::min(log_ratio, kNegligibleLogOdds)));
 }
 
 }  // namespace
@@ -248,7 +263,11 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
     // Of a class that is only one of several, Laplace's formula tells the other mode's share well
     // enough.
     evidences.rival = rival_of(*on_reduced[kSpline], reduced, evidences.inflation, work);
-    if (evidences.rival && holds(*evidences.classes[kSpline], *evidences.rival)) {
+    const auto held = evidences.rival ? share_in_slices(*evidences.classes[kSpline],
+                                                        *evidences.rival, reduced, work)
+                                      : std::nullopt;
+    if (held) {
+      evidences.rival_in_slices = *held;
       evidences.rival.reset();
     } else if (evidences.rival && spline_is_best) {
       evidences.rival = by_slices(*std::move(evidences.rival), reduced, evidences.inflation,
@@ -271,7 +290,7 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
     }
   }
   // Both modes of the spline.
-  const double share = rival_share(fits, likelihood, evidences);
+  const double share = share_of_separate_rival(fits, likelihood, evidences);
   log_of[static_cast<std::size_t>(CurveClass::CubicSpline)] -= std::log1p(-share);
   const auto& parabola = evidences.classes[static_cast<std::size_t>(CurveClass::Parabola)];
   for (const auto& [beyond, inside] : kConics) {
@@ -324,15 +343,8 @@ double margin_of_unclassified(const ClassFits& fits, double smooth_chi2,
 
 double rival_share(const ClassFits& fits, const Likelihood& likelihood,
                    const Evidences& evidences) {
-  const auto& spline = fits[static_cast<std::size_t>(CurveClass::CubicSpline)];
-  const auto& own = evidences.classes[static_cast<std::size_t>(CurveClass::CubicSpline)];
-  if (!spline || !own || !evidences.rival || !spline->rival || !std::isfinite(spline->chi2)) {
-    return 0.0;
-  }
-  const double rise = (spline->rival->chi2 - spline->polynomial->chi2) / likelihood.inflation();
-  const double log_ratio = evidences.rival->log_occam - own->log_occam - 0.5 * rise;
-  // The rival fits worse; where its evidence says much more all the same, the two are one mode.
-  return 1.0 / (1.0 + std::exp(-std::min(log_ratio, kNegligibleLogOdds)));
+  return evidences.rival ? share_of_separate_rival(fits, likelihood, evidences)
+                         : evidences.rival_in_slices;
 }
 
 }  // namespace palpate

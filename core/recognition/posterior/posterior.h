@@ -21,6 +21,8 @@ struct Evidences {
   std::array<std::optional<ClassEvidence>, 9> classes;
   /// Of the spline's optimum on the other side of c = 0, if that is a separate mode.
   std::optional<ClassEvidence> rival;
+  /// If it is not: the share of the spline's mass about that optimum (slices.h).
+  double rival_in_slices = 0.0;
   FreeForm free_form;
   /// log of the evidence of smooth parts near a class, for touches that lie apart
   /// (weigh/near_parts.h).

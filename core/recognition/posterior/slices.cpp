@@ -185,6 +185,29 @@ std::optional<double> integrate(const FitData& data, const Walk& how, ClassEvide
   return top + std::log(sum) - 0.5 * std::log(2.0 * std::numbers::pi);
 }
 
+/// Whether the slice where the sliced coordinate is that of `other` is the curve of `other`, and
+/// not one of another valley.
+bool runs_through(const ClassEvidence& sliced, const TouchedVector& other, const FitData& data,
+                  WorkBudget& work) {
+  const int k = sliced.widest;
+  const auto nearest =
+      std::min_element(sliced.nodes.begin(), sliced.nodes.end(), [&](const auto& a, const auto& b) {
+        return std::abs(a.curve.z[k] - other[k]) < std::abs(b.curve.z[k] - other[k]);
+      });
+  const auto at = slice(sliced.touch, data, nearest->curve, k, other[k], work);
+  if (!at) {
+    return false;
+  }
+  // Of the other coordinates of the shape, whatever place and direction of the touch are.
+  const TouchedMatrix covariance = inverse_cholesky(root_of(*at, k));
+  const TouchedVector off = (other - at->z).cwiseQuotient(at->widths);
+  double most = 0.0;
+  for (int i = 0; i < shape_coordinates(sliced.touch.curve_class); ++i) {
+    most = i != k ? std::max(most, off[i] * off[i] / covariance(i, i)) : most;
+  }
+  return most < 2.0 * kTailOfDensity;
+}
+
 }  // namespace
 
 std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& data,
@@ -216,6 +239,40 @@ std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& da
   }
   evidence.log_occam = log_integral + 0.5 * evidence.fitted_chi2 + evidence.log_all_modes;
   return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
+}
+
+std::optional<double> share_of_other_mode(const ClassEvidence& sliced, const TouchedVector& other,
+                                          const FitData& data, WorkBudget& work) {
+  // In the log density. Two equal peaks of a normal law's width have it between them at four
+  // deviations, where slices for a moment, which run over seven, pass both.
+  constexpr double kDeepDip = 2.0;
+  const auto& nodes = sliced.nodes;
+  const int k = sliced.widest;
+  const auto place = [&](std::size_t i) { return nodes[i].curve.z[k]; };
+  if (nodes.size() < 2 || !(other[k] >= place(0) && other[k] <= place(nodes.size() - 1)) ||
+      !runs_through(sliced, other, data, work)) {
+    return std::nullopt;
+  }
+  // From the mode to the other's place, and on to the end.
+  const bool ahead = other[k] > place(sliced.mode);
+  const std::size_t last = ahead ? nodes.size() - 1 : 0;
+  const double own = log_density(nodes[sliced.mode].curve, k);
+  double dip = own;
+  double peak = own;
+  double beyond = 0.0;
+  for (std::size_t i = sliced.mode; i != last;) {
+    i = ahead ? i + 1 : i - 1;
+    const double density = log_density(nodes[i].curve, k);
+    const bool between = ahead ? place(i) < other[k] : place(i) > other[k];
+    if (between && density < dip) {
+      dip = peak = density;
+      beyond = 0.0;
+    } else {
+      peak = std::max(peak, density);
+      beyond += nodes[i].weight;
+    }
+  }
+  return std::min(peak, own) - dip > kDeepDip ? beyond : 0.0;
 }
 
 }  // namespace palpate

@@ -21,4 +21,10 @@ enum class Slices {
 std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& data,
                                        double inflation, Slices slices, WorkBudget& work);
 
+/// The share of the slices' mass that belongs to another mode, at the coordinates `other`: what
+/// lies beyond the dip between the two. 0 if the dip is so shallow that a moment about the one
+/// holds the other too; nullopt if the slices do not run through it.
+std::optional<double> share_of_other_mode(const ClassEvidence& sliced, const TouchedVector& other,
+                                          const FitData& data, WorkBudget& work);
+
 }  // namespace palpate

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <random>
 
+#include "tests/support/lone_touches.h"
 #include "tests/support/search_outcome.h"
 #include "tests/support/test_rng.h"
 
@@ -45,6 +47,32 @@ TEST(LoneSearch, FindsOneArmOfASemiCubicalParabolaBesideItsCusp) {
     ASSERT_TRUE(outcome.counted) << i;
     EXPECT_LT(outcome.excess(), kDecisive) << i;
   }
+}
+
+/// Of few touches any may lie on either arm, and each pattern of arms has valleys of its own. The
+/// search may miss the deepest in one of a hundred scenes.
+TEST(LoneSearch, FindsSplinesThroughFewTouches) {
+  constexpr double kMissed = 0.01;
+  constexpr double kSigmaOverSize = 1e-4;
+  constexpr double kNoTip = 0.0;
+  const int scenes = test::stress_count(300);
+  std::mt19937_64 rng = test::test_rng();
+  int counted = 0;
+  int missed = 0;
+  for (int i = 0; i < scenes; ++i) {
+    for (const int count : {8, 10, 12, 16, 24}) {
+      test::SearchCase scene;
+      scene.scene =
+          test::lone_touches(CurveClass::CubicSpline, count, kSigmaOverSize, kNoTip, rng).scene;
+      const test::SearchOutcome outcome = test::outcome_on_reduced(scene);
+      counted += outcome.counted ? 1 : 0;
+      missed += outcome.counted && outcome.excess() > kDecisive ? 1 : 0;
+    }
+  }
+  std::printf("missed %d of %d\n", missed, counted);
+  EXPECT_GT(counted, 4 * scenes);
+  const double expected = kMissed * counted;  // plus three deviations of such a count
+  EXPECT_LE(missed, expected + 3.0 * std::sqrt(expected));
 }
 
 }  // namespace
