@@ -32,7 +32,8 @@ struct ClassFit {
   double least_chi2 = 0.0;  ///< lower bound on chi2 of any curve of a class at its limit, if known
   std::optional<ImplicitFit> implicit;      ///< line, circle, ellipse, hyperbola
   std::optional<PolynomialFit> polynomial;  ///< parabola and the cubics
-  /// A spline's optimum on the other side of c = 0. If it fits as well, the shape is not known.
+  /// A spline's optimum on the other side of c = 0; of few touches, the second best of all. If it
+  /// fits as well, the shape is not known.
   std::optional<PolynomialFit> rival;
 };
 

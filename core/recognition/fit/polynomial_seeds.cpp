@@ -309,8 +309,8 @@ class ArmSearch {
 /// shows only those that no other pattern covers.
 void add_other_arms(const std::vector<Candidate>& grid, PolynomialModel model, ArmSearch* search,
                     std::vector<AxisFit>* seeds, WorkBudget& work) {
-  // As `bench_touches --curve cubic_spline --count 12` has it, the last valleys that are found are
-  // about the fortieth; of four cells three are like one taken already.
+  // As many as leave the true valley out of one search in a hundred (lone_search_test). A valley
+  // is several cells wide, so that most cells are like one taken already.
   constexpr std::size_t kMostAdded = 40;
   constexpr std::size_t kMostTried = 4 * kMostAdded;
   constexpr double kSameValley = 0.3;  // rad, about two directions of the grid
@@ -339,7 +339,8 @@ void add_other_arms(const std::vector<Candidate>& grid, PolynomialModel model, A
 }  // namespace
 
 bool are_few_touches(std::span<const FitPoint> points, std::span<const PatchSpan> patches) {
-  // With more, the valleys of wrong arms end far above that of the right ones.
+  // The more touches there are, the farther above the right arms' valley those of wrong arms end,
+  // and the better four of them show the others' arms.
   constexpr int kOfEachUnknown = 5;
   const auto few =
       static_cast<std::size_t>(kOfEachUnknown * degrees_of_freedom(CurveClass::CubicSpline));

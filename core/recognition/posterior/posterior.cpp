@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
-/// The mode of the spline across c = 0, if there is one.
+/// The spline's other mode, if there is one.
 std::optional<ClassEvidence> rival_of(const ClassFit& spline, const FitData& reduced,
                                       double inflation, WorkBudget& work) {
   if (!spline.rival || is_same_curve(*spline.polynomial, *spline.rival)) {

@@ -19,7 +19,8 @@ using ClassProbabilities = std::array<double, 9>;
 /// Evidence of every model. A class without one has no share in the posterior.
 struct Evidences {
   std::array<std::optional<ClassEvidence>, 9> classes;
-  /// Of the spline's optimum on the other side of c = 0, if that is a separate mode.
+  /// Of the spline's other optimum, on the other side of c = 0 or of other arms, if that is a
+  /// separate mode.
   std::optional<ClassEvidence> rival;
   /// If it is not: the share of the spline's mass about that optimum (slices.h).
   double rival_in_slices = 0.0;
@@ -77,7 +78,7 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
 double margin_of_unclassified(const ClassFits& fits, double smooth_chi2,
                               const Likelihood& likelihood, const Evidences& evidences);
 
-/// The share of the spline's posterior in its mode on the other side of c = 0.
+/// The share of the spline's posterior in its other mode, separate or within the slices.
 double rival_share(const ClassFits& fits, const Likelihood& likelihood, const Evidences& evidences);
 
 }  // namespace palpate
