@@ -39,10 +39,12 @@ AxisFit refine_axis_and_arms(std::span<const FitPoint> points, std::span<const P
   return fit;
 }
 
+// By how much two walks may end apart in one valley.
+constexpr double kSameChi2 = 1e-2;   // of it
+constexpr double kSameAngle = 1e-2;  // rad, between their axes
+
 /// Ended in the same valley: seeds on both sides of one do.
 bool is_same_valley(const AxisFit& a, const AxisFit& b) {
-  constexpr double kSameChi2 = 1e-2;   // of it: where a walk ends
-  constexpr double kSameAngle = 1e-2;  // rad
   return std::abs(a.chi2 - b.chi2) <= kSameChi2 * a.chi2 &&
          std::abs(std::remainder(a.theta - b.theta, 2.0 * kPi)) <= kSameAngle;
 }
@@ -123,8 +125,6 @@ bool has_loop(const PolynomialCoefficients& c) {
 
 /// Ended in the same valley, on the same side of c = 0, though not at its very end.
 bool is_same_valley(const PolynomialFit& a, const PolynomialFit& b) {
-  constexpr double kSameChi2 = 1e-2;
-  constexpr double kSameAngle = 1e-2;  // rad
   return std::abs(a.chi2 - b.chi2) <= kSameChi2 * std::max(1.0, a.chi2) &&
          std::abs(cross(Vec2(a.coefficients.col(3).normalized()),
                         Vec2(b.coefficients.col(3).normalized()))) <= kSameAngle &&

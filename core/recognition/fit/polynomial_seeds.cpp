@@ -1,37 +1,28 @@
 #include "core/recognition/fit/polynomial_seeds.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/curves/curve_class.h"
+#include "core/recognition/fit/arm_search.h"
 #include "core/recognition/fit/seed_moments.h"
-#include "core/recognition/samples/farthest_first.h"
 
 namespace palpate {
 namespace {
 
 double square(double x) { return x * x; }
 
-/// One cell of the coarse search.
-struct Candidate {
-  double cost = std::numeric_limits<double>::infinity();
-  double theta = 0.0;
-  double x0 = 0.0;
-};
-
 /// Appends the best local minima over a grid of directions (circular, outer index) and vertices
 /// (inner index, `vertices` each), best first; without arms.
-void take_minima(const std::vector<Candidate>& grid, std::size_t vertices, std::size_t most,
+void take_minima(const std::vector<SeedCell>& grid, std::size_t vertices, std::size_t most,
                  PolynomialModel model, std::vector<AxisFit>* seeds) {
-  std::vector<const Candidate*> minima;
+  std::vector<const SeedCell*> minima;
   const std::size_t directions = grid.size() / vertices;
   const auto is_minimum = [&](std::size_t d, std::size_t v) {
-    const Candidate& here = grid[d * vertices + v];
+    const SeedCell& here = grid[d * vertices + v];
     for (std::size_t dd : {d + directions - 1, d, d + 1}) {
       for (std::size_t vv = v > 0 ? v - 1 : v; vv <= std::min(v + 1, vertices - 1); ++vv) {
-        const Candidate& there = grid[(dd % directions) * vertices + vv];
+        const SeedCell& there = grid[(dd % directions) * vertices + vv];
         if (&there != &here &&
             (there.cost < here.cost || (there.cost == here.cost && &there < &here))) {
           return false;
@@ -48,9 +39,9 @@ void take_minima(const std::vector<Candidate>& grid, std::size_t vertices, std::
     }
   }
   std::sort(minima.begin(), minima.end(),
-            [](const Candidate* a, const Candidate* b) { return a->cost < b->cost; });
+            [](const SeedCell* a, const SeedCell* b) { return a->cost < b->cost; });
   minima.resize(std::min(most, minima.size()));
-  for (const Candidate* minimum : minima) {
+  for (const SeedCell* minimum : minima) {
     seeds->push_back({model, minimum->theta, minimum->x0, {}, minimum->cost});
   }
 }
@@ -61,269 +52,26 @@ bool are_same_arms(const std::vector<double>& a, const std::vector<double>& b) {
                     [same = a.front() * b.front()](double u, double v) { return u == same * v; });
 }
 
-/// Where a patch comes nearest to the vertex along the axis, and by how much both its ends lie
-/// beyond.
-struct Turn {
-  std::size_t leftmost = 0;
-  double depth = 0.0;
-};
-
-/// Arms of one patch for one direction and vertex: moments on the positive arm, and where the
-/// patch turns round its leftmost point, the index at which it changes arms.
-struct PatchArms {
-  SeedMoments moments;
-  std::size_t change = 0;  ///< first index of the second arm; patch end if there is one arm only
-};
-
-class ArmSearch {
- public:
-  /// Vertices from "at the leftmost point" to "so far away that the arms are graphs", in spans of
-  /// the points along the axis. One d spans before the leftmost leaves parameters from r to 1 of
-  /// the farthest point's, r^2 = d / (1 + d). A vertex of another r puts the parameter at the near
-  /// end off by the difference, and those farther on by less: that is what a walk has to make good.
-  /// Between neighbours r differs by 0.16 at most.
-  static constexpr std::array kVertexDistances = {0.002, 0.02, 0.06, 0.15, 0.35, 0.8, 1.8, 4.0};
-
-  ArmSearch(std::span<const FitPoint> points, std::span<const PatchSpan> patches)
-      : points_(points),
-        patches_(patches),
-        order_(patches.size()),
-        x_(points.size()),
-        y_(points.size()),
-        w_(points.size()),
-        turns_(patches.size()),
-        arms_(patches.size()) {
-    for (std::size_t p = 0; p < order_.size(); ++p) {
-      order_[p] = p;
-    }
-    std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
-      return patches[a].size() != patches[b].size() ? patches[a].size() > patches[b].size() : a < b;
-    });
-    const auto lone = std::find_if(order_.begin(), order_.end(),
-                                   [&](std::size_t p) { return patches[p].size() == 1; });
-    const auto end =
-        std::find_if(lone, order_.end(), [&](std::size_t p) { return patches[p].size() != 1; });
-    any_lone_ = lone != end;
-    settles_arms_ = are_few_touches(points, patches);
-    spread_first(std::span(lone, end));
-  }
-
-  /// Costs with the best arms for one direction and each vertex of kVertexDistances.
-  void search(double theta, Candidate* semi_cubicals, Candidate* splines) {
-    look_along(theta);
-    for (std::size_t v = 0; v < kVertexDistances.size(); ++v) {
-      const double x0 = least_ - kVertexDistances[v] * span_;
-      Candidate& semi_cubical = semi_cubicals[v] = {kNone, theta, x0};
-      Candidate& spline = splines[v] = {kNone, theta, x0};
-      for_each_pattern(x0, [&](const SeedMoments& sum) {
-        const ResidualSums sums = residual_sums(sum, kPowersOfT);
-        semi_cubical.cost = std::min(semi_cubical.cost, sums.of_three);
-        spline.cost = std::min(spline.cost, sums.of_four);
-      });
-    }
-  }
-
-  /// Sums over patches of all patterns that one vertex is tried with, and for each the residuals'.
-  std::size_t sums() const {
-    constexpr std::size_t kOfResiduals = 8;  // patches, by its time
-    const std::size_t enumerated = std::min(kMostEnumerated, patches_.size());
-    const std::size_t once =
-        enumerated > 0 ? (patches_.size() + kOfResiduals) << (enumerated - 1) : 0;
-    return settles_arms_ ? 2 * once : once;
-  }
-
-  /// How many minima are worth a walk.
-  std::size_t most_seeds() const {
-    return settles_arms_ ? PolynomialSeeds::kFewTouchesSeeds
-           : any_lone_   ? PolynomialSeeds::kLoneArmSeeds
-                         : PolynomialSeeds::kArmSeeds;
-  }
-
-  /// The best arms, point by point, of what `search` has found.
-  std::vector<double> best_arms(const AxisFit& seed, WorkBudget& work) {
-    work.spend(WorkKind::SeedRow, points_.size() + sums());
-    look_along(seed.theta);
-    double best = kNone;
-    std::vector<double> arms;
-    for_each_pattern(seed.x0, [&](const SeedMoments& sum) {
-      const ResidualSums sums = residual_sums(sum, kPowersOfT);
-      const double cost = seed.model == PolynomialModel::CubicSpline ? sums.of_four : sums.of_three;
-      if (cost < best) {
-        best = cost;
-        arms = point_arms();
-      }
-    });
-    return arms;
-  }
-
- private:
-  /// Patches whose arms are tried in all ways; the others get those that suit them. A cubic model
-  /// has four coefficients at most, so that four patches apart place it and show the others'; each
-  /// more would double the time.
-  static constexpr std::size_t kMostEnumerated = 4;
-  static constexpr double kNone = std::numeric_limits<double>::infinity();
-  /// A spline is a semi-cubical parabola and a linear term.
-  static constexpr std::array<std::size_t, 4> kPowersOfT = {0, 2, 3, 1};
-
-  /// Touches of their own say most of the curve, in fours, where they lie far apart.
-  void spread_first(std::span<std::size_t> lone) const {
-    std::vector<Vec2> places;
-    for (const std::size_t p : lone) {
-      places.push_back(points_[patches_[p].begin].position);
-    }
-    const std::vector<std::size_t> patches(lone.begin(), lone.end());
-    std::vector<bool> first(lone.size(), false);
-    auto next = lone.begin();
-    for (const std::size_t k : farthest_first(places, kMostEnumerated)) {
-      first[k] = true;
-      *next++ = patches[k];
-    }
-    for (std::size_t k = 0; k < patches.size(); ++k) {
-      if (!first[k]) {
-        *next++ = patches[k];
-      }
-    }
-  }
-
-  void look_along(double theta) {
-    const Vec2 axis(std::cos(theta), std::sin(theta));
-    least_ = std::numeric_limits<double>::infinity();
-    double most = -least_;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      x_[i] = points_[i].position.dot(axis);
-      y_[i] = cross(axis, points_[i].position);
-      w_[i] = square(points_[i].inverse_sigma * verticality(points_[i], axis));
-      least_ = std::min(least_, x_[i]);
-      most = std::max(most, x_[i]);
-    }
-    span_ = most - least_;
-    for (std::size_t p = 0; p < patches_.size(); ++p) {
-      const PatchSpan& patch = patches_[p];
-      if (patch.size() == 0) {
-        continue;  // every sample of it was set aside as a spike
-      }
-      std::size_t leftmost = patch.begin;
-      for (std::size_t i = patch.begin; i < patch.end; ++i) {
-        leftmost = x_[i] < x_[leftmost] ? i : leftmost;
-      }
-      turns_[p] = {leftmost, std::min(x_[patch.begin], x_[patch.end - 1]) - x_[leftmost]};
-    }
-  }
-
-  /// Calls `function` with the moments of all points for each pattern of arms, signs_ being the
-  /// patches'.
-  template <typename Function>
-  void for_each_pattern(double x0, const Function& function) {
-    for (std::size_t p = 0; p < arms_.size(); ++p) {
-      arms_[p] = patch_arms(p, x0);
-    }
-    const std::size_t enumerated = std::min(kMostEnumerated, arms_.size());
-    signs_.assign(arms_.size(), 1.0);
-    // The first patch's arm is a matter of convention (t -> -t).
-    for (unsigned pattern = 0; pattern < (1U << (enumerated - 1)); ++pattern) {
-      SeedMoments sum;
-      for (std::size_t k = 0; k < enumerated; ++k) {
-        const double sign = k > 0 && ((pattern >> (k - 1)) & 1U) != 0 ? -1.0 : 1.0;
-        signs_[order_[k]] = sign;
-        sum.add(arms_[order_[k]].moments, sign);
-      }
-      if (enumerated < order_.size()) {
-        const std::array<double, 4> y = coefficients(sum);
-        for (std::size_t k = enumerated; k < order_.size(); ++k) {
-          add_on_better_arm(order_[k], y, &sum);
-        }
-      }
-      function(sum);
-      if (settles_arms_ && settle_arms(&sum)) {
-        function(sum);
-      }
-    }
-  }
-
-  /// Gives every patch the arm that suits the curve through all of them. A curve through four
-  /// touches leads past the others where these lie far from the four. Returns whether any changed.
-  bool settle_arms(SeedMoments* sum) {
-    const std::array<double, 4> y = coefficients(*sum);
-    const std::vector<double> before = signs_;
-    *sum = SeedMoments();
-    for (std::size_t p = 0; p < arms_.size(); ++p) {
-      add_on_better_arm(p, y, sum);
-    }
-    return signs_ != before;
-  }
-
-  /// `y`: the coefficients of y(t).
-  void add_on_better_arm(std::size_t patch, const std::array<double, 4>& y, SeedMoments* sum) {
-    const SeedMoments& moments = arms_[patch].moments;
-    signs_[patch] = advantage_of_positive_arm(moments, y) >= 0.0 ? 1.0 : -1.0;
-    sum->add(moments, signs_[patch]);
-  }
-
-  PatchArms patch_arms(std::size_t p, double x0) const {
-    const PatchSpan& patch = patches_[p];
-    if (patch.size() == 0) {
-      return {SeedMoments(), patch.end};
-    }
-    // A patch that turns round its leftmost point near the vertex passes from arm to arm there.
-    // Of the span of all points: between the second and the third of the vertices tried.
-    constexpr double kNearVertex = 0.03;
-    const auto [leftmost, depth] = turns_[p];
-    const bool turns = x_[leftmost] - x0 < kNearVertex * span_ && depth > 0.0;
-    const std::size_t change = turns ? leftmost + 1 : patch.end;
-    SeedMoments moments;
-    for (std::size_t i = patch.begin; i < patch.end; ++i) {
-      const double t2 = x_[i] - x0;
-      const double t = std::sqrt(t2);
-      moments.add(w_[i], i < change ? t : -t, t2, y_[i]);
-    }
-    return {moments, change};
-  }
-
-  std::vector<double> point_arms() const {
-    std::vector<double> result(points_.size());
-    for (std::size_t p = 0; p < arms_.size(); ++p) {
-      for (std::size_t i = patches_[p].begin; i < patches_[p].end; ++i) {
-        result[i] = i < arms_[p].change ? signs_[p] : -signs_[p];
-      }
-    }
-    return result;
-  }
-
-  std::span<const FitPoint> points_;
-  std::span<const PatchSpan> patches_;
-  std::vector<std::size_t> order_;
-  bool any_lone_ = false;      ///< patches of a single point
-  bool settles_arms_ = false;  ///< once more, by the curve through all
-  // Along the axis last looked along:
-  std::vector<double> x_, y_, w_;
-  double least_ = 0.0;  ///< of x_
-  double span_ = 0.0;   ///< of x_
-  std::vector<Turn> turns_;
-  // For the vertex last tried:
-  std::vector<PatchArms> arms_;
-  std::vector<double> signs_;
-};
-
-/// Appends the best of the cells that are no minima because a cell beside them is lower with other
-/// arms: each pattern of arms has valleys of its own, and a grid of the best pattern of each cell
-/// shows only those that no other pattern covers.
-void add_other_arms(const std::vector<Candidate>& grid, PolynomialModel model, ArmSearch* search,
+/// Appends the best splines of the cells that are no minima because a cell beside them is lower
+/// with other arms: each pattern of arms has valleys of its own, and a grid of the best pattern of
+/// each cell shows only those that no other pattern covers.
+void add_other_arms(const std::vector<SeedCell>& splines, ArmSearch* search,
                     std::vector<AxisFit>* seeds, WorkBudget& work) {
   // As many as leave the true valley out of one search in a hundred (lone_search_test). A valley
   // is several cells wide, so that most cells are like one taken already.
   constexpr std::size_t kMostAdded = 40;
   constexpr std::size_t kMostTried = 4 * kMostAdded;
   constexpr double kSameValley = 0.3;  // rad, about two directions of the grid
-  std::vector<const Candidate*> best(grid.size());
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    best[i] = &grid[i];
+  std::vector<const SeedCell*> best(splines.size());
+  for (std::size_t i = 0; i < splines.size(); ++i) {
+    best[i] = &splines[i];
   }
   const std::size_t tried = std::min(kMostTried, best.size());
   std::partial_sort(best.begin(), best.begin() + static_cast<std::ptrdiff_t>(tried), best.end(),
-                    [](const Candidate* a, const Candidate* b) { return a->cost < b->cost; });
+                    [](const SeedCell* a, const SeedCell* b) { return a->cost < b->cost; });
   std::size_t added = 0;
   for (std::size_t i = 0; i < tried && added < kMostAdded && std::isfinite(best[i]->cost); ++i) {
-    AxisFit seed{model, best[i]->theta, best[i]->x0, {}, best[i]->cost};
+    AxisFit seed{PolynomialModel::CubicSpline, best[i]->theta, best[i]->x0, {}, best[i]->cost};
     seed.arms = search->best_arms(seed, work);
     const bool known = std::any_of(seeds->begin(), seeds->end(), [&](const AxisFit& other) {
       return std::abs(std::remainder(other.theta - seed.theta, 2.0 * kPi)) < kSameValley &&
@@ -352,8 +100,8 @@ void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds, W
   // of its length.
   constexpr std::size_t kDirections = 72;
   work.spend(WorkKind::SeedRow, kDirections * points.size());
-  std::vector<Candidate> parabolas(kDirections);
-  std::vector<Candidate> cubics(kDirections);
+  std::vector<SeedCell> parabolas(kDirections);
+  std::vector<SeedCell> cubics(kDirections);
   for (std::size_t d = 0; d < kDirections; ++d) {
     const double theta = kPi * static_cast<double>(d) / static_cast<double>(kDirections);
     const Vec2 axis(std::cos(theta), std::sin(theta));
@@ -381,8 +129,8 @@ void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> 
   constexpr std::size_t kVertices = ArmSearch::kVertexDistances.size();
   ArmSearch search(points, patches);
   work.spend(WorkKind::SeedRow, kDirections * kVertices * (points.size() + search.sums()));
-  std::vector<Candidate> semi_cubicals(kDirections * kVertices);
-  std::vector<Candidate> splines(kDirections * kVertices);
+  std::vector<SeedCell> semi_cubicals(kDirections * kVertices);
+  std::vector<SeedCell> splines(kDirections * kVertices);
   for (std::size_t d = 0; d < kDirections; ++d) {
     const double theta = 2.0 * kPi * static_cast<double>(d) / static_cast<double>(kDirections);
     search.search(theta, &semi_cubicals[d * kVertices], &splines[d * kVertices]);
@@ -398,7 +146,7 @@ void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> 
   }
   // The semi-cubical parabolas start beside the splines too.
   if (are_few_touches(points, patches)) {
-    add_other_arms(splines, PolynomialModel::CubicSpline, &search, &seeds->cubic_spline, work);
+    add_other_arms(splines, &search, &seeds->cubic_spline, work);
   }
 }
 

@@ -60,7 +60,7 @@ Left left_by(const CanonicalFit& placed, const FitData& data) {
 /// log of the evidence of the parts near the curve of one class. `least`: less is not computed.
 double log_evidence_near(const ClassFit& coarse, double least, const EvidenceContext& context) {
   const FitData& reduced = context.reduced;
-  std::optional<CanonicalFit> at_noise;
+  std::optional<Left> at_noise;
   const double n = static_cast<double>(reduced.points.size());
   const double parts = static_cast<double>(kScatter.size() * kCurveClasses.size());
   const double of_each = (context.likelihood.sigma_known ? 0.0 : kLogOfNoises) - std::log(parts);
@@ -73,8 +73,12 @@ double log_evidence_near(const ClassFit& coarse, double least, const EvidenceCon
     if (!(most > std::max(least, sum - kNegligibleLogOdds)) || !context.work.allows()) {
       continue;
     }
-    if (!at_noise && !(at_noise = to_canonical(coarse, reduced))) {
-      return kNothing;
+    if (!at_noise) {
+      const auto at_curve = to_canonical(coarse, reduced);
+      if (!at_curve) {
+        return kNothing;
+      }
+      at_noise = left_by(*at_curve, reduced);
     }
     const FitData scattered = with_noise(reduced, factor);
     const auto placed = to_canonical(coarse, scattered);
@@ -82,8 +86,7 @@ double log_evidence_near(const ClassFit& coarse, double least, const EvidenceCon
         placed ? evidence_of(*placed, scattered, inflation, context.work) : std::nullopt;
     if (evidence) {
       const Left left = left_by(*placed, scattered);
-      sum = log_add(sum, of_each -
-                             (left.log_deviations - left_by(*at_noise, reduced).log_deviations) -
+      sum = log_add(sum, of_each - (left.log_deviations - at_noise->log_deviations) -
                              0.5 * left.chi2 / inflation + evidence->log_occam);
     }
   }
