@@ -69,7 +69,7 @@ class Reader {
     } else if (reflection.HasField(config_, descriptor)) {
       if constexpr (std::is_same_v<Field, std::string>) {
         field = reflection.GetString(config_, descriptor);
-      } else if constexpr (std::is_same_v<Field, bool>) {
+      } else if constexpr (is_switch<Field>) {
         field = reflection.GetBool(config_, descriptor);
       } else if constexpr (std::is_integral_v<Field>) {
         field = reflection.GetUInt32(config_, descriptor);
@@ -113,6 +113,8 @@ class Writer {
       reflection.SetString(&config_, descriptor, field);
     } else if constexpr (std::is_same_v<Field, bool>) {
       reflection.SetBool(&config_, descriptor, field);
+    } else if constexpr (std::is_same_v<Field, std::optional<bool>>) {
+      if (field) reflection.SetBool(&config_, descriptor, *field);
     } else if constexpr (std::is_integral_v<Field>) {
       reflection.SetUInt32(&config_, descriptor, static_cast<std::uint32_t>(field));
     } else if constexpr (std::is_same_v<Field, Seconds>) {

@@ -59,7 +59,7 @@ void add_flags(CLI::App& app, NodeConfig& flags) {
         throw CLI::ValidationError(palpate::flag_of(name), why);
       }
     };
-    if constexpr (std::is_same_v<Field, bool>) {
+    if constexpr (palpate::is_switch<Field>) {
       const std::string names =
           palpate::flag_of(name) + ",!--no-" + palpate::flag_of(name).substr(2);
       app.add_flag_function(

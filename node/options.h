@@ -38,9 +38,9 @@ struct NodeOptions {
 };
 
 /// The table of options. Calls visit(OptionInfo, field) for every option; `field` is a reference
-/// into `options` of type std::string, std::vector<std::string>, bool, std::uint32_t, std::size_t,
-/// double, or a duration in seconds (double). To add an option, add a line here and a field in
-/// NodeConfig.
+/// into `options` of type std::string, std::vector<std::string>, bool, std::optional<bool>,
+/// std::uint32_t, std::size_t, double, or a duration in seconds (double). To add an option, add a
+/// line here and a field in NodeConfig.
 template <typename Options, typename Visit>
 void for_each_option(Options& options, Visit&& visit) {
   constexpr double kMostMessages = 1e6;

@@ -214,11 +214,20 @@ double inflation_of_probes(std::span<const ProbedPatch> patches) {
   return count > 0 ? 1.0 + sum / static_cast<double>(count) : 1.0;
 }
 
+/// RecognizerOptions::unqualified_probe, decided for the patches without a file.
+bool any_unqualified(std::span<const ProbedPatch> patches, const RecognizerOptions& options) {
+  const auto states_no_noise = [](const ContactSample& sample) { return !(sample.sigma_m > 0.0); };
+  return std::any_of(patches.begin(), patches.end(), [&](const ProbedPatch& patch) {
+    return patch.probe == nullptr &&
+           options.unqualified_probe.value_or(
+               !(options.sigma_m > 0.0) &&
+               std::any_of(patch.samples.begin(), patch.samples.end(), states_no_noise));
+  });
+}
+
 ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
                                    RecognizerOptions options) {
-  options.unqualified_probe = options.unqualified_probe &&
-                              std::any_of(patches.begin(), patches.end(),
-                                          [](const auto& patch) { return patch.probe == nullptr; });
+  options.unqualified_probe = any_unqualified(patches, options);
   std::vector<ProbedPatch> raw;
   double coherent = 0.0;
   for (const ProbedPatch& patch : patches) {
@@ -262,11 +271,12 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
     answer.covariance = plain.covariance;
     best.covariance = plain.hypotheses.front().covariance;
     // If neighbours err together, the deviations of the files explain part of it; these are added
-    // below. (With a stated form deviation the two cannot be separated, and both count.)
+    // below. (With a stated form deviation, or with patches of a probe without a file, the two
+    // cannot be separated, and both count.)
     const bool has_file = std::any_of(patches.begin(), patches.end(), [](const ProbedPatch& patch) {
       return patch.probe != nullptr;
     });
-    if (has_file && plain.white_covariance.size() > 0) {
+    if (has_file && !plain.unqualified_probe && plain.white_covariance.size() > 0) {
       const double seen = plain.covariance_inflation;
       const bool together = plain.noise_correlation_m > 0.0 && !(options.form_deviation_m > 0.0);
       const double share = together ? std::max(1.0, seen / inflation_of_probes(corrected)) : seen;

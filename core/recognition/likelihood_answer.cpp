@@ -113,6 +113,7 @@ Recognition answer_by_likelihood(const Weighing& w, const BestMoments& moments,
   answer.sigma_m = residual_noise_m(w);
   answer.noise_correlation_m = w.correlation_length * w.data.scale;
   answer.covariance_inflation = w.inflation;
+  answer.unqualified_probe = w.unqualified_probe;
   answer.doubt = doubt_about(w, best, options, stored);
   answer.status =
       answer.doubt == Doubt::None ? RecognitionStatus::Recognized : RecognitionStatus::Ambiguous;

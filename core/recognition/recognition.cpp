@@ -2,6 +2,10 @@
 
 namespace palpate {
 
+ShapePoseCovariance noise_covariance(const Recognition& recognition) {
+  return recognition.covariance_inflation * recognition.white_covariance;
+}
+
 std::string_view name_of(Doubt doubt) {
   switch (doubt) {
     case Doubt::None:

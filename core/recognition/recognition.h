@@ -93,7 +93,14 @@ struct Recognition {
   /// Factor on white_covariance if larger noise, correlated residuals and stated form error are all
   /// counted as additional white noise.
   double covariance_inflation = 1.0;
+  /// True if covariance and probabilities contain what a probe that nobody has measured may hide
+  /// (RecognizerOptions::unqualified_probe).
+  bool unqualified_probe = false;
   WorkBudget work;  ///< that the answer took, and whether there was more to do
 };
+
+/// Covariance of the most probable hypothesis if the probe errs by noise alone. Empty if there is
+/// none.
+ShapePoseCovariance noise_covariance(const Recognition& recognition);
 
 }  // namespace palpate

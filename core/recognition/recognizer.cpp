@@ -273,7 +273,9 @@ class Recognizer::Impl {
                                  std::span<const SidedStart> starts, Starts which,
                                  WorkBudget& work) const {
     Weighed weighed{
-        weigh_in_full(data, sigma_known, patches, work, weigh_options(), starts), {}, {}};
+        weigh_in_full(data, sigma_known, patches, work, weigh_options(sigma_known), starts),
+        {},
+        {}};
     Weighing& w = weighed.w;
     const auto kept = without_outliers(w, data, sigma_known, options_.false_outlier_probability);
     if (kept && work.allows()) {
@@ -283,7 +285,8 @@ class Recognizer::Impl {
       for (SidedStart& sided : nearer) {
         sided.start.no_conic = false;  // among the outliers
       }
-      Weighing again = weigh_in_full(*kept, sigma_known, patches, work, weigh_options(), nearer);
+      Weighing again =
+          weigh_in_full(*kept, sigma_known, patches, work, weigh_options(sigma_known), nearer);
       if (!work.was_cut()) {  // else the one before says more
         w = std::move(again);
         weighed.outliers = left_out(data, *kept);
@@ -292,9 +295,9 @@ class Recognizer::Impl {
     return weighed;
   }
 
-  WeighOptions weigh_options() const {
+  WeighOptions weigh_options(bool sigma_known) const {
     return {options_.classes, options_.recognized_probability, options_.form_deviation_m,
-            options_.unqualified_probe, options_.touched_from};
+            options_.unqualified_probe.value_or(!sigma_known), options_.touched_from};
   }
 
   /// Weighed again with the spikes that the best class explains, where the class stands then.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,9 +40,10 @@ struct RecognizerOptions {
   /// True if nobody has measured the probe's systematic deviations. Smooth deviations with
   /// the direction of the normal (lobes, tip radius) and along a stroke (drift) are then as
   /// probable as none, of any size that the residuals allow. Covariances and class probabilities
-  /// include them. False: they are included only where the residuals look correlated.
-  /// MaximumLikelihood only; costs a few milliseconds per answer.
-  bool unqualified_probe = false;
+  /// include them. False: they are included only where the residuals look correlated. Not set: true
+  /// unless the noise of every sample is stated: whoever knows that has measured the probe.
+  /// MaximumLikelihood only.
+  std::optional<bool> unqualified_probe;
   /// Where tips touch that have no stated side. Unknown: the answer is that from outside where the
   /// samples allow it; it is RECOGNIZED only if they rule out the others. A line has no outside.
   /// MaximumLikelihood only.

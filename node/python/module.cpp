@@ -150,8 +150,8 @@ class ComputeTime {
 class Recognizer {
  public:
   Recognizer(double sigma_m, const std::vector<std::string>& classes, double form_deviation_m,
-             bool unqualified_probe, std::size_t most_patches, std::size_t most_samples_per_patch,
-             const std::string& touched_from)
+             std::optional<bool> unqualified_probe, std::size_t most_patches,
+             std::size_t most_samples_per_patch, const std::string& touched_from)
       : recognizer_(options_of(sigma_m, classes, form_deviation_m, unqualified_probe, most_patches,
                                most_samples_per_patch, touched_from)) {}
 
@@ -219,12 +219,10 @@ class Recognizer {
   }
 
  private:
-  static palpate::RecognizerOptions options_of(double sigma_m,
-                                               const std::vector<std::string>& classes,
-                                               double form_deviation_m, bool unqualified_probe,
-                                               std::size_t most_patches,
-                                               std::size_t most_samples_per_patch,
-                                               const std::string& touched_from) {
+  static palpate::RecognizerOptions options_of(
+      double sigma_m, const std::vector<std::string>& classes, double form_deviation_m,
+      std::optional<bool> unqualified_probe, std::size_t most_patches,
+      std::size_t most_samples_per_patch, const std::string& touched_from) {
     for (const auto& [name, value] :
          {std::pair("sigma", sigma_m), std::pair("form_deviation", form_deviation_m)}) {
       if (!(std::isfinite(value) && value >= 0.0)) {
@@ -354,8 +352,8 @@ py::dict fit_given(const std::string& name, const Array& points, const Array& si
 
 PYBIND11_MODULE(_core, module) {
   py::class_<Recognizer>(module, "Recognizer")
-      .def(py::init<double, const std::vector<std::string>&, double, bool, std::size_t, std::size_t,
-                    const std::string&>())
+      .def(py::init<double, const std::vector<std::string>&, double, std::optional<bool>,
+                    std::size_t, std::size_t, const std::string&>())
       .def("add", &Recognizer::add)
       .def("recognize", &Recognizer::recognize)
       .def("reset", &Recognizer::reset);
@@ -371,6 +369,9 @@ PYBIND11_MODULE(_core, module) {
   add_property(answer, "params", [](const auto& r) -> Eigen::Vector3d { return r.shape.values; });
   add_property(answer, "pose", [](const auto& r) { return pose_of(r.world_T_curve); });
   add_property(answer, "covariance", [](const auto& r) -> Eigen::MatrixXd { return r.covariance; });
+  add_property(answer, "noise_covariance",
+               [](const auto& r) -> Eigen::MatrixXd { return palpate::noise_covariance(r); });
+  add_property(answer, "unqualified_probe", [](const auto& r) { return r.unqualified_probe; });
   add_property(answer, "sample_count", [](const auto& r) { return r.sample_count; });
   add_property(answer, "outlier_count", [](const auto& r) { return r.outlier_count; });
   add_property(answer, "dwelling_count", [](const auto& r) { return r.dwelling_count; });

@@ -35,6 +35,15 @@ void fill_hypothesis(const Hypothesis& hypothesis, v1::Hypothesis& out) {
   to_wire(hypothesis.world_T_curve, *out.mutable_pose());
 }
 
+void add_row_major(const Eigen::Ref<const Eigen::MatrixXd>& matrix,
+                   google::protobuf::RepeatedField<double>* out) {
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
+      out->Add(matrix(row, column));
+    }
+  }
+}
+
 }  // namespace
 
 v1::CurveClass to_wire(CurveClass curve_class) {
@@ -137,10 +146,9 @@ void to_wire(const Recognition& recognition, const ContactSourceOf& source_of,
     to_wire(recognition.shape, *out.mutable_parameters());
     to_wire(recognition.world_T_curve, *out.mutable_pose());
     out.set_pose_symmetry(static_cast<std::uint32_t>(pose_symmetry(curve_class)));
-    for (Eigen::Index row = 0; row < recognition.covariance.rows(); ++row) {
-      for (Eigen::Index column = 0; column < recognition.covariance.cols(); ++column) {
-        out.add_covariance(recognition.covariance(row, column));
-      }
+    add_row_major(recognition.covariance, out.mutable_covariance());
+    if (recognition.unqualified_probe) {
+      add_row_major(noise_covariance(recognition), out.mutable_noise_covariance());
     }
   }
   for (const Hypothesis& hypothesis : recognition.hypotheses) {
@@ -174,6 +182,7 @@ void to_wire(const Recognition& recognition, const ContactSourceOf& source_of,
   out.set_dwelling_count(recognition.dwelling_count);
   out.set_forgotten_count(recognition.forgotten_count);
   out.set_simplified_count(recognition.simplified_count);
+  out.set_unqualified_probe(recognition.unqualified_probe);
   out.set_sigma_m(recognition.sigma_m);
   out.set_noise_correlation_m(recognition.noise_correlation_m);
 }

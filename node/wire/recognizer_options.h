@@ -2,7 +2,9 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/recognition/recognizer.h"
@@ -18,6 +20,12 @@ struct OptionInfo {
   double highest = std::numeric_limits<double>::max();
   const char* also = "";  ///< a second, shorter flag
 };
+
+/// Whether an option is a flag that --no-... takes back. One that is optional has a default that
+/// depends on others.
+template <typename Field>
+inline constexpr bool is_switch =
+    std::is_same_v<Field, bool> || std::is_same_v<Field, std::optional<bool>>;
 
 /// Converts "sigma_m" to "--sigma-m".
 std::string flag_of(std::string name);
@@ -59,8 +67,8 @@ void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& vi
        "Stated form error of the parts, a standard deviation: half of a +- tolerance [m]", 0, 1e3},
       recognizer.form_deviation_m);
   visit({"unqualified_probe",
-         "Nobody has measured the probe's lobes, radius and drift: let deviations count for which "
-         "it has no probe file"},
+         "Nobody has measured the probe's lobes, radius and drift: let all that the samples allow "
+         "of these count, except with a probe file. Default: if no noise is stated"},
         recognizer.unqualified_probe);
   visit({"touched_from",
          "Where round tips touch of which neither a material side nor a normal tells the side: "

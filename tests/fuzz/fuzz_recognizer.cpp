@@ -36,7 +36,7 @@ RecognizerOptions options_from(ByteReader& bytes) {
   if ((choices & 4) != 0) {
     options.classes = static_cast<unsigned>(bytes.byte()) << 1U;
   }
-  options.unqualified_probe = (choices & 64) != 0;
+  if ((choices & 64) != 0) options.unqualified_probe = true;  // else by the noise
   if ((choices & 8) != 0) {
     options.recognized_probability = 0.75 + 0.249 * bytes.unit();
   }

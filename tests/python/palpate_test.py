@@ -1,6 +1,7 @@
 """`import palpate`, as a robotics researcher uses it."""
 import math
 import os
+import pickle
 import subprocess
 import sys
 import threading
@@ -66,6 +67,13 @@ class Fit(unittest.TestCase):
         self.assertEqual(unqualified.curve_class, "ellipse")
         more = np.diag(unqualified.covariance) / np.diag(trusted.covariance)
         self.assertTrue((more > 1.0).all(), more)
+        np.testing.assert_allclose(unqualified.noise_covariance, trusted.covariance, rtol=1e-6)
+        # Whoever does not state the noise has not measured the probe.
+        untold, noise_alone = (palpate.fit(PATCHES, unit="mm", unqualified_probe=u) for u in (None, False))
+        self.assertEqual([r.unqualified_probe for r in (trusted, unqualified, untold, noise_alone)],
+                         [False, True, True, False])
+        np.testing.assert_allclose(untold.noise_covariance, noise_alone.covariance, rtol=1e-6)
+        self.assertEqual(pickle.loads(pickle.dumps(untold)).noise_covariance.shape, (5, 5))
 
     def test_other_powers_of_length(self):
         t = np.linspace(-30, 30, 120)

@@ -26,6 +26,12 @@ bool can_tell_deviations(const FitData& reduced, const NoiseLaw& noise, int rank
          residual_count(reduced) == reduced.points.size();
 }
 
+double rounding_of_chi2(double squares) {
+  constexpr double kOperations = 64.0;  // as many as round one after the other, or more
+  return std::max(kOperations * std::numeric_limits<double>::epsilon() * squares,
+                  std::numeric_limits<double>::min());
+}
+
 OffsetSize offset_size(const Drift& drift, int power) {
   const double ratio = std::ldexp(1.0, power);
   const double deviation = ratio * expected_offset(drift);
@@ -65,7 +71,7 @@ std::optional<OffsetCells<Highest>> offset_cells(const LeftByDrift<Highest>& lef
       continue;  // a cosine without its sine
     }
     const auto order = static_cast<std::size_t>(i / 2);
-    cells.chi2[order] = std::max(chi2, std::numeric_limits<double>::min());
+    cells.chi2[order] = std::max(chi2, scatter + left.least_chi2);
     cells.log_weight[order] = size.log_prior + noise.log_evidence(cells.chi2[order]) -
                               0.5 * left.log_determinant - std::log(root_determinant);
   }

@@ -21,14 +21,19 @@ using OffsetMatrix = Eigen::Matrix<double, offsets_to(Highest), offsets_to(Highe
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using UnknownsMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-/// Drift lengths: half of the longest run (a longer drift is a constant), then halved down to a
-/// thirty-second.
+/// All sizes go by factors of 4 (powers of 2, every other one): the residuals show none of them
+/// more precisely.
+inline constexpr int kPowerStep = 2;
+inline constexpr double kSizeFactor = 4.0;
+
+/// Drift lengths: half of the longest run (a longer drift is a constant) down to a thirty-second.
 inline constexpr int kMostHalvings = 5;
 
 /// Sizes of the offset relative to its expected size, as powers of 2: from negligible next to the
 /// drift to where Student's law has four in a thousand left.
 inline constexpr int kLeastOffset = -3;
 inline constexpr int kLargestOffset = 3;
+inline constexpr int kOffsetSizes = 1 + kLargestOffset - kLeastOffset;
 
 /// Evidence by chi-square, and the scale of variances, for noise that is known or integrated out.
 struct NoiseLaw {
@@ -78,9 +83,13 @@ template <int Highest>
 struct LeftByDrift {
   OffsetMatrix<Highest> information;  ///< information of c
   Offsets<Highest> right;             ///< information times the best c
-  double chi2 = 0.0;                  ///< without an offset
+  double chi2 = 0.0;                  ///< without an offset; at least `least_chi2`
+  double least_chi2 = 0.0;            ///< rounding_of_chi2
   double log_determinant = 0.0;
 };
+
+/// The least chi-square that a difference of sums of squares as large as `squares` can show.
+double rounding_of_chi2(double squares);
 
 /// The size of an offset by direction.
 struct OffsetSize {

@@ -31,7 +31,8 @@ std::optional<Left> left_by(const std::vector<CoherentStep>& steps, const Drift&
   const Eigen::Matrix<double, kOthers, kOthers> others =
       white.sums.bottomRightCorner<kOthers, kOthers>() - half.transpose().lazyProduct(half);
   Left left;
-  left.chi2 = others(0, 0);
+  left.least_chi2 = rounding_of_chi2(white.sums(kResidualColumn, kResidualColumn));
+  left.chi2 = std::max(others(0, 0), left.least_chi2);
   left.right = others.col(0).tail<kOffsets>();
   left.information = others.bottomRightCorner<kOffsets, kOffsets>();
   left.log_determinant = white.log_determinant + 2.0 * std::log(lower.diagonal().prod());
@@ -67,8 +68,8 @@ std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassE
   const double most = std::sqrt(likelihood.samples);
   LogSum sum{log_none};
   double prior = 0.0;
-  for (double deviation = 1.0 / most; deviation <= most; deviation *= 2.0) {
-    for (int halvings = 1; halvings <= kMostHalvings; ++halvings) {
+  for (double deviation = 1.0 / most; deviation <= most; deviation *= kSizeFactor) {
+    for (int halvings = 1; halvings <= kMostHalvings; halvings += kPowerStep) {
       if (!work.allows()) {
         return std::nullopt;
       }

@@ -39,8 +39,9 @@ ShapeAndLeft left_by(const WhiteRows<kHighestOrder>& white, Eigen::Index unknown
                      with_offsets.transpose() * left.taken.topRows(unknowns);
   left.right = white.sums.col(kResidualColumn).tail<kOffsets>() -
                with_offsets.transpose() * left.away.head(unknowns);
-  left.chi2 =
-      white.sums(kResidualColumn, kResidualColumn) - with_residual.dot(left.away.head(unknowns));
+  const double squares = white.sums(kResidualColumn, kResidualColumn);
+  left.least_chi2 = rounding_of_chi2(squares);
+  left.chi2 = std::max(squares - with_residual.dot(left.away.head(unknowns)), left.least_chi2);
   left.log_determinant = white.log_determinant + inverse.log_determinant;
   return left;
 }
@@ -61,6 +62,11 @@ struct Mixture {
 /// Adds the offsets of one size.
 void add_offsets(const ShapeAndLeft& left, const Drift& drift, const OffsetSize& size,
                  const NoiseLaw& noise, double scatter, Mixture* mixture) {
+  // No offset leaves less than nothing of what the drift has left.
+  if (!mixture->weights.counts(size.log_prior + noise.log_evidence(scatter) -
+                               0.5 * left.log_determinant)) {
+    return;
+  }
   const auto cells = offset_cells(left, size, noise, scatter);
   if (!cells ||
       std::none_of(cells->log_weight.begin(), cells->log_weight.end(),
@@ -106,20 +112,20 @@ OverSizes over_all_sizes(const std::vector<CoherentStep>& steps, Eigen::Index un
   // Deviations: from 16 times the residuals (the shape would have absorbed all but a sixteenth)
   // down by factors of 2, at most eight, to where the mean of all samples hides them.
   constexpr double kTakenUp = 16.0;
-  constexpr int kDeviations = 9;
+  constexpr int kDeviations = 5;
   const double longest = longest_run(steps);
   const double least = 1.0 / std::sqrt(samples);
   double deviation =
       std::max(kTakenUp * std::sqrt(squares / static_cast<double>(steps.size())), 2.0 * least);
   OverSizes result;
   double prior = 0.0;
-  for (int i = 0; i < kDeviations && deviation > least; ++i, deviation *= 0.5) {
-    for (int halvings = 1; halvings <= kMostHalvings; ++halvings) {
+  for (int i = 0; i < kDeviations && deviation > least; ++i, deviation /= kSizeFactor) {
+    for (int halvings = 1; halvings <= kMostHalvings; halvings += kPowerStep) {
       if (!work.allows()) {
         return {};
       }
       work.spend(WorkKind::DriftRow, kRowsOfMoment * steps.size());
-      work.spend(WorkKind::OffsetCell, 1 + kLargestOffset - kLeastOffset);
+      work.spend(WorkKind::OffsetCell, kOffsetSizes);
       const Drift drift{deviation, std::ldexp(longest, -halvings)};
       const ShapeAndLeft left = left_by(white_rows<kHighestOrder>(steps, drift), unknowns, rank);
       for (int power = kLeastOffset; power <= kLargestOffset; ++power) {

@@ -60,12 +60,30 @@ void weigh_on_reduced(std::size_t i, const EvidenceContext& context, Contenders*
   }
 }
 
+LogEvidences with_noise_alone(const Contenders& w, const EvidenceContext& context) {
+  LogEvidences logs;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    const auto& fit = w.fits[i];
+    logs[i] = fit && !fit->at_limit ? log_evidence(context.likelihood, w.evidences,
+                                                   static_cast<CurveClass>(i), fit->chi2)
+                                    : kNoEvidence;
+  }
+  return logs;
+}
+
 }  // namespace
 
 Contenders with_shared_deviations(Contenders w, const EvidenceContext& context, bool of_any_size,
                                   double margin) {
   const std::vector<std::size_t> classes = asked(w, context);
-  if (classes.empty() || (classes.size() < 2 && !of_any_size)) {
+  for (const std::size_t i : classes) {
+    weigh_on_reduced(i, context, &w);
+  }
+  const LogEvidences white = with_noise_alone(w, context);
+  const double paths =
+      log_evidence_of_unclassified(context.likelihood, w.evidences, context.arcs.smooth.chi2);
+  const bool may_be_paths = of_any_size && paths > log_sum(white) - margin;
+  if (classes.empty() || (classes.size() < 2 && !may_be_paths)) {
     return w;
   }
   LogEvidences gain{};
@@ -73,7 +91,6 @@ Contenders with_shared_deviations(Contenders w, const EvidenceContext& context, 
     if (!context.work.allows()) {
       return w;
     }
-    weigh_on_reduced(i, context, &w);
     const auto& evidence = w.evidences.classes[i];
     const auto own = evidence
                          ? log_coherent_gain(*w.evidences.on_reduced[i], *evidence, context.reduced,
@@ -86,19 +103,11 @@ Contenders with_shared_deviations(Contenders w, const EvidenceContext& context, 
       gain[i] = *own;
     }
   }
-  LogEvidences white;
   LogEvidences shared;
   for (std::size_t i = 0; i < white.size(); ++i) {
-    const auto& fit = w.fits[i];
-    white[i] = fit && !fit->at_limit ? log_evidence(context.likelihood, w.evidences,
-                                                    static_cast<CurveClass>(i), fit->chi2)
-                                     : kNoEvidence;
     shared[i] = white[i] + gain[i];
   }
-  const double paths =
-      log_evidence_of_unclassified(context.likelihood, w.evidences, context.arcs.smooth.chi2);
-  w.evidences.shared_or_other =
-      of_any_size && paths > log_sum(white) - margin && log_sum(shared) > paths;
+  w.evidences.shared_or_other = may_be_paths && log_sum(shared) > paths;
   const double more = w.evidences.shared_or_other ? 0.0 : log_sum(shared) - log_sum(white);
   if (!std::isfinite(more)) {
     return w;

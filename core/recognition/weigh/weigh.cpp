@@ -178,8 +178,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   Arcs arcs = smooth_arcs(std::move(data), sigma_known);
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
   const Evidences of_paths = evidences_of_paths(arcs.smooth, stated, work);
-  const double hopeless = options.unqualified_probe ? std::numeric_limits<double>::infinity()
-                                                    : out_of_reach(arcs, stated, of_paths);
+  const double hopeless = out_of_reach(arcs, stated, of_paths);
   std::optional<WorkBudget::Reserve> for_verdict(std::in_place, work, kShareOfVerdict);
   SidedFits sided = fit_over_sides(
       patches, {arcs, stated, work, of_paths, options.classes, hopeless, options.touched_from},
@@ -220,8 +219,10 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   }
   contenders = decided(std::move(contenders), context, margin_of(options));
   contenders = with_near_parts(std::move(contenders), context, margin_of(options));
-  return assemble_weighing(std::move(arcs), std::move(sided), std::move(contenders), context, seen,
-                           stated, std::move(best_placed));
+  Weighing weighing = assemble_weighing(std::move(arcs), std::move(sided), std::move(contenders),
+                                        context, seen, stated, std::move(best_placed));
+  weighing.unqualified_probe = options.unqualified_probe;
+  return weighing;
 }
 
 }  // namespace palpate

@@ -21,7 +21,7 @@ struct WeighOptions {
   /// Posterior probability needed for RECOGNIZED: a class that cannot prevent it is not refined.
   double recognized_probability = 0.95;
   double form_deviation_m = 0.0;   ///< as RecognizerOptions::form_deviation_m [m]
-  bool unqualified_probe = false;  ///< as RecognizerOptions::unqualified_probe
+  bool unqualified_probe = false;  ///< as RecognizerOptions::unqualified_probe, decided
   TouchedFrom touched_from = TouchedFrom::Unknown;
 };
 
@@ -42,8 +42,9 @@ struct Weighing {
   /// Of the best class on the reduced points, if it has any: input of moments_of_best().
   std::optional<ClassEvidence> best_evidence;
   std::optional<CanonicalFit> best_on_reduced;
-  Likelihood stated;        ///< the likelihood before any deviation was seen
-  bool correlated = false;  ///< neighbours may be correlated
+  Likelihood stated;               ///< the likelihood before any deviation was seen
+  bool correlated = false;         ///< neighbours may be correlated
+  bool unqualified_probe = false;  ///< WeighOptions::unqualified_probe
   /// Starts for the next weighing. The first belongs to `sides`.
   std::vector<SidedStart> starts;
   /// For each patch, the assumed side of travel on which the tip centres lie (tip_sides.h).

@@ -46,7 +46,7 @@ class Recognizer:
 
     def __init__(self, sigma: float | None = None, unit: str = "m", classes: str | Iterable[str] = (),
                  form_deviation: float = 0.0, most_patches: int = 64, most_samples_per_patch: int = 1024,
-                 unqualified_probe: bool = False, touched_from: str = "unknown") -> None:
+                 unqualified_probe: bool | None = None, touched_from: str = "unknown") -> None:
         self._unit = unit
         self._scale = units(unit)
         self._core = _core.Recognizer(self._scale * (0.0 if sigma is None else float(sigma)),
@@ -106,7 +106,7 @@ class Recognizer:
 def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_side: str = "unspecified",
         classes: str | Iterable[str] = (), form_deviation: float = 0.0, touches: bool = False,
         most_samples_per_patch: int = 1024, normals=None, normal_sigma: float | None = None,
-        unqualified_probe: bool = False, touched_from: str = "unknown") -> Result:
+        unqualified_probe: bool | None = None, touched_from: str = "unknown") -> Result:
     """Recognises one object and returns the Result. Raises ValueError if an argument is invalid.
 
     points: an array (n, 2) of one patch, or a list of such arrays.
@@ -116,8 +116,9 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
     material_side: "left", "right" or "unspecified", seen along the direction of travel.
     touches: every point is a touch of its own; their order does not matter.
     form_deviation: standard deviation of the part's surface from its ideal curve, e.g. half of a +- tolerance.
-    unqualified_probe: set it if nobody has measured the probe's lobes, tip radius and drift. Uncertainties and class
-    probabilities then include such deviations, in any size that the residuals permit.
+    unqualified_probe: True if nobody has measured the probe's lobes, tip radius and drift. Uncertainties and class
+    probabilities then include such deviations, in any size that the residuals permit. False: only if the residuals
+    show them. None: True unless the noise of every point or a form deviation is stated.
     touched_from: where round tips touch if neither material_side nor a normal tells it: "outside" (a pin, a boss),
     "inside" (a bore) or "unknown".
     normals: measured normals of the surface, in arrays like the points; see Recognizer.add. None in place of an array

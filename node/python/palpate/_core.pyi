@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 class Recognizer:
-    def __init__(self, sigma_m: float, classes: list[str], form_deviation_m: float, unqualified_probe: bool,
+    def __init__(self, sigma_m: float, classes: list[str], form_deviation_m: float, unqualified_probe: bool | None,
                  most_patches: int, most_samples_per_patch: int, touched_from: str, /) -> None: ...
     def add(self, points: ArrayLike, sigma_m: ArrayLike, probe: int, patch: int, tip_radius_m: float,
             material_side: str, normals: ArrayLike, normal_sigma_rad: ArrayLike, covariances_m2: ArrayLike,
@@ -27,6 +27,10 @@ class Answer:
     def pose(self) -> tuple[float, float, float]: ...
     @property
     def covariance(self) -> NDArray[np.float64]: ...
+    @property
+    def noise_covariance(self) -> NDArray[np.float64]: ...
+    @property
+    def unqualified_probe(self) -> bool: ...
     @property
     def sample_count(self) -> int: ...
     @property

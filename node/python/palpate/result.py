@@ -15,7 +15,7 @@ _UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "nm": 1e-9, "in": 0.0254
 _POWERS = {"cubical_parabola": {"a": -2.0, "c": 0.0},
            "semi_cubical_parabola": {"a": -0.5, "b": 0.0},
            "cubic_spline": {"a": -0.5, "b": 0.0, "c": 0.5}}
-_KEPT = ("has_shape", "params", "pose", "covariance", "hypotheses", "contacts", "noise_correlation_m")
+_KEPT = ("has_shape", "params", "pose", "covariance", "noise_covariance", "hypotheses", "contacts", "noise_correlation_m")
 
 
 def units(name: str) -> float:
@@ -39,6 +39,8 @@ class Result:
     sample_count: points that the answer is based on. outlier_count: points set aside as spikes. forgotten_count: points
     forgotten to make room. dwelling_count: points merged because the probe stood still. simplified_count: points whose
     normal or covariance is used only in part.
+    unqualified_probe: covariance and probabilities contain what a probe that nobody has measured may hide (see fit()).
+    noise_covariance: as covariance, if the probe erred by noise alone.
     compute_s: computing time in seconds since the answer before, without the conversion from and to Python."""
 
     def __init__(self, core: _core.Answer, unit: str, touched: np.ndarray, tip_radius: float) -> None:
@@ -62,17 +64,24 @@ class Result:
         self.dwelling_count = core.dwelling_count
         self.forgotten_count = core.forgotten_count
         self.simplified_count = core.simplified_count
+        self.unqualified_probe = core.unqualified_probe
 
     def __getstate__(self) -> dict[str, Any]:
         """For pickle and copy.deepcopy: values in place of what only this process has."""
         state = {name: value for name, value in vars(self).items() if name != "_curve"}
         return state | {"_core": SimpleNamespace(**{name: getattr(self._core, name) for name in _KEPT})}
 
+    def _in_unit(self, covariance: np.ndarray) -> np.ndarray:
+        factors = np.array(self._factors + [1 / self._scale, 1 / self._scale, 1.0])
+        return covariance * np.outer(factors, factors) if covariance.shape[0] == len(factors) else np.empty((0, 0))
+
     @cached_property
     def covariance(self) -> np.ndarray:
-        factors = np.array(self._factors + [1 / self._scale, 1 / self._scale, 1.0])
-        covariance = self._core.covariance
-        return covariance * np.outer(factors, factors) if covariance.shape[0] == len(factors) else np.empty((0, 0))
+        return self._in_unit(self._core.covariance)
+
+    @cached_property
+    def noise_covariance(self) -> np.ndarray:
+        return self._in_unit(self._core.noise_covariance)
 
     @cached_property
     def probabilities(self) -> dict[str, float]:

@@ -53,8 +53,12 @@ void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
   for_each_recognizer_option(fit.words, fit.recognizer, [&](const OptionInfo& info, auto& field) {
     using Field = std::decay_t<decltype(field)>;
     const std::string flag = flags_of(info);
-    if constexpr (std::is_same_v<Field, bool>) {
-      command.add_flag(flag, field, info.help)->group("Recognition");
+    if constexpr (is_switch<Field>) {
+      command
+          .add_flag_function(
+              flag + ",!--no-" + flag.substr(2),
+              [&field](std::int64_t count) { field = count > 0; }, info.help)
+          ->group("Recognition");
       return;
     }
     CLI::Option* option = command.add_option(flag, field, info.help)->group("Recognition");
@@ -62,7 +66,7 @@ void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
       option->delimiter(',')->type_name("CLASS,...")->check(curve_class_name());
     } else if constexpr (std::is_same_v<Field, std::string>) {
       option->capture_default_str()->type_name("NAME");
-    } else if constexpr (!std::is_same_v<Field, bool>) {
+    } else {
       option->capture_default_str()->type_name("NUMBER")->check(
           number_within(info.lowest, info.highest));
     }

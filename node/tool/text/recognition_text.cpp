@@ -266,6 +266,25 @@ std::string invariants_text(const v1::Recognition& answer) {
   return text;
 }
 
+namespace {
+
+/// What the uncertainties would be if the probe erred by noise alone.
+std::string text_of_unqualified(v1::Recognition answer) {
+  std::string text = "not qualified: what it may hide is in the uncertainties";
+  answer.mutable_covariance()->Swap(answer.mutable_noise_covariance());
+  const std::vector<Quantity> by_noise = quantities_of(answer);
+  const std::size_t parameters = parameters_of(answer.parameters()).size();
+  for (std::size_t i = 0; i < std::min(parameters, by_noise.size()); ++i) {
+    const std::string& quantity = by_noise[i].text;
+    const std::size_t sigma = quantity.find("+-");
+    if (sigma == std::string::npos) continue;
+    text += (i == 0 ? "; by noise alone " : ", ") + by_noise[i].name + " " + quantity.substr(sigma);
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string report_text(const v1::Recognition& answer) { return report_text(answer, true); }
 
 std::string report_text(const v1::Recognition& answer, bool noise_is_known) {
@@ -310,6 +329,7 @@ std::string report_text(const v1::Recognition& answer, bool noise_is_known) {
                " said more (normal, covariance) than a search uses";
   }
   add_line(text, "samples", samples);
+  if (answer.unqualified_probe()) add_line(text, "probe", text_of_unqualified(answer));
   for (const std::string& file : answer.probe_files())
     add_line(text, "probe file", printable(file));
   add_line(text, "time", number(1e-6 * static_cast<double>(answer.compute_ns())) + " ms");

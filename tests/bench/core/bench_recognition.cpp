@@ -1,5 +1,8 @@
 // Time of a full recognition, with all classes considered: bench_recognition
 //   cold: a new recognizer for every scene. Over 64 random scenes of each class, two patches.
+//   cold_told: the same scenes of an ellipse, with the noise stated, with it not stated but said to
+//   be
+//     all by which the probe errs, and told nothing.
 //   warm: ten more samples for a recognizer that has answered before.
 //   stream: whole scenes, ten samples at a time.
 //   live_tree: invariants and tree of an answer. The label is the mean number of contacts.
@@ -7,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <random>
 
 #include "core/recognition/fit/class_fits.h"
@@ -47,6 +51,22 @@ void cold(benchmark::State& state) {
   }
 }
 BENCHMARK(cold)->DenseRange(1, 8)->Unit(benchmark::kMicrosecond);
+
+/// Of an ellipse, by what is told.
+void cold_told(benchmark::State& state, bool noise_is_stated, std::optional<bool> unqualified) {
+  const auto scenes = scenes_of(CurveClass::Ellipse, 111, 2);
+  RecognizerOptions options;
+  options.unqualified_probe = unqualified;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const test::Scene& scene = scenes[i++ % scenes.size()];
+    benchmark::DoNotOptimize(
+        test::recognise(scene, noise_is_stated ? scene.sigma_m : 0.0, options));
+  }
+}
+BENCHMARK_CAPTURE(cold_told, noise, true, std::nullopt)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(cold_told, noise_alone, false, false)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(cold_told, nothing, false, std::nullopt)->Unit(benchmark::kMicrosecond);
 
 /// By the total number of samples, in two patches of an ellipse.
 void cold_by_samples(benchmark::State& state) {

@@ -162,17 +162,19 @@ void add_bound(const std::vector<Vec2>& points, double sigma_m, const Pose2& pos
   }
 }
 
-/// What palpate knows about the probe.
-enum class Told { Nothing, Unqualified, File };
-constexpr Told kAllTold[] = {Told::Nothing, Told::Unqualified, Told::File};
+/// What palpate knows about the probe: the default, or that it errs by noise alone, or its file.
+enum class Told { Nothing, NoiseAlone, File };
+constexpr Told kAllTold[] = {Told::Nothing, Told::NoiseAlone, Told::File};
 
 std::string name_of(Told told) {
-  return told == Told::Nothing ? "nothing" : told == Told::Unqualified ? "unqualified" : "its file";
+  return told == Told::Nothing      ? "nothing"
+         : told == Told::NoiseAlone ? "that it errs by noise alone"
+                                    : "its file";
 }
 
 RecognizerOptions options_of(Told told) {
   RecognizerOptions options;
-  options.unqualified_probe = told == Told::Unqualified;
+  if (told == Told::NoiseAlone) options.unqualified_probe = false;
   options.touched_from = TouchedFrom::Outside;  // a pusher pushes
   return options;
 }
@@ -196,12 +198,12 @@ std::vector<Vec2> arc_of(const std::vector<Vec2>& all, const Vec2& centre, int d
 /// Arcs of the ring itself: how many are RECOGNIZED as a circle, and how many as something else.
 void print_ring(const Ring& ring, std::ostream& out) {
   const Recording& whole = ring.recording;
-  const Recognition centred = recognise(whole.context, whole.points, options_of(Told::Unqualified));
+  const Recognition centred = recognise(whole.context, whole.points, options_of(Told::Nothing));
   out << "\n| arc of the ring [deg] | told of the probe | RECOGNIZED as a circle | as anything "
          "else "
          "| AMBIGUOUS |\n|---|---|---|---|---|\n";
   for (const int degrees : {60, 90, 120, 180, 270, 360}) {
-    for (const Told told : {Told::Nothing, Told::Unqualified}) {
+    for (const Told told : {Told::Nothing, Told::NoiseAlone}) {
       int circles = 0;
       int others = 0;
       for (int i = 0; i < kStarts; ++i) {

@@ -83,7 +83,10 @@ TEST(RecognitionHardCases, OnePatchOfItCannotTell) {
 
 TEST(RecognitionHardCases, UnknownNoiseIsEstimated) {
   std::mt19937_64 rng = test::test_rng();
-  const Recognition answer = recognise({elliptic_arc(0.3, rng, 0.0), elliptic_arc(2.5, rng, 0.0)});
+  RecognizerOptions only_noise;
+  only_noise.unqualified_probe = false;
+  const Recognition answer =
+      recognise({elliptic_arc(0.3, rng, 0.0), elliptic_arc(2.5, rng, 0.0)}, {}, only_noise);
   expect_the_ellipse(answer);
   // The relative standard deviation of such an estimate is 1 / sqrt(2 * 217) = 5 %.
   EXPECT_NEAR(answer.sigma_m / 5e-5, 1.0, 0.2);

@@ -214,6 +214,30 @@ TEST(UnqualifiedProbe, LeavesPlainEllipsesRecognized) {
   }
 }
 
+/// Whoever does not state the noise has not measured the probe; whoever states it has, unless he
+/// says otherwise.
+TEST(UnqualifiedProbe, IsOneWhoseNoiseIsNotStated) {
+  std::mt19937_64 rng = test::test_rng();
+  Touched scene = touched({1.0, 0.7}, 1e-3, false, rng);
+  const auto answer_to = [&](std::optional<bool> unqualified) {
+    RecognizerOptions options;
+    options.unqualified_probe = unqualified;
+    Recognizer recognizer(options);
+    recognizer.add({}, scene.samples);
+    return recognizer.recognize();
+  };
+  EXPECT_TRUE(answer_to(std::nullopt).unqualified_probe);
+  EXPECT_EQ(answer_to(std::nullopt).covariance, answer_to(true).covariance);
+  EXPECT_FALSE(answer_to(false).unqualified_probe);
+  EXPECT_LT(answer_to(false).covariance(0, 0), answer_to(true).covariance(0, 0));
+  for (ContactSample& sample : scene.samples) sample.sigma_m = 1e-3;
+  EXPECT_FALSE(answer_to(std::nullopt).unqualified_probe);
+  EXPECT_EQ(answer_to(std::nullopt).covariance, answer_to(false).covariance);
+  EXPECT_TRUE(answer_to(true).unqualified_probe);
+  scene.samples.front().sigma_m = 0.0;  // one is enough: the noise of all is then estimated
+  EXPECT_TRUE(answer_to(std::nullopt).unqualified_probe);
+}
+
 TEST(UnqualifiedProbe, RegionsHoldTheShape) {
   std::mt19937_64 rng = test::test_rng();
   // The moment is that of a mixture with long tails. The 95 % region of a normal distribution with

@@ -62,7 +62,9 @@ TEST(Config, OptionsReachTheRecognizer) {
   const Result<NodeOptions> options = make_options(config);
   ASSERT_TRUE(options) << options.error;
   EXPECT_EQ(options.value->intake.recognizer.form_deviation_m, 5e-5);
-  EXPECT_TRUE(options.value->intake.recognizer.unqualified_probe);
+  EXPECT_EQ(options.value->intake.recognizer.unqualified_probe, true);
+  EXPECT_EQ(make_options({}).value->intake.recognizer.unqualified_probe, std::nullopt);
+  EXPECT_FALSE(to_config(NodeOptions()).has_unqualified_probe());
   EXPECT_EQ(options.value->intake.recognizer.touched_from, TouchedFrom::Inside);
   ASSERT_EQ(set_option(config, "touched_from", "within"), "");
   EXPECT_THAT(make_options(config).error, HasSubstr("touched_from: expected outside, inside"));

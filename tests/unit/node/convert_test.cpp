@@ -54,6 +54,19 @@ TEST(Convert, LettersTellWhichParametersArePresent) {
   EXPECT_EQ(cubical.c(), 0.5);  // second value, letter c
 }
 
+TEST(Convert, WhatNoiseAloneWouldLeaveGoesWithAnUnqualifiedProbe) {
+  Recognition recognition = spline_recognition();
+  recognition.unqualified_probe = true;
+  recognition.white_covariance = ShapePoseCovariance::Identity(5, 5);
+  recognition.covariance_inflation = 3.0;
+  v1::Recognition out;
+  to_wire(recognition, no_source, out);
+  EXPECT_TRUE(out.unqualified_probe());
+  ASSERT_EQ(out.noise_covariance_size(), 25);
+  EXPECT_EQ(out.noise_covariance(2 * 5 + 2), 3.0);
+  EXPECT_EQ(out.noise_covariance(2 * 5 + 1), 0.0);
+}
+
 TEST(Convert, ARecognitionArrivesWhole) {
   Recognition recognition = spline_recognition();
   Hypothesis winner;
@@ -100,6 +113,8 @@ TEST(Convert, ARecognitionArrivesWhole) {
   EXPECT_EQ(out.pose_symmetry(), 2U);
   ASSERT_EQ(out.covariance_size(), 25);
   EXPECT_EQ(out.covariance(2 * 5 + 4), 8.0);
+  EXPECT_FALSE(out.unqualified_probe());
+  EXPECT_EQ(out.noise_covariance_size(), 0);
   ASSERT_EQ(out.hypotheses_size(), 2);
   EXPECT_EQ(out.hypotheses(0).probability(), 0.9);
   EXPECT_EQ(out.hypotheses(0).dof(), 115U);

@@ -84,6 +84,35 @@ TEST(ProbeCorrection, WithTheFileTheEllipseIsAtTheBoundAndHeld) {
   EXPECT_GE(held_without, band(0.9).least);
 }
 
+// A file speaks for its own probe only.
+TEST(ProbeCorrection, AProbeBesideOneWithAFileIsUnqualifiedUnlessItsNoiseIsStated) {
+  auto rng = test::test_rng();
+  test::ProbeScene ring;
+  ring.probe = test::lobed_probe();
+  const std::vector<ArtefactRecording> recordings = {simulate(ring, rng)};
+  const Qualification qualification = qualify(ring.curve, recordings);
+  test::ProbeScene part = ring;
+  part.curve = Ellipse{0.03, 0.022};
+  std::vector<ProbedPatch> patches = patches_of(simulate(part, rng), &qualification.probe);
+  ASSERT_GT(patches.size(), 1U);
+  const auto answer_to = [&](std::optional<bool> unqualified, double sigma_m) {
+    RecognizerOptions options;
+    options.unqualified_probe = unqualified;
+    options.sigma_m = sigma_m;
+    return recognise_probed(patches, options).recognition;
+  };
+  EXPECT_FALSE(answer_to(std::nullopt, 0.0).unqualified_probe);
+  EXPECT_FALSE(answer_to(true, 0.0).unqualified_probe);  // no patch that this concerns
+  patches.back().probe = nullptr;
+  for (ContactSample& sample : patches.back().samples) sample.sigma_m = 0.0;
+  const Recognition untold = answer_to(std::nullopt, 0.0);
+  EXPECT_TRUE(untold.unqualified_probe);
+  EXPECT_FALSE(answer_to(false, 0.0).unqualified_probe);
+  EXPECT_GT(untold.covariance(0, 0), answer_to(false, 0.0).covariance(0, 0));
+  EXPECT_FALSE(answer_to(std::nullopt, 1e-5).unqualified_probe);
+  EXPECT_TRUE(answer_to(true, 1e-5).unqualified_probe);
+}
+
 // What neighbours share stands in the local estimates too.
 TEST(ProbeCorrection, WithoutTheFileContactsHoldTheCurvature) {
   auto rng = test::test_rng();

@@ -106,6 +106,20 @@ class Fit(unittest.TestCase):
         estimated, _ = self.answers("-", text_in=text)
         self.assertLess(abs(estimated[0].sigma_m / SIGMA - 1), 5 / math.sqrt(2 * 217))
 
+    def test_a_probe_of_unknown_noise_may_hide_more_than_that(self):
+        path = self.write("unstated.csv", HEADER.replace("sigma_m,", "") + "".join(
+            ",".join(row.split(",")[:4] + row.split(",")[5:]) + "\n" for row in ellipse().splitlines()))
+        untold, noise_alone, stated, said = (self.answers(path, *flags)[0][0] for flags in (
+            (), ("--no-unqualified-probe",), ("--sigma", SIGMA), ("--sigma", SIGMA, "--unqualified-probe")))
+        self.assertEqual([a.unqualified_probe for a in (untold, noise_alone, stated, said)],
+                         [True, False, False, True])
+        for answer in (untold, said):
+            self.check_ellipse(answer)
+            self.assertLess(answer.noise_covariance[0], answer.covariance[0])
+        self.assertEqual(len(noise_alone.noise_covariance), 0)
+        _, out, _ = run(TOOL, "fit", "--format", "text", path)
+        self.assertRegex(out, r"probe +not qualified: .* by noise alone a \+- [0-9.]+ mm, b \+- [0-9.]+ mm")
+
     def test_sigma_that_the_file_overrules_is_told(self):
         stated = HEADER + ellipse()
         mixed = HEADER + "".join(line.replace(repr(SIGMA), "") if i < 10 else line
