@@ -21,7 +21,7 @@ using OffsetMatrix = Eigen::Matrix<double, offsets_to(Highest), offsets_to(Highe
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using UnknownsMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-/// All sizes go by factors of 4 (powers of 2, every other one): the residuals show none of them
+/// A drift's size and length go by factors of 4 (every other power of 2): residuals show neither
 /// more precisely.
 inline constexpr int kPowerStep = 2;
 inline constexpr double kSizeFactor = 4.0;

@@ -110,7 +110,7 @@ OverSizes over_all_sizes(const std::vector<CoherentStep>& steps, Eigen::Index un
     squares += step.at.residual * step.at.residual;
   }
   // Deviations: from 16 times the residuals (the shape would have absorbed all but a sixteenth)
-  // down by factors of 2, at most eight, to where the mean of all samples hides them.
+  // down by factors of 4, at most four, to where the mean of all samples hides them.
   constexpr double kTakenUp = 16.0;
   constexpr int kDeviations = 5;
   const double longest = longest_run(steps);

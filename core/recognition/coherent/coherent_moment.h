@@ -27,7 +27,7 @@ struct CoherentMoment {
 /// the model is linear about `placed`, the class on `reduced`. `sigma`: noise of the typical point,
 /// normalised. `scatter`: chi-square of all samples about the reduced points, the same for every
 /// class. The result is in metres and radians, world frame. nullopt if there are too few points for
-/// a variance, or normals at touches. O(points), in at most 46 passes.
+/// a variance, or normals at touches. O(points), in at most 16 passes.
 std::optional<CoherentMoment> coherent_moment(const CanonicalFit& placed, const FitData& reduced,
                                               const Likelihood& likelihood, double sigma,
                                               double scatter, WorkBudget& work);
