@@ -60,10 +60,9 @@ void add_flags(CLI::App& app, NodeConfig& flags) {
       }
     };
     if constexpr (palpate::is_switch<Field>) {
-      const std::string names =
-          palpate::flag_of(name) + ",!--no-" + palpate::flag_of(name).substr(2);
       app.add_flag_function(
-          names, [set](std::int64_t count) { set(count > 0 ? "true" : "false"); }, info.help);
+          palpate::switch_flags_of(info),
+          [set](std::int64_t count) { set(count > 0 ? "true" : "false"); }, info.help);
     } else if constexpr (std::is_same_v<Field, std::vector<std::string>>) {
       app.add_option_function<std::vector<std::string>>(
              palpate::flags_of(info),

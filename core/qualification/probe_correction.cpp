@@ -214,20 +214,13 @@ double inflation_of_probes(std::span<const ProbedPatch> patches) {
   return count > 0 ? 1.0 + sum / static_cast<double>(count) : 1.0;
 }
 
-/// RecognizerOptions::unqualified_probe, decided for the patches without a file.
-bool any_unqualified(std::span<const ProbedPatch> patches, const RecognizerOptions& options) {
-  const auto states_no_noise = [](const ContactSample& sample) { return !(sample.sigma_m > 0.0); };
-  return std::any_of(patches.begin(), patches.end(), [&](const ProbedPatch& patch) {
-    return patch.probe == nullptr &&
-           options.unqualified_probe.value_or(
-               !(options.sigma_m > 0.0) &&
-               std::any_of(patch.samples.begin(), patch.samples.end(), states_no_noise));
-  });
-}
-
 ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
                                    RecognizerOptions options) {
-  options.unqualified_probe = any_unqualified(patches, options);
+  // A patch with a file has a noise, so that others decide whether one is not stated.
+  if (std::all_of(patches.begin(), patches.end(),
+                  [](const ProbedPatch& patch) { return patch.probe != nullptr; })) {
+    options.unqualified_probe = false;
+  }
   std::vector<ProbedPatch> raw;
   double coherent = 0.0;
   for (const ProbedPatch& patch : patches) {
@@ -269,6 +262,8 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
     answer.shape = best.shape = plain.shape;
     answer.world_T_curve = best.world_T_curve = plain.world_T_curve;
     answer.covariance = plain.covariance;
+    answer.white_covariance = plain.white_covariance;
+    answer.covariance_inflation = plain.covariance_inflation;
     best.covariance = plain.hypotheses.front().covariance;
     // If neighbours err together, the deviations of the files explain part of it; these are added
     // below. (With a stated form deviation, or with patches of a probe without a file, the two

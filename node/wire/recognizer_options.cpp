@@ -17,6 +17,10 @@ std::string flags_of(const OptionInfo& info) {
   return (also.empty() ? "" : also + ",") + flag_of(info.name);
 }
 
+std::string switch_flags_of(const OptionInfo& info) {
+  return flags_of(info) + ",!--no-" + flag_of(info.name).substr(2);
+}
+
 std::string resolve(const RecognizerWords& words, RecognizerOptions& recognizer) {
   if (words.method == "ml") {
     recognizer.method = RecognitionMethod::MaximumLikelihood;

@@ -33,6 +33,9 @@ std::string flag_of(std::string name);
 /// The flags of an option in CLI11's form, e.g. "--sigma,--sigma-m".
 std::string flags_of(const OptionInfo& info);
 
+/// The same of a switch, with the flag that takes it back: "--insecure,!--no-insecure".
+std::string switch_flags_of(const OptionInfo& info);
+
 /// The recognizer's options that are given as words.
 struct RecognizerWords {
   std::string method = "ml";

@@ -24,7 +24,7 @@ using UnknownsMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 /// A drift's size and length go by factors of 4 (every other power of 2): residuals show neither
 /// more precisely.
 inline constexpr int kPowerStep = 2;
-inline constexpr double kSizeFactor = 4.0;
+inline constexpr double kSizeFactor = 1 << kPowerStep;
 
 /// Drift lengths: half of the longest run (a longer drift is a constant) down to a thirty-second.
 inline constexpr int kMostHalvings = 5;
@@ -33,7 +33,6 @@ inline constexpr int kMostHalvings = 5;
 /// drift to where Student's law has four in a thousand left.
 inline constexpr int kLeastOffset = -3;
 inline constexpr int kLargestOffset = 3;
-inline constexpr int kOffsetSizes = 1 + kLargestOffset - kLeastOffset;
 
 /// Evidence by chi-square, and the scale of variances, for noise that is known or integrated out.
 struct NoiseLaw {

@@ -125,7 +125,7 @@ OverSizes over_all_sizes(const std::vector<CoherentStep>& steps, Eigen::Index un
         return {};
       }
       work.spend(WorkKind::DriftRow, kRowsOfMoment * steps.size());
-      work.spend(WorkKind::OffsetCell, kOffsetSizes);
+      work.spend(WorkKind::OffsetCell, 1 + kLargestOffset - kLeastOffset);
       const Drift drift{deviation, std::ldexp(longest, -halvings)};
       const ShapeAndLeft left = left_by(white_rows<kHighestOrder>(steps, drift), unknowns, rank);
       for (int power = kLeastOffset; power <= kLargestOffset; ++power) {

@@ -60,6 +60,7 @@ void weigh_on_reduced(std::size_t i, const EvidenceContext& context, Contenders*
   }
 }
 
+/// Evidences of the classes without such deviations.
 LogEvidences with_noise_alone(const Contenders& w, const EvidenceContext& context) {
   LogEvidences logs;
   for (std::size_t i = 0; i < logs.size(); ++i) {

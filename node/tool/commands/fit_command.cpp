@@ -52,16 +52,15 @@ struct FitCommand {
 void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
   for_each_recognizer_option(fit.words, fit.recognizer, [&](const OptionInfo& info, auto& field) {
     using Field = std::decay_t<decltype(field)>;
-    const std::string flag = flags_of(info);
     if constexpr (is_switch<Field>) {
       command
           .add_flag_function(
-              flag + ",!--no-" + flag.substr(2),
-              [&field](std::int64_t count) { field = count > 0; }, info.help)
+              switch_flags_of(info), [&field](std::int64_t count) { field = count > 0; }, info.help)
           ->group("Recognition");
       return;
     }
-    CLI::Option* option = command.add_option(flag, field, info.help)->group("Recognition");
+    CLI::Option* option =
+        command.add_option(flags_of(info), field, info.help)->group("Recognition");
     if constexpr (std::is_same_v<Field, std::vector<std::string>>) {
       option->delimiter(',')->type_name("CLASS,...")->check(curve_class_name());
     } else if constexpr (std::is_same_v<Field, std::string>) {

@@ -1,8 +1,7 @@
 // Time of a full recognition, with all classes considered: bench_recognition
 //   cold: a new recognizer for every scene. Over 64 random scenes of each class, two patches.
-//   cold_told: the same scenes of an ellipse, with the noise stated, with it not stated but said to
-//   be
-//     all by which the probe errs, and told nothing.
+//   cold_told: the same scenes of an ellipse: with the noise stated; not stated, but said to be all
+//     by which the probe errs; and told nothing.
 //   warm: ten more samples for a recognizer that has answered before.
 //   stream: whole scenes, ten samples at a time.
 //   live_tree: invariants and tree of an answer. The label is the mean number of contacts.

@@ -109,6 +109,8 @@ TEST(ProbeCorrection, AProbeBesideOneWithAFileIsUnqualifiedUnlessItsNoiseIsState
   EXPECT_TRUE(untold.unqualified_probe);
   EXPECT_FALSE(answer_to(false, 0.0).unqualified_probe);
   EXPECT_GT(untold.covariance(0, 0), answer_to(false, 0.0).covariance(0, 0));
+  // What noise alone would leave contains nothing of the file's deviations either.
+  EXPECT_LT(noise_covariance(untold)(0, 0), answer_to(false, 0.0).covariance(0, 0));
   EXPECT_FALSE(answer_to(std::nullopt, 1e-5).unqualified_probe);
   EXPECT_TRUE(answer_to(true, 1e-5).unqualified_probe);
 }
