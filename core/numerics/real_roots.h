@@ -35,10 +35,12 @@ double value(const Polynomial<kDegree>& c, double x) {
   return sum;
 }
 
-/// Newton's method inside a bracket, with bisection where Newton's method would be slow. `at_low`
-/// is the value at `low`; the value at `high` has the other sign.
+/// Newton's method inside a bracket, with bisection where Newton's method would be slow, until the
+/// value is one that rounding leaves. `at_low` is the value at `low`; the value at `high` has the
+/// other sign.
 template <int kDegree>
 double bracketed_root(const Polynomial<kDegree>& c, double low, double high, double at_low) {
+  constexpr double kRounding = std::numeric_limits<double>::epsilon();
   double x = 0.5 * (low + high);
   double last_step = high - low;
   // Newton's steps converge quadratically; 120 bisections would reach 2^-120.
@@ -46,19 +48,25 @@ double bracketed_root(const Polynomial<kDegree>& c, double low, double high, dou
   for (int i = 0; i < kMostIterations; ++i) {
     double f = c[kDegree];
     double slope = 0.0;
+    double terms = std::abs(f);  // sum of |c_k x^k|, which the rounding of f is a part of
     for (int k = kDegree - 1; k >= 0; --k) {
       slope = slope * x + f;
       f = f * x + c[k];
+      terms = terms * std::abs(x) + std::abs(c[k]);
     }
     if (f == 0.0) {
       return x;
     }
     ((f < 0.0) == (at_low < 0.0) ? low : high) = x;
     const double newton = x - f / slope;
-    const bool good = newton > low && newton < high && 2.0 * std::abs(newton - x) < last_step;
+    const bool inside = newton > low && newton < high;
+    if (std::abs(f) <= kRounding * terms) {
+      return inside ? newton : x;
+    }
+    const bool good = inside && 2.0 * std::abs(newton - x) < last_step;
     const double next = good ? newton : 0.5 * (low + high);
     last_step = std::abs(next - x);
-    if (last_step <= std::numeric_limits<double>::epsilon() * std::abs(next)) {
+    if (last_step <= kRounding * std::abs(next)) {
       return next;
     }
     x = next;

@@ -86,13 +86,12 @@ void add_other_arms(const std::vector<SeedCell>& splines, ArmSearch* search,
 
 }  // namespace
 
+std::size_t most_few_touches() {
+  return std::size_t{5} * degrees_of_freedom(CurveClass::CubicSpline);
+}
+
 bool are_few_touches(std::span<const FitPoint> points, std::span<const PatchSpan> patches) {
-  // The more touches there are, the farther above the right arms' valley those of wrong arms end,
-  // and the better four of them show the others' arms.
-  constexpr int kOfEachUnknown = 5;
-  const auto few =
-      static_cast<std::size_t>(kOfEachUnknown * degrees_of_freedom(CurveClass::CubicSpline));
-  return points.size() == patches.size() && points.size() <= few;
+  return points.size() == patches.size() && points.size() <= most_few_touches();
 }
 
 void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds, WorkBudget& work) {

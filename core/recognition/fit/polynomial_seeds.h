@@ -2,6 +2,7 @@
 // nor the order of the patches nor their directions of travel.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,10 @@ struct PolynomialSeeds {
   std::vector<AxisFit> semi_cubical_parabola;
   std::vector<AxisFit> cubic_spline;
 };
+
+/// Five for each unknown of a spline. The more touches there are, the farther above the right arms'
+/// valley those of wrong arms end, and the better four of them show the others' arms.
+std::size_t most_few_touches();
 
 /// Whether the points are touches one at a time, and so few that any may lie on either arm of a
 /// curve through the others: each pattern of arms then has valleys of its own.

@@ -111,6 +111,12 @@ void CleanPatches::update(const std::vector<StoredPatch>& patches, double defaul
   const double half_extent_m = half_extent_of(patches);
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const StoredPatch& patch = patches[p];
+    if (patch.samples.size() == 1) {  // a touch: it neither dwells nor turns back
+      seen_[p] = Seen{};
+      moved_.push_back(patch);
+      clean_.push_back(patch);
+      continue;
+    }
     // Computed every time: whether a patch is small depends on all patches.
     Seen now{version_of(patch), is_one_place(patch.samples, default_sigma_m, half_extent_m)};
     Seen& seen = seen_[p];

@@ -12,6 +12,7 @@
 #include "core/numerics/negligible.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/class_fits.h"
+#include "core/recognition/fit/polynomial_seeds.h"
 #include "core/recognition/samples/farthest_first.h"
 #include "core/recognition/smooth/arcs.h"
 #include "core/recognition/touches/shortest_way.h"
@@ -30,11 +31,13 @@ constexpr double kTurn = 0.6;  // rad
 /// from there; the curve of the centres, which turns about an edge with them, may know none. [rad]
 constexpr double kToldTurn = 1.2;
 
-/// Touches used to fit a curve for the order: four for each unknown of a spline. Twice as many if
-/// the noise is not stated: else straight edges may be taken for needles (bench_touches --unstated
-/// --curve line).
-constexpr std::size_t kSought = 24;
-constexpr std::size_t kSoughtOfUnstated = 48;
+/// Touches used to fit a curve for the order: the fewest whose arms one search tells. Twice as many
+/// if the noise is not stated: else straight edges may be taken for needles (bench_touches
+/// --unstated --curve line).
+std::size_t touches_sought(bool stated) {
+  const std::size_t fewest = most_few_touches() + 1;
+  return stated ? fewest : 2 * fewest;
+}
 
 using Indices = std::vector<std::size_t>;
 
@@ -324,7 +327,7 @@ std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, cons
         return std::all_of(patch.samples.begin(), patch.samples.end(),
                            [](const StoredSample& sample) { return sample.sigma_m > 0.0; });
       });
-  for (const std::size_t p : spread(patches, lone, stated ? kSought : kSoughtOfUnstated)) {
+  for (const std::size_t p : spread(patches, lone, touches_sought(stated))) {
     sought.push_back(patches[p]);
   }
   bool sigma_known = false;
@@ -367,15 +370,19 @@ std::optional<StrungTouches> strung_touches(std::span<const StoredPatch> patches
   if (!strung || strung->runs.empty()) {
     return std::nullopt;
   }
-  std::vector<StoredPatch> all(patches.begin(), patches.end());
+  std::vector<const Place*> alone(patches.size(), nullptr);
   for (const Place& place : strung->alone) {
-    all[place.patch].direction = place.direction;
-    all[place.patch].turn = place.turn;
+    alone[place.patch] = &place;
   }
   StrungTouches result;
-  for (std::size_t p = 0; p < all.size(); ++p) {
-    if (!strung->taken[p]) {
-      result.patches.push_back(std::move(all[p]));
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    if (strung->taken[p]) {
+      continue;
+    }
+    StoredPatch& patch = result.patches.emplace_back(patches[p]);
+    if (alone[p] != nullptr) {
+      patch.direction = alone[p]->direction;
+      patch.turn = alone[p]->turn;
     }
   }
   std::move(strung->runs.begin(), strung->runs.end(), std::back_inserter(result.patches));
