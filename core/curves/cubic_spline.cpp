@@ -11,6 +11,8 @@
 
 namespace palpate {
 
+double CubicSpline::c_of_bend(double radius_m) { return std::sqrt(2.0 * radius_m); }
+
 bool CubicSpline::is_valid() const {
   return std::isfinite(a) && std::isfinite(b) && std::isfinite(c) && a > 0.0 && c != 0.0;
 }

@@ -17,6 +17,8 @@ struct CubicSpline {
 
   static CubicSpline from_parameters(const Parameters& p) { return {p[0], p[1], p[2]}; }
   Parameters parameters() const { return {a, b, c}; }
+  /// The c > 0 of a bend at t = 0 of that radius, c^2 / 2. [sqrt(m)]
+  static double c_of_bend(double radius_m);
 
   /// Whether the parameters are finite and in the range of the canonical form.
   bool is_valid() const;

@@ -55,6 +55,10 @@ inline constexpr unsigned kCubics = class_bit(CurveClass::CubicalParabola) |
                                     class_bit(CurveClass::SemiCubicalParabola) |
                                     class_bit(CurveClass::CubicSpline);
 
+/// The Bayesian information criterion, up to a constant: the class that explains `n` points best
+/// has the least. If no noise is stated, it is the one that the fit leaves.
+double information_criterion(const ClassFit& fit, std::size_t n, bool sigma_known);
+
 struct WarmStart;
 
 /// Fits every class to the smooth model's reduced points, taken as surface points, by least

@@ -1,7 +1,11 @@
 #include "core/recognition/given/given_choice.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "core/curves/curve.h"
+#include "core/recognition/given/foot_parameter.h"
 
 namespace palpate {
 namespace {
@@ -26,16 +30,35 @@ int votes_against(const GivenCandidate& candidate, const LocalPoints& local,
   return votes;
 }
 
-/// Feet at which the curve bends towards the tip's centre, minus those at which it bends away:
-/// above 0 if tips touch from inside the bends.
-int feet_inside(const GivenCandidate& candidate) {
-  int inside = 0;
-  for (const auto& foot : candidate.curve.feet) {
-    const auto place = canonical_point(candidate.curve.curve_class, candidate.curve.shape, foot);
-    const double bend = candidate.side * inner(left(place.first), place.second);
-    inside += bend > 0.0 ? 1 : bend < 0.0 ? -1 : 0;
+/// By how much the touched stretch turns towards the tips' centres: above 0 if they touch from
+/// inside its bend. The turn counts, not the number of touches: most of those of a corner may lie
+/// on walls that bend the other way a little. [rad]
+double turn_towards_tips(const GivenCandidate& candidate) {
+  // Of a step between touches, which may turn by a loop that has none.
+  constexpr int kParts = 8;
+  const auto curve = curve_of(candidate.curve);
+  if (!curve) {
+    return 0.0;
   }
-  return inside;
+  std::vector<double> t;
+  for (const auto& foot : candidate.curve.feet) {
+    t.push_back(t_at(candidate.curve.curve_class, foot));
+  }
+  std::sort(t.begin(), t.end());
+  const double period = domain(*curve).period;
+  if (period > 0.0) {
+    t = {0.0, period};  // convex all round
+  }
+  double turn = 0.0;
+  for (std::size_t i = 1; i < t.size(); ++i) {
+    for (int k = 0; k < kParts; ++k) {
+      const double step = (t[i] - t[i - 1]) / kParts;
+      const Vec2 before = derivatives(*curve, t[i - 1] + k * step).first;
+      const Vec2 after = derivatives(*curve, t[i - 1] + (k + 1) * step).first;
+      turn += std::atan2(cross(before, after), before.dot(after));
+    }
+  }
+  return candidate.side * turn;
 }
 
 /// Removes those of `open` whose mark is positive, if others have a negative one.
@@ -78,8 +101,8 @@ GivenChoice choose(std::span<const GivenCandidate> minima, const LocalPoints& lo
   if (minima.front().side != 0) {
     keep_told([&](std::size_t k) { return votes_against(minima[k], local, points); }, &open);
     if (touched_from != TouchedFrom::Unknown) {
-      const int sought = touched_from == TouchedFrom::Inside ? 1 : -1;
-      keep_told([&](std::size_t k) { return -sought * feet_inside(minima[k]); }, &open);
+      const double sought = touched_from == TouchedFrom::Inside ? 1.0 : -1.0;
+      keep_told([&](std::size_t k) { return -sought * turn_towards_tips(minima[k]); }, &open);
     }
   }
   choice.taken = open.front();
@@ -95,7 +118,8 @@ GivenChoice choose(std::span<const GivenCandidate> minima, const LocalPoints& lo
     }
   }
   // Both sides of a circle fit alike to rounding, which must not choose; probes come from outside.
-  if (choice.other_side && best.curve.curve_class == CurveClass::Circle && feet_inside(best) > 0) {
+  if (choice.other_side && best.curve.curve_class == CurveClass::Circle &&
+      turn_towards_tips(best) > 0.0) {
     std::swap(choice.taken, *choice.other_side);
   }
   return choice;

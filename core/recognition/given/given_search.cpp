@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/curves/cubic_spline.h"
 #include "core/recognition/given/axis_scan.h"
 #include "core/recognition/given/curve_moves.h"
 #include "core/recognition/given/foot_parameter.h"
@@ -98,6 +99,16 @@ std::vector<WeighedPoint<double>> on_side(std::span<const WeighedPoint<DoubleDou
   return points;
 }
 
+/// Appends the best spline with its bend at t = 0 no sharper than a circle of that radius, as tip
+/// centres go about a corner. Where none of them lies on that bend, splines through them are cusps.
+void add_rounded(double radius, std::vector<GivenStart>* starts) {
+  const double least = CubicSpline::c_of_bend(radius);
+  if (!starts->empty() && starts->front().shape.values[2] < least) {
+    starts->push_back(starts->front());
+    starts->back().shape.values[2] = least;
+  }
+}
+
 /// Starts from the points. If normals are measured, also from two extra places per point, on its
 /// tangent to either side: so there are starts for fewer points than the class has unknowns.
 std::vector<GivenStart> starts_of(CurveClass curve_class, const LocalPoints& local) {
@@ -105,6 +116,9 @@ std::vector<GivenStart> starts_of(CurveClass curve_class, const LocalPoints& loc
   std::vector<double> radii;
   for (const WeighedPoint<DoubleDouble>& point : local.exact) {
     radii.push_back(to_double(point.offset));
+  }
+  if (curve_class == CurveClass::CubicSpline) {
+    add_rounded(*std::max_element(radii.begin(), radii.end()), &starts);
   }
   const std::vector<GivenStart> by_axis = starts_by_axis(curve_class, local.rough, radii);
   starts.insert(starts.end(), by_axis.begin(), by_axis.end());

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/curves/cubic_spline.h"
 #include "core/numerics/negligible.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/posterior/likelihood_of.h"
@@ -52,6 +53,14 @@ bool directions_may_explain(const SideChoice& choice, const FitData& touches,
 /// Directions that turn by less are settled: the surface is off by a millionth of the radius. [rad]
 constexpr double kSettledTurn = 1e-3;
 
+/// Lets the class of a fit in the same frame start from there, if it is a spline: wrong directions
+/// make a valley of their own about its sharp bend.
+void start_at(const ClassFit& fit, WarmStart* start) {
+  if (fit.curve_class == CurveClass::CubicSpline) {
+    start->polynomials.cubic_spline = fit.polynomial;
+  }
+}
+
 /// Fits with the tips on these sides of `touches`. Where points show no direction of their own, or
 /// one so swayed by noise that tips taken off along it no longer lie as all points do, directions
 /// come from the curve found: one that is off by an angle puts the surface off by half its square
@@ -94,7 +103,10 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
       break;
     }
     FitData nearer = on_surface(touches, sides);
-    const WarmStart start = warm_start_from(choice.fits, choice.reduced);
+    WarmStart start = warm_start_from(choice.fits, choice.reduced);
+    if (of_all) {
+      start_at(*choice.refined, &start);
+    }
     ClassFits again = fit_classes(nearer, by.work, &start, by.classes, by.out_of_reach);
     const double before = least_left(choice, smooth);
     SideChoice next = choice_of(std::move(again), std::move(nearer), by);
@@ -116,36 +128,93 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
   return choice;
 }
 
+/// The way with its evidence.
+SideChoice judged(SideChoice choice, const SideContext& by) {
+  choice.log_evidence = log_evidence_of(choice, by);
+  return choice;
+}
+
+/// The same along the directions of `curve`, with the classes followed from `from`; nullopt where
+/// these are the directions that the touches have.
+std::optional<SideChoice> fit_along_normals_of(const CanonicalFit& curve, const FitData& touches,
+                                               std::span<const int> sides, const SideContext& by,
+                                               std::span<const SidedStart> from) {
+  FitData turned = touches;
+  const double turn =
+      set_directions(DirectionsOf::AllPoints, curve, by.arcs.smooth, &turned, by.work);
+  return turn < kSettledTurn ? std::nullopt
+                             : std::optional(fit_along(std::move(turned), sides, by, from));
+}
+
+/// Whether a way leaves less on all points than another.
+bool is_nearer(const SideChoice& choice, const SideChoice& other) {
+  return choice.refined && (!other.refined || choice.refined->chi2 < other.refined->chi2);
+}
+
+/// Whether all points have the candidate, as far as noise lets them.
+bool fits_all(const SideChoice& choice, const SideContext& by) {
+  return choice.refined && fits_well(choice.refined->chi2, residual_count(by.arcs.data));
+}
+
+double largest_tip_m(const FitData& touches) {
+  double largest = 0.0;
+  for (const FitPoint& point : touches.points) {
+    largest = std::max(largest, point.offset);
+  }
+  return largest * touches.scale;
+}
+
+/// The spline, or the cusp, with a bend at t = 0 that is no sharper than a circle of that radius,
+/// as centres go about a corner; nullopt of other curves, and where the bend is none.
+std::optional<CanonicalFit> rounded(const CanonicalFit& curve, double radius_m) {
+  const double least = CubicSpline::c_of_bend(radius_m);
+  const CurveClass curve_class = curve.shape.curve_class;
+  const bool is_sharper = curve_class == CurveClass::SemiCubicalParabola ||
+                          (curve_class == CurveClass::CubicSpline && curve.shape.values[2] < least);
+  if (!is_sharper) {
+    return std::nullopt;
+  }
+  CanonicalFit result = curve;
+  result.shape.curve_class = CurveClass::CubicSpline;
+  result.shape.values[2] = least;
+  return result;
+}
+
 /// The same; where directions led to no curve that all points have, once more along those of the
-/// curve of the centres, whose normals are nearly the surface's whichever side that is on. What is
-/// followed has been tried along these when it was sought. What is out on all points, where no
-/// direction matters, beside `highest`, the log evidence of another way, need not be told better.
+/// curve of the centres, whose normals are nearly the surface's whichever side that is on, and then
+/// with its bend rounded: next to a corner that no touch lies on, the curve of the others' centres
+/// is a cusp. What is followed has been tried along these when it was sought. What is out on all
+/// points beside `highest`, the log evidence of another way that all points have, need not be told
+/// better.
 SideChoice fit_choice(const FitData& touches, std::span<const int> sides, const SideContext& by,
                       std::span<const SidedStart> starts, double highest, CurveOfCentres* centres) {
   const SmoothModel& smooth = by.arcs.smooth;
-  SideChoice choice = fit_along(touches, sides, by, starts);
-  choice.log_evidence = log_evidence_of(choice, by);
-  if (start_for(starts, sides) != nullptr || agrees(choice, smooth) || !choice.settled ||
-      !directions_may_explain(choice, touches, smooth) ||
-      (choice.refined && choice.log_evidence < highest - kNegligibleLogOdds) || !by.work.allows() ||
-      !centres->get()) {
+  SideChoice choice = judged(fit_along(touches, sides, by, starts), by);
+  const auto may_gain = [&] {
+    return choice.settled && directions_may_explain(choice, touches, smooth) &&
+           !(choice.refined && choice.log_evidence < highest - kNegligibleLogOdds) &&
+           by.work.allows();
+  };
+  const auto take_along = [&](const CanonicalFit& curve, const WarmStart* start) {
+    std::vector<SidedStart> from;
+    if (start != nullptr) {
+      from.push_back({{sides.begin(), sides.end()}, *start});
+    }
+    auto again = fit_along_normals_of(curve, touches, sides, by, from);
+    if (again && is_nearer(*again, choice)) {
+      choice = judged(*std::move(again), by);
+    }
+  };
+  if (start_for(starts, sides) != nullptr || !may_gain()) {
     return choice;
   }
-  FitData turned = touches;
-  if (set_directions(DirectionsOf::AllPoints, *centres->get(), smooth, &turned, by.work) <
-      kSettledTurn) {
-    return choice;
+  if (!agrees(choice, smooth) && centres->get()) {
+    take_along(*centres->get(), centres->start());
   }
-  std::vector<SidedStart> from;
-  if (const WarmStart* start = centres->start()) {
-    from.push_back({{sides.begin(), sides.end()}, *start});
-  }
-  SideChoice again = fit_along(std::move(turned), sides, by, from);
-  const bool better =
-      again.refined && (!choice.refined || again.refined->chi2 < choice.refined->chi2);
-  if (better) {
-    choice = std::move(again);
-    choice.log_evidence = log_evidence_of(choice, by);
+  if (has_kept_tips(smooth) && !fits_all(choice, by) && may_gain() && centres->get()) {
+    if (const auto curve = rounded(*centres->get(), largest_tip_m(touches))) {
+      take_along(*curve, nullptr);
+    }
   }
   return choice;
 }
@@ -252,7 +321,9 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
     SideChoice choice = fit_choice(touches, sides, by, starts, highest - by_normals, &centres);
     choice.sides = sides;
     choice.log_of_normals = by_normals;
-    highest = std::max(highest, choice.log_evidence + by_normals);
+    if (fits_all(choice, by)) {
+      highest = std::max(highest, choice.log_evidence + by_normals);
+    }
     sided.choices.push_back(std::move(choice));
   }
   sided.centres = centres.next_start();

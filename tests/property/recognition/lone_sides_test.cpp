@@ -12,6 +12,7 @@
 
 #include "core/curves/curve.h"
 #include "core/numerics/negligible.h"
+#include "core/recognition/given/given_class.h"
 #include "core/recognition/recognizer.h"
 #include "tests/support/lone_touches.h"
 #include "tests/support/scene_data.h"
@@ -97,6 +98,42 @@ TEST(LoneSides, WhatSamplesDoNotShowIsNotRecognized) {
     // The odds of the side are those of RECOGNIZED, 19 at least; four deviations of that count.
     const double stated = 0.05 * placed;
     EXPECT_LE(wrong, stated + 4.0 * std::sqrt(stated)) << name_of(curve_class);
+  }
+}
+
+/// Splines about a sharp corner that no touch lies on, the tip being larger than its bend: the few
+/// touches next to it had the normals of a curve that passes through the centres as a cusp. They
+/// were certainly "unclassified", and given the class, chi-square was 8,000 and more, or the other
+/// side was taken for the outside because most touches lie on walls that bend a little towards it.
+TEST(LoneSides, ACornerWithoutTouchesHidesNoSpline) {
+  constexpr int kTouches = 100;
+  for (const std::uint64_t scene : {29, 40, 59, 100, 127}) {
+    std::seed_seq seeds{std::uint64_t{2026}, std::uint64_t{8}, std::uint64_t{kTouches}, scene};
+    std::mt19937_64 rng(seeds);
+    const test::LoneTouches touches =
+        test::lone_touches(CurveClass::CubicSpline, kTouches, kNoise, kTip, rng);
+    Recognizer recognizer;
+    test::add_touches(touches, touches.scene.sigma_m, &recognizer);
+    const Recognition answer = recognizer.recognize();
+    EXPECT_EQ(answer.status, RecognitionStatus::Recognized) << scene;
+    ASSERT_EQ(answer.shape.curve_class, CurveClass::CubicSpline) << scene;
+    EXPECT_TRUE(is_on_side_of_normals(answer, touches)) << scene;
+
+    std::vector<GivenPoint> points;
+    for (const auto& patch : touches.scene.patches) {
+      GivenPoint point;
+      point.position_m = patch.front();
+      point.sigma_m = touches.scene.sigma_m;
+      point.tip_radius_m = touches.tip_radius_m;
+      points.push_back(point);
+    }
+    for (const TouchedFrom from : {TouchedFrom::Unknown, TouchedFrom::Outside}) {
+      GivenOptions options;
+      options.touched_from = from;
+      const GivenFit given = fit_given_class(CurveClass::CubicSpline, points, options);
+      ASSERT_EQ(given.status, GivenStatus::Fitted) << scene;
+      EXPECT_TRUE(can_be_noise(given.chi2, given.dof)) << scene << ": " << given.chi2;
+    }
   }
 }
 
