@@ -55,6 +55,12 @@ inline constexpr unsigned kCubics = class_bit(CurveClass::CubicalParabola) |
                                     class_bit(CurveClass::SemiCubicalParabola) |
                                     class_bit(CurveClass::CubicSpline);
 
+/// As what a point is counted whose foot is sought anywhere on a canonical curve: on a cubic it is
+/// one of the roots of a polynomial.
+constexpr WorkKind kind_of_foot(CurveClass curve_class) {
+  return (class_bit(curve_class) & kCubics) != 0 ? WorkKind::SoughtFoot : WorkKind::PlacedRow;
+}
+
 /// The Bayesian information criterion, up to a constant: the class that explains `n` points best
 /// has the least. If no noise is stated, it is the one that the fit leaves.
 double information_criterion(const ClassFit& fit, std::size_t n, bool sigma_known);

@@ -336,6 +336,7 @@ std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, cons
     return std::nullopt;
   }
   const Curve& curve = found->curve;
+  work.spend(kind_of_foot(class_of(curve)), lone.size());
   for (const auto& [tip_radius_m, of_tip] : by_tip(patches, lone)) {
     std::vector<Place> places;
     for (const std::size_t p : of_tip) {

@@ -9,24 +9,19 @@
 namespace palpate {
 namespace {
 
-/// A foot sought on a cubic is one of the roots of a polynomial: 18,000 instructions, beside some
-/// 1,800 of a point that is placed (callgrind).
-constexpr std::size_t kRowsOfCubicFoot = 10;
-
 /// The curve's directions at the feet of the touches' points, in their frame; zero on a cusp, and
 /// where `work` is spent. Feet of the tips' centres, from which the curve is seen the same however
 /// little of it bends: a surface point that is a little off may have its foot on the other side of
 /// a sharp bend.
 std::vector<Vec2> directions_of(const Curve& curve, const CanonicalFit& fit, const FitData& touches,
                                 WorkBudget& work) {
-  const bool cubic = (kCubics & class_bit(fit.shape.curve_class)) != 0;
   std::vector<Vec2> directions;
   for (const FitPoint& point : touches.points) {
     if (!work.allows()) {
       directions.emplace_back(0.0, 0.0);
       continue;
     }
-    work.spend(WorkKind::PlacedRow, cubic ? kRowsOfCubicFoot : 1);
+    work.spend(kind_of_foot(fit.shape.curve_class), 1);
     const Vec2 local =
         fit.world_T_curve.to_local(touches.frame * Vec2(touches.scale * point.position));
     const Vec2 along = derivatives(curve, foot_point(curve, local).t).first;
