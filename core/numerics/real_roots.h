@@ -54,16 +54,12 @@ double bracketed_root(const Polynomial<kDegree>& c, double low, double high, dou
       f = f * x + c[k];
       terms = terms * std::abs(x) + std::abs(c[k]);
     }
-    if (f == 0.0) {
+    if (std::abs(f) <= kRounding * terms) {
       return x;
     }
     ((f < 0.0) == (at_low < 0.0) ? low : high) = x;
     const double newton = x - f / slope;
-    const bool inside = newton > low && newton < high;
-    if (std::abs(f) <= kRounding * terms) {
-      return inside ? newton : x;
-    }
-    const bool good = inside && 2.0 * std::abs(newton - x) < last_step;
+    const bool good = newton > low && newton < high && 2.0 * std::abs(newton - x) < last_step;
     const double next = good ? newton : 0.5 * (low + high);
     last_step = std::abs(next - x);
     if (last_step <= kRounding * std::abs(next)) {

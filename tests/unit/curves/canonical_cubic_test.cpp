@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/curves/cubic_spline.h"
+
 namespace palpate {
 namespace {
 
@@ -192,6 +194,13 @@ TEST(CanonicalCubic, ForcedClasses) {
             CubicDegeneracy::OutsideClass);
   EXPECT_EQ(canonicalise_as(CurveClass::CubicalParabola, cusp).degeneracy,
             CubicDegeneracy::OutsideClass);
+}
+
+TEST(CubicSpline, BendsAtItsVertexByC) {
+  for (const double radius : {1e-4, 0.03, 7.0}) {
+    const CubicSpline spline{12.0, -0.4, CubicSpline::c_of_bend(radius)};
+    EXPECT_NEAR(spline.geometry(0.0).kappa, -1.0 / radius, 1e-14 / radius);
+  }
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -77,6 +79,36 @@ TEST(RealRoots, OddMultiplicityIsNeverLost) {
       nearest = std::min(nearest, std::abs(found - root));
     }
     EXPECT_LE(nearest, std::cbrt(rounding / 2.0)) << root;
+  }
+}
+
+/// Each root is one as far as the polynomial's own rounding lets it be told, also where roots lie
+/// so close together that Newton's steps are rounding: 2 * 5 roundings of the terms, of half an
+/// epsilon each, and as many of the polynomial in the scaled unknown.
+TEST(RealRoots, ValuesAreRounding) {
+  constexpr double kRounding = 10.0 * std::numeric_limits<double>::epsilon();
+  std::mt19937_64 rng = test::test_rng();
+  std::uniform_real_distribution<double> place(-2.0, 2.0);
+  for (const double apart : {1.0, 1e-3, 1e-6, 1e-9}) {
+    for (int i = 0; i < test::stress_count(1000); ++i) {
+      std::vector<double> near;
+      const double middle = place(rng);
+      while (near.size() < 5) {
+        near.push_back(near.size() < 3 ? middle + apart * place(rng) : place(rng));
+      }
+      const Polynomial<5> c = product_of<5>(near, 0.7);
+      const std::vector<double> roots = roots_of<5>(c);
+      EXPECT_FALSE(roots.empty());
+      for (const double root : roots) {
+        double value = 0.0;
+        double terms = 0.0;
+        for (int k = 5; k >= 0; --k) {
+          value = value * root + c[k];
+          terms = terms * std::abs(root) + std::abs(c[k]);
+        }
+        EXPECT_LE(std::abs(value), kRounding * terms) << root << ", " << apart;
+      }
+    }
   }
 }
 
