@@ -1,8 +1,6 @@
 #include "core/recognition/fit/class_fits.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -286,13 +284,6 @@ ClassFits searched_on_few(const FitData& few, const FitData& all, unsigned class
 }
 
 }  // namespace
-
-double information_criterion(const ClassFit& fit, std::size_t n, bool sigma_known) {
-  const auto count = static_cast<double>(n);
-  const double chi2 = std::max(fit.chi2, std::numeric_limits<double>::min());
-  return (sigma_known ? chi2 : count * std::log(chi2)) +
-         degrees_of_freedom(fit.curve_class) * std::log(count);
-}
 
 ConicCoefficients conic_of_parabola(const PolynomialFit& fit) {
   // (11), (12) eliminated as below (13): with u = b2 (x - a0) - a2 (y - b0) and

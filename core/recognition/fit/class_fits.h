@@ -61,10 +61,6 @@ constexpr WorkKind kind_of_foot(CurveClass curve_class) {
   return (class_bit(curve_class) & kCubics) != 0 ? WorkKind::SoughtFoot : WorkKind::PlacedRow;
 }
 
-/// The Bayesian information criterion, up to a constant: the class that explains `n` points best
-/// has the least. If no noise is stated, it is the one that the fit leaves.
-double information_criterion(const ClassFit& fit, std::size_t n, bool sigma_known);
-
 struct WarmStart;
 
 /// Fits every class to the smooth model's reduced points, taken as surface points, by least

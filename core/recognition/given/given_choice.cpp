@@ -50,12 +50,13 @@ double turn_towards_tips(const GivenCandidate& candidate) {
     t = {0.0, period};  // convex all round
   }
   double turn = 0.0;
+  Vec2 before = derivatives(*curve, t.front()).first;
   for (std::size_t i = 1; i < t.size(); ++i) {
-    for (int k = 0; k < kParts; ++k) {
-      const double step = (t[i] - t[i - 1]) / kParts;
-      const Vec2 before = derivatives(*curve, t[i - 1] + k * step).first;
-      const Vec2 after = derivatives(*curve, t[i - 1] + (k + 1) * step).first;
+    const double step = (t[i] - t[i - 1]) / kParts;
+    for (int k = 1; k <= kParts; ++k) {
+      const Vec2 after = derivatives(*curve, t[i - 1] + k * step).first;
       turn += std::atan2(cross(before, after), before.dot(after));
+      before = after;
     }
   }
   return candidate.side * turn;

@@ -131,12 +131,14 @@ std::optional<PlacedCurve> best_of(const ClassFits& fits, const Arcs& arcs, unsi
     if (!curve) {
       continue;
     }
+    const double chi2 = std::max(fit->chi2, std::numeric_limits<double>::min());
     Ordered ordered = ordered_along(*canonical, *curve, reduced);
-    const double criterion = information_criterion(*fit, reduced.points.size(), arcs.sigma_known) +
+    const double criterion = (arcs.sigma_known ? chi2 : n * std::log(chi2)) +
+                             degrees_of_freedom(fit->curve_class) * std::log(n) +
                              2.0 * n * std::log(length_of(ordered.feet_m));
     if (criterion < lowest) {
       lowest = criterion;
-      best = PlacedCurve{*curve, canonical->world_T_curve, fit->chi2, std::move(ordered.points_m)};
+      best = PlacedCurve{*curve, canonical->world_T_curve, chi2, std::move(ordered.points_m)};
     }
   }
   return best;

@@ -134,23 +134,6 @@ SideChoice judged(SideChoice choice, const SideContext& by) {
   return choice;
 }
 
-/// The same along the directions of `curve`, with the classes followed from `from`; nullopt where
-/// these are the directions that the touches have.
-std::optional<SideChoice> fit_along_normals_of(const CanonicalFit& curve, const FitData& touches,
-                                               std::span<const int> sides, const SideContext& by,
-                                               std::span<const SidedStart> from) {
-  FitData turned = touches;
-  const double turn =
-      set_directions(DirectionsOf::AllPoints, curve, by.arcs.smooth, &turned, by.work);
-  return turn < kSettledTurn ? std::nullopt
-                             : std::optional(fit_along(std::move(turned), sides, by, from));
-}
-
-/// Whether a way leaves less on all points than another.
-bool is_nearer(const SideChoice& choice, const SideChoice& other) {
-  return choice.refined && (!other.refined || choice.refined->chi2 < other.refined->chi2);
-}
-
 /// Whether all points have the candidate, as far as noise lets them.
 bool fits_all(const SideChoice& choice, const SideContext& by) {
   return choice.refined && fits_well(choice.refined->chi2, residual_count(by.arcs.data));
@@ -180,12 +163,12 @@ std::optional<CanonicalFit> rounded(const CanonicalFit& curve, double radius_m) 
   return result;
 }
 
-/// The same; where directions led to no curve that all points have, once more along those of the
-/// curve of the centres, whose normals are nearly the surface's whichever side that is on, and then
-/// with its bend rounded: next to a corner that no touch lies on, the curve of the others' centres
-/// is a cusp. What is followed has been tried along these when it was sought. What is out on all
-/// points beside `highest`, the log evidence of another way that all points have, need not be told
-/// better.
+/// The way with the tips on these sides, judged. Where directions led to no curve that all points
+/// have, it is fitted once more along those of the curve of the centres, whose normals are nearly
+/// the surface's whichever side that is on, and then with its bend rounded: next to a corner that
+/// no touch lies on, the curve of the others' centres is a cusp. What is followed has been tried
+/// along these when it was sought. What is out on all points beside `highest`, the log evidence of
+/// another way that all points have, need not be told better.
 SideChoice fit_choice(const FitData& touches, std::span<const int> sides, const SideContext& by,
                       std::span<const SidedStart> starts, double highest, CurveOfCentres* centres) {
   const SmoothModel& smooth = by.arcs.smooth;
@@ -196,13 +179,17 @@ SideChoice fit_choice(const FitData& touches, std::span<const int> sides, const 
            by.work.allows();
   };
   const auto take_along = [&](const CanonicalFit& curve, const WarmStart* start) {
+    FitData turned = touches;
+    if (set_directions(DirectionsOf::AllPoints, curve, smooth, &turned, by.work) < kSettledTurn) {
+      return;
+    }
     std::vector<SidedStart> from;
     if (start != nullptr) {
       from.push_back({{sides.begin(), sides.end()}, *start});
     }
-    auto again = fit_along_normals_of(curve, touches, sides, by, from);
-    if (again && is_nearer(*again, choice)) {
-      choice = judged(*std::move(again), by);
+    SideChoice again = fit_along(std::move(turned), sides, by, from);
+    if (again.refined && (!choice.refined || again.refined->chi2 < choice.refined->chi2)) {
+      choice = judged(std::move(again), by);
     }
   };
   if (start_for(starts, sides) != nullptr || !may_gain()) {
