@@ -5,6 +5,7 @@
 
 #include "core/curves/arc_length.h"
 #include "core/curves/foot_point.h"
+#include "core/numerics/sinh_cosh.h"
 
 namespace palpate {
 
@@ -12,25 +13,27 @@ bool Hyperbola::is_valid() const {
   return std::isfinite(a) && std::isfinite(b) && a > 0.0 && b > 0.0;
 }
 
-Vec2 Hyperbola::position(double t) const { return {a * std::cosh(t), b * std::sinh(t)}; }
+Vec2 Hyperbola::position(double t) const {
+  const auto [s, c] = sinh_cosh(t);
+  return {a * c, b * s};
+}
 
 CurveDerivatives Hyperbola::derivatives(double t) const {
-  const double c = std::cosh(t);
-  const double s = std::sinh(t);
+  const auto [s, c] = sinh_cosh(t);
   return {{a * c, b * s}, {a * s, b * c}, {a * c, b * s}, {a * s, b * c}};
 }
 
 LocalGeometry Hyperbola::geometry(double t) const {
-  const double c = std::cosh(t);
-  const double s = std::sinh(t);
+  const auto [s, c] = sinh_cosh(t);
   const double speed2 = a * a * s * s + b * b * c * c;
   return {std::atan2(b * c, a * s), -a * b / (speed2 * std::sqrt(speed2)),        // (31)
           3.0 * a * b * (a * a + b * b) * (s / speed2) * (c / speed2) / speed2};  // (32)
 }
 
 Eigen::Matrix<double, 2, 2> Hyperbola::position_by_parameters(double t) const {
+  const auto [s, c] = sinh_cosh(t);
   Eigen::Matrix<double, 2, 2> m;
-  m << std::cosh(t), 0.0, 0.0, std::sinh(t);
+  m << c, 0.0, 0.0, s;
   return m;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/curves/curve.h"
 #include "core/numerics/triangular_root.h"
+#include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/measured_normal.h"
 
 namespace palpate {
@@ -269,6 +270,30 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
   return std::isfinite(curve->chi2) && curve->root.allFinite();
 }
 
+/// Feet of `from`, where they are about to be on the curve of `shape`: as far from the touched
+/// place along the curve.
+std::vector<double> carried_feet(const Touch& touch, const TouchedCurve& from,
+                                 const TouchedShape& shape) {
+  std::vector<double> t = from.t;
+  if ((class_bit(touch.curve_class) & kCubics) != 0) {
+    return t;
+  }
+  const auto before = make_curve(touch.curve_class, from.shape.values);
+  const auto now = make_curve(touch.curve_class, shape.values);
+  if (!before || !now) {
+    return t;
+  }
+  const double ratio =
+      derivatives(*before, from.shape.t).first.norm() / derivatives(*now, shape.t).first.norm();
+  if (!std::isfinite(ratio)) {
+    return t;
+  }
+  for (double& foot : t) {
+    foot = shape.t + ratio * (foot - from.shape.t);
+  }
+  return t;
+}
+
 }  // namespace
 
 Pose2 pose_of(const Touch& touch, const TouchedVector& z, const Curve& curve, double t) {
@@ -347,7 +372,7 @@ std::optional<TouchedCurve> curve_at(const Touch& touch, const TouchedVector& z,
   TouchedCurve curve;
   curve.z = z;
   curve.shape = *shape;
-  curve.t = from.t;
+  curve.t = carried_feet(touch, from, *shape);
   return place_on(touch, data, &curve) ? std::optional(std::move(curve)) : std::nullopt;
 }
 
