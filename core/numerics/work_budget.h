@@ -17,7 +17,7 @@ enum class WorkKind {
   AxisRow,        ///< a point against a curve that is seen along an axis
   SeedRow,        ///< a point or a sum of points, for one axis and vertex of the coarse search
   PlacedRow,      ///< a point carried to another fit, or placed on a canonical curve
-  PathRow,        ///< a point on free-form paths
+  PathRow,        ///< a point or section on the free-form paths of one size
   PosteriorRow,   ///< a point against a curve in touched coordinates
   DriftRow,       ///< a point made white for one size of a drift
   OffsetCell,     ///< one size of an offset by direction

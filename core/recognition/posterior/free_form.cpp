@@ -1,7 +1,5 @@
 #include "core/recognition/posterior/free_form.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,15 +8,14 @@
 #include <optional>
 
 #include "core/numerics/negligible.h"
+#include "core/numerics/triangular_root.h"
 
 namespace palpate {
 namespace {
 
 constexpr int kMostNodes = 12;  // of a section at a time; a smoothed one has at most ten
 constexpr int kTerms = 12;      // of a path's power series: one more than the nodes tell
-using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostNodes, kMostNodes>;
 using Nodes = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostNodes, 1>;
-using Terms = Eigen::Matrix<double, Eigen::Dynamic, kTerms, 0, kMostNodes, kTerms>;
 
 /// Sizes of features that a free-form part may have, in touched half extents, alike probable: a
 /// factor of two apart, from an eighth (finer ones would not be one arc) to where paths are
@@ -83,84 +80,76 @@ struct SectionEvidence {
   Junction end;
 };
 
+/// Terms of a path's power series as a normal law.
+struct Series {
+  using Coefficients = Eigen::Matrix<double, kTerms, 1>;
+  using Root = Eigen::Matrix<double, kTerms, kTerms>;
+  Coefficients mean = Coefficients::Zero();
+  Root root = Root::Zero();  ///< a square root of their covariance, R R^T
+};
+
 /// y = sum c_k (x - origin)^k. At a patch's start c_0 and c_1 are the free place and direction;
 /// later, c_0 to c_2 continue what came before. The rest has the prior of features of `size`:
 /// c_k = size^(1-k) / (k (k - 1)), the series of a logarithm, which converges within `size`.
-SectionEvidence evidence_of(const SectionNodes& nodes, double origin, double end, double size,
-                            const std::optional<Junction>& before, bool goes_on) {
-  const Eigen::Index n = nodes.x.size();
+Series series_before(double size, const std::optional<Junction>& before) {
   const double width = std::sqrt(0.5 * std::numbers::pi);  // as offset and turn of a class
-  Terms terms(n, kTerms);                                  // whitened powers
-  Nodes column = nodes.weight;
-  for (int k = 0; k < kTerms; ++k) {
-    terms.col(k) = column;
-    column = column.cwiseProduct(nodes.x - Nodes::Constant(n, origin));
-  }
-  // The prior's covariance: a block of the first three terms, the rest independent.
-  Eigen::Matrix3d first = Eigen::Matrix3d::Zero();  // its square root
-  Eigen::Matrix<double, kTerms, 1> variances;
+  Series series;
   double power = 1.0 / size;
   for (int k = 2; k < kTerms; ++k) {
-    const double deviation = power / (k * (k - 1));
-    variances[k] = deviation * deviation;
+    series.root(k, k) = power / (k * (k - 1));
     power /= size;
   }
-  Nodes residual = nodes.weight.cwiseProduct(nodes.y);
   if (before) {
     const Eigen::Vector3d half(1.0, 1.0, 0.5);  // c_2 is half the second derivative
-    first = half.asDiagonal() * before->root;
-    residual.noalias() -= terms.leftCols<3>() * half.cwiseProduct(before->mean);
+    series.mean.head<3>() = half.cwiseProduct(before->mean);
+    series.root.topLeftCorner<3, 3>() = half.asDiagonal() * before->root;
   } else {
-    first.diagonal() << width, width, std::sqrt(variances[2]);
+    series.root(0, 0) = series.root(1, 1) = width;
   }
-  Terms spread(n, kTerms);  // by the square root of the prior's covariance
-  spread.leftCols<3>().noalias() = terms.leftCols<3>().lazyProduct(first);
-  for (int k = 3; k < kTerms; ++k) {
-    spread.col(k) = std::sqrt(variances[k]) * terms.col(k);
-  }
-  Block covariance = spread.lazyProduct(spread.transpose());
-  covariance.diagonal().array() += 1.0;
-  const Eigen::LLT<Block> llt(covariance);
-  const Nodes whitened = llt.matrixL().solve(residual);
-  SectionEvidence evidence;
-  evidence.chi2 = whitened.squaredNorm();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    evidence.log_determinant += 2.0 * std::log(llt.matrixLLT()(i, i));
-  }
-  if (!goes_on) {
-    return evidence;
-  }
-  // The path at the end, given the section's points.
-  Eigen::Matrix<double, 3, kTerms> at = Eigen::Matrix<double, 3, kTerms>::Zero();
-  const double x = end - origin;
-  double x_power = 1.0;
+  return series;
+}
+
+/// The path at `x` from the origin.
+Junction junction_at(const Series& series, double x) {
+  Eigen::Matrix<double, kTerms, 3> at = Eigen::Matrix<double, kTerms, 3>::Zero();
+  double power = 1.0;
   for (int k = 0; k < kTerms; ++k) {
-    at(0, k) = x_power;
-    if (k + 1 < kTerms) at(1, k + 1) = (k + 1) * x_power;
-    if (k + 2 < kTerms) at(2, k + 2) = (k + 2) * (k + 1) * x_power;
-    x_power *= x;
+    at(k, 0) = power;
+    if (k + 1 < kTerms) at(k + 1, 1) = (k + 1) * power;
+    if (k + 2 < kTerms) at(k + 2, 2) = (k + 2) * (k + 1) * power;
+    power *= x;
   }
-  const Eigen::Matrix3d free_at = at.leftCols<3>();
-  at.leftCols<3>() = free_at * first;  // (of the terms in units of the prior's)
-  for (int k = 3; k < kTerms; ++k) {
-    at.col(k) *= std::sqrt(variances[k]);
+  Eigen::Matrix<double, kTerms, 3> half = series.root.transpose().lazyProduct(at);
+  Junction junction;
+  junction.mean = at.transpose().lazyProduct(series.mean);
+  absorb_rows(&half, &junction.root);
+  return junction;
+}
+
+/// The evidence of one section's nodes, each told by those before it: Potter's square-root filter.
+SectionEvidence evidence_of(const SectionNodes& nodes, double origin, double end, double size,
+                            const std::optional<Junction>& before, bool goes_on) {
+  Series series = series_before(size, before);
+  SectionEvidence evidence;
+  for (Eigen::Index i = 0; i < nodes.x.size(); ++i) {
+    Series::Coefficients row;
+    double power = nodes.weight[i];
+    for (int k = 0; k < kTerms; ++k) {
+      row[k] = power;
+      power *= nodes.x[i] - origin;
+    }
+    const Series::Coefficients spread = series.root.transpose().lazyProduct(row);
+    const double variance = spread.squaredNorm() + 1.0;
+    const double innovation = nodes.weight[i] * nodes.y[i] - row.dot(series.mean);
+    evidence.chi2 += innovation * innovation / variance;
+    evidence.log_determinant += std::log(variance);
+    const Series::Coefficients gain = series.root.lazyProduct(spread) / variance;
+    series.mean += innovation * gain;
+    series.root -= (gain / (1.0 + 1.0 / std::sqrt(variance))).lazyProduct(spread.transpose());
   }
-  const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMostNodes, 3> half_gain =
-      llt.matrixL().solve(spread.lazyProduct(at.transpose()));
-  evidence.end.mean = half_gain.transpose() * whitened;
-  if (before) {
-    evidence.end.mean +=
-        free_at * Eigen::Vector3d(before->mean[0], before->mean[1], 0.5 * before->mean[2]);
+  if (goes_on) {
+    evidence.end = junction_at(series, end - origin);
   }
-  // at (I + spread^T spread)^-1 at^T by its square root.
-  Eigen::Matrix<double, kTerms, kTerms> information;
-  information.triangularView<Eigen::Lower>() = spread.transpose().lazyProduct(spread);
-  information.diagonal().array() += 1.0;
-  const Eigen::LLT<Eigen::Matrix<double, kTerms, kTerms>> of_terms(information);
-  const Eigen::Matrix<double, kTerms, 3> half_of_end = of_terms.matrixL().solve(at.transpose());
-  const Eigen::HouseholderQR<Eigen::Matrix<double, kTerms, 3>> qr(half_of_end);
-  evidence.end.root =
-      qr.matrixQR().topRows<3>().triangularView<Eigen::Upper>().toDenseMatrix().transpose();
   return evidence;
 }
 
@@ -211,12 +200,13 @@ FreeForm paths_of(const SmoothModel& smooth, double size, double weight) {
 
 }  // namespace
 
-FreeForm free_form(const SmoothModel& smooth, double inflation) {
+FreeForm free_form(const SmoothModel& smooth, double inflation, WorkBudget& work) {
   const double weight = 1.0 / std::sqrt(inflation);
   FreeForm best;
   double top = -std::numeric_limits<double>::infinity();
   double sum = 0.0;  // of the evidences, over that of `best`
   const auto take = [&](std::size_t s) {
+    work.spend(WorkKind::PathRow, smooth.reduced.points.size() + smooth.sections.size());
     const FreeForm paths = paths_of(smooth, kSizes[s], weight);
     const double value = paths.log_occam - 0.5 * paths.chi2;
     if (!std::isfinite(value)) {

@@ -1,6 +1,7 @@
 // "Unclassified": a smooth free-form path, a model with its own evidence.
 #pragma once
 
+#include "core/numerics/work_budget.h"
 #include "core/recognition/smooth/smooth_model.h"
 
 namespace palpate {
@@ -15,6 +16,6 @@ struct FreeForm {
 };
 
 /// Noise variances are multiplied by `inflation`. O(reduced points).
-FreeForm free_form(const SmoothModel& smooth, double inflation);
+FreeForm free_form(const SmoothModel& smooth, double inflation, WorkBudget& work);
 
 }  // namespace palpate

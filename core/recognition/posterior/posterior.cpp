@@ -61,12 +61,9 @@ double share_of_separate_rival(const ClassFits& fits, const Likelihood& likeliho
 
 Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
                              WorkBudget& work) {
-  constexpr std::size_t kRowsOfSection = 6;  // its systems, whatever its points
-  work.spend(WorkKind::PathRow,
-             smooth.reduced.points.size() + kRowsOfSection * smooth.sections.size());
   Evidences evidences;
   evidences.inflation = likelihood.inflation();
-  evidences.free_form = free_form(smooth, evidences.inflation);
+  evidences.free_form = free_form(smooth, evidences.inflation, work);
   return evidences;
 }
 

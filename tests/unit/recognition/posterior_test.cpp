@@ -4,12 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <span>
 
+#include "core/numerics/negligible.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/unbounded_work.h"
@@ -225,7 +229,7 @@ TEST(FreeForm, PathsOfNoClassAreTakenAndRoughOnesCost) {
   options.least_fraction = options.most_fraction = 0.3;
   const test::Scene scene = test::random_outside_scene(test::OutsideShape::LogSpiral, options, rng);
   const Fitted fitted(scene);
-  const FreeForm paths = free_form(fitted.smooth, 1.0);
+  const FreeForm paths = free_form(fitted.smooth, 1.0, test::unbounded_work());
   EXPECT_LT(paths.log_occam, 0.0);
   ClassFits fits = fitted.fits;
   for (auto& fit : fits) {
@@ -238,7 +242,42 @@ TEST(FreeForm, PathsOfNoClassAreTakenAndRoughOnesCost) {
                                            likelihood, {}, test::unbounded_work());
   EXPECT_GT(probabilities_of(fits, fitted.smooth.chi2, likelihood, evidences)[0], 0.95);
   // Noise a tenth as large determines more of the path, at a price.
-  EXPECT_LT(free_form(fitted.smooth, 0.01).log_occam, paths.log_occam);
+  EXPECT_LT(free_form(fitted.smooth, 0.01, test::unbounded_work()).log_occam, paths.log_occam);
+}
+
+/// The marginal likelihood of one section as one normal law: the noise, and the prior's powers.
+TEST(FreeForm, IsTheMarginalLikelihoodOfItsPrior) {
+  constexpr int kNodes = 8;
+  constexpr int kPowers = 12;
+  constexpr double kSigma = 1e-2;
+  SmoothModel smooth;
+  Eigen::Matrix<double, kNodes, 1> y;
+  Eigen::Matrix<double, kNodes, kPowers> powers;
+  for (int i = 0; i < kNodes; ++i) {
+    const double x = 0.2 * i - 0.7;
+    y[i] = 0.1 * std::sin(4.0 * x);
+    for (int k = 0; k < kPowers; ++k) powers(i, k) = std::pow(x, k);
+    smooth.reduced.points.push_back({{x, y[i]}, {0.0, 0.0}, 1.0 / kSigma, 0.0});
+  }
+  smooth.sections.push_back({.end = kNodes, .half_length = 0.7});
+  constexpr std::array kSizes = {0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
+  double mean = 0.0;
+  for (const double size : kSizes) {
+    Eigen::Matrix<double, kPowers, 1> variances;
+    variances.head<2>().setConstant(0.5 * std::numbers::pi);
+    for (int k = 2; k < kPowers; ++k) {
+      variances[k] = std::pow(std::pow(size, 1 - k) / (k * (k - 1)), 2);
+    }
+    Eigen::Matrix<double, kNodes, kNodes> covariance =
+        powers * variances.asDiagonal() * powers.transpose() / (kSigma * kSigma);
+    covariance.diagonal().array() += 1.0;
+    const double chi2 = y.dot(covariance.llt().solve(y)) / (kSigma * kSigma);
+    mean += std::exp(-0.5 * (chi2 + std::log(covariance.determinant()))) / kSizes.size();
+  }
+  const FreeForm paths = free_form(smooth, 1.0, test::unbounded_work());
+  // What falls off the end of the sum, of all sizes.
+  EXPECT_NEAR(paths.log_occam - 0.5 * paths.chi2, std::log(mean),
+              kSizes.size() * std::exp(-kTailOfDensity));
 }
 
 /// A probe at rest: sections follow one another through a cloud, from each end predicted for the
@@ -254,7 +293,7 @@ TEST(FreeForm, OfACloudHasEvidence) {
       }
       data.patches.push_back({0, data.points.size()});
       const SmoothModel smooth = fit_smooth_model(&data, true);
-      const FreeForm paths = free_form(smooth, 1.0);
+      const FreeForm paths = free_form(smooth, 1.0, test::unbounded_work());
       EXPECT_TRUE(std::isfinite(paths.log_occam)) << sigma;
       EXPECT_TRUE(std::isfinite(paths.chi2) && paths.chi2 > 0.0) << sigma;
     }
@@ -273,8 +312,8 @@ TEST(FreeForm, IsTheSameAlongAndAgainstTravel) {
       continue;
     }
     ++single;
-    const FreeForm along = free_form(smooth, 1.0);
-    const FreeForm against = free_form(reversed, 1.0);
+    const FreeForm along = free_form(smooth, 1.0, test::unbounded_work());
+    const FreeForm against = free_form(reversed, 1.0, test::unbounded_work());
     // The chord's frame is turned by half a turn: the same powers, up to their signs.
     EXPECT_NEAR(along.log_occam - 0.5 * along.chi2, against.log_occam - 0.5 * against.chi2, 1e-6);
   }
