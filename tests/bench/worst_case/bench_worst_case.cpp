@@ -6,15 +6,14 @@
 //                    [--save FILE]
 //   bench_worst_case FILE.csv ...        costs of these files
 //   bench_worst_case --once FILE.csv     only one recognize() of the file, for callgrind
-// Costs are processor times of this thread, the least of three runs, so that a busy machine matters
-// little.
+// Costs are processor times of this thread, the least of some runs, an input's and its ellipse's in
+// turn: a busy machine, or one whose clock changes, matters little.
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +35,7 @@ using bench::thread_us;
 using bench::TouchedInput;
 
 constexpr int kRepetitions = 3;
+constexpr int kTurns = 5;  // of an input and its ellipse
 /// A climb starts at the worst of this many random inputs, and ends after this many changes in a
 /// row without a worse result.
 constexpr int kStarts = 12;
@@ -62,41 +62,45 @@ Cost cost_once(const TouchedInput& input) {
   return {answer.sample_count > 0 ? us : 0.0, answer.work};
 }
 
-Cost cost_of(const TouchedInput& input, int repetitions = kRepetitions) {
+Cost cost_of(const TouchedInput& input) {
   Cost cost = cost_once(input);
-  for (int i = 1; i < repetitions; ++i) {
+  for (int i = 1; i < kRepetitions; ++i) {
     cost.us = std::min(cost.us, cost_once(input).us);
   }
   return cost;
 }
 
-/// Cost of the clean ellipse with that many samples in each of that many patches; each is measured
-/// once.
-const Cost& clean_cost(const TouchedInput& input) {
-  static std::map<std::vector<std::size_t>, Cost> known;
-  std::vector<std::size_t> sizes;
-  for (const bench::TouchedPatch& patch : input) sizes.push_back(patch.samples.size());
-  const auto [found, is_new] = known.try_emplace(sizes);
-  if (is_new) found->second = cost_of(bench::clean_ellipse_like(input));
-  return found->second;
+/// An input's cost and that of its clean ellipse, measured in turn.
+struct SideBySide {
+  Cost input;
+  Cost ellipse;
+
+  double ratio() const { return ellipse.us > 0.0 ? input.us / ellipse.us : 0.0; }
+};
+
+SideBySide side_by_side(const TouchedInput& input, int turns = kTurns) {
+  const TouchedInput ellipse = bench::clean_ellipse_like(input);
+  SideBySide least{cost_once(input), cost_once(ellipse)};
+  for (int i = 1; i < turns; ++i) {
+    least.input.us = std::min(least.input.us, cost_once(input).us);
+    least.ellipse.us = std::min(least.ellipse.us, cost_once(ellipse).us);
+  }
+  return least;
 }
 
 struct Found {
   InputRecipe recipe;
-  double us = 0.0;
-  double ratio = 0.0;
-  double share = 0.0;  ///< of the work that may be counted
+  SideBySide cost;
+
+  double ratio() const { return cost.ratio(); }
 };
 
-/// The cost; nullopt if a first measurement shows that it is not above `ratio`.
+/// The cost; nullopt if it is not above `ratio`, as a first measurement mostly shows.
 std::optional<Found> measured(const InputRecipe& recipe, double ratio) {
   const TouchedInput input = bench::input_of(recipe);
-  const double clean = clean_cost(input).us;
-  const Cost once = cost_once(input);
-  if (once.us <= ratio * clean) return std::nullopt;
-  const double us = std::min(once.us, cost_of(input, kRepetitions - 1).us);
-  if (us <= ratio * clean) return std::nullopt;
-  return Found{recipe, us, us / clean, once.share()};
+  if (side_by_side(input, 1).ratio() <= ratio) return std::nullopt;
+  const SideBySide cost = side_by_side(input);
+  return cost.ratio() > ratio ? std::optional(Found{recipe, cost}) : std::nullopt;
 }
 
 ContactTable table_of(const TouchedInput& input) {
@@ -116,8 +120,7 @@ int run_files(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     const auto input = input_from(file);
     if (!input) return 2;
-    const Cost cost = cost_of(*input);
-    const Cost& clean = clean_cost(*input);
+    const auto [cost, clean] = side_by_side(*input);
     std::printf("%-40s %8zu %8zu %12.0f %12.0f %8.1f %12.3f %12.3f\n", file.c_str(), input->size(),
                 bench::sample_count(*input), cost.us, clean.us, cost.us / clean.us, cost.share(),
                 clean.share());
@@ -132,7 +135,7 @@ int measure_prices(int tries, std::uint64_t seed, bench::InputKind kind, int mos
   std::vector<bench::CountedTime> measured;
   for (int i = 0; i < tries; ++i) {
     const TouchedInput input = bench::input_of(bench::random_recipe(rng, kind, most_samples));
-    for (const Cost& cost : {cost_of(input), clean_cost(input)}) {
+    for (const Cost& cost : {cost_of(input), cost_of(bench::clean_ellipse_like(input))}) {
       if (cost.us > 0.0) measured.push_back({cost.us, cost.work.counts()});
     }
   }
@@ -199,23 +202,23 @@ int search(const Options& options, bench::InputKind kind, const std::string& pro
                                    ? bench::mutated(current.recipe, rng, kind, options.most_samples)
                                    : bench::random_recipe(rng, kind, options.most_samples);
     starts += climbs ? 0 : 1;
-    const auto found = measured(recipe, climbs ? current.ratio : 0.0);
-    if (!climbs && found) ratios_of_starts.push_back(found->ratio);
-    if (!found || found->ratio <= current.ratio) {
+    const auto found = measured(recipe, climbs ? current.ratio() : 0.0);
+    if (!climbs && found) ratios_of_starts.push_back(found->ratio());
+    if (!found || found->ratio() <= current.ratio()) {
       idle += climbs ? 1 : 0;
       continue;
     }
     idle = 0;
     current = *found;
-    if (current.ratio > worst.ratio) {
+    if (current.ratio() > worst.ratio()) {
       worst = current;
       std::printf("try %ld, %.0f s: ratio %.1f, %.0f us, work %.2f of its limit: %s\n", tries,
-                  elapsed(), worst.ratio, worst.us, worst.share,
+                  elapsed(), worst.ratio(), worst.cost.input.us, worst.cost.input.share(),
                   bench::to_text(worst.recipe).c_str());
       std::fflush(stdout);
     }
   }
-  if (worst.ratio == 0.0) {
+  if (worst.ratio() == 0.0) {
     std::printf("no input in %ld tries\n", tries);
     return 1;
   }
@@ -238,9 +241,9 @@ int search(const Options& options, bench::InputKind kind, const std::string& pro
       "%s\n",
       tries, ratios_of_starts.size(),
       ratios_of_starts.empty() ? 0.0 : ratios_of_starts[ratios_of_starts.size() / 2],
-      ratios_of_starts.empty() ? 0.0 : ratios_of_starts.back(), worst.ratio, worst.us,
-      clean_cost(input).us, worst.share, bench::to_text(worst.recipe).c_str(), options.save.c_str(),
-      program.c_str(), options.save.c_str());
+      ratios_of_starts.empty() ? 0.0 : ratios_of_starts.back(), worst.ratio(), worst.cost.input.us,
+      worst.cost.ellipse.us, worst.cost.input.share(), bench::to_text(worst.recipe).c_str(),
+      options.save.c_str(), program.c_str(), options.save.c_str());
   return 0;
 }
 
