@@ -9,29 +9,29 @@ double price_of(WorkKind kind) {
     case WorkKind::PolynomialRow:
       return 1.0;
     case WorkKind::ConicRow:
-      return 1.85;
+      return 1.8;
     case WorkKind::SoughtFoot:
-      return 38.0;
+      return 9.0;
     case WorkKind::FitStep:
-      return 3.3;
+      return 4.0;
     case WorkKind::AxisRow:
-      return 0.3;
+      return 0.32;
     case WorkKind::SeedRow:
-      return 0.28;
+      return 0.24;
     case WorkKind::PlacedRow:
-      return 3.3;
+      return 2.6;
     case WorkKind::PathRow:
-      return 6.5;
+      return 2.6;
     case WorkKind::PosteriorRow:
-      return 2.9;
+      return 2.3;
     case WorkKind::DriftRow:
-      return 0.95;
+      return 1.2;
     case WorkKind::OffsetCell:
-      return 8.4;
+      return 9.0;
     case WorkKind::SpikeRow:
-      return 0.55;
+      return 0.45;
     case WorkKind::Sample:
-      break;
+      return 0.9;
   }
   return 1.0;
 }

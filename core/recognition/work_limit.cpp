@@ -27,13 +27,13 @@ double work_of_clean_ellipse(std::size_t samples, std::size_t patches) {
   const auto n = static_cast<double>(samples);
   const auto p = static_cast<double>(patches);
   // Every sample is read, smoothed, and stands in the best class's last steps.
-  constexpr double kOfSample = 10.3;
+  constexpr double kOfSample = 10.0;
   // The search goes through the points that stand for samples: through all samples where these are
   // few; a dozen of a patch; 64 of many patches, which are then followed on all.
   const double by_samples = 455.0 * n + 2300.0 * p - 1400.0;
-  const double of_few_patches = 6000.0 + 6000.0 * p;
-  const double of_some_patches = 20000.0 + 2500.0 * p;
-  const double of_many_patches = 57000.0 + 200.0 * p;
+  const double of_few_patches = 6500.0 + 5300.0 * p;
+  const double of_some_patches = 7200.0 + 3050.0 * p;
+  const double of_many_patches = 43000.0 + 320.0 * p;
   return kOfSample * n + std::min({by_samples, of_few_patches, of_some_patches, of_many_patches});
 }
 

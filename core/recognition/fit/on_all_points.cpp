@@ -102,7 +102,7 @@ void carry_to_all(const SmoothModel& smooth, PolynomialFit* curve) {
 void seek_feet(std::span<const FitPoint> points, PolynomialFit* curve, WorkBudget& work) {
   // Of a residual, in deviations of the noise, on either side of the curve: what lies nearer than
   // noise leaves one point in twenty gains next to nothing from another foot, and seeking costs as
-  // much as forty steps of following.
+  // much as ten steps of following.
   constexpr double kFar = 2.0;
   const std::vector<double> distances = distances_from(*curve, points);
   for (std::size_t i = 0; i < points.size(); ++i) {
