@@ -9,7 +9,7 @@ double price_of(WorkKind kind) {
     case WorkKind::PolynomialRow:
       return 1.0;
     case WorkKind::ConicRow:
-      return 1.8;
+      return 2.0;
     case WorkKind::SoughtFoot:
       return 9.0;
     case WorkKind::FitStep:
@@ -21,15 +21,15 @@ double price_of(WorkKind kind) {
     case WorkKind::PlacedRow:
       return 2.6;
     case WorkKind::PathRow:
-      return 2.6;
+      return 2.2;
     case WorkKind::PosteriorRow:
-      return 2.3;
+      return 2.0;
     case WorkKind::DriftRow:
-      return 1.2;
+      return 1.1;
     case WorkKind::OffsetCell:
       return 9.0;
     case WorkKind::SpikeRow:
-      return 0.45;
+      return 0.4;
     case WorkKind::Sample:
       return 0.9;
   }

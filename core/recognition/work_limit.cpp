@@ -30,7 +30,7 @@ double work_of_clean_ellipse(std::size_t samples, std::size_t patches) {
   constexpr double kOfSample = 10.0;
   // The search goes through the points that stand for samples: through all samples where these are
   // few; a dozen of a patch; 64 of many patches, which are then followed on all.
-  const double by_samples = 455.0 * n + 2300.0 * p - 1400.0;
+  const double by_samples = 400.0 * n + 2100.0 * p - 1100.0;
   const double of_few_patches = 6500.0 + 5300.0 * p;
   const double of_some_patches = 7200.0 + 3050.0 * p;
   const double of_many_patches = 43000.0 + 320.0 * p;

@@ -9,9 +9,9 @@
 namespace palpate {
 
 /// Work of one curve in touched coordinates: of its points, and of the small systems that are
-/// solved beside them, which are six more.
+/// solved beside them, which take as much as a dozen more.
 inline std::size_t rows_of_curve(const FitData& data) {
-  constexpr std::size_t kRowsOfSystems = 6;
+  constexpr std::size_t kRowsOfSystems = 12;
   return data.points.size() + kRowsOfSystems;
 }
 

@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <variant>
 
 #include "core/curves/curve.h"
 #include "core/numerics/triangular_root.h"
-#include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/measured_normal.h"
+#include "core/recognition/posterior/trial_foot.h"
 
 namespace palpate {
 namespace {
@@ -19,45 +20,6 @@ std::size_t reference_point(const FitData& data) {
       std::max_element(data.patches.begin(), data.patches.end(),
                        [](const PatchSpan& a, const PatchSpan& b) { return a.size() < b.size(); });
   return longest->begin + longest->size() / 2;
-}
-
-/// A point's foot on a curve, and the curve there.
-struct Foot {
-  double t = 0.0;
-  Vec2 position = Vec2::Zero();
-  Vec2 first = Vec2::Zero();
-};
-
-/// The foot of `point` (curve's frame) near t: Newton's method on (C - p) . C' = 0. The last step
-/// is short, and the curve at its end is told by Taylor's series: it is not asked again.
-Foot follow_foot(const Curve& curve, const Vec2& point, double t) {
-  constexpr int kMostFootSteps = 6;  // digits double from wherever the last curve had it
-  // Half extents. What a step leaves along the curve is some square of it, 1e-7, and an error along
-  // it is its square across.
-  constexpr double kLastStep = 3e-4;
-  // Half extents: a thousandth of the finest noise, a hundred millionth.
-  constexpr double kSeriesError = 1e-11;
-  for (int i = 0;; ++i) {
-    const CurveDerivatives at = derivatives(curve, t);
-    const Vec2 away = at.position - point;
-    const double along = away.dot(at.first);
-    const double speed2 = at.first.squaredNorm();
-    const double slope = speed2 + away.dot(at.second);
-    // At the centre of curvature the slope is 0; a Gauss-Newton step is safe.
-    const double step = -along / (slope > kLeastFootSlope * speed2 ? slope : speed2);
-    if (i == kMostFootSteps || !std::isfinite(step)) {  // as at a cusp, of speed 0
-      return {t, at.position, at.first};
-    }
-    // A conic's fourth derivative is as long as its second, other classes have none.
-    const double step2 = step * step;
-    const double series_error = step2 * step2 / 24.0 * at.second.norm();
-    if (step2 * speed2 <= kLastStep * kLastStep && series_error <= kSeriesError) {
-      return {t + step,
-              at.position + step * (at.first + step / 2.0 * (at.second + step / 3.0 * at.third)),
-              at.first + step * (at.second + step / 2.0 * at.third)};
-    }
-    t += step;
-  }
 }
 
 /// How the shape, the place and the tangent there move with each coordinate of the shape, by
@@ -112,6 +74,26 @@ Eigen::Matrix<double, 2, 3> shape_rate(const Curve& curve, double t) {
   const double step = 1e-5 * std::max(1.0, std::abs(t));
   return (position_by_parameters(curve, t + step) - position_by_parameters(curve, t - step)) /
          (2.0 * step);
+}
+
+/// How a place of the curve moves with the parameters. That of a conic moves in proportion to its
+/// coordinates: no function of t is asked again.
+Eigen::Matrix<double, 2, 3> place_by_parameters(const Curve& curve, const TrialFoot& foot) {
+  Eigen::Matrix<double, 2, 3> by = Eigen::Matrix<double, 2, 3>::Zero();
+  if (const auto* circle = std::get_if<Circle>(&curve)) {
+    by.col(0) = foot.position / circle->a;
+  } else if (const auto* parabola = std::get_if<Parabola>(&curve)) {
+    by.col(0) = foot.position / parabola->a;
+  } else if (const auto* ellipse = std::get_if<Ellipse>(&curve)) {
+    by(0, 0) = foot.position.x() / ellipse->a;
+    by(1, 1) = foot.position.y() / ellipse->b;
+  } else if (const auto* hyperbola = std::get_if<Hyperbola>(&curve)) {
+    by(0, 0) = foot.position.x() / hyperbola->a;
+    by(1, 1) = foot.position.y() / hyperbola->b;
+  } else {
+    by = position_by_parameters(curve, foot.t);
+  }
+  return by;
 }
 
 /// The curve and the place on it that was touched, in its own frame, and how they move.
@@ -225,7 +207,8 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
       Eigen::Matrix<double, kRows, kMostCoordinates>::Zero();
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     const Vec2 point = to_local(data.points[i].position);
-    const Foot foot = follow_foot(*canonical, point, curve->t[i]);
+    const double weight = touch.weight * data.points[i].inverse_sigma;
+    const TrialFoot foot = trial_foot(*canonical, point, curve->t[i], 1.0 / weight);
     curve->t[i] = foot.t;
     const Vec2 away = point - foot.position;
     const double foot_speed = foot.first.norm();
@@ -234,7 +217,6 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
     const Vec2 normal = foot_speed > 0.0 ? Vec2(left_of(foot.first) / foot_speed)
                         : distance > 0.0 ? Vec2(away / distance)
                                          : Vec2(0.0, 1.0);
-    const double weight = touch.weight * data.points[i].inverse_sigma;
     const double residual = weight * away.dot(normal);
     curve->chi2 += residual * residual;
     const double lever = normal.dot(left_of(foot.position - at.position));
@@ -252,7 +234,7 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
       }
     } else {
       const Eigen::RowVector3d by_shape =
-          normal.transpose() * position_by_parameters(*canonical, foot.t);
+          normal.transpose() * place_by_parameters(*canonical, foot);
       for (std::size_t k = 0; k < own; ++k) {
         set(k, by_shape.dot(motions->shape[k]) - normal.dot(shift[k]) - motions->turn[k] * lever);
       }
@@ -268,30 +250,6 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
     add_normals(touch, data, {*canonical, *motions, at, at_touch}, curve);
   }
   return std::isfinite(curve->chi2) && curve->root.allFinite();
-}
-
-/// Feet of `from`, where they are about to be on the curve of `shape`: as far from the touched
-/// place along the curve.
-std::vector<double> carried_feet(const Touch& touch, const TouchedCurve& from,
-                                 const TouchedShape& shape) {
-  std::vector<double> t = from.t;
-  if ((class_bit(touch.curve_class) & kCubics) != 0) {
-    return t;
-  }
-  const auto before = make_curve(touch.curve_class, from.shape.values);
-  const auto now = make_curve(touch.curve_class, shape.values);
-  if (!before || !now) {
-    return t;
-  }
-  const double ratio =
-      derivatives(*before, from.shape.t).first.norm() / derivatives(*now, shape.t).first.norm();
-  if (!std::isfinite(ratio)) {
-    return t;
-  }
-  for (double& foot : t) {
-    foot = shape.t + ratio * (foot - from.shape.t);
-  }
-  return t;
 }
 
 }  // namespace
@@ -372,7 +330,7 @@ std::optional<TouchedCurve> curve_at(const Touch& touch, const TouchedVector& z,
   TouchedCurve curve;
   curve.z = z;
   curve.shape = *shape;
-  curve.t = carried_feet(touch, from, *shape);
+  curve.t = from.t;
   return place_on(touch, data, &curve) ? std::optional(std::move(curve)) : std::nullopt;
 }
 
