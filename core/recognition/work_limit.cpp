@@ -5,10 +5,11 @@
 namespace palpate {
 namespace {
 
-/// Over the work of a clean ellipse. A planner can wait for eight, by the clock; times are up to
-/// half as long again as the counts say (`bench_worst_case`). Strokes of a round tip with drift and
-/// lobes, whose side nobody tells, take more than six, and are recognised (probe_correction_test);
-/// half a one is for the covariance (recognizer.cpp).
+/// Over the work of a clean ellipse. A planner can wait for eight, by the clock; an answer that is
+/// cut has spent six to six and a half of these, and takes a quarter longer than its count says at
+/// most (`bench_worst_case`). Strokes that go there and back six times, with a noise that nobody
+/// states, take up to six, and are recognised (habits_test); half a one is for the covariance
+/// (recognizer.cpp).
 constexpr double kMostWork = 7.5;
 
 /// Of that, for what is done of one weighing in any case, and of the one that has begun when the
@@ -22,7 +23,7 @@ constexpr double kOfTouches = 6.0;
 
 }  // namespace
 
-// By `bench_worst_case --ellipses`, right to a fifth for most sizes.
+// By `bench_worst_case --ellipses`, right to a quarter for most sizes: seldom more than they take.
 double work_of_clean_ellipse(std::size_t samples, std::size_t patches) {
   const auto n = static_cast<double>(samples);
   const auto p = static_cast<double>(patches);
