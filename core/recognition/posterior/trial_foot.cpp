@@ -60,6 +60,8 @@ TrialFoot trial_foot(const Curve& curve, const Vec2& point, double t, double sig
   t = near_foot(curve, point, t);
   constexpr int kMostFootSteps = 6;     // digits double from where it is sought
   constexpr double kNegligible = 1e-4;  // of the noise: an error across the curve
+  // Of a step, what it leaves: what that leaves out in turn is then a tenth of it.
+  constexpr double kConverging = 0.1;
   for (int i = 0;; ++i) {
     const CurveDerivatives at = derivatives(curve, t);
     const auto [step, slope] = foot_step(at, point);
@@ -75,7 +77,8 @@ TrialFoot trial_foot(const Curve& curve, const Vec2& point, double t, double sig
     // A conic's fourth derivative is as long as its second, other classes have none.
     const double series_error = step2 * step2 / 24.0 * at.second.norm();
     const double negligible = kNegligible * sigma;
-    if (bend * bend <= negligible * negligible * at.first.squaredNorm() &&
+    if (std::abs(left) <= kConverging * std::abs(step) &&
+        bend * bend <= negligible * negligible * at.first.squaredNorm() &&
         series_error <= negligible) {
       return {t + step,
               at.position + step * (at.first + step / 2.0 * (at.second + step / 3.0 * at.third)),
