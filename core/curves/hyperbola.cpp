@@ -5,7 +5,7 @@
 
 #include "core/curves/arc_length.h"
 #include "core/curves/foot_point.h"
-#include "core/numerics/sinh_cosh.h"
+#include "core/curves/sinh_cosh.h"
 
 namespace palpate {
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <variant>
 
+#include "core/curves/pose2.h"
+
 namespace palpate {
 namespace {
 
@@ -24,9 +26,7 @@ FootStep foot_step(const CurveDerivatives& at, const Vec2& point) {
 /// shape, a step from where the point's own coordinates put it, which takes no function of t; for a
 /// cubic at `t`, on the arm where it was.
 double near_foot(const Curve& curve, const Vec2& point, double t) {
-  const auto turned = [t](double angle) {
-    return angle + 2.0 * kPi * std::round((t - angle) / (2.0 * kPi));
-  };
+  const auto turned = [t](double angle) { return t + wrap_angle(angle - t); };
   if (std::holds_alternative<Circle>(curve)) {
     return turned(std::atan2(point.y(), point.x()));
   }

@@ -34,7 +34,6 @@ using bench::InputRecipe;
 using bench::thread_us;
 using bench::TouchedInput;
 
-constexpr int kRepetitions = 3;
 constexpr int kTurns = 5;  // of an input and its ellipse
 /// A climb starts at the worst of this many random inputs, and ends after this many changes in a
 /// row without a worse result.
@@ -62,14 +61,6 @@ Cost cost_once(const TouchedInput& input) {
   return {answer.sample_count > 0 ? us : 0.0, answer.work};
 }
 
-Cost cost_of(const TouchedInput& input) {
-  Cost cost = cost_once(input);
-  for (int i = 1; i < kRepetitions; ++i) {
-    cost.us = std::min(cost.us, cost_once(input).us);
-  }
-  return cost;
-}
-
 /// An input's cost and that of its clean ellipse, measured in turn.
 struct SideBySide {
   Cost input;
@@ -91,8 +82,6 @@ SideBySide side_by_side(const TouchedInput& input, int turns = kTurns) {
 struct Found {
   InputRecipe recipe;
   SideBySide cost;
-
-  double ratio() const { return cost.ratio(); }
 };
 
 /// The cost; nullopt if it is not above `ratio`, as a first measurement mostly shows.
@@ -135,7 +124,8 @@ int measure_prices(int tries, std::uint64_t seed, bench::InputKind kind, int mos
   std::vector<bench::CountedTime> measured;
   for (int i = 0; i < tries; ++i) {
     const TouchedInput input = bench::input_of(bench::random_recipe(rng, kind, most_samples));
-    for (const Cost& cost : {cost_of(input), cost_of(bench::clean_ellipse_like(input))}) {
+    const auto [own, ellipse] = side_by_side(input);
+    for (const Cost& cost : {own, ellipse}) {
       if (cost.us > 0.0) measured.push_back({cost.us, cost.work.counts()});
     }
   }
@@ -202,23 +192,23 @@ int search(const Options& options, bench::InputKind kind, const std::string& pro
                                    ? bench::mutated(current.recipe, rng, kind, options.most_samples)
                                    : bench::random_recipe(rng, kind, options.most_samples);
     starts += climbs ? 0 : 1;
-    const auto found = measured(recipe, climbs ? current.ratio() : 0.0);
-    if (!climbs && found) ratios_of_starts.push_back(found->ratio());
-    if (!found || found->ratio() <= current.ratio()) {
+    const auto found = measured(recipe, climbs ? current.cost.ratio() : 0.0);
+    if (!climbs && found) ratios_of_starts.push_back(found->cost.ratio());
+    if (!found || found->cost.ratio() <= current.cost.ratio()) {
       idle += climbs ? 1 : 0;
       continue;
     }
     idle = 0;
     current = *found;
-    if (current.ratio() > worst.ratio()) {
+    if (current.cost.ratio() > worst.cost.ratio()) {
       worst = current;
       std::printf("try %ld, %.0f s: ratio %.1f, %.0f us, work %.2f of its limit: %s\n", tries,
-                  elapsed(), worst.ratio(), worst.cost.input.us, worst.cost.input.share(),
+                  elapsed(), worst.cost.ratio(), worst.cost.input.us, worst.cost.input.share(),
                   bench::to_text(worst.recipe).c_str());
       std::fflush(stdout);
     }
   }
-  if (worst.ratio() == 0.0) {
+  if (worst.cost.ratio() == 0.0) {
     std::printf("no input in %ld tries\n", tries);
     return 1;
   }
@@ -241,9 +231,10 @@ int search(const Options& options, bench::InputKind kind, const std::string& pro
       "%s\n",
       tries, ratios_of_starts.size(),
       ratios_of_starts.empty() ? 0.0 : ratios_of_starts[ratios_of_starts.size() / 2],
-      ratios_of_starts.empty() ? 0.0 : ratios_of_starts.back(), worst.ratio(), worst.cost.input.us,
-      worst.cost.ellipse.us, worst.cost.input.share(), bench::to_text(worst.recipe).c_str(),
-      options.save.c_str(), program.c_str(), options.save.c_str());
+      ratios_of_starts.empty() ? 0.0 : ratios_of_starts.back(), worst.cost.ratio(),
+      worst.cost.input.us, worst.cost.ellipse.us, worst.cost.input.share(),
+      bench::to_text(worst.recipe).c_str(), options.save.c_str(), program.c_str(),
+      options.save.c_str());
   return 0;
 }
 

@@ -1,5 +1,5 @@
 // Both hyperbolic functions at once, against those of more digits.
-#include "core/numerics/sinh_cosh.h"
+#include "core/curves/sinh_cosh.h"
 
 #include <gtest/gtest.h>
 
