@@ -66,6 +66,16 @@ Vec2 travel_at(std::span<const FitPoint> patch, std::size_t i) {
   return Vec2::Zero();
 }
 
+/// Whether the conic is so thick at a foot that noise does not take the point to its other side.
+bool tells_side(const ConicCoefficients& q, const Vec2& foot, const FitPoint& point) {
+  constexpr double kDeviations = 6.0;
+  // From the foot along the normal the polynomial is |g| s + a s^2.
+  const Vec2 g = conic_gradient(q, foot);
+  const double a_g2 = q[0] * g.x() * g.x() + q[1] * g.x() * g.y() + q[2] * g.y() * g.y();
+  const double g2 = g.squaredNorm();
+  return g2 * std::sqrt(g2) * point.inverse_sigma > kDeviations * std::abs(a_g2);
+}
+
 }  // namespace
 
 bool is_touchable(const ImplicitFit& fit, const FitData& data) {
@@ -75,13 +85,20 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
   }
   for (std::size_t p = 0; p < data.patches.size(); ++p) {
     const std::span<const FitPoint> patch = data.patch(p);
+    const auto foot = [&](std::size_t i) { return fit.feet[data.patches[p].begin + i]; };
+    std::size_t thick = 0;
+    for (std::size_t i = 0; i < patch.size(); ++i) {
+      thick += tells_side(q, foot(i), patch[i]) ? 1 : 0;
+    }
+    // The ends of a needle tell no side; where most points tell none, it has none.
+    const bool where_told = 2 * thick >= patch.size();
     std::size_t left = 0;
     std::size_t told = 0;
     for (std::size_t i = 0; i < patch.size(); ++i) {
       const Vec2 travel = travel_at(patch, i);
-      if (!travel.isZero()) {
+      if (!travel.isZero() && (!where_told || tells_side(q, foot(i), patch[i]))) {
         ++told;
-        left += cross(travel, conic_gradient(q, fit.feet[data.patches[p].begin + i])) >= 0.0;
+        left += cross(travel, conic_gradient(q, foot(i))) >= 0.0;
       }
     }
     if (turns(std::min(left, told - left), told)) {

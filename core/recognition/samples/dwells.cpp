@@ -38,7 +38,8 @@ Block block_of(const Places& places, std::size_t begin, std::size_t end) {
 }
 
 /// J. von Neumann's ratio (1941): mean square step over twice the mean square distance from the
-/// mean. It is 1 for places in random order and 6 / n^2 for n places evenly spaced along a line.
+/// mean. It is 1 for places in random order and 6 / (n^2 - 1) for n places evenly spaced along a
+/// line.
 template <typename Places>
 double step_ratio(const Places& places, const Block& of) {
   double steps = 0.0;
@@ -66,7 +67,7 @@ constexpr double kLeastRatio = 0.4;
 
 constexpr std::size_t kBlock = 8;
 
-/// Fewer block means show no order. Six evenly spaced ones have the ratio 6 / 36.
+/// Fewer block means show no order. Six evenly spaced ones have the ratio 6 / 35.
 constexpr std::size_t kFewestMeans = 6;
 
 /// Consecutive blocks of a stroke in which it moves slowly.
@@ -245,7 +246,8 @@ std::vector<PatchSpan> repeats_of(std::span<const StoredSample> samples) {
 
 bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
                   double half_extent_m) {
-  constexpr std::size_t kFewest = 4;  // four evenly spaced places have the ratio 0.3
+  // Five evenly spaced places have the ratio 0.25, four have kLeastRatio itself.
+  constexpr std::size_t kFewest = 5;
   constexpr double kSmall = 1e-2;
   // In units of the spread of pure noise. Motion over six standard deviations gives as much.
   constexpr double kSpread = 1.6;

@@ -18,6 +18,9 @@ struct OnWay {
   double least_angle = 0.0, most_angle = 0.0;
   double angle = 0.0;  ///< at the place's foot [rad]
   double turn = 0.0;   ///< of the step, left positive [rad]
+  /// Whether the places leave a gap before it: over that the way may as well go on from another
+  /// end.
+  bool after_gap = false;
 };
 
 /// The places in their order along the way, if that is beyond doubt. The way runs through at most

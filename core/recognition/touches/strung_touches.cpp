@@ -293,6 +293,10 @@ std::optional<Strung> strung_by_way(std::span<const StoredPatch> patches, const 
     }
     std::vector<Place> places;
     for (const OnWay& on_way : *way) {
+      if (on_way.after_gap) {
+        result.add(patches, places);
+        places.clear();
+      }
       const bool straight = on_way.most_angle - on_way.least_angle <= kToldTurn;
       places.push_back(
           {of_tip[on_way.place], on_way.along, on_way.least_angle, on_way.most_angle,

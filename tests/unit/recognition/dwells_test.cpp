@@ -178,6 +178,21 @@ TEST_F(Dwells, AShortStrokeIsNoHeldTouch) {
   }
 }
 
+TEST_F(Dwells, AFewSamplesInARowAreNoHeldTouch) {
+  // A hundredth of the part from first to last, in even steps, with noise that is small beside
+  // these: however few, their steps have an order.
+  for (std::size_t count = 2; count <= 8; ++count) {
+    for (int seed = 0; seed < 50; ++seed) {
+      std::vector<StoredSample> samples;
+      for (std::size_t i = 0; i < count; ++i) {
+        const double along = static_cast<double>(i) / static_cast<double>(count - 1);
+        samples.push_back(sample_at(on_circle(1.0 + 1e-2 * along) + 0.1 * noise()));
+      }
+      EXPECT_FALSE(is_one_place(samples, 0.0, kPart)) << count << " samples, " << seed;
+    }
+  }
+}
+
 TEST_F(Dwells, APatchInNoOrderIsNoHeldTouch) {
   // Touches of a part one by one, in one patch and in no order.
   std::uniform_real_distribution<double> angle(0.0, 2.0 * kPi);

@@ -74,6 +74,28 @@ TEST(ShortestWay, IsOpenAtTheWidestGapOfAClosedCurve) {
   EXPECT_NEAR(std::max(first, last), *most, 1e-3);
 }
 
+/// Two arcs at opposite sides of an ellipse: from the end of one it is as far to either end of the
+/// other, and the way may go on from the wrong one. The gap is told, and no other.
+TEST(ShortestWay, TellsAGapOverWhichItMayGoOnFromAnotherEnd) {
+  std::mt19937_64 rng = test::test_rng();
+  const auto on_ellipse = [](double at) { return Vec2(std::cos(at), 0.67 * std::sin(at)); };
+  for (const int count : {60, 240, 600}) {
+    std::vector<double> t = spread(count / 2, 0.0, 1.3, rng);
+    const std::vector<double> opposite = spread(count / 2, 3.1, 4.4, rng);
+    t.insert(t.end(), opposite.begin(), opposite.end());
+    const auto way = shortest_way(places_of(&t, on_ellipse, 5e-4, rng), 1e-2);
+    ASSERT_TRUE(way) << count;
+    for (std::size_t i = 1; i < way->size(); ++i) {
+      const bool across = (t[(*way)[i].place] > 2.0) != (t[(*way)[i - 1].place] > 2.0);
+      EXPECT_TRUE(!across || (*way)[i].after_gap) << count;
+    }
+    // Of places spread by chance, one step in 1,800 is as wide (e^7.5): two of these at most.
+    EXPECT_LE(std::count_if(way->begin(), way->end(), [](const OnWay& o) { return o.after_gap; }),
+              3)
+        << count;
+  }
+}
+
 TEST(ShortestWay, IsNotToldWhereArmsLieCloseOrNoiseIsAsLargeAsTheSteps) {
   std::mt19937_64 rng = test::test_rng();
   const double sigma = 1e-4;
