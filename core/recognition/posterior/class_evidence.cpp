@@ -22,7 +22,6 @@ void set_mode(TouchedCurve mode, ClassEvidence* evidence) {
       static_cast<double>(kMostCoordinates) - inverse_cholesky(mode.root).trace();
   evidence->log_prior = mode.log_prior;
   evidence->log_occam = log_mass(mode) + 0.5 * evidence->fitted_chi2;
-  evidence->log_occam_of_mode = evidence->log_occam;
   evidence->log_all_modes = 0.0;
   const int own = shape_coordinates(evidence->touch.curve_class);
   const Eigen::Matrix<double, 2, kMostCoordinates> touch_rows = mode.root.middleRows<2>(own);
@@ -53,18 +52,22 @@ void set_log_all_modes(double log_all, ClassEvidence* evidence) {
   const double more = log_all - evidence->log_all_modes;
   evidence->log_all_modes = log_all;
   evidence->log_occam += more;
-  evidence->log_occam_of_mode += more;
 }
 
-/// The evidence of the modes that the prior leads to, at the best one, where they have more than
-/// `least`, and of the mode that it has, if any.
-void take_prior_modes(const Touch& touch, CurveClass path_class, const TouchedCurve& path,
-                      const FitData& data, double least, ClassEvidence* evidence,
-                      WorkBudget& work) {
+/// The evidence of the modes that the prior leads to along `path`, at the best one, where they have
+/// more than `least`, and of the mode that it has, if any.
+void take_prior_modes(const ClassEvidence& path, const FitData& data, double least,
+                      ClassEvidence* evidence, WorkBudget& work) {
   constexpr double kTold = 4.0;  // log: less than a fiftieth of the best is not told
   // log over `least`, e^-9 of the best class: what is left of a fiftieth. A class of less, which
   // the most probable start led to, is not worth the time of others.
   constexpr double kWorthMore = 5.0;
+  Touch touch = along_patch(path.touch, data);
+  touch.curve_class = evidence->touch.curve_class;
+  touch.as_arc = false;
+  // Either sign of a cubical parabola's b has arms that bend alike: the most probable start tells
+  // little of the next.
+  const bool told_by_first = touch.curve_class != CurveClass::CubicalParabola;
   bool further = false;
   const double half_chi2 = 0.5 * evidence->fitted_chi2;
   std::vector<ArmMass> of_arms;
@@ -79,8 +82,10 @@ void take_prior_modes(const Touch& touch, CurveClass path_class, const TouchedCu
       of_arms.push_back({arm_of(touch, other, mode), best + std::log(others)});
     }
   }
-  for (const PriorStart& start : prior_starts(touch, path_class, path)) {
-    if ((further && !(evidence->log_occam > least + kWorthMore)) || !work.allows()) {
+  for (const PriorStart& start :
+       prior_starts(touch, path.touch.curve_class, path.nodes[path.mode].curve)) {
+    if ((further && told_by_first && !(evidence->log_occam > least + kWorthMore)) ||
+        !work.allows()) {
       break;
     }
     auto mode = followed_from_prior(start.touch, data, start.curve,
@@ -180,23 +185,22 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
   return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
 }
 
-ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least,
-                              WorkBudget& work) {
+ClassEvidence with_prior_mode(ClassEvidence evidence, const ClassEvidence& path,
+                              const FitData& data, double least, WorkBudget& work) {
   evidence.prior_mode_sought = true;
-  const CurveClass curve_class = evidence.touch.curve_class;
-  const TouchedCurve fitted = evidence.nodes[evidence.mode].curve;
-  Touch touch = along_patch(evidence.touch, data);
-  touch.as_arc = false;
-  take_prior_modes(touch, curve_class, fitted, data, least, &evidence, work);
+  take_prior_modes(path, data, least, &evidence, work);
   return evidence;
 }
 
-std::optional<ClassEvidence> from_prior(ClassEvidence evidence, CurveClass path_class,
-                                        const TouchedCurve& path, const FitData& data,
+std::optional<ClassEvidence> from_prior(CurveClass curve_class, double fitted_chi2,
+                                        const ClassEvidence& path, const FitData& data,
                                         WorkBudget& work) {
+  ClassEvidence evidence;
+  evidence.touch = along_patch(path.touch, data);
+  evidence.touch.curve_class = curve_class;
+  evidence.fitted_chi2 = fitted_chi2;
   evidence.prior_mode_sought = true;
-  take_prior_modes(Touch(evidence.touch), path_class, path, data,
-                   -std::numeric_limits<double>::infinity(), &evidence, work);
+  take_prior_modes(path, data, -std::numeric_limits<double>::infinity(), &evidence, work);
   return !evidence.nodes.empty() && is_of_optimum(evidence) ? std::optional(std::move(evidence))
                                                             : std::nullopt;
 }
@@ -228,9 +232,6 @@ ClassEvidence with_mode_at_cusp(ClassEvidence spline, const ClassEvidence& semi_
 
 ClassEvidence at_better_mode(ClassEvidence evidence, const ClassEvidence& before) {
   evidence.prior_mode_sought = before.prior_mode_sought;
-  if (!before.prior_mode_sought) {
-    return evidence;
-  }
   const TouchedCurve& mode = before.nodes[before.mode].curve;
   const double others = std::expm1(before.log_all_modes);  // over what that mode has
   const double gain = log_mass(mode) - log_mass(evidence.nodes[evidence.mode].curve);

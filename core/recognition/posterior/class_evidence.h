@@ -21,15 +21,10 @@ struct ClassEvidence {
   double fitted_chi2 = 0.0;  ///< chi-square at the optimum of the likelihood
   /// log of (evidence / likelihood at the optimum): what the prior leaves of the likelihood.
   double log_occam = 0.0;
-  /// The part of it that belongs to the modes by Laplace's formula.
-  double log_occam_of_mode = 0.0;
   /// log of (mass of all modes / mass of this one): arms that no path joins (prior_starts.h).
   double log_all_modes = 0.0;
-  /// log of (evidence / evidence of the line), if it was computed (straight_paths.h).
-  std::optional<double> log_over_line;
   bool prior_mode_sought = false;
-  bool at_limit =
-      false;  ///< true for a conic that fits no better than the parabola (conic_limit.h)
+  bool at_limit = false;  ///< of a fit that is at its class's limit (class_limits.h)
   /// The same if all of the prior were at this shape: only place and direction of the touch remain,
   /// whose cost is the same for every curve.
   double log_occam_of_touch = 0.0;
@@ -58,15 +53,16 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
 /// The evidence at the mode that is reached from the prior, if it is larger than `evidence` and
 /// than `least` (log of what the prior leaves of the likelihood). A fit may lie far out in the
 /// prior's tails, in a valley that is too long and bent to be walked along, while another place of
-/// the valley fits as well and is expected by the prior. `evidence` must have one node.
-ClassEvidence with_prior_mode(ClassEvidence evidence, const FitData& data, double least,
-                              WorkBudget& work);
+/// the valley fits as well and is expected by the prior. Shapes of the prior are laid along `path`,
+/// a curve near the points: the fit's own, or another class's.
+ClassEvidence with_prior_mode(ClassEvidence evidence, const ClassEvidence& path,
+                              const FitData& data, double least, WorkBudget& work);
 
-/// The evidence at the best mode that the prior leads to along the path of another class.
-/// `evidence`: its touch along the patch, and the chi-square that `log_occam` counts from. nullopt
-/// if no mode comes near the points.
-std::optional<ClassEvidence> from_prior(ClassEvidence evidence, CurveClass path_class,
-                                        const TouchedCurve& path, const FitData& data,
+/// The evidence of a class at the best mode that the prior leads to along `path`, another class's.
+/// `fitted_chi2`: the chi-square that `log_occam` counts from. nullopt if no mode comes near the
+/// points.
+std::optional<ClassEvidence> from_prior(CurveClass curve_class, double fitted_chi2,
+                                        const ClassEvidence& path, const FitData& data,
                                         WorkBudget& work);
 
 /// The spline's evidence at the mode that it has at c = 0, where the semi-cubical parabola has its
@@ -74,8 +70,8 @@ std::optional<ClassEvidence> from_prior(ClassEvidence evidence, CurveClass path_
 ClassEvidence with_mode_at_cusp(ClassEvidence spline, const ClassEvidence& semi_cubical,
                                 const FitData& data, WorkBudget& work);
 
-/// The evidence at the mode of `before`, if it is larger. `before`: another fit of the class to the
-/// same data, with the same inflation.
+/// The evidence at the mode of `before`, if it is larger. `before`: from another fit of the class
+/// to the same data, with the same inflation.
 ClassEvidence at_better_mode(ClassEvidence evidence, const ClassEvidence& before);
 
 }  // namespace palpate

@@ -76,12 +76,25 @@ Step step_from(const Touch& touch, const TouchedCurve& curve, int fixed) {
 }
 
 /// Back into the valley: a step along it ends beside where it bends. nullopt where that does not
-/// lead below `highest` either.
-std::optional<TouchedCurve> corrected(const Touch& touch, const FitData& data,
-                                      const TouchedCurve& beside, double highest) {
-  const Step step = step_from(touch, beside, -1);
-  auto there = curve_at(touch, beside.z - step.by.cwiseProduct(beside.widths), beside, data);
-  return there && potential(*there) < highest ? std::move(there) : std::nullopt;
+/// lead below `highest` either. Beside a valley that bends as a parabola does, each step back
+/// leaves the square of what there was; one that leaves half is on its way elsewhere.
+std::optional<TouchedCurve> corrected(const Touch& touch, const FitData& data, TouchedCurve beside,
+                                      double highest, WorkBudget& work) {
+  constexpr int kMostSteps = 4;  // digits double
+  constexpr double kConverging = 0.5;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Step step = step_from(touch, beside, -1);
+    work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
+    auto there = curve_at(touch, beside.z - step.by.cwiseProduct(beside.widths), beside, data);
+    if (!there || potential(*there) < highest) {
+      return there;
+    }
+    if (!(potential(*there) - highest < kConverging * (potential(beside) - highest))) {
+      break;
+    }
+    beside = std::move(*there);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -97,8 +110,7 @@ TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve
     work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
     auto there = curve_at(touch, curve.z - part * step.by.cwiseProduct(curve.widths), curve, data);
     if (there && !(potential(*there) < potential(curve)) && fixed < 0) {
-      work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
-      there = corrected(touch, data, *there, potential(curve));
+      there = corrected(touch, data, *std::move(there), potential(curve), work);
     }
     if (there && potential(*there) < potential(curve)) {
       curve = std::move(*there);

@@ -1,6 +1,7 @@
 #include "core/recognition/posterior/posterior.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -8,7 +9,7 @@
 
 #include "core/numerics/log_add.h"
 #include "core/numerics/negligible.h"
-#include "core/recognition/posterior/conic_limit.h"
+#include "core/recognition/posterior/class_limits.h"
 #include "core/recognition/posterior/prior_modes.h"
 #include "core/recognition/posterior/slices.h"
 #include "core/recognition/posterior/straight_paths.h"
@@ -78,82 +79,62 @@ double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidence
 
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
                     CurveClass curve_class, double chi2) {
-  const auto& evidence = evidences.classes[static_cast<std::size_t>(curve_class)];
-  return evidence && std::isfinite(chi2)
-             ? likelihood.log_evidence(chi2, evidence->log_occam, evidence->determined) +
-                   evidences.log_shared[static_cast<std::size_t>(curve_class)]
-             : kNone;
+  const auto i = static_cast<std::size_t>(curve_class);
+  const auto& evidence = evidences.classes[i];
+  const double about_fit =
+      evidence && std::isfinite(chi2)
+          ? likelihood.log_evidence(chi2, evidence->log_occam, evidence->determined)
+          : kNone;
+  return std::max(about_fit, evidences.log_straight[i]) + evidences.log_shared[i];
 }
 
 namespace {
 
-/// What a class has in paths that are nearly straight, where the line is in question: all that
-/// counts of it, or more than lies about its fit. Whether it is.
-bool add_straight_paths(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
-                        double best, Evidences* evidences, WorkBudget& work) {
+/// Whether the line has a share in the posterior.
+bool is_line_in_question(const ClassFits& fits, const Likelihood& likelihood,
+                         const Evidences& evidences, double best) {
+  constexpr auto kLine = static_cast<std::size_t>(CurveClass::Line);
+  return fits[kLine] && evidences.classes[kLine] &&
+         log_evidence(likelihood, evidences, CurveClass::Line, fits[kLine]->chi2) >
+             best - kNegligibleLogOdds;
+}
+
+/// What each class has in paths that are nearly straight. `before`: of the same line.
+void add_straight_paths(const ClassFits& fits, const Likelihood& likelihood, const BendOfLine& bend,
+                        const Evidences* before, Evidences* evidences, WorkBudget& work) {
   // One class's quadrature, beside an offset's cell: 235,000 instructions (callgrind).
   constexpr std::size_t kCellsOfClass = 46;
   constexpr auto kLine = static_cast<std::size_t>(CurveClass::Line);
-  const auto& line = evidences->classes[kLine];
-  if (!line || !fits[kLine] ||
-      !(log_evidence(likelihood, *evidences, CurveClass::Line, fits[kLine]->chi2) >
-        best - kNegligibleLogOdds) ||
-      !work.allows()) {
-    return false;
-  }
-  const auto bend = bend_of_line(*line, fits[kLine]->chi2, reduced, likelihood);
-  if (!bend) {
-    return false;
-  }
+  const auto& line = *evidences->classes[kLine];
   const double of_line =
-      likelihood.log_evidence(fits[kLine]->chi2, line->log_occam, line->determined);
+      likelihood.log_evidence(fits[kLine]->chi2, line.log_occam, line.determined);
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
-    auto& evidence = evidences->classes[i];
-    if (i != kLine && !evidence && fits[i] && fits[i]->at_limit) {
-      evidence = line;  // where it was touched
-      evidence->at_limit = true;
-      evidence->log_occam_of_mode = kNone;
-    }
-    if (!evidence || i == kLine) {
+    if (i == kLine || !fits[i]) {
       continue;
     }
-    if (!evidence->log_over_line) {
+    double& over_line = evidences->log_over_line[i];
+    over_line = before != nullptr ? before->log_over_line[i] : kNone;
+    if (!(over_line > kNone)) {
       work.spend(WorkKind::OffsetCell, kCellsOfClass);
-      evidence->log_over_line = log_evidence_over_line(curve_class, *bend);
+      over_line = log_evidence_over_line(curve_class, bend);
     }
-    const double of_fit = likelihood.log_evidence(fits[i]->chi2, 0.0, evidence->determined);
-    evidence->log_occam =
-        std::max(evidence->log_occam_of_mode, of_line + *evidence->log_over_line - of_fit);
+    evidences->log_straight[i] = of_line + over_line;
   }
-  return true;
 }
 
-constexpr std::array kConics = {std::pair(CurveClass::Ellipse, CurveClass::Hyperbola),
-                                std::pair(CurveClass::Hyperbola, CurveClass::Ellipse)};
-
-/// Of conics that fit no better than the parabola, where that might be seen, and where the other
-/// side of it does not tell what is beyond (probabilities_of).
-void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
-                double best, Evidences before, Evidences* evidences, WorkBudget& work) {
-  constexpr auto kParabola = static_cast<std::size_t>(CurveClass::Parabola);
-  const auto& parabola = evidences->classes[kParabola];
-  if (!parabola || !fits[kParabola] ||
-      !(log_evidence(likelihood, *evidences, CurveClass::Parabola, fits[kParabola]->chi2) >
-        best - kUnseenLogOdds)) {
-    return;
-  }
-  for (const auto& [beyond, inside] : kConics) {
-    const auto b = static_cast<std::size_t>(beyond);
-    const auto& conic = evidences->classes[static_cast<std::size_t>(inside)];
-    if (!fits[b] || !fits[b]->at_limit || (conic && tells_eccentricity(*conic)) || !work.allows()) {
-      continue;
-    }
-    evidences->on_reduced_chi2[b] = parabola->fitted_chi2;
-    evidences->classes[b] = before.classes[b] && before.on_reduced_chi2[b] == parabola->fitted_chi2
-                                ? std::move(before.classes[b])
-                                : evidence_at_limit(beyond, *parabola, reduced, work);
-  }
+/// The classes that have a fit, the best first: what the prior leaves is at most all, so that the
+/// rest can be told by chi-square alone.
+std::vector<CurveClass> in_order_of_fit(const ClassFits& fits) {
+  std::vector<CurveClass> order(kCurveClasses.begin(), kCurveClasses.end());
+  std::erase_if(order, [&](CurveClass c) {
+    const auto& fit = fits[static_cast<std::size_t>(c)];
+    return !fit || fit->at_limit || !std::isfinite(fit->chi2);
+  });
+  std::sort(order.begin(), order.end(), [&](CurveClass a, CurveClass b) {
+    return fits[static_cast<std::size_t>(a)]->chi2 < fits[static_cast<std::size_t>(b)]->chi2;
+  });
+  return order;
 }
 
 }  // namespace
@@ -162,6 +143,9 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
                        const Likelihood& likelihood, Evidences before, WorkBudget& work) {
   const double inflation = likelihood.inflation();
+  // Of chi-square: a hundredth of a deviation, to which a fit that is settled again comes back.
+  constexpr double kSameFit = 1e-4;
+  constexpr auto kLine = static_cast<std::size_t>(CurveClass::Line);
   const bool same_noise = inflation == before.inflation;
   Evidences evidences;
   if (same_noise) {
@@ -173,26 +157,21 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
   evidences.log_shared = before.log_shared;
   evidences.shared_or_other = before.shared_or_other;
   double best = log_evidence_of_unclassified(likelihood, evidences, smooth.chi2);
-  // The best fits first: what the prior leaves is at most all, so that the rest can be told by
-  // chi-square alone.
-  std::vector<CurveClass> order(kCurveClasses.begin(), kCurveClasses.end());
-  std::erase_if(order, [&](CurveClass c) {
-    const auto& fit = fits[static_cast<std::size_t>(c)];
-    return !fit || fit->at_limit || !std::isfinite(fit->chi2);
-  });
-  std::sort(order.begin(), order.end(), [&](CurveClass a, CurveClass b) {
-    return fits[static_cast<std::size_t>(a)]->chi2 < fits[static_cast<std::size_t>(b)]->chi2;
-  });
-  for (const CurveClass curve_class : order) {
+  const auto is_same = [&](std::size_t i) {
+    return same_noise && before.classes[i] &&
+           std::abs(before.on_reduced_chi2[i] - on_reduced[i]->chi2) <= kSameFit;
+  };
+  const auto take = [&](CurveClass curve_class) {
     const auto i = static_cast<std::size_t>(curve_class);
-    if (likelihood.log_evidence(fits[i]->chi2, 0.0, 0.0) + evidences.log_shared[i] <
-        best - kNegligibleLogOdds) {
-      continue;
+    if (evidences.classes[i] ||
+        likelihood.log_evidence(fits[i]->chi2, 0.0, 0.0) + evidences.log_shared[i] <
+            best - kNegligibleLogOdds) {
+      return;
     }
     evidences.on_reduced_chi2[i] = on_reduced[i]->chi2;
-    if (same_noise && before.classes[i] && before.on_reduced_chi2[i] == on_reduced[i]->chi2) {
-      evidences.on_reduced[i] = std::move(before.on_reduced[i]);
-      evidences.classes[i] = std::move(before.classes[i]);
+    if (is_same(i)) {
+      evidences.on_reduced[i] = before.on_reduced[i];
+      evidences.classes[i] = before.classes[i];
     } else if ((evidences.on_reduced[i] = to_canonical(*on_reduced[i], reduced))) {
       evidences.classes[i] = evidence_of(*evidences.on_reduced[i], reduced, inflation, work);
       if (same_noise && evidences.classes[i] && before.classes[i]) {
@@ -200,20 +179,36 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
       }
     }
     best = std::max(best, log_evidence(likelihood, evidences, curve_class, fits[i]->chi2));
-  }
-  if (!add_straight_paths(fits, reduced, likelihood, best, &evidences, work)) {
-    for (auto& evidence : evidences.classes) {
-      if (evidence && evidence->log_over_line) {
-        evidence->log_over_line.reset();
-        evidence->log_occam = evidence->log_occam_of_mode;
-      }
+  };
+  const std::vector<CurveClass> order = in_order_of_fit(fits);
+  std::optional<BendOfLine> bend;
+  if (std::find(order.begin(), order.end(), CurveClass::Line) != order.end()) {
+    take(CurveClass::Line);
+    if (is_line_in_question(fits, likelihood, evidences, best) && work.allows()) {
+      bend = bend_of_line(*evidences.classes[kLine], fits[kLine]->chi2, reduced, likelihood);
     }
-    add_prior_modes(fits, reduced, likelihood,
-                    log_evidence_of_unclassified(likelihood, evidences, smooth.chi2), &evidences,
-                    work);
-    add_limits(fits, reduced, likelihood, best, same_noise ? std::move(before) : Evidences{},
-               &evidences, work);
   }
+  // A fit that leaves no less than nearly straight paths, both told to 1, is one of these.
+  constexpr double kNoBetter = 2.0;
+  const double of_straight =
+      bend ? fits[kLine]->chi2 - inflation * (bend->fall() + kNoBetter) : 0.0;
+  for (const CurveClass curve_class : order) {
+    if (!bend || fits[static_cast<std::size_t>(curve_class)]->chi2 < of_straight) {
+      take(curve_class);
+    }
+  }
+  if (bend && is_line_in_question(fits, likelihood, evidences, best)) {
+    add_straight_paths(fits, likelihood, *bend, is_same(kLine) ? &before : nullptr, &evidences,
+                       work);
+    return evidences;
+  }
+  for (const CurveClass curve_class : order) {
+    take(curve_class);
+  }
+  add_prior_modes(fits, reduced, likelihood,
+                  log_evidence_of_unclassified(likelihood, evidences, smooth.chi2), &evidences,
+                  work);
+  add_limits(fits, reduced, likelihood, best, same_noise ? before : Evidences{}, &evidences, work);
   return evidences;
 }
 
@@ -245,7 +240,8 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   }
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
-    if (!matters(log_of[i]) || evidences.classes[i]->log_over_line) {
+    if (!matters(log_of[i]) || !evidences.classes[i] ||
+        has_straight_paths(evidences, curve_class)) {
       continue;
     }
     auto evidence =
@@ -256,7 +252,8 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
     evidences.classes[i] = std::move(evidence);
     evidences.on_reduced_chi2[i] = kNone;  // no longer Laplace's: not to be taken over
   }
-  if (matters(log_of[kSpline]) && !evidences.classes[kSpline]->log_over_line) {
+  if (matters(log_of[kSpline]) && evidences.classes[kSpline] &&
+      !has_straight_paths(evidences, CurveClass::CubicSpline)) {
     // Of a class that is only one of several, Laplace's formula tells the other mode's share well
     // enough.
     evidences.rival = rival_of(*on_reduced[kSpline], reduced, evidences.inflation, work);
@@ -274,6 +271,14 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   return evidences;
 }
 
+namespace {
+
+/// Each side of the parabola, and the other.
+constexpr std::array kConics = {std::pair(CurveClass::Ellipse, CurveClass::Hyperbola),
+                                std::pair(CurveClass::Hyperbola, CurveClass::Ellipse)};
+
+}  // namespace
+
 ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
                                     const Likelihood& likelihood, const Evidences& evidences) {
   std::array<double, 9> log_of;
@@ -282,7 +287,8 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     const auto& evidence = evidences.classes[i];
-    if (fits[i] && evidence && fits[i]->at_limit == evidence->at_limit) {
+    if (fits[i] && (has_straight_paths(evidences, curve_class) ||
+                    (evidence && fits[i]->at_limit == evidence->at_limit))) {
       log_of[i] = log_evidence(likelihood, evidences, curve_class, fits[i]->chi2);
     }
   }

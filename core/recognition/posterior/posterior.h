@@ -16,6 +16,15 @@ namespace palpate {
 /// Indexed by CurveClass; entry 0 is "unclassified".
 using ClassProbabilities = std::array<double, 9>;
 
+/// log of no evidence for any class.
+inline constexpr std::array<double, 9> kNoEvidences = [] {
+  std::array<double, 9> none{};
+  for (double& log : none) {
+    log = -std::numeric_limits<double>::infinity();
+  }
+  return none;
+}();
+
 /// Evidence of every model. A class without one has no share in the posterior.
 struct Evidences {
   std::array<std::optional<ClassEvidence>, 9> classes;
@@ -28,6 +37,11 @@ struct Evidences {
   /// log of the evidence of smooth parts near a class, for touches that lie apart
   /// (weigh/near_parts.h).
   double log_near = -std::numeric_limits<double>::infinity();
+  /// log of what each class has in nearly straight paths, where the line is in question
+  /// (straight_paths.h): that or what lies about its fit, whichever is more. -infinity for none.
+  std::array<double, 9> log_straight = kNoEvidences;
+  /// The same over the line's evidence.
+  std::array<double, 9> log_over_line = kNoEvidences;
   /// What the evidences were computed with: the factor on noise variances, and each class placed on
   /// the reduced points, with its chi-square there.
   double inflation = 0.0;
@@ -49,14 +63,19 @@ Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likeli
 double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidences& evidences,
                                     double smooth_chi2);
 
+/// Whether what a class has in nearly straight paths is known.
+inline bool has_straight_paths(const Evidences& evidences, CurveClass curve_class) {
+  return evidences.log_straight[static_cast<std::size_t>(curve_class)] > kNoEvidences[0];
+}
+
 /// log of the evidence of a class that was fitted with `chi2`; -infinity if it has none.
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
                     CurveClass curve_class, double chi2);
 
 /// Evidence of the classes fitted to the reduced points, by Laplace's formula; if a line is
-/// plausible, also by nearly straight paths. Classes less probable than a millionth of the best get
-/// none. `fits`: with chi-squares of all points. `before`: of the same points; what has not changed
-/// is copied.
+/// plausible, also by nearly straight paths, and by these alone where the fit is none better.
+/// Classes less probable than a millionth of the best get none. `fits`: with chi-squares of all
+/// points. `before`: of the same points; what has not changed is copied.
 Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
                        const Likelihood& likelihood, Evidences before, WorkBudget& work);

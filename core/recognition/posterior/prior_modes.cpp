@@ -4,8 +4,25 @@
 #include <limits>
 #include <utility>
 
+#include "core/numerics/negligible.h"
+
 namespace palpate {
 namespace {
+
+/// Along which class's curve a class's modes are sought: its own, unless that is beside the
+/// parabola's as improbable as if it were none. Such a fit is what the noise has made of a class
+/// that could be anything: it bends otherwise than the points tell.
+std::size_t path_for(std::size_t i, const ClassFits& fits, const Likelihood& likelihood,
+                     double best, const Evidences& evidences) {
+  constexpr auto kParabola = static_cast<std::size_t>(CurveClass::Parabola);
+  if (!evidences.classes[kParabola] || !fits[kParabola]) {
+    return i;
+  }
+  const double own = log_evidence(likelihood, evidences, static_cast<CurveClass>(i), fits[i]->chi2);
+  const double of_parabola =
+      log_evidence(likelihood, evidences, CurveClass::Parabola, fits[kParabola]->chi2);
+  return of_parabola > std::max(own + kNegligibleLogOdds, best - kUnseenLogOdds) ? kParabola : i;
+}
 
 /// The class's mode that the prior leads to, where it might have more there than about its fit, and
 /// so much that it is seen beside `best`.
@@ -30,7 +47,9 @@ void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced
                           found->determined < all - kLeftToPrior && told > best - kWorthOthers;
   if ((gain > kWorthAMode || other_arms) && told + gain > seen_from && work.allows()) {
     const double seen_occam = found->log_occam + seen_from - told;
-    found = with_prior_mode(*std::move(found), reduced, seen_occam, work);
+    const ClassEvidence& path =
+        *evidences->classes[path_for(i, fits, likelihood, best, *evidences)];
+    found = with_prior_mode(*found, path, reduced, seen_occam, work);
   }
 }
 

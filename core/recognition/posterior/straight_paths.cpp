@@ -41,9 +41,8 @@ Rule log_fall(const Rule& rise, const BendOfLine& bend) {
 
 /// log of the highest likelihood over that of the line.
 double log_highest(const BendOfLine& bend) {
-  const double fall = bend.curvature * bend.curvature + bend.rate * bend.rate;
-  return std::isfinite(bend.freedom) ? 0.5 * bend.freedom * std::log1p(fall / bend.chi2)
-                                     : 0.5 * fall;
+  return std::isfinite(bend.freedom) ? 0.5 * bend.freedom * std::log1p(bend.fall() / bend.chi2)
+                                     : 0.5 * bend.fall();
 }
 
 /// How far from where it is highest 4e-5 of the likelihood is left: 4.5 deviations of a normal law.
@@ -129,15 +128,14 @@ std::optional<BendOfLine> bend_of_line(const ClassEvidence& line, double chi2, c
   result.rate_sigma = 1.0 / std::sqrt(of_rate);
   result.curvature = bend_pull[0] * result.curvature_sigma;
   result.rate = bend_pull[1] * result.rate_sigma;
-  const double fall = result.curvature * result.curvature + result.rate * result.rate;
   if (!likelihood.sigma_known) {
     result.freedom = likelihood.freedom(line.determined);
     const double left = likelihood.left(chi2);
-    result.chi2 = std::max(left - fall, kRounding * left);
+    result.chi2 = std::max(left - result.fall(), kRounding * left);
   }
   // Twice as far as the likelihood reaches: even of a normal law e^-40 is left of the line.
   constexpr double kFar = 2.0;
-  if (!(std::sqrt(fall) <= kFar * reach(result))) {
+  if (!(std::sqrt(result.fall()) <= kFar * reach(result))) {
     return std::nullopt;
   }
   return result;

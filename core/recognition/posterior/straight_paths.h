@@ -25,6 +25,9 @@ struct BendOfLine {
   /// line.
   double chi2 = 1.0;
   double freedom = std::numeric_limits<double>::infinity();
+
+  /// By how much chi-square, as it counts, is less there than on the line.
+  double fall() const { return curvature * curvature + rate * rate; }
 };
 
 /// The likelihood of y = offset + turn x + curvature x^2 / 2 + rate x^3 / 6, with offset and turn

@@ -213,6 +213,9 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
     const Vec2 away = point - foot.position;
     const double foot_speed = foot.first.norm();
     const double distance = away.norm();
+    if (!std::isfinite(foot_speed)) {
+      return false;  // the foot has run away: no number tells how far the point is
+    }
     // At a cusp the distance has no normal of the curve; it is its own.
     const Vec2 normal = foot_speed > 0.0 ? Vec2(left_of(foot.first) / foot_speed)
                         : distance > 0.0 ? Vec2(away / distance)

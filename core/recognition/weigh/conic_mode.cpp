@@ -100,7 +100,8 @@ Contenders with_conic_mode(Contenders contenders, const EvidenceContext& context
         evidences_of(contenders.fits, contenders.coarse, context.arcs.smooth, reduced,
                      context.likelihood, std::move(contenders.evidences), context.work);
   }
-  contenders.no_conic = !contenders.evidences.classes[kEllipse];
+  contenders.no_conic = !contenders.evidences.classes[kEllipse] &&
+                        !has_straight_paths(contenders.evidences, CurveClass::Ellipse);
   return contenders;
 }
 

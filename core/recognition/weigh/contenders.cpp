@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/posterior/class_limits.h"
 
 namespace palpate {
 namespace {
@@ -23,12 +24,6 @@ bool is_plausible(const ClassFit& told, double highest, double margin, double er
   const double chi2 = std::max(told.chi2 - error, 0.0);
   return std::isfinite(told.chi2) &&
          log_evidence(likelihood, evidences, told.curve_class, chi2) > highest - margin;
-}
-
-/// Whether a class is told by how much of it is as straight as a line that is told: not by its fit,
-/// which is any of many.
-bool is_of_straight_paths(const Evidences& evidences, std::size_t i) {
-  return evidences.classes[i] && evidences.classes[i]->log_over_line;
 }
 
 /// A class that is no such curve on all points.
@@ -82,13 +77,17 @@ const ClassFit& settle(std::size_t i, RivalOf rival, const FitData& reduced, Con
   return *w->coarse[i];
 }
 
-/// Ellipse and hyperbola at their limit are the parabola.
+/// Classes that end at their limit, or worse than it, are what it is.
 void take_limits(ClassFits* fits) {
-  const auto& parabola = (*fits)[static_cast<std::size_t>(CurveClass::Parabola)];
-  for (const CurveClass curve_class : {CurveClass::Ellipse, CurveClass::Hyperbola}) {
+  for (const CurveClass curve_class : kClassesWithLimit) {
     auto& fit = (*fits)[static_cast<std::size_t>(curve_class)];
-    if (fit && parabola && (fit->at_limit || !std::isfinite(fit->chi2))) {
-      fit = parabola;
+    const auto limit = limit_of(curve_class, *fits);
+    if (!fit || !limit) {
+      continue;
+    }
+    const ClassFit& there = *(*fits)[static_cast<std::size_t>(*limit)];
+    if (fit->at_limit || !(fit->chi2 <= there.chi2 + kWorseThanLimit)) {
+      fit = there;
       fit->curve_class = curve_class;
       fit->at_limit = true;
     }
@@ -138,6 +137,19 @@ CurveClass most_probable(const ClassProbabilities& probabilities) {
                                  probabilities.begin());
 }
 
+void weigh_on_reduced(std::size_t i, const EvidenceContext& context, Contenders* w) {
+  Evidences& evidences = w->evidences;
+  if (evidences.classes[i] && evidences.on_reduced_chi2[i] == w->coarse[i]->chi2) {
+    return;
+  }
+  evidences.on_reduced_chi2[i] = w->coarse[i]->chi2;
+  evidences.classes[i].reset();
+  if ((evidences.on_reduced[i] = to_canonical(*w->coarse[i], context.reduced))) {
+    evidences.classes[i] =
+        evidence_of(*evidences.on_reduced[i], context.reduced, evidences.inflation, context.work);
+  }
+}
+
 Contenders refine_plausible(Contenders w, const EvidenceContext& context, double margin) {
   const auto& [arcs, reduced, work, likelihood, out_of_reach] = context;
   const auto& [data, smooth, sigma_known, sigma] = arcs;
@@ -170,7 +182,8 @@ Contenders refine_plausible(Contenders w, const EvidenceContext& context, double
                                 : -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < w.fits.size(); ++i) {
       auto& fit = w.fits[i];
-      if (fit && !fit->weighed && !fit->at_limit && !is_of_straight_paths(w.evidences, i) &&
+      if (fit && !fit->weighed && !fit->at_limit &&
+          !has_straight_paths(w.evidences, static_cast<CurveClass>(i)) &&
           is_plausible(*fit, highest, margin, error, likelihood, w.evidences) && work.allows()) {
         fit = weighed(settle(i, RivalOf::Other, reduced, &w, work), reduced, trusted, smooth, data,
                       work);

@@ -46,20 +46,6 @@ std::vector<std::size_t> asked(const Contenders& w, const EvidenceContext& conte
   return classes;
 }
 
-/// Evidence of a class on the reduced points.
-void weigh_on_reduced(std::size_t i, const EvidenceContext& context, Contenders* w) {
-  Evidences& evidences = w->evidences;
-  if (evidences.classes[i] && evidences.on_reduced_chi2[i] == w->coarse[i]->chi2) {
-    return;
-  }
-  evidences.on_reduced_chi2[i] = w->coarse[i]->chi2;
-  evidences.classes[i].reset();
-  if ((evidences.on_reduced[i] = to_canonical(*w->coarse[i], context.reduced))) {
-    evidences.classes[i] =
-        evidence_of(*evidences.on_reduced[i], context.reduced, evidences.inflation, context.work);
-  }
-}
-
 /// Evidences of the classes without such deviations.
 LogEvidences with_noise_alone(const Contenders& w, const EvidenceContext& context) {
   LogEvidences logs;

@@ -155,6 +155,9 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   const auto& best = contenders.fits[b];
   w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, context.likelihood);
   w.canonical = placed_canonically(contenders, w.probabilities, context, std::move(best_placed));
+  if (best && !best->at_limit && !contenders.evidences.classes[b]) {
+    weigh_on_reduced(b, context, &contenders);  // so far by straight paths alone
+  }
   w.best_evidence = std::move(contenders.evidences.classes[b]);
   w.best_on_reduced = std::move(contenders.evidences.on_reduced[b]);
   w.stated = stated;

@@ -166,6 +166,30 @@ void print_calibrations(const std::vector<Row>& rows) {
   std::printf("bins beside their band: %d\n", beside);
 }
 
+/// What the most probable hypothesis does not tell: a truth that was thought to be out.
+void print_scores(const std::vector<Row>& rows) {
+  constexpr double kOut = 1e-3;
+  constexpr double kLeast = 1e-9;  // where a probability is written as 0
+  double score = 0.0, stated = 0.0, expected = 0.0;
+  int scenes = 0, out = 0;
+  for (const Row& row : rows) {
+    if (row.truth() == CurveClass::Unclassified) continue;
+    ++scenes;
+    score -= std::log(std::max(row.of_truth(), kLeast));
+    out += row.of_truth() < kOut ? 1 : 0;
+    for (const Hypothesis& hypothesis : row.answer.hypotheses) {
+      const double p = hypothesis.probability;
+      stated -= p > 0.0 ? p * std::log(p) : 0.0;
+      const bool is_class = hypothesis.shape.curve_class != CurveClass::Unclassified;
+      expected += is_class && p < kOut ? p : 0.0;
+    }
+  }
+  std::printf(
+      "\nCurves of a class: -log P(truth) %.3f in the mean (stated %.3f); truths given less than a "
+      "thousandth: %d of %d (stated %.1f)\n",
+      score / scenes, stated / scenes, out, scenes, expected);
+}
+
 void print_errors(const std::vector<Row>& rows) {
   std::printf(
       "\nErrors of shape and pose where RECOGNIZED and right: root mean square in published "
@@ -279,6 +303,7 @@ int main(int argc, char** argv) {
               prior.most_arc_over_size, prior.least_sigma_over_size, prior.most_sigma_over_size);
   print_classes(rows);
   print_calibrations(rows);
+  print_scores(rows);
   print_errors(rows);
   print_times(rows);
   if (!options.csv.empty()) write_csv(options.csv, rows);

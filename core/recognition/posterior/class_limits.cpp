@@ -1,0 +1,93 @@
+#include "core/recognition/posterior/class_limits.h"
+
+#include <cmath>
+
+#include "core/recognition/posterior/prior_modes.h"
+
+namespace palpate {
+namespace {
+
+/// Of a conic that is no parabola, up to a constant.
+double log_density(CurveClass curve_class, const TouchedVector& z) {
+  return log_prior({curve_class}, z) - std::log(prior_widths({curve_class}, z).head<3>().prod());
+}
+
+/// Whether the data tell m so narrowly that what lies beyond the parabola is a normal law's tail:
+/// all five coordinates of this conic are determined.
+bool tells_eccentricity(const ClassEvidence& conic) {
+  constexpr double kLeft =
+      0.1;  // of one coordinate, to the prior: its deviation is a third of that
+  return conic.determined > degrees_of_freedom(conic.touch.curve_class) - kLeft;
+}
+
+/// Whether the conic on the other side of the parabola tells what this class has beyond it.
+bool is_told_from_inside(CurveClass beyond, const Evidences& evidences) {
+  if (beyond != CurveClass::Ellipse && beyond != CurveClass::Hyperbola) {
+    return false;
+  }
+  const auto& inside = evidences.classes[static_cast<std::size_t>(
+      beyond == CurveClass::Ellipse ? CurveClass::Hyperbola : CurveClass::Ellipse)];
+  return inside && tells_eccentricity(*inside);
+}
+
+bool is_fitted(const ClassFits& fits, CurveClass curve_class) {
+  const auto& fit = fits[static_cast<std::size_t>(curve_class)];
+  return fit && !fit->at_limit && std::isfinite(fit->chi2);
+}
+
+}  // namespace
+
+std::optional<CurveClass> limit_of(CurveClass curve_class, const ClassFits& fits) {
+  const bool parabola = is_fitted(fits, CurveClass::Parabola);
+  const bool cusp =
+      curve_class == CurveClass::CubicSpline && is_fitted(fits, CurveClass::SemiCubicalParabola);
+  const auto chi2 = [&](CurveClass c) { return fits[static_cast<std::size_t>(c)]->chi2; };
+  if (cusp && !(parabola && chi2(CurveClass::Parabola) <= chi2(CurveClass::SemiCubicalParabola))) {
+    return CurveClass::SemiCubicalParabola;
+  }
+  return parabola ? std::optional(CurveClass::Parabola) : std::nullopt;
+}
+
+void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
+                double best, const Evidences& before, Evidences* evidences, WorkBudget& work) {
+  for (const CurveClass beyond : kClassesWithLimit) {
+    const auto b = static_cast<std::size_t>(beyond);
+    const auto& fit = fits[b];
+    const auto limit = limit_of(beyond, fits);
+    if (!fit || !limit || (!fit->at_limit && evidences->classes[b]) || !work.allows()) {
+      continue;
+    }
+    const auto l = static_cast<std::size_t>(*limit);
+    const auto& path = evidences->classes[l];
+    const double above = fit->chi2 - fits[l]->chi2;
+    if (!path || !(above <= kWorseThanLimit) ||
+        !(log_evidence(likelihood, *evidences, *limit, fits[l]->chi2) > best - kUnseenLogOdds) ||
+        is_told_from_inside(beyond, *evidences)) {
+      continue;
+    }
+    const double fitted_chi2 = path->fitted_chi2 + above / evidences->inflation;
+    const bool same = before.classes[b] && before.on_reduced_chi2[b] == fitted_chi2;
+    evidences->classes[b] =
+        same ? before.classes[b] : from_prior(beyond, fitted_chi2, *path, reduced, work);
+    evidences->on_reduced_chi2[b] = fitted_chi2;
+    if (evidences->classes[b]) {
+      evidences->classes[b]->at_limit = fit->at_limit;
+    }
+  }
+}
+
+double log_density_ratio_at_parabola(CurveClass beyond, const ClassEvidence& parabola) {
+  const TouchedVector& z = parabola.nodes[parabola.mode].curve.z;
+  const double slope = z[1];
+  TouchedVector of_hyperbola = TouchedVector::Zero();
+  of_hyperbola.head<3>() << z[0], 0.0, slope;
+  TouchedVector of_ellipse = TouchedVector::Zero();
+  of_ellipse.head<3>() << z[0], 0.0, std::atan2(1.0, slope);
+  // Of the ellipse's direction by the hyperbola's slope.
+  const double log_rate = -std::log1p(slope * slope);
+  const double ratio = log_density(CurveClass::Ellipse, of_ellipse) + log_rate -
+                       log_density(CurveClass::Hyperbola, of_hyperbola);
+  return beyond == CurveClass::Ellipse ? ratio : -ratio;
+}
+
+}  // namespace palpate
