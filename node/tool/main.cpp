@@ -1,4 +1,4 @@
-// palpate: the command-line tool. Each subcommand has a file commands/<name>_command.cpp.
+// palpate: the command-line tool. Each subcommand has a file <name>_command.cpp under commands/.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>

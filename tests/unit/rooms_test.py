@@ -19,7 +19,8 @@ NODE = CORE + [
     "node/python",
     "node/files", "node/process", "node/wire", "node/csv", "node/intake", "node/client", "node/security",
     "node/groups", "node/publish", "node", "node/gateway", "node/tool", "node/tool/text", "node/tool/drawing", "node/tool/view",
-    "node/tool/commands", "node/tool/main",
+    "node/tool/commands", "node/tool/commands/check", "node/tool/commands/offline", "node/tool/commands/live",
+    "node/tool/main",
 ]
 SIM = CORE + ["node/files", "node/process", "node/wire", "node/csv", "node/intake", "node/client", "sim"]
 # What one program is made of is no part of another.

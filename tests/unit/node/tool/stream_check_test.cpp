@@ -1,5 +1,5 @@
 // What palpate check finds in streams that are wrong in one way each.
-#include "node/tool/commands/stream_check.h"
+#include "node/tool/commands/check/stream_check.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "node/tool/commands/topic_count.h"
+#include "node/tool/commands/live/topic_count.h"
 
 #include <gtest/gtest.h>
 

@@ -12,11 +12,11 @@
 #include "node/files/counted.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
+#include "node/tool/commands/check/file_check.h"
+#include "node/tool/commands/check/stream_check.h"
 #include "node/tool/commands/command.h"
-#include "node/tool/commands/file_check.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/commands/listening_place.h"
-#include "node/tool/commands/stream_check.h"
 
 namespace palpate {
 namespace {

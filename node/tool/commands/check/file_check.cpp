@@ -1,4 +1,4 @@
-#include "node/tool/commands/file_check.h"
+#include "node/tool/commands/check/file_check.h"
 
 #include <algorithm>
 #include <map>

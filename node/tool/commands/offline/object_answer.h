@@ -7,7 +7,7 @@
 
 #include "core/recognition/recognizer.h"
 #include "node/files/probe_file.h"
-#include "node/tool/commands/fit_input.h"
+#include "node/tool/commands/offline/fit_input.h"
 #include "palpate/v1/recognition.pb.h"
 
 namespace palpate {

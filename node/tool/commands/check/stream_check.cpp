@@ -1,4 +1,4 @@
-#include "node/tool/commands/stream_check.h"
+#include "node/tool/commands/check/stream_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include "core/recognition/samples/dwells.h"
 #include "node/files/counted.h"
 #include "node/security/decode_from.h"
-#include "node/tool/commands/normal_check.h"
-#include "node/tool/commands/tip_check.h"
+#include "node/tool/commands/check/normal_check.h"
+#include "node/tool/commands/check/tip_check.h"
 #include "node/tool/text/quantity.h"
 
 namespace palpate {

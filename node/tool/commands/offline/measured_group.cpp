@@ -1,11 +1,11 @@
-#include "node/tool/commands/measured_group.h"
+#include "node/tool/commands/offline/measured_group.h"
 
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "core/qualification/probe_correction.h"
-#include "node/tool/commands/object_answer.h"
+#include "node/tool/commands/offline/object_answer.h"
 #include "node/tool/drawing/curve_model.h"
 
 namespace palpate {

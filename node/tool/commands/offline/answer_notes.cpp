@@ -1,4 +1,4 @@
-#include "node/tool/commands/answer_notes.h"
+#include "node/tool/commands/offline/answer_notes.h"
 
 #include <algorithm>
 #include <cmath>

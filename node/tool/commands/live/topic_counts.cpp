@@ -1,4 +1,4 @@
-#include "node/tool/commands/topic_counts.h"
+#include "node/tool/commands/live/topic_counts.h"
 
 #include <chrono>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "node/tool/commands/tip_check.h"
+#include "node/tool/commands/check/tip_check.h"
 
 #include <algorithm>
 #include <limits>

@@ -7,7 +7,7 @@
 
 #include "node/files/printable.h"
 #include "node/process/stop_signals.h"
-#include "node/tool/commands/topic_counts.h"
+#include "node/tool/commands/live/topic_counts.h"
 
 namespace palpate {
 namespace {

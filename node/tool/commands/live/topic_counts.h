@@ -6,7 +6,7 @@
 #include <string>
 
 #include "node/tool/commands/command.h"
-#include "node/tool/commands/topic_count.h"
+#include "node/tool/commands/live/topic_count.h"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "node/tool/commands/object_answer.h"
+#include "node/tool/commands/offline/object_answer.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "node/tool/commands/fit_input.h"
+#include "node/tool/commands/offline/fit_input.h"
 
 #include <algorithm>
 #include <map>
@@ -6,7 +6,7 @@
 
 #include "node/files/counted.h"
 #include "node/files/printable.h"
-#include "node/tool/commands/file_check.h"
+#include "node/tool/commands/check/file_check.h"
 
 namespace palpate {
 namespace {
