@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
+#include "core/numerics/median.h"
 #include "core/numerics/normal_law.h"
+#include "core/qualification/artefact_guess.h"
 #include "core/qualification/estimated_tip.h"
 #include "core/qualification/offset_evidence.h"
 #include "core/qualification/offset_fit.h"
 #include "core/qualification/setup_constants.h"
-#include "core/recognition/given/given_class.h"
 
 namespace palpate {
 namespace {
@@ -23,16 +23,10 @@ constexpr int kHighestOrder = 8;
 /// leave no gap, whatever their noise. [rad]
 constexpr double kGap = 1.01 * kPi / 6.0;
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double median_size(const Eigen::VectorXd& values) {
   std::vector<double> sizes(values.data(), values.data() + values.size());
   for (double& size : sizes) size = std::abs(size);
-  return median_of(std::move(sizes));
+  return median_of(sizes);
 }
 
 bool is_usable(std::span<const ArtefactRecording> recordings) {
@@ -45,75 +39,6 @@ bool is_usable(std::span<const ArtefactRecording> recordings) {
     }
   }
   return true;
-}
-
-/// The samples of a recording, at most `most` of them, evenly selected.
-std::vector<ArtefactSample> thinned(const ArtefactRecording& recording, std::size_t most) {
-  std::vector<ArtefactSample> all;
-  for (const ArtefactStroke& stroke : recording.strokes) {
-    for (const ContactSample& sample : stroke.samples) {
-      ArtefactSample& added = all.emplace_back();
-      added.position_m = sample.position_m;
-      added.tip_radius_m = stroke.tip_radius_m;
-    }
-  }
-  if (all.size() <= most) return all;
-  std::vector<ArtefactSample> some;
-  for (std::size_t i = 0; i < most; ++i) some.push_back(all[i * all.size() / most]);
-  return some;
-}
-
-/// Median deviation of the samples' distances from their median: how badly a pose fits.
-double scatter(const Curve& artefact, MaterialSign material, const Pose2& pose,
-               const std::vector<ArtefactSample>& samples) {
-  std::vector<double> distances;
-  distances.reserve(samples.size());
-  for (const ArtefactSample& sample : samples) {
-    distances.push_back(beside(artefact, material, pose, sample).distance_m);
-  }
-  const double middle = median_of(distances);
-  for (double& distance : distances) distance = std::abs(distance - middle);
-  return median_of(std::move(distances));
-}
-
-/// Rough pose of the artefact: its class is fitted with a free shape; of the orientations that the
-/// symmetries leave open, the one that fits the samples best.
-std::optional<Pose2> rough_pose(const Curve& artefact, const std::vector<ArtefactSample>& samples) {
-  std::vector<GivenPoint> points;
-  for (const ArtefactSample& sample : samples) {
-    points.emplace_back().position_m = sample.position_m;
-  }
-  const GivenFit fit = fit_given_class(class_of(artefact), points);
-  if (fit.status != GivenStatus::Fitted && fit.status != GivenStatus::NotDetermined) {
-    return std::nullopt;
-  }
-  std::optional<Pose2> best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const double turn : {0.0, 0.5 * kPi}) {
-    Pose2 pose = fit.world_T_curve;
-    pose.theta = wrap_angle(pose.theta + turn);
-    const double here = scatter(artefact, 1, pose, samples);
-    if (here < least) {
-      least = here;
-      best = pose;
-    }
-  }
-  return best;
-}
-
-/// The side of the tips' centres: the one where the nominal radius leaves smaller residuals.
-MaterialSign side_of(const Curve& artefact, const Pose2& pose,
-                     const std::vector<ArtefactSample>& samples, bool bore) {
-  std::vector<double> outside;
-  std::vector<double> inside;
-  bool tips = false;
-  for (const ArtefactSample& sample : samples) {
-    outside.push_back(std::abs(beside(artefact, 1, pose, sample).distance_m));
-    inside.push_back(std::abs(beside(artefact, -1, pose, sample).distance_m));
-    tips = tips || sample.tip_radius_m > 0.0;
-  }
-  if (!tips) return bore ? -1 : 1;
-  return median_of(std::move(outside)) <= median_of(std::move(inside)) ? 1 : -1;
 }
 
 /// The samples of all recordings in one sequence.
@@ -192,7 +117,7 @@ void guess_setups(const Ground& ground, const Eigen::VectorXd& residual_m,
         own.push_back(residual_m[static_cast<Eigen::Index>(i)]);
       }
     }
-    unknowns.setup_m[r] += median_of(std::move(own));
+    unknowns.setup_m[r] += median_of(own);
   }
 }
 
@@ -212,7 +137,7 @@ double radius_of(const Curve& artefact, const Ground& ground, const std::vector<
         foot_point(artefact, poses[sample.recording].to_local(sample.position_m));
     bends.push_back(std::abs(geometry(artefact, foot.t).kappa));
   }
-  return 1.0 / median_of(std::move(bends));
+  return 1.0 / median_of(bends);
 }
 
 Estimate rate_of(std::size_t count, std::size_t of) {
