@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/invariants/conic_line.h"
-#include "core/invariants/conic_parameters.h"
 #include "core/invariants/constant_curvature.h"
 #include "core/invariants/measured_geometry.h"
 #include "core/invariants/signature_fit/conic_start.h"
@@ -14,6 +13,7 @@
 #include "core/invariants/signature_fit/spline_least_squares.h"
 #include "core/numerics/chi_square.h"
 #include "core/numerics/negligible.h"
+#include "core/recognition/tree/conic_shapes.h"
 #include "core/recognition/tree/recognition_tree_tolerance.h"
 #include "core/recognition/tree/tree_pose.h"
 #include "core/recognition/tree/tree_record.h"
@@ -178,37 +178,20 @@ class SignificanceTree {
     return !is_signed ? 0 : sign > 0.0 ? 1 : -1;
   }
 
-  /// If the sign of Ic1 is not known, neither is its size: tries several sizes with the line's
-  /// intercept Ic2, which is known better.
   bool central_conic(CurveClass curve_class, double ic1, const ConicLine& line) {
-    const bool ellipse = curve_class == CurveClass::Ellipse;
-    std::vector<Eigen::Vector3d> shapes;
-    for (const double factor : {1.0, 0.3, 0.1, 3.0}) {
-      const ConicParameters parameters =
-          ellipse ? ellipse_parameters(factor * ic1, line.ic2, line.covariance)
-                  : hyperbola_parameters(factor * ic1, line.ic2, line.covariance);
-      if (parameters.status == InvariantStatus::Ok) {
-        shapes.emplace_back(parameters.a, parameters.b, 0.0);
-      }
-    }
-    return rotation(curve_class, shapes, ellipse ? "ellipse rotation" : "hyperbola rotation");
+    return rotation(curve_class, central_shapes(curve_class, ic1, line),
+                    curve_class == CurveClass::Ellipse ? "ellipse rotation" : "hyperbola rotation");
   }
 
   /// If the curvatures are equal within their errors, the line has no slope, so that Ic1 has
   /// neither sign nor size. But an ellipse has four points of the same curvature, a parabola or
-  /// hyperbola two, and the tangents may decide. Tries ellipses of a few axis ratios that have this
-  /// curvature half way between the vertices.
+  /// hyperbola two, and the tangents may decide.
   bool alike_ellipse() {
     const ConstantCurvature mean = fit_constant_curvature(measured_);
     if (mean.status != InvariantStatus::Ok || !(mean.kappa > 0.0)) {
       return false;
     }
-    std::vector<Eigen::Vector3d> shapes;
-    for (const double ratio : {0.9, 0.7, 0.5}) {
-      const double a = ratio * std::pow(0.5 * (1.0 + ratio * ratio), -1.5) / mean.kappa;
-      shapes.emplace_back(a, ratio * a, 0.0);
-    }
-    return rotation(CurveClass::Ellipse, shapes, "ellipse rotation");
+    return rotation(CurveClass::Ellipse, ellipses_curved_by(mean.kappa), "ellipse rotation");
   }
 
   bool parabola(const ConicLine& tested, const ConicLine& line) {
@@ -216,12 +199,7 @@ class SignificanceTree {
         !record_.passes("parabola Ip", tested.ip_chi2, tested.ip_dof, {CurveClass::Parabola})) {
       return false;
     }
-    const ConicParameters parameters = parabola_parameters(line.ip_mean, line.ip_variance);
-    std::vector<Eigen::Vector3d> shapes;
-    if (parameters.status == InvariantStatus::Ok) {
-      shapes.emplace_back(parameters.a, 0.0, 0.0);
-    }
-    return rotation(CurveClass::Parabola, shapes, "parabola rotation");
+    return rotation(CurveClass::Parabola, parabola_shapes(line), "parabola rotation");
   }
 
   /// The conic's invariants do not use the tangent angles, which are measured best of all: the

@@ -178,7 +178,6 @@ class ToleranceTree {
   bool parabola_of_third_degree(CurveClass curve_class) {
     const bool cubical = curve_class == CurveClass::CubicalParabola;
     double best = std::numeric_limits<double>::infinity();
-    double best_value = best;
     Eigen::Vector2d best_invariants = Eigen::Vector2d::Zero();
     double best_frame = 0.0;
     for (std::size_t i = 0; i < measured_.size(); ++i) {
@@ -200,18 +199,17 @@ class ToleranceTree {
           const double value = std::max(first.spread(), second.spread());
           if (value < best) {
             best = value;
-            best_value = value;
             best_invariants = {first.mean(), second.mean()};
             best_frame = frame;
           }
         }
       }
     }
-    if (std::isfinite(best_value)) {
+    if (std::isfinite(best)) {
       add_invariant(curve_class, cubical ? "Icp1" : "Iscp1", best_invariants[0]);
       add_invariant(curve_class, cubical ? "Icp2" : "Iscp2", best_invariants[1]);
     }
-    if (!passes(cubical ? "cubical parabola" : "semi-cubical parabola", best_value)) {
+    if (!passes(cubical ? "cubical parabola" : "semi-cubical parabola", best)) {
       return false;
     }
     const double a = cubical ? best_invariants[0] : std::sqrt(std::abs(best_invariants[0]));
