@@ -18,7 +18,6 @@
 namespace palpate::gateway {
 namespace {
 
-using nlohmann::json;
 using std::chrono::milliseconds;
 
 // Maximum of contacts sent to the node and unanswered. The node would reject only beyond 16 MiB
@@ -32,7 +31,6 @@ constexpr milliseconds kTend{50};
 constexpr milliseconds kRetry{300};
 // A node publishes its status every second.
 constexpr milliseconds kNodeSilence{5000};
-constexpr milliseconds kLookupTimeout{500};
 // Attempts of a replay that stops before its last contact: a replica of the stream that is behind
 // will have it soon.
 constexpr int kReplayTries = 20;
@@ -124,46 +122,41 @@ void Place::take_contact(const PlantMessage& message, std::uint64_t stream_seq) 
 
 void Place::ask(const std::string& name, Group& group) {
   group.state = Group::State::Asking;
-  const json query{{"last_by_subj", make_subject(name_.cell, "recognition", name)}};
-  plant_.request(
-      this, "$JS.API.DIRECT.GET." + recognition_stream(name_.cell), query.dump(), {},
-      kLookupTimeout, [this, name](const PlantMessage* message) {
-        Group& asked = groups_[name];
-        asked.replayed.clear();
-        asked.last_answer_seq = message == nullptr ? 0 : message->number("Nats-Sequence");
-        if (asked.last_answer_seq == 0) {
-          if (message != nullptr && message->status() == "404") return end_replay(asked);
-          asked.state = Group::State::Unknown;  // tend() asks again
-          return;
-        }
-        asked.through = message->number(kThrough);
-        const std::uint64_t begin = message->number(kBegin);
-        v1::Recognition last;
-        if (asked.through == 0 || begin == 0 || !parse(last, message->payload())) {
-          asked.through = 0;
-          spdlog::warn("{}: the last answer of group {} is none of a recogniser of the plant",
-                       printable(name_.text()), printable(name));
-          return end_replay(asked);
-        }
-        // Nothing new has arrived, so there is nothing to continue.
-        const bool is_new = std::any_of(
-            asked.arrived.begin(), asked.arrived.end(),
-            [&](const FedContact& contact) { return contact.stream_seq > asked.through; });
-        if (!is_new) {
-          for (const FedContact& contact : asked.arrived) consumer_.done(contact.stream_seq);
-          asked.arrived.clear();
-          asked.state = Group::State::Unknown;
-          return;
-        }
-        replay(name, last.object(), begin);
-      });
+  read_last_answer(plant_, this, name_.cell, name, [this, name](const PlantMessage* message) {
+    Group& asked = groups_[name];
+    asked.replayed.clear();
+    asked.last_answer_seq = message == nullptr ? 0 : message->number("Nats-Sequence");
+    if (asked.last_answer_seq == 0) {
+      if (message != nullptr && message->status() == "404") return end_replay(asked);
+      asked.state = Group::State::Unknown;  // tend() asks again
+      return;
+    }
+    asked.through = message->number(kThrough);
+    const std::uint64_t begin = message->number(kBegin);
+    v1::Recognition last;
+    if (asked.through == 0 || begin == 0 || !parse(last, message->payload())) {
+      asked.through = 0;
+      spdlog::warn("{}: the last answer of group {} is none of a recogniser of the plant",
+                   printable(name_.text()), printable(name));
+      return end_replay(asked);
+    }
+    // Nothing new has arrived, so there is nothing to continue.
+    const bool is_new =
+        std::any_of(asked.arrived.begin(), asked.arrived.end(),
+                    [&](const FedContact& contact) { return contact.stream_seq > asked.through; });
+    if (!is_new) {
+      for (const FedContact& contact : asked.arrived) consumer_.done(contact.stream_seq);
+      asked.arrived.clear();
+      asked.state = Group::State::Unknown;
+      return;
+    }
+    replay(name, last.object(), begin);
+  });
 }
 
 void Place::replay(const std::string& name, std::uint64_t object, std::uint64_t next_seq) {
-  const json query{{"seq", next_seq}, {"next_by_subj", contact_filter(name_, to_token(name))}};
-  plant_.request(
-      this, "$JS.API.DIRECT.GET." + contact_stream(name_.cell), query.dump(), {}, kLookupTimeout,
-      [this, name, object](const PlantMessage* message) {
+  read_contact_from(
+      plant_, this, name_, name, next_seq, [this, name, object](const PlantMessage* message) {
         Group& group = groups_[name];
         if (message == nullptr || (!message->status().empty() && message->status() != "404")) {
           group.state = Group::State::Unknown;
@@ -365,17 +358,14 @@ void Place::stored(const std::string& name, const Stored& stored) {
 /// Something was stored after the answer that we know as the last: either another process's answer,
 /// or ours, whose confirmation a dying server did not send.
 void Place::is_it_ours(const std::string& name) {
-  const json query{{"last_by_subj", make_subject(name_.cell, "recognition", name)}};
-  plant_.request(
-      this, "$JS.API.DIRECT.GET." + recognition_stream(name_.cell), query.dump(), {},
-      kLookupTimeout, [this, name](const PlantMessage* message) {
-        const std::string& id = groups_[name].answers.front().id;
-        if (message != nullptr && message->header("Nats-Msg-Id") == id) {
-          return stored(name, {Stored::Verdict::Before, message->number("Nats-Sequence")});
-        }
-        status_.set_answers_refused(status_.answers_refused() + 1);
-        fail("another recogniser has answered for group " + printable(name));
-      });
+  read_last_answer(plant_, this, name_.cell, name, [this, name](const PlantMessage* message) {
+    const std::string& id = groups_[name].answers.front().id;
+    if (message != nullptr && message->header("Nats-Msg-Id") == id) {
+      return stored(name, {Stored::Verdict::Before, message->number("Nats-Sequence")});
+    }
+    status_.set_answers_refused(status_.answers_refused() + 1);
+    fail("another recogniser has answered for group " + printable(name));
+  });
 }
 
 void Place::tend(SteadyTime now) {

@@ -1,9 +1,8 @@
 #include "node/gateway/streams.h"
 
+#include <chrono>
 #include <memory>
 #include <utility>
-
-#include "node/gateway/subjects.h"
 
 namespace palpate::gateway {
 namespace {
@@ -15,9 +14,16 @@ constexpr double kNanosecondsPerSecond = 1e9;
 constexpr int kStatusMessages = 3600;
 // JSStreamNameExistErr: the stream exists with other limits. Whoever created it decides them.
 constexpr int kExistsOtherwise = 10058;
+constexpr std::chrono::milliseconds kLookupTimeout{500};
 
 std::string stream(std::string_view cell, const char* kind) {
   return "palpate-" + to_token(cell) + "-" + kind;
+}
+
+void read(Plant& plant, const void* owner, const std::string& stream, const json& query,
+          Plant::Handler handler) {
+  plant.request(owner, "$JS.API.DIRECT.GET." + stream, query.dump(), {}, kLookupTimeout,
+                std::move(handler));
 }
 
 json common(const std::string& name, json subjects, const StreamLimits& limits) {
@@ -70,6 +76,19 @@ void make_streams(Plant& plant, const void* owner, const std::string& cell,
                 if (--count->left == 0) done(count->all_there);
               });
   }
+}
+
+void read_last_answer(Plant& plant, const void* owner, std::string_view cell,
+                      std::string_view group, Plant::Handler handler) {
+  read(plant, owner, recognition_stream(cell),
+       {{"last_by_subj", make_subject(cell, "recognition", group)}}, std::move(handler));
+}
+
+void read_contact_from(Plant& plant, const void* owner, const PlaceName& place,
+                       std::string_view group, std::uint64_t seq, Plant::Handler handler) {
+  read(plant, owner, contact_stream(place.cell),
+       {{"seq", seq}, {"next_by_subj", contact_filter(place, to_token(group))}},
+       std::move(handler));
 }
 
 }  // namespace palpate::gateway

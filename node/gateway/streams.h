@@ -1,4 +1,5 @@
-// The streams of a cell: contacts, recognitions, and the status of its nodes and gateways.
+// The streams of a cell: contacts, recognitions, and the status of its nodes and gateways. How they
+// are made, and how one message of them is read.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +7,7 @@
 #include <string_view>
 
 #include "node/gateway/plant.h"
+#include "node/gateway/subjects.h"
 
 namespace palpate::gateway {
 
@@ -26,5 +28,14 @@ std::string status_stream(std::string_view cell);
 /// Creates the three streams. Calls done(true) if they exist then.
 void make_streams(Plant& plant, const void* owner, const std::string& cell,
                   const StreamLimits& limits, const std::function<void(bool)>& done);
+
+/// Asks for the last answer of a group. The message has status 404 if there is none.
+void read_last_answer(Plant& plant, const void* owner, std::string_view cell,
+                      std::string_view group, Plant::Handler handler);
+
+/// Asks for the first contact of a group with at least this number in the stream. The message has
+/// status 404 if there is none.
+void read_contact_from(Plant& plant, const void* owner, const PlaceName& place,
+                       std::string_view group, std::uint64_t seq, Plant::Handler handler);
 
 }  // namespace palpate::gateway
