@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -14,60 +13,20 @@
 #include <utility>
 #include <vector>
 
-#include "core/curves/curve.h"
-#include "core/recognition/given/given_class.h"
 #include "core/recognition/recognizer.h"
-#include "core/recognition/samples/side_words.h"
+#include "node/python/known_class.h"
+#include "node/python/names.h"
 #include "node/python/point_details.h"
+#include "node/python/pose_tuple.h"
 
 namespace py = pybind11;
 
 namespace {
 
 using palpate::Array;
-using palpate::count_of_points;
+using palpate::class_called;
 using palpate::PointDetails;
-
-std::vector<std::string> curve_classes() {
-  std::vector<std::string> names;
-  names.reserve(palpate::kCurveClasses.size());
-  for (const palpate::CurveClass known : palpate::kCurveClasses) {
-    names.emplace_back(palpate::name_of(known));
-  }
-  return names;
-}
-
-palpate::CurveClass class_called(const std::string& name) {
-  const auto found = palpate::curve_class_from_name(name);
-  if (found && *found != palpate::CurveClass::Unclassified) return *found;
-  std::string known;
-  for (const std::string& one : curve_classes()) known += (known.empty() ? "" : ", ") + one;
-  throw std::invalid_argument("\"" + name + "\" is no curve class: " + known);
-}
-
-/// Throws std::invalid_argument unless `sigma` is one number or one per point, each finite and at
-/// least 0; it may be empty.
-void check_sigmas(const Array& sigma, std::size_t points) {
-  const auto count = static_cast<std::size_t>(sigma.size());
-  if (count > 1 && count != points) {
-    throw std::invalid_argument("sigma must be one number, or one a point");
-  }
-  if (!std::all_of(sigma.data(), sigma.data() + count,
-                   [](double value) { return std::isfinite(value) && value >= 0.0; })) {
-    throw std::invalid_argument("sigma: must be finite and not below 0");
-  }
-}
-
-palpate::TouchedFrom place_called(const std::string& name) {
-  if (const auto place = palpate::touched_from_from_name(name)) return *place;
-  throw std::invalid_argument("touched_from: \"" + name + "\" is none of outside, inside, unknown");
-}
-
-palpate::MaterialSide side_called(const std::string& name) {
-  if (const auto side = palpate::material_side_from_name(name)) return *side;
-  throw std::invalid_argument("material_side: \"" + name +
-                              "\" is none of left, right, unspecified");
-}
+using palpate::pose_of;
 
 const char* name_of(palpate::RecognitionStatus status) {
   switch (status) {
@@ -80,8 +39,6 @@ const char* name_of(palpate::RecognitionStatus status) {
   }
   return "recognized";
 }
-
-py::tuple pose_of(const palpate::Pose2& pose) { return py::make_tuple(pose.x, pose.y, pose.theta); }
 
 py::dict hypothesis_of(const palpate::Hypothesis& hypothesis) {
   py::dict result;
@@ -160,10 +117,10 @@ class Recognizer {
   py::tuple add(const Array& points, const Array& sigma_m, std::uint32_t probe, std::uint32_t patch,
                 double tip_radius_m, const std::string& side, const Array& normals,
                 const Array& normal_sigmas, const Array& covariances_m2) {
-    const std::size_t count = count_of_points(points);
+    const std::size_t count = palpate::count_of_points(points);
     const auto sigmas = static_cast<std::size_t>(sigma_m.size());
-    check_sigmas(sigma_m, count);
-    const palpate::PatchContext context{probe, patch, tip_radius_m, side_called(side)};
+    palpate::check_sigmas(sigma_m, count);
+    const palpate::PatchContext context{probe, patch, tip_radius_m, palpate::side_called(side)};
     const double* xy = points.data();
     const double* sigma = sigma_m.data();
     // If any point of a patch is invalid, none of the patch is added.
@@ -233,7 +190,7 @@ class Recognizer {
     options.sigma_m = sigma_m;
     options.form_deviation_m = form_deviation_m;
     options.unqualified_probe = unqualified_probe;
-    options.touched_from = place_called(touched_from);
+    options.touched_from = palpate::place_called(touched_from);
     options.memory.most_patches = most_patches;
     options.memory.most_lone_touches = std::max(options.memory.most_lone_touches, most_patches);
     options.memory.most_samples_per_patch = most_samples_per_patch;
@@ -252,101 +209,6 @@ class Recognizer {
   std::vector<palpate::SampleDetail> details_;
   double compute_s_ = 0.0;  // since the last answer
 };
-
-/// A curve at its pose in the world, in metres.
-class PlacedCurve {
- public:
-  PlacedCurve(const std::string& name, const Eigen::Vector3d& params, double x, double y,
-              double theta)
-      : world_T_curve_{x, y, theta} {
-    const auto curve = palpate::make_curve(class_called(name), params);
-    if (!curve) throw std::invalid_argument("no " + name + " has these parameters");
-    curve_ = *curve;
-  }
-
-  double period() const { return palpate::domain(curve_).period; }
-
-  Array at(const Array& t) const {
-    Array points({t.size(), py::ssize_t{2}});
-    double* out = points.mutable_data();
-    for (py::ssize_t i = 0; i < t.size(); ++i) {
-      const palpate::Vec2 point = world_T_curve_ * palpate::position(curve_, t.data()[i]);
-      out[2 * i] = point.x();
-      out[2 * i + 1] = point.y();
-    }
-    return points;
-  }
-
-  /// The curve parameters of the nearest points, and the signed distances to them (positive to the
-  /// left of increasing t); NaN for a point that is not finite.
-  py::tuple feet(const Array& xy) const {
-    const auto count = static_cast<py::ssize_t>(count_of_points(xy));
-    Array t(count);
-    Array distance(count);
-    const double* from = xy.data();
-    double* t_out = t.mutable_data();
-    double* distance_out = distance.mutable_data();
-    {
-      const py::gil_scoped_release release;
-      for (py::ssize_t i = 0; i < count; ++i) {
-        const palpate::Vec2 point(from[2 * i], from[2 * i + 1]);
-        if (!point.allFinite()) {
-          t_out[i] = distance_out[i] = std::numeric_limits<double>::quiet_NaN();
-          continue;
-        }
-        const palpate::FootPoint foot = palpate::foot_point(curve_, world_T_curve_.to_local(point));
-        t_out[i] = foot.t;
-        distance_out[i] = foot.distance;
-      }
-    }
-    return py::make_tuple(t, distance);
-  }
-
- private:
-  palpate::Curve curve_;
-  palpate::Pose2 world_T_curve_;
-};
-
-/// Least squares fit of a given class. `points`: n x 2, in any unit of length. `sigma`: length n, 1
-/// or 0. The others as in PointDetails.
-py::dict fit_given(const std::string& name, const Array& points, const Array& sigma,
-                   const Array& normals, const Array& normal_sigmas, const Array& covariances) {
-  std::vector<palpate::GivenPoint> given(count_of_points(points));
-  check_sigmas(sigma, given.size());
-  const PointDetails details(normals, normal_sigmas, covariances, given.size());
-  const palpate::CurveClass curve_class = class_called(name);
-  const double* xy = points.data();
-  const double* sigmas = sigma.data();
-  const auto sigma_count = static_cast<std::size_t>(sigma.size());
-  palpate::GivenFit fit;
-  {
-    const py::gil_scoped_release release;
-    for (std::size_t i = 0; i < given.size(); ++i) {
-      const palpate::SampleDetail detail = details.of(i);
-      given[i].position_m = palpate::Vec2(xy[2 * i], xy[2 * i + 1]);
-      given[i].sigma_m = sigma_count == 0 ? 0.0 : sigmas[sigma_count == 1 ? 0 : i];
-      given[i].normal = detail.normal;
-      given[i].normal_sigma_rad = detail.normal_sigma_rad;
-      given[i].covariance_m2 = detail.covariance_m2;
-    }
-    fit = palpate::fit_given_class(curve_class, given);
-  }
-  py::dict result;
-  result["status"] = std::string(palpate::name_of(fit.status));
-  result["params"] = fit.shape.values;
-  result["pose"] = pose_of(fit.world_T_curve);
-  result["covariance"] = Eigen::MatrixXd(fit.covariance);
-  result["rms"] = fit.rms_m;
-  result["peak_to_valley"] = fit.peak_to_valley_m;
-  result["sigma"] = fit.sigma_m;
-  result["dof"] = fit.dof;
-  result["bounded"] = fit.bounded;
-  result["rival"] = py::none();
-  if (fit.rival) {
-    result["rival"] = py::make_tuple(fit.rival->shape.values, pose_of(fit.rival->world_T_curve));
-  }
-  return result;
-}
 
 }  // namespace
 
@@ -382,18 +244,13 @@ PYBIND11_MODULE(_core, module) {
   answer.def_readonly("compute_s", &Answer::compute_s)
       .def_property_readonly("hypotheses", &Answer::hypotheses)
       .def_property_readonly("contacts", &Answer::contacts);
-  py::class_<PlacedCurve>(module, "PlacedCurve")
-      .def(py::init<const std::string&, const Eigen::Vector3d&, double, double, double>())
-      .def_property_readonly("period", &PlacedCurve::period)
-      .def("at", &PlacedCurve::at)
-      .def("feet", &PlacedCurve::feet);
-  module.def("fit_given", &fit_given);
+  palpate::add_known_class(module);
   // Throws if the details are invalid. Lets the caller check them before sending.
   module.def("check_details", [](std::size_t points, const Array& normals,
                                  const Array& normal_sigmas, const Array& covariances) {
     PointDetails(normals, normal_sigmas, covariances, points);
   });
-  module.def("curve_classes", &curve_classes);
+  module.def("curve_classes", &palpate::curve_classes);
   module.def("degrees_of_freedom", [](const std::string& name) {
     return palpate::degrees_of_freedom(class_called(name));
   });

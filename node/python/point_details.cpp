@@ -1,5 +1,6 @@
 #include "node/python/point_details.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -13,6 +14,17 @@ std::size_t count_of_points(const Array& points) {
     throw std::invalid_argument("points must be an array of shape (n, 2)");
   }
   return static_cast<std::size_t>(points.shape(0));
+}
+
+void check_sigmas(const Array& sigma, std::size_t points) {
+  const auto count = static_cast<std::size_t>(sigma.size());
+  if (count > 1 && count != points) {
+    throw std::invalid_argument("sigma must be one number, or one a point");
+  }
+  if (!std::all_of(sigma.data(), sigma.data() + count,
+                   [](double value) { return std::isfinite(value) && value >= 0.0; })) {
+    throw std::invalid_argument("sigma: must be finite and not below 0");
+  }
 }
 
 PointDetails::PointDetails(const Array& normals, const Array& normal_sigmas,

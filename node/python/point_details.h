@@ -13,6 +13,10 @@ using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::arr
 /// Number of points. Throws std::invalid_argument unless the shape is (n, 2).
 std::size_t count_of_points(const Array& points);
 
+/// Throws std::invalid_argument unless `sigma` is one number or one per point, each finite and at
+/// least 0; it may be empty.
+void check_sigmas(const Array& sigma, std::size_t points);
+
 /// Optional data of points besides their positions; reads numpy's memory without a copy.
 class PointDetails {
  public:
