@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -15,18 +14,18 @@
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/commands/offline/answer_notes.h"
 #include "node/tool/commands/offline/fit_input.h"
+#include "node/tool/commands/offline/given_answer.h"
 #include "node/tool/commands/offline/measured_group.h"
 #include "node/tool/commands/offline/object_answer.h"
+#include "node/tool/commands/offline/placed_part.h"
 #include "node/tool/contact_groups.h"
 #include "node/tool/drawing/curve_export.h"
 #include "node/tool/drawing/invariant_plot.h"
 #include "node/tool/drawing/svg_plot.h"
-#include "node/tool/part_match.h"
 #include "node/tool/text/advice.h"
 #include "node/tool/text/given_class_text.h"
 #include "node/tool/text/message_json.h"
 #include "node/tool/text/report.h"
-#include "node/wire/given_class_answer.h"
 #include "node/wire/recognizer_options.h"
 
 namespace palpate {
@@ -76,40 +75,6 @@ bool noise_is_known(const FitInput& input, const RecognizerOptions& options) {
   return input.noise_is_known || options.sigma_m > 0.0;
 }
 
-v1::GivenClassAnswer fit_given(const ContactGroup& group, const FitCommand& fit,
-                               const std::vector<QualifiedProbe>& probes,
-                               std::vector<std::string>& notes) {
-  std::vector<std::string> files;
-  const std::vector<const ProbeCharacter*> characters = characters_of(group, probes, files, notes);
-  const auto start = std::chrono::steady_clock::now();
-  v1::GivenClassAnswer answer =
-      given_class_answer(*curve_class_from_name(fit.given_class), group.runs, characters,
-                         fit.left_out, fit.recognizer);
-  if (answer.recognition().has_parameters()) {
-    answer.mutable_recognition()->mutable_probe_files()->Assign(files.begin(), files.end());
-  } else if (!files.empty()) {
-    notes.emplace_back("WARNING: without a curve the probe's offset is not taken off");
-  }
-  bool normals = false;
-  bool known = true;
-  for (const ContactRun& run : group.runs) {
-    for (const SampleDetail& detail : run.details) normals |= detail.normal_sigma_rad > 0.0;
-    for (const ContactSample& sample : run.samples) {
-      known &= sample.sigma_m > 0.0 || fit.recognizer.sigma_m > 0.0;
-    }
-  }
-  if (normals && !known && !answer.sigma_stated()) {
-    notes.emplace_back(
-        "WARNING: the measured normals do not count: not every sample's noise is known (--sigma)");
-  }
-  if (const std::string note = note_of_misfit(answer); !note.empty()) notes.push_back(note);
-  if (!files.empty() && answer.sigma_stated()) {
-    notes.emplace_back("chi-square counts the probe's white noise alone, not its drift");
-  }
-  fill_origin(group, std::chrono::steady_clock::now() - start, *answer.mutable_recognition());
-  return answer;
-}
-
 /// PLOT.svg for the first group, PLOT-2.svg for the second, ...
 std::string plot_path(const std::string& path, std::size_t number) {
   if (number == 1) {
@@ -119,36 +84,6 @@ std::string plot_path(const std::string& path, std::size_t number) {
   const std::string stem = path.substr(0, dot);
   const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
   return stem + "-" + std::to_string(number) + ending;
-}
-
-/// Places a known part instead of recognising one.
-int place(const FitCommand& fit, const std::vector<FitInput>& inputs, bool json) {
-  const Result<ClosedSpline> part = read_part(fit.part);
-  if (!part) {
-    return complain(part.error, kUsage);
-  }
-  SegmentMatchOptions options;
-  options.sigma_m = fit.recognizer.sigma_m;
-  options.determined_probability = fit.recognizer.recognized_probability;
-  options.false_outlier_probability = fit.recognizer.false_outlier_probability;
-  const char* separator = "";
-  for (const FitInput& input : inputs) {
-    const ContactGroup& group = input.group;
-    for (const std::string& note : input.notes) complain(group.file + ": " + note, kDone);
-    if (const std::string note = note_of_unused_detail(group); !note.empty()) {
-      complain(group.file + ": " + note, kDone);
-    }
-    const v1::PartMatch match = match_part(group, *part.value, options);
-    if (json) {
-      std::cout << json_line(match);
-    } else {
-      std::cout << separator << printable_path(group.file) << ", " << group.name << ": "
-                << part_match_text(match);
-      separator = "\n";
-    }
-  }
-  std::cout.flush();
-  return std::cout ? kDone : complain("standard output: cannot be written", kFailed);
 }
 
 /// What is wrong with the class given and what is to be left out, or nothing.
@@ -235,7 +170,7 @@ int run(FitCommand& fit) {
   }
   const bool json = fit.format.empty() ? isatty(STDOUT_FILENO) == 0 : fit.format == "json";
   if (!fit.part.empty()) {
-    return place(fit, inputs, json);
+    return place_part(fit.part, inputs, fit.recognizer, json);
   }
   std::size_t number = 0;
   for (const FitInput& input : inputs) {
@@ -263,7 +198,9 @@ int run(FitCommand& fit) {
       text = json ? json_line(answer) : report_text(answer, known);
     } else {
       notes = input.notes;
-      const v1::GivenClassAnswer given = fit_given(group, fit, probes, notes);
+      const v1::GivenClassAnswer given =
+          fit_given({*curve_class_from_name(fit.given_class), fit.left_out}, group, fit.recognizer,
+                    probes, notes);
       text = json ? json_line(given) : given_class_text(given);
       answer = given.recognition();
     }
