@@ -1,4 +1,4 @@
-// The columns of a contact CSV file.
+// What a column of contacts can hold, and the columns of a contact CSV file.
 #pragma once
 
 #include <array>
@@ -24,9 +24,10 @@ enum class Column {
   CovarianceXx,
   CovarianceXy,
   CovarianceYy,
+  Z,  ///< in files of points only (point_columns.h)
 };
 
-/// In the order of Column. The first kRequiredColumns must be there.
+/// Of a contact CSV file, in the order of Column. The first kRequiredColumns must be there.
 inline constexpr std::array<std::string_view, 16> kColumnNames = {"probe",
                                                                   "patch",
                                                                   "x_m",

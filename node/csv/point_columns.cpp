@@ -35,80 +35,80 @@ namespace {
 
 struct Alias {
   std::string_view name;
-  PointColumn column;
+  Column column;
 };
 
 constexpr std::array kAliases = {
-    Alias{"x", PointColumn::X},
-    Alias{"pos_x", PointColumn::X},
-    Alias{"position_x", PointColumn::X},
-    Alias{"x_pos", PointColumn::X},
-    Alias{"x_position", PointColumn::X},
-    Alias{"x_coord", PointColumn::X},
-    Alias{"x_coordinate", PointColumn::X},
-    Alias{"point_x", PointColumn::X},
-    Alias{"contact_x", PointColumn::X},
-    Alias{"tip_x", PointColumn::X},
-    Alias{"x_value", PointColumn::X},
-    Alias{"x_actual", PointColumn::X},
-    Alias{"x_measured", PointColumn::X},
-    Alias{"x_wert", PointColumn::X},
-    Alias{"x_ist", PointColumn::X},
-    Alias{"x_koordinate", PointColumn::X},
-    Alias{"px", PointColumn::X},
-    Alias{"sigma", PointColumn::Sigma},
-    Alias{"std", PointColumn::Sigma},
-    Alias{"stddev", PointColumn::Sigma},
-    Alias{"noise", PointColumn::Sigma},
-    Alias{"tip_radius", PointColumn::TipRadius},
-    Alias{"ball_radius", PointColumn::TipRadius},
-    Alias{"stylus_radius", PointColumn::TipRadius},
-    Alias{"stamp", PointColumn::Stamp},
-    Alias{"timestamp", PointColumn::Stamp},
-    Alias{"time", PointColumn::Stamp},
-    Alias{"t", PointColumn::Stamp},
-    Alias{"probe", PointColumn::Probe},
-    Alias{"finger", PointColumn::Probe},
-    Alias{"sensor", PointColumn::Probe},
-    Alias{"patch", PointColumn::Patch},
-    Alias{"stroke", PointColumn::Patch},
-    Alias{"touch", PointColumn::Patch},
-    Alias{"scan", PointColumn::Patch},
-    Alias{"segment", PointColumn::Patch},
-    Alias{"object", PointColumn::Object},
-    Alias{"part", PointColumn::Object},
-    Alias{"group", PointColumn::Group},
-    Alias{"material_side", PointColumn::Side},
-    Alias{"side", PointColumn::Side},
+    Alias{"x", Column::X},
+    Alias{"pos_x", Column::X},
+    Alias{"position_x", Column::X},
+    Alias{"x_pos", Column::X},
+    Alias{"x_position", Column::X},
+    Alias{"x_coord", Column::X},
+    Alias{"x_coordinate", Column::X},
+    Alias{"point_x", Column::X},
+    Alias{"contact_x", Column::X},
+    Alias{"tip_x", Column::X},
+    Alias{"x_value", Column::X},
+    Alias{"x_actual", Column::X},
+    Alias{"x_measured", Column::X},
+    Alias{"x_wert", Column::X},
+    Alias{"x_ist", Column::X},
+    Alias{"x_koordinate", Column::X},
+    Alias{"px", Column::X},
+    Alias{"sigma", Column::Sigma},
+    Alias{"std", Column::Sigma},
+    Alias{"stddev", Column::Sigma},
+    Alias{"noise", Column::Sigma},
+    Alias{"tip_radius", Column::TipRadius},
+    Alias{"ball_radius", Column::TipRadius},
+    Alias{"stylus_radius", Column::TipRadius},
+    Alias{"stamp", Column::Stamp},
+    Alias{"timestamp", Column::Stamp},
+    Alias{"time", Column::Stamp},
+    Alias{"t", Column::Stamp},
+    Alias{"probe", Column::Probe},
+    Alias{"finger", Column::Probe},
+    Alias{"sensor", Column::Probe},
+    Alias{"patch", Column::Patch},
+    Alias{"stroke", Column::Patch},
+    Alias{"touch", Column::Patch},
+    Alias{"scan", Column::Patch},
+    Alias{"segment", Column::Patch},
+    Alias{"object", Column::Object},
+    Alias{"part", Column::Object},
+    Alias{"group", Column::Group},
+    Alias{"material_side", Column::MaterialSide},
+    Alias{"side", Column::MaterialSide},
 };
 
 /// Names that have one form only; their x and y are none of a coordinate.
 constexpr std::array kDetails = {
-    Alias{"normal_x", PointColumn::NormalX},         Alias{"normal_y", PointColumn::NormalY},
-    Alias{"normal_sigma", PointColumn::NormalSigma}, Alias{"cov_xx", PointColumn::CovarianceXx},
-    Alias{"cov_xy", PointColumn::CovarianceXy},      Alias{"cov_yy", PointColumn::CovarianceYy},
+    Alias{"normal_x", Column::NormalX},         Alias{"normal_y", Column::NormalY},
+    Alias{"normal_sigma", Column::NormalSigma}, Alias{"cov_xx", Column::CovarianceXx},
+    Alias{"cov_xy", Column::CovarianceXy},      Alias{"cov_yy", Column::CovarianceYy},
 };
 
-std::optional<PointColumn> alias(std::string name) {
+std::optional<Column> alias(std::string name) {
   for (const Alias& detail : kDetails) {
     if (detail.name == name) return detail.column;
   }
   // y and z go by x's names.
-  PointColumn coordinate = PointColumn::X;
+  Column coordinate = Column::X;
   for (char& c : name) {
     const bool alone = (&c == name.data() || *(&c - 1) == '_' || *(&c - 1) == 'p') &&
                        (&c == name.data() + name.size() - 1 || *(&c + 1) == '_');
     if (alone && (c == 'y' || c == 'z')) {
-      coordinate = c == 'y' ? PointColumn::Y : PointColumn::Z;
+      coordinate = c == 'y' ? Column::Y : Column::Z;
       c = 'x';
       break;
     }
   }
   for (const Alias& known : kAliases) {
     if (known.name == name) {
-      return known.column == PointColumn::X ? coordinate
-             : coordinate == PointColumn::X ? std::optional(known.column)
-                                            : std::nullopt;
+      return known.column == Column::X ? coordinate
+             : coordinate == Column::X ? std::optional(known.column)
+                                       : std::nullopt;
     }
   }
   return std::nullopt;
@@ -153,23 +153,23 @@ std::string plain(std::string_view name) {
   return result;
 }
 
-std::optional<double> unit_for(PointColumn column, std::string_view name) {
-  if (column == PointColumn::Stamp) return time_unit_ns(name);
-  if (column == PointColumn::NormalSigma) return angle_unit_rad(name);
+std::optional<double> unit_for(Column column, std::string_view name) {
+  if (column == Column::Stamp) return time_unit_ns(name);
+  if (column == Column::NormalSigma) return angle_unit_rad(name);
   if (is_area(column)) return area_unit_m2(name);
   return is_length(column) ? length_unit_m(name) : std::nullopt;
 }
 
 }  // namespace
 
-bool is_length(PointColumn column) {
-  return column == PointColumn::X || column == PointColumn::Y || column == PointColumn::Z ||
-         column == PointColumn::Sigma || column == PointColumn::TipRadius;
+bool is_length(Column column) {
+  return column == Column::X || column == Column::Y || column == Column::Z ||
+         column == Column::Sigma || column == Column::TipRadius;
 }
 
-bool is_area(PointColumn column) {
-  return column == PointColumn::CovarianceXx || column == PointColumn::CovarianceXy ||
-         column == PointColumn::CovarianceYy;
+bool is_area(Column column) {
+  return column == Column::CovarianceXx || column == Column::CovarianceXy ||
+         column == Column::CovarianceYy;
 }
 
 std::optional<NamedColumn> column_of(std::string_view name) {
@@ -184,7 +184,7 @@ std::optional<NamedColumn> column_of(std::string_view name) {
   }
   if (const auto column = alias(words)) {
     // A time or an angle without unit may be anything.
-    if (*column == PointColumn::Stamp || *column == PointColumn::NormalSigma) return std::nullopt;
+    if (*column == Column::Stamp || *column == Column::NormalSigma) return std::nullopt;
     return NamedColumn{*column, std::nullopt};
   }
   const std::size_t last = words.rfind('_');
@@ -195,7 +195,7 @@ std::optional<NamedColumn> column_of(std::string_view name) {
   return unit ? std::optional(NamedColumn{*column, unit}) : std::nullopt;
 }
 
-std::optional<double> unit_in_brackets(PointColumn column, std::string_view text) {
+std::optional<double> unit_in_brackets(Column column, std::string_view text) {
   return unit_for(column, plain(text));
 }
 
@@ -206,9 +206,7 @@ std::string known_columns() {
 }
 
 bool PointColumns::is_enough() const {
-  return (place(PointColumn::X) ? 1 : 0) + (place(PointColumn::Y) ? 1 : 0) +
-             (place(PointColumn::Z) ? 1 : 0) >=
-         2;
+  return (place(Column::X) ? 1 : 0) + (place(Column::Y) ? 1 : 0) + (place(Column::Z) ? 1 : 0) >= 2;
 }
 
 std::optional<PointColumns> columns_by_number(std::size_t count, std::string& note) {
@@ -225,7 +223,7 @@ std::optional<PointColumns> columns_by_number(std::size_t count, std::string& no
                         "other axes are ignored";
   PointColumns columns;
   for (std::size_t axis = 0; axis < std::min<std::size_t>(count, 3); ++axis) {
-    columns.places[axis] = axis;  // X, Y, Z
+    columns.places[static_cast<std::size_t>(kCoordinates[axis])] = axis;
   }
   return columns;
 }
@@ -234,9 +232,9 @@ namespace {
 
 /// Leaves out normals and covariances that say too little, and says why.
 void keep_whole_details(PointColumns& columns) {
-  using Kind = std::vector<PointColumn>;
-  const auto has = [&](PointColumn column) { return columns.place(column).has_value(); };
-  const bool in_plane = has(PointColumn::X) && has(PointColumn::Y) && !has(PointColumn::Z);
+  using Kind = std::vector<Column>;
+  const auto has = [&](Column column) { return columns.place(column).has_value(); };
+  const bool in_plane = has(Column::X) && has(Column::Y) && !has(Column::Z);
   const auto keep = [&](const char* what, const Kind& all, const Kind& needed, const char* names) {
     if (std::none_of(all.begin(), all.end(), has)) return;
     const bool is_whole = std::all_of(needed.begin(), needed.end(), has);
@@ -246,15 +244,14 @@ void keep_whole_details(PointColumns& columns) {
         (is_whole ? " are not used: they are read beside the two coordinates x and y alone"
                   : " are not used: they need the columns ") +
         (is_whole ? "" : names));
-    for (const PointColumn column : all) {
+    for (const Column column : all) {
       columns.places[static_cast<std::size_t>(column)] = std::nullopt;
     }
   };
-  const Kind normal = {PointColumn::NormalX, PointColumn::NormalY, PointColumn::NormalSigma};
+  const Kind normal = {Column::NormalX, Column::NormalY, Column::NormalSigma};
   keep("normals", normal, normal, "normal_x, normal_y and normal_sigma_rad (or _deg)");
-  keep("covariances",
-       {PointColumn::CovarianceXx, PointColumn::CovarianceXy, PointColumn::CovarianceYy},
-       {PointColumn::CovarianceXx, PointColumn::CovarianceYy},
+  keep("covariances", {Column::CovarianceXx, Column::CovarianceXy, Column::CovarianceYy},
+       {Column::CovarianceXx, Column::CovarianceYy},
        "cov_xx and cov_yy, each with its unit (cov_xx_mm2)");
 }
 

@@ -7,35 +7,19 @@
 #include <string_view>
 #include <vector>
 
+#include "node/csv/csv_columns.h"
+
 namespace palpate::csv {
 
-/// What a column of a file of points can hold.
-enum class PointColumn {
-  X,
-  Y,
-  Z,
-  Sigma,
-  TipRadius,
-  Stamp,
-  Probe,
-  Patch,
-  Object,
-  Group,
-  Side,
-  NormalX,
-  NormalY,
-  NormalSigma,
-  CovarianceXx,
-  CovarianceXy,
-  CovarianceYy,
-};
-inline constexpr std::size_t kPointColumnCount = 17;
+/// Every Column: those of a contact CSV file, and Z.
+inline constexpr std::size_t kPointColumnCount = kColumnCount + 1;
+inline constexpr std::array<Column, 3> kCoordinates = {Column::X, Column::Y, Column::Z};
 
-bool is_length(PointColumn column);
-bool is_area(PointColumn column);
+bool is_length(Column column);
+bool is_area(Column column);
 
 struct NamedColumn {
-  PointColumn column = PointColumn::X;
+  Column column = Column::X;
   /// SI units in one of the file's; nullopt where the name tells none.
   std::optional<double> unit;
 };
@@ -45,7 +29,7 @@ struct NamedColumn {
 std::optional<NamedColumn> column_of(std::string_view name);
 
 /// The unit that stands alone, "mm" or "[mm]", in SI units; nullopt for others.
-std::optional<double> unit_in_brackets(PointColumn column, std::string_view text);
+std::optional<double> unit_in_brackets(Column column, std::string_view text);
 
 /// For messages: the names in their plainest form.
 std::string known_columns();
@@ -59,7 +43,7 @@ struct PointColumns {
   /// Why columns of normals or covariances are not used, a sentence each.
   std::vector<std::string> unused_details;
 
-  std::optional<std::size_t> place(PointColumn column) const {
+  std::optional<std::size_t> place(Column column) const {
     return places[static_cast<std::size_t>(column)];
   }
   /// Two coordinates at least.

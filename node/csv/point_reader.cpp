@@ -119,7 +119,7 @@ class PointReader {
 
   /// The line of names again, as when files are joined: another stroke begins.
   void begin_again() {
-    if (columns_.place(PointColumn::Patch)) fail(lines_.line().data(), std::string(kNamesAgain));
+    if (columns_.place(Column::Patch)) fail(lines_.line().data(), std::string(kNamesAgain));
     gap_ = units_may_follow_ = true;
     ++names_again_;
   }
@@ -158,16 +158,16 @@ class PointReader {
     result_.notes.push_back(note);
   }
 
-  std::string_view field(PointColumn column) const {
+  std::string_view field(Column column) const {
     const auto place = columns_.place(column);
     return place ? fields_[*place] : std::string_view();
   }
 
-  double unit_of(PointColumn column) const {
+  double unit_of(Column column) const {
     return csv::unit_of(columns_, column, options_, result_.is_probe_log);
   }
 
-  bool length(PointColumn column, const char* what, double lowest, double highest, double& value) {
+  bool length(Column column, const char* what, double lowest, double highest, double& value) {
     const std::string_view text = field(column);
     // Between quotes a comma is no separator.
     const auto parsed = number_of(text, true);
@@ -192,7 +192,7 @@ class PointReader {
   }
 
   template <typename Integer>
-  bool whole(PointColumn column, const char* what, Integer& value) {
+  bool whole(Column column, const char* what, Integer& value) {
     const std::string_view text = field(column);
     if (text.empty()) return true;
     const auto parsed = whole_of<Integer>(text);
@@ -201,7 +201,7 @@ class PointReader {
            fail(text.data(), std::string(what) + " " + shown(text) + ": not a whole number >= 0");
   }
 
-  bool name(PointColumn column, const char* what, std::size_t& index) {
+  bool name(Column column, const char* what, std::size_t& index) {
     const std::string_view text = field(column);
     if (text.empty()) return true;
     if (!is_valid_name(text)) {
@@ -220,10 +220,10 @@ class PointReader {
   }
 
   bool stamp(ContactRow& row) {
-    const std::string_view text = field(PointColumn::Stamp);
+    const std::string_view text = field(Column::Stamp);
     if (text.empty()) return true;
-    const double unit = columns_.units[static_cast<std::size_t>(PointColumn::Stamp)].value_or(1.0);
-    if (unit == 1.0) return whole(PointColumn::Stamp, "stamp_ns", row.sample.stamp_ns);
+    const double unit = columns_.units[static_cast<std::size_t>(Column::Stamp)].value_or(1.0);
+    if (unit == 1.0) return whole(Column::Stamp, "stamp_ns", row.sample.stamp_ns);
     const auto parsed = number_of(text, true);
     constexpr double kMost = 9.2e18;  // that an int64 holds [ns]
     if (!parsed || !(std::abs(*parsed * unit) < kMost)) {
@@ -234,7 +234,7 @@ class PointReader {
   }
 
   bool side(ContactRow& row) {
-    const std::string_view text = field(PointColumn::Side);
+    const std::string_view text = field(Column::MaterialSide);
     const auto read = text.empty() ? MaterialSide::Unspecified : material_side_from_name(text);
     if (!read) {
       return fail(text.data(),
@@ -246,13 +246,13 @@ class PointReader {
 
   bool detail(ContactRow& row) {
     DetailNumbers read;
-    const std::array<std::pair<PointColumn, double*>, 6> numbers = {
-        {{PointColumn::NormalX, &read.normal.x()},
-         {PointColumn::NormalY, &read.normal.y()},
-         {PointColumn::NormalSigma, &read.normal_sigma_rad},
-         {PointColumn::CovarianceXx, &read.covariance_m2.x()},
-         {PointColumn::CovarianceXy, &read.covariance_m2.y()},
-         {PointColumn::CovarianceYy, &read.covariance_m2.z()}}};
+    const std::array<std::pair<Column, double*>, 6> numbers = {
+        {{Column::NormalX, &read.normal.x()},
+         {Column::NormalY, &read.normal.y()},
+         {Column::NormalSigma, &read.normal_sigma_rad},
+         {Column::CovarianceXx, &read.covariance_m2.x()},
+         {Column::CovarianceXy, &read.covariance_m2.y()},
+         {Column::CovarianceYy, &read.covariance_m2.z()}}};
     for (const auto& [column, value] : numbers) {
       const std::string_view text = field(column);
       if (text.empty()) continue;
@@ -263,10 +263,9 @@ class PointReader {
       *value = *parsed * unit_of(column);
     }
     const DetailFault fault = take_detail(read, row);
-    const std::string_view at =
-        field(fault == DetailFault::Covariance     ? PointColumn::CovarianceXx
-              : fault == DetailFault::NormalLength ? PointColumn::NormalX
-                                                   : PointColumn::NormalSigma);
+    const std::string_view at = field(fault == DetailFault::Covariance     ? Column::CovarianceXx
+                                      : fault == DetailFault::NormalLength ? Column::NormalX
+                                                                           : Column::NormalSigma);
     return fault == DetailFault::None || fail(at.data(), std::string(words_of(fault)));
   }
 
@@ -297,7 +296,7 @@ class PointReader {
     int axes = 0;
     constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
     for (std::size_t axis = 0; axis < kNames.size(); ++axis) {
-      const auto column = static_cast<PointColumn>(axis);
+      const Column column = kCoordinates[axis];
       if (!columns_.place(column)) continue;
       if (!length(column, kNames[axis], -kMaxCoordinateM, kMaxCoordinateM,
                   point[static_cast<Eigen::Index>(axis)])) {
@@ -306,30 +305,29 @@ class PointReader {
       if (axes < 2) row.sample.position_m[axes] = point[static_cast<Eigen::Index>(axis)];
       ++axes;
     }
-    if (!field(PointColumn::Sigma).empty() &&
-        (!length(PointColumn::Sigma, "sigma", 0.0, kMaxLengthM, row.sample.sigma_m) ||
+    if (!field(Column::Sigma).empty() &&
+        (!length(Column::Sigma, "sigma", 0.0, kMaxLengthM, row.sample.sigma_m) ||
          (row.sample.sigma_m > 0.0 && row.sample.sigma_m < kMinSigmaM &&
-          !fail(field(PointColumn::Sigma).data(), "sigma " + shown(field(PointColumn::Sigma)) +
-                                                      ": must be 0 (not known) or >= 1e-15 m")))) {
+          !fail(field(Column::Sigma).data(), "sigma " + shown(field(Column::Sigma)) +
+                                                 ": must be 0 (not known) or >= 1e-15 m")))) {
       return;
     }
     row.context.tip_radius_m = options_.tip_radius_m;
-    if (!field(PointColumn::TipRadius).empty() &&
-        !length(PointColumn::TipRadius, "tip_radius", 0.0, kMaxLengthM, row.context.tip_radius_m)) {
+    if (!field(Column::TipRadius).empty() &&
+        !length(Column::TipRadius, "tip_radius", 0.0, kMaxLengthM, row.context.tip_radius_m)) {
       return;
     }
-    const bool has_patches = columns_.place(PointColumn::Patch).has_value();
+    const bool has_patches = columns_.place(Column::Patch).has_value();
     // As gnuplot has it, an empty line begins another stroke.
     if (gap_ && !has_patches && !result_.table.rows.empty()) ++block_;
     gap_ = false;
     row.context.patch = has_patches ? 0 : block_;
-    if (field(PointColumn::Probe).empty()) row.probe = intern("probe");
-    if (!name(PointColumn::Probe, "probe", row.probe)) return;
+    if (field(Column::Probe).empty()) row.probe = intern("probe");
+    if (!name(Column::Probe, "probe", row.probe)) return;
     row.group = row.probe;
-    if (!name(PointColumn::Group, "group", row.group) ||
-        !whole(PointColumn::Patch, "patch", row.context.patch) ||
-        !whole(PointColumn::Object, "object", row.object) || !stamp(row) || !side(row) ||
-        !detail(row)) {
+    if (!name(Column::Group, "group", row.group) ||
+        !whole(Column::Patch, "patch", row.context.patch) ||
+        !whole(Column::Object, "object", row.object) || !stamp(row) || !side(row) || !detail(row)) {
       return;
     }
     result_.table.rows.push_back(row);
@@ -337,7 +335,7 @@ class PointReader {
   }
 
   void tell() {
-    result_.has_patches = columns_.place(PointColumn::Patch).has_value() || block_ > 0;
+    result_.has_patches = columns_.place(Column::Patch).has_value() || block_ > 0;
     std::vector<std::string>& notes = result_.notes;
     if (preface_lines_ > 0) {
       notes.push_back("lines ignored before the names of the columns: " +

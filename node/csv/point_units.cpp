@@ -1,20 +1,17 @@
 #include "node/csv/point_units.h"
 
-#include <array>
+#include <algorithm>
 
 namespace palpate::csv {
 namespace {
 
-constexpr std::array<PointColumn, 3> kCoordinates = {PointColumn::X, PointColumn::Y,
-                                                     PointColumn::Z};
-
-std::optional<double> named_unit(const PointColumns& columns, PointColumn column) {
+std::optional<double> named_unit(const PointColumns& columns, Column column) {
   return columns.units[static_cast<std::size_t>(column)];
 }
 
 }  // namespace
 
-double unit_of(const PointColumns& columns, PointColumn column, const ContactFileOptions& options,
+double unit_of(const PointColumns& columns, Column column, const ContactFileOptions& options,
                bool is_probe_log) {
   const auto named = named_unit(columns, column);
   if (!is_length(column) && !is_area(column)) return named.value_or(1.0);
@@ -24,7 +21,7 @@ double unit_of(const PointColumns& columns, PointColumn column, const ContactFil
   if (options.unit_m) return of_kind(*options.unit_m);
   if (named) return *named;
   // One coordinate's unit stands for what names none.
-  for (const PointColumn other : kCoordinates) {
+  for (const Column other : kCoordinates) {
     if (const auto unit = named_unit(columns, other)) return of_kind(*unit);
   }
   constexpr double kMillimetre = 1e-3;
@@ -35,19 +32,21 @@ std::optional<PointColumns> with_row_of_units(const PointColumns& columns,
                                               const std::vector<std::string_view>& fields) {
   PointColumns with_units = columns;
   for (std::size_t i = 0; i < kPointColumnCount; ++i) {
-    const auto column = static_cast<PointColumn>(i);
+    const auto column = static_cast<Column>(i);
     const auto place = columns.place(column);
-    if (!place || column == PointColumn::Stamp) continue;
+    if (!place || column == Column::Stamp) continue;
     const auto unit = unit_in_brackets(column, fields[*place]);
     if (unit && !columns.units[i]) with_units.units[i] = unit;
-    if (!unit && column <= PointColumn::Z) return std::nullopt;
+    const bool is_coordinate =
+        std::find(kCoordinates.begin(), kCoordinates.end(), column) != kCoordinates.end();
+    if (!unit && is_coordinate) return std::nullopt;
   }
   return with_units;
 }
 
 std::string clash_of_units(const PointColumns& columns) {
   std::optional<double> first;
-  for (const PointColumn column : kCoordinates) {
+  for (const Column column : kCoordinates) {
     const auto unit = named_unit(columns, column);
     if (unit && first && *unit != *first) {
       return "the coordinates have different units; give them the same one, or say --unit, which "
@@ -61,7 +60,7 @@ std::string clash_of_units(const PointColumns& columns) {
 std::string note_of_unit(const PointColumns& columns, const ContactFileOptions& options,
                          bool is_probe_log) {
   bool names_unit = false;
-  for (const PointColumn axis : kCoordinates) {
+  for (const Column axis : kCoordinates) {
     const auto named = named_unit(columns, axis);
     names_unit |= named.has_value();
     if (options.unit_m && named && *named != *options.unit_m) {

@@ -11,7 +11,7 @@
 namespace palpate::csv {
 
 /// What a number of that column is in SI units.
-double unit_of(const PointColumns& columns, PointColumn column, const ContactFileOptions& options,
+double unit_of(const PointColumns& columns, Column column, const ContactFileOptions& options,
                bool is_probe_log);
 
 /// The columns with the units of a row below their names, "mm;mm"; nullopt if the row is none.
