@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+
+#include "core/numerics/log_add.h"
 
 namespace palpate {
 namespace {
@@ -12,22 +15,9 @@ namespace {
 /// for a factor of exp(-60 / 2).
 constexpr double kNegligible = 60.0;
 
-/// A sum of positive numbers, given by their logarithms. Where a part does not fit, chi-square
-/// varies by more than exp() can represent.
-class LogSum {
- public:
-  void add(double log_term) {
-    if (log_term == -std::numeric_limits<double>::infinity()) {
-      return;
-    }
-    const double most = std::max(log_, log_term);
-    log_ = most + std::log(std::exp(log_ - most) + std::exp(log_term - most));
-  }
-  double log() const { return log_; }
-
- private:
-  double log_ = -std::numeric_limits<double>::infinity();
-};
+/// Sums are kept as logarithms: where a part does not fit, chi-square varies by more than exp() can
+/// represent.
+constexpr double kLogOfZero = -std::numeric_limits<double>::infinity();
 
 /// The best fit with the part's place t on the normal of the reference.
 struct Slide {
@@ -99,17 +89,18 @@ class Integral {
   Integral(const Scan& scan, const ScaledPart& part, double best_chi2)
       : scan_(scan), part_(part), best_chi2_(best_chi2) {}
 
-  void between(const Slide& a, const Slide& b, LogSum* mass, std::vector<LogSum>* by_segment) {
-    LogSum piece;
-    halve(a, b, 0, &piece);
-    mass->add(piece.log());
-    (*by_segment)[part_.spline().segment_at(0.5 * (a.t + b.t))].add(piece.log());
+  void between(const Slide& a, const Slide& b, double* log_mass, std::vector<double>* by_segment) {
+    double log_piece = kLogOfZero;
+    halve(a, b, 0, &log_piece);
+    *log_mass = log_add(*log_mass, log_piece);
+    double& log_segment = (*by_segment)[part_.spline().segment_at(0.5 * (a.t + b.t))];
+    log_segment = log_add(log_segment, log_piece);
   }
 
  private:
   static double log_density(const Slide& slide) { return -0.5 * slide.chi2 + slide.log_volume; }
 
-  void halve(const Slide& a, const Slide& b, int depth, LogSum* mass) {
+  void halve(const Slide& a, const Slide& b, int depth, double* log_mass) {
     // Between two places whose densities differ only by a factor of exp(1/2), the trapezoid is
     // right to 2 %.
     constexpr double kStep = 1.0;  // of chi-square
@@ -123,14 +114,14 @@ class Integral {
     best_chi2_ = std::min(best_chi2_, least);
     if (std::abs(a.chi2 - b.chi2) < kStep || depth == kDeepest) {
       const double log_half_step = std::log(0.5 * (b.t - a.t));
-      mass->add(log_half_step + log_density(a));
-      mass->add(log_half_step + log_density(b));
+      *log_mass = log_add(*log_mass, log_half_step + log_density(a));
+      *log_mass = log_add(*log_mass, log_half_step + log_density(b));
       return;
     }
     const Slide middle = scan_.at(0.5 * (a.t + b.t));
     best_chi2_ = std::min(best_chi2_, middle.chi2);
-    halve(a, middle, depth + 1, mass);
-    halve(middle, b, depth + 1, mass);
+    halve(a, middle, depth + 1, log_mass);
+    halve(middle, b, depth + 1, log_mass);
   }
 
   const Scan& scan_;
@@ -193,10 +184,14 @@ void add_candidates(const ScaledPart& part, std::span<const FitPoint> points,
   }
 }
 
+double log_sum(std::span<const double> logs) {
+  return std::accumulate(logs.begin(), logs.end(), kLogOfZero, log_add);
+}
+
 /// The masses of the candidates of one direction of travel.
 void integrate(const ScaledPart& part, Circle circle, double best_chi2,
-               std::span<const PartCandidate> candidates, std::vector<LogSum>* masses,
-               std::vector<LogSum>* by_segment) {
+               std::span<const PartCandidate> candidates, std::vector<double>* log_masses,
+               std::vector<double>* by_segment) {
   std::vector<Slide>& slides = circle.slides;
   bool any = false;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -233,7 +228,8 @@ void integrate(const ScaledPart& part, Circle circle, double best_chi2,
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t owner = i < barrier ? begin : end;
       integral.between(slides[i], slides[i + 1],
-                       &(*masses)[static_cast<std::size_t>(slides[owner].candidate)], by_segment);
+                       &(*log_masses)[static_cast<std::size_t>(slides[owner].candidate)],
+                       by_segment);
     }
     begin = end;
   }
@@ -260,35 +256,28 @@ SlidePosterior slide_posterior(const ScaledPart& part, std::span<const FitPoint>
     return !(candidate.fit.chi2 < best + kNegligible);
   });
   posterior.segment_probability.assign(part.spline().size(), 0.0);
-  std::vector<LogSum> masses(candidates.size());
-  std::vector<LogSum> by_segment(part.spline().size());
+  std::vector<double> log_masses(candidates.size(), kLogOfZero);
+  std::vector<double> by_segment(part.spline().size(), kLogOfZero);
   for (const Circle& circle : circles) {
     for (const Slide& slide : circle.slides) {
       best = std::min(best, slide.chi2);
     }
   }
   for (Circle& circle : circles) {
-    integrate(part, std::move(circle), best, candidates, &masses, &by_segment);
+    integrate(part, std::move(circle), best, candidates, &log_masses, &by_segment);
   }
-  LogSum whole;
-  for (const LogSum& mass : masses) {
-    whole.add(mass.log());
-  }
-  if (!std::isfinite(whole.log())) {
+  const double whole = log_sum(log_masses);
+  if (!std::isfinite(whole)) {
     candidates.clear();  // the points determine no pose of the part
     return posterior;
   }
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    candidates[c].probability = std::exp(masses[c].log() - whole.log());
+    candidates[c].probability = std::exp(log_masses[c] - whole);
   }
   // Normalised by their own sum, because the logarithm of a very large number keeps few digits.
-  LogSum of_segments;
-  for (const LogSum& mass : by_segment) {
-    of_segments.add(mass.log());
-  }
+  const double of_segments = log_sum(by_segment);
   for (std::size_t segment = 0; segment < by_segment.size(); ++segment) {
-    posterior.segment_probability[segment] =
-        std::exp(by_segment[segment].log() - of_segments.log());
+    posterior.segment_probability[segment] = std::exp(by_segment[segment] - of_segments);
   }
   std::stable_sort(
       candidates.begin(), candidates.end(),
