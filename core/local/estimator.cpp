@@ -14,8 +14,7 @@ constexpr std::array kKinds = {EstimatorKind::FiniteDifference, EstimatorKind::C
                                EstimatorKind::TwoRound, EstimatorKind::Jet};
 
 TwoRoundOptions two_round_options(const EstimatorOptions& options) {
-  return {options.window, options.shift, options.two_round_fits, options.sigma_m,
-          options.two_round_frame};
+  return {options.window, options.shift, options.two_round_fits, options.sigma_m};
 }
 
 std::size_t shift_of(const EstimatorOptions& options) {

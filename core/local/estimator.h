@@ -28,7 +28,6 @@ struct EstimatorOptions {
   double sigma_m = 0.0;     ///< noise of a coordinate; 0 = estimate it from each window [m]
   int jet_degree = 4;       ///< degree of the jet's polynomial
   int two_round_fits = 10;  ///< the paper's m
-  FitFrame two_round_frame = FitFrame::Aligned;
 };
 
 /// Number of samples that one estimate uses: `window`, or n + (m - 1) l for the two-round fit.

@@ -1,4 +1,4 @@
-// Converts between the path of a round tip's centre and the surface that the tip touches.
+// From the path of a round tip's centre to the surface that the tip touches.
 #pragma once
 
 #include <optional>
@@ -17,11 +17,8 @@ namespace palpate {
 /// the radius and so moves the point along the surface, where angle and kappa are different.
 /// (kappa_s differs there as well, by the second derivative of kappa, which the estimate does not
 /// have; this is omitted.) nullopt if 1 + d kappa_c <= 0: no tip of this radius can follow such a
-/// path on this side.
+/// path on this side. With -d it is the way back, from the surface to the
+/// path of the centre.
 std::optional<LocalEstimate> surface_from_tip(const LocalEstimate& centre, double tip_offset_m);
-
-/// The inverse: the path of the tip's centre along a surface. nullopt if 1 - d kappa <= 0: the tip
-/// does not fit into the hollow.
-std::optional<LocalEstimate> tip_from_surface(const LocalEstimate& surface, double tip_offset_m);
 
 }  // namespace palpate

@@ -28,29 +28,13 @@ struct WindowFit {
 
 double slope(const Coefficients& c, double u) { return c[1] + 3.0 * c[2] * u; }
 
-/// A frame along the world's x axis, reversed if travel is against it.
-AlignedFrame world_frame(std::span<const Vec2> samples, const AlignedFrame& aligned) {
-  AlignedFrame frame = aligned;
-  frame.axis = aligned.axis.x() < 0.0 ? Vec2(-Vec2::UnitX()) : Vec2(Vec2::UnitX());
-  double lowest = 0.0;
-  double highest = 0.0;
-  for (const Vec2& p : samples) {
-    const double x = frame.axis.dot(p - aligned.origin);
-    lowest = std::min(lowest, x);
-    highest = std::max(highest, x);
-  }
-  frame.half_extent_m = 0.5 * (highest - lowest);
-  frame.origin = aligned.origin + 0.5 * (lowest + highest) * frame.axis;
-  return frame;
-}
-
 LocalStatus fit_window(std::span<const Vec2> samples, const TwoRoundOptions& options,
                        WindowFit& window, double& sigma_m) {
   const auto [status, aligned] = aligned_frame(samples);
   if (status != LocalStatus::Ok) {
     return status;
   }
-  window.frame = options.frame == FitFrame::World ? world_frame(samples, aligned) : aligned;
+  window.frame = aligned;
   const AlignedFrame& frame = window.frame;
   const double unit = frame.half_extent_m;
   if (!(unit > 0.0)) {
@@ -74,11 +58,9 @@ LocalStatus fit_window(std::span<const Vec2> samples, const TwoRoundOptions& opt
   }
   const double seen = std::sqrt(sum / (static_cast<double>(samples.size()) - 3.0));
   sigma_m = options.sigma_m > 0.0 ? options.sigma_m : seen * unit;
-  if (options.frame == FitFrame::Aligned) {
-    if (const LocalStatus order = check_backtrack(frame, options.sigma_m / unit, seen);
-        order != LocalStatus::Ok) {
-      return order;
-    }
+  if (const LocalStatus order = check_backtrack(frame, options.sigma_m / unit, seen);
+      order != LocalStatus::Ok) {
+    return order;
   }
 
   window.median_u = frame.to_frame(samples[samples.size() / 2]).x();

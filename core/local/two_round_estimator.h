@@ -8,12 +8,6 @@
 
 namespace palpate {
 
-enum class FitFrame {
-  Aligned,  ///< each window's principal axis
-  /// The world's x axis, as printed in the paper: fails on steep tangents. For comparison only.
-  World,
-};
-
 inline constexpr int kMaxTwoRoundFits = 64;
 
 struct TwoRoundOptions {
@@ -21,7 +15,6 @@ struct TwoRoundOptions {
   int shift = 4;             ///< the paper's l: samples from one window to the next; at least 1
   int fits = 10;             ///< the paper's m; 3 to kMaxTwoRoundFits
   double sigma_m = 0.0;      ///< noise; 0 = estimate it from the residuals of the middle fit [m]
-  FitFrame frame = FitFrame::Aligned;
 };
 
 /// Number of samples that one estimate uses: n + (m - 1) l.

@@ -15,6 +15,8 @@ namespace {
 
 constexpr int kCubicDegrees = 6;  // shape and pose of a cubic spline segment
 constexpr int kBendDegrees = 2;
+/// Probability that a patch of one cubic is split.
+constexpr double kSignificance = 0.01;
 /// Fewest samples on either side of a joint: as many as a cubic needs, and as many again to test
 /// it.
 constexpr std::size_t kFewestSamples = 2 * kCubicDegrees;
@@ -87,9 +89,8 @@ KnottedCubicFit best_between(const Run& run, const KnottedCubicFit& best, double
 /// patch.
 class JointTest {
  public:
-  JointTest(std::span<const StoredSample> samples, const PatchContext& context, double sigma_m,
-            double significance)
-      : samples_(samples), context_(context), sigma_m_(sigma_m), significance_(significance) {}
+  JointTest(std::span<const StoredSample> samples, const PatchContext& context, double sigma_m)
+      : samples_(samples), context_(context), sigma_m_(sigma_m) {}
 
   std::optional<SegmentJoint> joint_of(std::size_t begin, std::size_t end) const {
     if (end < begin + 2 * kFewestSamples) {
@@ -110,7 +111,7 @@ class JointTest {
       }
     }
     const double limit =
-        chi_square_threshold(significance_ / static_cast<double>(knots.size()), kBendDegrees);
+        chi_square_threshold(kSignificance / static_cast<double>(knots.size()), kBendDegrees);
     if (!(run->single.chi2 - best.chi2 > limit)) {
       return std::nullopt;
     }
@@ -132,7 +133,6 @@ class JointTest {
     if (joint.index < kCubicDegrees || joint.index + kCubicDegrees > end - begin) {
       return std::nullopt;
     }
-    joint.chi2_drop = single - best.chi2;
     joint.index += begin;
     joint.earliest += begin;
     joint.latest += begin;
@@ -201,7 +201,6 @@ class JointTest {
   std::span<const StoredSample> samples_;
   PatchContext context_;
   double sigma_m_;
-  double significance_;
 };
 
 /// Splits a run at its joint, and then the parts that certainly lie on either side. If a part
@@ -272,7 +271,7 @@ double noise_of(const StoredPatch& patch, double sigma_m) {
 
 }  // namespace
 
-SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, double significance) {
+SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m) {
   SegmentBelonging result;
   constexpr double kFalseSpikes = 0.01;  // probability that a patch without spikes loses a sample
   WorkBudget unbounded;
@@ -302,7 +301,7 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, doubl
   for (const std::size_t i : tested) {
     tested_samples.push_back(kept.samples[i]);
   }
-  const JointTest test(tested_samples, kept.context, noise_m, significance);
+  const JointTest test(tested_samples, kept.context, noise_m);
   part_run(test, 0, tested.size(), &result.joints);
   settle(test, tested.size(), &result.joints);
   for (SegmentJoint& joint : result.joints) {
@@ -328,7 +327,6 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m, doubl
                        ? fit_run(std::span(kept.samples).subspan(core_begin, core_end - core_begin),
                                  kept.context, noise_m)
                        : std::nullopt;
-  result.was_tested = kept.samples.size() >= 2 * kFewestSamples;
   if (run) {
     result.chi2 = run->single.chi2;
     result.dof = static_cast<int>(core_end - core_begin) - kCubicDegrees;

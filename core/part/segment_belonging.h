@@ -16,12 +16,10 @@ struct SegmentJoint {
   /// samples in [earliest, latest) lie.
   std::size_t earliest = 0;
   std::size_t latest = 0;
-  double chi2_drop = 0.0;  ///< what the second cubic reduces chi-square by; 2 degrees of freedom
   Vec2 position_m = Vec2::Zero();
 };
 
 struct SegmentBelonging {
-  bool was_tested = false;  ///< whether there were enough samples for a cubic and a joint
   /// The longest run of samples between two joints: [begin, end).
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -36,11 +34,10 @@ struct SegmentBelonging {
 
 /// Searches for joints in a patch, then again on both sides of each joint found. The test compares
 /// one cubic with two cubics that join at a knot, for a number of knots: a likelihood ratio with 2
-/// degrees of freedom, at `significance` divided by that number. So a patch of one cubic is split
-/// with at most the probability `significance` (core/README.md, "Joints without a model").
+/// degrees of freedom, at a significance of 1 % divided by that number. So a patch of one cubic is
+/// split with a probability of at most 1 % (core/README.md, "Joints without a model").
 /// `sigma_m`: noise of samples that state none; 0 = estimate it from the data. A patch of more than
 /// 1,000 samples is tested on 1,000 of them, evenly spread; this bounds the time.
-SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m = 0.0,
-                                 double significance = 0.01);
+SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m = 0.0);
 
 }  // namespace palpate

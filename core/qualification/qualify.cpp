@@ -22,6 +22,8 @@ constexpr int kHighestOrder = 8;
 /// Gap between normals beyond which a direction counts as not touched. Twelve touches evenly around
 /// leave no gap, whatever their noise. [rad]
 constexpr double kGap = 1.01 * kPi / 6.0;
+/// Probability that a recording without spikes loses a sample to spike detection.
+constexpr double kFalseSpikes = 0.01;
 
 double median_size(const Eigen::VectorXd& values) {
   std::vector<double> sizes(values.data(), values.data() + values.size());
@@ -238,8 +240,7 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
     }
     scale = median_size(about.residual_m) / kMedianOfNormal;
   }
-  const std::vector<char> used =
-      within_noise(about.residual_m, least_scale, options.false_spike_probability);
+  const std::vector<char> used = within_noise(about.residual_m, least_scale, kFalseSpikes);
 
   Qualification result;
   result.both_directions = runs_both_ways(ground.samples);

@@ -33,8 +33,6 @@ struct QualificationOptions {
   /// True: parts will be touched in the same set-up as these recordings, so the offset's constant
   /// is the same. False: the constant differs from recording to recording.
   bool same_setup = false;
-  /// Probability that a recording without spikes loses a sample to spike detection.
-  double false_spike_probability = 0.01;
 };
 
 struct QualifiedSample {

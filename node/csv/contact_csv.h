@@ -19,12 +19,9 @@ namespace palpate {
 /// Seven million samples with all their digits; what is longer is no file of contacts. [bytes]
 inline constexpr std::size_t kMostContactFileBytes = std::size_t{512} << 20;
 
-/// Reads a file, or standard input for "-". Strict: a file is used as a whole or not at all, and an
-/// error reads "FILE:LINE:COLUMN: what is wrong", COLUMN counting bytes from 1. Numbers must be
-/// finite, and within the bounds that the recognizer node sets to messages (node/intake/ingest.h).
-Result<ContactTable> read_contact_csv(const std::string& path);
-
-/// The same from memory; `name` stands for the file in errors.
+/// Strict: a file is used as a whole or not at all, and an error reads "FILE:LINE:COLUMN: what is
+/// wrong", with `name` for the file and COLUMN counting bytes from 1. Numbers must be finite, and
+/// within the bounds that the recognizer node sets to messages (node/intake/ingest.h).
 Result<ContactTable> parse_contact_csv(std::string_view text, std::string_view name);
 
 /// Writes a table so that reading it gives the same values to the last bit: numbers in their

@@ -11,7 +11,6 @@
 #include "node/csv/csv_columns.h"
 #include "node/csv/row_detail.h"
 #include "node/csv/text_lines.h"
-#include "node/files/bounded_file.h"
 #include "node/files/counted.h"
 #include "node/wire/topics.h"
 
@@ -324,15 +323,6 @@ class Reader {
 
 Result<ContactTable> parse_contact_csv(std::string_view text, std::string_view name) {
   return Reader(text, name).read();
-}
-
-Result<ContactTable> read_contact_csv(const std::string& path) {
-  const bool is_standard_input = path == "-";
-  const std::string name = is_standard_input ? "standard input" : path;
-  const Result<std::string> text = is_standard_input
-                                       ? read_bounded(STDIN_FILENO, name, kMostContactFileBytes)
-                                       : read_bounded(path, kMostContactFileBytes);
-  return text ? parse_contact_csv(*text.value, name) : Result<ContactTable>::fail(text.error);
 }
 
 }  // namespace palpate

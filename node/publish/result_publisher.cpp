@@ -26,7 +26,6 @@ void ResultPublisher::publish(TopicKind kind, std::string_view name, v1::Header&
   header.set_stamp_ns(unix_time_ns());
   message.SerializeToString(&feed.payload);
   send_now(socket_, topic, feed.payload);
-  ++published_count_;
 }
 
 namespace {

@@ -56,7 +56,6 @@ class ResultPublisher {
   /// Forgets the topic. If it comes back, it counts from 0 in a new epoch.
   void forget(TopicKind kind, std::string_view name);
 
-  std::uint64_t published_count() const { return published_count_; }
   std::uint64_t epoch() const { return epoch_; }
 
  private:
@@ -76,7 +75,6 @@ class ResultPublisher {
   bool any_asked_for_ = false;
   std::uint64_t estimate_subscriptions_ = 0;
   std::chrono::steady_clock::time_point next_repeat_;
-  std::uint64_t published_count_ = 0;
 };
 
 }  // namespace palpate

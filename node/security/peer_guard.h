@@ -51,7 +51,6 @@ class PeerGuard {
   /// Cuts all connections. Clients that are allowed reconnect at once.
   void cut_all(const std::string& why);
 
-  std::size_t peer_count() const { return peers_.size(); }
   std::uint64_t cut_count() const { return cut_count_; }
 
   /// Describes the cuts since the last call, for the log; empty if there are none.

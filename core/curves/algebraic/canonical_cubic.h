@@ -73,9 +73,4 @@ CubicCanonicalisation canonicalise(const PolynomialCurve2& curve,
 /// Precondition: one of the five classes above.
 CubicCanonicalisation canonicalise_as(CurveClass curve_class, const PolynomialCurve2& curve);
 
-/// The curve at that pose, as polynomials in its canonical parameter. `values` in the order of
-/// parameter_letters. Precondition: one of the five classes above.
-PolynomialCurve2 polynomial_curve_of(CurveClass curve_class, const Eigen::Vector3d& values,
-                                     const Pose2& world_T_curve);
-
 }  // namespace palpate

@@ -3,11 +3,16 @@
 #include <stdexcept>
 
 #include "node/csv/contact_csv.h"
+#include "node/files/bounded_file.h"
 
 namespace palpate::bench {
 
 Recording read_recording(const std::filesystem::path& path) {
-  const Result<ContactTable> table = read_contact_csv(path.string());
+  const Result<std::string> text = read_bounded(path.string(), kMostContactFileBytes);
+  if (!text) {
+    throw std::runtime_error(text.error);
+  }
+  const Result<ContactTable> table = parse_contact_csv(*text.value, path.string());
   if (!table) {
     throw std::runtime_error(table.error);
   }

@@ -5,11 +5,14 @@
 #include <tuple>
 
 #include "node/csv/contact_csv.h"
+#include "node/files/bounded_file.h"
 
 namespace palpate::bench {
 
 std::optional<TouchedInput> input_from(const std::string& path) {
-  const Result<ContactTable> table = read_contact_csv(path);
+  const Result<std::string> text = read_bounded(path, kMostContactFileBytes);
+  const Result<ContactTable> table =
+      text ? parse_contact_csv(*text.value, path) : Result<ContactTable>::fail(text.error);
   if (!table) {
     std::fprintf(stderr, "%s\n", table.error.c_str());
     return std::nullopt;

@@ -392,10 +392,10 @@ TEST(SpikesHardCases, FewSamples) {
 TEST(TipRadiusHardCases, HollowTooNarrowForTheTip) {
   LocalEstimate surface;
   surface.kappa = 100.0;  // 10 mm, concave on the left
-  EXPECT_TRUE(tip_from_surface(surface, 0.009).has_value());
-  EXPECT_FALSE(tip_from_surface(surface, 0.010).has_value());
-  EXPECT_FALSE(tip_from_surface(surface, 0.011).has_value());
-  EXPECT_TRUE(tip_from_surface(surface, -0.011).has_value());
+  EXPECT_TRUE(surface_from_tip(surface, -0.009).has_value());
+  EXPECT_FALSE(surface_from_tip(surface, -0.010).has_value());
+  EXPECT_FALSE(surface_from_tip(surface, -0.011).has_value());
+  EXPECT_TRUE(surface_from_tip(surface, 0.011).has_value());
 }
 
 }  // namespace

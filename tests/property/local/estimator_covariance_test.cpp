@@ -105,22 +105,5 @@ TEST(JetAgainstTwoRound, ErrorsAreTheReportedNoiseAndTheBiasOfTheCurve) {
   }
 }
 
-TEST(JetAgainstTwoRound, BetterWhereSteepTangentsMeetTheWorldFrame) {
-  // The paper's literal fit over world x, on a circle's arc around a vertical tangent.
-  test::TouchedArc arc = test::touched_arcs()[1];
-  arc.centre_t = 0.0;
-  arc.world_T_curve.theta = 0.0;
-  EstimatorOptions world = options_for(EstimatorKind::TwoRound);
-  world.two_round_frame = FitFrame::World;
-  const std::vector<Vec2> exact = test::samples_of(arc, kSamples);
-  const LocalResult literal = estimate_window(exact, world);
-  const LocalResult aligned = estimate_window(exact, options_for(EstimatorKind::TwoRound));
-  ASSERT_EQ(aligned.status, LocalStatus::Ok);
-  EXPECT_LT(std::abs(test::error_of(aligned.estimate, arc)[2]), 0.05 * 50.0);
-  if (literal) {
-    EXPECT_GT(std::abs(test::error_of(literal.estimate, arc)[2]), 0.5 * 50.0);
-  }
-}
-
 }  // namespace
 }  // namespace palpate

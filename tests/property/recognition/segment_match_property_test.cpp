@@ -226,7 +226,7 @@ TEST(LongestSegmentStatistics, FalseJointsAreNoMoreThanTheSignificance) {
       const double length = part.arc_length(segment, segment + 1.0);
       const test::TouchedPart touched = test::touch(
           part, test::random_pose(rng), {{segment + 0.03, 0.9 * length}}, sigma_m, sigma_m, rng);
-      found += !longest_segment(touched.patches[0], 0.0, 0.01).joints.empty();
+      found += !longest_segment(touched.patches[0]).joints.empty();
     }
     std::printf("sigma %g mm: joints in %d of %d patches of one segment\n", 1e3 * sigma_m, found,
                 count);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,39 @@
 
 namespace palpate {
 namespace {
+
+/// The curve at that pose, as polynomials in its canonical parameter.
+PolynomialCurve2 polynomial_curve_of(CurveClass curve_class, const Eigen::Vector3d& values,
+                                     const Pose2& world_T_curve) {
+  PolynomialCurve2 curve;
+  auto& c = curve.coefficients;
+  switch (curve_class) {
+    case CurveClass::Line:
+      c.col(1) = Vec2(1.0, 0.0);
+      break;
+    case CurveClass::Parabola:
+      c.col(1) = Vec2(0.0, 2.0 * values[0]);
+      c.col(2) = Vec2(values[0], 0.0);
+      break;
+    case CurveClass::CubicalParabola:
+      c.col(1) = Vec2(1.0, values[1]);
+      c.col(3) = Vec2(0.0, values[0]);
+      break;
+    case CurveClass::SemiCubicalParabola:
+    case CurveClass::CubicSpline:
+      c.col(1) = Vec2(0.0, curve_class == CurveClass::CubicSpline ? values[2] : 0.0);
+      c.col(2) = Vec2(1.0, values[1]);
+      c.col(3) = Vec2(0.0, values[0]);
+      break;
+    default:
+      assert(false);
+  }
+  for (int power = 1; power <= 3; ++power) {
+    c.col(power) = world_T_curve.rotate(c.col(power));
+  }
+  c.col(0) = world_T_curve.translation();
+  return curve;
+}
 
 PolynomialCurve2 cubic(const Eigen::Vector4d& x, const Eigen::Vector4d& y) {
   PolynomialCurve2 curve;

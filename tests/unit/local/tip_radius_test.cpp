@@ -25,7 +25,7 @@ TEST(TipRadius, OffsetCurvatureAgainstDifferences) {
       surface.tangent_angle = at.tangent_angle;
       surface.kappa = at.kappa;
       surface.kappa_s = at.kappa_s;
-      const auto centre = tip_from_surface(surface, offset);
+      const auto centre = surface_from_tip(surface, -offset);
       ASSERT_TRUE(centre.has_value()) << arc.name;
       EXPECT_LT((centre->position - centre_at(arc.curve, arc.centre_t, offset)).norm(), 1e-15);
       // Curvature of the centres by tangent angle over arc length between two near places.
@@ -59,7 +59,7 @@ TEST(TipRadius, ThereAndBack) {
   surface.covariance = Eigen::Vector4d(1e-10, 1e-6, 0.1, 1e3).asDiagonal();
   surface.covariance(0, 2) = surface.covariance(2, 0) = 1e-6;
   for (const double offset : {0.004, -0.004}) {
-    const auto centre = tip_from_surface(surface, offset);
+    const auto centre = surface_from_tip(surface, -offset);
     ASSERT_TRUE(centre.has_value());
     const auto back = surface_from_tip(*centre, offset);
     ASSERT_TRUE(back.has_value());
@@ -86,8 +86,8 @@ TEST(TipRadius, CircleTouchedFromOutsideAndInside) {
   // right, at R + r; inside a ring, material on the right, it lies on the left, at R - r.
   LocalEstimate surface;
   surface.kappa = 1.0 / 0.020;
-  EXPECT_NEAR(tip_from_surface(surface, -0.003)->kappa, 1.0 / 0.023, 1e-12);
-  EXPECT_NEAR(tip_from_surface(surface, 0.003)->kappa, 1.0 / 0.017, 1e-12);
+  EXPECT_NEAR(surface_from_tip(surface, 0.003)->kappa, 1.0 / 0.023, 1e-12);
+  EXPECT_NEAR(surface_from_tip(surface, -0.003)->kappa, 1.0 / 0.017, 1e-12);
 }
 
 }  // namespace
