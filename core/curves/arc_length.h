@@ -62,6 +62,13 @@ double integrate_speed(const Speed& speed, double t0, double t1) {
   return arc_length_detail::adaptive(speed, t0, t1, whole, kRelative * std::abs(whole), 0);
 }
 
+/// The same for a speed that is not smooth at t = 0, or nearly so: each side of it by itself.
+template <typename Speed>
+double integrate_speed_by_sides(const Speed& speed, double t0, double t1) {
+  return t0 * t1 < 0.0 ? integrate_speed(speed, t0, 0.0) + integrate_speed(speed, 0.0, t1)
+                       : integrate_speed(speed, t0, t1);
+}
+
 /// The t at signed arc length s from t0. length(u, v) is the signed arc length from u to v;
 /// speed(t) is its derivative by v, > 0 except at isolated points. Newton's method on the remaining
 /// arc, within a bracket whose far side is open until a step overshoots. Until then no step exceeds

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/curves/arc_length.h"
 #include "core/curves/foot_point.h"
@@ -64,11 +63,8 @@ double CubicSpline::speed(double t) const {
 }
 
 double CubicSpline::arc_length(double t0, double t1) const {
-  const auto speed_at = [this](double u) { return speed(u); };
-  if (t0 * t1 < 0.0) {  // for small c there is a sharp bend near t = 0
-    return integrate_speed(speed_at, t0, 0.0) + integrate_speed(speed_at, 0.0, t1);
-  }
-  return integrate_speed(speed_at, t0, t1);
+  // For small c there is a sharp bend near t = 0.
+  return integrate_speed_by_sides([this](double u) { return speed(u); }, t0, t1);
 }
 
 double CubicSpline::parameter_at_arc_length(double t0, double s) const {
@@ -78,10 +74,7 @@ double CubicSpline::parameter_at_arc_length(double t0, double s) const {
                            std::sqrt(std::abs(s)));
 }
 
-ParameterDomain CubicSpline::domain() const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  return {-kInfinity, kInfinity, 0.0};
-}
+ParameterDomain CubicSpline::domain() const { return kUnbounded; }
 
 std::optional<Localisation> CubicSpline::localise(const LocalGeometry& local) const {
   if (!is_finite(local)) {

@@ -1,7 +1,6 @@
 #include "core/curves/cubical_parabola.h"
 
 #include <cmath>
-#include <limits>
 
 #include "core/curves/arc_length.h"
 #include "core/curves/foot_point.h"
@@ -59,10 +58,7 @@ double CubicalParabola::parameter_at_arc_length(double t0, double s) const {
                            std::abs(s));
 }
 
-ParameterDomain CubicalParabola::domain() const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  return {-kInfinity, kInfinity, 0.0};
-}
+ParameterDomain CubicalParabola::domain() const { return kUnbounded; }
 
 std::optional<Localisation> CubicalParabola::localise(const LocalGeometry& local) const {
   const double cosine = std::cos(local.tangent_angle);

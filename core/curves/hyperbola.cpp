@@ -1,7 +1,6 @@
 #include "core/curves/hyperbola.h"
 
 #include <cmath>
-#include <limits>
 
 #include "core/curves/arc_length.h"
 #include "core/curves/foot_point.h"
@@ -75,11 +74,8 @@ double Hyperbola::speed(double t) const {
 }
 
 double Hyperbola::arc_length(double t0, double t1) const {
-  const auto speed_at = [this](double u) { return speed(u); };
-  if (t0 * t1 < 0.0) {  // the speed of a slender branch has singularities near the vertex
-    return integrate_speed(speed_at, t0, 0.0) + integrate_speed(speed_at, 0.0, t1);
-  }
-  return integrate_speed(speed_at, t0, t1);
+  // The speed of a slender branch has singularities near the vertex.
+  return integrate_speed_by_sides([this](double u) { return speed(u); }, t0, t1);
 }
 
 double Hyperbola::parameter_at_arc_length(double t0, double s) const {
@@ -88,10 +84,7 @@ double Hyperbola::parameter_at_arc_length(double t0, double s) const {
                            1.0);
 }
 
-ParameterDomain Hyperbola::domain() const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  return {-kInfinity, kInfinity, 0.0};
-}
+ParameterDomain Hyperbola::domain() const { return kUnbounded; }
 
 std::optional<Localisation> Hyperbola::localise(const LocalGeometry& local) const {
   if (!is_finite(local) || local.kappa == 0.0) {

@@ -1,7 +1,6 @@
 #include "core/curves/line.h"
 
 #include <cmath>
-#include <limits>
 
 #include "core/curves/foot_point.h"
 
@@ -30,10 +29,7 @@ double Line::arc_length(double t0, double t1) const { return t1 - t0; }
 
 double Line::parameter_at_arc_length(double t0, double s) const { return t0 + s; }
 
-ParameterDomain Line::domain() const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  return {-kInfinity, kInfinity, 0.0};
-}
+ParameterDomain Line::domain() const { return kUnbounded; }
 
 std::optional<Localisation> Line::localise(const LocalGeometry& local) const {
   if (!is_finite(local)) {

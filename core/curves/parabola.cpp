@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/curves/arc_length.h"
 #include "core/curves/foot_point.h"
@@ -70,10 +69,7 @@ double Parabola::parameter_at_arc_length(double t0, double s) const {
                            1.0);
 }
 
-ParameterDomain Parabola::domain() const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  return {-kInfinity, kInfinity, 0.0};
-}
+ParameterDomain Parabola::domain() const { return kUnbounded; }
 
 std::optional<Localisation> Parabola::localise(const LocalGeometry& local) const {
   if (!is_finite(local) || local.kappa == 0.0) {

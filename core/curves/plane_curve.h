@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <optional>
 
 #include "core/curves/curve_class.h"
@@ -68,6 +69,8 @@ struct ParameterDomain {
   double upper = 0.0;
   double period = 0.0;  ///< 0 = not periodic
 };
+inline constexpr ParameterDomain kUnbounded{-std::numeric_limits<double>::infinity(),
+                                            std::numeric_limits<double>::infinity(), 0.0};
 
 /// A curve in its canonical frame. Parameters t, lengths s and shape parameters must be finite;
 /// foot_point and localise accept any numbers. No function allocates. `Parameters` is a fixed-size

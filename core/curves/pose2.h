@@ -26,6 +26,11 @@ inline Vec2 left_of(const Vec2& v) { return {-v.y(), v.x()}; }
 /// z component of the cross product of two plane vectors.
 inline double cross(const Vec2& u, const Vec2& v) { return u.x() * v.y() - u.y() * v.x(); }
 
+/// The angle by which u turns into the direction of v, within [-pi, pi]. [rad]
+inline double turn_between(const Vec2& u, const Vec2& v) {
+  return std::atan2(cross(u, v), u.dot(v));
+}
+
 /// A pose A_T_B. It transforms coordinates from frame B to frame A: p_A = R(theta) p_B + (x, y).
 struct Pose2 {
   double x = 0.0;      ///< [m]
@@ -64,6 +69,11 @@ struct Pose2 {
     return {t.x(), t.y(), -theta};
   }
 };
+
+/// The frame at an origin with this x axis, of any length.
+inline Pose2 pose_along(const Vec2& origin, const Vec2& x_axis) {
+  return {origin.x(), origin.y(), std::atan2(x_axis.y(), x_axis.x())};
+}
 
 /// Pose2::to_local for many points: computes sine and cosine once.
 class ToLocal {

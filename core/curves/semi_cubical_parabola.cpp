@@ -75,11 +75,8 @@ double SemiCubicalParabola::speed(double t) const {
 }
 
 double SemiCubicalParabola::arc_length(double t0, double t1) const {
-  const auto speed_at = [this](double u) { return speed(u); };
-  if (t0 * t1 < 0.0) {  // |t| has a corner at the cusp
-    return integrate_speed(speed_at, t0, 0.0) + integrate_speed(speed_at, 0.0, t1);
-  }
-  return integrate_speed(speed_at, t0, t1);
+  // |t| has a corner at the cusp.
+  return integrate_speed_by_sides([this](double u) { return speed(u); }, t0, t1);
 }
 
 double SemiCubicalParabola::parameter_at_arc_length(double t0, double s) const {
@@ -89,10 +86,7 @@ double SemiCubicalParabola::parameter_at_arc_length(double t0, double s) const {
                            std::sqrt(std::abs(s)));
 }
 
-ParameterDomain SemiCubicalParabola::domain() const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  return {-kInfinity, kInfinity, 0.0};
-}
+ParameterDomain SemiCubicalParabola::domain() const { return kUnbounded; }
 
 std::optional<Localisation> SemiCubicalParabola::localise(const LocalGeometry& local) const {
   const double cosine = std::cos(local.tangent_angle);

@@ -1,11 +1,11 @@
 #include "core/local/noise.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "core/local/residual_block.h"
+#include "core/numerics/median.h"
 #include "core/numerics/normal_law.h"
 
 namespace palpate {
@@ -84,9 +84,7 @@ NoiseEstimate from_resolved_blocks(std::span<const Vec2> samples, std::size_t bl
 }  // namespace
 
 double robust_sigma(std::vector<double>& sizes) {
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  const double scale = *middle / kMedianOfNormal;
+  const double scale = median_of(sizes) / kMedianOfNormal;
   // If more than half of the residuals are exactly zero (quantised samples), there is no scale for
   // a cut.
   const double limit = scale > 0.0 ? kCut * scale : std::numeric_limits<double>::infinity();

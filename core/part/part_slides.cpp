@@ -46,7 +46,7 @@ class Scan {
   Slide at(double t) const {
     const CurveDerivatives d = part_.spline().derivatives(t);
     const Vec2 tangent = direction_ * reference_.tangent;
-    Pose2 start{0.0, 0.0, std::atan2(cross(d.first, tangent), d.first.dot(tangent))};
+    Pose2 start{0.0, 0.0, turn_between(d.first, tangent)};
     const Vec2 place = surface_ - start.rotate(d.position);
     start.x = place.x();
     start.y = place.y();

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/numerics/log_gamma.h"
+#include "core/numerics/median.h"
 #include "core/qualification/normal_offset.h"
 
 namespace palpate {
@@ -181,9 +182,7 @@ Range lengths_of(const OffsetModel& model) {
   constexpr double kFewestSteps = 4.0;  // drift over fewer steps looks like noise
   constexpr double kShare = 0.5;  // of a stroke; a longer deviation is absorbed by the constant
   if (steps.empty() || !(longest > 0.0)) return {0.0, 0.0};
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  const double shortest = std::max(kFewestSteps * *middle, 1e-6 * longest);
+  const double shortest = std::max(kFewestSteps * median_of(steps), 1e-6 * longest);
   return {std::log(std::min(shortest, kShare * longest)), std::log(kShare * longest)};
 }
 

@@ -60,10 +60,6 @@ struct PrincipalForm {
   Vec2 world(double u, double v) const { return u * axis + v * left_of(axis); }
 };
 
-Pose2 pose_at(const Vec2& origin, const Vec2& x_axis) {
-  return {origin.x(), origin.y(), std::atan2(x_axis.y(), x_axis.x())};
-}
-
 /// Of two poses that differ by half a turn and are equivalent, the one nearer to the world's axes.
 Pose2 nearer_half(Pose2 pose) {
   if (std::abs(pose.theta) > 0.5 * kPi) {
@@ -89,7 +85,7 @@ std::optional<CanonicalConic> as_line(const ConicCoefficients& q) {
   // The origin is the point of the line nearest to the world's origin.
   const Vec2 unit = normal / norm;
   return finished({CurveClass::Line, Eigen::Vector3d::Zero(),
-                   nearer_half(pose_at(-q[5] / norm * unit, -left_of(unit)))},
+                   nearer_half(pose_along(-q[5] / norm * unit, -left_of(unit)))},
                   0);
 }
 
@@ -109,7 +105,7 @@ std::optional<CanonicalConic> as_parabola(const PrincipalForm& form) {
   const Vec2 x_axis = std::copysign(1.0, opening) * left_of(form.axis);
   return finished({CurveClass::Parabola,
                    {0.25 * std::abs(opening), 0.0, 0.0},
-                   pose_at(form.world(u0, v0), x_axis)},
+                   pose_along(form.world(u0, v0), x_axis)},
                   1);
 }
 
@@ -128,7 +124,7 @@ std::optional<CanonicalConic> as_central(CurveClass curve_class, const Principal
       form.world(-0.5 * form.linear_u / form.large, -0.5 * form.linear_v / form.small);
   return finished({curve_class,
                    {std::sqrt(a2), std::sqrt(b2), 0.0},
-                   nearer_half(pose_at(centre, along_u ? form.axis : left_of(form.axis)))},
+                   nearer_half(pose_along(centre, along_u ? form.axis : left_of(form.axis)))},
                   2);
 }
 

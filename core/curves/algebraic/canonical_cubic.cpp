@@ -15,10 +15,6 @@ namespace {
 /// such coefficients occur in a component.
 constexpr double kCubicRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-Pose2 pose_along(const Vec2& origin, const Vec2& x_axis) {
-  return {origin.x(), origin.y(), std::atan2(x_axis.y(), x_axis.x())};
-}
-
 CubicCanonicalisation degenerate(CubicDegeneracy degeneracy, const Pose2& pose = {}) {
   return {std::nullopt, degeneracy, pose};
 }

@@ -139,12 +139,7 @@ SemiSignatureFit fit_family(const ParabolaFamily& family,
     start[0] *= a_factor;
     SemiSignatureFit fit =
         fit_semi_signature(family.curve_class, measured, start, candidates[i].orientation, options);
-    const bool fit_ok = fit.status == InvariantStatus::Ok;
-    const bool best_ok = best.status == InvariantStatus::Ok;
-    if (fit.status != InvariantStatus::NotFinite &&
-        (fit_ok == best_ok ? fit.chi2 < best.chi2 : fit_ok)) {
-      best = std::move(fit);
-    }
+    keep_better(std::move(fit), best);
   }
   return best;
 }

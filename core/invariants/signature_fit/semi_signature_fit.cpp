@@ -197,6 +197,15 @@ void fit_model(const std::vector<detail::WhitePoint>& points, double unit,
 
 }  // namespace
 
+void keep_better(SemiSignatureFit fit, SemiSignatureFit& best) {
+  const bool fit_ok = fit.status == InvariantStatus::Ok;
+  const bool best_ok = best.status == InvariantStatus::Ok;
+  if (fit.status != InvariantStatus::NotFinite &&
+      (fit_ok == best_ok ? fit.chi2 < best.chi2 : fit_ok)) {
+    best = std::move(fit);
+  }
+}
+
 SemiSignatureFit fit_semi_signature(CurveClass curve_class,
                                     std::span<const MeasuredGeometry> measured,
                                     const Eigen::Vector3d& start_parameters,

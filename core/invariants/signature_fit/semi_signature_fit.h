@@ -50,6 +50,10 @@ struct SemiSignatureFit {
   std::vector<LocalParameter> places;  ///< one per point
 };
 
+/// Keeps a finite fit if it is the better one: with an optimum rather than without, else that with
+/// less chi-square.
+void keep_better(SemiSignatureFit fit, SemiSignatureFit& best);
+
 /// Minimises the sum over the points of the squared, whitened differences of (angle, kappa,
 /// kappa_s) over shape, orientation and one curve parameter per point. For ellipse, parabola,
 /// hyperbola, cubical and semi-cubical parabola and cubic spline. Inflections, vertices and

@@ -10,6 +10,7 @@
 #include "core/curves/pose2.h"
 #include "core/invariants/cubic_spline_equations.h"
 #include "core/invariants/spline_pair.h"
+#include "core/numerics/median.h"
 
 namespace palpate {
 namespace {
@@ -87,9 +88,7 @@ void solve_c(const SplineData& data, SplineSolution& solution) {
     solution.c_spread = 2.0;
     return;
   }
-  const auto middle = own.begin() + static_cast<std::ptrdiff_t>(own.size() / 2);
-  std::nth_element(own.begin(), middle, own.end());
-  solution.parameters[2] = *middle;
+  solution.parameters[2] = median_of(own);
   double sum = 0.0;
   for (const SplineC& form : forms) {
     const double left = form.denominator * solution.parameters[2];
@@ -190,12 +189,7 @@ SemiSignatureFit fit_cubic_spline(std::span<const MeasuredGeometry> points,
   const auto refine = [&](const Eigen::Vector3d& parameters, double orientation) {
     SemiSignatureFit fit = fit_semi_signature(CurveClass::CubicSpline, points, parameters,
                                               orientation, options.refinement);
-    const bool fit_ok = fit.status == InvariantStatus::Ok;
-    const bool best_ok = best.status == InvariantStatus::Ok;
-    if (fit.status != InvariantStatus::NotFinite &&
-        (fit_ok == best_ok ? fit.chi2 < best.chi2 : fit_ok)) {
-      best = std::move(fit);
-    }
+    keep_better(std::move(fit), best);
   };
   const auto explained = [&] {
     return best.status == InvariantStatus::Ok &&

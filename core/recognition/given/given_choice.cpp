@@ -1,7 +1,6 @@
 #include "core/recognition/given/given_choice.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/curves/curve.h"
@@ -55,7 +54,7 @@ double turn_towards_tips(const GivenCandidate& candidate) {
     const double step = (t[i] - t[i - 1]) / kParts;
     for (int k = 1; k <= kParts; ++k) {
       const Vec2 after = derivatives(*curve, t[i - 1] + k * step).first;
-      turn += std::atan2(cross(before, after), before.dot(after));
+      turn += turn_between(before, after);
       before = after;
     }
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/local/noise.h"
+#include "core/numerics/median.h"
 
 namespace palpate {
 namespace {
@@ -49,10 +50,8 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples) {
   if (noise.status != LocalStatus::Ok) {
     return std::nullopt;
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
   const double noise_m = kFarDeviations * noise.sigma_m;
-  return Lengths{noise_m, std::max(noise_m, kFarSteps * *middle)};
+  return Lengths{noise_m, std::max(noise_m, kFarSteps * median_of(steps))};
 }
 
 /// Where the stroke turns back: it came from farther than `far_m` and returns by more than `far_m`,

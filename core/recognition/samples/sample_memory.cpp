@@ -44,7 +44,7 @@ void merge_pairs(StoredPatch* patch) {
   for (std::size_t k = 2; k < pairs; ++k) {
     const Vec2 before = samples[k - 1].position_m - samples[k - 2].position_m;
     const Vec2 after = samples[k].position_m - samples[k - 1].position_m;
-    const double turn = std::abs(std::atan2(cross(before, after), before.dot(after)));
+    const double turn = std::abs(turn_between(before, after));
     patch->merge_bias_m = std::max(patch->merge_bias_m, turn * after.norm() / 24.0);
   }
 }

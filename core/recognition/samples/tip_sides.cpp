@@ -26,8 +26,7 @@ namespace {
 double turn_of(std::span<const FitPoint> patch) {
   double turn = 0.0;
   for (std::size_t i = 1; i < patch.size(); ++i) {
-    turn += std::atan2(cross(patch[i - 1].tangent, patch[i].tangent),
-                       patch[i - 1].tangent.dot(patch[i].tangent));
+    turn += turn_between(patch[i - 1].tangent, patch[i].tangent);
   }
   return turn;
 }

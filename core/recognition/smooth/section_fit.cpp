@@ -38,7 +38,7 @@ bool is_no_graph(std::span<const FitPoint> points) {
   const Vec2 after = mean_of(n - n / 3, n) - middle;
   const double least = kOfMotion * kOfMotion * scatter;
   return before.squaredNorm() > least && after.squaredNorm() > least &&
-         std::abs(std::atan2(cross(before, after), before.dot(after))) > kLargestTurn;
+         std::abs(turn_between(before, after)) > kLargestTurn;
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "core/numerics/median.h"
+
 namespace palpate {
 namespace {
 
@@ -48,15 +50,14 @@ double typical_variance(const FitData& data, const PatchSpan& patch,
   for (const Block& block : blocks) {
     scatters.push_back(scatter_of(data, block));
   }
-  const auto middle = scatters.begin() + static_cast<std::ptrdiff_t>(scatters.size() / 2);
-  std::nth_element(scatters.begin(), middle, scatters.end());
+  const double typical = median_of(scatters);
   double least_stated = std::numeric_limits<double>::infinity();
   for (std::size_t i = patch.begin; sigma_known && i < patch.end; ++i) {
     const double inverse = data.points[i].inverse_sigma;
     least_stated = std::min(least_stated, 1.0 / (inverse * inverse));
   }
-  return sigma_known ? std::max(*middle, std::min(least_stated, kLargestNoise * kLargestNoise))
-                     : *middle;
+  return sigma_known ? std::max(typical, std::min(least_stated, kLargestNoise * kLargestNoise))
+                     : typical;
 }
 
 /// Cuts by the turning of the chords whose squared length exceeds `least_square` * (1 / n + 1 / m),
@@ -78,7 +79,7 @@ std::vector<PatchSpan> cut_by_chords(const PatchSpan& patch, const std::vector<B
       continue;
     }
     if (before) {
-      angle += std::atan2(cross(*before, chord), before->dot(chord));
+      angle += turn_between(*before, chord);
       least = std::min(least, angle);
       most = std::max(most, angle);
     }

@@ -135,8 +135,7 @@ Polygon polygon_of(std::vector<Vec2> vertices) {
   for (std::size_t k = 0; k < way.steps(); ++k) {
     const Vec2 step = way.step(k);
     const Vec2 before = k > 0 ? way.step(k - 1) : Vec2(1.0, 0.0);
-    directions.push_back((k > 0 ? directions.back() : 0.0) +
-                         std::atan2(cross(before, step), before.dot(step)));
+    directions.push_back((k > 0 ? directions.back() : 0.0) + turn_between(before, step));
     way.along.push_back(way.along.back() + step.norm());
   }
   // Direction of the circle through a vertex and its neighbours; at the ends that circle continues.

@@ -178,17 +178,13 @@ struct Place {
   double turn = 0.0;              ///< as StoredPatch::turn
 };
 
-double angle_between(const Vec2& a, const Vec2& b) {
-  return std::abs(std::atan2(cross(a, b), a.dot(b)));
-}
-
 /// The curve's turn between two parameters, summed over their middle so that it may exceed half a
 /// turn. [rad]
-double turn_between(const Curve& curve, double a, double b) {
+double turn_along(const Curve& curve, double a, double b) {
   const double end = b >= a ? b : b + domain(curve).period;
   const auto tangent = [&](double t) { return derivatives(curve, t).first; };
   const Vec2 middle = tangent(0.5 * (a + end));
-  return angle_between(tangent(a), middle) + angle_between(middle, tangent(end));
+  return std::abs(turn_between(tangent(a), middle)) + std::abs(turn_between(middle, tangent(end)));
 }
 
 /// The ranges [begin, end) of the ordered `places` that are runs.
@@ -352,7 +348,7 @@ std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, cons
     sort_along(curve, &places, [](const Place& place) { return place.along; });
     for (std::size_t i = 1; i < places.size(); ++i) {
       places[i].least_angle = places[i].most_angle =
-          places[i - 1].most_angle + turn_between(curve, places[i - 1].along, places[i].along);
+          places[i - 1].most_angle + turn_along(curve, places[i - 1].along, places[i].along);
     }
     result.add(patches, places);
   }

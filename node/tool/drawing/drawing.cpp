@@ -190,6 +190,14 @@ std::optional<NearFoot> foot_by_one_step(const Curve& curve, const Vec2& point, 
 
 }  // namespace
 
+double widest_band_m(const DrawnCurve& curve) {
+  double widest_m = 0.0;
+  for (const CurvePlace& place : curve.places) {
+    if (place.band) widest_m = std::max({widest_m, place.band->left_m, -place.band->right_m});
+  }
+  return widest_m;
+}
+
 Drawing make_drawing(const ContactGroup& group, const v1::Recognition& answer,
                      Curvature curvature) {
   const std::vector<Vec2> touched = touched_points(group, answer);

@@ -35,6 +35,9 @@ struct DrawnCurve {
   std::vector<CurvePlace> places;
 };
 
+/// The largest distance of a border of the band from the curve; 0 without a band.
+double widest_band_m(const DrawnCurve& curve);
+
 /// Local geometry of a touched place, with its position along the curve.
 struct DrawnContact {
   const v1::LocalizedContact* contact = nullptr;

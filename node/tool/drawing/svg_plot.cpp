@@ -272,10 +272,7 @@ std::string contacts_svg(const View& view, const v1::Recognition& answer) {
 }
 
 std::string band_label(const DrawnCurve& curve) {
-  double widest_m = 0.0;
-  for (const CurvePlace& place : curve.places) {
-    if (place.band) widest_m = std::max({widest_m, place.band->left_m, -place.band->right_m});
-  }
+  const double widest_m = widest_band_m(curve);
   const LengthUnit unit = length_unit_for(widest_m);
   return formatted("its 95 %% band, +- %.2g ", widest_m * unit.per_m) + std::string(unit.name) +
          " where widest";

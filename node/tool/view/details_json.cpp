@@ -24,10 +24,7 @@ double rounded(double value, int digits) {
 
 /// The largest width of the band.
 std::string band_width_text(const DrawnCurve& curve) {
-  double widest_m = 0.0;
-  for (const CurvePlace& place : curve.places) {
-    if (place.band) widest_m = std::max({widest_m, place.band->left_m, -place.band->right_m});
-  }
+  const double widest_m = widest_band_m(curve);
   const LengthUnit unit = length_unit_for(widest_m);
   return number(rounded(widest_m * unit.per_m, 2)) + " " + std::string(unit.name);
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/local/noise.h"
+#include "core/numerics/median.h"
 #include "core/recognition/samples/dwells.h"
 #include "node/files/counted.h"
 #include "node/security/decode_from.h"
@@ -21,12 +22,6 @@ constexpr std::size_t kMostKept = 4096;
 constexpr std::size_t kMostPatches = 256;
 /// More than stand around one part.
 constexpr std::size_t kMostProbes = 64;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Mean square root of the standard deviations that its samples state, 0 where none does. [m]
 double stated_sigma(const CheckedPatch& patch) {
@@ -205,7 +200,8 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
     if (steps.empty()) {
       continue;
     }
-    const double typical = median(steps);
+    std::vector<double> sorted = steps;
+    const double typical = median_of(sorted);
     unordered += has_no_order(steps, typical, (high - low).norm()) ? 1 : 0;
     // A lift-off is many spacings and of the size of the part; a spike comes back at once.
     constexpr double kJumpSpacings = 20.0;
