@@ -25,7 +25,7 @@ std::optional<LocalEstimate> surface_from_tip(const LocalEstimate& centre, doubl
   surface.covariance = jacobian * centre.covariance * jacobian.transpose();
   // The window turns by the same angle, so its arc changes by the ratio at the place of the
   // estimate.
-  surface.window_arc_m = centre.window_arc_m / stretch;
+  surface.window_arc_m = centre.window_arc_m * stretch;
   return surface;
 }
 

@@ -86,8 +86,13 @@ TEST(TipRadius, CircleTouchedFromOutsideAndInside) {
   // right, at R + r; inside a ring, material on the right, it lies on the left, at R - r.
   LocalEstimate surface;
   surface.kappa = 1.0 / 0.020;
-  EXPECT_NEAR(surface_from_tip(surface, 0.003)->kappa, 1.0 / 0.023, 1e-12);
-  EXPECT_NEAR(surface_from_tip(surface, -0.003)->kappa, 1.0 / 0.017, 1e-12);
+  surface.window_arc_m = 0.020;  // a radian
+  const auto outside = surface_from_tip(surface, 0.003);
+  const auto inside = surface_from_tip(surface, -0.003);
+  EXPECT_NEAR(outside->kappa, 1.0 / 0.023, 1e-12);
+  EXPECT_NEAR(inside->kappa, 1.0 / 0.017, 1e-12);
+  EXPECT_NEAR(outside->window_arc_m, 0.023, 1e-15);
+  EXPECT_NEAR(inside->window_arc_m, 0.017, 1e-15);
 }
 
 }  // namespace
