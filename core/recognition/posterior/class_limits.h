@@ -7,7 +7,7 @@
 
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/class_fits.h"
-#include "core/recognition/posterior/posterior.h"
+#include "core/recognition/posterior/evidences.h"
 
 namespace palpate {
 

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
-#include "core/numerics/log_add.h"
 #include "core/numerics/negligible.h"
 #include "core/recognition/posterior/class_limits.h"
 #include "core/recognition/posterior/prior_modes.h"
@@ -16,8 +14,6 @@
 
 namespace palpate {
 namespace {
-
-constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 /// The spline's other mode, if there is one.
 std::optional<ClassEvidence> rival_of(const ClassFit& spline, const FitData& reduced,
@@ -58,47 +54,6 @@ double share_of_separate_rival(const ClassFits& fits, const Likelihood& likeliho
   return 1.0 / (1.0 + std::exp(-std::min(log_ratio, kNegligibleLogOdds)));
 }
 
-}  // namespace
-
-Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
-                             WorkBudget& work) {
-  Evidences evidences;
-  evidences.inflation = likelihood.inflation();
-  evidences.free_form = free_form(smooth, evidences.inflation, work);
-  return evidences;
-}
-
-double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidences& evidences,
-                                    double smooth_chi2) {
-  const FreeForm& paths = evidences.free_form;
-  const double log_paths = likelihood.log_evidence(
-      smooth_chi2 + likelihood.inflation() * paths.chi2, paths.log_occam, paths.determined);
-  return std::isfinite(evidences.log_near) ? log_add(log_paths, evidences.log_near) - std::log(2.0)
-                                           : log_paths;
-}
-
-double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
-                    CurveClass curve_class, double chi2) {
-  const auto i = static_cast<std::size_t>(curve_class);
-  const auto& evidence = evidences.classes[i];
-  const double about_fit =
-      evidence && std::isfinite(chi2)
-          ? likelihood.log_evidence(chi2, evidence->log_occam, evidence->determined)
-          : kNone;
-  return std::max(about_fit, evidences.log_straight[i]) + evidences.log_shared[i];
-}
-
-namespace {
-
-/// Whether the line has a share in the posterior.
-bool is_line_in_question(const ClassFits& fits, const Likelihood& likelihood,
-                         const Evidences& evidences, double best) {
-  constexpr auto kLine = static_cast<std::size_t>(CurveClass::Line);
-  return fits[kLine] && evidences.classes[kLine] &&
-         log_evidence(likelihood, evidences, CurveClass::Line, fits[kLine]->chi2) >
-             best - kNegligibleLogOdds;
-}
-
 /// What each class has in paths that are nearly straight. `before`: of the same line.
 void add_straight_paths(const ClassFits& fits, const Likelihood& likelihood, const BendOfLine& bend,
                         const Evidences* before, Evidences* evidences, WorkBudget& work) {
@@ -114,8 +69,8 @@ void add_straight_paths(const ClassFits& fits, const Likelihood& likelihood, con
       continue;
     }
     double& over_line = evidences->log_over_line[i];
-    over_line = before != nullptr ? before->log_over_line[i] : kNone;
-    if (!(over_line > kNone)) {
+    over_line = before != nullptr ? before->log_over_line[i] : kNoEvidence;
+    if (!(over_line > kNoEvidence)) {
       work.spend(WorkKind::OffsetCell, kCellsOfClass);
       over_line = log_evidence_over_line(curve_class, bend);
     }
@@ -137,79 +92,139 @@ std::vector<CurveClass> in_order_of_fit(const ClassFits& fits) {
   return order;
 }
 
-}  // namespace
-
-Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
-                       const SmoothModel& smooth, const FitData& reduced,
-                       const Likelihood& likelihood, Evidences before, WorkBudget& work) {
-  const double inflation = likelihood.inflation();
-  // Of chi-square: a hundredth of a deviation, to which a fit that is settled again comes back.
-  constexpr double kSameFit = 1e-4;
-  constexpr auto kLine = static_cast<std::size_t>(CurveClass::Line);
-  const bool same_noise = inflation == before.inflation;
+/// What evidences start from: free paths, and what `before` says of all classes.
+Evidences started_from(const Evidences& before, const SmoothModel& smooth,
+                       const Likelihood& likelihood, WorkBudget& work) {
   Evidences evidences;
-  if (same_noise) {
-    evidences.inflation = inflation;
+  if (likelihood.inflation() == before.inflation) {
+    evidences.inflation = before.inflation;
     evidences.free_form = before.free_form;
   } else {
     evidences = evidences_of_paths(smooth, likelihood, work);
   }
   evidences.log_shared = before.log_shared;
   evidences.shared_or_other = before.shared_or_other;
-  double best = log_evidence_of_unclassified(likelihood, evidences, smooth.chi2);
-  const auto is_same = [&](std::size_t i) {
-    return same_noise && before.classes[i] &&
-           std::abs(before.on_reduced_chi2[i] - on_reduced[i]->chi2) <= kSameFit;
-  };
-  const auto take = [&](CurveClass curve_class) {
+  return evidences;
+}
+
+/// Evidences by Laplace's formula, class by class.
+class LaplaceEvidences {
+ public:
+  /// `paths`: those of free paths; `before`: what was found with the same noise, if anything.
+  LaplaceEvidences(const ClassFits& fits, const ClassFits& on_reduced, const FitData& reduced,
+                   double smooth_chi2, const Likelihood& likelihood, Evidences paths,
+                   Evidences* before, WorkBudget& work)
+      : found(std::move(paths)),
+        best(log_evidence_of_unclassified(likelihood, found, smooth_chi2)),
+        fits_(fits),
+        on_reduced_(on_reduced),
+        reduced_(reduced),
+        likelihood_(likelihood),
+        before_(before),
+        work_(work) {}
+
+  /// Adds a class that is fitted, unless it is there or chi-square alone tells that it is out.
+  void take(CurveClass curve_class) {
     const auto i = static_cast<std::size_t>(curve_class);
-    if (evidences.classes[i] ||
-        likelihood.log_evidence(fits[i]->chi2, 0.0, 0.0) + evidences.log_shared[i] <
+    if (found.classes[i] ||
+        likelihood_.log_evidence(chi2(curve_class), 0.0, 0.0) + found.log_shared[i] <
             best - kNegligibleLogOdds) {
       return;
     }
-    evidences.on_reduced_chi2[i] = on_reduced[i]->chi2;
-    if (is_same(i)) {
-      evidences.on_reduced[i] = before.on_reduced[i];
-      evidences.classes[i] = before.classes[i];
-    } else if ((evidences.on_reduced[i] = to_canonical(*on_reduced[i], reduced))) {
-      evidences.classes[i] = evidence_of(*evidences.on_reduced[i], reduced, inflation, work);
-      if (same_noise && evidences.classes[i] && before.classes[i]) {
-        evidences.classes[i] = at_better_mode(*std::move(evidences.classes[i]), *before.classes[i]);
+    found.on_reduced_chi2[i] = on_reduced_[i]->chi2;
+    auto& earlier = before_->classes[i];
+    if (is_same(curve_class)) {
+      found.on_reduced[i] = std::move(before_->on_reduced[i]);
+      found.classes[i] = std::move(earlier);
+    } else if ((found.on_reduced[i] = to_canonical(*on_reduced_[i], reduced_))) {
+      found.classes[i] = evidence_of(*found.on_reduced[i], reduced_, found.inflation, work_);
+      if (found.classes[i] && earlier) {
+        found.classes[i] = at_better_mode(*std::move(found.classes[i]), *earlier);
       }
     }
-    best = std::max(best, log_evidence(likelihood, evidences, curve_class, fits[i]->chi2));
-  };
-  const std::vector<CurveClass> order = in_order_of_fit(fits);
-  std::optional<BendOfLine> bend;
-  if (std::find(order.begin(), order.end(), CurveClass::Line) != order.end()) {
-    take(CurveClass::Line);
-    if (is_line_in_question(fits, likelihood, evidences, best) && work.allows()) {
-      bend = bend_of_line(*evidences.classes[kLine], fits[kLine]->chi2, reduced, likelihood);
-    }
+    best = std::max(best, log_evidence(likelihood_, found, curve_class, chi2(curve_class)));
   }
+
+  /// Whether the class stood in the same fit before.
+  bool is_same(CurveClass curve_class) const {
+    // Of chi-square: a hundredth of a deviation, to which a fit that is settled again comes back.
+    constexpr double kSameFit = 1e-4;
+    const auto i = static_cast<std::size_t>(curve_class);
+    return before_->classes[i] &&
+           std::abs(before_->on_reduced_chi2[i] - on_reduced_[i]->chi2) <= kSameFit;
+  }
+
+  /// The bend that the points show of the line, where that has a share in the posterior.
+  std::optional<BendOfLine> bend() const {
+    constexpr auto kLine = static_cast<std::size_t>(CurveClass::Line);
+    return is_seen(CurveClass::Line) && work_.allows()
+               ? bend_of_line(*found.classes[kLine], chi2(CurveClass::Line), reduced_, likelihood_)
+               : std::nullopt;
+  }
+
+  bool is_seen(CurveClass curve_class) const {
+    return found.classes[static_cast<std::size_t>(curve_class)] &&
+           log_evidence(likelihood_, found, curve_class, chi2(curve_class)) >
+               best - kNegligibleLogOdds;
+  }
+
+  double chi2(CurveClass curve_class) const {
+    return fits_[static_cast<std::size_t>(curve_class)]->chi2;
+  }
+
+  Evidences found;
+  double best;  ///< log of the highest
+
+ private:
+  const ClassFits& fits_;
+  const ClassFits& on_reduced_;
+  const FitData& reduced_;
+  const Likelihood& likelihood_;
+  Evidences* before_;
+  WorkBudget& work_;
+};
+
+}  // namespace
+
+Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
+                       const SmoothModel& smooth, const FitData& reduced,
+                       const Likelihood& likelihood, Evidences before, WorkBudget& work) {
   // A fit that leaves no less than nearly straight paths, both told to 1, is one of these.
   constexpr double kNoBetter = 2.0;
-  const double of_straight =
-      bend ? fits[kLine]->chi2 - inflation * (bend->fall() + kNoBetter) : 0.0;
+  const double inflation = likelihood.inflation();
+  Evidences paths = started_from(before, smooth, likelihood, work);
+  if (inflation != before.inflation) {
+    before = {};
+  }
+  LaplaceEvidences laplace(fits, on_reduced, reduced, smooth.chi2, likelihood, std::move(paths),
+                           &before, work);
+  const std::vector<CurveClass> order = in_order_of_fit(fits);
+  const bool line = std::find(order.begin(), order.end(), CurveClass::Line) != order.end();
+  bool same_line = false;
+  if (line) {
+    same_line = laplace.is_same(CurveClass::Line);
+    laplace.take(CurveClass::Line);
+  }
+  const auto bend = line ? laplace.bend() : std::nullopt;
   for (const CurveClass curve_class : order) {
-    if (!bend || fits[static_cast<std::size_t>(curve_class)]->chi2 < of_straight) {
-      take(curve_class);
+    if (!bend || laplace.chi2(curve_class) <
+                     laplace.chi2(CurveClass::Line) - inflation * (bend->fall() + kNoBetter)) {
+      laplace.take(curve_class);
     }
   }
-  if (bend && is_line_in_question(fits, likelihood, evidences, best)) {
-    add_straight_paths(fits, likelihood, *bend, is_same(kLine) ? &before : nullptr, &evidences,
+  if (bend && laplace.is_seen(CurveClass::Line)) {
+    add_straight_paths(fits, likelihood, *bend, same_line ? &before : nullptr, &laplace.found,
                        work);
-    return evidences;
+    return std::move(laplace.found);
   }
   for (const CurveClass curve_class : order) {
-    take(curve_class);
+    laplace.take(curve_class);
   }
   add_prior_modes(fits, reduced, likelihood,
-                  log_evidence_of_unclassified(likelihood, evidences, smooth.chi2), &evidences,
-                  work);
-  add_limits(fits, reduced, likelihood, best, same_noise ? before : Evidences{}, &evidences, work);
-  return evidences;
+                  log_evidence_of_unclassified(likelihood, laplace.found, smooth.chi2),
+                  &laplace.found, work);
+  add_limits(fits, reduced, likelihood, laplace.best, before, &laplace.found, work);
+  return std::move(laplace.found);
 }
 
 Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits& on_reduced,
@@ -218,8 +233,7 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   // Slices seldom change a mass by ten: with ten times that, what cannot keep the best from being
   // RECOGNIZED stays out.
   const double matters_within = margin + std::log(100.0);
-  std::array<double, 9> log_of;
-  log_of.fill(kNone);
+  std::array<double, 9> log_of = kNoEvidences;
   log_of[0] = log_evidence_of_unclassified(likelihood, evidences, smooth_chi2);
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
@@ -231,7 +245,7 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   const auto best = std::max_element(log_of.begin(), log_of.end());
   // Where nothing has evidence, as where noise is so small that rounding hides it, nothing matters.
   const auto matters = [&](double log_evidence) {
-    return log_evidence > kNone && log_evidence >= *best - matters_within;
+    return log_evidence > kNoEvidence && log_evidence >= *best - matters_within;
   };
   const bool spline_is_best = best == log_of.begin() + kSpline && on_reduced[kSpline]->rival;
   if ((std::count_if(log_of.begin(), log_of.end(), matters) < 2 && !spline_is_best) ||
@@ -250,7 +264,7 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
       continue;
     }
     evidences.classes[i] = std::move(evidence);
-    evidences.on_reduced_chi2[i] = kNone;  // no longer Laplace's: not to be taken over
+    evidences.on_reduced_chi2[i] = kNoEvidence;  // no longer Laplace's: not to be taken over
   }
   if (matters(log_of[kSpline]) && evidences.classes[kSpline] &&
       !has_straight_paths(evidences, CurveClass::CubicSpline)) {
@@ -281,8 +295,7 @@ constexpr std::array kConics = {std::pair(CurveClass::Ellipse, CurveClass::Hyper
 
 ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
                                     const Likelihood& likelihood, const Evidences& evidences) {
-  std::array<double, 9> log_of;
-  log_of.fill(kNone);
+  std::array<double, 9> log_of = kNoEvidences;
   log_of[0] = log_evidence_of_unclassified(likelihood, evidences, smooth_chi2);
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
@@ -310,11 +323,11 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
   }
   if (likelihood.coherent_or_other || evidences.shared_or_other) {
     // What the class leaves is a deviation of part or probe, or another shape: even odds.
-    log_of[0] = std::nextafter(*std::max_element(log_of.begin() + 1, log_of.end()), kNone);
+    log_of[0] = std::nextafter(*std::max_element(log_of.begin() + 1, log_of.end()), kNoEvidence);
   }
   const double best = *std::max_element(log_of.begin(), log_of.end());
   ClassProbabilities result{};
-  if (!(best > kNone)) {
+  if (!(best > kNoEvidence)) {
     result[0] = 1.0;  // no class is told
     return result;
   }
@@ -331,7 +344,7 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
 
 double margin_of_unclassified(const ClassFits& fits, double smooth_chi2,
                               const Likelihood& likelihood, const Evidences& evidences) {
-  double highest = kNone;
+  double highest = kNoEvidence;
   for (const CurveClass curve_class : kCurveClasses) {
     const auto i = static_cast<std::size_t>(curve_class);
     const auto& evidence = evidences.classes[i];

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -11,8 +10,6 @@
 
 namespace palpate {
 namespace {
-
-constexpr double kNoEvidence = -std::numeric_limits<double>::infinity();
 
 /// log evidences, by class.
 using LogEvidences = std::array<double, 9>;

@@ -1,5 +1,7 @@
 #include "node/tool/commands/file_flags.h"
 
+#include "node/tool/commands/command.h"
+
 namespace palpate {
 
 void add_file_flags(CLI::App& command, FileFlags& flags) {

@@ -1,0 +1,73 @@
+// What every model has in evidence: classes and free paths.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "core/numerics/work_budget.h"
+#include "core/recognition/fit/canonical_fit.h"
+#include "core/recognition/posterior/class_evidence.h"
+#include "core/recognition/posterior/free_form.h"
+#include "core/recognition/posterior/likelihood.h"
+
+namespace palpate {
+
+/// log of no evidence.
+inline constexpr double kNoEvidence = -std::numeric_limits<double>::infinity();
+
+/// The same of every model.
+inline constexpr std::array<double, 9> kNoEvidences = [] {
+  std::array<double, 9> none{};
+  none.fill(kNoEvidence);
+  return none;
+}();
+
+/// Evidence of every model. A class without one has no share in the posterior.
+struct Evidences {
+  std::array<std::optional<ClassEvidence>, 9> classes;
+  /// Of the spline's other optimum, on the other side of c = 0 or of other arms, if that is a
+  /// separate mode.
+  std::optional<ClassEvidence> rival;
+  /// If it is not: the share of the spline's mass about that optimum (slices.h).
+  double rival_in_slices = 0.0;
+  FreeForm free_form;
+  /// log of the evidence of smooth parts near a class, for touches that lie apart
+  /// (weigh/near_parts.h).
+  double log_near = kNoEvidence;
+  /// log of what each class has in nearly straight paths, where the line is in question
+  /// (straight_paths.h): that or what lies about its fit, whichever is more.
+  std::array<double, 9> log_straight = kNoEvidences;
+  /// The same over the line's evidence.
+  std::array<double, 9> log_over_line = kNoEvidences;
+  /// What the evidences were computed with: the factor on noise variances, and each class placed on
+  /// the reduced points, with its chi-square there.
+  double inflation = 0.0;
+  std::array<std::optional<CanonicalFit>, 9> on_reduced;
+  std::array<double, 9> on_reduced_chi2{};
+  /// log of the factor that deviations shared by neighbours put on each class's evidence
+  /// (weigh/shared_deviations.h).
+  std::array<double, 9> log_shared{};
+  /// With them, classes are more probable than free paths: it is such a deviation or another shape,
+  /// at even odds.
+  bool shared_or_other = false;
+};
+
+/// The evidence of free-form paths alone, of no class yet.
+Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
+                             WorkBudget& work);
+
+/// log of the evidence of "unclassified": free-form paths, or parts near a class.
+double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidences& evidences,
+                                    double smooth_chi2);
+
+/// Whether what a class has in nearly straight paths is known.
+inline bool has_straight_paths(const Evidences& evidences, CurveClass curve_class) {
+  return evidences.log_straight[static_cast<std::size_t>(curve_class)] > kNoEvidence;
+}
+
+/// log of the evidence of a class that was fitted with `chi2`; -infinity if it has none.
+double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
+                    CurveClass curve_class, double chi2);
+
+}  // namespace palpate
