@@ -14,9 +14,18 @@ constexpr std::size_t kOneIn = 10;
 /// that is sharper than they are apart.
 constexpr std::size_t kFewestWithOne = 4;
 
+/// Noise that takes a point to the other side, or turns a direction round, is out by so many of its
+/// standard deviations.
+constexpr double kDeviations = 6.0;
+
 /// True if so many of a patch's points that show a direction go against the others.
 bool turns(std::size_t against, std::size_t points) {
   return against * kOneIn > points && !(against == 1 && points >= kFewestWithOne);
+}
+
+/// Of the polynomial, along a vector.
+double quadratic_part(const ConicCoefficients& q, const Vec2& v) {
+  return q[0] * v.x() * v.x() + q[1] * v.x() * v.y() + q[2] * v.y() * v.y();
 }
 
 /// Whether all points lie on one branch of a hyperbola: on one side of its conjugate axis.
@@ -27,9 +36,7 @@ bool on_one_branch(const ConicCoefficients& q, std::span<const FitPoint> points)
   const double at_centre = 0.5 * (q[3] * centre.x() + q[4] * centre.y()) + q[5];
   const double angle = 0.5 * std::atan2(q[1], q[0] - q[2]);
   Vec2 axis(std::cos(angle), std::sin(angle));
-  const double curvature_along =
-      q[0] * axis.x() * axis.x() + q[1] * axis.x() * axis.y() + q[2] * axis.y() * axis.y();
-  if (curvature_along * at_centre > 0.0) {
+  if (quadratic_part(q, axis) * at_centre > 0.0) {
     axis = left_of(axis);
   }
   bool any_positive = false;
@@ -45,7 +52,6 @@ bool on_one_branch(const ConicCoefficients& q, std::span<const FitPoint> points)
 /// Whether two points are so far apart that noise does not turn the direction from one to the other
 /// round: it would have to be out by six of its standard deviations.
 bool tells_direction(const FitPoint& from, const FitPoint& to) {
-  constexpr double kDeviations = 6.0;
   const double v = 1.0 / (from.inverse_sigma * from.inverse_sigma);
   const double w = 1.0 / (to.inverse_sigma * to.inverse_sigma);
   return (to.position - from.position).squaredNorm() > kDeviations * kDeviations * (v + w);
@@ -67,14 +73,25 @@ Vec2 travel_at(std::span<const FitPoint> patch, std::size_t i) {
 }
 
 /// Whether the conic is so thick at a foot that noise does not take the point to its other side.
-bool tells_side(const ConicCoefficients& q, const Vec2& foot, const FitPoint& point) {
-  constexpr double kDeviations = 6.0;
+/// `g`: the gradient there.
+bool tells_side(const ConicCoefficients& q, const Vec2& g, const FitPoint& point) {
   // From the foot along the normal the polynomial is |g| s + a s^2.
-  const Vec2 g = conic_gradient(q, foot);
-  const double a_g2 = q[0] * g.x() * g.x() + q[1] * g.x() * g.y() + q[2] * g.y() * g.y();
   const double g2 = g.squaredNorm();
-  return g2 * std::sqrt(g2) * point.inverse_sigma > kDeviations * std::abs(a_g2);
+  return g2 * std::sqrt(g2) * point.inverse_sigma > kDeviations * std::abs(quadratic_part(q, g));
 }
+
+/// On which side of the travel a conic's polynomial grows, counted.
+struct Directions {
+  std::size_t left = 0;
+  std::size_t told = 0;  ///< points with a direction of travel
+
+  void add(const Vec2& travel, const Vec2& gradient) {
+    if (!travel.isZero()) {
+      ++told;
+      left += cross(travel, gradient) >= 0.0 ? 1 : 0;
+    }
+  }
+};
 
 }  // namespace
 
@@ -85,22 +102,22 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
   }
   for (std::size_t p = 0; p < data.patches.size(); ++p) {
     const std::span<const FitPoint> patch = data.patch(p);
-    const auto foot = [&](std::size_t i) { return fit.feet[data.patches[p].begin + i]; };
+    Directions all;
+    Directions where_thick;
     std::size_t thick = 0;
     for (std::size_t i = 0; i < patch.size(); ++i) {
-      thick += tells_side(q, foot(i), patch[i]) ? 1 : 0;
-    }
-    // The ends of a needle tell no side; where most points tell none, it has none.
-    const bool where_told = 2 * thick >= patch.size();
-    std::size_t left = 0;
-    std::size_t told = 0;
-    for (std::size_t i = 0; i < patch.size(); ++i) {
+      const Vec2& foot = fit.feet[data.patches[p].begin + i];
+      const Vec2 gradient = conic_gradient(q, foot);
       const Vec2 travel = travel_at(patch, i);
-      if (!travel.isZero() && (!where_told || tells_side(q, foot(i), patch[i]))) {
-        ++told;
-        left += cross(travel, conic_gradient(q, foot(i))) >= 0.0;
+      const bool is_thick = tells_side(q, gradient, patch[i]);
+      thick += is_thick ? 1 : 0;
+      all.add(travel, gradient);
+      if (is_thick) {
+        where_thick.add(travel, gradient);
       }
     }
+    // The ends of a needle tell no side; where most points tell none, it has none.
+    const auto [left, told] = 2 * thick >= patch.size() ? where_thick : all;
     if (turns(std::min(left, told - left), told)) {
       return false;
     }
