@@ -225,8 +225,9 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
   double coherent = 0.0;
   for (const ProbedPatch& patch : patches) {
     raw.push_back(as_qualified(patch));
-    if (patch.probe != nullptr)
-      coherent = std::max(coherent, mean_square(patch.probe->deviation_m));
+    if (patch.probe == nullptr) continue;
+    options.has_probe_file = true;
+    coherent = std::max(coherent, mean_square(patch.probe->deviation_m));
   }
   RecognizerOptions cautious = options;
   cautious.form_deviation_m =
@@ -268,10 +269,7 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
     // If neighbours err together, the deviations of the files explain part of it; these are added
     // below. (With a stated form deviation, or with patches of a probe without a file, the two
     // cannot be separated, and both count.)
-    const bool has_file = std::any_of(patches.begin(), patches.end(), [](const ProbedPatch& patch) {
-      return patch.probe != nullptr;
-    });
-    if (has_file && !plain.unqualified_probe && plain.white_covariance.size() > 0) {
+    if (options.has_probe_file && !plain.unqualified_probe && plain.white_covariance.size() > 0) {
       const double seen = plain.covariance_inflation;
       const bool together = plain.noise_correlation_m > 0.0 && !(options.form_deviation_m > 0.0);
       const double share = together ? std::max(1.0, seen / inflation_of_probes(corrected)) : seen;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/numerics/negligible.h"
+#include "core/recognition/outliers.h"
 #include "core/recognition/verdict/determined.h"
 
 namespace palpate {
@@ -43,14 +44,8 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
     return Doubt::SeveralClasses;
   }
   const CurveClass curve_class = best.shape.curve_class;
-  // Share of spikes beyond which some may be missed. The spike search needs half of a block of 16
-  // samples to be good. With a tenth of spikes, a block has nine or more once in 10^5 (binomial
-  // law, 5e-6), and a patch of 111 samples once in ten thousand. With more, a bad fit may be due to
-  // spikes that were not found.
-  constexpr double kManySpikes = 0.1;
-  const auto stored = static_cast<double>(stored_samples);
-  const bool many_spikes =
-      stored - static_cast<double>(w.data.points.size()) > kManySpikes * stored;
+  // With that many, a bad fit may be due to spikes that were not found.
+  const bool many_spikes = may_have_missed_spikes(stored_samples, w.data.points.size());
   if (many_spikes && !can_be_noise(w.counted_chi2, best.dof)) {
     return Doubt::Misfit;
   }

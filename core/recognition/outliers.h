@@ -24,6 +24,10 @@ std::vector<Vec2> places_set_aside(std::span<const StoredPatch> all,
                                    std::span<const StoredPatch> used,
                                    const std::vector<bool>& flagged);
 
+/// True if so many of the `stored` samples are set aside that spikes among the `used` ones may have
+/// been missed.
+bool may_have_missed_spikes(std::size_t stored, std::size_t used);
+
 /// One flag per point of `all`: not in `kept`, which has the others in their order.
 std::vector<bool> left_out(const FitData& all, const FitData& kept);
 

@@ -273,7 +273,7 @@ class Recognizer::Impl {
                                  std::span<const SidedStart> starts, Starts which,
                                  WorkBudget& work) const {
     Weighed weighed{
-        weigh_in_full(data, sigma_known, patches, work, weigh_options(sigma_known), starts),
+        weigh_in_full(data, sigma_known, patches, work, weigh_options(data, sigma_known), starts),
         {},
         {}};
     Weighing& w = weighed.w;
@@ -285,8 +285,8 @@ class Recognizer::Impl {
       for (SidedStart& sided : nearer) {
         sided.start.no_conic = false;  // among the outliers
       }
-      Weighing again =
-          weigh_in_full(*kept, sigma_known, patches, work, weigh_options(sigma_known), nearer);
+      Weighing again = weigh_in_full(*kept, sigma_known, patches, work,
+                                     weigh_options(*kept, sigma_known), nearer);
       if (!work.was_cut()) {  // else the one before says more
         w = std::move(again);
         weighed.outliers = left_out(data, *kept);
@@ -295,9 +295,16 @@ class Recognizer::Impl {
     return weighed;
   }
 
-  WeighOptions weigh_options(bool sigma_known) const {
-    return {options_.classes, options_.recognized_probability, options_.form_deviation_m,
-            options_.unqualified_probe.value_or(!sigma_known), options_.touched_from};
+  WeighOptions weigh_options(const FitData& data, bool sigma_known) const {
+    WeighOptions options;
+    options.classes = options_.classes;
+    options.recognized_probability = options_.recognized_probability;
+    options.form_deviation_m = options_.form_deviation_m;
+    options.unqualified_probe = options_.unqualified_probe.value_or(!sigma_known);
+    options.near_parts = !options.unqualified_probe && !options_.has_probe_file &&
+                         !may_have_missed_spikes(clean_.moved_count(), data.points.size());
+    options.touched_from = options_.touched_from;
+    return options;
   }
 
   /// Weighed again with the spikes that the best class explains, where the class stands then.

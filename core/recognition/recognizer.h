@@ -40,10 +40,13 @@ struct RecognizerOptions {
   /// True if nobody has measured the probe's systematic deviations. Smooth deviations with
   /// the direction of the normal (lobes, tip radius) and along a stroke (drift) are then as
   /// probable as none, of any size that the residuals allow. Covariances and class probabilities
-  /// include them. False: they are included only where the residuals look correlated. Not set: true
-  /// unless the noise of every sample is stated: whoever knows that has measured the probe.
-  /// MaximumLikelihood only.
+  /// include them. False: they are included only where the residuals look correlated, and a part
+  /// that visibly deviates from its class is of no class. Not set: true unless the noise of every
+  /// sample is stated: whoever knows that has measured the probe. MaximumLikelihood only.
   std::optional<bool> unqualified_probe;
+  /// True if a probe file says by how much the probe deviates, and who has it adds that to the
+  /// answer. What deviates smoothly from a class is then the probe's as well as the part's.
+  bool has_probe_file = false;
   /// Where tips touch that have no stated side. Unknown: the answer is that from outside where the
   /// samples allow it; it is RECOGNIZED only if they rule out the others. A line has no outside.
   /// MaximumLikelihood only.

@@ -4,10 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/curves/curve.h"
 #include "core/numerics/small_cholesky.h"
 #include "core/recognition/coherent/coherent_cells.h"
-#include "core/recognition/posterior/moments.h"
 
 namespace palpate {
 namespace {
@@ -45,19 +43,13 @@ std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassE
                                         const FitData& reduced, const Likelihood& likelihood,
                                         double sigma, double scatter, WorkBudget& work) {
   const CurveClass curve_class = placed.shape.curve_class;
-  const auto curve = make_curve(curve_class, placed.shape.values);
   const int coordinates = shape_coordinates(curve_class) + 2;
   const NoiseLaw noise(likelihood, coordinates);
-  if (!curve || !can_tell_deviations(reduced, noise, coordinates)) {
+  const auto by_coordinates = steps_by_coordinates(placed, evidence, reduced, likelihood, sigma);
+  if (!by_coordinates || !can_tell_deviations(reduced, noise, coordinates)) {
     return std::nullopt;
   }
-  std::vector<CoherentStep> steps = coherent_steps(placed, reduced, *curve, sigma);
-  const UnknownsMatrix by_coordinates = shape_pose_by_coordinates(evidence, reduced);
-  for (CoherentStep& step : steps) {
-    const Unknowns by_shape_pose = step.row.head<kUnknowns>();
-    step.row.head<kUnknowns>() = by_coordinates.transpose() * by_shape_pose;
-    step.at.variance *= likelihood.inflation();  // stated form error counts as noise
-  }
+  const std::vector<CoherentStep>& steps = *by_coordinates;
   work.spend(WorkKind::DriftRow, steps.size());
   const auto none = left_by(steps, {});
   if (!none) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/recognition/posterior/moments.h"
+
 namespace palpate {
 namespace {
 
@@ -56,6 +58,26 @@ std::vector<CoherentStep> coherent_steps(const CanonicalFit& placed, const FitDa
     step.row[kResidualColumn] = at.residual;
     step.row.tail<offsets_to(kHighestOrder)>() = offset_row(fitted.normal);
     steps.push_back(step);
+  }
+  return steps;
+}
+
+std::optional<std::vector<CoherentStep>> steps_by_coordinates(const CanonicalFit& placed,
+                                                              const ClassEvidence& evidence,
+                                                              const FitData& reduced,
+                                                              const Likelihood& likelihood,
+                                                              double sigma) {
+  const auto curve = make_curve(placed.shape.curve_class, placed.shape.values);
+  if (!curve) {
+    return std::nullopt;
+  }
+  std::vector<CoherentStep> steps = coherent_steps(placed, reduced, *curve, sigma);
+  const Eigen::Matrix<double, kUnknowns, kUnknowns> by_coordinates =
+      shape_pose_by_coordinates(evidence, reduced);
+  for (CoherentStep& step : steps) {
+    const Eigen::Matrix<double, kUnknowns, 1> by_shape_pose = step.row.head<kUnknowns>();
+    step.row.head<kUnknowns>() = by_coordinates.transpose() * by_shape_pose;
+    step.at.variance *= likelihood.inflation();
   }
   return steps;
 }

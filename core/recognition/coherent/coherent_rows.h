@@ -2,11 +2,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "core/curves/curve.h"
 #include "core/recognition/coherent/markov_drift.h"
 #include "core/recognition/fit/canonical_fit.h"
+#include "core/recognition/posterior/class_evidence.h"
+#include "core/recognition/posterior/likelihood.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {
@@ -41,6 +44,14 @@ struct CoherentStep {
 /// `placed`.
 std::vector<CoherentStep> coherent_steps(const CanonicalFit& placed, const FitData& reduced,
                                          const Curve& curve, double sigma);
+
+/// The same with derivatives by the coordinates of `evidence`, in units of the prior's widths, and
+/// with stated form error counted as noise. nullopt if `placed` is no curve.
+std::optional<std::vector<CoherentStep>> steps_by_coordinates(const CanonicalFit& placed,
+                                                              const ClassEvidence& evidence,
+                                                              const FitData& reduced,
+                                                              const Likelihood& likelihood,
+                                                              double sigma);
 
 /// Path length of the longest run, normalised.
 double longest_run(const std::vector<CoherentStep>& steps);

@@ -20,8 +20,7 @@ double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidence
   const FreeForm& paths = evidences.free_form;
   const double log_paths = likelihood.log_evidence(
       smooth_chi2 + likelihood.inflation() * paths.chi2, paths.log_occam, paths.determined);
-  return std::isfinite(evidences.log_near) ? log_add(log_paths, evidences.log_near) - std::log(2.0)
-                                           : log_paths;
+  return log_add(log_paths, evidences.log_near);
 }
 
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,

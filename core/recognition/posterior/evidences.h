@@ -32,8 +32,8 @@ struct Evidences {
   /// If it is not: the share of the spline's mass about that optimum (slices.h).
   double rival_in_slices = 0.0;
   FreeForm free_form;
-  /// log of the evidence of smooth parts near a class, for touches that lie apart
-  /// (weigh/near_parts.h).
+  /// log of the evidence of parts near a class, times what these are as probable beforehand as free
+  /// paths (weigh/near_parts.h).
   double log_near = kNoEvidence;
   /// log of what each class has in nearly straight paths, where the line is in question
   /// (straight_paths.h): that or what lies about its fit, whichever is more.
@@ -57,7 +57,7 @@ struct Evidences {
 Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
                              WorkBudget& work);
 
-/// log of the evidence of "unclassified": free-form paths, or parts near a class.
+/// log of the evidence of "unclassified": free-form paths and parts near a class.
 double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidences& evidences,
                                     double smooth_chi2);
 

@@ -3,17 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include "core/numerics/log_add.h"
 #include "core/numerics/negligible.h"
+#include "core/recognition/coherent/near_class.h"
 
 namespace palpate {
 namespace {
 
-constexpr double kNothing = -std::numeric_limits<double>::infinity();
+/// log of the prior probability of parts near one class, over that of the class; no class is
+/// preferred. Of touches that lie apart they are what "unclassified" is, all together half as
+/// probable as a class. Beside the free paths of strokes they are as improbable, all together, as
+/// what a RECOGNIZED class usually leaves to doubt (0.05): it takes evidence to doubt a class.
+const double kLogOfTouches = -std::log(2.0 * static_cast<double>(kCurveClasses.size()));
+const double kLogOfStrokes = -std::log(19.0 * static_cast<double>(kCurveClasses.size()));
 
 /// Standard deviations of the touches about the curve, in half extents, alike probable: a factor of
 /// two apart, from where a class can hardly be seen to below kLargestNoise.
@@ -62,10 +67,10 @@ double log_evidence_near(const ClassFit& coarse, double least, const EvidenceCon
   const FitData& reduced = context.reduced;
   std::optional<Left> at_noise;
   const double n = static_cast<double>(reduced.points.size());
-  const double parts = static_cast<double>(kScatter.size() * kCurveClasses.size());
-  const double of_each = (context.likelihood.sigma_known ? 0.0 : kLogOfNoises) - std::log(parts);
+  const double of_each = kLogOfTouches + (context.likelihood.sigma_known ? 0.0 : kLogOfNoises) -
+                         std::log(static_cast<double>(kScatter.size()));
   const double inflation = context.likelihood.inflation();
-  double sum = kNothing;
+  double sum = kNoEvidence;
   for (const double scatter : kScatter) {
     const double factor = std::hypot(1.0, scatter / (context.arcs.sigma * std::sqrt(inflation)));
     const double most =
@@ -76,7 +81,7 @@ double log_evidence_near(const ClassFit& coarse, double least, const EvidenceCon
     if (!at_noise) {
       const auto at_curve = to_canonical(coarse, reduced);
       if (!at_curve) {
-        return kNothing;
+        return kNoEvidence;
       }
       at_noise = left_by(*at_curve, reduced);
     }
@@ -93,23 +98,56 @@ double log_evidence_near(const ClassFit& coarse, double least, const EvidenceCon
   return sum;
 }
 
+/// log of the evidence of touches' parts near any class. `least`: less is not computed.
+double log_evidence_of_touches(const ClassFits& coarse, double least,
+                               const EvidenceContext& context) {
+  double sum = kNoEvidence;
+  for (const auto& fit : coarse) {
+    if (fit && !fit->at_limit && std::isfinite(fit->chi2)) {
+      sum = log_add(sum, log_evidence_near(*fit, least, context));
+    }
+  }
+  return sum;
+}
+
+/// log of the evidence of strokes' parts near the best class, `b`: a curve near another class is
+/// near the best as well, and counts once. What the reduced points leave beside the class and all
+/// points do not is no deviation of the part.
+double log_evidence_of_strokes(std::size_t b, double of_class, double least, const Contenders& w,
+                               const EvidenceContext& context) {
+  const Arcs& arcs = context.arcs;
+  const auto& evidence = w.evidences.classes[b];
+  if (!evidence) {
+    return kNoEvidence;
+  }
+  const double told = w.coarse[b]->chi2 + arcs.smooth.chi2;
+  const double of_reduced_alone =
+      log_evidence(context.likelihood, w.evidences, w.fits[b]->curve_class, w.fits[b]->chi2) -
+      log_evidence(context.likelihood, w.evidences, w.fits[b]->curve_class, told);
+  const double beforehand = of_class + kLogOfStrokes - std::max(of_reduced_alone, 0.0);
+  const auto gain = log_gain_near_class(*w.evidences.on_reduced[b], *evidence, context.reduced,
+                                        context.likelihood, arcs.sigma, arcs.smooth.chi2,
+                                        least - beforehand, context.work);
+  return gain ? beforehand + *gain : kNoEvidence;
+}
+
 }  // namespace
 
-Contenders with_near_parts(Contenders w, const EvidenceContext& context, double margin) {
-  w.evidences.log_near = kNothing;
+Contenders with_near_parts(Contenders w, const EvidenceContext& context, bool of_strokes,
+                           double margin) {
+  w.evidences.log_near = kNoEvidence;
   const CurveClass best = best_class(w.fits, context.likelihood, w.evidences);
-  const auto& best_fit = w.fits[static_cast<std::size_t>(best)];
-  if (!best_fit || !all_lie_apart(context.arcs.data)) {
+  const auto b = static_cast<std::size_t>(best);
+  if (!w.fits[b]) {
     return w;
   }
+  const double of_class = log_evidence(context.likelihood, w.evidences, best, w.fits[b]->chi2);
   // Less than a hundredth of what keeps the best from being RECOGNIZED is not asked for.
-  const double matters = log_evidence(context.likelihood, w.evidences, best, best_fit->chi2) -
-                         margin - std::log(100.0);
-  for (const auto& coarse : w.coarse) {
-    if (coarse && !coarse->at_limit && std::isfinite(coarse->chi2)) {
-      w.evidences.log_near =
-          log_add(w.evidences.log_near, log_evidence_near(*coarse, matters, context));
-    }
+  const double least = of_class - margin - std::log(100.0);
+  if (all_lie_apart(context.arcs.data)) {
+    w.evidences.log_near = log_evidence_of_touches(w.coarse, least, context);
+  } else if (of_strokes) {
+    w.evidences.log_near = log_evidence_of_strokes(b, of_class, least, w, context);
   }
   return w;
 }

@@ -223,7 +223,8 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
                                         margin_of(options));
   }
   contenders = decided(std::move(contenders), context, margin_of(options));
-  contenders = with_near_parts(std::move(contenders), context, margin_of(options));
+  contenders =
+      with_near_parts(std::move(contenders), context, options.near_parts, margin_of(options));
   Weighing weighing = assemble_weighing(std::move(arcs), std::move(sided), std::move(contenders),
                                         context, seen, stated, std::move(best_placed));
   weighing.unqualified_probe = options.unqualified_probe;

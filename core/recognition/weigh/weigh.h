@@ -22,6 +22,9 @@ struct WeighOptions {
   double recognized_probability = 0.95;
   double form_deviation_m = 0.0;   ///< as RecognizerOptions::form_deviation_m [m]
   bool unqualified_probe = false;  ///< as RecognizerOptions::unqualified_probe, decided
+  /// Whether a smooth deviation from a class is one of the part, so that it is of no class. False
+  /// if the probe may deviate so, or spikes that were not found.
+  bool near_parts = true;
   TouchedFrom touched_from = TouchedFrom::Unknown;
 };
 

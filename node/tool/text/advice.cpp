@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
 #include "node/wire/convert.h"
 
@@ -105,6 +106,29 @@ std::string ambiguous(const v1::Recognition& answer) {
   }
 }
 
+/// The best class of a part that is of none, and how far it is from that.
+std::string nearest(const v1::Recognition& answer) {
+  double of_noise = 0.0;
+  const v1::Hypothesis* best = nullptr;
+  for (const v1::Hypothesis& hypothesis : answer.hypotheses()) {
+    if (hypothesis.curve_class() == v1::CURVE_CLASS_UNCLASSIFIED) {
+      of_noise = hypothesis.chi2();
+    } else if (best == nullptr && hypothesis.has_parameters()) {
+      best = &hypothesis;
+    }
+  }
+  if (best == nullptr || best->dof() <= 0 || !(best->chi2() > of_noise)) return "";
+  const double deviation_m =
+      answer.sigma_m() * std::sqrt((best->chi2() - of_noise) / static_cast<double>(best->dof()));
+  const LengthUnit unit = length_unit_for(deviation_m);
+  char text[64];
+  std::snprintf(text, sizeof text, "%.2g ", deviation_m * unit.per_m);
+  return " The nearest is " + with_article(best->curve_class()) + ", from which it deviates by " +
+         text + std::string(unit.name) +
+         " (root mean square, beyond the noise). Is that within the part's tolerance, or within "
+         "what the probe deviates by, state it (form_deviation_m).";
+}
+
 }  // namespace
 
 std::string advice_text(const v1::Recognition& answer) {
@@ -116,7 +140,8 @@ std::string advice_text(const v1::Recognition& answer) {
                  ? "None of the known classes explains the samples: the part has another shape, "
                    "the "
                    "patches lie on several pieces of it, or a stroke leaves it (through the air, "
-                   "over an edge)."
+                   "over an edge)." +
+                       nearest(answer)
                  : "The part is " + with_article(answer.curve_class()) +
                        ": its shape and place are known. No further touch is needed.";
     case v1::RECOGNITION_STATUS_AMBIGUOUS:

@@ -1,0 +1,52 @@
+// Parts that are of a class but for a little: as soon as the samples show it, no class is certain.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tests/support/near_parts.h"
+#include "tests/support/scene_data.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+// A misfit of 100 is chi-square raised by five of its standard deviations, of 200 samples. As a
+// smooth deviation of known size and length it is worth 50 in log evidence, of which its prior
+// leaves 15 and more: what bends a few times along the part costs at most as much as 25 (twice as
+// many coordinates as a class has, a factor of ten each), one size and length of 27 costs 3, that
+// such parts are rare 5.
+TEST(NearlyOfAClass, IsNotRecognizedAsTheClassWhereItShows) {
+  constexpr double kMisfit = 100.0;
+  auto rng = test::test_rng();
+  for (const test::NearPart& part : test::near_parts()) {
+    const double sigma_m = test::noise_of_misfit(part, kMisfit);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < test::stress_count(40); ++i) {
+      const Recognition answer =
+          test::recognise(test::touched(part, sigma_m, [&] { return normal(rng); }), sigma_m);
+      EXPECT_FALSE(answer.status == RecognitionStatus::Recognized &&
+                   answer.shape.curve_class != CurveClass::Unclassified)
+          << part.name << " as " << name_of(answer.shape.curve_class);
+    }
+  }
+}
+
+// The same samples, from a probe of which nobody says that it does not deviate so itself, or with a
+// tolerance of the part that is larger, are of the class.
+TEST(NearlyOfAClass, IsOfTheClassWithinAStatedFormDeviation) {
+  const test::NearPart lobed = test::near_parts().back();
+  const double sigma_m = test::noise_of_misfit(lobed, 100.0);
+  auto rng = test::test_rng();
+  std::normal_distribution<double> normal;
+  RecognizerOptions options;
+  options.form_deviation_m = 5e-5;  // its lobes
+  for (int i = 0; i < test::stress_count(40); ++i) {
+    const test::Scene scene = test::touched(lobed, sigma_m, [&] { return normal(rng); });
+    const Recognition answer = test::recognise(scene, sigma_m, options);
+    EXPECT_NE(answer.shape.curve_class, CurveClass::Unclassified);
+    EXPECT_LT(test::hypothesis_of(answer, CurveClass::Unclassified)->probability, 0.05);
+  }
+}
+
+}  // namespace
+}  // namespace palpate
