@@ -75,8 +75,8 @@ double largest_hidden(const std::vector<CoherentStep>& steps) {
 
 std::optional<double> log_gain_near_class(const CanonicalFit& placed, const ClassEvidence& evidence,
                                           const FitData& reduced, const Likelihood& likelihood,
-                                          double sigma, double scatter, double least,
-                                          WorkBudget& work) {
+                                          double sigma, double scatter, double least_size,
+                                          double least, WorkBudget& work) {
   const int coordinates = shape_coordinates(placed.shape.curve_class) + 2;
   const NoiseLaw noise(likelihood, coordinates);
   const auto steps = steps_by_coordinates(placed, evidence, reduced, likelihood, sigma);
@@ -91,7 +91,7 @@ std::optional<double> log_gain_near_class(const CanonicalFit& placed, const Clas
   }
   const double log_none = noise.log_evidence(scatter + none->chi2);
   const double highest = noise.log_evidence(scatter) - log_none;
-  const double hidden = largest_hidden(*steps);
+  const double hidden = std::max(largest_hidden(*steps), least_size / sigma);
   double sum = kNoEvidence;
   for (int halvings = 1; halvings <= kMostHalvings; halvings += kPowerStep) {
     for (int size = kSizes - 1; size >= 0; --size) {

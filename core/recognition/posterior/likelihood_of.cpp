@@ -91,11 +91,6 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   // What is stated holds against residuals too few to tell a noise: of touches that lie apart,
   // which no smooth model follows.
   const bool tells_more = smooth.dof() > 0 || dof >= kFewestDegreesOfNoise;
-  // Of the half extent: 50 um on a part 100 mm across, where ISO 286-1 has 54 um for grade IT8,
-  // which turning and milling hold. Beyond it, it is another shape, if free paths of the patches
-  // say so too. (Of touches that lie apart they say nothing.) A part made less truly is for
-  // `form_deviation_m`.
-  constexpr double kLargestFormError = 1e-3;
   const bool noisy = correlation.time == 1.0 && tells_more && !can_be_noise(chi2 / noise, dof) &&
                      excess <= kLargestNoise;
   const bool form_error = correlation.time > 1.0 && (excess <= kLargestFormError || !noise_is_told);
@@ -105,8 +100,7 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   seen.correlated = correlation.time > 1.0 || chance < kNegligibleProbability;
   if (misfits && (noisy || form_error)) {
     seen.noise_inflation = variance * correlation.time;
-    seen.told_by_class_alone =
-        noisy && likelihood.sigma_known && can_be_noise(smooth.chi2, smooth.dof());
+    seen.told_by_class_alone = noisy && noise_is_told && can_be_noise(smooth.chi2, smooth.dof());
     seen.correlation_length = correlation.length;
     seen.white_variance = noise_is_told && form_error ? 1.0 : variance;
     seen.likelihood = likelihood;

@@ -8,17 +8,15 @@
 
 #include "core/numerics/log_add.h"
 #include "core/numerics/negligible.h"
-#include "core/recognition/coherent/near_class.h"
+#include "core/recognition/weigh/near_best.h"
 
 namespace palpate {
 namespace {
 
-/// log of the prior probability of parts near one class, over that of the class; no class is
-/// preferred. Of touches that lie apart they are what "unclassified" is, all together half as
-/// probable as a class. Beside the free paths of strokes they are as improbable, all together, as
-/// what a RECOGNIZED class usually leaves to doubt (0.05): it takes evidence to doubt a class.
+/// log of the prior probability of parts near one class, over that of the class: they are what
+/// "unclassified" is of touches that lie apart, all together half as probable as a class, and no
+/// class is preferred.
 const double kLogOfTouches = -std::log(2.0 * static_cast<double>(kCurveClasses.size()));
-const double kLogOfStrokes = -std::log(19.0 * static_cast<double>(kCurveClasses.size()));
 
 /// Standard deviations of the touches about the curve, in half extents, alike probable: a factor of
 /// two apart, from where a class can hardly be seen to below kLargestNoise.
@@ -110,27 +108,6 @@ double log_evidence_of_touches(const ClassFits& coarse, double least,
   return sum;
 }
 
-/// log of the evidence of strokes' parts near the best class, `b`: a curve near another class is
-/// near the best as well, and counts once. What the reduced points leave beside the class and all
-/// points do not is no deviation of the part.
-double log_evidence_of_strokes(std::size_t b, double of_class, double least, const Contenders& w,
-                               const EvidenceContext& context) {
-  const Arcs& arcs = context.arcs;
-  const auto& evidence = w.evidences.classes[b];
-  if (!evidence) {
-    return kNoEvidence;
-  }
-  const double told = w.coarse[b]->chi2 + arcs.smooth.chi2;
-  const double of_reduced_alone =
-      log_evidence(context.likelihood, w.evidences, w.fits[b]->curve_class, w.fits[b]->chi2) -
-      log_evidence(context.likelihood, w.evidences, w.fits[b]->curve_class, told);
-  const double beforehand = of_class + kLogOfStrokes - std::max(of_reduced_alone, 0.0);
-  const auto gain = log_gain_near_class(*w.evidences.on_reduced[b], *evidence, context.reduced,
-                                        context.likelihood, arcs.sigma, arcs.smooth.chi2,
-                                        least - beforehand, context.work);
-  return gain ? beforehand + *gain : kNoEvidence;
-}
-
 }  // namespace
 
 Contenders with_near_parts(Contenders w, const EvidenceContext& context, bool of_strokes,
@@ -147,7 +124,7 @@ Contenders with_near_parts(Contenders w, const EvidenceContext& context, bool of
   if (all_lie_apart(context.arcs.data)) {
     w.evidences.log_near = log_evidence_of_touches(w.coarse, least, context);
   } else if (of_strokes) {
-    w.evidences.log_near = log_evidence_of_strokes(b, of_class, least, w, context);
+    w.evidences.log_near = log_evidence_near_best(best, 0.0, least, w, context);
   }
   return w;
 }

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "core/recognition/coherent/coherent_gain.h"
+#include "core/recognition/posterior/likelihood_of.h"
+#include "core/recognition/weigh/near_best.h"
 
 namespace palpate {
 namespace {
@@ -66,8 +68,13 @@ Contenders with_shared_deviations(Contenders w, const EvidenceContext& context, 
   const LogEvidences white = with_noise_alone(w, context);
   const double paths =
       log_evidence_of_unclassified(context.likelihood, w.evidences, context.arcs.smooth.chi2);
-  const bool may_be_paths = of_any_size && paths > log_sum(white) - margin;
-  if (classes.empty() || (classes.size() < 2 && !may_be_paths)) {
+  // A deviation larger than probes and parts have is another shape as much as free paths are.
+  const double matters = log_sum(white) - margin;
+  const bool may_be_other =
+      of_any_size && !classes.empty() &&
+      (paths > matters || log_evidence_near_best(static_cast<CurveClass>(classes.front()),
+                                                 kLargestFormError, matters, w, context) > matters);
+  if (classes.empty() || (classes.size() < 2 && !may_be_other)) {
     return w;
   }
   LogEvidences gain{};
@@ -91,7 +98,7 @@ Contenders with_shared_deviations(Contenders w, const EvidenceContext& context, 
   for (std::size_t i = 0; i < white.size(); ++i) {
     shared[i] = white[i] + gain[i];
   }
-  w.evidences.shared_or_other = may_be_paths && log_sum(shared) > paths;
+  w.evidences.shared_or_other = may_be_other && log_sum(shared) > paths;
   const double more = w.evidences.shared_or_other ? 0.0 : log_sum(shared) - log_sum(white);
   if (!std::isfinite(more)) {
     return w;

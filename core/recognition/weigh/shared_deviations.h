@@ -9,7 +9,8 @@ namespace palpate {
 /// Adds to the evidence of each class within reach what deviations shared by neighbours explain
 /// (coherent/coherent_gain.h): a probe with two lobes turns a ring into an ellipse. By default this
 /// changes only the shares of the classes, not their total, and "unclassified" keeps its evidence,
-/// because free paths follow any deviation. `of_any_size`: if classes with deviations have more
+/// because free paths follow any deviation. `of_any_size`: if free paths, or parts that deviate by
+/// more than probes do, may be the better answer, and classes with deviations have more
 /// evidence than free paths, it is even odds whether there is such a deviation or another shape.
 /// Otherwise, as for a probe that is trusted, it is another shape. `margin`: log odds below which
 /// the best is not RECOGNIZED.
