@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/local/reading_step.h"
 #include "core/local/spikes/block_survey.h"
 #include "core/local/spikes/spike_search.h"
 #include "core/numerics/normal_law.h"
@@ -72,12 +73,21 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
   constexpr int kMostPasses = 8;
   constexpr int kMostDoublings = 2;
   int doublings = 0;
+  double sigma_m = options.sigma_m;
   BlockSurvey survey;
   WorkBudget unbounded;
   WorkBudget& work = options.work != nullptr ? *options.work : unbounded;
   for (int pass = 0; pass < kMostPasses && kept.samples.size() >= kFewestSamples; ++pass) {
     if (doublings == 0) {
-      survey = survey_blocks(kept.samples, options.sigma_m, result.threshold, work);
+      survey = survey_blocks(kept.samples, sigma_m, result.threshold, work);
+      if (pass == 0 && !(sigma_m > 0.0)) {
+        // Rounded readings may agree to the last digit: their noise is no less than the rounding's.
+        const double rounding_m = noise_of_rounding_m(reading_step_m(kept.samples));
+        if (survey.sigma_m < rounding_m) {
+          sigma_m = rounding_m;
+          survey = survey_blocks(kept.samples, sigma_m, result.threshold, work);
+        }
+      }
     }
     if (pass == 0) {
       result.status = survey.status;
@@ -91,8 +101,7 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
     }
     BlockSurvey longer = survey;
     longer.length = std::min(survey.length << doublings, kept.samples.size());
-    SpikeSearch found =
-        search_spikes(kept.samples, longer, options.sigma_m, result.threshold, work);
+    SpikeSearch found = search_spikes(kept.samples, longer, sigma_m, result.threshold, work);
     if (doublings > 0) {
       spare_runs(survey.length / 2, &found.is_spike);
     }

@@ -9,9 +9,9 @@
 
 namespace palpate {
 
-/// Of the half extent: 50 um on a part 100 mm across, where ISO 286-1 has 54 um for grade IT8, which
-/// turning and milling hold. Beyond it, it is another shape, if free paths of the patches say so
-/// too. (Of touches that lie apart they say nothing.) A part made less truly is for
+/// Of the half extent: 50 um on a part 100 mm across, where ISO 286-1 has 54 um for grade IT8,
+/// which turning and milling hold. Beyond it, it is another shape, if free paths of the patches say
+/// so too. (Of touches that lie apart they say nothing.) A part made less truly is for
 /// `form_deviation_m`.
 inline constexpr double kLargestFormError = 1e-3;
 

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
+
+#include "core/local/reading_step.h"
 
 namespace palpate {
 
@@ -107,6 +110,16 @@ void set_details(std::span<const StoredPatch> patches, FitData* data) {
     }
     ++span;
   }
+}
+
+double reading_noise_m(std::span<const StoredPatch> patches) {
+  std::vector<Vec2> positions;
+  for (const StoredPatch& patch : patches) {
+    for (const StoredSample& sample : patch.samples) {
+      positions.push_back(sample.position_m);
+    }
+  }
+  return noise_of_rounding_m(reading_step_m(positions));
 }
 
 }  // namespace
@@ -213,6 +226,7 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
     data.patches.push_back({begin, data.points.size()});
   }
   if (!*sigma_known) {
+    data.reading_noise = reading_noise_m(patches) / data.scale;
     // Stated and unstated noise do not mix: if one is not stated, the noise of all is estimated.
     std::size_t i = 0;
     for (const StoredPatch& patch : patches) {

@@ -56,6 +56,8 @@ struct FitData {
   std::vector<PatchSpan> patches;
   Pose2 frame;         ///< centre of the points' box, x along the longer principal axis
   double scale = 1.0;  ///< half the longer side of that box [m]
+  /// Least noise, normalised, that the rounding of the readings leaves (local/reading_step.h).
+  double reading_noise = 0.0;
   std::vector<PointDetail> details = {};  ///< one per point; empty if no point has any
   /// True if the normals of points in strokes are among the residuals.
   bool normals_along_strokes = false;

@@ -31,6 +31,12 @@ Arcs smooth_arcs(FitData data, bool sigma_known) {
     arcs.smooth = fit_smooth_model(&data, sigma_known);
   }
   arcs.sigma_known = sigma_known || estimate_noise(&data, &arcs.smooth);
+  if (!sigma_known && rms_sigma(data) < data.reading_noise) {
+    // Sections may follow rounded readings to the last digit, from step to step.
+    scale_noise(data.reading_noise / rms_sigma(data), &data, &arcs.smooth);
+    arcs.smooth = fit_smooth_model(&data, true);
+    arcs.sigma_known = true;
+  }
   arcs.sigma = rms_sigma(data);
   arcs.data = std::move(data);
   return arcs;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/recognition/recognizer.h"
+#include "tests/support/test_rng.h"
 
 namespace palpate {
 namespace {
@@ -146,6 +147,35 @@ TEST(Habits, FewSamplesBesideACusp) {
   const Recognition answer = recognizer.recognize();
   EXPECT_EQ(answer.sample_count, 58U);
   EXPECT_EQ(answer.shape.curve_class, CurveClass::SemiCubicalParabola);
+}
+
+// An edge that lies nearly along an axis of the machine reads the same for many samples, and then
+// one step more. It was taken for noiseless, and every other sample for a spike.
+TEST(Habits, AnEdgeAlongAnAxisOfAMachineThatRounds) {
+  constexpr double kStep_m = 1e-5;
+  std::mt19937_64 rng(test::test_seed());
+  std::normal_distribution<double> noise(0.0, 0.1 * kStep_m);
+  const auto rounded = [&](double v) { return kStep_m * std::round((v + noise(rng)) / kStep_m); };
+  for (const double slope : {0.0, 1e-4, 1e-3, -3e-3}) {
+    Recognizer recognizer;
+    for (std::uint32_t patch = 0; patch < 2; ++patch) {
+      std::vector<ContactSample> samples;
+      for (int i = 0; i < 150; ++i) {
+        const double x = 0.03 * patch + 1.37e-4 * i;
+        ContactSample sample;
+        sample.position_m = {rounded(0.2 + x), rounded(0.1 + slope * x)};
+        samples.push_back(sample);
+      }
+      PatchContext context;
+      context.patch = patch;
+      recognizer.add(context, samples);
+    }
+    const Recognition answer = recognizer.recognize();
+    EXPECT_FALSE(answer.work.was_cut()) << slope;
+    EXPECT_EQ(answer.outlier_count, 0U) << slope;
+    EXPECT_EQ(answer.shape.curve_class, CurveClass::Line) << slope;
+    EXPECT_NEAR(answer.sigma_m, kStep_m / std::sqrt(12.0), 0.3 * kStep_m) << slope;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,61 @@
+#include "core/local/reading_step.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+namespace {
+
+constexpr double kShare = 0.9;
+
+/// Whether a coordinate is a multiple of the step, but for the rounding of both.
+bool is_multiple(double coordinate_m, double step_m) {
+  constexpr double kOfStep = 1e-6;
+  constexpr double kRoundings = 4.0;
+  const double steps = coordinate_m / step_m;
+  return std::abs(steps - std::round(steps)) <=
+         kOfStep + kRoundings * std::numeric_limits<double>::epsilon() * std::abs(steps);
+}
+
+bool are_multiples(std::span<const Vec2> samples, double step_m) {
+  const double coordinates = 2.0 * static_cast<double>(samples.size());
+  double others = 0.0;
+  for (const Vec2& sample : samples) {
+    others += is_multiple(sample.x(), step_m) ? 0.0 : 1.0;
+    others += is_multiple(sample.y(), step_m) ? 0.0 : 1.0;
+    if (others > (1.0 - kShare) * coordinates) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+double reading_step_m(std::span<const Vec2> samples) {
+  constexpr double kMostOfExtent = 0.01;
+  constexpr double kLeast_m = 1e-9;
+  constexpr std::array kDigits = {5.0, 2.54, 2.0, 1.0};
+  Eigen::AlignedBox2d box;
+  for (const Vec2& sample : samples) {
+    box.extend(sample);
+  }
+  if (samples.empty() || !(box.sizes().maxCoeff() > 0.0)) {
+    return 0.0;
+  }
+  const double largest_m = kMostOfExtent * box.sizes().maxCoeff();
+  for (double power_m = std::pow(10.0, std::floor(std::log10(largest_m)));
+       power_m >= 0.5 * kLeast_m; power_m /= 10.0) {
+    for (const double digit : kDigits) {
+      const double step_m = digit * power_m;
+      if (step_m <= largest_m && are_multiples(samples, step_m)) {
+        return step_m;
+      }
+    }
+  }
+  return 0.0;
+}
+
+}  // namespace palpate

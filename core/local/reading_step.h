@@ -1,0 +1,21 @@
+// The step to which a probe, or the file that it wrote, has rounded its readings.
+#pragma once
+
+#include <span>
+
+#include "core/curves/pose2.h"
+
+namespace palpate {
+
+/// The largest of 1, 2, 2.54 and 5 times a power of ten, from 1 nm up, of which nine tenths of the
+/// coordinates are multiples: means of samples need not be. 0 if there is none. No more than a
+/// hundredth of the samples' extent: coarser ones are shapes of a few digits. [m] O(samples).
+double reading_step_m(std::span<const Vec2> samples);
+
+/// Standard deviation of an error that is equally probable anywhere within such a step.
+inline double noise_of_rounding_m(double step_m) {
+  constexpr double kRootOf12 = 3.4641016151377544;
+  return step_m / kRootOf12;
+}
+
+}  // namespace palpate
