@@ -34,7 +34,7 @@ bool are_multiples(std::span<const Vec2> samples, double step_m) {
 
 }  // namespace
 
-double reading_step_m(std::span<const Vec2> samples) {
+double reading_step_m(std::span<const Vec2> samples, double least_noise_m) {
   constexpr double kMostOfExtent = 0.01;
   constexpr double kLeast_m = 1e-9;
   constexpr std::array kDigits = {5.0, 2.54, 2.0, 1.0};
@@ -48,6 +48,9 @@ double reading_step_m(std::span<const Vec2> samples) {
   const double largest_m = kMostOfExtent * box.sizes().maxCoeff();
   for (double power_m = std::pow(10.0, std::floor(std::log10(largest_m)));
        power_m >= 0.5 * kLeast_m; power_m /= 10.0) {
+    if (noise_of_rounding_m(kDigits.front() * power_m) < least_noise_m) {
+      return 0.0;
+    }
     for (const double digit : kDigits) {
       const double step_m = digit * power_m;
       if (step_m <= largest_m && are_multiples(samples, step_m)) {

@@ -82,7 +82,7 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
       survey = survey_blocks(kept.samples, sigma_m, result.threshold, work);
       if (pass == 0 && !(sigma_m > 0.0)) {
         // Rounded readings may agree to the last digit: their noise is no less than the rounding's.
-        const double rounding_m = noise_of_rounding_m(reading_step_m(kept.samples));
+        const double rounding_m = noise_of_rounding_m(reading_step_m(kept.samples, survey.sigma_m));
         if (survey.sigma_m < rounding_m) {
           sigma_m = rounding_m;
           survey = survey_blocks(kept.samples, sigma_m, result.threshold, work);
