@@ -225,10 +225,10 @@ std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& sm
   ClassFit refined = refine_parts(start_on_all(fit, smooth, points, Feet::Followed, work), points,
                                   effort, RivalOf::Best, work);
   // All points can leave no more than the reduced ones and the smooth model do: some feet are on
-  // the wrong arm of a bend.
+  // the wrong arm of a bend. So they may be where the reduced points fit no better, about a cusp
+  // that no section follows.
   const std::size_t reduced = residual_count(smooth.reduced);
-  if (fit.polynomial && fits_well(fit.chi2, reduced) &&
-      !fits_well(refined.chi2 - smooth.chi2, reduced) && work.allows()) {
+  if (fit.polynomial && !fits_well(refined.chi2 - smooth.chi2, reduced) && work.allows()) {
     work.spend(WorkKind::PlacedRow, points.size());
     ClassFit again = refine_parts(start_on_all(fit, smooth, points, Feet::Sought, work), points,
                                   effort, RivalOf::Best, work);
