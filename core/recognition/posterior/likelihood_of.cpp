@@ -100,7 +100,8 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   seen.correlated = correlation.time > 1.0 || chance < kNegligibleProbability;
   if (misfits && (noisy || form_error)) {
     seen.noise_inflation = variance * correlation.time;
-    seen.told_by_class_alone = noisy && noise_is_told && can_be_noise(smooth.chi2, smooth.dof());
+    seen.told_by_class_alone =
+        noisy && likelihood.sigma_known && can_be_noise(smooth.chi2, smooth.dof());
     seen.correlation_length = correlation.length;
     seen.white_variance = noise_is_told && form_error ? 1.0 : variance;
     seen.likelihood = likelihood;

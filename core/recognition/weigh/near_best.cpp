@@ -8,9 +8,9 @@
 namespace palpate {
 namespace {
 
-/// log of their prior probability over that of the class: near all classes together, they are as
-/// improbable as what a RECOGNIZED answer usually leaves to doubt (0.05). It takes evidence to
-/// doubt a class.
+/// log of the prior probability of parts near one class, over that of the class. All together they
+/// are as improbable as what a RECOGNIZED answer usually leaves to doubt, 0.05 beside 0.95: it
+/// takes evidence to doubt a class.
 const double kLogOfParts = -std::log(19.0 * static_cast<double>(kCurveClasses.size()));
 
 }  // namespace

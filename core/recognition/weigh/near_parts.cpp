@@ -13,9 +13,9 @@
 namespace palpate {
 namespace {
 
-/// log of the prior probability of parts near one class, over that of the class: they are what
-/// "unclassified" is of touches that lie apart, all together half as probable as a class, and no
-/// class is preferred.
+/// log of the prior probability of parts near one class, over that of the class. Of touches that
+/// lie apart nothing else in "unclassified" is smooth: all together they are half as probable as a
+/// class, and no class is preferred.
 const double kLogOfTouches = -std::log(2.0 * static_cast<double>(kCurveClasses.size()));
 
 /// Standard deviations of the touches about the curve, in half extents, alike probable: a factor of

@@ -68,7 +68,6 @@ Contenders with_shared_deviations(Contenders w, const EvidenceContext& context, 
   const LogEvidences white = with_noise_alone(w, context);
   const double paths =
       log_evidence_of_unclassified(context.likelihood, w.evidences, context.arcs.smooth.chi2);
-  // A deviation larger than probes and parts have is another shape as much as free paths are.
   const double matters = log_sum(white) - margin;
   const bool may_be_other =
       of_any_size && !classes.empty() &&
