@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kColumns = kUnknowns + 1;  // shape and pose, and the residual
 
-/// Largest deviation, in half extents: no class can be seen beyond. The least is no more than a
-/// probe can tell, a millionth.
+/// Largest deviation, in half extents: no class can be seen beyond. The least, four millionths, is
+/// below what a probe can tell.
 constexpr double kLargest = 0.25;
 constexpr int kSizes = 9;  // by factors of 4
 constexpr int kLengths = (kMostHalvings + kPowerStep - 1) / kPowerStep;
