@@ -219,7 +219,7 @@ double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData
 
 std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& smooth,
                                       const FitData& data, const RefineEffort& effort,
-                                      WorkBudget& work, bool is_best) {
+                                      WorkBudget& work, RivalOf rival) {
   const std::span<const FitPoint> points(data.points);
   work.spend(WorkKind::PlacedRow, points.size());
   ClassFit refined = refine_parts(start_on_all(fit, smooth, points, Feet::Followed, work), points,
@@ -228,7 +228,7 @@ std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& sm
   // the wrong arm of a bend. So they may be of the best class where the reduced points fit no
   // better, about a cusp that no section follows.
   const std::size_t reduced = residual_count(smooth.reduced);
-  if (fit.polynomial && (is_best || fits_well(fit.chi2, reduced)) &&
+  if (fit.polynomial && (rival == RivalOf::Best || fits_well(fit.chi2, reduced)) &&
       !fits_well(refined.chi2 - smooth.chi2, reduced) && work.allows()) {
     work.spend(WorkKind::PlacedRow, points.size());
     ClassFit again = refine_parts(start_on_all(fit, smooth, points, Feet::Sought, work), points,

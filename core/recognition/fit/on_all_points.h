@@ -23,11 +23,11 @@ double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData
 
 /// Refines a fit to the reduced points, preferably a settled one, on all points. nullopt if its
 /// optimum there is not such a curve (an ellipse that turned into a hyperbola, or into a needle
-/// around straight points). `is_best`: of all classes; if the reduced points do not fit, that may
-/// then be due to them. O(points) per iteration.
+/// around straight points). Where reduced points do not fit the best class, that may be due to
+/// them: its feet are sought anew. O(points) per iteration.
 std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& smooth,
                                       const FitData& data, const RefineEffort& effort,
-                                      WorkBudget& work, bool is_best = false);
+                                      WorkBudget& work, RivalOf rival = RivalOf::Other);
 
 /// Refines a fit on all points to its optimum, up to rounding; nullopt as above. O(points) per
 /// iteration.

@@ -39,8 +39,9 @@ ClassFit polished(const ClassFit& settled, const SmoothModel& smooth, const FitD
                   WorkBudget& work) {
   std::optional<ClassFit> fit;
   if (!settled.rival) {
-    fit = refine_on_all(settled, smooth, data, kPolishEffort, work, true);
-  } else if (const auto refined = refine_on_all(settled, smooth, data, kOnAllEffort, work, true)) {
+    fit = refine_on_all(settled, smooth, data, kPolishEffort, work, RivalOf::Best);
+  } else if (const auto refined =
+                 refine_on_all(settled, smooth, data, kOnAllEffort, work, RivalOf::Best)) {
     // Not at once: the rival may be on its way to the same optimum.
     fit = polish(*refined, data, work);
   }

@@ -73,7 +73,7 @@ Contenders with_shared_deviations(Contenders w, const EvidenceContext& context, 
       of_any_size && !classes.empty() &&
       (paths > matters || log_evidence_near_best(static_cast<CurveClass>(classes.front()),
                                                  kLargestFormError, matters, w, context) > matters);
-  if (classes.empty() || (classes.size() < 2 && !may_be_other)) {
+  if (classes.size() < 2 && !may_be_other) {
     return w;
   }
   LogEvidences gain{};

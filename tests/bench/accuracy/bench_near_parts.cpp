@@ -1,5 +1,5 @@
 // What is said of parts that are of a class but for a little, by how much the samples show it.
-// Prints, of each part and over all, how many are RECOGNIZED as a class, as none, and not at all.
+// Prints, of each part, how many are RECOGNIZED as a class, as none, and not at all.
 //   bench_near_parts [--scenes N] [--seed S]
 #include <array>
 #include <cstdint>

@@ -33,8 +33,7 @@ TEST(NearlyOfAClass, IsNotRecognizedAsTheClassWhereItShows) {
   }
 }
 
-// The same samples, from a probe of which nobody says that it does not deviate so itself, or with a
-// tolerance of the part that is larger, are of the class.
+// The same samples are of the class if the part has a tolerance as large.
 TEST(NearlyOfAClass, IsOfTheClassWithinAStatedFormDeviation) {
   const test::NearPart lobed = test::near_parts().back();
   const double sigma_m = test::noise_of_misfit(lobed, 100.0);
