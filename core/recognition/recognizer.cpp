@@ -146,8 +146,10 @@ class Recognizer::Impl {
       data = make_fit_data(strung->patches, options_.sigma_m, &sigma_known);
     }
     const std::span<const StoredPatch> patches = strung ? strung->patches : clean;
-    const std::span<const SidedStart> sought =
-        strung ? std::span<const SidedStart>(strung->starts) : std::span<const SidedStart>();
+    std::vector<SidedStart> sought;
+    if (strung && strung->start) {  // of the tips' centres
+      sought.push_back({std::vector<int>(strung->patches.size(), 0), *std::move(strung->start)});
+    }
     answer = options_.method == RecognitionMethod::Tree
                  ? by_tree(data, sigma_known, patches, work)
                  : by_likelihood(data, sigma_known, patches, sought, work);
@@ -283,7 +285,7 @@ class Recognizer::Impl {
       std::vector<SidedStart> nearer =
           which == Starts::OfSearch ? std::vector<SidedStart>{} : std::move(w.starts);
       for (SidedStart& sided : nearer) {
-        sided.start.no_conic = false;  // among the outliers
+        sided.no_conic = false;  // among the outliers
       }
       Weighing again = weigh_in_full(*kept, sigma_known, patches, work,
                                      weigh_options(*kept, sigma_known), nearer);

@@ -12,7 +12,9 @@ namespace {
 /// sharp bend has places on both its arms.
 class NearestPlace {
  public:
-  explicit NearestPlace(const PolynomialCoefficients& c) {
+  /// Of the points before, the feet were between `least` and `most`.
+  NearestPlace(const PolynomialCoefficients& c, double least, double most)
+      : middle_(0.5 * (least + most)), half_(0.5 * (most - least)) {
     for (std::size_t k = 0; k < kPlaces; ++k) {
       const double t = parameter(k);
       const Vec2 place = position_at(c, t);
@@ -35,15 +37,17 @@ class NearestPlace {
   }
 
  private:
-  // The points were within [-1, 1] (normalise_parameter); they may have grown beyond it by a
-  // quarter.
+  // At either end there may be more by three tenths of what there was: a new search is made before
+  // there is a quarter more (recognizer.cpp).
   // Steps of a fortieth: a bend that is sharper has its arms told apart by the points themselves.
   static constexpr std::size_t kPlaces = 129;
-  static constexpr double kFarthest = 1.6;
-  static double parameter(std::size_t k) {
-    return kFarthest * (2.0 * static_cast<double>(k) / (kPlaces - 1) - 1.0);
+  static constexpr double kFarthest = 1.6;  // in half ranges of the feet
+  double parameter(std::size_t k) const {
+    return middle_ + half_ * kFarthest * (2.0 * static_cast<double>(k) / (kPlaces - 1) - 1.0);
   }
 
+  double middle_;  ///< of the feet
+  double half_;    ///< half their range
   // Single precision is plenty for a start.
   std::array<float, kPlaces> x_;
   std::array<float, kPlaces> y_;
@@ -63,7 +67,8 @@ std::optional<PolynomialFit> carried(const std::optional<PolynomialFit>& fit, co
                                         : reduced.frame.rotate_back(warm.frame.rotate(scaled))) /
                                 reduced.scale;
   }
-  NearestPlace nearest(start.coefficients);
+  const auto [least, most] = std::minmax_element(fit->t.begin(), fit->t.end());
+  NearestPlace nearest(start.coefficients, *least, *most);
   start.t.reserve(reduced.points.size());
   for (const FitPoint& point : reduced.points) {
     start.t.push_back(nearest(point.position));
@@ -72,13 +77,6 @@ std::optional<PolynomialFit> carried(const std::optional<PolynomialFit>& fit, co
 }
 
 }  // namespace
-
-const WarmStart* start_for(std::span<const SidedStart> starts, std::span<const int> sides) {
-  const auto start = std::find_if(starts.begin(), starts.end(), [&](const SidedStart& s) {
-    return std::equal(s.sides.begin(), s.sides.end(), sides.begin(), sides.end());
-  });
-  return start == starts.end() ? nullptr : &start->start;
-}
 
 WarmStart warm_start_from(const ClassFits& fits, const FitData& reduced) {
   WarmStart warm;

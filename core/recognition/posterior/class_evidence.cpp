@@ -205,6 +205,26 @@ std::optional<ClassEvidence> from_prior(CurveClass curve_class, double fitted_ch
                                                             : std::nullopt;
 }
 
+std::optional<ClassEvidence> at_mode(const CanonicalFit& start, bool as_arc, double fitted_chi2,
+                                     const FitData& data, double inflation, WorkBudget& work) {
+  auto touch = touch_of(start, data);
+  if (!touch) {
+    return std::nullopt;
+  }
+  touch->as_arc = as_arc;
+  touch->weight = 1.0 / std::sqrt(inflation);
+  work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
+  auto curve = curve_at(*touch, start, data);
+  if (!curve || (as_arc && !shape_at(touch->chart(), curve->z, touch->shape))) {
+    return std::nullopt;
+  }
+  ClassEvidence evidence;
+  evidence.touch = *touch;
+  evidence.fitted_chi2 = fitted_chi2;
+  set_mode(descend(*touch, data, *std::move(curve), -1, work, kStepsFromFit), &evidence);
+  return evidence;
+}
+
 ClassEvidence with_mode_at_cusp(ClassEvidence spline, const ClassEvidence& semi_cubical,
                                 const FitData& data, WorkBudget& work) {
   const TouchedCurve& from = semi_cubical.nodes[semi_cubical.mode].curve;
@@ -240,6 +260,14 @@ ClassEvidence at_better_mode(ClassEvidence evidence, const ClassEvidence& before
     set_mode(mode, &evidence);
   }
   set_log_all_modes(std::log1p(others * std::exp(std::min(gain, 0.0))), &evidence);
+  return evidence;
+}
+
+ClassEvidence counted_from(double fitted_chi2, ClassEvidence evidence) {
+  const double log_all_modes = evidence.log_all_modes;
+  evidence.fitted_chi2 = fitted_chi2;
+  set_mode(TouchedCurve(evidence.nodes[evidence.mode].curve), &evidence);
+  set_log_all_modes(log_all_modes, &evidence);
   return evidence;
 }
 

@@ -70,8 +70,16 @@ std::optional<ClassEvidence> from_prior(CurveClass curve_class, double fitted_ch
 ClassEvidence with_mode_at_cusp(ClassEvidence spline, const ClassEvidence& semi_cubical,
                                 const FitData& data, WorkBudget& work);
 
+/// The evidence at the mode that `start`, which need not be an optimum, leads to. `fitted_chi2`:
+/// the chi-square that `log_occam` counts from. nullopt as for evidence_of().
+std::optional<ClassEvidence> at_mode(const CanonicalFit& start, bool as_arc, double fitted_chi2,
+                                     const FitData& data, double inflation, WorkBudget& work);
+
 /// The evidence at the mode of `before`, if it is larger. `before`: from another fit of the class
 /// to the same data, with the same inflation.
 ClassEvidence at_better_mode(ClassEvidence evidence, const ClassEvidence& before);
+
+/// The same mode's evidence by Laplace's formula, counted from another `fitted_chi2`.
+ClassEvidence counted_from(double fitted_chi2, ClassEvidence evidence);
 
 }  // namespace palpate

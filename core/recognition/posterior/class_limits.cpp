@@ -66,9 +66,12 @@ void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood&
       continue;
     }
     const double fitted_chi2 = path->fitted_chi2 + above / evidences->inflation;
-    const bool same = before.classes[b] && before.on_reduced_chi2[b] == fitted_chi2;
-    evidences->classes[b] =
-        same ? before.classes[b] : from_prior(beyond, fitted_chi2, *path, reduced, work);
+    const ClassEvidence* earlier = known_of(before, beyond);
+    if (earlier != nullptr && earlier->prior_mode_sought) {
+      evidences->classes[b] = counted_from(fitted_chi2, *earlier);
+    } else {
+      evidences->classes[b] = from_prior(beyond, fitted_chi2, *path, reduced, work);
+    }
     evidences->on_reduced_chi2[b] = fitted_chi2;
     if (evidences->classes[b]) {
       evidences->classes[b]->at_limit = fit->at_limit;

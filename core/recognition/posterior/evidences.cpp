@@ -23,6 +23,16 @@ double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidence
   return log_add(log_paths, evidences.log_near);
 }
 
+const ClassEvidence* known_of(const Evidences& evidences, CurveClass curve_class) {
+  if (const auto& evidence = evidences.classes[static_cast<std::size_t>(curve_class)]) {
+    return &*evidence;
+  }
+  const auto known =
+      std::find_if(evidences.known.begin(), evidences.known.end(),
+                   [&](const ClassEvidence& e) { return e.touch.curve_class == curve_class; });
+  return known == evidences.known.end() ? nullptr : &*known;
+}
+
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
                     CurveClass curve_class, double chi2) {
   const auto i = static_cast<std::size_t>(curve_class);

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
@@ -26,6 +27,8 @@ inline constexpr std::array<double, 9> kNoEvidences = [] {
 /// Evidence of every model. A class without one has no share in the posterior.
 struct Evidences {
   std::array<std::optional<ClassEvidence>, 9> classes;
+  /// Modes that the prior has led to, of classes that have no evidence now.
+  std::vector<ClassEvidence> known;
   /// Of the spline's other optimum, on the other side of c = 0 or of other arms, if that is a
   /// separate mode.
   std::optional<ClassEvidence> rival;
@@ -60,6 +63,9 @@ Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likeli
 /// log of the evidence of "unclassified": free-form paths and parts near a class.
 double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidences& evidences,
                                     double smooth_chi2);
+
+/// The class's evidence, or else what is known of its modes; nullptr if nothing is.
+const ClassEvidence* known_of(const Evidences& evidences, CurveClass curve_class);
 
 /// Whether what a class has in nearly straight paths is known.
 inline bool has_straight_paths(const Evidences& evidences, CurveClass curve_class) {

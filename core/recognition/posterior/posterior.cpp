@@ -107,6 +107,17 @@ Evidences started_from(const Evidences& before, const SmoothModel& smooth,
   return evidences;
 }
 
+/// Keeps the modes that the prior has led to for classes which have no evidence this time.
+void keep_known(const Evidences& before, Evidences* found) {
+  for (const CurveClass curve_class : kCurveClasses) {
+    const ClassEvidence* known = known_of(before, curve_class);
+    if (!found->classes[static_cast<std::size_t>(curve_class)] && known != nullptr &&
+        known->prior_mode_sought) {
+      found->known.push_back(*known);
+    }
+  }
+}
+
 /// Evidences by Laplace's formula, class by class.
 class LaplaceEvidences {
  public:
@@ -132,13 +143,13 @@ class LaplaceEvidences {
       return;
     }
     found.on_reduced_chi2[i] = on_reduced_[i]->chi2;
-    auto& earlier = before_->classes[i];
     if (is_same(curve_class)) {
       found.on_reduced[i] = std::move(before_->on_reduced[i]);
-      found.classes[i] = std::move(earlier);
+      found.classes[i] = std::move(before_->classes[i]);
     } else if ((found.on_reduced[i] = to_canonical(*on_reduced_[i], reduced_))) {
       found.classes[i] = evidence_of(*found.on_reduced[i], reduced_, found.inflation, work_);
-      if (found.classes[i] && earlier) {
+      const ClassEvidence* earlier = known_of(*before_, curve_class);
+      if (found.classes[i] && earlier != nullptr) {
         found.classes[i] = at_better_mode(*std::move(found.classes[i]), *earlier);
       }
     }
@@ -215,6 +226,7 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
   if (bend && laplace.is_seen(CurveClass::Line)) {
     add_straight_paths(fits, likelihood, *bend, same_line ? &before : nullptr, &laplace.found,
                        work);
+    keep_known(before, &laplace.found);
     return std::move(laplace.found);
   }
   for (const CurveClass curve_class : order) {
@@ -224,6 +236,7 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                   log_evidence_of_unclassified(likelihood, laplace.found, smooth.chi2),
                   &laplace.found, work);
   add_limits(fits, reduced, likelihood, laplace.best, before, &laplace.found, work);
+  keep_known(before, &laplace.found);
   return std::move(laplace.found);
 }
 

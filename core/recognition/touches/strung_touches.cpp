@@ -387,10 +387,7 @@ std::optional<StrungTouches> strung_touches(std::span<const StoredPatch> patches
     }
   }
   std::move(strung->runs.begin(), strung->runs.end(), std::back_inserter(result.patches));
-  if (strung->start) {
-    result.starts.push_back(
-        {std::vector<int>(result.patches.size(), 0), *std::move(strung->start)});
-  }
+  result.start = std::move(strung->start);
   return result;
 }
 

@@ -12,10 +12,9 @@ namespace palpate {
 
 struct StrungTouches {
   std::vector<StoredPatch> patches;
-  /// Fits of every class to the touches that were used to find the order, as starts; positions are
-  /// tip centres, and all sides are 0. Empty unless the order came from a curve, cubics were among
-  /// the classes, the noise is stated and a class fits.
-  std::vector<SidedStart> starts;
+  /// Fits of every class to the tip centres that were used to find the order. Only if that came
+  /// from a curve, cubics were among the classes, the noise is stated and a class fits.
+  std::optional<WarmStart> start;
 };
 
 /// `patches`, with single touches (patches of one sample) that lie densely along the curve joined

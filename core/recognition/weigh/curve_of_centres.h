@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/recognition/fit/canonical_fit.h"
-#include "core/recognition/fit/warm_start.h"
 #include "core/recognition/weigh/side_choice.h"
+#include "core/recognition/weigh/sided_start.h"
 
 namespace palpate {
 

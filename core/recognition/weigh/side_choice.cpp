@@ -35,7 +35,9 @@ std::optional<ClassFit> seen_by_all(const ClassFit& settled, const FitData& redu
 
 ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
                            const FitData& reduced, const SideContext& by, double out_of_reach) {
-  return fit_classes(reduced, by.work, start_for(starts, sides), by.classes, out_of_reach);
+  const SidedStart* start = start_for(starts, sides);
+  return fit_classes(reduced, by.work, start != nullptr ? &start->start : nullptr, by.classes,
+                     out_of_reach);
 }
 
 bool settle_candidate(const SideContext& by, SideChoice* choice) {

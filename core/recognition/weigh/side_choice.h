@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/numerics/work_budget.h"
-#include "core/recognition/fit/warm_start.h"
 #include "core/recognition/posterior/posterior.h"
 #include "core/recognition/smooth/arcs.h"
+#include "core/recognition/weigh/sided_start.h"
 
 namespace palpate {
 

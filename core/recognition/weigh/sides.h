@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/numerics/negligible.h"
-#include "core/recognition/fit/warm_start.h"
 #include "core/recognition/samples/sample_memory.h"
 #include "core/recognition/weigh/side_choice.h"
+#include "core/recognition/weigh/sided_start.h"
 
 namespace palpate {
 

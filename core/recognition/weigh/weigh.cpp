@@ -61,15 +61,19 @@ struct Placed {
 };
 
 /// Every class of one way in which the tips may lie, the plausible ones refined on all points.
-/// `no_conic`: as WarmStart's.
-Contenders contending(ClassFits coarse, bool no_conic, const EvidenceContext& context,
+/// `start`: what the last weighing kept for it; may be nullptr.
+Contenders contending(ClassFits coarse, const SidedStart* start, const EvidenceContext& context,
                       const WeighOptions& options, const Evidences& of_paths = {}) {
   const Arcs& arcs = context.arcs;
   Contenders contenders;
-  contenders.no_conic = no_conic;
   contenders.coarse = testable(std::move(coarse), options.classes, arcs);
   contenders.fits = with_inferred_chi2(contenders.coarse, arcs.smooth);
   contenders.evidences = of_paths;
+  if (start != nullptr) {
+    contenders.no_conic = start->no_conic;
+    contenders.evidences.known = carried_modes(start->modes, contenders.coarse, context.reduced,
+                                               context.likelihood.inflation(), context.work);
+  }
   contenders = refine_plausible(std::move(contenders), context, margin_of(options));
   if (!is_sure(probabilities_of(contenders, context))) {
     contenders = with_conic_mode(std::move(contenders), context, options.classes);
@@ -117,7 +121,8 @@ std::array<std::optional<CanonicalFit>, 9> placed_canonically(
 std::vector<SidedStart> starts_of(const SidedFits& sided, const Contenders& contenders) {
   const SideChoice& taken = sided.choice();
   std::vector<SidedStart> starts{{taken.sides, warm_start_from(contenders.coarse, taken.reduced)}};
-  starts.front().start.no_conic = contenders.no_conic;
+  starts.front().no_conic = contenders.no_conic;
+  starts.front().modes = kept_modes(contenders.evidences, taken.reduced);
   for (const SideChoice& choice : sided.choices) {
     if (&choice != &taken) {
       starts.push_back({choice.sides, warm_start_from(choice.fits, choice.reduced)});
@@ -127,12 +132,6 @@ std::vector<SidedStart> starts_of(const SidedFits& sided, const Contenders& cont
     starts.push_back(*sided.centres);
   }
   return starts;
-}
-
-/// Whether a conic has been looked for with the tips on these sides, and none was near.
-bool no_conic(std::span<const SidedStart> starts, const std::vector<int>& sides) {
-  const WarmStart* start = start_for(starts, sides);
-  return start != nullptr && start->no_conic;
 }
 
 /// What the stages say, gathered. `arcs` and `sided` are those that `ground` is of. `best_placed`:
@@ -158,11 +157,11 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   if (best && !best->at_limit && !contenders.evidences.classes[b]) {
     weigh_on_reduced(b, context, &contenders);  // so far by straight paths alone
   }
+  w.starts = starts_of(sided, contenders);
   w.best_evidence = std::move(contenders.evidences.classes[b]);
   w.best_on_reduced = std::move(contenders.evidences.on_reduced[b]);
   w.stated = stated;
   w.correlated = seen.correlated;
-  w.starts = starts_of(sided, contenders);
   w.fits = std::move(contenders.fits);
   w.coarse = std::move(contenders.coarse);
   w.sides = std::move(sided.choices[sided.taken].sides);
@@ -193,7 +192,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
     SideChoice& choice = sided.choices[sided.taken];
     // Where there are several they may have to be judged again.
     ClassFits fits = sided.choices.size() > 1 ? choice.fits : std::move(choice.fits);
-    return contending(std::move(fits), no_conic(starts, choice.sides), context, options, paths);
+    return contending(std::move(fits), start_for(starts, choice.sides), context, options, paths);
   };
   const EvidenceContext at_first{arcs, sided.choice().reduced, work, stated, hopeless};
   Contenders contenders = contenders_of_choice(at_first, of_paths);

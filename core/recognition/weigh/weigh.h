@@ -9,10 +9,10 @@
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/class_fits.h"
-#include "core/recognition/fit/warm_start.h"
 #include "core/recognition/posterior/posterior.h"
 #include "core/recognition/samples/sample_memory.h"
 #include "core/recognition/smooth/smooth_model.h"
+#include "core/recognition/weigh/sided_start.h"
 
 namespace palpate {
 
