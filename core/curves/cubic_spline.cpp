@@ -16,15 +16,6 @@ bool CubicSpline::is_valid() const {
   return std::isfinite(a) && std::isfinite(b) && std::isfinite(c) && a > 0.0 && c != 0.0;
 }
 
-Vec2 CubicSpline::position(double t) const { return {t * t, ((a * t + b) * t + c) * t}; }
-
-CurveDerivatives CubicSpline::derivatives(double t) const {
-  return {position(t),
-          {2.0 * t, (3.0 * a * t + 2.0 * b) * t + c},
-          {2.0, 6.0 * a * t + 2.0 * b},
-          {0.0, 6.0 * a}};
-}
-
 LocalGeometry CubicSpline::geometry(double t) const {
   const double y1 = (3.0 * a * t + 2.0 * b) * t + c;
   const double y2 = 6.0 * a * t + 2.0 * b;
@@ -34,12 +25,6 @@ LocalGeometry CubicSpline::geometry(double t) const {
   const double kappa_s =
       (12.0 * a * t * speed2 - 3.0 * bend * (4.0 * t + y1 * y2)) / (speed2 * speed2 * speed2);
   return {std::atan2(y1, 2.0 * t), kappa, kappa_s};
-}
-
-Eigen::Matrix<double, 2, 3> CubicSpline::position_by_parameters(double t) const {
-  Eigen::Matrix<double, 2, 3> m;
-  m << 0.0, 0.0, 0.0, t * t * t, t * t, t;
-  return m;
 }
 
 FootPoint CubicSpline::foot_point(const Vec2& point) const {

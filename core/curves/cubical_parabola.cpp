@@ -11,23 +11,11 @@ namespace palpate {
 
 bool CubicalParabola::is_valid() const { return std::isfinite(a) && std::isfinite(c) && a != 0.0; }
 
-Vec2 CubicalParabola::position(double t) const { return {t, (a * t * t + c) * t}; }
-
-CurveDerivatives CubicalParabola::derivatives(double t) const {
-  return {position(t), {1.0, 3.0 * a * t * t + c}, {0.0, 6.0 * a * t}, {0.0, 6.0 * a}};
-}
-
 LocalGeometry CubicalParabola::geometry(double t) const {
   const double slope = 3.0 * a * t * t + c;
   const double q = 1.0 + slope * slope;
   return {std::atan(slope), 6.0 * a * t / (q * std::sqrt(q)),
           6.0 * a * (1.0 - 18.0 * a * t * t * (slope / q)) / (q * q)};
-}
-
-Eigen::Matrix<double, 2, 2> CubicalParabola::position_by_parameters(double t) const {
-  Eigen::Matrix<double, 2, 2> m;
-  m << 0.0, 0.0, t * t * t, t;
-  return m;
 }
 
 FootPoint CubicalParabola::foot_point(const Vec2& point) const {

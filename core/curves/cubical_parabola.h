@@ -20,11 +20,17 @@ struct CubicalParabola {
   /// Whether the parameters are finite and in the range of the canonical form.
   bool is_valid() const;
 
-  Vec2 position(double t) const;
-  CurveDerivatives derivatives(double t) const;
+  Vec2 position(double t) const { return {t, (a * t * t + c) * t}; }
+  CurveDerivatives derivatives(double t) const {
+    return {position(t), {1.0, 3.0 * a * t * t + c}, {0.0, 6.0 * a * t}, {0.0, 6.0 * a}};
+  }
   LocalGeometry geometry(double t) const;
   /// Derivative of the position by the shape parameters at fixed t; 2 x 2.
-  Eigen::Matrix<double, 2, 2> position_by_parameters(double t) const;
+  Eigen::Matrix<double, 2, 2> position_by_parameters(double t) const {
+    Eigen::Matrix<double, 2, 2> m;
+    m << 0.0, 0.0, t * t * t, t;
+    return m;
+  }
 
   /// Nearest point of the whole curve.
   FootPoint foot_point(const Vec2& point) const;

@@ -10,12 +10,6 @@ namespace palpate {
 
 bool Parabola::is_valid() const { return std::isfinite(a) && a > 0.0; }
 
-Vec2 Parabola::position(double t) const { return {a * t * t, 2.0 * a * t}; }
-
-CurveDerivatives Parabola::derivatives(double t) const {
-  return {{a * t * t, 2.0 * a * t}, {2.0 * a * t, 2.0 * a}, {2.0 * a, 0.0}, {0.0, 0.0}};
-}
-
 LocalGeometry Parabola::geometry(double t) const {
   const double q = 1.0 + t * t;
   return {std::atan2(1.0, t), -1.0 / (2.0 * a * q * std::sqrt(q)),  // (14)

@@ -19,8 +19,10 @@ struct Parabola {
   /// Whether the parameters are finite and in the range of the canonical form.
   bool is_valid() const;
 
-  Vec2 position(double t) const;
-  CurveDerivatives derivatives(double t) const;
+  Vec2 position(double t) const { return {a * t * t, 2.0 * a * t}; }
+  CurveDerivatives derivatives(double t) const {
+    return {{a * t * t, 2.0 * a * t}, {2.0 * a * t, 2.0 * a}, {2.0 * a, 0.0}, {0.0, 0.0}};
+  }
   LocalGeometry geometry(double t) const;
   /// Derivative of the position by the shape parameters at fixed t; 2 x 1.
   Eigen::Matrix<double, 2, 1> position_by_parameters(double t) const;

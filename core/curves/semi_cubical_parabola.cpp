@@ -14,15 +14,6 @@ bool SemiCubicalParabola::is_valid() const {
   return std::isfinite(a) && std::isfinite(b) && a > 0.0;
 }
 
-Vec2 SemiCubicalParabola::position(double t) const { return {t * t, (a * t + b) * t * t}; }
-
-CurveDerivatives SemiCubicalParabola::derivatives(double t) const {
-  return {position(t),
-          {2.0 * t, (3.0 * a * t + 2.0 * b) * t},
-          {2.0, 6.0 * a * t + 2.0 * b},
-          {0.0, 6.0 * a}};
-}
-
 LocalGeometry SemiCubicalParabola::geometry(double t) const {
   const double slope = 1.5 * a * t + b;
   const double q = 1.0 + slope * slope;
@@ -33,12 +24,6 @@ LocalGeometry SemiCubicalParabola::geometry(double t) const {
   const double kappa_s =
       -kappa * (q + 4.5 * a * t * slope) / (2.0 * t * std::abs(t) * q * std::sqrt(q));
   return {std::atan2(direction * slope, direction), kappa, kappa_s};
-}
-
-Eigen::Matrix<double, 2, 2> SemiCubicalParabola::position_by_parameters(double t) const {
-  Eigen::Matrix<double, 2, 2> m;
-  m << 0.0, 0.0, t * t * t, t * t;
-  return m;
 }
 
 FootPoint SemiCubicalParabola::foot_point(const Vec2& point) const {

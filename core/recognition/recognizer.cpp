@@ -282,11 +282,8 @@ class Recognizer::Impl {
     const auto kept = without_outliers(w, data, sigma_known, options_.false_outlier_probability);
     if (kept && work.allows()) {
       // A search is not followed: the outliers may have led it astray.
-      std::vector<SidedStart> nearer =
+      const std::vector<SidedStart> nearer =
           which == Starts::OfSearch ? std::vector<SidedStart>{} : std::move(w.starts);
-      for (SidedStart& sided : nearer) {
-        sided.no_conic = false;  // among the outliers
-      }
       Weighing again = weigh_in_full(*kept, sigma_known, patches, work,
                                      weigh_options(*kept, sigma_known), nearer);
       if (!work.was_cut()) {  // else the one before says more

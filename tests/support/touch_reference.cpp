@@ -126,11 +126,9 @@ void take_limits(ClassFits* fits) {
   for (const CurveClass curve_class : {CurveClass::Ellipse, CurveClass::Hyperbola}) {
     auto& fit = (*fits)[static_cast<std::size_t>(curve_class)];
     if (parabola && (!fit || fit->at_limit)) {
-      const double least_chi2 = fit ? fit->least_chi2 : 0.0;
       fit = parabola;
       fit->curve_class = curve_class;
       fit->at_limit = true;
-      fit->least_chi2 = least_chi2;
     }
   }
 }

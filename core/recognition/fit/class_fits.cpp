@@ -63,11 +63,9 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
                           ? refine_conic(points, *starts->conic, side, on_all, work)
                           : refine_conic(points, algebraic_conic(points), side, near_enough, work);
   bool usable = is_touchable(conic, reduced);
-  double least_chi2 = conic.chi2;  // of any conic, touchable or not
   const auto also_from = [&](double chi2, const ConicCoefficients& start) {
     if (!started && (!usable || chi2 < conic.chi2) && work.allows()) {
       const ImplicitFit other = refine_conic(points, start, side, near_enough, work);
-      least_chi2 = std::min(least_chi2, other.chi2);
       if (is_touchable(other, reduced) && (!usable || other.chi2 < conic.chi2)) {
         conic = other;
         usable = true;
@@ -120,7 +118,6 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
     } else if (parabola) {
       ClassFit limit = polynomial_class(curve_class, *parabola);
       limit.at_limit = true;
-      limit.least_chi2 = least_chi2;
       set(std::move(limit));
     }
   }

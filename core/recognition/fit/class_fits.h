@@ -29,7 +29,6 @@ struct ClassFit {
   /// The class has no interior optimum: chi2 is that of the neighbouring class to which the fit
   /// runs (e.g. the best ellipse or hyperbola is a parabola). There is no shape to report.
   bool at_limit = false;
-  double least_chi2 = 0.0;  ///< lower bound on chi2 of any curve of a class at its limit, if known
   std::optional<ImplicitFit> implicit;      ///< line, circle, ellipse, hyperbola
   std::optional<PolynomialFit> polynomial;  ///< parabola and the cubics
   /// A spline's optimum on the other side of c = 0; of few touches, the second best of all. If it

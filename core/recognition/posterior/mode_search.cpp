@@ -122,55 +122,6 @@ TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve
   return curve;
 }
 
-std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
-                                           double inflation, double least_chi2, WorkBudget& work) {
-  // The noise is lowered from what the start leaves to what it is: at each level the valley is wide
-  // enough to be walked along.
-  constexpr int kStepsPerLevel = 12;
-  constexpr double kLevel = 0.5;  // of the deviation
-  // At the first level chi-square is the number of points, and where a valley leads to the noise it
-  // stays about that. Three levels at which the curve did not come nearer: there is none.
-  constexpr double kLost = 64.0;
-  const double n = static_cast<double>(residual_count(data));
-  // The last level before all of the noise's weight has at least this much of it: what is lost
-  // there need not be walked to.
-  if (kLevel * kLevel * least_chi2 > kLost * n * inflation) {
-    return std::nullopt;
-  }
-  auto touch = touch_of(start, data);
-  if (!touch) {
-    return std::nullopt;
-  }
-  touch->weight = 1.0 / std::sqrt(inflation);
-  work.spend(WorkKind::PosteriorRow, 2 * rows_of_curve(data));
-  auto curve = curve_at(*touch, start, data);
-  if (!curve) {
-    return std::nullopt;
-  }
-  const double full = touch->weight;
-  double weight = full * std::min(1.0, std::sqrt(n / curve->chi2));
-  while (weight < full) {
-    if (!work.allows()) {
-      return std::nullopt;
-    }
-    touch->weight = weight;
-    work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
-    curve = curve_at(*touch, curve->z, *curve, data);
-    if (!curve) {
-      return std::nullopt;
-    }
-    curve = descend(*touch, data, *std::move(curve), -1, work, kStepsPerLevel);
-    if (curve->chi2 > kLost * n) {
-      return std::nullopt;
-    }
-    weight /= kLevel;
-  }
-  touch->weight = full;
-  curve = curve_at(*touch, curve->z, *curve, data);
-  return curve ? std::optional(descend(*touch, data, *std::move(curve), -1, work, kStepsFromFit))
-               : std::nullopt;
-}
-
 std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data,
                                                 const TouchedCurve& start, double log_least,
                                                 WorkBudget& work) {

@@ -43,13 +43,6 @@ TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve
                      WorkBudget& work, int most_steps = kStepsFromBeside,
                      double settled = kSettledPotential);
 
-/// The mode of likelihood times prior downhill from `start`, which need not be an optimum. nullopt
-/// if no mode comes near the points, or if double precision cannot hold `start` as a curve of its
-/// class. Noise variances are multiplied by `inflation`. `least_chi2`: lower bound on chi-square of
-/// any curve of the class.
-std::optional<TouchedCurve> posterior_mode(const CanonicalFit& start, const FitData& data,
-                                           double inflation, double least_chi2, WorkBudget& work);
-
 /// The mode that a shape of the prior leads to (prior_starts.h), if it holds more than `log_least`.
 /// The noise is lowered step by step from what the shape leaves to its true value. Reason: a fit
 /// far out in the prior's tails lies in a valley that is too narrow and bent to be walked along.

@@ -45,8 +45,14 @@ struct Slice {
   double log_density = 0.0;
 };
 
-/// How far a coordinate may be walked: half a turn for directions that come round again.
-double longest_walk(CurveClass curve_class, int k) {
+/// How far a coordinate may be walked from `z`: half a turn for directions that come round again,
+/// and to the parabola, where conics end.
+double longest_walk(CurveClass curve_class, int k, double z, double direction) {
+  constexpr double kLeastM = 1e-9;  // a conic of m = 0 is no other than the parabola
+  const bool conic = curve_class == CurveClass::Ellipse || curve_class == CurveClass::Hyperbola;
+  if (conic && k == 1 && direction < 0.0) {
+    return z - kLeastM;
+  }
   return curve_class == CurveClass::Ellipse && k == 2 ? 0.5 * std::numbers::pi
                                                       : std::numeric_limits<double>::infinity();
 }
@@ -55,7 +61,12 @@ double longest_walk(CurveClass curve_class, int k) {
 struct Walk {
   double step = 0.0;             ///< the first
   double smallest_change = 0.0;  ///< of the log density: after a smaller one the step is doubled
+  double tail = 0.0;             ///< below the highest log density, where the walk ends
 };
+
+/// Below a hundredth of its highest density a normal law has 0.2 % of its mass: a tenth of what
+/// odds are told to (kSettledPotential).
+constexpr double kTailOfMass = 4.6;
 
 /// Slices from `start` (not included) in one direction, until nothing of the `highest` log density
 /// seen is left or the class ends.
@@ -66,7 +77,7 @@ std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& st
   constexpr int kMostTries = 20;
   // Of it, from slice to slice: beyond it a shoulder of the density may lie between.
   constexpr double kLargestChange = 2.0;
-  const double longest = longest_walk(touch.curve_class, k);
+  const double longest = longest_walk(touch.curve_class, k, start.curve.z[k], direction);
   std::vector<Slice> slices;
   slices.reserve(kMostSlices);
   const Slice* last = &start;
@@ -85,14 +96,14 @@ std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& st
     }
     const double density = log_density(*curve, k);
     const double change = std::abs(density - last->log_density);
-    if (change > kLargestChange && last->log_density > top - 0.5 * kTailOfDensity) {
+    if (change > kLargestChange && last->log_density > top - 0.5 * how.tail) {
       step *= 0.5;
       continue;
     }
     slices.push_back({std::move(*curve), density});
     last = &slices.back();
     top = std::max(top, density);
-    if (density < top - kTailOfDensity) {
+    if (density < top - how.tail) {
       break;
     }
     if (change < how.smallest_change) {
@@ -233,8 +244,8 @@ std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& da
   if (k >= 0) {
     // A second moment needs finer slices than a mass.
     const double deviation = std::sqrt(covariance(k, k)) * mode.widths[k];
-    const Walk how =
-        slices == Slices::ForMoment ? Walk{0.5 * deviation, 0.05} : Walk{deviation, 0.5};
+    const Walk how = slices == Slices::ForMoment ? Walk{deviation, 0.05, kTailOfDensity}
+                                                 : Walk{deviation, 0.5, kTailOfMass};
     log_integral = integrate(data, how, &evidence, work).value_or(log_integral);
   }
   evidence.log_occam = log_integral + 0.5 * evidence.fitted_chi2 + evidence.log_all_modes;

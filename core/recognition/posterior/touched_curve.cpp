@@ -25,9 +25,9 @@ std::size_t reference_point(const FitData& data) {
 /// How the shape, the place and the tangent there move with each coordinate of the shape, by
 /// central differences.
 struct Motions {
-  std::array<Eigen::Vector3d, 4> shape;
-  std::array<double, 4> t{};
-  std::array<double, 4> turn{};
+  Eigen::Matrix<double, 3, 4> shape = Eigen::Matrix<double, 3, 4>::Zero();
+  Eigen::RowVector4d t = Eigen::RowVector4d::Zero();
+  Eigen::RowVector4d turn = Eigen::RowVector4d::Zero();
 };
 
 std::optional<Motions> motions_at(const Touch& touch, const TouchedVector& z) {
@@ -35,7 +35,6 @@ std::optional<Motions> motions_at(const Touch& touch, const TouchedVector& z) {
   Motions motions;
   const int own = shape_coordinates(touch.curve_class);
   for (int k = 0; k < own; ++k) {
-    const auto i = static_cast<std::size_t>(k);
     std::array<TouchedShape, 2> ends;
     std::array<Vec2, 2> tangents;
     double width = 0.0;
@@ -58,12 +57,12 @@ std::optional<Motions> motions_at(const Touch& touch, const TouchedVector& z) {
     if (!(width > 0.0)) {
       return std::nullopt;
     }
-    motions.shape[i] = (ends[1].values - ends[0].values) / width;
+    motions.shape.col(k) = (ends[1].values - ends[0].values) / width;
     // Eccentric angles may wrap.
     const double dt = touch.curve_class == CurveClass::Ellipse ? wrap_angle(ends[1].t - ends[0].t)
                                                                : ends[1].t - ends[0].t;
-    motions.t[i] = dt / width;
-    motions.turn[i] =
+    motions.t[k] = dt / width;
+    motions.turn[k] =
         std::atan2(cross(tangents[0], tangents[1]), tangents[0].dot(tangents[1])) / width;
   }
   return motions;
@@ -78,30 +77,28 @@ Eigen::Matrix<double, 2, 3> shape_rate(const Curve& curve, double t) {
 
 /// How a place of the curve moves with the parameters. That of a conic moves in proportion to its
 /// coordinates: no function of t is asked again.
-Eigen::Matrix<double, 2, 3> place_by_parameters(const Curve& curve, const TrialFoot& foot) {
-  Eigen::Matrix<double, 2, 3> by = Eigen::Matrix<double, 2, 3>::Zero();
-  if (const auto* circle = std::get_if<Circle>(&curve)) {
-    by.col(0) = foot.position / circle->a;
-  } else if (const auto* parabola = std::get_if<Parabola>(&curve)) {
-    by.col(0) = foot.position / parabola->a;
-  } else if (const auto* ellipse = std::get_if<Ellipse>(&curve)) {
-    by(0, 0) = foot.position.x() / ellipse->a;
-    by(1, 1) = foot.position.y() / ellipse->b;
-  } else if (const auto* hyperbola = std::get_if<Hyperbola>(&curve)) {
-    by(0, 0) = foot.position.x() / hyperbola->a;
-    by(1, 1) = foot.position.y() / hyperbola->b;
-  } else {
-    by = position_by_parameters(curve, foot.t);
-  }
-  return by;
+template <PlaneCurve C>
+auto place_by_parameters(const C& curve, const TrialFoot& foot) {
+  return curve.position_by_parameters(foot.t);
+}
+Vec2 place_by_parameters(const Circle& circle, const TrialFoot& foot) {
+  return foot.position / circle.a;
+}
+Vec2 place_by_parameters(const Parabola& parabola, const TrialFoot& foot) {
+  return foot.position / parabola.a;
+}
+Eigen::Matrix2d place_by_parameters(const Ellipse& ellipse, const TrialFoot& foot) {
+  return Vec2(foot.position.x() / ellipse.a, foot.position.y() / ellipse.b).asDiagonal();
+}
+Eigen::Matrix2d place_by_parameters(const Hyperbola& hyperbola, const TrialFoot& foot) {
+  return Vec2(foot.position.x() / hyperbola.a, foot.position.y() / hyperbola.b).asDiagonal();
 }
 
-/// The curve and the place on it that was touched, in its own frame, and how they move.
+/// The place that was touched, in the curve's own frame, and how it moves.
 struct Moving {
-  const Curve& canonical;
-  const Motions& motions;
-  const CurveDerivatives& at;
-  const Eigen::Matrix<double, 2, 3>& by_shape_at;
+  Motions motions;
+  CurveDerivatives at;
+  Eigen::Matrix<double, 2, 3> by_shape_at;
 };
 
 /// How places of an arc move with each of its coordinates (arc_coordinates.h), and their
@@ -126,9 +123,9 @@ ArcMotions arc_motions(const CurveDerivatives& at, double t_from_touch) {
 
 /// The measured normals' part of chi-square and its derivatives, the feet found. On its own, so
 /// that points without do not pay.
-[[gnu::noinline]] void add_normals(const Touch& touch, const FitData& data, const Moving& moving,
-                                   TouchedCurve* curve) {
-  const auto& [canonical, motions, at, by_shape_at] = moving;
+[[gnu::noinline]] void add_normals(const Touch& touch, const FitData& data, const Curve& canonical,
+                                   const Moving& moving, TouchedCurve* curve) {
+  const auto& [motions, at, by_shape_at] = moving;
   const int own = shape_coordinates(touch.curve_class);
   const Pose2& pose = curve->frame_T_curve;
   const Vec2 offset_direction = pose.rotate_back(left_of(touch.tangent));
@@ -159,10 +156,9 @@ ArcMotions arc_motions(const CurveDerivatives& at, double t_from_touch) {
           position_by_parameters(canonical, curve->t[i]) - by_shape_at;
       const Eigen::Matrix<double, 2, 3> by_shape_and_t = shape_rate(canonical, curve->t[i]);
       for (int k = 0; k < own; ++k) {
-        const auto j = static_cast<std::size_t>(k);
         row[k] = there.turn_by(
-            by_shape * motions.shape[j] - motions.turn[j] * lever - motions.t[j] * at.first,
-            by_shape_and_t * motions.shape[j] - motions.turn[j] * left_of(foot.first));
+            by_shape * motions.shape.col(k) - motions.turn[k] * lever - motions.t[k] * at.first,
+            by_shape_and_t * motions.shape.col(k) - motions.turn[k] * left_of(foot.first));
       }
     }
     row[own] = there.turn_by(offset_direction, Vec2::Zero());
@@ -174,6 +170,67 @@ ArcMotions arc_motions(const CurveDerivatives& at, double t_from_touch) {
   }
 }
 
+/// Feet of the points, their part of chi-square and of its derivatives. `curve`: all but these set.
+/// false if a foot has run away: no number tells how far the point is.
+template <PlaneCurve C>
+bool add_points(const Touch& touch, const FitData& data, const C& canonical, const Moving& moving,
+                TouchedCurve* curve) {
+  const auto& [motions, at, by_shape_at] = moving;
+  const auto own = static_cast<Eigen::Index>(shape_coordinates(touch.curve_class));
+  // By a coordinate of the shape, a place moves by its own part and, with the touched place, by
+  // -shift - turn * lever.
+  const Eigen::Matrix<double, 2, 4> shift = by_shape_at * motions.shape + at.first * motions.t;
+  const Eigen::Matrix<double, C::parameter_count, 4> shape =
+      motions.shape.template topRows<C::parameter_count>();
+  const Vec2 offset_direction = curve->frame_T_curve.rotate_back(left_of(touch.tangent));
+  const ToLocal to_local(curve->frame_T_curve);
+  constexpr Eigen::Index kRows = 8;  // at a time
+  Eigen::Matrix<double, kRows, kMostCoordinates> rows;
+  rows.setZero();
+  Eigen::Index r = 0;
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    const Vec2 point = to_local(data.points[i].position);
+    const double weight = touch.weight * data.points[i].inverse_sigma;
+    const TrialFoot foot = trial_foot(canonical, point, curve->t[i], 1.0 / weight);
+    curve->t[i] = foot.t;
+    const Vec2 away = point - foot.position;
+    const double foot_speed = foot.first.norm();
+    if (!std::isfinite(foot_speed)) {
+      return false;
+    }
+    // At a cusp the distance has no normal of the curve; it is its own.
+    const double distance = away.norm();
+    const Vec2 normal = foot_speed > 0.0 ? Vec2(left_of(foot.first) / foot_speed)
+                        : distance > 0.0 ? Vec2(away / distance)
+                                         : Vec2(0.0, 1.0);
+    const double residual = weight * away.dot(normal);
+    curve->chi2 += residual * residual;
+    const double lever = normal.dot(left_of(foot.position - at.position));
+    TouchedVector row = TouchedVector::Zero();
+    if (touch.as_arc) {
+      row.head<4>() = arc_motions(at, foot.t - curve->shape.t).of_place.transpose() * normal;
+    } else {
+      const auto by_shape = (normal.transpose() * place_by_parameters(canonical, foot)).eval();
+      row.head<4>() =
+          (by_shape * shape - normal.transpose() * shift - lever * motions.turn).transpose();
+    }
+    row[own] = normal.dot(offset_direction);
+    row[own + 1] = lever;
+    row = -weight * row.cwiseProduct(curve->widths);
+    curve->gradient += residual * row;
+    rows.row(r) = row;
+    if (++r == kRows) {
+      absorb_rows(&rows, &curve->root);
+      rows.setZero();
+      r = 0;
+    }
+  }
+  if (r > 0) {
+    absorb_rows(&rows, &curve->root);
+  }
+  return true;
+}
+
 /// Feet, chi-square and derivatives of `curve`, whose z, shape and starting t are set.
 bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
   const auto canonical = make_curve(touch.curve_class, curve->shape.values);
@@ -182,75 +239,21 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
     return false;
   }
   const CurveDerivatives at = derivatives(*canonical, curve->shape.t);
-  const double speed = at.first.norm();
-  if (!(speed > 0.0)) {
+  if (!(at.first.norm() > 0.0)) {
     return false;  // the cusp itself has no tangent
   }
-  const Vec2 tangent = at.first / speed;
-  Pose2& pose = curve->frame_T_curve;
-  pose = pose_of(touch, curve->z, *canonical, curve->shape.t);
+  curve->frame_T_curve = pose_of(touch, curve->z, *canonical, curve->shape.t);
   curve->widths = prior_widths(touch.chart(), curve->z);
   curve->log_prior = log_prior(touch.chart(), curve->z);
   curve->chi2 = 0.0;
-  // By coordinate k of the shape, a place moves by its own part and, with the touched place, by
-  // -shift_k - turn_k * lever.
-  const auto own = static_cast<std::size_t>(shape_coordinates(touch.curve_class));
-  const Eigen::Matrix<double, 2, 3> at_touch = position_by_parameters(*canonical, curve->shape.t);
-  std::array<Vec2, 4> shift;
-  for (std::size_t k = 0; k < own; ++k) {
-    shift[k] = at_touch * motions->shape[k] + speed * motions->t[k] * tangent;
-  }
-  const Vec2 offset_direction = pose.rotate_back(left_of(touch.tangent));
-  const ToLocal to_local(pose);
-  constexpr int kRows = 8;  // at a time
-  Eigen::Matrix<double, kRows, kMostCoordinates> rows =
-      Eigen::Matrix<double, kRows, kMostCoordinates>::Zero();
-  for (std::size_t i = 0; i < data.points.size(); ++i) {
-    const Vec2 point = to_local(data.points[i].position);
-    const double weight = touch.weight * data.points[i].inverse_sigma;
-    const TrialFoot foot = trial_foot(*canonical, point, curve->t[i], 1.0 / weight);
-    curve->t[i] = foot.t;
-    const Vec2 away = point - foot.position;
-    const double foot_speed = foot.first.norm();
-    const double distance = away.norm();
-    if (!std::isfinite(foot_speed)) {
-      return false;  // the foot has run away: no number tells how far the point is
-    }
-    // At a cusp the distance has no normal of the curve; it is its own.
-    const Vec2 normal = foot_speed > 0.0 ? Vec2(left_of(foot.first) / foot_speed)
-                        : distance > 0.0 ? Vec2(away / distance)
-                                         : Vec2(0.0, 1.0);
-    const double residual = weight * away.dot(normal);
-    curve->chi2 += residual * residual;
-    const double lever = normal.dot(left_of(foot.position - at.position));
-    const auto r = static_cast<Eigen::Index>(i % kRows);
-    const auto set = [&](std::size_t k, double value) {
-      const auto column = static_cast<Eigen::Index>(k);
-      rows(r, column) = -weight * value * curve->widths[column];
-      curve->gradient[column] += residual * rows(r, column);
-    };
-    if (touch.as_arc) {
-      const Eigen::RowVector4d of_arc =
-          normal.transpose() * arc_motions(at, foot.t - curve->shape.t).of_place;
-      for (std::size_t k = 0; k < own; ++k) {
-        set(k, of_arc[static_cast<Eigen::Index>(k)]);
-      }
-    } else {
-      const Eigen::RowVector3d by_shape =
-          normal.transpose() * place_by_parameters(*canonical, foot);
-      for (std::size_t k = 0; k < own; ++k) {
-        set(k, by_shape.dot(motions->shape[k]) - normal.dot(shift[k]) - motions->turn[k] * lever);
-      }
-    }
-    set(own, normal.dot(offset_direction));
-    set(own + 1, lever);
-    if (r + 1 == kRows || i + 1 == data.points.size()) {
-      absorb_rows(&rows, &curve->root);
-      rows.setZero();
-    }
+  const Moving moving{*motions, at, position_by_parameters(*canonical, curve->shape.t)};
+  const bool placed = std::visit(
+      [&](const auto& c) { return add_points(touch, data, c, moving, curve); }, *canonical);
+  if (!placed) {
+    return false;
   }
   if (!touch.normal_weights.empty()) {
-    add_normals(touch, data, {*canonical, *motions, at, at_touch}, curve);
+    add_normals(touch, data, *canonical, moving, curve);
   }
   return std::isfinite(curve->chi2) && curve->root.allFinite();
 }

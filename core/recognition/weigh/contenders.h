@@ -26,7 +26,6 @@ struct Contenders {
   ClassFits coarse;  ///< on the reduced points
   ClassFits fits;    ///< plausible ones with chi-square of all points; the best refined on them
   Evidences evidences;
-  bool no_conic = false;  ///< as SidedStart::no_conic
 };
 
 /// Copies the fits to the reduced points, with the chi-square of all points that these imply.

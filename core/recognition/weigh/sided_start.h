@@ -13,9 +13,6 @@ namespace palpate {
 struct SidedStart {
   std::vector<int> sides;  ///< one per patch (samples/tip_sides.h)
   WarmStart start;
-  /// True if no conic has an optimum that a probe could have touched, and no ellipse was found
-  /// nearby instead (conic_mode.h): it is not searched again.
-  bool no_conic = false;
   KeptModes modes = {};
 };
 

@@ -9,7 +9,6 @@
 #include "core/numerics/negligible.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/out_of_reach.h"
-#include "core/recognition/weigh/conic_mode.h"
 #include "core/recognition/weigh/contenders.h"
 #include "core/recognition/weigh/near_parts.h"
 #include "core/recognition/weigh/shared_deviations.h"
@@ -46,14 +45,6 @@ ClassFits testable(ClassFits fits, unsigned classes, const Arcs& arcs) {
   return fits;
 }
 
-/// Whether one class has all but what no answer depends on.
-bool is_sure(const ClassProbabilities& probabilities) {
-  constexpr double kElsewhere = 1e-3;
-  const CurveClass best = most_probable(probabilities);
-  return best != CurveClass::Unclassified &&
-         probabilities[static_cast<std::size_t>(best)] > 1.0 - kElsewhere;
-}
-
 /// A class placed on all points, and its chi-square there.
 struct Placed {
   CanonicalFit canonical;
@@ -70,15 +61,10 @@ Contenders contending(ClassFits coarse, const SidedStart* start, const EvidenceC
   contenders.fits = with_inferred_chi2(contenders.coarse, arcs.smooth);
   contenders.evidences = of_paths;
   if (start != nullptr) {
-    contenders.no_conic = start->no_conic;
     contenders.evidences.known = carried_modes(start->modes, contenders.coarse, context.reduced,
                                                context.likelihood.inflation(), context.work);
   }
-  contenders = refine_plausible(std::move(contenders), context, margin_of(options));
-  if (!is_sure(probabilities_of(contenders, context))) {
-    contenders = with_conic_mode(std::move(contenders), context, options.classes);
-  }
-  return contenders;
+  return refine_plausible(std::move(contenders), context, margin_of(options));
 }
 
 /// The best class, if it was refined on all points.
@@ -121,7 +107,6 @@ std::array<std::optional<CanonicalFit>, 9> placed_canonically(
 std::vector<SidedStart> starts_of(const SidedFits& sided, const Contenders& contenders) {
   const SideChoice& taken = sided.choice();
   std::vector<SidedStart> starts{{taken.sides, warm_start_from(contenders.coarse, taken.reduced)}};
-  starts.front().no_conic = contenders.no_conic;
   starts.front().modes = kept_modes(contenders.evidences, taken.reduced);
   for (const SideChoice& choice : sided.choices) {
     if (&choice != &taken) {

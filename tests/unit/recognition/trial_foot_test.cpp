@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <variant>
 
 #include "core/recognition/posterior/mode_search.h"
 #include "tests/support/random_scene.h"
@@ -12,6 +13,10 @@
 
 namespace palpate {
 namespace {
+
+TrialFoot trial_foot_of(const Curve& curve, const Vec2& point, double t, double sigma) {
+  return std::visit([&](const auto& c) { return trial_foot(c, point, t, sigma); }, curve);
+}
 
 /// Off the curve along its normal, as residuals are.
 double across(const TrialFoot& foot, const Vec2& point) {
@@ -36,7 +41,7 @@ TEST_P(TrialFootOf, TellsTheDistanceToAHundredthOfTheNoise) {
         for (std::size_t k = 0; k < scene.t[p].size(); ++k) {
           const Vec2 point = scene.world_T_curve.inverse() * scene.patches[p][k];
           const double start = scene.t[p][k];
-          const TrialFoot foot = trial_foot(curve, point, start, scene.sigma_m);
+          const TrialFoot foot = trial_foot_of(curve, point, start, scene.sigma_m);
           EXPECT_NEAR(across(foot, point), foot_point_near(curve, point, start).distance,
                       kSeen * scene.sigma_m)
               << scene.values.transpose() << ", t " << start;
@@ -57,7 +62,7 @@ TEST_P(TrialFootOf, IsAFootFarFromTheCurveToo) {
     const double sigma = 1e-5 * scene.sigma_m;
     for (std::size_t k = 0; k < scene.t[0].size(); ++k) {
       const Vec2 point = scene.world_T_curve.inverse() * scene.patches[0][k];
-      const TrialFoot foot = trial_foot(curve, point, scene.t[0][k], sigma);
+      const TrialFoot foot = trial_foot_of(curve, point, scene.t[0][k], sigma);
       EXPECT_LT((foot.position - position(curve, foot.t)).norm(), 1e-3 * sigma);
     }
   }
@@ -68,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(AllClasses, TrialFootOf, testing::ValuesIn(kCurveClasse
 
 TEST(TrialFoot, OfAnEllipsesCentreIsOnIt) {
   const TrialFoot foot =
-      trial_foot(*make_curve(CurveClass::Ellipse, {3.0, 2.0, 0.0}), Vec2::Zero(), 0.7, 1e-3);
+      trial_foot_of(*make_curve(CurveClass::Ellipse, {3.0, 2.0, 0.0}), Vec2::Zero(), 0.7, 1e-3);
   EXPECT_TRUE(std::isfinite(foot.t));
   EXPECT_TRUE(foot.position.allFinite());
 }
