@@ -11,39 +11,49 @@ namespace palpate {
 namespace {
 
 /// For each point of `reduced`, the kept one that lies nearest.
-std::vector<std::size_t> nearest_kept(const KeptModes& kept, const FitData& reduced) {
-  std::vector<Vec2> there;
-  there.reserve(kept.points.size());
-  for (const Vec2& point : kept.points) {
-    const Vec2 scaled = kept.scale * point;
-    there.push_back(reduced.frame.to_local(kept.frame * scaled) / reduced.scale);
-  }
+std::vector<std::size_t> nearest_kept(const std::vector<Vec2>& kept_m, const FitData& reduced) {
   std::vector<std::size_t> nearest;
   nearest.reserve(reduced.points.size());
   for (const FitPoint& point : reduced.points) {
+    const Vec2 place_m = world_m(reduced, point);
     const auto closer = [&](const Vec2& a, const Vec2& b) {
-      return (a - point.position).squaredNorm() < (b - point.position).squaredNorm();
+      return (a - place_m).squaredNorm() < (b - place_m).squaredNorm();
     };
     nearest.push_back(static_cast<std::size_t>(
-        std::min_element(there.begin(), there.end(), closer) - there.begin()));
+        std::min_element(kept_m.begin(), kept_m.end(), closer) - kept_m.begin()));
   }
   return nearest;
 }
 
-/// The mode as a fit to `reduced`, with the feet of the nearest points.
-CanonicalFit as_fit(const KeptMode& mode, const KeptModes& kept, const FitData& reduced,
-                    std::span<const std::size_t> nearest) {
-  const CurveClass curve_class = mode.chart.curve_class;
+KeptMode kept(const ClassEvidence& evidence, const FitData& reduced) {
+  const CurveClass curve_class = evidence.touch.curve_class;
+  const TouchedCurve& mode = evidence.nodes[evidence.mode].curve;
+  const double scale = reduced.scale;
   const auto in_metres = [&](double t) {
-    return normalised_shape(curve_class, {mode.shape.values, t}, 1.0 / kept.scale);
+    return normalised_shape(curve_class, {mode.shape.values, t}, 1.0 / scale);
   };
-  CanonicalFit fit;
-  fit.shape = {curve_class, in_metres(0.0).values};
+  KeptMode result;
+  result.place.shape = {curve_class, in_metres(0.0).values};
   const Pose2& pose = mode.frame_T_curve;
-  fit.world_T_curve = kept.frame * Pose2{kept.scale * pose.x, kept.scale * pose.y, pose.theta};
-  fit.points.resize(reduced.points.size());
+  result.place.world_T_curve = reduced.frame * Pose2{scale * pose.x, scale * pose.y, pose.theta};
+  result.as_arc = evidence.touch.as_arc;
+  for (const double t : mode.t) {
+    result.t.push_back(in_metres(t).t);
+  }
+  result.log_mass = log_mass(mode);
+  result.log_all_modes = evidence.log_all_modes;
+  result.fitted_chi2 = evidence.fitted_chi2;
+  return result;
+}
+
+/// The mode as a fit to other points, of which each has the foot of the kept one that is `nearest`.
+CanonicalFit as_fit(const KeptMode& mode, std::span<const std::size_t> nearest) {
+  CanonicalFit fit;
+  fit.shape = mode.place.shape;
+  fit.world_T_curve = mode.place.world_T_curve;
+  fit.points.resize(nearest.size());
   for (std::size_t i = 0; i < nearest.size(); ++i) {
-    fit.points[i].t = in_metres(mode.t[nearest[i]]).t;
+    fit.points[i].t = mode.t[nearest[i]];
   }
   return fit;
 }
@@ -51,27 +61,20 @@ CanonicalFit as_fit(const KeptMode& mode, const KeptModes& kept, const FitData& 
 }  // namespace
 
 KeptModes kept_modes(const Evidences& evidences, const FitData& reduced) {
-  KeptModes kept;
-  kept.frame = reduced.frame;
-  kept.scale = reduced.scale;
+  KeptModes result;
   if (residual_count(reduced) > reduced.points.size()) {
-    return kept;
+    return result;
   }
   for (const CurveClass curve_class : kCurveClasses) {
     const ClassEvidence* evidence = known_of(evidences, curve_class);
-    if (evidence == nullptr || !evidence->prior_mode_sought) {
-      continue;
-    }
-    const TouchedCurve& mode = evidence->nodes[evidence->mode].curve;
-    kept.modes.push_back({evidence->touch.chart(), mode.shape, mode.frame_T_curve, mode.t,
-                          log_mass(mode), evidence->log_all_modes, evidence->fitted_chi2});
-  }
-  if (!kept.modes.empty()) {
-    for (const FitPoint& point : reduced.points) {
-      kept.points.push_back(point.position);
+    if (evidence != nullptr && evidence->prior_mode_sought) {
+      result.modes.push_back(kept(*evidence, reduced));
     }
   }
-  return kept;
+  for (std::size_t i = 0; !result.modes.empty() && i < reduced.points.size(); ++i) {
+    result.points_m.push_back(world_m(reduced, reduced.points[i]));
+  }
+  return result;
 }
 
 std::vector<ClassEvidence> carried_modes(const KeptModes& kept, const ClassFits& fits,
@@ -83,14 +86,14 @@ std::vector<ClassEvidence> carried_modes(const KeptModes& kept, const ClassFits&
   if (kept.modes.empty()) {
     return carried;
   }
-  const std::vector<std::size_t> nearest = nearest_kept(kept, reduced);
+  const std::vector<std::size_t> nearest = nearest_kept(kept.points_m, reduced);
   for (const KeptMode& mode : kept.modes) {
-    const auto i = static_cast<std::size_t>(mode.chart.curve_class);
+    const auto i = static_cast<std::size_t>(mode.place.shape.curve_class);
     if (!fits[i]) {
       continue;
     }
-    auto evidence = at_mode(as_fit(mode, kept, reduced, nearest), mode.chart.as_arc,
-                            fits[i]->chi2 / inflation, reduced, inflation, work);
+    auto evidence = at_mode(as_fit(mode, nearest), mode.as_arc, fits[i]->chi2 / inflation, reduced,
+                            inflation, work);
     const double before = mode.log_mass + 0.5 * mode.fitted_chi2;
     if (evidence && evidence->log_occam > before - kLost) {
       evidence->prior_mode_sought = true;

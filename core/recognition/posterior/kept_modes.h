@@ -9,12 +9,11 @@
 
 namespace palpate {
 
-/// The mode of one class, in the frame of the points that it was found on.
+/// The mode of one class.
 struct KeptMode {
-  Chart chart;
-  TouchedShape shape;
-  Pose2 frame_T_curve;
-  std::vector<double> t;       ///< feet of the points
+  CanonicalPlace place;
+  bool as_arc = false;         ///< Touch::as_arc
+  std::vector<double> t;       ///< feet of the points, in the canonical frame
   double log_mass = 0.0;       ///< about it, by Laplace's formula
   double log_all_modes = 0.0;  ///< ClassEvidence's
   double fitted_chi2 = 0.0;    ///< ClassEvidence's
@@ -22,9 +21,7 @@ struct KeptMode {
 
 struct KeptModes {
   std::vector<KeptMode> modes;
-  std::vector<Vec2> points;  ///< normalised
-  Pose2 frame;               ///< FitData's frame of these points
-  double scale = 1.0;        ///< FitData's scale of these points [m]
+  std::vector<Vec2> points_m;  ///< that they were found on, in the world
 };
 
 /// The modes of the classes whose priors were asked for one. None of points with measured normals,

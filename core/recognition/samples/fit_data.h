@@ -67,6 +67,11 @@ struct FitData {
   }
 };
 
+/// A point of `data` in the world. [m]
+inline Vec2 world_m(const FitData& data, const FitPoint& point) {
+  return data.frame * Vec2(data.scale * point.position);
+}
+
 /// Converts stored samples to fit points. `default_sigma_m`: noise of samples that state none; 0 =
 /// not known [m]. `sigma_known` receives whether every point has a noise. If not, all points get
 /// noise 1 (normalised) over the root of their weight: only ratios count until the noise is

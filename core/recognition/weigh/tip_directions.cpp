@@ -22,8 +22,7 @@ std::vector<Vec2> directions_of(const Curve& curve, const CanonicalFit& fit, con
       continue;
     }
     work.spend(kind_of_foot(fit.shape.curve_class), 1);
-    const Vec2 local =
-        fit.world_T_curve.to_local(touches.frame * Vec2(touches.scale * point.position));
+    const Vec2 local = fit.world_T_curve.to_local(world_m(touches, point));
     const Vec2 along = derivatives(curve, foot_point(curve, local).t).first;
     const double length = along.norm();
     directions.push_back(

@@ -99,7 +99,7 @@ TEST(KeptModes, AreFoundAgain) {
     ASSERT_EQ(unmoved.size(), modes.modes.size()) << test::test_seed() << ' ' << i;
     for (std::size_t k = 0; k < carried.size(); ++k) {
       const double mass = log_mass(carried[k].nodes[carried[k].mode].curve);
-      EXPECT_EQ(carried[k].touch.curve_class, modes.modes[k].chart.curve_class);
+      EXPECT_EQ(carried[k].touch.curve_class, modes.modes[k].place.shape.curve_class);
       EXPECT_TRUE(carried[k].prior_mode_sought);
       // A descent that was ended by its number of steps goes on.
       EXPECT_GT(mass, modes.modes[k].log_mass - 2.0 * kSettledPotential)
