@@ -189,7 +189,9 @@ std::optional<NamedColumn> column_of(std::string_view name) {
   }
   const std::size_t last = words.rfind('_');
   if (last == std::string::npos) return std::nullopt;
-  const auto column = alias(words.substr(0, last));
+  std::string before_unit = words.substr(0, last);
+  if (before_unit.ends_with("_in")) before_unit.resize(before_unit.size() - 3);  // "x in mm"
+  const auto column = alias(std::move(before_unit));
   const auto unit =
       column ? unit_for(*column, std::string_view(words).substr(last + 1)) : std::nullopt;
   return unit ? std::optional(NamedColumn{*column, unit}) : std::nullopt;

@@ -7,18 +7,39 @@
 
 namespace palpate::test {
 
+/// Adds samples [begin, end) of a patch.
+inline void add_samples(const Scene& scene, double sigma_m, std::size_t patch, std::size_t begin,
+                        std::size_t end, Recognizer* recognizer) {
+  std::vector<ContactSample> samples;
+  for (std::size_t i = begin; i < end; ++i) {
+    samples.push_back({scene.patches[patch][i], sigma_m, 0});
+  }
+  PatchContext context;
+  context.patch = static_cast<std::uint32_t>(patch);
+  recognizer->add(context, samples);
+}
+
 /// Adds every patch. `sigma_m`: stated by the samples; 0 = not known.
 inline void add_scene(const Scene& scene, double sigma_m, Recognizer* recognizer) {
-  std::uint32_t number = 0;
-  for (const auto& patch : scene.patches) {
-    std::vector<ContactSample> samples;
-    for (const Vec2& position : patch) {
-      samples.push_back({position, sigma_m, 0});
-    }
-    PatchContext context;
-    context.patch = number++;
-    recognizer->add(context, samples);
+  for (std::size_t p = 0; p < scene.patches.size(); ++p) {
+    add_samples(scene, sigma_m, p, 0, scene.patches[p].size(), recognizer);
   }
+}
+
+/// Adds every patch, and lets the recognizer answer twice while the last one is still being
+/// touched: before its last two tenths. The next answer follows these.
+inline void add_scene_followed(const Scene& scene, double sigma_m, Recognizer* recognizer) {
+  const std::size_t last = scene.patches.size() - 1;
+  for (std::size_t p = 0; p < last; ++p) {
+    add_samples(scene, sigma_m, p, 0, scene.patches[p].size(), recognizer);
+  }
+  const std::size_t whole = scene.patches[last].size();
+  const std::size_t tenth = whole / 10;
+  add_samples(scene, sigma_m, last, 0, whole - 2 * tenth, recognizer);
+  recognizer->recognize();
+  add_samples(scene, sigma_m, last, whole - 2 * tenth, whole - tenth, recognizer);
+  recognizer->recognize();
+  add_samples(scene, sigma_m, last, whole - tenth, whole, recognizer);
 }
 
 inline Recognition recognise(const Scene& scene, double sigma_m,

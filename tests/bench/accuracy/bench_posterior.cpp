@@ -3,7 +3,7 @@
 // whether stated probabilities are true, errors compared with their covariance and with the bound,
 // and the time of recognize(). Prints tables.
 //   bench_posterior [--scenes N] [--seed S] [--noise stated|unknown] [--classes-only]
-//                   [--other-prior] [--csv FILE]
+//                   [--other-prior] [--followed] [--csv FILE]
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -34,6 +34,7 @@ struct Options {
   std::string noise = "stated";
   bool classes_only = false;
   bool other_prior = false;
+  bool followed = false;
   std::string csv;
 };
 
@@ -65,7 +66,8 @@ Row run(const Options& options, const test::ScenePrior& prior, std::uint32_t num
   row.us = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kRepetitions; ++i) {
     Recognizer recognizer;
-    test::add_scene(row.prior_scene.scene, sigma, &recognizer);
+    const auto add = options.followed ? test::add_scene_followed : test::add_scene;
+    add(row.prior_scene.scene, sigma, &recognizer);
     const double start = bench::thread_us();
     row.answer = recognizer.recognize();
     row.us = std::min(row.us, bench::thread_us() - start);
@@ -286,6 +288,9 @@ int main(int argc, char** argv) {
               .flag("--classes-only", options.classes_only, "No curves of no class")
               .flag("--other-prior", options.other_prior,
                     "Scenes from another prior: splines five times as frequent, arcs half as long")
+              .flag("--followed", options.followed,
+                    "Each answer the third about its scene, whose last patch was still touched "
+                    "at the others")
               .text("--csv", options.csv, "Write a row a scene into this file")
               .parse(argc, argv)) {
     return *end;
@@ -296,10 +301,11 @@ int main(int argc, char** argv) {
   for (int i = 0; i < options.scenes; ++i) {
     rows.push_back(run(options, prior, static_cast<std::uint32_t>(i)));
   }
-  std::printf("%d scenes, seed %llu, noise %s, %s%s; arcs %g to %g sizes, sigma/size %g to %g\n",
+  std::printf("%d scenes, seed %llu, noise %s, %s%s%s; arcs %g to %g sizes, sigma/size %g to %g\n",
               options.scenes, static_cast<unsigned long long>(options.seed), options.noise.c_str(),
               options.other_prior ? "splines five times as frequent" : "all kinds equally frequent",
-              options.classes_only ? ", no curves of no class" : "", prior.least_arc_over_size,
+              options.classes_only ? ", no curves of no class" : "",
+              options.followed ? ", answers followed" : "", prior.least_arc_over_size,
               prior.most_arc_over_size, prior.least_sigma_over_size, prior.most_sigma_over_size);
   print_classes(rows);
   print_calibrations(rows);

@@ -322,18 +322,6 @@ std::vector<test::Scene> scenes(CurveClass curve_class) {
   return all;
 }
 
-/// Samples [begin, end) of a patch.
-void add_samples(const test::Scene& scene, std::size_t patch, std::size_t begin, std::size_t end,
-                 Recognizer* recognizer) {
-  std::vector<ContactSample> samples;
-  for (std::size_t i = begin; i < end; ++i) {
-    samples.push_back({scene.patches[patch][i], scene.sigma_m, 0});
-  }
-  PatchContext context;
-  context.patch = static_cast<std::uint32_t>(patch);
-  recognizer->add(context, samples);
-}
-
 /// The answer for 222 samples from a recognizer that has answered for 212.
 Prepared warm(CurveClass curve_class) {
   const auto data = std::make_shared<std::vector<test::Scene>>(scenes(curve_class));
@@ -341,14 +329,15 @@ Prepared warm(CurveClass curve_class) {
   const auto before = [=](std::size_t i) {
     const test::Scene& scene = (*data)[i % data->size()];
     *recognizer = Recognizer();
-    add_samples(scene, 0, 0, scene.patches[0].size(), recognizer.get());
-    add_samples(scene, 1, 0, scene.patches[1].size() - kBatch, recognizer.get());
+    test::add_samples(scene, scene.sigma_m, 0, 0, scene.patches[0].size(), recognizer.get());
+    test::add_samples(scene, scene.sigma_m, 1, 0, scene.patches[1].size() - kBatch,
+                      recognizer.get());
     keep(recognizer->recognize());
   };
   const auto call = [=](std::size_t i) {
     const test::Scene& scene = (*data)[i % data->size()];
     const std::size_t whole = scene.patches[1].size();
-    add_samples(scene, 1, whole - kBatch, whole, recognizer.get());
+    test::add_samples(scene, scene.sigma_m, 1, whole - kBatch, whole, recognizer.get());
     keep(recognizer->recognize());
   };
   return {call, before};

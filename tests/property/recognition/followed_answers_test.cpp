@@ -10,32 +10,9 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kBatch = 11;  // samples that come between two answers: a tenth of a patch
-
-void add(const test::Scene& scene, double sigma_m, std::size_t patch, std::size_t begin,
-         std::size_t end, Recognizer* recognizer) {
-  std::vector<ContactSample> samples;
-  for (std::size_t i = begin; i < end; ++i) {
-    samples.push_back({scene.patches[patch][i], sigma_m, 0});
-  }
-  PatchContext context;
-  context.patch = static_cast<std::uint32_t>(patch);
-  recognizer->add(context, samples);
-}
-
-/// The third answer about a scene whose last patch was still being touched at the first and second.
 Recognition followed(const test::Scene& scene, double sigma_m) {
   Recognizer recognizer;
-  const std::size_t last = scene.patches.size() - 1;
-  const std::size_t whole = scene.patches[last].size();
-  for (std::size_t p = 0; p < last; ++p) {
-    add(scene, sigma_m, p, 0, scene.patches[p].size(), &recognizer);
-  }
-  add(scene, sigma_m, last, 0, whole - 2 * kBatch, &recognizer);
-  recognizer.recognize();
-  add(scene, sigma_m, last, whole - 2 * kBatch, whole - kBatch, &recognizer);
-  recognizer.recognize();
-  add(scene, sigma_m, last, whole - kBatch, whole, &recognizer);
+  test::add_scene_followed(scene, sigma_m, &recognizer);
   return recognizer.recognize();
 }
 

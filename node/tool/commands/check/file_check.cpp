@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <utility>
 
+#include "core/recognition/fewest_places.h"
 #include "node/files/counted.h"
 #include "node/tool/text/quantity.h"
 
@@ -119,6 +122,26 @@ void judge_copies(const std::string& probe, const std::vector<CheckedPatch>& pat
 }
 
 }  // namespace
+
+std::optional<Finding> too_few_places(const ContactGroup& group) {
+  std::set<std::pair<double, double>> places;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> patches;
+  for (const ContactRun& run : group.runs) {
+    patches.insert({run.context.probe, run.context.patch});
+    for (const ContactSample& sample : run.samples) {
+      places.insert({sample.position_m.x(), sample.position_m.y()});
+    }
+  }
+  const std::size_t fewest = patches.size() < kFewestPatches ? kFewestPlaces : kFewestPatches;
+  if (places.size() >= fewest) {
+    return std::nullopt;
+  }
+  return Finding{Severity::Warning, "", "only " + counted(places.size(), "place") + " touched",
+                 "there is no answer from fewer than " + std::to_string(kFewestPlaces) + ", or " +
+                     std::to_string(kFewestPatches) +
+                     " patches, unless fit --class names the class",
+                 true};
+}
 
 std::vector<Finding> check_group(const ContactGroup& group, double sigma_m) {
   std::vector<Finding> findings;

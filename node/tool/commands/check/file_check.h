@@ -1,6 +1,7 @@
 // What is wrong with a file of contacts, told to whoever made it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,10 @@
 #include "node/tool/contact_groups.h"
 
 namespace palpate {
+
+/// What `check` says of a group touched at so few places that there is no answer; the answer of
+/// `fit` says it itself.
+std::optional<Finding> too_few_places(const ContactGroup& group);
 
 /// Units, order, jumps, spacing, noise and stamps of one object's samples, those without a sigma
 /// taken to have this one (0 = unknown). Worst first.

@@ -240,8 +240,8 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
                  is_file ? "were these millimetres? Then say --unit mm"
                          : "coordinates are metres: were these millimetres?");
   }
-  constexpr double kLargestNoise = 1e-3;  // of a touch probe [m]
-  if (estimated_noise > kLargestNoise || largest_stated > kLargestNoise) {
+  constexpr double kLargestProbeNoiseM = 1e-3;  // of a touch probe [m]
+  if (estimated_noise > kLargestProbeNoiseM || largest_stated > kLargestProbeNoiseM) {
     add_spoiling(
         Severity::Error,
         "noise of " + text_of_length(std::max(estimated_noise, largest_stated)) +

@@ -2,8 +2,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <iostream>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "node/files/overwritten_input.h"
@@ -40,7 +43,7 @@ struct FitCommand {
   std::string part;
   std::string given_class;
   std::vector<std::string> probe_files;
-  std::vector<std::size_t> left_out;
+  std::vector<std::string> left_out;  ///< numbers, and ranges of them
   FileFlags file;
   bool patches_are_bounded = false;  ///< --most-patches was said
   RecognizerWords words;
@@ -86,25 +89,41 @@ std::string plot_path(const std::string& path, std::size_t number) {
   return stem + "-" + std::to_string(number) + ending;
 }
 
-/// What is wrong with the class given and what is to be left out, or nothing.
-std::string wrong_with_given(const FitCommand& fit, const std::vector<FitInput>& inputs) {
+using SampleNumbers = std::vector<std::size_t>;
+
+/// The samples of --leave-out, by number from 1.
+Result<SampleNumbers> left_out_of(const FitCommand& fit, const std::vector<FitInput>& inputs) {
   if (fit.left_out.empty()) {
-    return "";
+    return Result<SampleNumbers>::ok({});
   }
   if (inputs.size() != 1) {
-    return "--leave-out: for one group and object only, here are " + std::to_string(inputs.size());
+    return Result<SampleNumbers>::fail("--leave-out: for one group and object only, here are " +
+                                       std::to_string(inputs.size()));
   }
   std::size_t samples = 0;
   for (const ContactRun& run : inputs.front().group.runs) {
     samples += run.samples.size();
   }
-  for (const std::size_t number : fit.left_out) {
-    if (number == 0 || number > samples) {
-      return "--leave-out: there is no sample " + std::to_string(number) + ", samples are 1 to " +
-             std::to_string(samples);
+  SampleNumbers numbers;
+  for (const std::string& word : fit.left_out) {
+    const auto number = [&](std::string_view text) {
+      std::size_t value = 0;
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      const bool whole = error == std::errc() && end == text.data() + text.size();
+      return whole && value <= samples ? value : 0;
+    };
+    const std::size_t dash = word.find('-');
+    const std::size_t first = number(std::string_view(word).substr(0, dash));
+    const std::size_t last =
+        dash == std::string::npos ? first : number(std::string_view(word).substr(dash + 1));
+    if (first == 0 || last < first) {
+      return Result<SampleNumbers>::fail("--leave-out: '" + printable(word) +
+                                         "' names no samples: they are 1 to " +
+                                         std::to_string(samples) + ", as in 3,17 or 1-5");
     }
+    for (std::size_t i = first; i <= last; ++i) numbers.push_back(i);
   }
-  return "";
+  return Result<SampleNumbers>::ok(std::move(numbers));
 }
 
 /// What is wrong if a file that is read would be written over, or nothing.
@@ -162,8 +181,9 @@ int run(FitCommand& fit) {
     }
   }
   if (bad) return kUsage;
-  if (const std::string why = wrong_with_given(fit, inputs); !why.empty()) {
-    return complain(why, kUsage);
+  const Result<SampleNumbers> left_out = left_out_of(fit, inputs);
+  if (!left_out) {
+    return complain(left_out.error, kUsage);
   }
   if (const std::string why = wrong_with_outputs(fit, inputs.size()); !why.empty()) {
     return complain(why, kUsage);
@@ -199,8 +219,8 @@ int run(FitCommand& fit) {
     } else {
       notes = input.notes;
       const v1::GivenClassAnswer given =
-          fit_given({*curve_class_from_name(fit.given_class), fit.left_out}, group, fit.recognizer,
-                    probes, notes);
+          fit_given({*curve_class_from_name(fit.given_class), *left_out.value}, group,
+                    fit.recognizer, probes, notes);
       text = json ? json_line(given) : given_class_text(given);
       answer = given.recognition();
     }
@@ -301,9 +321,9 @@ void add_fit_command(CLI::App& app, int& exit_code) {
           ->check(curve_class_name())
           ->type_name("CLASS");
   command
-      ->add_option(
-          "--leave-out", fit->left_out,
-          "With --class: samples that are not to count, numbered from 1 in the file's order")
+      ->add_option("--leave-out", fit->left_out,
+                   "With --class: samples that are not to count, numbered from 1 in the file's "
+                   "order; 1-5 are five of them")
       ->delimiter(',')
       ->needs(given)
       ->type_name("NUMBER,...");

@@ -64,7 +64,7 @@ class Formats(unittest.TestCase):
         return "".join(separator.join(digits.format(scale * v) for v in point) + "\n" for point in WHOLE)
 
     def test_columns_by_common_names_with_their_units(self):
-        for header, scale in (("x_m,y_m", 1), ("x_mm,y_mm", 1e3), ("X [mm],Y [mm]", 1e3), ("x (um),y (um)", 1e6),
+        for header, scale in (("x_m,y_m", 1), ("x_mm,y_mm", 1e3), ("X [mm],Y [mm]", 1e3), ("X in mm,Y in mm", 1e3), ("x (um),y (um)", 1e6),
                               ("pos_x_in,pos_y_in", 1 / 0.0254), ('"Position X [\u00b5m]","Position Y [\u00b5m]"', 1e6)):
             self.check(header + "\n" + self.rows(scale))
             self.assertNotIn("unit", self.notes, header)
@@ -458,6 +458,10 @@ class Formats(unittest.TestCase):
         for told in ("1 jump of", "221 stamps earlier", "extend over", "--unit mm", "not fit"):
             self.assertIn(told, out)
         self.assertEqual(run(TOOL, "check", self.folder / "absent")[0], 2)
+        # Too few places for an answer, however many samples lie there.
+        path.write_text("x_m,y_m\n" + 9 * "0.01,0.02\n" + "0.02,0.02\n")
+        code, out, _ = run(TOOL, "check", path)
+        self.assertIn("only 2 places touched", out)
 
     def test_estimate_and_replay_read_them_too(self):
         path = self.folder / "points.txt"

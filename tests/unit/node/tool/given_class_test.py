@@ -75,6 +75,8 @@ class GivenClass(unittest.TestCase):
         # Without it the circle is known again; three touches leave no residual, but rounding's.
         _, (answer,), _ = fit(touches(points), "--class", "circle", "--sigma", "1e-5", "--leave-out", "5")
         self.assertEqual(answer.recognition.status, recognition_pb2.RECOGNITION_STATUS_RECOGNIZED)
+        _, (answer,), _ = fit(touches(points), "--class", "circle", "--sigma", "1e-5", "--leave-out", "1,4-6")
+        self.assertEqual(list(answer.left_out), [1, 4, 5, 6])
         _, (answer,), _ = fit(touches(points[:3]), "--class", "circle", "--sigma", "1e-9")
         self.assertNotEqual(answer.recognition.doubt, recognition_pb2.RECOGNITION_DOUBT_MISFIT)
 
@@ -171,7 +173,12 @@ class GivenClass(unittest.TestCase):
             self.assertFalse(answer.recognition.HasField("parameters"))
 
     def test_wrong_words_are_refused(self):
-        for arguments, word in ((("--class", "potato"), "potato"), (("--class", "circle", "--leave-out", "9"), "9"),
+        for arguments, word in ((("--class", "potato"), "potato"), (("--class", "circle", "--leave-out", "9"), "'9'"),
+                                (("--class", "circle", "--leave-out", "3-9"), "'3-9'"),
+                                (("--class", "circle", "--leave-out", "0-2"), "'0-2'"),
+                                (("--class", "circle", "--leave-out", "3-2"), "'3-2'"),
+                                (("--class", "circle", "--leave-out", "1-2-3"), "'1-2-3'"),
+                                (("--class", "circle", "--leave-out", "x"), "1-5"),
                                 (("--leave-out", "1"), "--class")):
             code, answers, err = fit(touches(SQUARE), *arguments)
             self.assertNotEqual(code, 0)
