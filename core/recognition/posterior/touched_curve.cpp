@@ -199,10 +199,9 @@ bool add_points(const Touch& touch, const FitData& data, const C& canonical, con
       return false;
     }
     // At a cusp the distance has no normal of the curve; it is its own.
-    const double distance = away.norm();
-    const Vec2 normal = foot_speed > 0.0 ? Vec2(left_of(foot.first) / foot_speed)
-                        : distance > 0.0 ? Vec2(away / distance)
-                                         : Vec2(0.0, 1.0);
+    const Vec2 normal = foot_speed > 0.0    ? Vec2(left_of(foot.first) / foot_speed)
+                        : !away.isZero(0.0) ? away.normalized()
+                                            : Vec2(0.0, 1.0);
     const double residual = weight * away.dot(normal);
     curve->chi2 += residual * residual;
     const double lever = normal.dot(left_of(foot.position - at.position));

@@ -14,6 +14,9 @@ struct TrialFoot {
   Vec2 first = Vec2::Zero();
 };
 
+/// By components, which stay in registers: Eigen's product loads pairs that were just stored apart.
+inline double dot(const Vec2& a, const Vec2& b) { return a.x() * b.x() + a.y() * b.y(); }
+
 /// A step of Newton's method on (C - p) . C' = 0.
 struct FootStep {
   double by = 0.0;     ///< of the parameter
@@ -22,10 +25,10 @@ struct FootStep {
 
 inline FootStep foot_step(const CurveDerivatives& at, const Vec2& point) {
   const Vec2 away = at.position - point;
-  const double speed2 = at.first.squaredNorm();
-  const double slope = speed2 + away.dot(at.second);
+  const double speed2 = dot(at.first, at.first);
+  const double slope = speed2 + dot(away, at.second);
   // At the centre of curvature the slope is 0; a Gauss-Newton step is safe.
-  return {-away.dot(at.first) / (slope > kLeastFootSlope * speed2 ? slope : speed2), slope};
+  return {-dot(away, at.first) / (slope > kLeastFootSlope * speed2 ? slope : speed2), slope};
 }
 
 /// Where a foot is sought: for a conic, whose parameter has no unit of length and changes with the
@@ -82,13 +85,13 @@ TrialFoot trial_foot(const C& curve, const Vec2& point, double t, double sigma) 
     // an error; across it, half of its square over the radius of curvature.
     const double step2 = step * step;
     const double left =
-        step2 * (1.5 * at.first.dot(at.second) + 0.5 * (at.position - point).dot(at.third)) / slope;
+        step2 * (1.5 * dot(at.first, at.second) + 0.5 * dot(at.position - point, at.third)) / slope;
     const double bend = 0.5 * left * left * cross(at.first, at.second);
     // A conic's fourth derivative is as long as its second, other classes have none.
-    const double series_error = step2 * step2 / 24.0 * at.second.norm();
+    const double series_error = step2 * step2 / 24.0 * std::sqrt(dot(at.second, at.second));
     const double negligible = kNegligible * sigma;
     if (std::abs(left) <= kConverging * std::abs(step) &&
-        bend * bend <= negligible * negligible * at.first.squaredNorm() &&
+        bend * bend <= negligible * negligible * dot(at.first, at.first) &&
         series_error <= negligible) {
       return {t + step,
               at.position + step * (at.first + step / 2.0 * (at.second + step / 3.0 * at.third)),
