@@ -1,6 +1,7 @@
 #include "core/recognition/posterior/class_limits.h"
 
 #include <cmath>
+#include <utility>
 
 #include "core/recognition/posterior/prior_modes.h"
 
@@ -68,7 +69,10 @@ void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood&
     const double fitted_chi2 = path->fitted_chi2 + above / evidences->inflation;
     const ClassEvidence* earlier = known_of(before, beyond);
     if (earlier != nullptr && earlier->prior_mode_sought) {
-      evidences->classes[b] = counted_from(fitted_chi2, *earlier);
+      ClassEvidence counted = counted_from(fitted_chi2, *earlier);
+      if (is_of_optimum(counted)) {
+        evidences->classes[b] = std::move(counted);
+      }
     } else {
       evidences->classes[b] = from_prior(beyond, fitted_chi2, *path, reduced, work);
     }
