@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <stdexcept>
 
 #include "tests/support/test_rng.h"
 
@@ -143,6 +144,7 @@ double random_arc(const SceneOptions& options, double total, double size, std::m
 
 void touch(const Piece& piece, const SceneOptions& options, double scale, std::mt19937_64& rng,
            Scene* scene) {
+  constexpr int kMostTries = 100000;
   const ArcTable table(piece);
   const double total = table.s.back();
   std::normal_distribution<double> noise(0.0, scene->sigma_m);
@@ -150,7 +152,10 @@ void touch(const Piece& piece, const SceneOptions& options, double scale, std::m
     const double stratum = total / options.patches;
     double begin = 0.0;
     double end = 0.0;
-    for (;;) {
+    for (int tries = 0;; ++tries) {
+      if (tries == kMostTries) {
+        throw std::invalid_argument("random_scene: a patch finds no place beside the cusp");
+      }
       const double arc =
           std::min(random_arc(options, total, options.size_m / scale, rng), 0.98 * stratum);
       begin = p * stratum + uniform(rng, 0.0, stratum - arc);

@@ -22,6 +22,7 @@ namespace palpate {
 namespace {
 
 constexpr int kScenes = 64;
+constexpr int kBesideCusp = 8;  // more patches find no place each beside it
 
 std::vector<test::Scene> scenes_of(CurveClass curve_class, int points_per_patch, int patches) {
   std::mt19937_64 rng(11);
@@ -31,6 +32,7 @@ std::vector<test::Scene> scenes_of(CurveClass curve_class, int points_per_patch,
   // Many patches share the curve piece among them.
   options.least_fraction = std::min(options.least_fraction, 0.5 / patches);
   options.most_fraction = std::min(options.most_fraction, 0.9 / patches);
+  options.across_cusp = patches > kBesideCusp;
   std::vector<test::Scene> scenes;
   for (int i = 0; i < std::max(8, 2 * kScenes / patches); ++i) {
     scenes.push_back(test::random_scene(curve_class, options, rng));
