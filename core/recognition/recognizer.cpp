@@ -141,7 +141,7 @@ class Recognizer::Impl {
     if (!have_places(data, fewest) || !have_extent(data)) {
       return answer;
     }
-    const auto strung = strung_touches(clean, options_.sigma_m, options_.classes, work);
+    auto strung = strung_touches(clean, options_.sigma_m, options_.classes, work);
     if (strung) {
       data = make_fit_data(strung->patches, options_.sigma_m, &sigma_known);
     }
