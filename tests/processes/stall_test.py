@@ -10,7 +10,7 @@ from bus import Bus, Probe, wait_for
 from programs import SOURCE, TOOL, run
 
 SLOW = SOURCE / "tests/data/hostile/slow_34440_samples.csv.gz"
-COPIES = 6  # of the slow input, as further patches of one group
+COPIES = 24  # of the slow input, as patches of one group: several times as long as a stop may take (kFinishTime)
 SLOW_GROUPS = 3  # more than there may be cores
 NAP_S = 0.01
 
