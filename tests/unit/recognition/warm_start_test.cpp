@@ -81,7 +81,7 @@ FitData in_frame(const FitData& data, const Pose2& old_T_new) {
 TEST(KeptModes, AreFoundAgain) {
   auto rng = test::test_rng();
   int kept = 0;
-  for (int i = 0; i < test::stress_count(40); ++i) {
+  for (int i = 0; i < 40; ++i) {
     const CurveClass truth = kCurveClasses[static_cast<std::size_t>(i) % kCurveClasses.size()];
     const test::Scene scene =
         test::random_scene(truth, {.patches = 2, .points_per_patch = 60}, rng);
