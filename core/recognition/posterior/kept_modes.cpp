@@ -1,11 +1,11 @@
 #include "core/recognition/posterior/kept_modes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <utility>
 
 #include "core/recognition/posterior/mode_search.h"
+#include "core/recognition/posterior/prior_modes.h"
 
 namespace palpate {
 namespace {
@@ -80,8 +80,6 @@ KeptModes kept_modes(const Evidences& evidences, const FitData& reduced) {
 std::vector<ClassEvidence> carried_modes(const KeptModes& kept, const ClassFits& fits,
                                          const FitData& reduced, double inflation,
                                          WorkBudget& work) {
-  // log: as much as a search must be able to gain to be made (prior_modes.cpp, kWorthAMode).
-  constexpr double kLost = 2.0;
   std::vector<ClassEvidence> carried;
   if (kept.modes.empty()) {
     return carried;
@@ -95,7 +93,7 @@ std::vector<ClassEvidence> carried_modes(const KeptModes& kept, const ClassFits&
     auto evidence = at_mode(as_fit(mode, nearest), mode.as_arc, fits[i]->chi2 / inflation, reduced,
                             inflation, work);
     const double before = mode.log_mass + 0.5 * mode.fitted_chi2;
-    if (evidence && evidence->log_occam > before - kLost) {
+    if (evidence && evidence->log_occam > before - kWorthAMode) {
       evidence->prior_mode_sought = true;
       evidence->log_all_modes = mode.log_all_modes;
       evidence->log_occam += mode.log_all_modes;

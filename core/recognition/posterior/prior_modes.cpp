@@ -29,7 +29,6 @@ std::size_t path_for(std::size_t i, const ClassFits& fits, const Likelihood& lik
 void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced,
                     const Likelihood& likelihood, double best, Evidences* evidences,
                     WorkBudget& work) {
-  constexpr double kWorthAMode = 2.0;   // log odds: a factor of seven
   constexpr double kWorthOthers = 4.0;  // log odds: a fiftieth
   constexpr double kLeftToPrior = 0.1;  // of a coordinate: a deviation of a third of the prior's
   auto& found = evidences->classes[i];

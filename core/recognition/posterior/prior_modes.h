@@ -12,6 +12,9 @@ namespace palpate {
 /// that is said to be more than 0.999 can be told from another (posterior_calibration_test).
 inline constexpr double kUnseenLogOdds = 9.0;
 
+/// log odds that a search must be able to gain: a factor of seven.
+inline constexpr double kWorthAMode = 2.0;
+
 /// Seeks them for every class of `fits` that may be seen beside the best, the best last: alone, it
 /// has all of the mass at any mode. `log_of_free_form`: log evidence of "unclassified".
 void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,

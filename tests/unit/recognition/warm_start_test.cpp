@@ -28,7 +28,8 @@ FitData on_cubic() {
   return data;
 }
 
-/// The same cubic with parameter `first + width (x + 1) / 2`: fits that were settled keep none.
+/// The same cubic with parameter `first + width (x + 1) / 2`: those of fits that were settled may
+/// lie anywhere.
 PolynomialFit cubic_fit(const FitData& data, double first, double width) {
   // x = (t - middle) / half
   const double half = 0.5 * width;

@@ -75,7 +75,7 @@ int check_file(const CheckCommand& command) {
                             counted(samples, "sample") + " in " +
                             counted(patches.size(), "patch", "patches"),
                         ""});
-    if (auto few = too_few_places(group)) findings.push_back(*std::move(few));
+    if (auto few = too_few_places(group, patches.size())) findings.push_back(*std::move(few));
     for (Finding& finding : check_group(group)) findings.push_back(std::move(finding));
   }
   sort_findings(&findings);

@@ -123,16 +123,14 @@ void judge_copies(const std::string& probe, const std::vector<CheckedPatch>& pat
 
 }  // namespace
 
-std::optional<Finding> too_few_places(const ContactGroup& group) {
+std::optional<Finding> too_few_places(const ContactGroup& group, std::size_t patches) {
   std::set<std::pair<double, double>> places;
-  std::set<std::pair<std::uint32_t, std::uint32_t>> patches;
   for (const ContactRun& run : group.runs) {
-    patches.insert({run.context.probe, run.context.patch});
     for (const ContactSample& sample : run.samples) {
       places.insert({sample.position_m.x(), sample.position_m.y()});
     }
   }
-  const std::size_t fewest = patches.size() < kFewestPatches ? kFewestPlaces : kFewestPatches;
+  const std::size_t fewest = patches < kFewestPatches ? kFewestPlaces : kFewestPatches;
   if (places.size() >= fewest) {
     return std::nullopt;
   }

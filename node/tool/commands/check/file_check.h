@@ -1,6 +1,7 @@
 // What is wrong with a file of contacts, told to whoever made it.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,9 +11,9 @@
 
 namespace palpate {
 
-/// What `check` says of a group touched at so few places that there is no answer; the answer of
-/// `fit` says it itself.
-std::optional<Finding> too_few_places(const ContactGroup& group);
+/// What `check` says of a group of so many patches, touched at so few places that there is no
+/// answer; the answer of `fit` says it itself.
+std::optional<Finding> too_few_places(const ContactGroup& group, std::size_t patches);
 
 /// Units, order, jumps, spacing, noise and stamps of one object's samples, those without a sigma
 /// taken to have this one (0 = unknown). Worst first.
