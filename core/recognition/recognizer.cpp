@@ -61,6 +61,18 @@ void doubt(Recognition* answer, Doubt doubt) {
   }
 }
 
+/// Whether a class that had more than `most` has less than a fiftieth of it left: a few samples
+/// seldom speak so strongly.
+bool has_lost_one(const ClassProbabilities& now, const ClassProbabilities& before, double most) {
+  constexpr double kLeft = 0.02;
+  for (std::size_t i = 1; i < now.size(); ++i) {
+    if (before[i] > most && now[i] < kLeft * before[i]) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 class Recognizer::Impl {
@@ -241,7 +253,8 @@ class Recognizer::Impl {
 
   /// From the last weighing while the object is touched on in the same patches; from a new search
   /// where they have grown by this, where there is another patch, and where a class comes out best
-  /// that was out.
+  /// that was out, or one is gone that might have kept it from being RECOGNIZED: following may have
+  /// lost its fit.
   /// `sought`: by_likelihood's.
   Weighed weigh_once_more(const FitData& data, bool sigma_known,
                           std::span<const StoredPatch> patches, std::span<const SidedStart> sought,
@@ -256,7 +269,10 @@ class Recognizer::Impl {
       Weighed weighed =
           weigh_without_outliers(data, sigma_known, patches, last_->starts, Starts::OfLast, work);
       const Weighing& w = weighed.w;
-      if (last_->probabilities[static_cast<std::size_t>(w.best)] > out || !work.allows()) {
+      const bool holds = last_->probabilities[static_cast<std::size_t>(w.best)] > out &&
+                         !has_lost_one(w.probabilities, last_->probabilities,
+                                       1.0 - options_.recognized_probability);
+      if (holds || !work.allows()) {
         last_->starts = w.starts;
         last_->probabilities = w.probabilities;
         return weighed;

@@ -36,6 +36,7 @@ std::optional<TouchedCurve> counted(TouchedCurve curve, double ratio) {
   curvature.diagonal().array() += 1.0;
   curve.chi2 *= ratio * ratio;
   curve.gradient *= ratio * ratio;
+  curve.left_to_gain = 0.0;
   return cholesky(TouchedMatrix(curvature), &curve.root) ? std::optional(std::move(curve))
                                                          : std::nullopt;
 }
@@ -48,12 +49,12 @@ double log_determinant(const TouchedMatrix& root) {
   return 2.0 * root.diagonal().array().log().sum();
 }
 
-double log_mass(const TouchedCurve& mode) {
-  return -potential(mode) - 0.5 * log_determinant(mode.root);
-}
-
 TouchedMatrix root_of(const TouchedCurve& curve, int fixed) {
   return fixed < 0 ? curve.root : root_without(curve.root, fixed);
+}
+
+double log_mass(const TouchedCurve& settled, int fixed) {
+  return settled.left_to_gain - potential(settled) - 0.5 * log_determinant(root_of(settled, fixed));
 }
 
 namespace {
@@ -75,15 +76,16 @@ Step step_from(const Touch& touch, const TouchedCurve& curve, int fixed) {
   return {by, 0.5 * slope.dot(by)};
 }
 
-/// Back into the valley: a step along it ends beside where it bends. nullopt where that does not
-/// lead below `highest` either. Beside a valley that bends as a parabola does, each step back
-/// leaves the square of what there was; one that leaves half is on its way elsewhere.
+/// Back into the valley, where it bends away from a step along it, with the coordinate held that
+/// the step moved most: let go, it would move as far again, and as far beside. nullopt where that
+/// does not lead below `highest` either. Each step back leaves the square of what there was; one
+/// that leaves a fifth is on its way elsewhere.
 std::optional<TouchedCurve> corrected(const Touch& touch, const FitData& data, TouchedCurve beside,
-                                      double highest, WorkBudget& work) {
+                                      int along, double highest, WorkBudget& work) {
   constexpr int kMostSteps = 4;  // digits double
-  constexpr double kConverging = 0.5;
+  constexpr double kConverging = 0.2;
   for (int i = 0; i < kMostSteps; ++i) {
-    const Step step = step_from(touch, beside, -1);
+    const Step step = step_from(touch, beside, along);
     work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
     auto there = curve_at(touch, beside.z - step.by.cwiseProduct(beside.widths), beside, data);
     if (!there || potential(*there) < highest) {
@@ -101,22 +103,35 @@ std::optional<TouchedCurve> corrected(const Touch& touch, const FitData& data, T
 
 TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed,
                      WorkBudget& work, int most_steps, double settled) {
+  // Of a step: where less of one leads down, kStepsFromFit of them gain a twentieth of what is
+  // left.
+  constexpr double kLeastPart = 0.05;
   double part = 1.0;
-  for (int i = 0; i < most_steps; ++i) {
+  for (int i = 0;; ++i) {
     const Step step = step_from(touch, curve, fixed);
-    if (!(part * step.gain > settled) || !work.allows()) {
+    if (!(step.gain > settled)) {
+      curve.left_to_gain = step.gain;
+      break;
+    }
+    if (i == most_steps || !(part * step.gain > settled) || !work.allows()) {
       break;
     }
     work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
     auto there = curve_at(touch, curve.z - part * step.by.cwiseProduct(curve.widths), curve, data);
     if (there && !(potential(*there) < potential(curve)) && fixed < 0) {
-      there = corrected(touch, data, *std::move(there), potential(curve), work);
+      Eigen::Index along = 0;
+      step.by.cwiseAbs().maxCoeff(&along);
+      there = corrected(touch, data, *std::move(there), static_cast<int>(along), potential(curve),
+                        work);
     }
     if (there && potential(*there) < potential(curve)) {
       curve = std::move(*there);
       part = std::min(1.0, 2.0 * part);
     } else {
       part *= 0.25;
+    }
+    if (part < kLeastPart) {
+      break;
     }
   }
   return curve;

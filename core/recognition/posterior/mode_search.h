@@ -21,12 +21,12 @@ double potential(const TouchedCurve& curve);
 /// log of the determinant of root root^T.
 double log_determinant(const TouchedMatrix& root);
 
-/// log of the integral about a mode by Laplace's formula, with all coordinates in units of the
-/// widths.
-double log_mass(const TouchedCurve& mode);
-
 /// The curve's root with coordinate `fixed` held (-1: none).
 TouchedMatrix root_of(const TouchedCurve& curve, int fixed);
+
+/// log of the integral about the mode beside `settled`, the end of a descent, by Laplace's formula,
+/// with all coordinates but `fixed` (-1: none) in units of the widths.
+double log_mass(const TouchedCurve& settled, int fixed = -1);
 
 /// Most steps of a descent. From a neighbouring slice the mode is near. From the optimum of the
 /// likelihood it may be far if the data determine little. These limits bound the time: descents end
@@ -35,8 +35,14 @@ TouchedMatrix root_of(const TouchedCurve& curve, int fixed);
 inline constexpr int kStepsFromBeside = 4;
 inline constexpr int kStepsFromFit = 8;
 
-/// Change of the potential at which a descent ends: odds are then right to a fiftieth.
-inline constexpr double kSettledPotential = 2e-2;
+/// Left to gain of the potential at which a descent ends that odds are asked of: a third of a
+/// deviation from the mode. It is counted as the linear model has it (log_mass). Most odds are then
+/// right to a fiftieth. Some valleys go down farther than the model tells, and bend on the way:
+/// what Laplace's formula leaves out of these is more than what their ends would add.
+inline constexpr double kSettledPotential = 5e-2;
+
+/// The same where the place itself is asked for: a fifth of a deviation.
+inline constexpr double kSettledPlace = 2e-2;
 
 /// Gauss-Newton steps down the potential, with coordinate `fixed` held (-1: none).
 TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed,

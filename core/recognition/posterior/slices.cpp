@@ -14,30 +14,39 @@
 namespace palpate {
 namespace {
 
-/// The curve with coordinate k moved to `value`, the others at their best.
-std::optional<TouchedCurve> slice(const Touch& touch, const FitData& data, const TouchedCurve& from,
-                                  int k, double value, WorkBudget& work) {
-  // The others follow as the linear model says.
-  const double moved = (value - from.z[k]) / from.widths[k];
-  TouchedVector pull = from.root * from.root.row(k).transpose();
+/// How the other coordinates follow coordinate k along the valley, as the linear model says.
+TouchedVector valley_slope(const TouchedCurve& curve, int k) {
+  TouchedVector pull = curve.root * curve.root.row(k).transpose();
   pull[k] = 0.0;
-  TouchedVector step = -moved * solve_cholesky(root_of(from, k), pull);
-  step[k] = 0.0;
-  for (const double part : {1.0, 0.0}) {
-    TouchedVector z = from.z + part * step.cwiseProduct(from.widths);
-    z[k] = value;
-    work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
-    if (auto curve = curve_at(touch, z, from, data)) {
-      return descend(touch, data, std::move(*curve), k, work);
-    }
+  TouchedVector slope = -solve_cholesky(root_of(curve, k), pull).cwiseProduct(curve.widths);
+  slope /= curve.widths[k];
+  slope[k] = 1.0;
+  return slope;
+}
+
+/// The valley at a curve of it, by coordinate k.
+struct Valley {
+  TouchedVector slope;
+  TouchedVector bend = TouchedVector::Zero();  ///< derivative of `slope`
+};
+
+/// The curve with coordinate k moved by `by`, the others at their best. `valley`: at `from`.
+std::optional<TouchedCurve> slice(const Touch& touch, const FitData& data, const TouchedCurve& from,
+                                  int k, double by, const Valley& valley, double settled,
+                                  WorkBudget& work) {
+  const TouchedVector z = from.z + by * (valley.slope + 0.5 * by * valley.bend);
+  work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
+  auto beside = curve_at(touch, z, from, data);
+  if (!beside) {
+    return std::nullopt;
   }
-  return std::nullopt;
+  return descend(touch, data, *std::move(beside), k, work, kStepsFromBeside, settled);
 }
 
 /// log of the density at a slice: the others integrated by Laplace's formula, coordinate k in units
 /// of its width at the optimum.
 double log_density(const TouchedCurve& curve, int k) {
-  return -potential(curve) - 0.5 * log_determinant(root_of(curve, k)) - std::log(curve.widths[k]);
+  return log_mass(curve, k) - std::log(curve.widths[k]);
 }
 
 struct Slice {
@@ -57,56 +66,81 @@ double longest_walk(CurveClass curve_class, int k, double z, double direction) {
                                                       : std::numeric_limits<double>::infinity();
 }
 
-/// How slices are laid.
+/// How slices are laid. Lengths are in deviations of a normal law that falls as far from its
+/// highest density: what falls faster or slower has its slices closer or farther apart.
 struct Walk {
-  double step = 0.0;             ///< the first
-  double smallest_change = 0.0;  ///< of the log density: after a smaller one the step is doubled
-  double tail = 0.0;             ///< below the highest log density, where the walk ends
+  double apart = 0.0;
+  double end = 0.0;      ///< from the highest density
+  double settled = 0.0;  ///< descend()'s
 };
 
-/// Below a hundredth of its highest density a normal law has 0.2 % of its mass: a tenth of what
-/// odds are told to (kSettledPotential).
-constexpr double kTailOfMass = 4.6;
+/// Sums of a normal law's density this far apart are off by 2 exp(-2 pi^2 / apart^2), a thousandth.
+/// Two of them pass three deviations, beyond which it has 0.3 % of its mass: what odds are told to
+/// is seven times that (kSettledPotential).
+constexpr Walk kWalkForMass{1.55, 3.0, kSettledPotential};
+
+/// Of its second moment a normal law has 0.3 % beyond the end.
+constexpr Walk kWalkForMoment{1.0, 3.75, kSettledPlace};
+
+/// How far from its highest density a normal law has fallen from one to the other.
+double deviations_below(double highest, double log_density) {
+  return std::sqrt(2.0 * std::max(highest - log_density, 0.0));
+}
 
 /// Slices from `start` (not included) in one direction, until nothing of the `highest` log density
-/// seen is left or the class ends.
+/// seen is left or the class ends. `deviation`: of coordinate k at `start`; its sign is the
+/// direction.
 std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& start, int k,
-                        double direction, const Walk& how, double* highest, WorkBudget& work) {
-  // A normal law ends after four steps of its deviation; a loose coordinate's are doubled.
+                        double deviation, const Walk& how, double* highest, WorkBudget& work) {
+  // Four are enough for a normal law; a loose coordinate's steps are doubled.
   constexpr std::size_t kMostSlices = 14;
   constexpr int kMostTries = 20;
-  // Of it, from slice to slice: beyond it a shoulder of the density may lie between.
-  constexpr double kLargestChange = 2.0;
-  const double longest = longest_walk(touch.curve_class, k, start.curve.z[k], direction);
+  // Of `apart`: beyond it a shoulder of the density may lie between, which matters from where a
+  // tenth of the highest is left.
+  constexpr double kTooFar = 1.25;
+  constexpr double kTenth = 2.15;
+  // Of a step that went too far: where the valley bends, slices lie beside it by the square of the
+  // step, unless they were lost on the way.
+  constexpr double kLeastShrink = 0.125;
+  // Of the first step: what is left to the end of the class has less than a tenth of the mass.
+  constexpr double kLeastRoom = 0.125;
+  const double longest = longest_walk(touch.curve_class, k, start.curve.z[k], deviation);
   std::vector<Slice> slices;
   slices.reserve(kMostSlices);
   const Slice* last = &start;
-  double& top = *highest;
-  double step = direction * how.step;
+  Valley valley{valley_slope(start.curve, k)};
+  double outside = std::numeric_limits<double>::infinity();  // where the class has no slice
+  double step = how.apart * deviation;
   for (int tried = 0; tried < kMostTries && slices.size() < kMostSlices; ++tried) {
-    const double room = longest - std::abs(last->curve.z[k] - start.curve.z[k]);
-    if (!(room > 0.0) || !work.allows()) {
+    const double walked = std::abs(last->curve.z[k] - start.curve.z[k]);
+    const double room = std::min(longest - walked, 0.5 * (outside - walked));
+    if (!(room > kLeastRoom * how.apart * std::abs(deviation)) || !work.allows()) {
       break;
     }
     const double length = std::copysign(std::min(std::abs(step), room), step);
-    auto curve = slice(touch, data, last->curve, k, last->curve.z[k] + length, work);
+    auto curve = slice(touch, data, last->curve, k, length, valley, how.settled, work);
     if (!curve) {
-      step *= 0.5;  // towards the end of the class
+      outside = walked + std::abs(length);
       continue;
     }
     const double density = log_density(*curve, k);
-    const double change = std::abs(density - last->log_density);
-    if (change > kLargestChange && last->log_density > top - 0.5 * how.tail) {
-      step *= 0.5;
+    const double top = std::max(*highest, density);
+    const double before = deviations_below(top, last->log_density);
+    const double here = deviations_below(top, density);
+    const double apart = std::abs(here - before);
+    if (apart > kTooFar * how.apart && before < kTenth) {
+      step *= std::clamp(std::sqrt(how.apart / apart), kLeastShrink, 0.5);
       continue;
     }
+    const TouchedVector slope = valley_slope(*curve, k);
+    valley = {slope, (slope - valley.slope) / length};
     slices.push_back({std::move(*curve), density});
     last = &slices.back();
-    top = std::max(top, density);
-    if (density < top - how.tail) {
+    *highest = top;
+    if (here > how.end) {
       break;
     }
-    if (change < how.smallest_change) {
+    if (apart < 0.5 * how.apart) {
       step *= 2.0;
     }
   }
@@ -156,8 +190,9 @@ int widest_coordinate(const Touch& touch, const TouchedCurve& best, const Touche
 
 /// log of the integral over the widest coordinate, by trapezoids between slices, which become the
 /// nodes. nullopt where the class is a single slice wide.
-std::optional<double> integrate(const FitData& data, const Walk& how, ClassEvidence* evidence,
-                                WorkBudget& work) {
+/// `deviation`: of that coordinate at the mode.
+std::optional<double> integrate(const FitData& data, double deviation, const Walk& how,
+                                ClassEvidence* evidence, WorkBudget& work) {
   const int k = evidence->widest;
   TouchedCurve mode = evidence->nodes[evidence->mode].curve;
   const double density = log_density(mode, k);
@@ -165,8 +200,8 @@ std::optional<double> integrate(const FitData& data, const Walk& how, ClassEvide
   slices.push_back({std::move(mode), density});
   const Slice start = slices.front();
   double top = density;
-  std::vector<Slice> behind = walk(evidence->touch, data, start, k, -1.0, how, &top, work);
-  std::vector<Slice> ahead = walk(evidence->touch, data, start, k, 1.0, how, &top, work);
+  std::vector<Slice> behind = walk(evidence->touch, data, start, k, -deviation, how, &top, work);
+  std::vector<Slice> ahead = walk(evidence->touch, data, start, k, deviation, how, &top, work);
   const std::size_t middle = behind.size();
   slices.insert(slices.begin(), std::make_move_iterator(behind.rbegin()),
                 std::make_move_iterator(behind.rend()));
@@ -205,7 +240,9 @@ bool runs_through(const ClassEvidence& sliced, const TouchedVector& other, const
       std::min_element(sliced.nodes.begin(), sliced.nodes.end(), [&](const auto& a, const auto& b) {
         return std::abs(a.curve.z[k] - other[k]) < std::abs(b.curve.z[k] - other[k]);
       });
-  const auto at = slice(sliced.touch, data, nearest->curve, k, other[k], work);
+  const TouchedCurve& beside = nearest->curve;
+  const auto at = slice(sliced.touch, data, beside, k, other[k] - beside.z[k],
+                        {valley_slope(beside, k)}, kSettledPotential, work);
   if (!at) {
     return false;
   }
@@ -233,8 +270,10 @@ std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& da
     if (!counted) {
       return std::nullopt;
     }
-    mode = descend(evidence.touch, data, *std::move(counted), -1, work, kStepsFromFit);
+    mode = *std::move(counted);
   }
+  const Walk& how = slices == Slices::ForMoment ? kWalkForMoment : kWalkForMass;
+  mode = descend(evidence.touch, data, std::move(mode), -1, work, kStepsFromFit, how.settled);
   const TouchedMatrix covariance = inverse_cholesky(mode.root);
   const int k = widest_coordinate(evidence.touch, mode, covariance, data, slices);
   double log_integral = log_mass(mode);
@@ -242,11 +281,8 @@ std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& da
   evidence.mode = 0;
   evidence.nodes = {{mode, 1.0}};
   if (k >= 0) {
-    // A second moment needs finer slices than a mass.
     const double deviation = std::sqrt(covariance(k, k)) * mode.widths[k];
-    const Walk how = slices == Slices::ForMoment ? Walk{deviation, 0.05, kTailOfDensity}
-                                                 : Walk{deviation, 0.5, kTailOfMass};
-    log_integral = integrate(data, how, &evidence, work).value_or(log_integral);
+    log_integral = integrate(data, deviation, how, &evidence, work).value_or(log_integral);
   }
   evidence.log_occam = log_integral + 0.5 * evidence.fitted_chi2 + evidence.log_all_modes;
   return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;

@@ -230,6 +230,22 @@ bool add_points(const Touch& touch, const FitData& data, const C& canonical, con
   return true;
 }
 
+/// Where to seek the feet on an arc: as far from the touched place as they were on `from`. The
+/// parameter of the spline that it is of changes with its coordinates, that length does not.
+std::vector<double> moved_feet(const TouchedCurve& from, const TouchedShape& arc) {
+  const auto speed_of = [](const TouchedShape& spline) {
+    const auto curve = make_curve(CurveClass::CubicSpline, spline.values);
+    return curve ? derivatives(*curve, spline.t).first.norm() : 0.0;
+  };
+  const double ratio = speed_of(from.shape) / speed_of(arc);
+  std::vector<double> feet;
+  feet.reserve(from.t.size());
+  for (const double t : from.t) {
+    feet.push_back(arc.t + ratio * (t - from.shape.t));
+  }
+  return feet;
+}
+
 /// Feet, chi-square and derivatives of `curve`, whose z, shape and starting t are set.
 bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
   const auto canonical = make_curve(touch.curve_class, curve->shape.values);
@@ -335,7 +351,7 @@ std::optional<TouchedCurve> curve_at(const Touch& touch, const TouchedVector& z,
   TouchedCurve curve;
   curve.z = z;
   curve.shape = *shape;
-  curve.t = from.t;
+  curve.t = touch.as_arc ? moved_feet(from, *shape) : from.t;
   return place_on(touch, data, &curve) ? std::optional(std::move(curve)) : std::nullopt;
 }
 

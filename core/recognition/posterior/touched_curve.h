@@ -42,6 +42,9 @@ struct TouchedCurve {
   /// `gradient`: J^T r.
   TouchedMatrix root = TouchedMatrix::Identity();
   TouchedVector gradient = TouchedVector::Zero();
+  /// Of -log(likelihood times prior), on to the mode, as the linear model has it: what a descent
+  /// that has settled leaves out (mode_search.h).
+  double left_to_gain = 0.0;
 };
 
 /// The pose, in the normalised frame, that puts place `t` of the curve where offset and turn of z

@@ -1,5 +1,6 @@
 // The evidence against integrals by brute force, and what follows from it.
 #include "core/recognition/posterior/posterior.h"
+#include "core/recognition/posterior/mode_search.h"
 #include "core/recognition/posterior/slices.h"
 
 #include <gtest/gtest.h>
@@ -122,8 +123,35 @@ TEST(ClassEvidence, OfACircleIsTheIntegralOverItsPrior) {
     constexpr std::array kSteps = {60, 30, 30};
     const double by_grid =
         log_occam_by_grid(*evidence, centre, data, low, high, kSteps, fitted_chi2);
-    // Slices end where the density is a thousandth; trapezoids between changes of up to e^2.
-    EXPECT_NEAR(evidence->log_occam, by_grid, 0.15) << "arc " << arc;
+    // The grid reaches as far as the slices. Their densities are right to a fiftieth each
+    // (kSettledPotential), sums of a normal law's that are 1.25 times as far apart as asked to a
+    // hundredth, and where steps change from one to the next that may be lost again.
+    EXPECT_NEAR(evidence->log_occam, by_grid, 0.1) << "arc " << arc;
+  }
+}
+
+/// A line's points are linear in its coordinates but for turn^2 / 2.
+TEST(ModeSearch, CountsWhatADescentLeavesToGain) {
+  std::mt19937_64 rng = test::test_rng();
+  const Fitted fitted(scene_of(CurveClass::Line, 0.3, 1e-4, 1, rng));
+  const FitData& data = fitted.smooth.reduced;
+  const auto evidence =
+      evidence_of(*fitted.canonical(CurveClass::Line), data, 1.0, test::unbounded_work());
+  ASSERT_TRUE(evidence.has_value());
+  const TouchedCurve mode = descend(evidence->touch, data, evidence->nodes.front().curve, -1,
+                                    test::unbounded_work(), kStepsFromFit, 1e-12);
+  for (const int k : {0, 1}) {
+    // A quarter of a deviation: a potential of 1 / 32 is left to gain, less than ends a descent.
+    TouchedVector z = mode.z;
+    z[k] += 0.25 * mode.widths[k] / mode.root.row(k).norm();
+    const auto beside = curve_at(evidence->touch, z, mode, data);
+    ASSERT_TRUE(beside.has_value());
+    const TouchedCurve left =
+        descend(evidence->touch, data, *beside, -1, test::unbounded_work(), kStepsFromFit);
+    EXPECT_EQ(left.z, z) << k;
+    EXPECT_NEAR(left.left_to_gain, 1.0 / 32.0, 1e-4) << k;
+    EXPECT_NEAR(log_mass(left), log_mass(mode), 1e-4) << k;
+    EXPECT_NEAR(potential(left) - potential(mode), 1.0 / 32.0, 1e-4) << k;
   }
 }
 
