@@ -62,8 +62,10 @@ build_commit() {  # side, commit
   mkdir -p "$tree/tests/bench"
   cp -Rp tests/support "$tree/tests/support"
   cp -Rp tests/bench/kernels "$tree/tests/bench/kernels"
-  printf '%s\n' 'find_package(GTest REQUIRED)' 'add_subdirectory(support)' 'add_subdirectory(bench/kernels)' \
-    >"$tree/tests/CMakeLists.txt"
+  # Commits from before headers were precompiled lack the function that tests/support asks for.
+  printf '%s\n' 'find_package(GTest REQUIRED)' 'if(NOT COMMAND palpate_use_precompiled)' \
+    '  function(palpate_use_precompiled)' '  endfunction()' 'endif()' 'add_subdirectory(support)' \
+    'add_subdirectory(bench/kernels)' >"$tree/tests/CMakeLists.txt"
   build "$1: $(git log -1 --format='%h %s' "$2")" "$tree" "$work/$1-build"
 }
 if [ -n "$new" ]; then build_commit new "$new"; else build "the working tree" . $work/new-build; fi

@@ -111,15 +111,21 @@ void take_prior_modes(const ClassEvidence& path, const FitData& data, double lea
   }
 }
 
-/// The fit in touched coordinates; nullopt if they do not hold it. Coordinates of a vertex far away
-/// lose digits. What is left must still tell the points apart as well as the noise does.
-std::optional<TouchedCurve> held_by(const Touch& touch, const CanonicalFit& fit, double fitted_chi2,
-                                    const FitData& data, WorkBudget& work) {
-  constexpr double kPartRounding = 1e-3;  // of a chi-square that has no chance
+/// The fit in touched coordinates; nullopt if it has none.
+std::optional<TouchedCurve> placed(const Touch& touch, const CanonicalFit& fit, const FitData& data,
+                                   WorkBudget& work) {
   work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
   auto curve = curve_at(touch, fit, data);
+  const bool is_arc = !touch.as_arc || (curve && shape_at(touch.chart(), curve->z, touch.shape));
+  return is_arc ? curve : std::nullopt;
+}
+
+/// Whether touched coordinates hold the fit. Those of a vertex far away lose digits. What is left
+/// must still tell the points apart as well as the noise does.
+bool holds(const TouchedCurve& curve, double fitted_chi2, const FitData& data) {
+  constexpr double kPartRounding = 1e-3;  // of a chi-square that has no chance
   const double rounding = static_cast<double>(residual_count(data)) + kPartRounding * fitted_chi2;
-  return curve && std::abs(curve->chi2 - fitted_chi2) <= rounding ? std::move(curve) : std::nullopt;
+  return std::abs(curve.chi2 - fitted_chi2) <= rounding;
 }
 
 /// Whether the data tell the sign of a spline's c, and not only its square.
@@ -135,8 +141,8 @@ void add_arc(const CanonicalFit& fit, const FitData& data, ClassEvidence* eviden
              WorkBudget& work) {
   Touch touch = evidence->touch;
   touch.as_arc = true;
-  auto curve = held_by(touch, fit, evidence->fitted_chi2, data, work);
-  if (!curve || !shape_at(touch.chart(), curve->z, touch.shape)) {
+  auto curve = placed(touch, fit, data, work);
+  if (!curve || !holds(*curve, evidence->fitted_chi2, data)) {
     return;
   }
   curve = descend(touch, data, *std::move(curve), -1, work, kStepsFromFit);
@@ -169,8 +175,8 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
   for (const FittedPoint& point : fit.points) {
     fitted_chi2 += point.residual * point.residual + point.normal_residual * point.normal_residual;
   }
-  auto first = held_by(*touch, fit, fitted_chi2 / inflation, data, work);
-  if (!first) {
+  auto first = placed(*touch, fit, data, work);
+  if (!first || !holds(*first, fitted_chi2 / inflation, data)) {
     return std::nullopt;
   }
   ClassEvidence evidence;
@@ -213,9 +219,8 @@ std::optional<ClassEvidence> at_mode(const CanonicalFit& start, bool as_arc, dou
   }
   touch->as_arc = as_arc;
   touch->weight = 1.0 / std::sqrt(inflation);
-  work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
-  auto curve = curve_at(*touch, start, data);
-  if (!curve || (as_arc && !shape_at(touch->chart(), curve->z, touch->shape))) {
+  auto curve = placed(*touch, start, data, work);
+  if (!curve) {
     return std::nullopt;
   }
   ClassEvidence evidence;
