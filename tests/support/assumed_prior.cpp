@@ -18,16 +18,13 @@ namespace {
 constexpr int kSamples = 111;
 
 /// Draws one coordinate by the inverse of its distribution function, the others at the centre: the
-/// prior's factors are independent, but for an ellipse's direction.
+/// prior's factors are independent, but for an ellipse's direction and size.
 class CoordinateLaw {
  public:
   CoordinateLaw(Chart chart, int k) {
     constexpr int kSteps = 200000;
     const CurveClass curve_class = chart.curve_class;
-    TouchedVector centre = prior_centre(chart);
-    if (curve_class == CurveClass::Ellipse) {
-      centre[1] = 1.0;  // of a direction nothing is told at the parabola's limit
-    }
+    const TouchedVector centre = prior_centre(chart);
     double sum = 0.0;
     double last = 0.0;
     for (int i = 0; i < kSteps; ++i) {
@@ -78,13 +75,16 @@ class ChartLaw {
       z[static_cast<Eigen::Index>(k)] = coordinates_[k](rng);
     }
     if (chart_.curve_class == CurveClass::Ellipse) {
-      z[1] = uniform(rng, 0.0, 1.0);
-      const auto density = [&] {
-        return std::pow(std::sin(z[2]), 2) + z[1] * std::pow(std::cos(z[2]), 2);
-      };
+      // z[0] is that of a circle, of which the box is as large; places evenly by arc length.
+      const double m = uniform(rng, 0.0, 1.0);
+      z[0] += std::log(m * std::sqrt(2.0 / (1.0 + m)));
+      z[1] = m;
+      double angle = 0.0;
+      const auto speed = [&] { return std::sqrt(1.0 - (1.0 - m) * std::pow(std::cos(angle), 2)); };
       do {
-        z[2] = uniform(rng, 0.0, kPi);
-      } while (uniform(rng, 0.0, 1.0) > density());
+        angle = uniform(rng, 0.0, kPi);
+      } while (uniform(rng, 0.0, 1.0) > speed());
+      z[2] = std::atan2(std::sqrt(m) * std::cos(angle), -std::sin(angle));
     }
     TouchedShape like;
     like.values[0] = uniform(rng, -1.0, 1.0) < 0.0 ? -1.0 : 1.0;
@@ -278,7 +278,10 @@ const std::vector<ClassLaw>& laws_of_classes() {
 
 }  // namespace
 
-AssumedScene draw_assumed(std::mt19937_64& rng) {
+AssumedScene draw_assumed(std::uint64_t seed, std::uint32_t number) {
+  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+                         number};
+  std::mt19937_64 rng(sequence);
   const auto& laws = laws_of_classes();
   AssumedScene scene;
   std::optional<std::vector<Vec2>> stroke;

@@ -1,7 +1,7 @@
 // Parts drawn from the very prior that the recogniser assumes (core/README.md, "The prior").
 #pragma once
 
-#include <random>
+#include <cstdint>
 #include <vector>
 
 #include "core/curves/curve_class.h"
@@ -23,6 +23,7 @@ struct AssumedScene {
 /// out, and so is its class's share: the odds of the others are as they were. Noise log-uniform
 /// from 1e-5 to 2e-3 half extents, half extent log-uniform from 5 mm to 0.5 m, within a metre of
 /// the origin.
-AssumedScene draw_assumed(std::mt19937_64& rng);
+/// Scene `number` does not depend on what others draw.
+AssumedScene draw_assumed(std::uint64_t seed, std::uint32_t number);
 
 }  // namespace palpate::test

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/numerics/log_add.h"
 #include "core/numerics/negligible.h"
 #include "core/numerics/small_cholesky.h"
 #include "core/recognition/posterior/mode_search.h"
@@ -136,14 +137,67 @@ bool tells_bend(const TouchedCurve& spline) {
   return spline.z[kBend] * spline.z[kBend] > 2.0 * kTailOfDensity * deviation * deviation;
 }
 
+/// log of the density that the half of the spline's prior that is one of arcs has at z over the
+/// other half's, both by the other half's coordinates; -infinity where no spline is.
+double log_ratio_of_arcs(const Touch& touch, const TouchedVector& z) {
+  constexpr double kStep = 1e-6;  // of a coordinate, by central differences
+  const auto arc_at = [&](const TouchedVector& at) {
+    TouchedVector arc = TouchedVector::Zero();
+    if (const auto shape = shape_at(touch.chart(), at, touch.shape)) {
+      arc.head<4>() = arc_coordinates_of(*shape);
+    }
+    return arc;
+  };
+  Eigen::Matrix4d by_coordinate;
+  for (int k = 0; k < 4; ++k) {
+    const double step = kStep * std::max(std::abs(z[k]), kStep);
+    TouchedVector ahead = z;
+    TouchedVector behind = z;
+    ahead[k] += step;
+    behind[k] -= step;
+    by_coordinate.col(k) = (arc_at(ahead) - arc_at(behind)).head<4>() / (2.0 * step);
+  }
+  const auto log_density = [](Chart chart, const TouchedVector& at) {
+    return log_prior(chart, at) - prior_widths(chart, at).head<4>().array().log().sum();
+  };
+  const double ratio = log_density({touch.curve_class, true}, arc_at(z)) +
+                       std::log(std::abs(by_coordinate.determinant())) -
+                       log_density(touch.chart(), z);
+  return std::isfinite(ratio) ? ratio : -std::numeric_limits<double>::infinity();
+}
+
+/// The least of it about a mode, two deviations along each coordinate: next to a cusp, which no arc
+/// is, it runs to infinity. -infinity where the descent has not settled, or the data leave place or
+/// bend so wide that the other half's own mode is elsewhere.
+double least_log_ratio_of_arcs(const Touch& touch, const TouchedCurve& mode) {
+  constexpr double kDeviations = 2.0;
+  constexpr double kWide = 0.1;   // of the prior's width
+  constexpr double kSeen = -4.0;  // log: a fiftieth of the evidence
+  const TouchedMatrix covariance = inverse_cholesky(mode.root);
+  double least = -std::numeric_limits<double>::infinity();
+  if (!(mode.left_to_gain > 0.0) || covariance(2, 2) > kWide * kWide ||
+      covariance(3, 3) > kWide * kWide) {
+    return least;
+  }
+  least = log_ratio_of_arcs(touch, mode.z);
+  for (int k = 0; k < 4 && least > kSeen; ++k) {
+    const TouchedVector by =
+        kDeviations / std::sqrt(covariance(k, k)) * covariance.col(k).cwiseProduct(mode.widths);
+    least = std::min(
+        {least, log_ratio_of_arcs(touch, mode.z + by), log_ratio_of_arcs(touch, mode.z - by)});
+  }
+  return least;
+}
+
 /// The half of the spline's prior that is one of arcs: the mode there of the same fit.
-void add_arc(const CanonicalFit& fit, const FitData& data, ClassEvidence* evidence,
+/// False if arc coordinates do not hold it.
+bool add_arc(const CanonicalFit& fit, const FitData& data, ClassEvidence* evidence,
              WorkBudget& work) {
   Touch touch = evidence->touch;
   touch.as_arc = true;
   auto curve = placed(touch, fit, data, work);
   if (!curve || !holds(*curve, evidence->fitted_chi2, data)) {
-    return;
+    return false;
   }
   curve = descend(touch, data, *std::move(curve), -1, work, kStepsFromFit);
   const double from_vertex = log_mass(evidence->nodes[evidence->mode].curve);
@@ -153,6 +207,7 @@ void add_arc(const CanonicalFit& fit, const FitData& data, ClassEvidence* eviden
     set_mode(*std::move(curve), evidence);
   }
   set_log_all_modes(std::log1p(std::exp(-std::abs(as_arc - from_vertex))), evidence);
+  return true;
 }
 
 }  // namespace
@@ -184,9 +239,13 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
   evidence.fitted_chi2 = first->chi2;
   const TouchedVector z = first->z;
   set_mode(descend(*touch, data, std::move(*first), -1, work, kStepsFromFit), &evidence);
-  if (touch->curve_class == CurveClass::CubicSpline &&
-      (is_seen_as_arc(z[2], z[3]) || tells_bend(evidence.nodes[evidence.mode].curve))) {
-    add_arc(fit, data, &evidence, work);
+  if (touch->curve_class == CurveClass::CubicSpline) {
+    const TouchedCurve& mode = evidence.nodes[evidence.mode].curve;
+    const bool is_linear = is_seen_as_arc(z[2], z[3]) || tells_bend(mode);
+    const bool is_added = is_linear && add_arc(fit, data, &evidence, work);
+    if (!is_added) {
+      set_log_all_modes(log_add(0.0, least_log_ratio_of_arcs(*touch, mode)), &evidence);
+    }
   }
   return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
 }

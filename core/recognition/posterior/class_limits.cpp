@@ -1,8 +1,11 @@
 #include "core/recognition/posterior/class_limits.h"
 
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <utility>
 
+#include "core/numerics/small_cholesky.h"
 #include "core/recognition/posterior/prior_modes.h"
 
 namespace palpate {
@@ -11,6 +14,16 @@ namespace {
 /// Of a conic that is no parabola, up to a constant.
 double log_density(CurveClass curve_class, const TouchedVector& z) {
   return log_prior({curve_class}, z) - std::log(prior_widths({curve_class}, z).head<3>().prod());
+}
+
+/// Where in the tail of a normal law beyond `from` the cube has its mean: that of an exponential
+/// law, 6^(1/3), times how far the tail reaches in the mean. Ellipses next to the parabola are as
+/// probable as the cube of m.
+double tail_of_cube(double from) {
+  constexpr double kOfCube = 1.817;
+  const double tail = 0.5 * std::erfc(from / std::numbers::sqrt2);
+  const double density = std::exp(-0.5 * from * from) / std::sqrt(2.0 * kPi);
+  return kOfCube * (tail > std::numeric_limits<double>::min() ? density / tail - from : 1.0 / from);
 }
 
 /// Whether the data tell m so narrowly that what lies beyond the parabola is a normal law's tail:
@@ -83,18 +96,24 @@ void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood&
   }
 }
 
-double log_density_ratio_at_parabola(CurveClass beyond, const ClassEvidence& parabola) {
-  const TouchedVector& z = parabola.nodes[parabola.mode].curve.z;
-  const double slope = z[1];
-  TouchedVector of_hyperbola = TouchedVector::Zero();
-  of_hyperbola.head<3>() << z[0], 0.0, slope;
-  TouchedVector of_ellipse = TouchedVector::Zero();
-  of_ellipse.head<3>() << z[0], 0.0, std::atan2(1.0, slope);
-  // Of the ellipse's direction by the hyperbola's slope.
-  const double log_rate = -std::log1p(slope * slope);
-  const double ratio = log_density(CurveClass::Ellipse, of_ellipse) + log_rate -
-                       log_density(CurveClass::Hyperbola, of_hyperbola);
-  return beyond == CurveClass::Ellipse ? ratio : -ratio;
+double log_density_ratio_beyond(CurveClass beyond, const ClassEvidence& inside) {
+  const TouchedCurve& mode = inside.nodes[inside.mode].curve;
+  const TouchedVector& z = mode.z;
+  TouchedVector there = z;
+  if (beyond == CurveClass::Hyperbola) {
+    const double slope = 1.0 / std::tan(z[2]);
+    if (!std::isfinite(slope)) {
+      return -std::numeric_limits<double>::infinity();  // in the middle of a side, far from any tip
+    }
+    there.segment<2>(1) << 0.0, slope;
+    // Of the ellipse's direction by the hyperbola's slope.
+    return log_density(beyond, there) -
+           (log_density(CurveClass::Ellipse, z) - std::log1p(slope * slope));
+  }
+  const double deviation = std::sqrt(inverse_cholesky(mode.root)(1, 1)) * mode.widths[1];
+  there.segment<2>(1) << tail_of_cube(z[1] / deviation) * deviation, std::atan2(1.0, z[2]);
+  return log_density(beyond, there) - std::log1p(z[2] * z[2]) -
+         log_density(CurveClass::Hyperbola, z);
 }
 
 }  // namespace palpate

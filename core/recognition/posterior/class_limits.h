@@ -32,7 +32,7 @@ void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood&
                 double best, const Evidences& before, Evidences* evidences, WorkBudget& work);
 
 /// log of the density that the prior of `beyond` (Ellipse or Hyperbola) has next to the parabola
-/// over the other's, at the curve of that parabola; both by m.
-double log_density_ratio_at_parabola(CurveClass beyond, const ClassEvidence& parabola);
+/// over that of the conic `inside`, on the other side, at its mode; both by m and by slope.
+double log_density_ratio_beyond(CurveClass beyond, const ClassEvidence& inside);
 
 }  // namespace palpate

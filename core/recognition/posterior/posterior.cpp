@@ -321,17 +321,16 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
   // Both modes of the spline.
   const double share = share_of_separate_rival(fits, likelihood, evidences);
   log_of[static_cast<std::size_t>(CurveClass::CubicSpline)] -= std::log1p(-share);
-  const auto& parabola = evidences.classes[static_cast<std::size_t>(CurveClass::Parabola)];
   for (const auto& [beyond, inside] : kConics) {
     const auto b = static_cast<std::size_t>(beyond);
     const auto i = static_cast<std::size_t>(inside);
-    if (fits[b] && fits[b]->at_limit && !std::isfinite(log_of[b]) && parabola && fits[i] &&
-        std::isfinite(log_of[i])) {
+    if (fits[b] && fits[b]->at_limit && !std::isfinite(log_of[b]) && evidences.classes[i] &&
+        fits[i] && std::isfinite(log_of[i])) {
       // To first order chi-square goes on beyond the parabola as it came: a normal law's tail.
       const double rise = likelihood.counted(fits[b]->chi2) - likelihood.counted(fits[i]->chi2);
       const double tail = 0.5 * std::erfc(std::sqrt(0.5 * std::max(rise, 0.0)));
       log_of[b] = log_of[i] - std::log1p(-tail) + std::log(std::max(tail, 1e-300)) +
-                  log_density_ratio_at_parabola(beyond, *parabola);
+                  log_density_ratio_beyond(beyond, *evidences.classes[i]);
     }
   }
   if (likelihood.coherent_or_other || evidences.shared_or_other) {

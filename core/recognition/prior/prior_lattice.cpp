@@ -68,9 +68,15 @@ Place place_at(CurveClass curve_class, const std::array<double, 3>& u) {
   };
   switch (curve_class) {
     case CurveClass::Ellipse: {
-      const Mapped part = slow_at_ends(u[1]);
       set(1, slow_at_ends(u[0]));
-      set(2, {0.5 * kPi * part.value, 0.5 * kPi * part.rate});
+      // Evenly in the eccentric angle, as the perimeter nearly is; the part keeps its size.
+      const Mapped part = slow_at_ends(u[1]);
+      const double angle = 0.5 * kPi * part.value;
+      const double ratio = std::sqrt(place.z[1]);
+      const double x = std::sin(angle);
+      const double y = ratio * std::cos(angle);
+      set(2, {std::atan2(y, x), 0.5 * kPi * part.rate * ratio / (x * x + y * y)});
+      place.z[0] += 0.5 * std::log(2.0 / (1.0 + place.z[1])) + std::log(place.z[1]);
       break;
     }
     case CurveClass::Hyperbola: {

@@ -40,27 +40,50 @@ constexpr StudentLaw kBend{4, 3.0};
 /// m = e^2 - 1 of hyperbolas, about 1: Cauchy's.
 constexpr StudentLaw kEccentricity{1, 1.0};
 
-double log_size(CurveClass curve_class, double log_length) {
-  // -2 log cosh without overflow.
-  const double x = std::abs(log_length - log_length_over_size(curve_class) - kLogSize);
-  return -2.0 * (x + std::log1p(std::exp(-2.0 * x)) - std::numbers::ln2);
+/// log of half the diagonal of an ellipse's box over p, m = b^2 / a^2, and its derivative.
+double log_diagonal_over_p(double m) { return 0.5 * std::log1p(m) - std::log(m); }
+double log_diagonal_derivative(double m) { return 0.5 / (1.0 + m) - 1.0 / m; }
+
+/// log of the size of the part over its middle, sqrt(20) half extents.
+double log_size(CurveClass curve_class, const TouchedVector& z) {
+  const double log_over_length = curve_class == CurveClass::Ellipse
+                                     ? log_diagonal_over_p(z[1])
+                                     : -log_length_over_size(curve_class);
+  return z[0] + log_over_length - kLogSize;
 }
-double log_size_derivative(CurveClass curve_class, double log_length) {
-  return -2.0 * std::tanh(log_length - log_length_over_size(curve_class) - kLogSize);
+
+/// log of the density of that.
+double log_of_size(double x) {
+  // -2 log cosh without overflow.
+  const double away = std::abs(x);
+  return -2.0 * (away + std::log1p(std::exp(-2.0 * away)) - std::numbers::ln2);
+}
+double log_of_size_derivative(double x) { return -2.0 * std::tanh(x); }
+
+/// A quarter of an ellipse's perimeter over a, right to 4e-4 (S. Ramanujan, 1914).
+double quarter_perimeter_over_a(double m) {
+  const double ratio = std::sqrt(m);
+  const double flattening = (1.0 - ratio) / (1.0 + ratio);
+  const double square = 3.0 * flattening * flattening;
+  return 0.25 * kPi * (1.0 + ratio) * (1.0 + square / (10.0 + std::sqrt(4.0 - square)));
+}
+
+/// What curvature on an ellipse is the power 3 / 2 of, 1 at its tips: by the tangent's direction
+/// from the major axis.
+double tip_likeness(double m, double direction) {
+  const double sine = std::sin(direction);
+  return sine * sine + m * (1.0 - sine * sine);
 }
 
 }  // namespace
 
 /// The length in a class's coordinates over the size of a part that ends where its slope to the
-/// axis is 3, some 70 degrees: the radius of a circle; p of an ellipse with b = 0.6 a, and of a
-/// parabola, whose box is then 4.5 p x 6 p; L of a cubical parabola, (2 x 2) L, and of the others,
-/// (4 x 16) L.
+/// axis is 3, some 70 degrees: the radius of a circle; p of a parabola, whose box is then
+/// 4.5 p x 6 p; L of a cubical parabola, (2 x 2) L, and of the others, (4 x 16) L.
 double log_length_over_size(CurveClass curve_class) {
   switch (curve_class) {
     case CurveClass::Circle:
       return std::log(1.0 / std::numbers::sqrt2);
-    case CurveClass::Ellipse:
-      return std::log(0.36 / 1.17);
     case CurveClass::Parabola:
     case CurveClass::Hyperbola:
       return std::log(1.0 / 3.75);
@@ -213,10 +236,12 @@ TouchedVector prior_centre(Chart chart) {
   if (chart.as_arc) {
     return centre;
   }
+  const bool conic =
+      chart.curve_class == CurveClass::Ellipse || chart.curve_class == CurveClass::Hyperbola;
+  centre[1] = conic ? 1.0 : 0.0;
   if (shape_coordinates(chart.curve_class) > 0) {
-    centre[0] = log_length_over_size(chart.curve_class) + kLogSize;
+    centre[0] = -log_size(chart.curve_class, centre);
   }
-  centre[1] = chart.curve_class == CurveClass::Hyperbola ? 1.0 : 0.0;
   return centre;
 }
 
@@ -240,9 +265,10 @@ TouchedVector prior_widths(Chart chart, const TouchedVector& z) {
       widths[0] = kSizeWidth;
       break;
     case CurveClass::Ellipse:
-      // m uniform in (-1, 0). A pose turned by half a turn is the same, so directions have half;
-      // their density, sin^2 + |m| cos^2, goes from uniform on the circle to the parabola's.
-      widths.head<3>() << kSizeWidth, kUniformWidth, 0.5 * kPi * (1.0 + z[1]) * kUniformWidth;
+      // m uniform in (-1, 0). Places are touched by their share of the perimeter, most densely, by
+      // direction, on the flat sides. A pose turned by half a turn is the same: half of it is all.
+      widths.head<3>() << kSizeWidth, kUniformWidth,
+          2.0 * quarter_perimeter_over_a(z[1]) * std::sqrt(z[1]) * kUniformWidth;
       break;
     case CurveClass::Hyperbola:
       // Three quarters of the law of m are positive. The place is w = e y / p, as which curvature
@@ -289,26 +315,26 @@ double log_prior(Chart chart, const TouchedVector& z) {
     }
     return sum;
   }
+  if (shape_coordinates(curve_class) == 0) {
+    return 0.0;
+  }
+  const double of_size = log_of_size(log_size(curve_class, z));
   switch (curve_class) {
-    case CurveClass::Circle:
-      return log_size(curve_class, z[0]);
-    case CurveClass::Ellipse: {
-      const double sine = std::sin(z[2]);
-      return log_size(curve_class, z[0]) + std::log(sine * sine + z[1] * (1.0 - sine * sine));
-    }
+    case CurveClass::Ellipse:
+      return of_size - 1.5 * std::log(tip_likeness(z[1], z[2]) / z[1]);
     case CurveClass::Parabola:
-      return log_size(curve_class, z[0]) + kSlope.log(z[1]);
+      return of_size + kSlope.log(z[1]);
     case CurveClass::Hyperbola:
-      return log_size(curve_class, z[0]) + kEccentricity.log(z[1] - 1.0) + kSlope.log(z[2]);
+      return of_size + kEccentricity.log(z[1] - 1.0) + kSlope.log(z[2]);
     case CurveClass::CubicalParabola:
-      return log_size(curve_class, z[0]) + kSlope.log(z[1]) + kPlaceFromInflection.log(z[2]);
+      return of_size + kSlope.log(z[1]) + kPlaceFromInflection.log(z[2]);
     case CurveClass::SemiCubicalParabola:
-      return log_size(curve_class, z[0]) + kSlope.log(z[1]) + kPlaceFromCusp.log(z[2]);
+      return of_size + kSlope.log(z[1]) + kPlaceFromCusp.log(z[2]);
     case CurveClass::CubicSpline:
-      return log_size(curve_class, z[0]) + kSlope.log(z[1]) + kPlaceFromCusp.log(z[2]) +
-             kBend.log(z[3]) - std::numbers::ln2;
+      return of_size + kSlope.log(z[1]) + kPlaceFromCusp.log(z[2]) + kBend.log(z[3]) -
+             std::numbers::ln2;
     default:
-      return 0.0;
+      return of_size;
   }
 }
 
@@ -322,15 +348,15 @@ TouchedVector log_prior_gradient(Chart chart, const TouchedVector& z) {
     return gradient;
   }
   if (shape_coordinates(curve_class) > 0) {
-    gradient[0] = log_size_derivative(curve_class, z[0]);
+    gradient[0] = log_of_size_derivative(log_size(curve_class, z));
   }
   switch (curve_class) {
     case CurveClass::Ellipse: {
-      const double sine = std::sin(z[2]);
+      const double likeness = tip_likeness(z[1], z[2]);
       const double cosine = std::cos(z[2]);
-      const double squares = sine * sine + z[1] * cosine * cosine;
-      gradient[1] = cosine * cosine / squares;
-      gradient[2] = 2.0 * (1.0 - z[1]) * sine * cosine / squares;
+      gradient[1] = gradient[0] * log_diagonal_derivative(z[1]) -
+                    1.5 * (cosine * cosine / likeness - 1.0 / z[1]);
+      gradient[2] = -1.5 * (1.0 - z[1]) * std::sin(2.0 * z[2]) / likeness;
       break;
     }
     case CurveClass::Parabola:
@@ -369,12 +395,12 @@ TouchedVector tail_weights(Chart chart, const TouchedVector& z) {
   }
   const TouchedVector slope = log_prior_gradient(chart, z);
   const TouchedVector widths = prior_widths(chart, z);
-  const TouchedVector centre = prior_centre(chart);
-  // The other coordinates of an ellipse have no tails.
-  const int tailed = curve_class == CurveClass::Ellipse ? 1 : shape_coordinates(curve_class);
-  for (int k = 0; k < tailed; ++k) {
-    const double away = z[k] - centre[k];
-    const double curvature = away != 0.0 ? -slope[k] / away : 0.0;
+  TouchedVector away = z - prior_centre(chart);
+  if (curve_class == CurveClass::Ellipse) {
+    away.head<3>() << log_size(curve_class, z), 0.0, std::remainder(z[2], kPi);  // m has no tail
+  }
+  for (int k = 0; k < shape_coordinates(curve_class); ++k) {
+    const double curvature = away[k] != 0.0 ? -slope[k] / away[k] : 0.0;
     if (curvature > 0.0) {
       weights[k] = std::min(1.0, curvature * widths[k] * widths[k]);
     }

@@ -36,8 +36,8 @@ TouchedShape normalised_shape(CurveClass curve_class, const TouchedShape& shape,
 /// Number of coordinates of shape and place: line 0, circle 1, parabola 2, spline 4, others 3.
 int shape_coordinates(CurveClass curve_class);
 
-/// Regular coordinates in which the prior is a product of independent factors (core/README.md, "The
-/// prior"):
+/// Regular coordinates. The prior is a product of independent factors in them, but an ellipse's
+/// size and directions, which depend on m (core/README.md, "The prior"):
 ///   circle: log radius
 ///   ellipse, hyperbola: log p and |m| of y^2 = 2 p x + m x^2, tangent's direction at the place
 ///   parabola: log p, tangent's direction
@@ -54,13 +54,14 @@ std::optional<TouchedShape> shape_at(Chart chart, const TouchedVector& z, const 
 /// the centre. Includes offset and turn, which are the same for every class.
 TouchedVector prior_widths(Chart chart, const TouchedVector& z);
 
-/// The maximum of the prior.
+/// A maximum of the prior; of ellipses the circle.
 TouchedVector prior_centre(Chart chart);
 
 /// Index of the coordinate of the place; -1 if all places are alike.
 int place_coordinate(CurveClass curve_class);
 
-/// log of (length whose logarithm is z[0] / size of the part).
+/// log of (length whose logarithm is z[0] / size of the part), whatever the rest of the shape: not
+/// of an ellipse.
 double log_length_over_size(CurveClass curve_class);
 
 /// log of (prior density at z / density that a normal law of the widths has at its centre): 0 at

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <random>
 #include <string>
 
 #include "core/recognition/recognizer.h"
@@ -61,14 +60,13 @@ int main(int argc, char** argv) {
               .parse(argc, argv)) {
     return *end;
   }
-  std::mt19937_64 rng(seed);
   test::Calibration pooled;
   std::array<test::Calibration, 9> by_class;
   std::array<double, 9> stated{};
   std::array<double, 9> variance{};
   std::array<int, 9> true_count{};
   for (int i = 0; i < scenes; ++i) {
-    const test::AssumedScene scene = test::draw_assumed(rng);
+    const test::AssumedScene scene = test::draw_assumed(seed, static_cast<std::uint32_t>(i));
     const CurveClass truth = scene.truth;
     const Recognition answer = recognised(scene, noise == "stated");
     ++true_count[static_cast<std::size_t>(truth)];

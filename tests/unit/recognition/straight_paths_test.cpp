@@ -24,12 +24,16 @@ TouchedVector drawn(CurveClass curve_class, std::mt19937_64& rng) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   TouchedVector z = prior_centre({curve_class});
   switch (curve_class) {
-    case CurveClass::Ellipse:
+    case CurveClass::Ellipse: {
       z[1] = uniform(rng);
-      do {  // density sin^2 + m cos^2
-        z[2] = kPi * uniform(rng);
-      } while (uniform(rng) > 1.0 - (1.0 - z[1]) * std::cos(z[2]) * std::cos(z[2]));
+      z[0] += std::log(z[1] * std::sqrt(2.0 / (1.0 + z[1])));  // half the diagonal is the size
+      double angle = 0.0;
+      do {  // evenly by arc length
+        angle = kPi * uniform(rng);
+      } while (uniform(rng) > std::hypot(std::sin(angle), std::sqrt(z[1]) * std::cos(angle)));
+      z[2] = std::atan2(std::sqrt(z[1]) * std::cos(angle), -std::sin(angle));
       break;
+    }
     case CurveClass::Hyperbola:
       do {
         z[1] = 1.0 + std::tan(kPi * (uniform(rng) - 0.5));

@@ -97,19 +97,60 @@ TEST(TouchedCoordinates, EveryFactorOfThePriorIsADensity) {
   EXPECT_NEAR(mass_along({CurveClass::CubicalParabola}, z, 0, -40, 40), 0.5, 1e-6);
   EXPECT_NEAR(mass_along({CurveClass::CubicalParabola}, z, 1, -kFar, kFar), 1.0, kTail);
   EXPECT_NEAR(mass_along({CurveClass::CubicalParabola}, z, 2, -kFar, kFar), 2.0, 2.0 * kTail);
-  // Ellipse: m over (0, 1); half a turn of directions is all of them, whatever the ellipse.
-  TouchedVector ellipse = centre_of(CurveClass::Ellipse);
-  ellipse[2] = 0.5 * kPi;
-  for (const double m : {0.01, 0.3, 0.99}) {
-    ellipse[1] = m;
-    EXPECT_NEAR(mass_along({CurveClass::Ellipse}, ellipse, 2, 0.0, kPi), 1.0, 1e-6) << m;
+  // Ellipse: m over (0, 1); the size is half the diagonal; half a turn of directions is all of
+  // them, whatever the ellipse. The perimeter is Ramanujan's.
+  for (const double m : {0.01, 0.3, 0.99, 1.0}) {
+    TouchedVector ellipse = TouchedVector::Zero();
+    ellipse.head<2>() << log_size + std::log(m / std::sqrt(1.0 + m)), m;
+    EXPECT_NEAR(log_prior({CurveClass::Ellipse}, ellipse), 0.0, 1e-14) << m;
+    EXPECT_NEAR(mass_along({CurveClass::Ellipse}, ellipse, 0, -40.0, 40.0), 1.0, 1e-6) << m;
+    EXPECT_NEAR(mass_along({CurveClass::Ellipse}, ellipse, 2, 0.0, kPi), 1.0, 4e-4) << m;
   }
-  ellipse[1] = 0.5;
-  EXPECT_NEAR(mass_along({CurveClass::Ellipse}, ellipse, 1, 0.0, 1.0), 1.0, 1e-6);
+  EXPECT_NEAR(prior_widths({CurveClass::Ellipse}, TouchedVector::Ones())[1] * std::sqrt(2.0 * kPi),
+              1.0, 1e-14);
   TouchedVector hyperbola = centre_of(CurveClass::Hyperbola);
   hyperbola[1] = 1.0;
   EXPECT_NEAR(mass_along({CurveClass::Hyperbola}, hyperbola, 1, 0.0, kFar), 1.0, kTail);
   EXPECT_NEAR(mass_along({CurveClass::Hyperbola}, hyperbola, 2, -kFar, kFar), 1.0, kTail);
+}
+
+/// Places of an ellipse are as probable as their share of the perimeter.
+TEST(TouchedCoordinates, AnEllipseIsTouchedEvenlyByArcLength) {
+  const Chart chart{CurveClass::Ellipse};
+  for (const double m : {0.003, 0.2, 0.9}) {
+    const Ellipse ellipse{1.0, std::sqrt(m)};
+    const auto log_density_at = [&](double t) {
+      const TouchedVector z = coordinates_of(chart, {{ellipse.a, ellipse.b, 0.0}, t});
+      return log_prior(chart, z) - std::log(prior_widths(chart, z)[2]);
+    };
+    for (double t = 0.1; t < 1.5; t += 0.2) {
+      // By direction arc length runs as the radius of curvature.
+      const double ratio = std::log(std::abs(ellipse.geometry(0.05).kappa)) -
+                           std::log(std::abs(ellipse.geometry(t).kappa));
+      EXPECT_NEAR(log_density_at(t) - log_density_at(0.05), ratio, 1e-12) << m << ' ' << t;
+    }
+  }
+}
+
+TEST_P(TouchedCoordinatesOf, DerivativesOfThePriorAreThoseOfDifferences) {
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < 100; ++i) {
+    TouchedShape shape = random_shape(GetParam().curve_class, rng);
+    const TouchedVector z = coordinates_of(GetParam(), shape);
+    const TouchedVector gradient = log_prior_gradient(GetParam(), z);
+    for (int k = 0; k < shape_coordinates(GetParam().curve_class); ++k) {
+      constexpr double kStep = 1e-6;
+      TouchedVector ahead = z;
+      TouchedVector behind = z;
+      ahead[k] += kStep;
+      behind[k] -= kStep;
+      const double difference =
+          (log_prior(GetParam(), ahead) - log_prior(GetParam(), behind)) / (2.0 * kStep);
+      // Rounding over the step, and third derivatives of up to its power -3 by m.
+      const double third = GetParam().curve_class == CurveClass::Ellipse ? std::pow(z[1], -3) : 1.0;
+      EXPECT_NEAR(gradient[k], difference, 1e-8 + 100.0 * kStep * kStep * third) << i << ' ' << k;
+    }
+  }
 }
 
 TEST_P(TouchedCoordinatesOf, DerivativesOfChiSquareAreThoseOfDifferences) {
