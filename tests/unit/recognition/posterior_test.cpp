@@ -155,6 +155,41 @@ TEST(ModeSearch, CountsWhatADescentLeavesToGain) {
   }
 }
 
+/// A spline of these coordinates, touched for half of the stroke to either side of its place.
+std::optional<ClassEvidence> evidence_of_spline(const TouchedVector& z, double sigma_m) {
+  const auto shape = shape_at({CurveClass::CubicSpline}, z, {});
+  const auto curve = make_curve(CurveClass::CubicSpline, shape->values);
+  test::Scene scene;
+  scene.curve_class = CurveClass::CubicSpline;
+  CanonicalFit fit;
+  fit.shape = {CurveClass::CubicSpline, shape->values};
+  scene.patches.emplace_back();
+  constexpr int kToEitherSide = 30;
+  for (int i = -kToEitherSide; i <= kToEitherSide; ++i) {
+    const double t = parameter_at_arc_length(*curve, shape->t, 1.0 * i / kToEitherSide);
+    scene.patches.front().push_back(position(*curve, t));
+    fit.points.push_back({t, 0.0, Vec2::Zero()});
+  }
+  return evidence_of(fit, test::fit_data(scene, sigma_m), 1.0, test::unbounded_work());
+}
+
+TEST(ClassEvidence, OfASharpBendInTheMiddleOfAStrokeIsMostlyThatOfAnArc) {
+  TouchedVector sharp = TouchedVector::Zero();
+  sharp.head<4>() << 4.08, 1.73, -0.0252, -0.053;
+  const auto of_arc = evidence_of_spline(sharp, 1e-4);
+  ASSERT_TRUE(of_arc.has_value());
+  EXPECT_FALSE(of_arc->touch.as_arc);
+  // The density of the arcs is e^10 times that of the other half at the mode, e^6 at the least
+  // beside it.
+  EXPECT_GT(of_arc->log_all_modes, 3.0);
+  // As sharp a bend that the stroke ends at is seldom one.
+  TouchedVector beside = sharp;
+  beside[2] = -0.3;
+  const auto of_cusp = evidence_of_spline(beside, 1e-4);
+  ASSERT_TRUE(of_cusp.has_value());
+  EXPECT_LT(of_cusp->log_all_modes, 0.1);
+}
+
 TEST(ClassEvidence, DoesNotChangeWithTheUnitOrThePlace) {
   std::mt19937_64 rng = test::test_rng();
   for (const CurveClass curve_class : kCurveClasses) {
