@@ -9,7 +9,7 @@
 
 #include "core/curves/curve.h"
 #include "core/curves/pose2.h"
-#include "core/recognition/prior/touched_coordinates.h"
+#include "core/recognition/prior/touched_prior.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate::test {

@@ -13,9 +13,13 @@
 #include "core/recognition/posterior/mode_search.h"
 #include "core/recognition/posterior/prior_starts.h"
 #include "core/recognition/prior/arc_coordinates.h"
+#include "core/recognition/prior/touched_prior.h"
 
 namespace palpate {
 namespace {
+
+/// log: less than a fiftieth of the best is not told.
+constexpr double kTold = 4.0;
 
 /// Laplace's formula at a mode.
 void set_mode(TouchedCurve mode, ClassEvidence* evidence) {
@@ -59,7 +63,6 @@ void set_log_all_modes(double log_all, ClassEvidence* evidence) {
 /// more than `least`, and of the mode that it has, if any.
 void take_prior_modes(const ClassEvidence& path, const FitData& data, double least,
                       ClassEvidence* evidence, WorkBudget& work) {
-  constexpr double kTold = 4.0;  // log: less than a fiftieth of the best is not told
   // log over `least`, e^-9 of the best class: what is left of a fiftieth. A class of less, which
   // the most probable start led to, is not worth the time of others.
   constexpr double kWorthMore = 5.0;
@@ -157,9 +160,6 @@ double log_ratio_of_arcs(const Touch& touch, const TouchedVector& z) {
     behind[k] -= step;
     by_coordinate.col(k) = (arc_at(ahead) - arc_at(behind)).head<4>() / (2.0 * step);
   }
-  const auto log_density = [](Chart chart, const TouchedVector& at) {
-    return log_prior(chart, at) - prior_widths(chart, at).head<4>().array().log().sum();
-  };
   const double ratio = log_density({touch.curve_class, true}, arc_at(z)) +
                        std::log(std::abs(by_coordinate.determinant())) -
                        log_density(touch.chart(), z);
@@ -171,8 +171,7 @@ double log_ratio_of_arcs(const Touch& touch, const TouchedVector& z) {
 /// bend so wide that the other half's own mode is elsewhere.
 double least_log_ratio_of_arcs(const Touch& touch, const TouchedCurve& mode) {
   constexpr double kDeviations = 2.0;
-  constexpr double kWide = 0.1;   // of the prior's width
-  constexpr double kSeen = -4.0;  // log: a fiftieth of the evidence
+  constexpr double kWide = 0.1;  // of the prior's width
   const TouchedMatrix covariance = inverse_cholesky(mode.root);
   double least = -std::numeric_limits<double>::infinity();
   if (!(mode.left_to_gain > 0.0) || covariance(2, 2) > kWide * kWide ||
@@ -180,7 +179,7 @@ double least_log_ratio_of_arcs(const Touch& touch, const TouchedCurve& mode) {
     return least;
   }
   least = log_ratio_of_arcs(touch, mode.z);
-  for (int k = 0; k < 4 && least > kSeen; ++k) {
+  for (int k = 0; k < 4 && least > -kTold; ++k) {
     const TouchedVector by =
         kDeviations / std::sqrt(covariance(k, k)) * covariance.col(k).cwiseProduct(mode.widths);
     least = std::min(

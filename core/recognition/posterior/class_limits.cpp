@@ -7,14 +7,10 @@
 
 #include "core/numerics/small_cholesky.h"
 #include "core/recognition/posterior/prior_modes.h"
+#include "core/recognition/prior/touched_prior.h"
 
 namespace palpate {
 namespace {
-
-/// Of a conic that is no parabola, up to a constant.
-double log_density(CurveClass curve_class, const TouchedVector& z) {
-  return log_prior({curve_class}, z) - std::log(prior_widths({curve_class}, z).head<3>().prod());
-}
 
 /// Where in the tail of a normal law beyond `from` the cube has its mean: that of an exponential
 /// law, 6^(1/3), times how far the tail reaches in the mean. Ellipses next to the parabola are as
@@ -107,13 +103,13 @@ double log_density_ratio_beyond(CurveClass beyond, const ClassEvidence& inside) 
     }
     there.segment<2>(1) << 0.0, slope;
     // Of the ellipse's direction by the hyperbola's slope.
-    return log_density(beyond, there) -
-           (log_density(CurveClass::Ellipse, z) - std::log1p(slope * slope));
+    return log_density({beyond}, there) -
+           (log_density({CurveClass::Ellipse}, z) - std::log1p(slope * slope));
   }
   const double deviation = std::sqrt(inverse_cholesky(mode.root)(1, 1)) * mode.widths[1];
   there.segment<2>(1) << tail_of_cube(z[1] / deviation) * deviation, std::atan2(1.0, z[2]);
-  return log_density(beyond, there) - std::log1p(z[2] * z[2]) -
-         log_density(CurveClass::Hyperbola, z);
+  return log_density({beyond}, there) - std::log1p(z[2] * z[2]) -
+         log_density({CurveClass::Hyperbola}, z);
 }
 
 }  // namespace palpate

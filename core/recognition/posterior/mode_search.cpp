@@ -6,6 +6,7 @@
 
 #include "core/numerics/small_cholesky.h"
 #include "core/numerics/triangular_root.h"
+#include "core/recognition/prior/touched_prior.h"
 
 namespace palpate {
 namespace {

@@ -10,6 +10,7 @@
 #include "core/numerics/triangular_root.h"
 #include "core/recognition/fit/measured_normal.h"
 #include "core/recognition/posterior/trial_foot.h"
+#include "core/recognition/prior/touched_prior.h"
 
 namespace palpate {
 namespace {

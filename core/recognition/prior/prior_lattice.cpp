@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/curves/curve.h"
+#include "core/recognition/prior/touched_prior.h"
 
 namespace palpate {
 namespace {
@@ -76,7 +77,7 @@ Place place_at(CurveClass curve_class, const std::array<double, 3>& u) {
       const double x = std::sin(angle);
       const double y = ratio * std::cos(angle);
       set(2, {std::atan2(y, x), 0.5 * kPi * part.rate * ratio / (x * x + y * y)});
-      place.z[0] += 0.5 * std::log(2.0 / (1.0 + place.z[1])) + std::log(place.z[1]);
+      place.z[0] = expected_log_length(curve_class, place.z);
       break;
     }
     case CurveClass::Hyperbola: {

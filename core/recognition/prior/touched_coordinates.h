@@ -1,4 +1,5 @@
-// Coordinates of a class relative to the place that was touched; its prior is defined in them.
+// Coordinates of a class relative to the place that was touched; its prior is defined in them
+// (touched_prior.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -50,31 +51,7 @@ TouchedVector coordinates_of(Chart chart, const TouchedShape& shape);
 /// parabola's a, and the place on a line or circle. nullopt outside the class.
 std::optional<TouchedShape> shape_at(Chart chart, const TouchedVector& z, const TouchedShape& like);
 
-/// Width of each coordinate's prior: standard deviation of the normal law with the same height at
-/// the centre. Includes offset and turn, which are the same for every class.
-TouchedVector prior_widths(Chart chart, const TouchedVector& z);
-
-/// A maximum of the prior; of ellipses the circle.
-TouchedVector prior_centre(Chart chart);
-
 /// Index of the coordinate of the place; -1 if all places are alike.
 int place_coordinate(CurveClass curve_class);
-
-/// log of (length whose logarithm is z[0] / size of the part), whatever the rest of the shape: not
-/// of an ellipse.
-double log_length_over_size(CurveClass curve_class);
-
-/// log of (prior density at z / density that a normal law of the widths has at its centre): 0 at
-/// the prior's centre, and for a spline that is no arc the log of 1 / 2.
-double log_prior(Chart chart, const TouchedVector& z);
-
-/// Derivatives of log_prior by the coordinates.
-TouchedVector log_prior_gradient(Chart chart, const TouchedVector& z);
-
-/// Weights for steps in a heavy tail. Along each coordinate -log_prior lies below a parabola that
-/// touches it at z. The weight is that parabola's curvature relative to the normal law of the same
-/// width, at most 1. It is small in a heavy tail, where steps with the normal law's curvature would
-/// hardly move.
-TouchedVector tail_weights(Chart chart, const TouchedVector& z);
 
 }  // namespace palpate

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/curves/curve.h"
-#include "core/recognition/prior/touched_coordinates.h"
+#include "core/recognition/prior/touched_prior.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {

@@ -1,4 +1,4 @@
-#include "core/recognition/prior/touched_coordinates.h"
+#include "core/recognition/prior/touched_prior.h"
 
 #include <gtest/gtest.h>
 
