@@ -57,7 +57,7 @@ double share_of_separate_rival(const ClassFits& fits, const Likelihood& likeliho
 /// What each class has in paths that are nearly straight. `before`: of the same line.
 void add_straight_paths(const ClassFits& fits, const Likelihood& likelihood, const BendOfLine& bend,
                         const Evidences* before, Evidences* evidences, WorkBudget& work) {
-  // One class's quadrature, beside an offset's cell: 235,000 instructions (callgrind).
+  // One class's quadrature at most, beside an offset's cell: 235,000 instructions (callgrind).
   constexpr std::size_t kCellsOfClass = 46;
   constexpr auto kLine = static_cast<std::size_t>(CurveClass::Line);
   const auto& line = *evidences->classes[kLine];

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -65,6 +66,31 @@ Rule over_highest(const Rule& curvature, const Rule& rate, const BendOfLine& ben
     }
   }
   return 0.25 * sum;
+}
+
+/// A shape of the prior by what is seen of it where it is large.
+struct StraightShape {
+  double curvature = 0.0;
+  double rate = 0.0;
+  double weight = 0.0;
+};
+
+/// Those that lie straight over most of their sizes first.
+const std::vector<StraightShape>& straight_shapes(CurveClass curve_class) {
+  static const auto all = [] {
+    std::array<std::vector<StraightShape>, kCurveClasses.size() + 1> result;
+    for (const CurveClass each : kCurveClasses) {
+      auto& shapes = result[static_cast<std::size_t>(each)];
+      for (const PriorShape& shape : prior_shapes(each)) {
+        shapes.push_back({std::abs(shape.curvature), std::abs(shape.rate), shape.weight});
+      }
+      std::stable_sort(shapes.begin(), shapes.end(), [](const auto& a, const auto& b) {
+        return a.weight * b.curvature * b.curvature > b.weight * a.curvature * a.curvature;
+      });
+    }
+    return result;
+  }();
+  return all[static_cast<std::size_t>(curve_class)];
 }
 
 /// The mean over a spline that is an arc (arc_coordinates.h), over the highest likelihood. Nearly
@@ -144,23 +170,41 @@ std::optional<BendOfLine> bend_of_line(const ClassEvidence& line, double chi2, c
 // With the size s over its centre's, curvature is k / s and its rate q / s^2. The prior of s is
 // such that v = 1 / (1 + s^2) is uniform in [0, 1], and the likelihood is one of sqrt(v / (1 - v)).
 double log_evidence_over_line(CurveClass curve_class, const BendOfLine& bend) {
+  // Of the sizes at which shapes are as straight as the points allow: a few of the shapes have
+  // nearly all. The rest is as likely as these were, on average.
+  constexpr double kMostLeft = 0.05;
   static const Rule places = rule_places();
   static const Rule weights = rule_weights();
   const double beyond = reach(bend);
   const double farthest_curvature = beyond + std::abs(bend.curvature);
   const double farthest_rate = beyond + std::abs(bend.rate);
+  const std::vector<StraightShape>& shapes = straight_shapes(curve_class);
+  const auto end_of = [&](const StraightShape& shape) {
+    const double by_curvature = farthest_curvature * bend.curvature_sigma / shape.curvature;
+    const double by_rate = farthest_rate * bend.rate_sigma / shape.rate;
+    const double most = std::min(by_curvature * by_curvature, by_rate);
+    return std::isfinite(most) ? most / (1.0 + most) : 1.0;
+  };
+  double all = 0.0;
+  for (const StraightShape& shape : shapes) {
+    all += shape.weight * end_of(shape);
+  }
+  double taken = 0.0;
   double sum = 0.0;
-  for (const PriorShape& shape : prior_shapes(curve_class)) {
-    const double k = std::abs(shape.curvature) / bend.curvature_sigma;
-    const double q = std::abs(shape.rate) / bend.rate_sigma;
-    const double by_curvature = farthest_curvature / k;
-    const double most = std::min(by_curvature * by_curvature, farthest_rate / q);
-    const double end = std::isfinite(most) ? most / (1.0 + most) : 1.0;
+  for (const StraightShape& shape : shapes) {
+    const double end = end_of(shape);
     const Rule v = end * places;
     const Rule inverse_square = v / (1.0 - v);
+    const double k = shape.curvature / bend.curvature_sigma;
+    const double q = shape.rate / bend.rate_sigma;
     sum += shape.weight * end *
            (weights * over_highest(k * inverse_square.sqrt(), q * inverse_square, bend)).sum();
+    taken += shape.weight * end;
+    if (taken > (1.0 - kMostLeft) * all) {
+      break;
+    }
   }
+  sum *= all / taken;
   if (curve_class == CurveClass::CubicSpline) {
     sum = 0.5 * (sum + mean_over_arcs(places, weights, farthest_curvature, farthest_rate, bend));
   }
