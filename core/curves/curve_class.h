@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -28,6 +29,14 @@ inline constexpr std::array kCurveClasses = {
     CurveClass::CubicalParabola,
     CurveClass::SemiCubicalParabola,
     CurveClass::CubicSpline,
+};
+
+/// A value for each class.
+template <typename T>
+struct ByClass : std::array<T, kCurveClasses.size() + 1> {
+  using std::array<T, kCurveClasses.size() + 1>::operator[];
+  constexpr T& operator[](CurveClass c) { return (*this)[static_cast<std::size_t>(c)]; }
+  constexpr const T& operator[](CurveClass c) const { return (*this)[static_cast<std::size_t>(c)]; }
 };
 
 /// Lower-case name with underscores ("semi_cubical_parabola").

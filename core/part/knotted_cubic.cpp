@@ -172,7 +172,7 @@ KnottedCubicFit fit_single_cubic(const FitData& data) {
   best.chi2 = std::numeric_limits<double>::infinity();
   for (const CurveClass curve_class : {CurveClass::CubicSpline, CurveClass::SemiCubicalParabola,
                                        CurveClass::CubicalParabola, CurveClass::Parabola}) {
-    const auto& coarse = fits[static_cast<std::size_t>(curve_class)];
+    const auto& coarse = fits[curve_class];
     if (!coarse || !coarse->polynomial) {
       continue;
     }

@@ -11,21 +11,20 @@ namespace palpate {
 namespace {
 
 Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
-  const auto i = static_cast<std::size_t>(curve_class);
   Hypothesis hypothesis;
   hypothesis.shape.curve_class = curve_class;
-  hypothesis.probability = w.probabilities[i];
+  hypothesis.probability = w.probabilities[curve_class];
   if (curve_class == CurveClass::Unclassified) {
     hypothesis.chi2 = w.smooth.chi2;
     hypothesis.dof = w.smooth.dof();
     return hypothesis;
   }
-  hypothesis.chi2 = w.fits[i]->chi2;
+  hypothesis.chi2 = w.fits[curve_class]->chi2;
   const std::size_t normals = curve_class == w.best ? w.stroke_normals : 0;
   hypothesis.dof =
       static_cast<int>(residual_count(w.data) + normals) - degrees_of_freedom(curve_class);
-  hypothesis.at_limit = w.fits[i]->at_limit;
-  if (const auto& canonical = w.canonical[i]) {
+  hypothesis.at_limit = w.fits[curve_class]->at_limit;
+  if (const auto& canonical = w.canonical[curve_class]) {
     hypothesis.shape = canonical->shape;
     hypothesis.world_T_curve = canonical->world_T_curve;
     hypothesis.covariance = w.inflation * canonical->covariance;
@@ -95,7 +94,7 @@ Recognition answer_by_likelihood(const Weighing& w, const BestMoments& moments,
       answer.hypotheses.begin(), answer.hypotheses.end(),
       [](const Hypothesis& a, const Hypothesis& b) { return a.probability > b.probability; });
   Hypothesis& best = answer.hypotheses.front();
-  const auto& canonical = w.canonical[static_cast<std::size_t>(best.shape.curve_class)];
+  const auto& canonical = w.canonical[best.shape.curve_class];
   if (canonical && moments.moment) {
     best.covariance = *moments.moment;
   }

@@ -220,7 +220,7 @@ class Recognizer::Impl {
         contacts_.of(weighed.patches ? *weighed.patches : patches, w.sides, weighed.outliers,
                      contact_options(told_deviation_m(moments, w.data.scale)));
     add_path(reported_tree_path(w, answer.contacts, options_.tree), &answer);
-    const double p_value = answer.tree_p_values[static_cast<std::size_t>(answer.shape.curve_class)];
+    const double p_value = answer.tree_p_values[answer.shape.curve_class];
     if (p_value < options_.tree.significance) {
       doubt(&answer, Doubt::TreeRejects);
     }
@@ -269,7 +269,7 @@ class Recognizer::Impl {
       Weighed weighed =
           weigh_without_outliers(data, sigma_known, patches, last_->starts, Starts::OfLast, work);
       const Weighing& w = weighed.w;
-      const bool holds = last_->probabilities[static_cast<std::size_t>(w.best)] > out &&
+      const bool holds = last_->probabilities[w.best] > out &&
                          !has_lost_one(w.probabilities, last_->probabilities,
                                        1.0 - options_.recognized_probability);
       if (holds || !work.allows()) {
@@ -325,7 +325,7 @@ class Recognizer::Impl {
   /// Weighed again with the spikes that the best class explains, where the class stands then.
   Weighed with_explained(Weighed weighed, WorkBudget& work) const {
     const Weighing& w = weighed.w;
-    const auto& best = w.canonical[static_cast<std::size_t>(w.best)];
+    const auto& best = w.canonical[w.best];
     const auto curve = best ? make_curve(w.best, best->shape.values) : std::nullopt;
     if (!curve) {
       return weighed;
@@ -349,8 +349,7 @@ class Recognizer::Impl {
     const FitData data = make_fit_data(*more, options_.sigma_m, &sigma_known);
     Weighed again =
         weigh_without_outliers(data, sigma_known, *more, last_->starts, Starts::OfLast, work);
-    if (work.was_cut() || again.w.best != w.best ||
-        !again.w.canonical[static_cast<std::size_t>(again.w.best)]) {
+    if (work.was_cut() || again.w.best != w.best || !again.w.canonical[again.w.best]) {
       return weighed;
     }
     again.patches = std::move(more);

@@ -12,11 +12,10 @@ namespace {
 
 /// The curve of a class's fit to the samples; nullopt if it has none.
 std::optional<CurveStart> curve_of(const Weighing& w, CurveClass curve_class) {
-  const auto i = static_cast<std::size_t>(curve_class);
-  if (const auto& canonical = w.canonical[i]) {
+  if (const auto& canonical = w.canonical[curve_class]) {
     return CurveStart{canonical->shape.values, canonical->world_T_curve.theta};
   }
-  const auto& coarse = w.coarse[i];
+  const auto& coarse = w.coarse[curve_class];
   const auto place = coarse ? canonical_place(*coarse, w.reduced) : std::nullopt;
   return place ? std::optional<CurveStart>({place->shape.values, place->world_T_curve.theta})
                : std::nullopt;

@@ -10,6 +10,7 @@
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/warm_start.h"
 #include "core/recognition/given/given_class.h"
+#include "core/recognition/posterior/laplace_evidences.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/smooth/arcs.h"
 #include "core/recognition/touches/shortest_way.h"

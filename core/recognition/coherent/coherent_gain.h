@@ -5,7 +5,7 @@
 
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
-#include "core/recognition/posterior/class_evidence.h"
+#include "core/recognition/modes/class_evidence.h"
 #include "core/recognition/posterior/likelihood.h"
 #include "core/recognition/samples/fit_data.h"
 

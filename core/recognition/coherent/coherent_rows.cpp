@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/recognition/posterior/moments.h"
+#include "core/recognition/modes/moments.h"
 
 namespace palpate {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/curves/curve.h"
 #include "core/recognition/coherent/markov_drift.h"
 #include "core/recognition/fit/canonical_fit.h"
-#include "core/recognition/posterior/class_evidence.h"
+#include "core/recognition/modes/class_evidence.h"
 #include "core/recognition/posterior/likelihood.h"
 #include "core/recognition/samples/fit_data.h"
 

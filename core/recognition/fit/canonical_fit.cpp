@@ -214,6 +214,14 @@ Eigen::Matrix<double, 6, 1> turn_by_pose_and_shape(const Curve& curve, double t,
 
 }  // namespace
 
+double chi2_of(const CanonicalFit& fit) {
+  double chi2 = 0.0;
+  for (const FittedPoint& point : fit.points) {
+    chi2 += point.residual * point.residual + point.normal_residual * point.normal_residual;
+  }
+  return chi2;
+}
+
 ShapePoseCovariance untold_covariance(Eigen::Index n) {
   ShapePoseCovariance untold = ShapePoseCovariance::Zero(n, n);
   untold.diagonal().setConstant(std::numeric_limits<double>::infinity());

@@ -31,6 +31,9 @@ struct CanonicalFit {
   std::vector<FittedPoint> points;
 };
 
+/// Chi-square of its points.
+double chi2_of(const CanonicalFit& fit);
+
 /// Covariance of n unknown components: infinite variances, no covariances.
 ShapePoseCovariance untold_covariance(Eigen::Index n);
 

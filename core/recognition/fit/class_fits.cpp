@@ -40,9 +40,7 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
   const RefineEffort near_enough{100, 1, 1e-3, out_of_reach};  // what is plausible is settled later
   const std::span<const FitPoint> points(reduced.points);
   ClassFits result;
-  const auto set = [&](ClassFit fit) {
-    result[static_cast<std::size_t>(fit.curve_class)] = std::move(fit);
-  };
+  const auto set = [&](ClassFit fit) { result[fit.curve_class] = std::move(fit); };
 
   set(implicit_class(CurveClass::Line,
                      refine_line(points, algebraic_line(points), side, near_enough, work)));
@@ -182,7 +180,7 @@ ClassFits followed_on(const ClassFits& found, const FitData& few, const FitData&
     carried.conic = conic_of_parabola(*carried.parabola);  // the limit, if none is nearer
   }
   for (const CurveClass curve_class : {CurveClass::Ellipse, CurveClass::Hyperbola}) {
-    const auto& conic = found[static_cast<std::size_t>(curve_class)];
+    const auto& conic = found[curve_class];
     if (conic && conic->implicit) {
       carried.conic = conic->implicit->coefficients;
     }
@@ -215,8 +213,7 @@ ClassFits settled_from_feet(const ClassFits& found, const FitData& few, const Fi
       } else {
         start.rival.reset();
       }
-      result[static_cast<std::size_t>(fit->curve_class)] =
-          settled(start, all, RivalOf::Other, work);
+      result[fit->curve_class] = settled(start, all, RivalOf::Other, work);
     }
   }
   return result;

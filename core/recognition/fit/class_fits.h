@@ -22,10 +22,11 @@ namespace palpate {
 struct ClassFit {
   CurveClass curve_class = CurveClass::Unclassified;
   double chi2 = 0.0;
-  bool weighed = false;  ///< chi2 was computed on all points, not inferred from the reduced points
+  bool chi2_of_all = false;  ///< computed on all points, not inferred from the reduced points
   /// Refined on all points. Until then its foot points are those of the reduced points.
   bool on_all = false;
-  bool polished = false;  ///< at its exact optimum on all points; so is its rival
+  /// At its exact optimum on all points, and so is its rival; without one, chi2 is infinite.
+  bool polished = false;
   /// The class has no interior optimum: chi2 is that of the neighbouring class to which the fit
   /// runs (e.g. the best ellipse or hyperbola is a parabola). There is no shape to report.
   bool at_limit = false;
@@ -37,7 +38,7 @@ struct ClassFit {
 };
 
 /// Indexed by CurveClass; entry 0 (Unclassified) is empty.
-using ClassFits = std::array<std::optional<ClassFit>, 9>;
+using ClassFits = ByClass<std::optional<ClassFit>>;
 
 /// The implicit form of a parabola's polynomials, of unit norm.
 ConicCoefficients conic_of_parabola(const PolynomialFit& fit);

@@ -123,7 +123,7 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
                       std::span<const FitPoint> points, Feet feet, WorkBudget& work) {
   const bool tips = has_tips(points);
   ClassFit start = fit;
-  start.weighed = start.on_all = true;
+  start.chi2_of_all = start.on_all = true;
   if (start.rival && start.rival->chi2 > start.polynomial->chi2 + kHopeless) {
     start.rival.reset();
   }
@@ -215,6 +215,20 @@ double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData
     chi2 += residual * residual;
   }
   return chi2;
+}
+
+std::optional<ClassFit> where_all_agree(const ClassFit& settled, const FitData& reduced,
+                                        const SmoothModel& smooth, const FitData& data,
+                                        WorkBudget& work) {
+  constexpr double kAgreement = 1.0;  // of chi-square: odds are right to a factor of 1.6
+  if (!is_what_it_says(settled, reduced)) {
+    return std::nullopt;
+  }
+  ClassFit fit = settled;
+  fit.chi2 = chi2_on_all(settled, smooth, data, work);
+  fit.chi2_of_all = true;
+  const bool agrees = std::abs(fit.chi2 - (settled.chi2 + smooth.chi2)) <= kAgreement;
+  return agrees ? std::optional(std::move(fit)) : std::nullopt;
 }
 
 std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& smooth,

@@ -21,6 +21,12 @@ ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival, Wor
 double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data,
                    WorkBudget& work);
 
+/// The fit as it is, with chi-square of all points, if that tells what the reduced points do and
+/// the fit is such a curve. O(points).
+std::optional<ClassFit> where_all_agree(const ClassFit& settled, const FitData& reduced,
+                                        const SmoothModel& smooth, const FitData& data,
+                                        WorkBudget& work);
+
 /// Refines a fit to the reduced points, preferably a settled one, on all points. nullopt if its
 /// optimum there is not such a curve (an ellipse that turned into a hyperbola, or into a needle
 /// around straight points). Where reduced points do not fit the best class, that may be due to

@@ -91,14 +91,14 @@ WarmStart warm_start_from(const ClassFits& fits, const FitData& reduced) {
     warm.polynomials.lowest_chi2 = lowest;
   }
   const auto take = [&](CurveClass curve_class) -> std::optional<PolynomialFit> {
-    const auto& fit = fits[static_cast<std::size_t>(curve_class)];
+    const auto& fit = fits[curve_class];
     return fit && !fit->at_limit ? fit->polynomial : std::nullopt;
   };
   warm.polynomials.parabola = take(CurveClass::Parabola);
   warm.polynomials.cubical_parabola = take(CurveClass::CubicalParabola);
   warm.polynomials.semi_cubical_parabola = take(CurveClass::SemiCubicalParabola);
   warm.polynomials.cubic_spline = take(CurveClass::CubicSpline);
-  if (const auto& spline = fits[static_cast<std::size_t>(CurveClass::CubicSpline)]) {
+  if (const auto& spline = fits[CurveClass::CubicSpline]) {
     warm.polynomials.rival = spline->rival;
   }
   return warm;

@@ -35,13 +35,14 @@ bool is_told_from_inside(CurveClass beyond, const Evidences& evidences) {
   if (beyond != CurveClass::Ellipse && beyond != CurveClass::Hyperbola) {
     return false;
   }
-  const auto& inside = evidences.classes[static_cast<std::size_t>(
-      beyond == CurveClass::Ellipse ? CurveClass::Hyperbola : CurveClass::Ellipse)];
+  const auto& inside =
+      evidences
+          .classes[beyond == CurveClass::Ellipse ? CurveClass::Hyperbola : CurveClass::Ellipse];
   return inside && tells_eccentricity(*inside);
 }
 
 bool is_fitted(const ClassFits& fits, CurveClass curve_class) {
-  const auto& fit = fits[static_cast<std::size_t>(curve_class)];
+  const auto& fit = fits[curve_class];
   return fit && !fit->at_limit && std::isfinite(fit->chi2);
 }
 
@@ -51,7 +52,7 @@ std::optional<CurveClass> limit_of(CurveClass curve_class, const ClassFits& fits
   const bool parabola = is_fitted(fits, CurveClass::Parabola);
   const bool cusp =
       curve_class == CurveClass::CubicSpline && is_fitted(fits, CurveClass::SemiCubicalParabola);
-  const auto chi2 = [&](CurveClass c) { return fits[static_cast<std::size_t>(c)]->chi2; };
+  const auto chi2 = [&](CurveClass c) { return fits[c]->chi2; };
   if (cusp && !(parabola && chi2(CurveClass::Parabola) <= chi2(CurveClass::SemiCubicalParabola))) {
     return CurveClass::SemiCubicalParabola;
   }
@@ -61,17 +62,15 @@ std::optional<CurveClass> limit_of(CurveClass curve_class, const ClassFits& fits
 void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
                 double best, const Evidences& before, Evidences* evidences, WorkBudget& work) {
   for (const CurveClass beyond : kClassesWithLimit) {
-    const auto b = static_cast<std::size_t>(beyond);
-    const auto& fit = fits[b];
+    const auto& fit = fits[beyond];
     const auto limit = limit_of(beyond, fits);
-    if (!fit || !limit || (!fit->at_limit && evidences->classes[b]) || !work.allows()) {
+    if (!fit || !limit || (!fit->at_limit && evidences->classes[beyond]) || !work.allows()) {
       continue;
     }
-    const auto l = static_cast<std::size_t>(*limit);
-    const auto& path = evidences->classes[l];
-    const double above = fit->chi2 - fits[l]->chi2;
+    const auto& path = evidences->classes[*limit];
+    const double above = fit->chi2 - fits[*limit]->chi2;
     if (!path || !(above <= kWorseThanLimit) ||
-        !(log_evidence(likelihood, *evidences, *limit, fits[l]->chi2) > best - kUnseenLogOdds) ||
+        !(log_evidence(likelihood, *evidences, *fits[*limit]) > best - kUnseenLogOdds) ||
         is_told_from_inside(beyond, *evidences)) {
       continue;
     }
@@ -80,14 +79,14 @@ void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood&
     if (earlier != nullptr && earlier->prior_mode_sought) {
       ClassEvidence counted = counted_from(fitted_chi2, *earlier);
       if (is_of_optimum(counted)) {
-        evidences->classes[b] = std::move(counted);
+        evidences->classes[beyond] = std::move(counted);
       }
     } else {
-      evidences->classes[b] = from_prior(beyond, fitted_chi2, *path, reduced, work);
+      evidences->classes[beyond] = from_prior(beyond, fitted_chi2, *path, reduced, work);
     }
-    evidences->on_reduced_chi2[b] = fitted_chi2;
-    if (evidences->classes[b]) {
-      evidences->classes[b]->at_limit = fit->at_limit;
+    evidences->on_reduced_chi2[beyond] = fitted_chi2;
+    if (evidences->classes[beyond]) {
+      evidences->classes[beyond]->counted_from_limit = fit->at_limit;
     }
   }
 }

@@ -23,25 +23,34 @@ double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidence
   return log_add(log_paths, evidences.log_near);
 }
 
+void add_laplace_evidence(const ClassFit& on_reduced, const FitData& reduced, Evidences* evidences,
+                          WorkBudget& work) {
+  const CurveClass i = on_reduced.curve_class;
+  evidences->on_reduced_chi2[i] = on_reduced.chi2;
+  evidences->classes[i].reset();
+  if ((evidences->on_reduced[i] = to_canonical(on_reduced, reduced))) {
+    evidences->classes[i] =
+        evidence_of(*evidences->on_reduced[i], reduced, evidences->inflation, work);
+  }
+}
+
 const ClassEvidence* known_of(const Evidences& evidences, CurveClass curve_class) {
-  if (const auto& evidence = evidences.classes[static_cast<std::size_t>(curve_class)]) {
+  if (const auto& evidence = evidences.classes[curve_class]) {
     return &*evidence;
   }
-  const auto known =
-      std::find_if(evidences.known.begin(), evidences.known.end(),
-                   [&](const ClassEvidence& e) { return e.touch.curve_class == curve_class; });
-  return known == evidences.known.end() ? nullptr : &*known;
+  const auto& earlier = evidences.earlier_modes[curve_class];
+  return earlier ? &*earlier : nullptr;
 }
 
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
                     CurveClass curve_class, double chi2) {
-  const auto i = static_cast<std::size_t>(curve_class);
-  const auto& evidence = evidences.classes[i];
+  const auto& evidence = evidences.classes[curve_class];
   const double about_fit =
       evidence && std::isfinite(chi2)
           ? likelihood.log_evidence(chi2, evidence->log_occam, evidence->determined)
           : kNoEvidence;
-  return std::max(about_fit, evidences.log_straight[i]) + evidences.log_shared[i];
+  return std::max(about_fit, evidences.log_straight[curve_class]) +
+         evidences.log_shared[curve_class];
 }
 
 }  // namespace palpate

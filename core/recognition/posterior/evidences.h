@@ -1,14 +1,12 @@
 // What every model has in evidence: classes and free paths.
 #pragma once
 
-#include <array>
 #include <limits>
 #include <optional>
-#include <vector>
 
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
-#include "core/recognition/posterior/class_evidence.h"
+#include "core/recognition/modes/class_evidence.h"
 #include "core/recognition/posterior/free_form.h"
 #include "core/recognition/posterior/likelihood.h"
 
@@ -18,17 +16,17 @@ namespace palpate {
 inline constexpr double kNoEvidence = -std::numeric_limits<double>::infinity();
 
 /// The same of every model.
-inline constexpr std::array<double, 9> kNoEvidences = [] {
-  std::array<double, 9> none{};
+inline constexpr ByClass<double> kNoEvidences = [] {
+  ByClass<double> none{};
   none.fill(kNoEvidence);
   return none;
 }();
 
 /// Evidence of every model. A class without one has no share in the posterior.
 struct Evidences {
-  std::array<std::optional<ClassEvidence>, 9> classes;
+  ByClass<std::optional<ClassEvidence>> classes;
   /// Modes that the prior has led to, of classes that have no evidence now.
-  std::vector<ClassEvidence> known;
+  ByClass<std::optional<ClassEvidence>> earlier_modes;
   /// Of the spline's other optimum, on the other side of c = 0 or of other arms, if that is a
   /// separate mode.
   std::optional<ClassEvidence> rival;
@@ -40,17 +38,17 @@ struct Evidences {
   double log_near = kNoEvidence;
   /// log of what each class has in nearly straight paths, where the line is in question
   /// (straight_paths.h): that or what lies about its fit, whichever is more.
-  std::array<double, 9> log_straight = kNoEvidences;
+  ByClass<double> log_straight = kNoEvidences;
   /// The same over the line's evidence.
-  std::array<double, 9> log_over_line = kNoEvidences;
+  ByClass<double> log_over_line = kNoEvidences;
   /// What the evidences were computed with: the factor on noise variances, and each class placed on
-  /// the reduced points, with its chi-square there.
+  /// the reduced points, with its chi-square there; none where the evidence is not Laplace's.
   double inflation = 0.0;
-  std::array<std::optional<CanonicalFit>, 9> on_reduced;
-  std::array<double, 9> on_reduced_chi2{};
+  ByClass<std::optional<CanonicalFit>> on_reduced;
+  ByClass<std::optional<double>> on_reduced_chi2;
   /// log of the factor that deviations shared by neighbours put on each class's evidence
   /// (weigh/shared_deviations.h).
-  std::array<double, 9> log_shared{};
+  ByClass<double> log_shared{};
   /// With them, classes are more probable than free paths: it is such a deviation or another shape,
   /// at even odds.
   bool shared_or_other = false;
@@ -64,16 +62,26 @@ Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likeli
 double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidences& evidences,
                                     double smooth_chi2);
 
+/// Places a class, fitted to the reduced points, on them, and adds its evidence by Laplace's
+/// formula, if it has any.
+void add_laplace_evidence(const ClassFit& on_reduced, const FitData& reduced, Evidences* evidences,
+                          WorkBudget& work);
+
 /// The class's evidence, or else what is known of its modes; nullptr if nothing is.
 const ClassEvidence* known_of(const Evidences& evidences, CurveClass curve_class);
 
 /// Whether what a class has in nearly straight paths is known.
 inline bool has_straight_paths(const Evidences& evidences, CurveClass curve_class) {
-  return evidences.log_straight[static_cast<std::size_t>(curve_class)] > kNoEvidence;
+  return evidences.log_straight[curve_class] > kNoEvidence;
 }
 
 /// log of the evidence of a class that was fitted with `chi2`; -infinity if it has none.
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
                     CurveClass curve_class, double chi2);
+
+inline double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
+                           const ClassFit& fit) {
+  return log_evidence(likelihood, evidences, fit.curve_class, fit.chi2);
+}
 
 }  // namespace palpate

@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "core/recognition/posterior/mode_search.h"
+#include "core/recognition/modes/mode_search.h"
 #include "core/recognition/posterior/prior_modes.h"
 
 namespace palpate {
@@ -77,16 +77,16 @@ KeptModes kept_modes(const Evidences& evidences, const FitData& reduced) {
   return result;
 }
 
-std::vector<ClassEvidence> carried_modes(const KeptModes& kept, const ClassFits& fits,
-                                         const FitData& reduced, double inflation,
-                                         WorkBudget& work) {
-  std::vector<ClassEvidence> carried;
+ByClass<std::optional<ClassEvidence>> carried_modes(const KeptModes& kept, const ClassFits& fits,
+                                                    const FitData& reduced, double inflation,
+                                                    WorkBudget& work) {
+  ByClass<std::optional<ClassEvidence>> carried;
   if (kept.modes.empty()) {
     return carried;
   }
   const std::vector<std::size_t> nearest = nearest_kept(kept.points_m, reduced);
   for (const KeptMode& mode : kept.modes) {
-    const auto i = static_cast<std::size_t>(mode.place.shape.curve_class);
+    const CurveClass i = mode.place.shape.curve_class;
     if (!fits[i]) {
       continue;
     }
@@ -97,7 +97,7 @@ std::vector<ClassEvidence> carried_modes(const KeptModes& kept, const ClassFits&
       evidence->prior_mode_sought = true;
       evidence->log_all_modes = mode.log_all_modes;
       evidence->log_occam += mode.log_all_modes;
-      carried.push_back(*std::move(evidence));
+      carried[mode.place.shape.curve_class] = *std::move(evidence);
     }
   }
   return carried;

@@ -1,7 +1,7 @@
 // The chi-square above which a class cannot change the answer, so that its search may end.
 #pragma once
 
-#include "core/recognition/posterior/posterior.h"
+#include "core/recognition/posterior/evidences.h"
 #include "core/recognition/smooth/arcs.h"
 
 namespace palpate {

@@ -11,15 +11,7 @@
 namespace palpate {
 
 /// Indexed by CurveClass; entry 0 is "unclassified".
-using ClassProbabilities = std::array<double, 9>;
-
-/// Evidence of the classes fitted to the reduced points, by Laplace's formula; if a line is
-/// plausible, also by nearly straight paths, and by these alone where the fit is none better.
-/// Classes less probable than a millionth of the best get none. `fits`: with chi-squares of all
-/// points. `before`: of the same points; what has not changed is copied.
-Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
-                       const SmoothModel& smooth, const FitData& reduced,
-                       const Likelihood& likelihood, Evidences before, WorkBudget& work);
+using ClassProbabilities = ByClass<double>;
 
 /// The evidences with quadrature for the classes whose share matters, if there are several, and for
 /// the spline's other mode. `margin`: log odds below which the best is not RECOGNIZED.

@@ -12,21 +12,20 @@ namespace {
 /// Along which class's curve a class's modes are sought: its own, unless that is beside the
 /// parabola's as improbable as if it were none. Such a fit is what the noise has made of a class
 /// that could be anything: it bends otherwise than the points tell.
-std::size_t path_for(std::size_t i, const ClassFits& fits, const Likelihood& likelihood,
-                     double best, const Evidences& evidences) {
-  constexpr auto kParabola = static_cast<std::size_t>(CurveClass::Parabola);
+CurveClass path_for(CurveClass i, const ClassFits& fits, const Likelihood& likelihood, double best,
+                    const Evidences& evidences) {
+  constexpr auto kParabola = CurveClass::Parabola;
   if (!evidences.classes[kParabola] || !fits[kParabola]) {
     return i;
   }
-  const double own = log_evidence(likelihood, evidences, static_cast<CurveClass>(i), fits[i]->chi2);
-  const double of_parabola =
-      log_evidence(likelihood, evidences, CurveClass::Parabola, fits[kParabola]->chi2);
+  const double own = log_evidence(likelihood, evidences, *fits[i]);
+  const double of_parabola = log_evidence(likelihood, evidences, *fits[kParabola]);
   return of_parabola > std::max(own + kNegligibleLogOdds, best - kUnseenLogOdds) ? kParabola : i;
 }
 
 /// The class's mode that the prior leads to, where it might have more there than about its fit, and
 /// so much that it is seen beside `best`.
-void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced,
+void add_prior_mode(CurveClass i, const ClassFits& fits, const FitData& reduced,
                     const Likelihood& likelihood, double best, Evidences* evidences,
                     WorkBudget& work) {
   constexpr double kWorthOthers = 4.0;  // log odds: a fiftieth
@@ -37,8 +36,7 @@ void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced
   }
   // All that a better mode can gain, about, is what the prior takes off this one.
   const double gain = -found->log_prior;
-  const double told =
-      log_evidence(likelihood, *evidences, static_cast<CurveClass>(i), fits[i]->chi2);
+  const double told = log_evidence(likelihood, *evidences, *fits[i]);
   const double seen_from = best - kUnseenLogOdds;
   // Data that leave a cubic's shape open are such as its other arms have.
   const int all = shape_coordinates(found->touch.curve_class) + 2;
@@ -57,17 +55,15 @@ void add_prior_mode(std::size_t i, const ClassFits& fits, const FitData& reduced
 void add_mode_at_cusp(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
                       double best, Evidences* evidences, WorkBudget& work) {
   constexpr double kMissing = 2.0;  // log odds: what c and the place may cost beside none
-  constexpr auto kCusp = static_cast<std::size_t>(CurveClass::SemiCubicalParabola);
-  constexpr auto kSpline = static_cast<std::size_t>(CurveClass::CubicSpline);
+  constexpr auto kCusp = CurveClass::SemiCubicalParabola;
+  constexpr auto kSpline = CurveClass::CubicSpline;
   auto& spline = evidences->classes[kSpline];
   const auto& cusp = evidences->classes[kCusp];
   if (!spline || !cusp || !fits[kSpline] || !fits[kCusp] || !work.allows()) {
     return;
   }
-  const double of_cusp =
-      log_evidence(likelihood, *evidences, CurveClass::SemiCubicalParabola, fits[kCusp]->chi2);
-  const double of_spline =
-      log_evidence(likelihood, *evidences, CurveClass::CubicSpline, fits[kSpline]->chi2);
+  const double of_cusp = log_evidence(likelihood, *evidences, *fits[kCusp]);
+  const double of_spline = log_evidence(likelihood, *evidences, *fits[kSpline]);
   if (of_cusp > std::max(of_spline + kMissing, best - kUnseenLogOdds)) {
     spline = with_mode_at_cusp(*std::move(spline), *cusp, reduced, work);
   }
@@ -77,29 +73,27 @@ void add_mode_at_cusp(const ClassFits& fits, const FitData& reduced, const Likel
 
 void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
                      double log_of_free_form, Evidences* evidences, WorkBudget& work) {
-  const auto told = [&](std::size_t i) {
-    return fits[i] ? log_evidence(likelihood, *evidences, static_cast<CurveClass>(i), fits[i]->chi2)
+  const auto told = [&](CurveClass i) {
+    return fits[i] ? log_evidence(likelihood, *evidences, *fits[i])
                    : -std::numeric_limits<double>::infinity();
   };
-  std::size_t best = 1;
-  for (std::size_t i = 2; i < fits.size(); ++i) {
+  CurveClass best = kCurveClasses.front();
+  for (const CurveClass i : kCurveClasses) {
     best = told(i) > told(best) ? i : best;
   }
   const double log_of_best = told(best);
+  const double highest = std::max(log_of_best, log_of_free_form);
   bool alone = log_of_free_form < log_of_best - kUnseenLogOdds;
-  for (std::size_t i = 1; i < fits.size(); ++i) {
+  for (const CurveClass i : kCurveClasses) {
     if (i != best) {
-      add_prior_mode(i, fits, reduced, likelihood, std::max(log_of_best, log_of_free_form),
-                     evidences, work);
+      add_prior_mode(i, fits, reduced, likelihood, highest, evidences, work);
       alone = alone && told(i) < log_of_best - kUnseenLogOdds;
     }
   }
   if (!alone) {
-    add_prior_mode(best, fits, reduced, likelihood, std::max(log_of_best, log_of_free_form),
-                   evidences, work);
+    add_prior_mode(best, fits, reduced, likelihood, highest, evidences, work);
   }
-  add_mode_at_cusp(fits, reduced, likelihood, std::max(log_of_best, log_of_free_form), evidences,
-                   work);
+  add_mode_at_cusp(fits, reduced, likelihood, highest, evidences, work);
 }
 
 }  // namespace palpate

@@ -78,9 +78,9 @@ struct StraightShape {
 /// Those that lie straight over most of their sizes first.
 const std::vector<StraightShape>& straight_shapes(CurveClass curve_class) {
   static const auto all = [] {
-    std::array<std::vector<StraightShape>, kCurveClasses.size() + 1> result;
+    ByClass<std::vector<StraightShape>> result;
     for (const CurveClass each : kCurveClasses) {
-      auto& shapes = result[static_cast<std::size_t>(each)];
+      auto& shapes = result[each];
       for (const PriorShape& shape : prior_shapes(each)) {
         shapes.push_back({std::abs(shape.curvature), std::abs(shape.rate), shape.weight});
       }
@@ -90,7 +90,7 @@ const std::vector<StraightShape>& straight_shapes(CurveClass curve_class) {
     }
     return result;
   }();
-  return all[static_cast<std::size_t>(curve_class)];
+  return all[curve_class];
 }
 
 /// The mean over a spline that is an arc (arc_coordinates.h), over the highest likelihood. Nearly

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/recognition/posterior/class_evidence.h"
+#include "core/recognition/modes/class_evidence.h"
 #include "core/recognition/posterior/likelihood.h"
 #include "core/recognition/samples/fit_data.h"
 

@@ -151,15 +151,15 @@ std::vector<PriorShape> shapes_of(CurveClass curve_class) {
 
 const std::vector<PriorShape>& prior_shapes(CurveClass curve_class) {
   static const auto all = [] {
-    std::array<std::vector<PriorShape>, 9> result;
+    ByClass<std::vector<PriorShape>> result;
     for (const CurveClass each : kCurveClasses) {
       if (each != CurveClass::Line) {
-        result[static_cast<std::size_t>(each)] = shapes_of(each);
+        result[each] = shapes_of(each);
       }
     }
     return result;
   }();
-  return all[static_cast<std::size_t>(curve_class)];
+  return all[curve_class];
 }
 
 }  // namespace palpate

@@ -20,7 +20,7 @@ struct Decision {
 };
 
 /// By class: smallest p-value of the tests that the class must pass; NaN without a test.
-using ClassPValues = std::array<double, kCurveClasses.size() + 1>;
+using ClassPValues = ByClass<double>;
 
 constexpr ClassPValues no_p_values() {
   ClassPValues none{};

@@ -32,7 +32,7 @@ class TreeRecord {
 
   /// Records the p-value of a test that the class must pass.
   void says(CurveClass curve_class, double p_value) {
-    double& least = result.p_values[static_cast<std::size_t>(curve_class)];
+    double& least = result.p_values[curve_class];
     least = std::isnan(least) ? p_value : std::min(least, p_value);
   }
 

@@ -120,8 +120,7 @@ FitData reduced_with_normals(const Weighing& w, const FitData& data) {
 }  // namespace
 
 Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work) {
-  const auto b = static_cast<std::size_t>(w.best);
-  if (!w.canonical[b] || !w.fits[b]->on_all) {
+  if (!w.canonical[w.best] || !w.fits[w.best]->on_all) {
     return w;
   }
   FitData full = w.data;
@@ -131,7 +130,7 @@ Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work) {
   if (!w.correlated && !(w.correlation_length > 0.0)) {
     give_normals(&full);
   }
-  auto placed = placed_in_full({*w.fits[b], *w.canonical[b]}, &full, work);
+  auto placed = placed_in_full({*w.fits[w.best], *w.canonical[w.best]}, &full, work);
   const auto wrong = placed && full.normals_along_strokes ? wrong_normals(placed->canonical, full)
                                                           : std::vector<std::size_t>{};
   for (const std::size_t i : wrong) {
@@ -147,7 +146,7 @@ Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work) {
   if (full.normals_along_strokes) {
     w.reduced = reduced_with_normals(w, full);
     w.best_on_reduced =
-        to_canonical(settled(*w.coarse[b], w.reduced, RivalOf::Best, work), w.reduced);
+        to_canonical(settled(*w.coarse[w.best], w.reduced, RivalOf::Best, work), w.reduced);
     w.best_evidence = w.best_on_reduced
                           ? evidence_of(*w.best_on_reduced, w.reduced, w.inflation, work)
                           : std::nullopt;
@@ -160,9 +159,9 @@ Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work) {
       left.inverse_normal_sigma = 0.0;
     }
   }
-  w.counted_chi2 += placed->fit.chi2 - w.fits[b]->chi2;
-  w.fits[b] = std::move(placed->fit);
-  w.canonical[b] = std::move(placed->canonical);
+  w.counted_chi2 += placed->fit.chi2 - w.fits[w.best]->chi2;
+  w.fits[w.best] = std::move(placed->fit);
+  w.canonical[w.best] = std::move(placed->canonical);
   return w;
 }
 

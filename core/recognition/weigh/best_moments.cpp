@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/recognition/coherent/coherent_moment.h"
-#include "core/recognition/posterior/moments.h"
-#include "core/recognition/posterior/slices.h"
+#include "core/recognition/modes/moments.h"
+#include "core/recognition/modes/slices.h"
 
 namespace palpate {
 namespace {
@@ -45,7 +45,7 @@ ShapePoseCovariance with_coherence(const CoherentMoment& coherent,
 
 BestMoments moments_of_best(const Weighing& w, WorkBudget& work) {
   BestMoments result;
-  const auto& best = w.canonical[static_cast<std::size_t>(w.best)];
+  const auto& best = w.canonical[w.best];
   if (!w.best_evidence || !w.best_on_reduced || !best) {
     return result;
   }

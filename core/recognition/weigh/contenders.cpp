@@ -7,14 +7,10 @@
 
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/posterior/class_limits.h"
+#include "core/recognition/posterior/laplace_evidences.h"
 
 namespace palpate {
 namespace {
-
-double log_evidence_of(const ClassFit& fit, const Likelihood& likelihood,
-                       const Evidences& evidences) {
-  return log_evidence(likelihood, evidences, fit.curve_class, fit.chi2);
-}
 
 /// Whether a class, as the reduced points tell its chi-square, might keep the best from being
 /// RECOGNIZED. `margin`: log odds that keep it from that; `error`: by how much chi-square may be
@@ -29,7 +25,7 @@ bool is_plausible(const ClassFit& told, double highest, double margin, double er
 /// A class that is no such curve on all points.
 ClassFit out(const ClassFit& coarse) {
   ClassFit fit = coarse;
-  fit.weighed = true;
+  fit.chi2_of_all = true;
   fit.chi2 = std::numeric_limits<double>::infinity();
   return fit;
 }
@@ -53,26 +49,21 @@ ClassFit polished(const ClassFit& settled, const SmoothModel& smooth, const FitD
 /// A class as all points see it. Where they agree with the reduced points, and did so about the
 /// best (`trusted`), it is left at its optimum there; otherwise (sections bent too sharply to be
 /// followed to the noise, feet on the wrong arm) it has another one, or none.
-ClassFit weighed(const ClassFit& coarse, const FitData& reduced, bool trusted,
-                 const SmoothModel& smooth, const FitData& data, WorkBudget& work) {
-  constexpr double kAgreement = 1.0;  // of chi-square: odds are right to a factor of 1.6
-  if (trusted && is_what_it_says(coarse, reduced)) {
-    ClassFit fit = coarse;
-    fit.chi2 = chi2_on_all(coarse, smooth, data, work);
-    fit.weighed = true;
-    if (std::abs(fit.chi2 - (coarse.chi2 + smooth.chi2)) <= kAgreement) {
-      return fit;
-    }
+ClassFit with_chi2_of_all(const ClassFit& coarse, const FitData& reduced, bool trusted,
+                          const SmoothModel& smooth, const FitData& data, WorkBudget& work) {
+  auto fit = trusted ? where_all_agree(coarse, reduced, smooth, data, work) : std::nullopt;
+  if (!fit) {
+    fit = refine_on_all(coarse, smooth, data, kOnAllEffort, work);
   }
-  return refine_on_all(coarse, smooth, data, kOnAllEffort, work).value_or(out(coarse));
+  return fit.value_or(out(coarse));
 }
 
 /// Takes w->coarse of a class to its optimum on the reduced points, unless it is there, or leaves
 /// more than any noise after all that a search has tried: that is no curve of the class.
-const ClassFit& settle(std::size_t i, RivalOf rival, const FitData& reduced, Contenders* w,
+const ClassFit& settle(CurveClass i, RivalOf rival, const FitData& reduced, Contenders* w,
                        WorkBudget& work) {
   if (w->coarse[i]->chi2 <= most_chi2_of_noise(reduced.points) &&
-      (!w->fits[i]->weighed || (rival == RivalOf::Best && w->coarse[i]->rival))) {
+      (!w->fits[i]->chi2_of_all || (rival == RivalOf::Best && w->coarse[i]->rival))) {
     w->coarse[i] = settled(*w->coarse[i], reduced, rival, work);
   }
   return *w->coarse[i];
@@ -81,12 +72,12 @@ const ClassFit& settle(std::size_t i, RivalOf rival, const FitData& reduced, Con
 /// Classes that end at their limit, or worse than it, are what it is.
 void take_limits(ClassFits* fits) {
   for (const CurveClass curve_class : kClassesWithLimit) {
-    auto& fit = (*fits)[static_cast<std::size_t>(curve_class)];
+    auto& fit = (*fits)[curve_class];
     const auto limit = limit_of(curve_class, *fits);
     if (!fit || !limit) {
       continue;
     }
-    const ClassFit& there = *(*fits)[static_cast<std::size_t>(*limit)];
+    const ClassFit& there = *(*fits)[*limit];
     if (fit->at_limit || !(fit->chi2 <= there.chi2 + kWorseThanLimit)) {
       fit = there;
       fit->curve_class = curve_class;
@@ -113,11 +104,11 @@ CurveClass best_class(const ClassFits& fits, const Likelihood& likelihood,
   double highest = -std::numeric_limits<double>::infinity();
   double lowest_chi2 = std::numeric_limits<double>::infinity();
   for (const CurveClass curve_class : kCurveClasses) {
-    const auto& fit = fits[static_cast<std::size_t>(curve_class)];
+    const auto& fit = fits[curve_class];
     if (!fit || fit->at_limit) {
       continue;
     }
-    const double evidence = log_evidence_of(*fit, likelihood, evidences);
+    const double evidence = log_evidence(likelihood, evidences, *fit);
     if (evidence > highest ||
         (!std::isfinite(highest) && evidence == highest && fit->chi2 < lowest_chi2)) {
       highest = evidence;
@@ -138,22 +129,19 @@ CurveClass most_probable(const ClassProbabilities& probabilities) {
                                  probabilities.begin());
 }
 
-void weigh_on_reduced(std::size_t i, const EvidenceContext& context, Contenders* w) {
+void weigh_on_reduced(CurveClass i, const EvidenceContext& context, Contenders* w) {
   Evidences& evidences = w->evidences;
-  if (evidences.classes[i] && evidences.on_reduced_chi2[i] == w->coarse[i]->chi2) {
-    return;
-  }
-  evidences.on_reduced_chi2[i] = w->coarse[i]->chi2;
-  evidences.classes[i].reset();
-  if ((evidences.on_reduced[i] = to_canonical(*w->coarse[i], context.reduced))) {
-    evidences.classes[i] =
-        evidence_of(*evidences.on_reduced[i], context.reduced, evidences.inflation, context.work);
+  if (!evidences.classes[i] || evidences.on_reduced_chi2[i] != w->coarse[i]->chi2) {
+    add_laplace_evidence(*w->coarse[i], context.reduced, &evidences, context.work);
   }
 }
 
 Contenders refine_plausible(Contenders w, const EvidenceContext& context, double margin) {
-  const auto& [arcs, reduced, work, likelihood, out_of_reach] = context;
-  const auto& [data, smooth, sigma_known, sigma] = arcs;
+  const FitData& data = context.arcs.data;
+  const SmoothModel& smooth = context.arcs.smooth;
+  const FitData& reduced = context.reduced;
+  const Likelihood& likelihood = context.likelihood;
+  WorkBudget& work = context.work;
   w.evidences =
       evidences_of(w.fits, w.coarse, smooth, reduced, likelihood, std::move(w.evidences), work);
   // Where the smooth model itself misfits, neither it nor the reduced points can be trusted that
@@ -166,9 +154,9 @@ Contenders refine_plausible(Contenders w, const EvidenceContext& context, double
   bool trusted = true;
   for (bool changed = true; changed && work.allows();) {
     changed = false;
-    const auto b = static_cast<std::size_t>(best_class(w.fits, likelihood, w.evidences));
+    const CurveClass b = best_class(w.fits, likelihood, w.evidences);
     auto& best = w.fits[b];
-    if (best && !best->polished && w.coarse[b]->chi2 <= out_of_reach) {
+    if (best && !best->polished && w.coarse[b]->chi2 <= context.out_of_reach) {
       const double told = best->chi2;
       best = polished(settle(b, RivalOf::Best, reduced, &w, work), smooth, data, work);
       if (std::isfinite(best->chi2)) {
@@ -179,15 +167,14 @@ Contenders refine_plausible(Contenders w, const EvidenceContext& context, double
       changed = true;
       continue;
     }
-    const double highest = best ? log_evidence_of(*best, likelihood, w.evidences)
+    const double highest = best ? log_evidence(likelihood, w.evidences, *best)
                                 : -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < w.fits.size(); ++i) {
+    for (const CurveClass i : kCurveClasses) {
       auto& fit = w.fits[i];
-      if (fit && !fit->weighed && !fit->at_limit &&
-          !has_straight_paths(w.evidences, static_cast<CurveClass>(i)) &&
+      if (fit && !fit->chi2_of_all && !fit->at_limit && !has_straight_paths(w.evidences, i) &&
           is_plausible(*fit, highest, margin, error, likelihood, w.evidences) && work.allows()) {
-        fit = weighed(settle(i, RivalOf::Other, reduced, &w, work), reduced, trusted, smooth, data,
-                      work);
+        fit = with_chi2_of_all(settle(i, RivalOf::Other, reduced, &w, work), reduced, trusted,
+                               smooth, data, work);
         changed = true;
       }
     }
@@ -205,7 +192,7 @@ Contenders decided(Contenders w, const EvidenceContext& context, double margin) 
                                std::move(w.evidences), context.work);
     w.evidences = integrated(std::move(w.evidences), w.fits, w.coarse, arcs.smooth.chi2, reduced,
                              likelihood, margin, context.work);
-    const auto i = static_cast<std::size_t>(most_probable(probabilities_of(w, context)));
+    const CurveClass i = most_probable(probabilities_of(w, context));
     auto& fit = w.fits[i];
     if (!fit || fit->polished || fit->at_limit || !context.work.allows()) {
       return w;

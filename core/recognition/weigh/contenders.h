@@ -40,8 +40,9 @@ ClassProbabilities probabilities_of(const Contenders& contenders, const Evidence
 
 CurveClass most_probable(const ClassProbabilities& probabilities);
 
-/// Adds the evidence of class i about its fit to the reduced points, unless it has that.
-void weigh_on_reduced(std::size_t i, const EvidenceContext& context, Contenders* contenders);
+/// Adds the evidence of a class about its fit to the reduced points, unless it has that.
+void weigh_on_reduced(CurveClass curve_class, const EvidenceContext& context,
+                      Contenders* contenders);
 
 /// Computes chi-square on all points for the classes that the reduced points leave plausible, and
 /// polishes the best. The others keep the chi-square inferred from the reduced points. Settles the

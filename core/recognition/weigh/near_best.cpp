@@ -17,17 +17,16 @@ const double kLogOfParts = -std::log(19.0 * static_cast<double>(kCurveClasses.si
 
 double log_evidence_near_best(CurveClass best, double least_size, double least, const Contenders& w,
                               const EvidenceContext& context) {
-  const auto b = static_cast<std::size_t>(best);
   const Arcs& arcs = context.arcs;
-  const auto& evidence = w.evidences.classes[b];
+  const auto& evidence = w.evidences.classes[best];
   if (!evidence) {
     return kNoEvidence;
   }
   // What the reduced points leave beside the class and all points do not is no deviation.
-  const double on_reduced = w.coarse[b]->chi2 + arcs.smooth.chi2;
+  const double on_reduced = w.coarse[best]->chi2 + arcs.smooth.chi2;
   const double of_class =
-      log_evidence(context.likelihood, w.evidences, best, std::max(on_reduced, w.fits[b]->chi2));
-  const auto gain = log_gain_near_class(*w.evidences.on_reduced[b], *evidence, context.reduced,
+      log_evidence(context.likelihood, w.evidences, best, std::max(on_reduced, w.fits[best]->chi2));
+  const auto gain = log_gain_near_class(*w.evidences.on_reduced[best], *evidence, context.reduced,
                                         context.likelihood, arcs.sigma, arcs.smooth.chi2,
                                         least_size, least - of_class - kLogOfParts, context.work);
   return gain ? of_class + kLogOfParts + *gain : kNoEvidence;

@@ -41,29 +41,22 @@ FitData with_noise(FitData data, double factor) {
   return data;
 }
 
-/// chi-square of a curve and the logarithm of its residuals' deviations, summed.
-struct Left {
-  double chi2 = 0.0;
-  double log_deviations = 0.0;
-};
-
-Left left_by(const CanonicalFit& placed, const FitData& data) {
-  Left left;
+/// Sum of the logarithms of the deviations of what is measured.
+double log_deviations(const CanonicalFit& placed, const FitData& data) {
+  double sum = 0.0;
   for (std::size_t i = 0; i < placed.points.size(); ++i) {
-    const FittedPoint& point = placed.points[i];
-    left.chi2 += point.residual * point.residual + point.normal_residual * point.normal_residual;
-    left.log_deviations -= std::log(data.points[i].inverse_sigma);
-    if (point.normal_weight > 0.0) {
-      left.log_deviations -= std::log(point.normal_weight);
+    sum -= std::log(data.points[i].inverse_sigma);
+    if (placed.points[i].normal_weight > 0.0) {
+      sum -= std::log(placed.points[i].normal_weight);
     }
   }
-  return left;
+  return sum;
 }
 
 /// log of the evidence of the parts near the curve of one class. `least`: less is not computed.
 double log_evidence_near(const ClassFit& coarse, double least, const EvidenceContext& context) {
   const FitData& reduced = context.reduced;
-  std::optional<Left> at_noise;
+  std::optional<double> at_noise;
   const double n = static_cast<double>(reduced.points.size());
   const double of_each = kLogOfTouches + (context.likelihood.sigma_known ? 0.0 : kLogOfNoises) -
                          std::log(static_cast<double>(kScatter.size()));
@@ -81,16 +74,15 @@ double log_evidence_near(const ClassFit& coarse, double least, const EvidenceCon
       if (!at_curve) {
         return kNoEvidence;
       }
-      at_noise = left_by(*at_curve, reduced);
+      at_noise = log_deviations(*at_curve, reduced);
     }
     const FitData scattered = with_noise(reduced, factor);
     const auto placed = to_canonical(coarse, scattered);
     const auto evidence =
         placed ? evidence_of(*placed, scattered, inflation, context.work) : std::nullopt;
     if (evidence) {
-      const Left left = left_by(*placed, scattered);
-      sum = log_add(sum, of_each - (left.log_deviations - at_noise->log_deviations) -
-                             0.5 * left.chi2 / inflation + evidence->log_occam);
+      sum = log_add(sum, of_each - (log_deviations(*placed, scattered) - *at_noise) -
+                             0.5 * chi2_of(*placed) / inflation + evidence->log_occam);
     }
   }
   return sum;
@@ -114,11 +106,10 @@ Contenders with_near_parts(Contenders w, const EvidenceContext& context, bool of
                            double margin) {
   w.evidences.log_near = kNoEvidence;
   const CurveClass best = best_class(w.fits, context.likelihood, w.evidences);
-  const auto b = static_cast<std::size_t>(best);
-  if (!w.fits[b]) {
+  if (!w.fits[best]) {
     return w;
   }
-  const double of_class = log_evidence(context.likelihood, w.evidences, best, w.fits[b]->chi2);
+  const double of_class = log_evidence(context.likelihood, w.evidences, *w.fits[best]);
   // Less than a hundredth of what keeps the best from being RECOGNIZED is not asked for.
   const double least = of_class - margin - std::log(100.0);
   if (all_lie_apart(context.arcs.data)) {

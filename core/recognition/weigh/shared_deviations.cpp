@@ -13,10 +13,7 @@
 namespace palpate {
 namespace {
 
-/// log evidences, by class.
-using LogEvidences = std::array<double, 9>;
-
-double log_sum(const LogEvidences& logs) {
+double log_sum(const ByClass<double>& logs) {
   const double top = *std::max_element(logs.begin(), logs.end());
   double sum = 0.0;
   for (const double log : logs) {
@@ -27,32 +24,29 @@ double log_sum(const LogEvidences& logs) {
 
 /// The classes that such deviations are asked of, the best of all first: what leaves less
 /// chi-square than the best has no more for them to explain, and is given what the best is.
-std::vector<std::size_t> asked(const Contenders& w, const EvidenceContext& context) {
+std::vector<CurveClass> asked(const Contenders& w, const EvidenceContext& context) {
   const CurveClass best = best_class(w.fits, context.likelihood, w.evidences);
   if (best == CurveClass::Unclassified) {
     return {};
   }
-  const auto b = static_cast<std::size_t>(best);
-  std::vector<std::size_t> classes{b};
+  std::vector<CurveClass> classes{best};
   for (const CurveClass curve_class : kCurveClasses) {
-    const auto i = static_cast<std::size_t>(curve_class);
-    const auto& fit = w.fits[i];
-    if (fit && !fit->at_limit && std::isfinite(fit->chi2) && fit->chi2 > w.fits[b]->chi2 &&
-        w.coarse[i]->chi2 <= context.out_of_reach) {
-      classes.push_back(i);
+    const auto& fit = w.fits[curve_class];
+    if (fit && !fit->at_limit && std::isfinite(fit->chi2) && fit->chi2 > w.fits[best]->chi2 &&
+        w.coarse[curve_class]->chi2 <= context.out_of_reach) {
+      classes.push_back(curve_class);
     }
   }
   return classes;
 }
 
 /// Evidences of the classes without such deviations.
-LogEvidences with_noise_alone(const Contenders& w, const EvidenceContext& context) {
-  LogEvidences logs;
+ByClass<double> with_noise_alone(const Contenders& w, const EvidenceContext& context) {
+  ByClass<double> logs;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     const auto& fit = w.fits[i];
-    logs[i] = fit && !fit->at_limit ? log_evidence(context.likelihood, w.evidences,
-                                                   static_cast<CurveClass>(i), fit->chi2)
-                                    : kNoEvidence;
+    logs[i] =
+        fit && !fit->at_limit ? log_evidence(context.likelihood, w.evidences, *fit) : kNoEvidence;
   }
   return logs;
 }
@@ -61,39 +55,39 @@ LogEvidences with_noise_alone(const Contenders& w, const EvidenceContext& contex
 
 Contenders with_shared_deviations(Contenders w, const EvidenceContext& context, bool of_any_size,
                                   double margin) {
-  const std::vector<std::size_t> classes = asked(w, context);
-  for (const std::size_t i : classes) {
-    weigh_on_reduced(i, context, &w);
+  const std::vector<CurveClass> classes = asked(w, context);
+  for (const CurveClass curve_class : classes) {
+    weigh_on_reduced(curve_class, context, &w);
   }
-  const LogEvidences white = with_noise_alone(w, context);
+  const ByClass<double> white = with_noise_alone(w, context);
   const double paths =
       log_evidence_of_unclassified(context.likelihood, w.evidences, context.arcs.smooth.chi2);
   const double matters = log_sum(white) - margin;
   const bool may_be_other =
       of_any_size && !classes.empty() &&
-      (paths > matters || log_evidence_near_best(static_cast<CurveClass>(classes.front()),
-                                                 kLargestFormError, matters, w, context) > matters);
+      (paths > matters ||
+       log_evidence_near_best(classes.front(), kLargestFormError, matters, w, context) > matters);
   if (classes.size() < 2 && !may_be_other) {
     return w;
   }
-  LogEvidences gain{};
-  for (const std::size_t i : classes) {
+  ByClass<double> gain{};
+  for (const CurveClass curve_class : classes) {
     if (!context.work.allows()) {
       return w;
     }
-    const auto& evidence = w.evidences.classes[i];
-    const auto own = evidence
-                         ? log_coherent_gain(*w.evidences.on_reduced[i], *evidence, context.reduced,
-                                             context.likelihood, context.arcs.sigma,
-                                             context.arcs.smooth.chi2, context.work)
-                         : std::nullopt;
-    if (i == classes.front()) {
+    const auto& evidence = w.evidences.classes[curve_class];
+    const auto own =
+        evidence ? log_coherent_gain(*w.evidences.on_reduced[curve_class], *evidence,
+                                     context.reduced, context.likelihood, context.arcs.sigma,
+                                     context.arcs.smooth.chi2, context.work)
+                 : std::nullopt;
+    if (curve_class == classes.front()) {
       gain.fill(own.value_or(0.0));
     } else if (own) {
-      gain[i] = *own;
+      gain[curve_class] = *own;
     }
   }
-  LogEvidences shared;
+  ByClass<double> shared;
   for (std::size_t i = 0; i < white.size(); ++i) {
     shared[i] = white[i] + gain[i];
   }

@@ -8,6 +8,7 @@
 
 #include "core/recognition/coherent/coherent_evidence.h"
 #include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/posterior/laplace_evidences.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/weigh/contenders.h"
 
@@ -18,17 +19,12 @@ namespace {
 /// reduced points do.
 std::optional<ClassFit> seen_by_all(const ClassFit& settled, const FitData& reduced,
                                     const SideContext& by) {
-  constexpr double kSame = 1.0;  // of chi-square: odds are right to a factor of 1.6
   const SmoothModel& smooth = by.arcs.smooth;
-  if (is_what_it_says(settled, reduced)) {
-    ClassFit fit = settled;
-    fit.chi2 = chi2_on_all(settled, smooth, by.arcs.data, by.work);
-    if (std::abs(fit.chi2 - (settled.chi2 + smooth.chi2)) <= kSame) {
-      return fit;
-    }
+  auto fit = where_all_agree(settled, reduced, smooth, by.arcs.data, by.work);
+  if (!fit && by.work.allows()) {
+    fit = refine_on_all(settled, smooth, by.arcs.data, kOnAllEffort, by.work);
   }
-  return by.work.allows() ? refine_on_all(settled, smooth, by.arcs.data, kOnAllEffort, by.work)
-                          : std::nullopt;
+  return fit;
 }
 
 }  // namespace
@@ -52,7 +48,7 @@ bool settle_candidate(const SideContext& by, SideChoice* choice) {
   }
   choice->settled.reset();
   choice->refined.reset();
-  if (const auto& fit = choice->fits[static_cast<std::size_t>(choice->candidate)]) {
+  if (const auto& fit = choice->fits[choice->candidate]) {
     const bool may_win = !tells_noise(by.arcs, by.likelihood) ||
                          fits_well(fit->chi2, residual_count(choice->reduced));
     choice->settled =
@@ -97,20 +93,20 @@ double least_left(const SideChoice& choice, const SmoothModel& smooth) {
 }
 
 double log_evidence_of(const SideChoice& choice, const SideContext& by) {
-  const auto& [arcs, likelihood, work, of_paths, classes, out_of_reach, touched_from] = by;
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   const auto placed = choice.refined ? to_canonical(*choice.settled, choice.reduced) : std::nullopt;
   if (!placed) {
     return kNone;
   }
-  auto evidence = choice.evidences.classes[static_cast<std::size_t>(choice.candidate)];
+  auto evidence = choice.evidences.classes[choice.candidate];
   if (!evidence) {
-    evidence = evidence_of(*placed, choice.reduced, likelihood.inflation(), work);
+    evidence = evidence_of(*placed, choice.reduced, by.likelihood.inflation(), by.work);
   }
-  return evidence ? log_coherent_evidence(likelihood, *evidence, *placed, choice.reduced,
-                                          arcs.sigma, static_cast<double>(arcs.data.points.size()),
-                                          choice.refined->chi2, arcs.smooth.chi2, work)
-                  : kNone;
+  return evidence
+             ? log_coherent_evidence(by.likelihood, *evidence, *placed, choice.reduced,
+                                     by.arcs.sigma, static_cast<double>(by.arcs.data.points.size()),
+                                     choice.refined->chi2, by.arcs.smooth.chi2, by.work)
+             : kNone;
 }
 
 }  // namespace palpate

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/numerics/work_budget.h"
-#include "core/recognition/posterior/posterior.h"
+#include "core/recognition/posterior/evidences.h"
 #include "core/recognition/smooth/arcs.h"
 #include "core/recognition/weigh/sided_start.h"
 

@@ -26,7 +26,7 @@ bool is_as_near(const SideChoice& choice, CurveClass before, double chi2, const 
   if (choice.refined->chi2 <= chi2) {
     return true;
   }
-  const auto& fit = choice.fits[static_cast<std::size_t>(before)];
+  const auto& fit = choice.fits[before];
   const auto refined = fit && before != choice.candidate
                            ? refine_on_all(settled(*fit, choice.reduced, RivalOf::Other, by.work),
                                            by.arcs.smooth, by.arcs.data, kOnAllEffort, by.work)

@@ -36,10 +36,9 @@ ClassFits testable(ClassFits fits, unsigned classes, const Arcs& arcs) {
   const int least_over = arcs.sigma_known ? 0 : 1;
   const int residuals = static_cast<int>(residual_count(arcs.data));
   for (const CurveClass curve_class : kCurveClasses) {
-    const auto i = static_cast<std::size_t>(curve_class);
-    const bool wanted = (classes & (1U << i)) != 0;
+    const bool wanted = (classes & class_bit(curve_class)) != 0;
     if (!wanted || residuals < degrees_of_freedom(curve_class) + least_over) {
-      fits[i].reset();
+      fits[curve_class].reset();
     }
   }
   return fits;
@@ -61,8 +60,9 @@ Contenders contending(ClassFits coarse, const SidedStart* start, const EvidenceC
   contenders.fits = with_inferred_chi2(contenders.coarse, arcs.smooth);
   contenders.evidences = of_paths;
   if (start != nullptr) {
-    contenders.evidences.known = carried_modes(start->modes, contenders.coarse, context.reduced,
-                                               context.likelihood.inflation(), context.work);
+    contenders.evidences.earlier_modes =
+        carried_modes(start->modes, contenders.coarse, context.reduced,
+                      context.likelihood.inflation(), context.work);
   }
   return refine_plausible(std::move(contenders), context, margin_of(options));
 }
@@ -70,7 +70,7 @@ Contenders contending(ClassFits coarse, const SidedStart* start, const EvidenceC
 /// The best class, if it was refined on all points.
 std::optional<Placed> best_on_all(const Contenders& contenders, const EvidenceContext& context) {
   const CurveClass best = best_class(contenders.fits, context.likelihood, contenders.evidences);
-  const auto& fit = contenders.fits[static_cast<std::size_t>(best)];
+  const auto& fit = contenders.fits[best];
   auto canonical = fit && fit->on_all ? to_canonical(*fit, context.arcs.data) : std::nullopt;
   return canonical ? std::optional(Placed{*std::move(canonical), fit->chi2}) : std::nullopt;
 }
@@ -79,25 +79,25 @@ std::optional<Placed> best_on_all(const Contenders& contenders, const EvidenceCo
 /// it is out for some spikes, its residuals tell which.
 /// On all points where it was refined there, otherwise on the reduced ones. `before`: a class
 /// placed already.
-std::array<std::optional<CanonicalFit>, 9> placed_canonically(
-    const Contenders& contenders, const ClassProbabilities& probabilities,
-    const EvidenceContext& context, std::optional<Placed> before) {
+ByClass<std::optional<CanonicalFit>> placed_canonically(const Contenders& contenders,
+                                                        const ClassProbabilities& probabilities,
+                                                        const EvidenceContext& context,
+                                                        std::optional<Placed> before) {
   const CurveClass best = best_class(contenders.fits, context.likelihood, contenders.evidences);
-  std::array<std::optional<CanonicalFit>, 9> canonical;
+  ByClass<std::optional<CanonicalFit>> canonical;
   for (const CurveClass curve_class : kCurveClasses) {
-    const auto i = static_cast<std::size_t>(curve_class);
-    const auto& fit = contenders.fits[i];
+    const auto& fit = contenders.fits[curve_class];
     if (!fit || fit->at_limit || !std::isfinite(fit->chi2) ||
-        (curve_class != best && !(probabilities[i] > kNegligibleProbability))) {
+        (curve_class != best && !(probabilities[curve_class] > kNegligibleProbability))) {
       continue;
     }
     if (!fit->on_all) {
-      canonical[i] = to_canonical(*contenders.coarse[i], context.reduced);
+      canonical[curve_class] = to_canonical(*contenders.coarse[curve_class], context.reduced);
     } else if (before && before->canonical.shape.curve_class == curve_class &&
                before->chi2 == fit->chi2) {
-      canonical[i] = std::move(before->canonical);
+      canonical[curve_class] = std::move(before->canonical);
     } else {
-      canonical[i] = to_canonical(*fit, context.arcs.data);
+      canonical[curve_class] = to_canonical(*fit, context.arcs.data);
     }
   }
   return canonical;
@@ -135,16 +135,15 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   w.white_variance = seen.white_variance;
   w.correlation_length = seen.correlation_length;
   w.inflation = seen.noise_inflation * seen.few_residuals + stated.coherent_variance;
-  const auto b = static_cast<std::size_t>(w.best);
-  const auto& best = contenders.fits[b];
+  const auto& best = contenders.fits[w.best];
   w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, context.likelihood);
   w.canonical = placed_canonically(contenders, w.probabilities, context, std::move(best_placed));
-  if (best && !best->at_limit && !contenders.evidences.classes[b]) {
-    weigh_on_reduced(b, context, &contenders);  // so far by straight paths alone
+  if (best && !best->at_limit && !contenders.evidences.classes[w.best]) {
+    weigh_on_reduced(w.best, context, &contenders);  // so far by straight paths alone
   }
   w.starts = starts_of(sided, contenders);
-  w.best_evidence = std::move(contenders.evidences.classes[b]);
-  w.best_on_reduced = std::move(contenders.evidences.on_reduced[b]);
+  w.best_evidence = std::move(contenders.evidences.classes[w.best]);
+  w.best_on_reduced = std::move(contenders.evidences.on_reduced[w.best]);
   w.stated = stated;
   w.correlated = seen.correlated;
   w.fits = std::move(contenders.fits);

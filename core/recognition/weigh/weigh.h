@@ -36,7 +36,7 @@ struct Weighing {
   ClassFits fits;    ///< plausible ones with chi-square of all points; the best refined on them
   /// Of the classes that are not negligible, and of the best in any case. The points are those of
   /// `data` if fits[i]->on_all, else the reduced points.
-  std::array<std::optional<CanonicalFit>, 9> canonical;
+  ByClass<std::optional<CanonicalFit>> canonical;
   ClassProbabilities probabilities{};
   /// log odds of "unclassified" over all classes, whatever their priors of shapes (posterior.h).
   double margin_of_unclassified = 0.0;

@@ -13,16 +13,15 @@ namespace {
 /// The data with the noise that lies across the best class's curve, as every class is then judged
 /// by; nullopt where the path told it of all points, or no class is placed on all points.
 std::optional<FitData> weighed_across(const Weighing& w, const FitData& data) {
-  const auto b = static_cast<std::size_t>(w.best);
   const bool any_left = std::any_of(w.data.details.begin(), w.data.details.end(),
                                     [](const PointDetail& d) { return d.covariance.x() > 0.0; });
-  if (!any_left || !w.canonical[b] || !w.fits[b]->on_all) {
+  if (!any_left || !w.canonical[w.best] || !w.fits[w.best]->on_all) {
     return std::nullopt;
   }
   FitData weighed = data;
   const double rounding = rounding_level(data);
   for (std::size_t i = 0; i < data.details.size(); ++i) {
-    const Vec2 normal = data.frame.rotate_back(w.canonical[b]->points[i].normal);
+    const Vec2 normal = data.frame.rotate_back(w.canonical[w.best]->points[i].normal);
     weigh_across(normal, rounding, &weighed.details[i], &weighed.points[i]);
   }
   return weighed;

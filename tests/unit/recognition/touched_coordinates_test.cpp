@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/curves/curve.h"
-#include "core/recognition/posterior/touched_curve.h"
+#include "core/recognition/modes/touched_curve.h"
 #include "core/recognition/prior/arc_coordinates.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"

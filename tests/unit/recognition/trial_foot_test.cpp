@@ -1,5 +1,5 @@
 // Feet on trial curves against those to full precision.
-#include "core/recognition/posterior/trial_foot.h"
+#include "core/recognition/modes/trial_foot.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <variant>
 
-#include "core/recognition/posterior/mode_search.h"
+#include "core/recognition/modes/mode_search.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/test_rng.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/numerics/work_budget.h"
-#include "core/recognition/posterior/class_evidence.h"
+#include "core/recognition/modes/class_evidence.h"
 
 namespace palpate {
 

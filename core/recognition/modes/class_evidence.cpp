@@ -1,4 +1,4 @@
-#include "core/recognition/posterior/class_evidence.h"
+#include "core/recognition/modes/class_evidence.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -10,8 +10,8 @@
 #include "core/numerics/log_add.h"
 #include "core/numerics/negligible.h"
 #include "core/numerics/small_cholesky.h"
-#include "core/recognition/posterior/mode_search.h"
-#include "core/recognition/posterior/prior_starts.h"
+#include "core/recognition/modes/mode_search.h"
+#include "core/recognition/modes/prior_starts.h"
 #include "core/recognition/prior/arc_coordinates.h"
 #include "core/recognition/prior/touched_prior.h"
 
@@ -225,12 +225,8 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
     return std::nullopt;
   }
   touch->weight = 1.0 / std::sqrt(inflation);
-  double fitted_chi2 = 0.0;
-  for (const FittedPoint& point : fit.points) {
-    fitted_chi2 += point.residual * point.residual + point.normal_residual * point.normal_residual;
-  }
   auto first = placed(*touch, fit, data, work);
-  if (!first || !holds(*first, fitted_chi2 / inflation, data)) {
+  if (!first || !holds(*first, chi2_of(fit) / inflation, data)) {
     return std::nullopt;
   }
   ClassEvidence evidence;

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/numerics/work_budget.h"
-#include "core/recognition/posterior/touched_curve.h"
+#include "core/recognition/modes/touched_curve.h"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "core/recognition/posterior/touched_curve.h"
+#include "core/recognition/modes/touched_curve.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "core/curves/curve.h"
 #include "core/numerics/triangular_root.h"
 #include "core/recognition/fit/measured_normal.h"
-#include "core/recognition/posterior/trial_foot.h"
+#include "core/recognition/modes/trial_foot.h"
 #include "core/recognition/prior/touched_prior.h"
 
 namespace palpate {

@@ -1,4 +1,4 @@
-#include "core/recognition/posterior/slices.h"
+#include "core/recognition/modes/slices.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "core/numerics/negligible.h"
 #include "core/numerics/small_cholesky.h"
-#include "core/recognition/posterior/mode_search.h"
+#include "core/recognition/modes/mode_search.h"
 
 namespace palpate {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/recognition/fit/canonical_fit.h"
-#include "core/recognition/posterior/class_evidence.h"
+#include "core/recognition/modes/class_evidence.h"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "core/recognition/posterior/moments.h"
+#include "core/recognition/modes/moments.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "core/curves/curve.h"
 #include "core/numerics/small_cholesky.h"
-#include "core/recognition/posterior/mode_search.h"
+#include "core/recognition/modes/mode_search.h"
 
 namespace palpate {
 namespace {

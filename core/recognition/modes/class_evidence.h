@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/numerics/work_budget.h"
-#include "core/recognition/posterior/touched_curve.h"
+#include "core/recognition/modes/touched_curve.h"
 
 namespace palpate {
 
@@ -24,9 +24,10 @@ struct ClassEvidence {
   /// log of (mass of all modes / mass of this one): arms that no path joins (prior_starts.h).
   double log_all_modes = 0.0;
   bool prior_mode_sought = false;
-  bool at_limit = false;  ///< of a fit that is at its class's limit (class_limits.h)
-  /// The same if all of the prior were at this shape: only place and direction of the touch remain,
-  /// whose cost is the same for every curve.
+  /// `fitted_chi2` is that of the class's limit (class_limits.h), not of a fit of its own.
+  bool counted_from_limit = false;
+  /// `log_occam` if all of the prior were at this shape: only place and direction of the touch
+  /// remain, whose cost is the same for every curve.
   double log_occam_of_touch = 0.0;
   /// Number of coordinates that the data determine rather than the prior.
   double determined = 0.0;

@@ -1,4 +1,4 @@
-#include "core/recognition/posterior/prior_starts.h"
+#include "core/recognition/modes/prior_starts.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "core/recognition/posterior/mode_search.h"
+#include "core/recognition/modes/mode_search.h"
 
 #include <algorithm>
 #include <cmath>

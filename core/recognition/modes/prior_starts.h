@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/recognition/posterior/touched_curve.h"
+#include "core/recognition/modes/touched_curve.h"
 
 namespace palpate {
 
