@@ -236,8 +236,8 @@ class Recognizer::Impl {
       return contacts_.of(patches, sides, {}, contact_options());
     };
     Recognition answer =
-        answer_by_tree(possible_sides(patches, reduced, turns_of(reduced), {}, work), contacts_of,
-                       options_.tree, data.scale, options_.determined_fraction);
+        answer_by_tree(possible_sides(patches, reduced, turns_of(reduced), {}, work).ways,
+                       contacts_of, options_.tree, data.scale, options_.determined_fraction);
     answer.outlier_count = outliers;
     if (outliers > 0) answer.outliers_m = places_set_aside(clean_.moved(), patches, {});
     return answer;

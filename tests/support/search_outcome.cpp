@@ -66,9 +66,9 @@ Prepared prepare(const SearchCase& search_case) {
   prepared.data = make_fit_data(memory.patches(), 0.0, &sigma_known);
   prepared.smooth = fit_smooth_model(&prepared.data, sigma_known);
   WorkBudget unbounded;
-  const auto ways = possible_sides(memory.patches(), prepared.smooth.reduced,
-                                   turns_of(prepared.smooth.reduced), {}, unbounded);
-  prepared.reduced = on_surface(prepared.smooth.reduced, ways.front());
+  const auto possible = possible_sides(memory.patches(), prepared.smooth.reduced,
+                                       turns_of(prepared.smooth.reduced), {}, unbounded);
+  prepared.reduced = on_surface(prepared.smooth.reduced, possible.ways.front());
   return prepared;
 }
 

@@ -142,9 +142,9 @@ std::vector<double> turns_of(const FitData& reduced) {
   return turns;
 }
 
-std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
-                                             const FitData& reduced, std::span<const double> bends,
-                                             std::span<const double> senses, WorkBudget& work) {
+PossibleSides possible_sides(std::span<const StoredPatch> patches, const FitData& reduced,
+                             std::span<const double> bends, std::span<const double> senses,
+                             WorkBudget& work) {
   std::vector<int> known(reduced.patches.size(), 0);
   std::vector<bool> has_tip(reduced.patches.size(), false);
   const auto any_unknown = [&] {
@@ -168,25 +168,32 @@ std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patche
     ++p;
   }
   if (!any_unknown()) {
-    return {known};
+    return {{known}, 0};
   }
   const std::vector<Alongside> strokes = strokes_together(patches, reduced, work);
   known = known_together(strokes, known);
   if (!any_unknown()) {
-    return {known};
+    return {{known}, 0};
   }
   const std::vector<double> bend = said_together(strokes, bends);
   const std::vector<double> sense =
       said_together(strokes, senses.empty() ? std::vector<double>(known.size(), 1.0)
                                             : std::vector<double>(senses.begin(), senses.end()));
-  std::vector<std::vector<int>> ways;
+  PossibleSides sides;
+  std::vector<bool> counted(known.size(), false);
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (has_tip[i] && known[i] == 0 && !counted[strokes[i].first]) {
+      counted[strokes[i].first] = true;
+      ++sides.open;
+    }
+  }
   const auto add = [&](auto side_of) {
     std::vector<int> way(known.size());
     for (std::size_t i = 0; i < known.size(); ++i) {
       way[i] = known[i] != 0 || !has_tip[i] ? known[i] : side_of(i);
     }
-    if (std::find(ways.begin(), ways.end(), way) == ways.end()) {
-      ways.push_back(std::move(way));
+    if (std::find(sides.ways.begin(), sides.ways.end(), way) == sides.ways.end()) {
+      sides.ways.push_back(std::move(way));
     }
   };
   // If the path bends left, the tips lie outside, on the right, if the part is convex there.
@@ -196,7 +203,7 @@ std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patche
   add([&](std::size_t i) { return -outside_of_bend(i); });
   add([&](std::size_t i) { return left_of_curve(i); });
   add([&](std::size_t i) { return -left_of_curve(i); });
-  return ways;
+  return sides;
 }
 
 double log_likelihood_of_normals(std::span<const StoredPatch> patches, const FitData& reduced,

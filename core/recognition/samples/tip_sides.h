@@ -1,6 +1,8 @@
 // Round probe tips: on which side they lie, and the way from tip centres to surface points.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,8 +24,22 @@ std::optional<double> certain_turn(std::span<const FitPoint> patch);
 /// The turns of all patches, significant or not. [rad]
 std::vector<double> turns_of(const FitData& reduced);
 
-/// The possible sides of the tips: each element has one side per patch, +1 if the tip centres lie
-/// left of travel, -1 right, 0 without a tip. A patch's side is known if measured normals show it
+/// Ways in which the tips may lie.
+struct PossibleSides {
+  /// Each has one side per patch, +1 if the tip centres lie left of travel, -1 right, 0 without a
+  /// tip.
+  std::vector<std::vector<int>> ways;
+  /// Strokes whose side is not known, those that run together counted once.
+  std::size_t open = 0;
+
+  /// Whether the open strokes may lie in other ways too.
+  bool may_be_otherwise() const {
+    return open >= std::numeric_limits<std::size_t>::digits ||
+           (std::size_t{1} << open) > ways.size();
+  }
+};
+
+/// The possible sides of the tips. A patch's side is known if measured normals show it
 /// beyond doubt, else if the probe states it, else if it runs along a patch whose side is known
 /// (strokes_together.h). If all sides are known, there is one way. Otherwise
 /// the unknown sides are such that the part is convex everywhere, concave everywhere, or always on
@@ -34,9 +50,9 @@ std::vector<double> turns_of(const FitData& reduced);
 /// the curve; empty if no curve is known: then left and right are those of each patch's own travel.
 /// A single touch has no travel, so that a stated side says nothing; its direction is its point's
 /// tangent.
-std::vector<std::vector<int>> possible_sides(std::span<const StoredPatch> patches,
-                                             const FitData& reduced, std::span<const double> bends,
-                                             std::span<const double> senses, WorkBudget& work);
+PossibleSides possible_sides(std::span<const StoredPatch> patches, const FitData& reduced,
+                             std::span<const double> bends, std::span<const double> senses,
+                             WorkBudget& work);
 
 /// log likelihood of these sides by the signs of measured normals, up to a constant. Each patch's
 /// may be too few to be beyond doubt and together tell the side of all.

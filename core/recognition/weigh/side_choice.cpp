@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/curves/algebraic/polynomial_curve.h"
 #include "core/recognition/coherent/coherent_evidence.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/posterior/laplace_evidences.h"
@@ -14,6 +15,27 @@
 
 namespace palpate {
 namespace {
+
+Vec2 foot_of(const ClassFit& fit, std::size_t point) {
+  return fit.polynomial ? position_at(fit.polynomial->coefficients, fit.polynomial->t[point])
+                        : fit.implicit->feet[point];
+}
+
+/// Whether the tips' centres lie on these sides of their travel, as a curve fitted to all of them
+/// has it.
+bool lie_so(std::span<const int> sides, const ClassFit& on_all, const FitData& data) {
+  for (std::size_t p = 0; p < data.patches.size(); ++p) {
+    double to_the_left = 0.0;
+    for (std::size_t i = data.patches[p].begin; i + 1 < data.patches[p].end; ++i) {
+      const Vec2 centre = data.points[i].position;
+      to_the_left += left_of(data.points[i + 1].position - centre).dot(centre - foot_of(on_all, i));
+    }
+    if (sides[p] * to_the_left < 0.0) {
+      return false;
+    }
+  }
+  return true;
+}
 
 /// The candidate as all points see it: refined on them, or as it is where they tell what the
 /// reduced points do.
@@ -60,11 +82,17 @@ bool settle_candidate(const SideContext& by, SideChoice* choice) {
 void take_candidate(const SideContext& by, SideChoice* choice) {
   if (settle_candidate(by, choice) && choice->settled) {
     choice->refined = seen_by_all(*choice->settled, choice->reduced, by);
+    if (choice->refined && choice->refined->on_all &&
+        !lie_so(choice->sides, *choice->refined, by.arcs.data)) {
+      choice->refined.reset();
+    }
   }
 }
 
-SideChoice choice_of(ClassFits fits, FitData reduced, const SideContext& by) {
+SideChoice choice_of(std::span<const int> sides, ClassFits fits, FitData reduced,
+                     const SideContext& by) {
   SideChoice choice;
+  choice.sides.assign(sides.begin(), sides.end());
   choice.fits = std::move(fits);
   choice.reduced = std::move(reduced);
   choice.evidences = by.of_paths;

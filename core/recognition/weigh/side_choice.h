@@ -17,11 +17,14 @@ namespace palpate {
 struct SideChoice {
   /// For each patch, the side of travel on which the tip centres lie (tip_sides.h).
   std::vector<int> sides;
-  ClassFits fits;   ///< of every class, to `reduced`
-  FitData reduced;  ///< the arcs' reduced points, moved to the surface
+  bool expected = false;  ///< outside the bends, or where TouchedFrom says
+  bool contrary = false;  ///< the other of the two
+  ClassFits fits;         ///< of every class, to `reduced`
+  FitData reduced;        ///< the arcs' reduced points, moved to the surface
   CurveClass candidate = CurveClass::Unclassified;
   std::optional<ClassFit> settled;  ///< the candidate at its optimum on the reduced points
-  /// The candidate on all points, unless they agree with the reduced points.
+  /// The candidate on all points, unless they agree with the reduced points; nullopt where it is no
+  /// such curve there, or has tips on other sides: centres show theirs whichever were assumed.
   std::optional<ClassFit> refined;
   Evidences evidences;
   /// log of the evidence of the candidate, however free-form paths fare beside it; -infinity where
@@ -54,8 +57,9 @@ bool settle_candidate(const SideContext& by, SideChoice* choice);
 /// The same, and on all points. What was refined before is not once more.
 void take_candidate(const SideContext& by, SideChoice* choice);
 
-/// The choice with these fits to these points, its candidate taken.
-SideChoice choice_of(ClassFits fits, FitData reduced, const SideContext& by);
+/// The choice of these sides with these fits to these points, its candidate taken.
+SideChoice choice_of(std::span<const int> sides, ClassFits fits, FitData reduced,
+                     const SideContext& by);
 
 /// Of chi-square: what changes odds less than tenfold, where it is what noise leaves. What leaves
 /// more has its odds by a noise that is as large as its residuals.

@@ -77,7 +77,7 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
     choice.reduced = std::move(reduced);
     return choice;
   }
-  SideChoice choice = choice_of(std::move(fits), std::move(reduced), by);
+  SideChoice choice = choice_of(sides, std::move(fits), std::move(reduced), by);
   // A third of a radian leads to a millionth within three.
   constexpr int kRounds = 3;
   // Of chi-square by a round: residuals that directions leave fall with the error's square, from a
@@ -109,7 +109,7 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
     }
     ClassFits again = fit_classes(nearer, by.work, &start, by.classes, by.out_of_reach);
     const double before = least_left(choice, smooth);
-    SideChoice next = choice_of(std::move(again), std::move(nearer), by);
+    SideChoice next = choice_of(sides, std::move(again), std::move(nearer), by);
     if (!agrees(next, smooth) && disagreement(next, smooth) > disagreement(choice, smooth)) {
       break;  // worse directions than before, by what all points say
     }
@@ -137,6 +137,30 @@ SideChoice judged(SideChoice choice, const SideContext& by) {
 /// Whether all points have the candidate, as far as noise lets them.
 bool fits_all(const SideChoice& choice, const SideContext& by) {
   return choice.refined && fits_well(choice.refined->chi2, residual_count(by.arcs.data));
+}
+
+/// Whether one curve that bends to one side may have all strokes as they travel: each has the
+/// others on the side to which it bends.
+bool may_bend_to_one_side(const FitData& touches, std::span<const double> bends) {
+  for (std::size_t p = 0; p < touches.patches.size(); ++p) {
+    for (const std::size_t end : {touches.patches[p].begin, touches.patches[p].end - 1}) {
+      const FitPoint& from = touches.points[end];
+      const Vec2 inside = bends[p] * left_of(from.tangent);
+      for (std::size_t q = 0; q < touches.patches.size(); ++q) {
+        for (std::size_t i = touches.patches[q].begin; q != p && i < touches.patches[q].end; ++i) {
+          if (inside.dot(touches.points[i].position - from.position) < 0.0) {
+            return false;
+          }
+        }
+      }
+    }
+  }
+  return true;
+}
+
+bool is_among(std::span<const SideChoice> choices, const std::vector<int>& sides) {
+  return std::any_of(choices.begin(), choices.end(),
+                     [&](const SideChoice& choice) { return choice.sides == sides; });
 }
 
 double largest_tip_m(const FitData& touches) {
@@ -175,8 +199,7 @@ SideChoice fit_choice(const FitData& touches, std::span<const int> sides, const 
   SideChoice choice = judged(fit_along(touches, sides, by, starts), by);
   const auto may_gain = [&] {
     return choice.settled && directions_may_explain(choice, touches, smooth) &&
-           !(choice.refined && choice.log_evidence < highest - kNegligibleLogOdds) &&
-           by.work.allows();
+           choice.log_evidence >= highest - kNegligibleLogOdds && by.work.allows();
   };
   const auto take_along = [&](const CanonicalFit& curve, const WarmStart* start) {
     FitData turned = touches;
@@ -246,7 +269,8 @@ Directed directed(std::span<const StoredPatch> patches, const SmoothModel& smoot
   return result;
 }
 
-/// The way of the highest evidence, the first (from outside the bends) at the odds of the prior.
+/// The way of the highest evidence, the expected one (from outside the bends) at the odds of the
+/// prior.
 void take_most_probable(const SideContext& by, SidedFits* sided) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   // A prior (core/README.md, "The prior"): tips that touch a part from within a bend are rare,
@@ -261,12 +285,13 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
     const SideChoice& choice = sided->choices[i];
     // A line has no bend to be outside of.
     const bool has_bend = choice.candidate != CurveClass::Line;
-    // The second way has the tips in all bends where the first has them outside, or the reverse:
-    // whoever says the one rules out the other.
-    const bool ruled_out = i == 1 && has_bend && by.touched_from != TouchedFrom::Unknown;
+    // It has the tips in all bends where the expected way has them outside, or the reverse: whoever
+    // says the one rules out the other.
+    const bool ruled_out = choice.contrary && has_bend && by.touched_from != TouchedFrom::Unknown;
     evidences.push_back(choice.log_evidence + choice.log_of_normals -
                         (ruled_out ? kNegligibleLogOdds : 0.0));
-    const double weighed = evidences[i] - (i > 0 && has_bend ? log_price_of_others : 0.0);
+    const double weighed =
+        evidences[i] - (!choice.expected && has_bend ? log_price_of_others : 0.0);
     if (i == 0 || weighed > highest) {
       highest = weighed;
       sided->taken = i;
@@ -286,32 +311,69 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
   CurveOfCentres centres(by, starts);
   const auto [touches, bends, senses] = directed(patches, by.arcs.smooth, &centres, by.work);
   SidedFits sided;
-  auto all_sides = possible_sides(patches, touches, bends, senses, by.work);
-  if (by.touched_from == TouchedFrom::Inside && all_sides.size() > 1) {
-    std::swap(all_sides[0], all_sides[1]);
+  PossibleSides possible = possible_sides(patches, touches, bends, senses, by.work);
+  if (by.touched_from == TouchedFrom::Inside && possible.ways.size() > 1) {
+    std::swap(possible.ways[0], possible.ways[1]);
   }
   if (!has_tips(touches.points)) {
     SideChoice choice;
-    choice.sides = all_sides.front();
+    choice.sides = possible.ways.front();
     choice.reduced = on_surface(touches, choice.sides);
     choice.fits = fit_classes_from(starts, choice.sides, choice.reduced, by, by.out_of_reach);
     sided.choices.push_back(std::move(choice));
     return sided;
   }
-  // The first is the most probable beforehand.
   double highest = -std::numeric_limits<double>::infinity();
-  for (const std::vector<int>& sides : all_sides) {
-    if (!sided.choices.empty() && !by.work.allows()) {
-      break;
+  const auto try_ways = [&](const std::vector<std::vector<int>>& ways) {
+    for (const std::vector<int>& sides : ways) {
+      if (is_among(sided.choices, sides)) {
+        continue;
+      }
+      if (!sided.choices.empty() && !by.work.allows()) {
+        break;
+      }
+      const double by_normals = log_likelihood_of_normals(patches, touches, sides);
+      SideChoice choice = fit_choice(touches, sides, by, starts, highest - by_normals, &centres);
+      choice.sides = sides;
+      choice.expected = sides == possible.ways.front();
+      choice.contrary = possible.ways.size() > 1 && sides == possible.ways[1];
+      choice.log_of_normals = by_normals;
+      if (fits_all(choice, by)) {
+        highest = std::max(highest, choice.log_evidence + by_normals);
+      }
+      sided.choices.push_back(std::move(choice));
     }
-    const double by_normals = log_likelihood_of_normals(patches, touches, sides);
-    SideChoice choice = fit_choice(touches, sides, by, starts, highest - by_normals, &centres);
-    choice.sides = sides;
-    choice.log_of_normals = by_normals;
-    if (fits_all(choice, by)) {
-      highest = std::max(highest, choice.log_evidence + by_normals);
+  };
+  // Strokes that travel against one another lie on one side of a curve by different sides of their
+  // own travel: the curve of the centres tells.
+  const bool may_turn = senses.empty() && possible.may_be_otherwise();
+  const auto try_ways_along = [&] {
+    if (const auto& curve = centres.get()) {
+      const std::vector<double> along = senses_of(*curve, touches, by.work);
+      std::vector<std::vector<int>> ways =
+          possible_sides(patches, touches, bends, along, by.work).ways;
+      std::erase_if(ways, [&](const std::vector<int>& way) {
+        return std::find(possible.ways.begin(), possible.ways.end(), way) != possible.ways.end();
+      });
+      try_ways(ways);
     }
-    sided.choices.push_back(std::move(choice));
+  };
+  const bool at_first = may_turn && !may_bend_to_one_side(touches, bends);
+  if (at_first) {
+    try_ways_along();
+  }
+  if (std::none_of(sided.choices.begin(), sided.choices.end(), [&](const SideChoice& choice) {
+        return fits_all(choice, by) && agrees(choice, by.arcs.smooth);
+      })) {
+    try_ways(possible.ways);
+  }
+  // A line or a conic that all points have tells how they lie; a cubic, which turns to either side
+  // and goes far away, may go through any two strokes.
+  if (may_turn && !at_first && by.work.allows() &&
+      std::none_of(sided.choices.begin(), sided.choices.end(), [&](const SideChoice& choice) {
+        return fits_all(choice, by) && (class_bit(choice.candidate) & kCubics) == 0;
+      })) {
+    try_ways_along();
   }
   sided.centres = centres.next_start();
   take_most_probable(by, &sided);

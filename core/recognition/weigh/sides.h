@@ -14,8 +14,6 @@
 namespace palpate {
 
 struct SidedFits {
-  /// If sides are not stated, the first is where tips touch most parts, outside the bends, or
-  /// where TouchedFrom says.
   std::vector<SideChoice> choices;
   std::size_t taken = 0;  ///< index of the most probable one
   /// log odds over the next best choice of sides, by what was measured and stated alone; below 0 if
@@ -30,7 +28,7 @@ struct SidedFits {
 };
 
 /// Fits the classes to the reduced points and chooses the sides of the tips. If sides are not
-/// known, it takes the choice of highest evidence; the first one has the odds of the prior.
+/// known, it takes the choice of highest evidence; the expected one has the odds of the prior.
 /// `starts`: as in weigh().
 SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext& by,
                          std::span<const SidedStart> starts);

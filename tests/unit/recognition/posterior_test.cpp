@@ -1,8 +1,8 @@
 // The evidence against integrals by brute force, and what follows from it.
-#include "core/recognition/posterior/laplace_evidences.h"
 #include "core/recognition/posterior/posterior.h"
 #include "core/recognition/modes/mode_search.h"
 #include "core/recognition/modes/slices.h"
+#include "core/recognition/posterior/laplace_evidences.h"
 
 #include <gtest/gtest.h>
 

@@ -50,7 +50,7 @@ struct TipStrokes {
 
   std::vector<std::vector<int>> ways() const {
     WorkBudget work;
-    return possible_sides(patches, centres, turns_of(centres), {}, work);
+    return possible_sides(patches, centres, turns_of(centres), {}, work).ways;
   }
 };
 
