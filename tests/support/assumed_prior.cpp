@@ -87,7 +87,7 @@ class ChartLaw {
       z[2] = std::atan2(std::sqrt(m) * std::cos(angle), -std::sin(angle));
     }
     TouchedShape like;
-    like.values[0] = uniform(rng, -1.0, 1.0) < 0.0 ? -1.0 : 1.0;
+    like.values[0] = random_sign(rng);
     return shape_at(chart_, z, like);
   }
 
@@ -279,9 +279,7 @@ const std::vector<ClassLaw>& laws_of_classes() {
 }  // namespace
 
 AssumedScene draw_assumed(std::uint64_t seed, std::uint32_t number) {
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                         number};
-  std::mt19937_64 rng(sequence);
+  std::mt19937_64 rng = seeded_rng(seed, {number});
   const auto& laws = laws_of_classes();
   AssumedScene scene;
   std::optional<std::vector<Vec2>> stroke;

@@ -136,8 +136,7 @@ struct ArcTable {
 /// Arc of a patch on a piece with the arc `total` and the half diagonal `size`.
 double random_arc(const SceneOptions& options, double total, double size, std::mt19937_64& rng) {
   if (options.most_arc_over_size > 0.0) {
-    return size * std::exp(uniform(rng, std::log(options.least_arc_over_size),
-                                   std::log(options.most_arc_over_size)));
+    return size * log_uniform(rng, options.least_arc_over_size, options.most_arc_over_size);
   }
   return total * uniform(rng, options.least_fraction, options.most_fraction);
 }

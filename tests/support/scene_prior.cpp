@@ -36,9 +36,7 @@ ScenePrior other_prior() {
 }
 
 PriorScene scene_from(const ScenePrior& prior, std::uint64_t seed, std::uint32_t number) {
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                         number};
-  std::mt19937_64 rng(sequence);
+  std::mt19937_64 rng = seeded_rng(seed, {number});
   std::discrete_distribution<int> kinds(prior.frequency.begin(), prior.frequency.end());
   const auto curve_class = static_cast<CurveClass>(kinds(rng));
   const auto shape = static_cast<OutsideShape>(std::uniform_int_distribution<int>(0, 3)(rng));

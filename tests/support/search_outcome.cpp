@@ -13,16 +13,13 @@
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/smooth/smooth_model.h"
 #include "tests/support/placed_fit.h"
+#include "tests/support/test_rng.h"
 #include "tests/support/unbounded_work.h"
 
 namespace palpate::test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-double arc_or_noise(std::mt19937_64& rng, double least, double most) {
-  return std::exp(std::uniform_real_distribution<double>(std::log(least), std::log(most))(rng));
-}
 
 /// Replaces surface points by tip centres, outside the bend at the middle of each patch.
 void lift_to_tip(double radius_m, Scene* scene, std::vector<MaterialSide>* sides) {
@@ -129,18 +126,16 @@ SearchOutcome outcome(const SearchCase& search_case, bool on_all) {
 }  // namespace
 
 SearchCase search_case(CurveClass curve_class, std::uint64_t seed, std::uint32_t number) {
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                         static_cast<std::uint32_t>(curve_class), number};
-  std::mt19937_64 rng(sequence);
+  std::mt19937_64 rng = seeded_rng(seed, {static_cast<std::uint32_t>(curve_class), number});
   SceneOptions options;
   options.patches = std::uniform_int_distribution<int>(1, 6)(rng);
-  options.points_per_patch = static_cast<int>(std::lround(arc_or_noise(rng, 10.0, 200.0)));
-  options.sigma_over_size = arc_or_noise(rng, 1e-6, 1e-2);
+  options.points_per_patch = static_cast<int>(std::lround(log_uniform(rng, 10.0, 200.0)));
+  options.sigma_over_size = log_uniform(rng, 1e-6, 1e-2);
   options.least_arc_over_size = 0.05;
   options.most_arc_over_size = 4.0;
   SearchCase result;
   const bool tip = std::uniform_int_distribution<int>(0, 3)(rng) == 0;
-  const double radius = options.size_m * arc_or_noise(rng, 1e-3, 1e-1);
+  const double radius = options.size_m * log_uniform(rng, 1e-3, 1e-1);
   result.tip_radius_m = tip ? radius : 0.0;
   result.scene = random_scene(curve_class, options, rng);
   return result;
@@ -149,16 +144,14 @@ SearchCase search_case(CurveClass curve_class, std::uint64_t seed, std::uint32_t
 SearchCase lone_search_case(CurveClass curve_class, std::uint64_t seed, std::uint32_t number) {
   // A different sequence from that of search_case.
   constexpr std::uint32_t kLone = 0x10e;
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                         static_cast<std::uint32_t>(curve_class), number, kLone};
-  std::mt19937_64 rng(sequence);
+  std::mt19937_64 rng = seeded_rng(seed, {static_cast<std::uint32_t>(curve_class), number, kLone});
   constexpr double kMostTouches = 60.0;
   const double fewest = degrees_of_freedom(curve_class) + 1.0;
-  const auto count = static_cast<std::size_t>(std::lround(arc_or_noise(rng, fewest, kMostTouches)));
+  const auto count = static_cast<std::size_t>(std::lround(log_uniform(rng, fewest, kMostTouches)));
   SceneOptions options;
   options.patches = std::uniform_int_distribution<int>(1, 3)(rng);
   options.points_per_patch = 200;
-  options.sigma_over_size = arc_or_noise(rng, 1e-6, 1e-2);
+  options.sigma_over_size = log_uniform(rng, 1e-6, 1e-2);
   options.least_arc_over_size = 0.05;
   options.most_arc_over_size = 4.0;
   options.across_cusp = true;

@@ -37,11 +37,8 @@ std::uint64_t test_seed() {
 }
 
 std::mt19937_64 test_rng(std::uint64_t stream) {
-  const std::uint64_t seed = test_seed();
-  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                         static_cast<std::uint32_t>(stream),
-                         static_cast<std::uint32_t>(stream >> 32)};
-  return std::mt19937_64(sequence);
+  return seeded_rng(test_seed(),
+                    {static_cast<std::uint32_t>(stream), static_cast<std::uint32_t>(stream >> 32)});
 }
 
 int stress_count(int base) { return std::max(1, static_cast<int>(std::ceil(base * stress()))); }

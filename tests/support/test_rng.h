@@ -4,13 +4,25 @@
 
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <random>
+#include <vector>
 
 namespace palpate::test {
 
 /// Seed of the running GoogleTest: a hash of "Suite.Test" plus PALPATE_TEST_SEED from the
 /// environment (default 0). A failing test prints it.
 std::uint64_t test_seed();
+
+/// A generator for the case that `which` numbers, its words after the seed's low and high half:
+/// different cases of one seed are independent.
+inline std::mt19937_64 seeded_rng(std::uint64_t seed, std::initializer_list<std::uint32_t> which) {
+  std::vector<std::uint32_t> words{static_cast<std::uint32_t>(seed),
+                                   static_cast<std::uint32_t>(seed >> 32)};
+  words.insert(words.end(), which);
+  std::seed_seq sequence(words.begin(), words.end());
+  return std::mt19937_64(sequence);
+}
 
 /// A generator seeded by test_seed(). `stream` separates independent sequences within one test.
 std::mt19937_64 test_rng(std::uint64_t stream = 0);

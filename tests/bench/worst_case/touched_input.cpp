@@ -17,11 +17,8 @@ constexpr int kMostPatches = 64;
 constexpr int kFewestSamples = 8;
 constexpr int kMostSamples = 4096;
 
+using test::log_uniform;
 using test::uniform;
-
-double log_uniform(std::mt19937_64& rng, double least, double most) {
-  return std::exp(uniform(rng, std::log(least), std::log(most)));
-}
 
 int log_integer(std::mt19937_64& rng, int least, int most) {
   return static_cast<int>(std::lround(log_uniform(rng, least, most)));
@@ -356,9 +353,7 @@ double share_at(const InputRecipe& r, int i) {
 }  // namespace
 
 TouchedInput input_of(const InputRecipe& r) {
-  std::seed_seq sequence{static_cast<std::uint32_t>(r.seed),
-                         static_cast<std::uint32_t>(r.seed >> 32)};
-  std::mt19937_64 rng(sequence);
+  std::mt19937_64 rng = test::seeded_rng(r.seed, {});
   const Path path = path_of(r.shape, rng);
   const ArcTable table(path);
   const double phase = uniform(rng, 0.0, 2.0 * kPi);
