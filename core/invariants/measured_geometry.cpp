@@ -18,6 +18,11 @@ bool is_finite(const MeasuredGeometry& point) {
          std::isfinite(point.kappa_s) && point.covariance.allFinite();
 }
 
+bool are_finite(std::span<const MeasuredGeometry> points) {
+  return std::all_of(points.begin(), points.end(),
+                     [](const MeasuredGeometry& point) { return is_finite(point); });
+}
+
 double curvature_scale(std::span<const MeasuredGeometry> points) {
   double scale = 0.0;
   for (const MeasuredGeometry& point : points) {

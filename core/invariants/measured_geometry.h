@@ -23,6 +23,7 @@ struct MeasuredGeometry {
 MeasuredGeometry measured_geometry(const LocalEstimate& estimate, int patch = 0);
 
 bool is_finite(const MeasuredGeometry& point);
+bool are_finite(std::span<const MeasuredGeometry> points);
 
 /// The largest of |kappa| and sqrt|kappa_s| over the points [1/m]. With its inverse as the unit of
 /// length every curve has a size of about one, so no threshold depends on the unit. 0 for a

@@ -119,8 +119,7 @@ LocalResult estimate_at(const JetFit<Degree>& window, double place) {
   e.kappa_s = geometry.kappa_s / (unit * unit);
   e.covariance = window.sigma * window.sigma * (spread.transpose() * spread);
   e.window_arc_m = window.window_arc_m;
-  if (!(e.position.allFinite() && std::isfinite(e.kappa) && std::isfinite(e.kappa_s) &&
-        e.covariance.allFinite() && std::isfinite(e.window_arc_m))) {
+  if (!is_finite(e)) {
     e = {};
     result.status = LocalStatus::NotFinite;
   }

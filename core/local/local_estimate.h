@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "core/curves/pose2.h"
 
@@ -20,5 +21,11 @@ struct LocalEstimate {
   int window_samples = 0;     ///< number of samples used
   double sigma_m = 0.0;       ///< noise used: as given, or estimated from the residuals [m]
 };
+
+/// The angle needs no test: it comes of the same frame and slope as position and curvature.
+inline bool is_finite(const LocalEstimate& e) {
+  return e.position.allFinite() && std::isfinite(e.kappa) && std::isfinite(e.kappa_s) &&
+         e.covariance.allFinite() && std::isfinite(e.window_arc_m);
+}
 
 }  // namespace palpate

@@ -193,8 +193,7 @@ LocalResult two_round_estimate(std::span<const Vec2> all_samples, const TwoRound
   e.window_samples = static_cast<int>(total);
   e.sigma_m = sigma_m;
   result.status = LocalStatus::Ok;
-  if (!(e.position.allFinite() && std::isfinite(e.kappa) && std::isfinite(e.kappa_s) &&
-        e.covariance.allFinite() && std::isfinite(e.window_arc_m))) {
+  if (!is_finite(e)) {
     result = {LocalStatus::NotFinite, {}};
   }
   return result;

@@ -114,7 +114,7 @@ SemiSignatureFit fit_family(const ParabolaFamily& family,
   if (measured.size() < 2) {
     return best;
   }
-  if (!std::all_of(measured.begin(), measured.end(), is_finite)) {
+  if (!are_finite(measured)) {
     best.status = InvariantStatus::NotFinite;
     return best;
   }

@@ -127,8 +127,7 @@ std::vector<SplineSolution> spline_least_squares(std::span<const MeasuredGeometr
                                                  const SplineOptions& options) {
   std::vector<SplineSolution> solutions;
   const double scale = curvature_scale(points);
-  if (points.size() < 3 || !(scale > 0.0) ||
-      !std::all_of(points.begin(), points.end(), is_finite)) {
+  if (points.size() < 3 || !(scale > 0.0) || !are_finite(points)) {
     return solutions;
   }
   const double unit = 1.0 / scale;
@@ -180,7 +179,7 @@ SemiSignatureFit fit_cubic_spline(std::span<const MeasuredGeometry> points,
   if (points.size() < 3) {
     return best;
   }
-  if (!std::all_of(points.begin(), points.end(), is_finite)) {
+  if (!are_finite(points)) {
     best.status = InvariantStatus::NotFinite;
     return best;
   }

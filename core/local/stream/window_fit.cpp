@@ -217,8 +217,7 @@ LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<co
   e = straight.to_world(e);
   result.estimate = e;
   result.status = LocalStatus::Ok;
-  if (!(e.position.allFinite() && std::isfinite(e.kappa) && std::isfinite(e.kappa_s) &&
-        e.covariance.allFinite() && std::isfinite(e.window_arc_m))) {
+  if (!is_finite(e)) {
     result = {LocalStatus::NotFinite, {}};
   }
   return result;
