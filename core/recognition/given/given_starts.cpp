@@ -1,7 +1,5 @@
 #include "core/recognition/given/given_starts.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/curves/algebraic/canonical_conic.h"
@@ -13,6 +11,8 @@
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/implicit_fit.h"
 #include "core/recognition/fit/polynomial_search.h"
+#include "core/recognition/fit/refine_effort.h"
+#include "core/recognition/given/thinned.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {
@@ -27,13 +27,12 @@ enum class Order {
 };
 
 FitData seed_data(std::span<const Vec2> points, Order order) {
-  const std::size_t stride = (points.size() + kMostSeedPoints - 1) / kMostSeedPoints;
   std::vector<StoredPatch> patches;
-  for (std::size_t i = 0; i < points.size(); i += stride) {
+  for (const Vec2& point : thinned(points, kMostSeedPoints)) {
     if (order == Order::None || patches.empty()) {
       patches.emplace_back();
     }
-    patches.back().samples.push_back({points[i], 0.0, 1.0});
+    patches.back().samples.push_back({point, 0.0, 1.0});
   }
   bool sigma_known = false;
   return make_fit_data(patches, 0.0, &sigma_known);
@@ -121,19 +120,6 @@ void add_polynomial(CurveClass curve_class, const PolynomialCoefficients& c, con
   }
 }
 
-PolynomialModel model_of(CurveClass curve_class) {
-  switch (curve_class) {
-    case CurveClass::Parabola:
-      return PolynomialModel::Parabola;
-    case CurveClass::CubicalParabola:
-      return PolynomialModel::CubicalParabola;
-    case CurveClass::SemiCubicalParabola:
-      return PolynomialModel::SemiCubicalParabola;
-    default:
-      return PolynomialModel::CubicSpline;
-  }
-}
-
 const std::vector<AxisFit>& seeds_of(CurveClass curve_class, const PolynomialSeeds& seeds) {
   switch (curve_class) {
     case CurveClass::Parabola:
@@ -173,12 +159,11 @@ void add_polynomials(CurveClass curve_class, const FitData& data, std::vector<Gi
       add(fits.rival);
       break;
   }
-  constexpr RefineEffort kRough{20, 1, 1e-3};
   constexpr int kSurfacePoints = 0;
   for (const AxisFit& seed : seeds_of(curve_class, fits.seeds)) {
     const PolynomialFit fit =
-        refine_polynomial(model_of(curve_class), data.points, to_polynomial(seed, data.points),
-                          kSurfacePoints, kRough, unbounded);
+        refine_polynomial(seed.model, data.points, to_polynomial(seed, data.points), kSurfacePoints,
+                          kCoarseEffort, unbounded);
     add_polynomial(curve_class, fit.coefficients, data, starts);
   }
 }
