@@ -26,14 +26,6 @@ double variance_of_student(double dof) {
 ResidualCorrelation correlation_along(const CanonicalFit& placed, const FitData& data) {
   std::vector<double> residuals;
   residuals.reserve(placed.points.size());
-  const bool any_alone = std::any_of(data.patches.begin(), data.patches.end(),
-                                     [](const PatchSpan& patch) { return patch.size() == 1; });
-  if (!any_alone) {
-    for (const FittedPoint& point : placed.points) {
-      residuals.push_back(point.residual);
-    }
-    return correlation_of(data, residuals);
-  }
   const Runs runs = runs_along(placed, data.patches);
   FitData in_order;
   in_order.patches = runs.spans;
