@@ -17,11 +17,6 @@ namespace {
 /// Factor by which a window that is too long is shortened: as in the stream (sliding_window.h).
 constexpr double kShrink = 0.9;
 
-/// Noise of one contact of a sample; 0 if unknown. [m]
-double sigma_of(const StoredSample& sample, double default_sigma_m) {
-  return sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
-}
-
 /// The samples of a patch with their weights, and the noise of a sample of weight 1.
 struct WeightedPath {
   std::vector<PathNode> nodes;
@@ -35,7 +30,7 @@ WeightedPath weighted_path(const StoredPatch& patch, double default_sigma_m) {
   path.nodes.reserve(patch.samples.size());
   double variances = 0.0;
   for (const StoredSample& sample : patch.samples) {
-    const double sigma = sigma_of(sample, default_sigma_m);
+    const double sigma = sigma_m_of(sample, default_sigma_m);
     path.stated = path.stated && sigma > 0.0;
     variances += sigma * sigma;
     path.nodes.push_back({sample.position_m, sample.weight / (sigma * sigma)});
@@ -108,7 +103,7 @@ void keep_most_informative(std::vector<LocalizedContact>* found) {
 double sigma_of_samples(const StoredPatch& patch, double default_sigma_m) {
   double squares = 0.0;
   for (const StoredSample& sample : patch.samples) {
-    const double sigma = sigma_of(sample, default_sigma_m);
+    const double sigma = sigma_m_of(sample, default_sigma_m);
     if (!(sigma > 0.0)) {
       return 0.0;
     }

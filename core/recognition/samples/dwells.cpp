@@ -145,10 +145,6 @@ class SlowStretch {
   std::span<const Block> blocks_;
 };
 
-double sigma_of(const StoredSample& sample, double default_sigma_m) {
-  return sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
-}
-
 /// The number of independent contacts that the mean of `dwell` is worth. `of_all`: their total
 /// weight.
 double effective_weight(std::span<const StoredSample> samples, const PatchSpan& dwell,
@@ -159,7 +155,7 @@ double effective_weight(std::span<const StoredSample> samples, const PatchSpan& 
   double most = 0.0;
   for (std::size_t i = dwell.begin; i < dwell.end; ++i) {
     const StoredSample& sample = samples[i];
-    const double sigma_m = sigma_of(sample, default_sigma_m);
+    const double sigma_m = sigma_m_of(sample, default_sigma_m);
     if (!(sigma_m > 0.0)) {
       stated = 0.0;
       break;
@@ -257,7 +253,7 @@ bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
   double stated = 0.0;
   bool is_stated = true;
   for (const StoredSample& sample : samples) {
-    const double sigma_m = sigma_of(sample, default_sigma_m);
+    const double sigma_m = sigma_m_of(sample, default_sigma_m);
     is_stated = is_stated && sigma_m > 0.0;
     stated += sigma_m * sigma_m / sample.weight;
   }

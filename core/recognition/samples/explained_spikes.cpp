@@ -97,8 +97,7 @@ std::optional<std::vector<StoredPatch>> with_explained_spikes(std::span<const St
         continue;
       }
       const FootPoint foot = foot_point(curve, world_T_curve.to_local(sample.position_m));
-      const double sigma =
-          (sample.sigma_m > 0.0 ? sample.sigma_m : noise_m) / std::sqrt(sample.weight);
+      const double sigma = sigma_m_of(sample, noise_m) / std::sqrt(sample.weight);
       if (std::abs(std::abs(foot.distance) - all[p].context.tip_radius_m) > limit * sigma) {
         continue;
       }

@@ -158,7 +158,7 @@ double noise_over_means(std::span<const StoredPatch> patches, double default_sig
   double of_means = 0.0;
   for (const StoredPatch& patch : patches) {
     for (const StoredSample& sample : patch.samples) {
-      const double sigma_m = sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+      const double sigma_m = sigma_m_of(sample, default_sigma_m);
       const double variance = sigma_m > 0.0 ? sigma_m * sigma_m : 1.0;
       of_contacts += variance;
       of_means += variance / sample.weight;
@@ -213,7 +213,7 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
     }
     const std::size_t begin = data.points.size();
     for (const StoredSample& sample : patch.samples) {
-      const double sigma_m = sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+      const double sigma_m = sigma_m_of(sample, default_sigma_m);
       *sigma_known = *sigma_known && sigma_m > 0.0;
       FitPoint point;
       point.position = to_frame(sample.position_m) / data.scale;

@@ -18,6 +18,11 @@ struct StoredSample {
   double contacts = 1.0;  ///< number of contacts that it stands for
 };
 
+/// Noise of one contact of a sample: as stated, or else the default. 0 = not known [m]
+inline double sigma_m_of(const StoredSample& sample, double default_sigma_m) {
+  return sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+}
+
 struct StoredPatch {
   PatchContext context;
   std::vector<StoredSample> samples;  ///< in their order along the arc

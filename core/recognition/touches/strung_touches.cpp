@@ -276,7 +276,7 @@ std::optional<Strung> strung_by_way(std::span<const StoredPatch> patches, const 
     double sigma_m = 0.0;
     for (const std::size_t p : of_tip) {
       const StoredSample& sample = patches[p].samples.front();
-      const double own_m = sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+      const double own_m = sigma_m_of(sample, default_sigma_m);
       if (!(own_m > 0.0)) {
         return std::nullopt;
       }
