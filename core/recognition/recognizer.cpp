@@ -27,14 +27,6 @@
 namespace palpate {
 namespace {
 
-/// Whether most of the patches are of one sample: no neighbours tell the noise from the shape.
-bool are_touches(std::span<const StoredPatch> patches) {
-  const auto lone = std::count_if(patches.begin(), patches.end(), [](const StoredPatch& patch) {
-    return patch.samples.size() == 1;
-  });
-  return 2 * lone > static_cast<std::ptrdiff_t>(patches.size());
-}
-
 /// Whether the points spread over an extent that double precision resolves.
 bool have_extent(const FitData& data) {
   // A shape of five parameters needs digits: a thousand roundings across.
@@ -167,7 +159,7 @@ class Recognizer::Impl {
                  : by_likelihood(data, sigma_known, patches, sought, work);
     // Touches in no order whose noise nobody states lie about any curve, if the noise is large
     // enough.
-    if (!sigma_known && are_touches(clean) && answer.sigma_m > kLargestNoise * data.scale) {
+    if (!sigma_known && are_mostly_touches(clean) && answer.sigma_m > kLargestNoise * data.scale) {
       doubt(&answer, Doubt::Misfit);
     }
     const bool by_evidence = options_.method == RecognitionMethod::MaximumLikelihood && sigma_known;

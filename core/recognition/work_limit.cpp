@@ -40,13 +40,11 @@ double work_of_clean_ellipse(std::size_t samples, std::size_t patches) {
 
 WorkBudget work_limit(std::span<const StoredPatch> patches) {
   std::size_t samples = 0;
-  std::size_t lone = 0;
   for (const StoredPatch& patch : patches) {
     samples += patch.samples.size();
-    lone += patch.samples.size() == 1 ? 1 : 0;
   }
   const double by_strokes = work_of_clean_ellipse(samples, patches.size());
-  const double clean = 2 * lone > patches.size() ? kOfTouches * by_strokes : by_strokes;
+  const double clean = are_mostly_touches(patches) ? kOfTouches * by_strokes : by_strokes;
   WorkBudget work(kMostWork * clean, kAlways * clean);
   work.spend(WorkKind::Sample, samples);
   return work;

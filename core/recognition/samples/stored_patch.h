@@ -1,8 +1,10 @@
 // What is kept of a patch: its samples, some of them means of several contacts.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/recognition/samples/contact_sample.h"
@@ -42,6 +44,14 @@ struct StoredPatch {
   Vec2 direction = Vec2::Zero();
   double turn = 0.0;
 };
+
+/// Whether most of the patches are of one sample: no neighbours tell noise, order or directions.
+inline bool are_mostly_touches(std::span<const StoredPatch> patches) {
+  const auto lone = std::count_if(patches.begin(), patches.end(), [](const StoredPatch& patch) {
+    return patch.samples.size() == 1;
+  });
+  return 2 * lone > static_cast<std::ptrdiff_t>(patches.size());
+}
 
 /// A range of samples or points of one patch, in their order along the arc: [begin, end).
 struct PatchSpan {
