@@ -18,11 +18,11 @@
 #include "core/recognition/samples/clean_patches.h"
 #include "core/recognition/samples/explained_spikes.h"
 #include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/samples/work_limit.h"
 #include "core/recognition/touches/strung_touches.h"
 #include "core/recognition/tree_answer.h"
 #include "core/recognition/weigh/contenders.h"
 #include "core/recognition/weigh/weigh_in_full.h"
-#include "core/recognition/work_limit.h"
 
 namespace palpate {
 namespace {
@@ -42,8 +42,8 @@ constexpr double kShareOfClasses = 0.5;
 
 /// Of all work, kept for the covariance of what is told: an answer that was cut is AMBIGUOUS, but
 /// its uncertainty holds. A deviation of part or probe has 45 sizes, each a pass over the points
-/// that stand for the samples: half a clean ellipse or less, of 7.5 (work_limit.cpp).
-constexpr double kShareOfMoments = 0.5 / 7.5;
+/// that stand for the samples: half a clean ellipse or less.
+constexpr double kShareOfMoments = 0.5 / kMostWork;
 
 /// What speaks against an answer that nothing has spoken against yet.
 void doubt(Recognition* answer, Doubt doubt) {

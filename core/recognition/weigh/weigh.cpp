@@ -9,6 +9,7 @@
 #include "core/numerics/negligible.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/out_of_reach.h"
+#include "core/recognition/samples/work_limit.h"
 #include "core/recognition/weigh/contenders.h"
 #include "core/recognition/weigh/near_parts.h"
 #include "core/recognition/weigh/shared_deviations.h"
@@ -18,10 +19,10 @@ namespace palpate {
 namespace {
 
 /// Of all work, kept from the search for the verdict on what it has found: the classes' refinement
-/// on all points, their evidence and its integrals. What a clean ellipse's takes: half of one, of
-/// 7.5 (work_limit.cpp). More would cut searches that could end: with three tenths kept, 1 of 72
-/// full turns round a real ring was RECOGNIZED as a circle, now 14 are (`bench_real --ring`).
-constexpr double kShareOfVerdict = 0.5 / 7.5;
+/// on all points, their evidence and its integrals. What a clean ellipse's takes: half of one. More
+/// would cut searches that could end: with three tenths kept, 1 of 72 full turns round a real ring
+/// was RECOGNIZED as a circle, now 14 are (`bench_real --ring`).
+constexpr double kShareOfVerdict = 0.5 / kMostWork;
 
 /// log odds that keep a class from being RECOGNIZED.
 double margin_of(const WeighOptions& options) {

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "core/recognition/work_limit.h"
+#include "core/recognition/samples/work_limit.h"
 #include "node/csv/contact_csv.h"
 #include "tests/bench/options/bench_options.h"
 #include "tests/bench/options/thread_time.h"

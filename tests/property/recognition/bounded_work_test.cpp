@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/recognition/recognizer.h"
+#include "core/recognition/samples/work_limit.h"
 #include "core/recognition/smooth/arcs.h"
 #include "core/recognition/weigh/weigh.h"
-#include "core/recognition/work_limit.h"
 #include "tests/bench/worst_case/csv_input.h"
 #include "tests/bench/worst_case/touched_input.h"
 #include "tests/support/answer_invariants.h"

@@ -1,19 +1,12 @@
-#include "core/recognition/work_limit.h"
+#include "core/recognition/samples/work_limit.h"
 
 #include <algorithm>
 
 namespace palpate {
 namespace {
 
-/// Over the work of a clean ellipse. A planner can wait for eight, by the clock; an answer that is
-/// cut has spent six to six and a half of these, and takes a quarter longer than its count says at
-/// most (`bench_worst_case`). Strokes that go there and back six times, with a noise that nobody
-/// states, take up to six, and are recognised (habits_test); half a one is for the covariance
-/// (recognizer.cpp).
-constexpr double kMostWork = 7.5;
-
-/// Of that, for what is done of one weighing in any case, and of the one that has begun when the
-/// rest is spent.
+/// Of kMostWork, for what is done of one weighing in any case, and of the one that has begun when
+/// the rest is spent.
 constexpr double kAlways = 1.2;
 
 /// Touches one at a time, over strokes of as many samples: no neighbours tell a tip's direction,
