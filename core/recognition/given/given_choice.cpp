@@ -19,8 +19,8 @@ int votes_against(const GivenCandidate& candidate, const LocalPoints& local,
     if (into.isZero()) {
       continue;
     }
-    const auto place_of = canonical_point(candidate.curve.curve_class, candidate.curve.shape,
-                                          candidate.curve.feet[k]);
+    const auto place_of =
+        curve_point(candidate.curve.curve_class, candidate.curve.shape, candidate.curve.feet[k]);
     const PlaneVector<double> local_into{inner(candidate.curve.axis, {into.x(), into.y()}),
                                          inner(left(candidate.curve.axis), {into.x(), into.y()})};
     // The tip's centre lies opposite the material.
@@ -80,7 +80,7 @@ bool on_other_side(const GivenCandidate& u, const GivenCandidate& v) {
   for (std::size_t i = 0; i < u.curve.feet.size(); ++i) {
     const auto outward = [i](const GivenCandidate& candidate) {
       const PlacedCurve<double>& curve = candidate.curve;
-      const auto foot = canonical_point(curve.curve_class, curve.shape, curve.feet[i]);
+      const auto foot = curve_point(curve.curve_class, curve.shape, curve.feet[i]);
       const PlaneVector<double> n = left(foot.first);
       const double side = candidate.side;
       return side * (n.x * curve.axis + n.y * left(curve.axis));

@@ -63,7 +63,7 @@ bool seat_first(std::span<const WeighedPoint<double>> points, GivenCandidate* ca
   std::array<double, kPlaces> t{};
   for (std::size_t k = 0; k < kPlaces; ++k) {
     t[k] = candidate->arm * std::sqrt(farthest) * (static_cast<double>(k) + 0.5) / kPlaces;
-    places[k] = canonical_point<double>(placed.curve_class, placed.shape, {t[k], 0.0}).position;
+    places[k] = curve_point<double>(placed.curve_class, placed.shape, {t[k], 0.0}).position;
   }
   placed.feet.clear();
   for (const WeighedPoint<double>& point : points) {

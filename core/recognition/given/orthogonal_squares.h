@@ -36,7 +36,7 @@ struct Squares {
 /// A point relative to the curve, in the curve's frame.
 template <typename T>
 struct Placement {
-  CanonicalPoint<T> foot;
+  CurvePoint<T> foot;
   PlaneVector<T> normal;  ///< unit, left of increasing t; at a cusp towards the point
   T distance{};           ///< positive along the normal
   T speed{};              ///< length of the tangent vector C'; 0 at a cusp
@@ -69,7 +69,7 @@ Placement<T> place(const PlacedCurve<T>& curve, const PlaneVector<T>& point,
   PlaneVector<T> away;
   bool last = false;
   for (int i = 0;; ++i) {
-    placed.foot = canonical_point(curve.curve_class, curve.shape, *parameter);
+    placed.foot = curve_point(curve.curve_class, curve.shape, *parameter);
     away = point - placed.foot.position;
     const T speed2 = inner(placed.foot.first, placed.foot.first);
     placed.slope = speed2 - inner(away, placed.foot.second);
@@ -145,7 +145,7 @@ Squares<T> squares_about(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>>
   for (std::size_t point = 0; point < points.size(); ++point) {
     const Placement<T> placed =
         place(*curve, curve->to_curve(points[point].position), &curve->feet[point]);
-    const CanonicalPoint<T>& foot = placed.foot;
+    const CurvePoint<T>& foot = placed.foot;
     const T weight = points[point].weight;
     const T residual = weight * (placed.distance - points[point].offset);
     std::array<PlaneVector<T>, kMostUnknowns> by{};

@@ -87,7 +87,7 @@ TEST(GivenNormals, GradientIsThatOfFiniteDifferences) {
       const bool round = curve_class == CurveClass::Circle || curve_class == CurveClass::Ellipse;
       curve.feet.push_back(round ? PlaneVector<double>{std::cos(t), std::sin(t)}
                                  : PlaneVector<double>{t, 0.0});
-      const auto at = canonical_point(curve_class, curve.shape, curve.feet.back());
+      const auto at = curve_point(curve_class, curve.shape, curve.feet.back());
       const PlaneVector<double> near =
           at.position + PlaneVector<double>{0.03 * uniform(rng), 0.03 * uniform(rng)};
       WeighedPoint<double> point;

@@ -47,7 +47,7 @@ PlaneVector<T> turned(const PlaneVector<T>& v, const T& h) {
 /// Position and its derivatives by the curve's parameter and by the shape. The parameter is (cos t,
 /// sin t) for circle and ellipse, sinh t for the hyperbola, else t.
 template <typename T>
-struct CanonicalPoint {
+struct CurvePoint {
   PlaneVector<T> position;
   PlaneVector<T> first;
   PlaneVector<T> second;
@@ -56,10 +56,9 @@ struct CanonicalPoint {
 };
 
 template <typename T>
-CanonicalPoint<T> canonical_point(CurveClass curve_class, const T* shape,
-                                  const PlaneVector<T>& parameter) {
+CurvePoint<T> curve_point(CurveClass curve_class, const T* shape, const PlaneVector<T>& parameter) {
   using std::sqrt;
-  CanonicalPoint<T> p;
+  CurvePoint<T> p;
   const T zero(0.0);
   const T one(1.0);
   const T& a = shape[0];
