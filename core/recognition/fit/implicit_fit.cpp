@@ -229,8 +229,7 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
                           .row = WorkKind::ConicRow,
                           .rows = points.size()},
                          &step);
-  return {residuals.coefficients(step), summary.chi2, summary.iterations, side,
-          residuals.feet(step)};
+  return {residuals.coefficients(step), summary.chi2, side, residuals.feet(step)};
 }
 
 }  // namespace

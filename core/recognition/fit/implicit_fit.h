@@ -15,7 +15,6 @@ namespace palpate {
 struct ImplicitFit {
   ConicCoefficients coefficients = ConicCoefficients::Zero();  ///< unit norm, normalised frame
   double chi2 = 0.0;
-  int iterations = 0;
   int side = 0;  ///< where tip centres lie: +1 where the polynomial is positive, -1 negative
   std::vector<Vec2> feet;  ///< foot point of every point
 };

@@ -11,8 +11,7 @@
 namespace palpate {
 namespace {
 
-/// Takes `x` to the optimum that the problem's feet lead to. Chi-square there and the iterations go
-/// to `fit`.
+/// Takes `x` to the optimum that the problem's feet lead to. Chi-square there goes to `fit`.
 template <PolynomialModel kModel>
 void minimise_from(typename PolynomialProblem<kModel>::Vector* x,
                    PolynomialProblem<kModel>* problem, std::span<const FitPoint> points,
@@ -48,7 +47,6 @@ void minimise_from(typename PolynomialProblem<kModel>::Vector* x,
     if (start_number == 0) {
       fit->chi2 = summary.initial_chi2;
     }
-    fit->iterations += summary.iterations;
     const bool nothing_left = summary.converged || !(summary.chi2 < fit->chi2 - left * kSettled);
     const bool settled = nothing_left && (start_number > 0 || !(summary.chi2 < kExact * n));
     fit->chi2 = std::min(fit->chi2, summary.chi2);

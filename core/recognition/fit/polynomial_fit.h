@@ -17,7 +17,6 @@ struct PolynomialFit {
   PolynomialCoefficients coefficients = PolynomialCoefficients::Zero();
   std::vector<double> t;  ///< curve parameter of every point's foot point
   double chi2 = 0.0;
-  int iterations = 0;
   int side = 0;  ///< where tip centres lie: +1 left of increasing t, -1 right
 };
 
