@@ -105,12 +105,8 @@ std::optional<Placement> place_of(const ClassFit& fit, const FitData& data) {
     return place_polynomial(fit.curve_class, data.scale * fit.polynomial->coefficients);
   }
   const ConicCoefficients& q = fit.implicit->coefficients;
-  switch (fit.curve_class) {
-    case CurveClass::Line:
-      return place_line(q, data);
-    default:
-      return place_conic(fit.curve_class, q, data);
-  }
+  return fit.curve_class == CurveClass::Line ? place_line(q, data)
+                                             : place_conic(fit.curve_class, q, data);
 }
 
 /// Placed in the world too.
