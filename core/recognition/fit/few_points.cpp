@@ -6,11 +6,7 @@
 #include "core/recognition/samples/farthest_first.h"
 
 namespace palpate {
-
 namespace {
-
-// Ten for each of a spline's six unknowns.
-constexpr std::size_t kFew = 64;
 
 /// One flag a point.
 std::vector<bool> chosen_few(const FitData& reduced) {
@@ -25,11 +21,11 @@ std::vector<bool> chosen_few(const FitData& reduced) {
       middles.push_back(reduced.points[patch.begin + patch.size() / 2].position);
     }
   }
-  const std::size_t each = std::max(kFewestOfPatch, kFew / touched.size());
+  const std::size_t each = std::max(kFewestOfPatch, kMostSearchedPoints / touched.size());
   std::vector<bool> chosen(reduced.points.size(), false);
   std::size_t sum = 0;
-  for (const std::size_t k : farthest_first(middles, kFew)) {
-    if (sum >= kFew) {
+  for (const std::size_t k : farthest_first(middles, kMostSearchedPoints)) {
+    if (sum >= kMostSearchedPoints) {
       break;
     }
     const PatchSpan& patch = reduced.patches[touched[k]];
@@ -63,8 +59,9 @@ FitData those(const FitData& reduced, const std::vector<bool>& chosen) {
 }  // namespace
 
 std::optional<FitData> few_of(const FitData& reduced) {
-  return reduced.points.size() > 2 * kFew ? std::optional(those(reduced, chosen_few(reduced)))
-                                          : std::nullopt;
+  return reduced.points.size() > 2 * kMostSearchedPoints
+             ? std::optional(those(reduced, chosen_few(reduced)))
+             : std::nullopt;
 }
 
 FitData few_and_missed(const FitData& reduced, std::span<const double> squares) {
@@ -75,7 +72,7 @@ FitData few_and_missed(const FitData& reduced, std::span<const double> squares) 
       others.push_back(i);
     }
   }
-  const std::size_t more = std::min(kFew, others.size());
+  const std::size_t more = std::min(kMostSearchedPoints, others.size());
   std::nth_element(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(more), others.end(),
                    [&](std::size_t a, std::size_t b) { return squares[a] > squares[b]; });
   for (std::size_t k = 0; k < more; ++k) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/curves/cubic_spline.h"
+#include "core/recognition/fit/few_points.h"
 #include "core/recognition/given/axis_scan.h"
 #include "core/recognition/given/curve_moves.h"
 #include "core/recognition/given/foot_parameter.h"
@@ -15,9 +16,6 @@
 
 namespace palpate {
 namespace {
-
-/// So many points show every valley.
-constexpr std::size_t kMostSearchedPoints = 64;
 
 /// A good start settles within ten steps; a long valley may take many dozens.
 constexpr DescentEffort kOnFew{60, 1e-6, 0.0};

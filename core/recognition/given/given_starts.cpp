@@ -9,6 +9,7 @@
 #include "core/numerics/symmetric_eigen.h"
 #include "core/recognition/fit/algebraic_fit.h"
 #include "core/recognition/fit/class_fits.h"
+#include "core/recognition/fit/few_points.h"
 #include "core/recognition/fit/implicit_fit.h"
 #include "core/recognition/fit/polynomial_search.h"
 #include "core/recognition/fit/refine_effort.h"
@@ -18,9 +19,6 @@
 namespace palpate {
 namespace {
 
-/// Most points used to find starts, taken evenly: they show a start as well as all do.
-constexpr std::size_t kMostSeedPoints = 64;
-
 enum class Order {
   None,     ///< every point is a patch of its own
   AsGiven,  ///< all points are one patch
@@ -28,7 +26,7 @@ enum class Order {
 
 FitData seed_data(std::span<const Vec2> points, Order order) {
   std::vector<StoredPatch> patches;
-  for (const Vec2& point : thinned(points, kMostSeedPoints)) {
+  for (const Vec2& point : thinned(points, kMostSearchedPoints)) {
     if (order == Order::None || patches.empty()) {
       patches.emplace_back();
     }
