@@ -265,8 +265,10 @@ GivenStart start_of(CurveClass curve_class, const Graph& g) {
   return start;
 }
 
-/// Vertices from just before the points to so far that an arm is a parabola to a thousandth, of the
-/// points' half extent. From one to the next, a valley follows.
+/// Vertices before the points, in about half extents of these. From the nearest, s of the first
+/// point is some 26th of the last one's, and from one to the next it grows by the root of kRatio,
+/// 18 %: a valley follows. From the farthest (9.6), an arm of a semi-cubical parabola that bulges
+/// by a half extent is a parabola, of an axis of its own, to a ten-thousandth of that.
 std::vector<double> places_of_vertex(bool arm) {
   if (!arm) {
     return {0.0};

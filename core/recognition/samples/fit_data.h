@@ -13,7 +13,7 @@
 namespace palpate {
 
 /// Largest noise, as a fraction of the half extent, with which anything is measured. If the noise
-/// is not stated, RECOGNIZED needs eight places (recognizer.cpp), three more than a conic has
+/// is not stated, RECOGNIZED needs eight places (fewest_places.h), three more than a conic has
 /// unknowns. So random points lie within the noise of some conic with a probability of about its
 /// third power: one in a million.
 inline constexpr double kLargestNoise = 0.01;

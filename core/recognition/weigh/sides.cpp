@@ -50,7 +50,8 @@ bool directions_may_explain(const SideChoice& choice, const FitData& touches,
   return choice.settled->chi2 <= most;
 }
 
-/// Directions that turn by less are settled: the surface is off by a millionth of the radius. [rad]
+/// Directions that turn by less are settled: a touched point moves by a thousandth of the tip's
+/// radius along the surface, and off it, if that is straight there, by half a millionth. [rad]
 constexpr double kSettledTurn = 1e-3;
 
 /// Lets the class of a fit in the same frame start from there, if it is a spline: wrong directions
