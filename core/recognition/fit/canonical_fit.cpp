@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "core/curves/algebraic/canonical_conic.h"
 #include "core/curves/algebraic/canonical_cubic.h"

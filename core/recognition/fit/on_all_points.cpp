@@ -1,10 +1,8 @@
 #include "core/recognition/fit/on_all_points.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "core/numerics/levenberg_marquardt.h"
 #include "core/recognition/fit/polynomial_problem.h"

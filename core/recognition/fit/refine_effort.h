@@ -1,7 +1,6 @@
 // How far a refinement goes.
 #pragma once
 
-#include <algorithm>
 #include <limits>
 
 #include "core/numerics/negligible.h"

@@ -1,6 +1,5 @@
 #include "core/recognition/given/curve_moves.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace palpate {

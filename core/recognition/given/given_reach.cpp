@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/recognition/given/curve_moves.h"
 #include "core/recognition/given/thinned.h"

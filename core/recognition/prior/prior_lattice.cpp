@@ -1,6 +1,5 @@
 #include "core/recognition/prior/prior_lattice.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -1,11 +1,8 @@
 #include "core/recognition/smooth/smooth_model.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "core/numerics/negligible.h"
