@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/recognition/coherent/coherent_moment.h"
+#include "core/recognition/modes/across_circle.h"
 #include "core/recognition/modes/moments.h"
 #include "core/recognition/modes/slices.h"
 
@@ -21,6 +22,16 @@ std::optional<ShapePoseCovariance> covariance_of_valley(const ClassEvidence& evi
   }
   return with_bend(inflation * best.covariance, inflation * on_reduced.covariance,
                    second_moment(on_reduced, *valley, reduced));
+}
+
+/// The same where the best is an ellipse that may be a circle: slices end there, and the valley
+/// goes on with the axes in each other's place.
+std::optional<ShapePoseCovariance> across_circle(const CanonicalFit& ellipse,
+                                                 const ShapePoseCovariance& linear,
+                                                 std::optional<ShapePoseCovariance> valley) {
+  const ShapePoseCovariance within = valley.value_or(linear);
+  const auto crossing = within.allFinite() ? moment_across_circle(ellipse, linear) : std::nullopt;
+  return crossing ? bend_added(within, linear, *crossing).value_or(*crossing) : std::move(valley);
 }
 
 /// The moment where neighbours may err together: what such deviations leave unknown, with what the
@@ -51,6 +62,9 @@ BestMoments moments_of_best(const Weighing& w, WorkBudget& work) {
   }
   result.moment = covariance_of_valley(*w.best_evidence, *w.best_on_reduced, *best, w.reduced,
                                        w.inflation, work);
+  if (w.best == CurveClass::Ellipse) {
+    result.moment = across_circle(*best, w.inflation * best->covariance, result.moment);
+  }
   if (result.moment) {
     result.white_moment = *result.moment / w.inflation;
   }
