@@ -36,7 +36,7 @@ Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
 Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOptions& options,
                   std::size_t stored_samples) {
   // A misfit that is not noise may be form error or another class: the data cannot tell which.
-  if (w.correlation_length > 0.0) {
+  if (w.seen.correlation_length > 0.0) {
     return Doubt::FormError;
   }
   if (!(best.probability >= options.recognized_probability)) {
@@ -60,8 +60,8 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
   }
   // A stated noise that nothing but the class's own residuals overrules still speaks against it,
   // and so do normals on the other side.
-  if (w.noise_told_by_class_alone || w.sides_against_normals ||
-      (best.dof > 0 && !can_be_noise(w.counted_chi2 / w.noise_inflation, best.dof))) {
+  if (w.seen.told_by_class_alone || w.sides_against_normals ||
+      (best.dof > 0 && !can_be_noise(w.counted_chi2 / w.seen.noise_inflation, best.dof))) {
     return Doubt::Misfit;
   }
   // A second mode with more probability than RECOGNIZED may leave to doubt.
@@ -79,7 +79,7 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
 }  // namespace
 
 double residual_noise_m(const Weighing& w) {
-  return w.sigma * w.data.scale * std::sqrt(w.white_variance);
+  return w.sigma * w.data.scale * std::sqrt(w.seen.white_variance);
 }
 
 Recognition answer_by_likelihood(const Weighing& w, const BestMoments& moments,
@@ -105,7 +105,7 @@ Recognition answer_by_likelihood(const Weighing& w, const BestMoments& moments,
   answer.world_T_curve = best.world_T_curve;
   answer.covariance = best.covariance;
   answer.sigma_m = residual_noise_m(w);
-  answer.noise_correlation_m = w.correlation_length * w.data.scale;
+  answer.noise_correlation_m = w.seen.correlation_length * w.data.scale;
   answer.covariance_inflation = w.inflation;
   answer.unqualified_probe = w.unqualified_probe;
   answer.doubt = doubt_about(w, best, options, stored);

@@ -52,11 +52,6 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   if (std::none_of(magnitude.begin(), magnitude.end(), [&](double m) { return m > limit; })) {
     return std::nullopt;
   }
-  // If more than one in 20 is set aside, the curve is wrong: more frequent spikes were found before
-  // any class was known (samples/clean_patches.h). Two may be set aside however few there are: of
-  // the fewest places for RECOGNIZED, eight, as many remain as a spline has unknowns.
-  constexpr std::size_t kOneIn = 20;
-  constexpr std::size_t kMost = 2;
   FitData kept = data;
   kept.points.clear();
   kept.patches.clear();
@@ -89,7 +84,7 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   // its doing.
   const bool misfits =
       squares_of_kept > most_chi2_of_noise(kept.points) && squares_of_kept > squares_of_dropped;
-  if (misfits || dropped > kMost + n / kOneIn) {
+  if (misfits || dropped > most_set_aside(n)) {
     return std::nullopt;
   }
   return kept;
@@ -98,7 +93,7 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
 std::vector<Vec2> places_set_aside(std::span<const StoredPatch> all,
                                    std::span<const StoredPatch> used,
                                    const std::vector<bool>& flagged) {
-  // Strung touches are the same samples in another order: they are known by their places.
+  // Joined touches are the same samples in another order: they are known by their places.
   using Place = std::pair<double, double>;
   std::multiset<Place> kept;
   std::size_t number = 0;

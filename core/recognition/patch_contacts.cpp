@@ -33,7 +33,7 @@ std::vector<LocalizedContact> PatchContacts::of(std::span<const StoredPatch> pat
       assert(sided < sides.size());
       now.side = sides[sided++];
     }
-    for (std::size_t i = 0; patch.strung && i < patch.samples.size(); ++i) {
+    for (std::size_t i = 0; patch.is_joined && i < patch.samples.size(); ++i) {
       now.touches.push_back(patch.samples[i].position_m);
     }
     if (!outliers.empty()) {

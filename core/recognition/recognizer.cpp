@@ -19,7 +19,7 @@
 #include "core/recognition/samples/explained_spikes.h"
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/samples/work_limit.h"
-#include "core/recognition/touches/strung_touches.h"
+#include "core/recognition/touches/joined_touches.h"
 #include "core/recognition/tree_answer.h"
 #include "core/recognition/weigh/contenders.h"
 #include "core/recognition/weigh/weigh_in_full.h"
@@ -41,8 +41,8 @@ bool have_extent(const FitData& data) {
 constexpr double kShareOfClasses = 0.5;
 
 /// Of all work, kept for the covariance of what is told: an answer that was cut is AMBIGUOUS, but
-/// its uncertainty holds. A deviation of part or probe has 45 sizes, each a pass over the points
-/// that stand for the samples: half a clean ellipse or less.
+/// its uncertainty holds. A deviation that neighbours share takes at most 16 passes over the points
+/// that stand for the samples (coherent_moment.h): half a clean ellipse or less.
 constexpr double kShareOfMoments = 0.5 / kMostWork;
 
 /// What speaks against an answer that nothing has spoken against yet.
@@ -145,14 +145,14 @@ class Recognizer::Impl {
     if (!have_places(data, fewest) || !have_extent(data)) {
       return answer;
     }
-    auto strung = strung_touches(clean, options_.sigma_m, options_.classes, work);
-    if (strung) {
-      data = make_fit_data(strung->patches, options_.sigma_m, &sigma_known);
+    auto joined = joined_touches(clean, options_.sigma_m, options_.classes, work);
+    if (joined) {
+      data = make_fit_data(joined->patches, options_.sigma_m, &sigma_known);
     }
-    const std::span<const StoredPatch> patches = strung ? strung->patches : clean;
+    const std::span<const StoredPatch> patches = joined ? joined->patches : clean;
     std::vector<SidedStart> sought;
-    if (strung && strung->start) {  // of the tips' centres
-      sought.push_back({std::vector<int>(strung->patches.size(), 0), *std::move(strung->start)});
+    if (joined && joined->start) {  // of the tips' centres
+      sought.push_back({std::vector<int>(joined->patches.size(), 0), *std::move(joined->start)});
     }
     answer = options_.method == RecognitionMethod::Tree
                  ? by_tree(data, sigma_known, patches, work)
@@ -179,12 +179,12 @@ class Recognizer::Impl {
     std::optional<std::vector<StoredPatch>> patches;
   };
 
-  /// `patches`: those that the data are of; `sought`: what stringing them has found.
+  /// `patches`: those that the data are of; `sought`: what joining them has found.
   Recognition by_likelihood(const FitData& data, bool sigma_known,
                             std::span<const StoredPatch> patches,
                             std::span<const SidedStart> sought, WorkBudget& work) {
     std::optional<WorkBudget::Reserve> for_moments(std::in_place, work, kShareOfMoments);
-    Weighed weighed = weigh_once_more(data, sigma_known, patches, sought, work);
+    Weighed weighed = weigh_from_last_or_search(data, sigma_known, patches, sought, work);
     const std::size_t stored = clean_.moved_count();
     if (stored > data.points.size() && !work.was_cut()) {
       weighed = with_explained(std::move(weighed), work);
@@ -248,9 +248,9 @@ class Recognizer::Impl {
   /// that was out, or one is gone that might have kept it from being RECOGNIZED: following may have
   /// lost its fit.
   /// `sought`: by_likelihood's.
-  Weighed weigh_once_more(const FitData& data, bool sigma_known,
-                          std::span<const StoredPatch> patches, std::span<const SidedStart> sought,
-                          WorkBudget& work) {
+  Weighed weigh_from_last_or_search(const FitData& data, bool sigma_known,
+                                    std::span<const StoredPatch> patches,
+                                    std::span<const SidedStart> sought, WorkBudget& work) {
     constexpr double kGrowth = 1.25;  // ten searches while a patch grows tenfold
     // Probability: of what had less, a search leaves the fit rough (weigh/contenders.cpp).
     const double out = std::exp(-log_odds(options_.recognized_probability) - 0.5 * kLeastError);
@@ -334,8 +334,8 @@ class Recognizer::Impl {
     if (!more) {
       return weighed;
     }
-    if (auto strung = strung_touches(*more, options_.sigma_m, options_.classes, work)) {
-      more = std::move(strung->patches);
+    if (auto joined = joined_touches(*more, options_.sigma_m, options_.classes, work)) {
+      more = std::move(joined->patches);
     }
     bool sigma_known = false;
     const FitData data = make_fit_data(*more, options_.sigma_m, &sigma_known);

@@ -269,7 +269,7 @@ ClassFits searched_on_few(const FitData& few, const FitData& all, unsigned class
     return fits;
   }
   // What fits the few and not all was not told by them: once more with those that it misses most.
-  const FitData more = few_and_missed(all, squares_of_best(fits, all.points));
+  const FitData more = few_and_worst_fitted(all, squares_of_best(fits, all.points));
   const ClassFits again = *fits_from(nullptr, more, classes, out_of_reach, work);
   fits = better_of(std::move(fits), followed_on(again, more, all, classes, out_of_reach, work));
   return any_fits(fits, all) || !work.allows()

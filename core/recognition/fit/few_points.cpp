@@ -38,7 +38,7 @@ std::vector<bool> chosen_few(const FitData& reduced) {
   return chosen;
 }
 
-FitData those(const FitData& reduced, const std::vector<bool>& chosen) {
+FitData subset(const FitData& reduced, const std::vector<bool>& chosen) {
   FitData few;
   few.frame = reduced.frame;
   few.scale = reduced.scale;
@@ -60,11 +60,11 @@ FitData those(const FitData& reduced, const std::vector<bool>& chosen) {
 
 std::optional<FitData> few_of(const FitData& reduced) {
   return reduced.points.size() > 2 * kMostSearchedPoints
-             ? std::optional(those(reduced, chosen_few(reduced)))
+             ? std::optional(subset(reduced, chosen_few(reduced)))
              : std::nullopt;
 }
 
-FitData few_and_missed(const FitData& reduced, std::span<const double> squares) {
+FitData few_and_worst_fitted(const FitData& reduced, std::span<const double> squares) {
   std::vector<bool> chosen = chosen_few(reduced);
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -78,7 +78,7 @@ FitData few_and_missed(const FitData& reduced, std::span<const double> squares) 
   for (std::size_t k = 0; k < more; ++k) {
     chosen[others[k]] = true;
   }
-  return those(reduced, chosen);
+  return subset(reduced, chosen);
 }
 
 }  // namespace palpate

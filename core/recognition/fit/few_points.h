@@ -21,6 +21,6 @@ std::optional<FitData> few_of(const FitData& reduced);
 
 /// The points of few_of(), which must exist, plus as many other points with the largest `squares`
 /// (squared residuals, one per point).
-FitData few_and_missed(const FitData& reduced, std::span<const double> squares);
+FitData few_and_worst_fitted(const FitData& reduced, std::span<const double> squares);
 
 }  // namespace palpate

@@ -46,8 +46,7 @@ inline constexpr double kSettledPlace = 2e-2;
 
 /// Gauss-Newton steps down the potential, with coordinate `fixed` held (-1: none).
 TouchedCurve descend(const Touch& touch, const FitData& data, TouchedCurve curve, int fixed,
-                     WorkBudget& work, int most_steps = kStepsFromBeside,
-                     double settled = kSettledPotential);
+                     WorkBudget& work, int most_steps, double settled = kSettledPotential);
 
 /// The mode that a shape of the prior leads to (prior_starts.h), if it holds more than `log_least`.
 /// The noise is lowered step by step from what the shape leaves to its true value. Reason: a fit

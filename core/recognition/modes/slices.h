@@ -17,7 +17,7 @@ enum class Slices {
 
 /// The evidence integrated by slices along the widest coordinate if that is needed, else by
 /// Laplace's formula. `evidence`: of the same data, at any inflation. nullopt if it was not at an
-/// optimum. At most about forty slices.
+/// optimum. At most 29 slices.
 std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& data,
                                        double inflation, Slices slices, WorkBudget& work);
 

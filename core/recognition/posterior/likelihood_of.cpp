@@ -39,7 +39,7 @@ ResidualCorrelation correlation_along(const CanonicalFit& placed, const FitData&
 }  // namespace
 
 // Touches that lie too far apart to show their noise leave the class alone to tell it.
-bool tells_noise(const Arcs& arcs, const Likelihood& likelihood) {
+bool noise_is_known_without_class(const Arcs& arcs, const Likelihood& likelihood) {
   return likelihood.sigma_known || arcs.smooth.dof() >= kFewestDegreesOfNoise;
 }
 
@@ -56,8 +56,8 @@ Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m) {
   return likelihood;
 }
 
-SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, double chi2,
-                             const CanonicalFit& placed, bool unclassified) {
+ResidualExcess residual_excess(const Arcs& arcs, const Likelihood& likelihood, double chi2,
+                               const CanonicalFit& placed, bool unclassified) {
   const SmoothModel& smooth = arcs.smooth;
   const double n = static_cast<double>(residual_count(arcs.data));
   const int parameters = degrees_of_freedom(placed.shape.curve_class);
@@ -67,7 +67,7 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   const double excess = arcs.sigma * std::sqrt(std::max(0.0, variance - noise));
   const ResidualCorrelation correlation = correlation_along(placed, arcs.data);
   // Whether a class that tells the noise misfits only neighbours on it show, which err together.
-  const bool noise_is_told = tells_noise(arcs, likelihood);
+  const bool noise_is_told = noise_is_known_without_class(arcs, likelihood);
   // What the smooth model explains and the class does not, beyond what noise gives the smooth
   // model's further coefficients; a false alarm costs an answer its certainty.
   const int more = smooth.parameters - parameters;
@@ -86,7 +86,7 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   const bool noisy = correlation.time == 1.0 && tells_more && !can_be_noise(chi2 / noise, dof) &&
                      excess <= kLargestNoise;
   const bool form_error = correlation.time > 1.0 && (excess <= kLargestFormError || !noise_is_told);
-  SeenDeviation seen;
+  ResidualExcess seen;
   // White noise looks so once in a thousand times by its neighbours, and hardly ever by the smooth
   // model.
   seen.correlated = correlation.time > 1.0 || chance < kNegligibleProbability;
@@ -105,7 +105,7 @@ SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, dou
   } else if (!likelihood.sigma_known) {
     seen.noise_inflation = misfit_of(chi2, likelihood) / dof;
     seen.white_variance = seen.noise_inflation;
-    seen.few_residuals = variance_of_student(dof);
+    seen.student_inflation = variance_of_student(dof);
   }
   return seen;
 }

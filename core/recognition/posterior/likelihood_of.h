@@ -16,13 +16,13 @@ namespace palpate {
 inline constexpr double kLargestFormError = 1e-3;
 
 /// True if the noise is known or the smooth model can estimate it, without any class.
-bool tells_noise(const Arcs& arcs, const Likelihood& likelihood);
+bool noise_is_known_without_class(const Arcs& arcs, const Likelihood& likelihood);
 
 /// `form_deviation_m`: stated standard deviation of parts from their class; 0 = none [m].
 Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m);
 
 /// What the residuals of the best class show beyond the noise known before.
-struct SeenDeviation {
+struct ResidualExcess {
   /// The likelihood with this deviation, if it is noise or form error rather than another class.
   std::optional<Likelihood> likelihood;
   double noise_inflation = 1.0;  ///< factor on the variances of residuals
@@ -32,7 +32,7 @@ struct SeenDeviation {
   /// Variance of the white noise in it, in units of the arcs' sigma^2.
   double white_variance = 1.0;
   /// Additional factor on covariances: a noise estimated from few residuals may be larger.
-  double few_residuals = 1.0;
+  double student_inflation = 1.0;
   /// True if neighbours may be correlated; the evidence must decide.
   bool correlated = false;
   double correlation_length = 0.0;  ///< correlation length of the residuals, normalised; 0 = white
@@ -40,7 +40,7 @@ struct SeenDeviation {
 
 /// `chi2`: of the class on all points. `placed`: the class there. `unclassified`: true if
 /// "unclassified" is the most probable.
-SeenDeviation seen_deviation(const Arcs& arcs, const Likelihood& likelihood, double chi2,
-                             const CanonicalFit& placed, bool unclassified);
+ResidualExcess residual_excess(const Arcs& arcs, const Likelihood& likelihood, double chi2,
+                               const CanonicalFit& placed, bool unclassified);
 
 }  // namespace palpate

@@ -33,7 +33,7 @@ double farthest_spike(std::span<const FitPoint> patch, std::size_t i) {
 }  // namespace
 
 double out_of_reach(const Arcs& arcs, const Likelihood& likelihood, const Evidences& of_paths) {
-  if (!tells_noise(arcs, likelihood)) {
+  if (!noise_is_known_without_class(arcs, likelihood)) {
     return kInfinity;
   }
   const SmoothModel& smooth = arcs.smooth;
@@ -44,7 +44,7 @@ double out_of_reach(const Arcs& arcs, const Likelihood& likelihood, const Eviden
     chi2 += distance * distance * point.inverse_sigma * point.inverse_sigma;
   };
   for (const FitPoint& point : smooth.reduced.points) {
-    add(swayed_by(point, noise), point);
+    add(tip_removal_error(point, noise), point);
   }
   for (std::size_t p = 0; p < arcs.data.patches.size(); ++p) {
     const auto patch = arcs.data.patch(p);

@@ -36,9 +36,9 @@ struct StoredPatch {
   Vec2 newest_m = Vec2::Zero();  ///< the last contact added
   /// Largest distance from the curve of a mean of contacts over an arc w: kappa w^2 / 24. [m]
   double merge_bias_m = 0.0;
-  /// True for a run of single touches (touches/strung_touches.h). Such a patch may change anywhere,
+  /// True for a run of single touches (touches/joined_touches.h). Such a patch may change anywhere,
   /// other patches only at their end.
-  bool strung = false;
+  bool is_joined = false;
   /// For a single touch that lies on the way through such runs: direction of the way, unit, and the
   /// turn of the way's step there [rad]. Zero if unknown.
   Vec2 direction = Vec2::Zero();

@@ -15,6 +15,16 @@ namespace palpate {
 /// holds.
 inline constexpr std::size_t kLongestRunOfSpikes = 3;
 
+/// How many of `count` measurements a class may set aside. If there are more, the curve is wrong:
+/// more frequent spikes were found before any class was known (clean_patches.h). Two may be set
+/// aside however few there are: of the fewest places for RECOGNIZED, eight, as many remain as a
+/// spline has unknowns.
+constexpr std::size_t most_set_aside(std::size_t count) {
+  constexpr std::size_t kOneIn = 20;
+  constexpr std::size_t kMost = 2;
+  return kMost + count / kOneIn;
+}
+
 /// Runs find_spikes (core/local/spikes/spikes.h) on the positions of one patch; the noise comes
 /// from the patch itself. One flag per sample. `false_alarm`: probability that a patch without
 /// spikes loses any sample.

@@ -219,7 +219,7 @@ double log_likelihood_of_normals(std::span<const StoredPatch> patches, const Fit
   return sum;
 }
 
-double swayed_by(const FitPoint& point, double noise) {
+double tip_removal_error(const FitPoint& point, double noise) {
   return point.offset > 0.0
              ? point.offset * std::min(1.0, kNegligibleDeviations * noise * point.tangent_sigma)
              : 0.0;

@@ -62,7 +62,7 @@ double log_likelihood_of_normals(std::span<const StoredPatch> patches, const Fit
 /// Bound on the error of a surface point after the tip is removed along the tangent's normal: tip
 /// radius times five standard deviations of the direction, at most the radius. `noise`: actual
 /// noise in units of the assumed one.
-double swayed_by(const FitPoint& point, double noise);
+double tip_removal_error(const FitPoint& point, double noise);
 
 /// Moves reduced points from tip centres to the surface, along the normals of the centres' path.
 /// These are also the normals of the surface. `sides`: one per patch.

@@ -12,6 +12,7 @@
 #include "core/numerics/normal_law.h"
 #include "core/recognition/fit/measured_normal.h"
 #include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/samples/stored_spikes.h"
 #include "core/recognition/smooth/across_noise.h"
 
 namespace palpate {
@@ -66,11 +67,9 @@ std::optional<PlacedInFull> placed_in_full(PlacedInFull start, FitData* data, Wo
   return placed;
 }
 
-/// The normals of strokes that the curve leaves beyond noise, single ones: more than one in 20, and
-/// two, are a misfit, as of samples (outliers.cpp).
+/// The normals of strokes that the curve leaves beyond noise, single ones: more than may be set
+/// aside are a misfit, as of samples.
 std::vector<std::size_t> wrong_normals(const CanonicalFit& placed, const FitData& data) {
-  constexpr std::size_t kOneIn = 20;
-  constexpr std::size_t kMost = 2;
   std::vector<double> misses;
   for (std::size_t i = 0; i < data.details.size(); ++i) {
     if (data.details[i].inverse_normal_sigma > 0.0) {
@@ -87,7 +86,7 @@ std::vector<std::size_t> wrong_normals(const CanonicalFit& placed, const FitData
       wrong.push_back(i);
     }
   }
-  return wrong.size() <= kMost + misses.size() / kOneIn ? wrong : std::vector<std::size_t>{};
+  return wrong.size() <= most_set_aside(misses.size()) ? wrong : std::vector<std::size_t>{};
 }
 
 /// Reduced points with the normals of their samples: each turned from the path's as they are in the
@@ -127,7 +126,7 @@ Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work) {
   for (std::size_t i = 0; i < full.details.size(); ++i) {
     full.details[i].covariance = data.details[i].covariance;
   }
-  if (!w.correlated && !(w.correlation_length > 0.0)) {
+  if (!w.seen.correlated && !(w.seen.correlation_length > 0.0)) {
     give_normals(&full);
   }
   auto placed = placed_in_full({*w.fits[w.best], *w.canonical[w.best]}, &full, work);

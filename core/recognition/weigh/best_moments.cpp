@@ -68,7 +68,7 @@ BestMoments moments_of_best(const Weighing& w, WorkBudget& work) {
   if (result.moment) {
     result.white_moment = *result.moment / w.inflation;
   }
-  if (w.correlated) {
+  if (w.seen.correlated) {
     const auto coherent =
         coherent_moment(*w.best_on_reduced, w.reduced, w.stated, w.sigma, w.smooth.chi2, work);
     if (coherent) {

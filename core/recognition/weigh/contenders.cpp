@@ -58,15 +58,16 @@ ClassFit with_chi2_of_all(const ClassFit& coarse, const FitData& reduced, bool t
   return fit.value_or(out(coarse));
 }
 
-/// Takes w->coarse of a class to its optimum on the reduced points, unless it is there, or leaves
-/// more than any noise after all that a search has tried: that is no curve of the class.
-const ClassFit& settle(CurveClass i, RivalOf rival, const FitData& reduced, Contenders* w,
+/// Takes contenders->coarse of a class to its optimum on the reduced points, unless it is there, or
+/// leaves more than any noise after all that a search has tried: that is no curve of the class.
+const ClassFit& settle(CurveClass i, RivalOf rival, const FitData& reduced, Contenders* contenders,
                        WorkBudget& work) {
-  if (w->coarse[i]->chi2 <= most_chi2_of_noise(reduced.points) &&
-      (!w->fits[i]->chi2_of_all || (rival == RivalOf::Best && w->coarse[i]->rival))) {
-    w->coarse[i] = settled(*w->coarse[i], reduced, rival, work);
+  if (contenders->coarse[i]->chi2 <= most_chi2_of_noise(reduced.points) &&
+      (!contenders->fits[i]->chi2_of_all ||
+       (rival == RivalOf::Best && contenders->coarse[i]->rival))) {
+    contenders->coarse[i] = settled(*contenders->coarse[i], reduced, rival, work);
   }
-  return *w->coarse[i];
+  return *contenders->coarse[i];
 }
 
 /// Classes that end at their limit, or worse than it, are what it is.
@@ -129,21 +130,21 @@ CurveClass most_probable(const ClassProbabilities& probabilities) {
                                  probabilities.begin());
 }
 
-void weigh_on_reduced(CurveClass i, const EvidenceContext& context, Contenders* w) {
-  Evidences& evidences = w->evidences;
-  if (!evidences.classes[i] || evidences.on_reduced_chi2[i] != w->coarse[i]->chi2) {
-    add_laplace_evidence(*w->coarse[i], context.reduced, &evidences, context.work);
+void weigh_on_reduced(CurveClass i, const EvidenceContext& context, Contenders* contenders) {
+  Evidences& evidences = contenders->evidences;
+  if (!evidences.classes[i] || evidences.on_reduced_chi2[i] != contenders->coarse[i]->chi2) {
+    add_laplace_evidence(*contenders->coarse[i], context.reduced, &evidences, context.work);
   }
 }
 
-Contenders refine_plausible(Contenders w, const EvidenceContext& context, double margin) {
+Contenders refine_plausible(Contenders contenders, const EvidenceContext& context, double margin) {
   const FitData& data = context.arcs.data;
   const SmoothModel& smooth = context.arcs.smooth;
   const FitData& reduced = context.reduced;
   const Likelihood& likelihood = context.likelihood;
   WorkBudget& work = context.work;
-  w.evidences =
-      evidences_of(w.fits, w.coarse, smooth, reduced, likelihood, std::move(w.evidences), work);
+  contenders.evidences = evidences_of(contenders.fits, contenders.coarse, smooth, reduced,
+                                      likelihood, std::move(contenders.evidences), work);
   // Where the smooth model itself misfits, neither it nor the reduced points can be trusted that
   // far.
   const double misfit_ratio = std::max(1.0, smooth.noise_ratio() * smooth.noise_ratio());
@@ -154,52 +155,55 @@ Contenders refine_plausible(Contenders w, const EvidenceContext& context, double
   bool trusted = true;
   for (bool changed = true; changed && work.allows();) {
     changed = false;
-    const CurveClass b = best_class(w.fits, likelihood, w.evidences);
-    auto& best = w.fits[b];
-    if (best && !best->polished && w.coarse[b]->chi2 <= context.out_of_reach) {
+    const CurveClass b = best_class(contenders.fits, likelihood, contenders.evidences);
+    auto& best = contenders.fits[b];
+    if (best && !best->polished && contenders.coarse[b]->chi2 <= context.out_of_reach) {
       const double told = best->chi2;
-      best = polished(settle(b, RivalOf::Best, reduced, &w, work), smooth, data, work);
+      best = polished(settle(b, RivalOf::Best, reduced, &contenders, work), smooth, data, work);
       if (std::isfinite(best->chi2)) {
         error = std::max(error, 2.0 * (told - best->chi2));
-        const double settled_chi2 = w.coarse[b]->chi2 + smooth.chi2;
+        const double settled_chi2 = contenders.coarse[b]->chi2 + smooth.chi2;
         trusted = trusted && std::abs(settled_chi2 - best->chi2) <= misfit_ratio * kLeastError;
       }
       changed = true;
       continue;
     }
-    const double highest = best ? log_evidence(likelihood, w.evidences, *best)
+    const double highest = best ? log_evidence(likelihood, contenders.evidences, *best)
                                 : -std::numeric_limits<double>::infinity();
     for (const CurveClass i : kCurveClasses) {
-      auto& fit = w.fits[i];
-      if (fit && !fit->chi2_of_all && !fit->at_limit && !has_straight_paths(w.evidences, i) &&
-          is_plausible(*fit, highest, margin, error, likelihood, w.evidences) && work.allows()) {
-        fit = with_chi2_of_all(settle(i, RivalOf::Other, reduced, &w, work), reduced, trusted,
-                               smooth, data, work);
+      auto& fit = contenders.fits[i];
+      if (fit && !fit->chi2_of_all && !fit->at_limit &&
+          !has_straight_paths(contenders.evidences, i) &&
+          is_plausible(*fit, highest, margin, error, likelihood, contenders.evidences) &&
+          work.allows()) {
+        fit = with_chi2_of_all(settle(i, RivalOf::Other, reduced, &contenders, work), reduced,
+                               trusted, smooth, data, work);
         changed = true;
       }
     }
   }
-  take_limits(&w.fits);
-  return w;
+  take_limits(&contenders.fits);
+  return contenders;
 }
 
-Contenders decided(Contenders w, const EvidenceContext& context, double margin) {
+Contenders decided(Contenders contenders, const EvidenceContext& context, double margin) {
   const Arcs& arcs = context.arcs;
   const FitData& reduced = context.reduced;
   const Likelihood& likelihood = context.likelihood;
   while (true) {
-    w.evidences = evidences_of(w.fits, w.coarse, arcs.smooth, reduced, likelihood,
-                               std::move(w.evidences), context.work);
-    w.evidences = integrated(std::move(w.evidences), w.fits, w.coarse, arcs.smooth.chi2, reduced,
-                             likelihood, margin, context.work);
-    const CurveClass i = most_probable(probabilities_of(w, context));
-    auto& fit = w.fits[i];
+    contenders.evidences = evidences_of(contenders.fits, contenders.coarse, arcs.smooth, reduced,
+                                        likelihood, std::move(contenders.evidences), context.work);
+    contenders.evidences =
+        integrated(std::move(contenders.evidences), contenders.fits, contenders.coarse,
+                   arcs.smooth.chi2, reduced, likelihood, margin, context.work);
+    const CurveClass i = most_probable(probabilities_of(contenders, context));
+    auto& fit = contenders.fits[i];
     if (!fit || fit->polished || fit->at_limit || !context.work.allows()) {
-      return w;
+      return contenders;
     }
-    fit = polished(settle(i, RivalOf::Best, reduced, &w, context.work), arcs.smooth, arcs.data,
-                   context.work);
-    take_limits(&w.fits);
+    fit = polished(settle(i, RivalOf::Best, reduced, &contenders, context.work), arcs.smooth,
+                   arcs.data, context.work);
+    take_limits(&contenders.fits);
   }
 }
 

@@ -15,20 +15,20 @@ const double kLogOfParts = -std::log(19.0 * static_cast<double>(kCurveClasses.si
 
 }  // namespace
 
-double log_evidence_near_best(CurveClass best, double least_size, double least, const Contenders& w,
-                              const EvidenceContext& context) {
+double log_evidence_near_best(CurveClass best, double least_size, double least,
+                              const Contenders& contenders, const EvidenceContext& context) {
   const Arcs& arcs = context.arcs;
-  const auto& evidence = w.evidences.classes[best];
+  const auto& evidence = contenders.evidences.classes[best];
   if (!evidence) {
     return kNoEvidence;
   }
   // What the reduced points leave beside the class and all points do not is no deviation.
-  const double on_reduced = w.coarse[best]->chi2 + arcs.smooth.chi2;
-  const double of_class =
-      log_evidence(context.likelihood, w.evidences, best, std::max(on_reduced, w.fits[best]->chi2));
-  const auto gain = log_gain_near_class(*w.evidences.on_reduced[best], *evidence, context.reduced,
-                                        context.likelihood, arcs.sigma, arcs.smooth.chi2,
-                                        least_size, least - of_class - kLogOfParts, context.work);
+  const double on_reduced = contenders.coarse[best]->chi2 + arcs.smooth.chi2;
+  const double of_class = log_evidence(context.likelihood, contenders.evidences, best,
+                                       std::max(on_reduced, contenders.fits[best]->chi2));
+  const auto gain = log_gain_near_class(
+      *contenders.evidences.on_reduced[best], *evidence, context.reduced, context.likelihood,
+      arcs.sigma, arcs.smooth.chi2, least_size, least - of_class - kLogOfParts, context.work);
   return gain ? of_class + kLogOfParts + *gain : kNoEvidence;
 }
 

@@ -102,22 +102,23 @@ double log_evidence_of_touches(const ClassFits& coarse, double least,
 
 }  // namespace
 
-Contenders with_near_parts(Contenders w, const EvidenceContext& context, bool of_strokes,
+Contenders with_near_parts(Contenders contenders, const EvidenceContext& context, bool of_strokes,
                            double margin) {
-  w.evidences.log_near = kNoEvidence;
-  const CurveClass best = best_class(w.fits, context.likelihood, w.evidences);
-  if (!w.fits[best]) {
-    return w;
+  contenders.evidences.log_near = kNoEvidence;
+  const CurveClass best = best_class(contenders.fits, context.likelihood, contenders.evidences);
+  if (!contenders.fits[best]) {
+    return contenders;
   }
-  const double of_class = log_evidence(context.likelihood, w.evidences, *w.fits[best]);
+  const double of_class =
+      log_evidence(context.likelihood, contenders.evidences, *contenders.fits[best]);
   // Less than a hundredth of what keeps the best from being RECOGNIZED is not asked for.
   const double least = of_class - margin - std::log(100.0);
   if (all_lie_apart(context.arcs.data)) {
-    w.evidences.log_near = log_evidence_of_touches(w.coarse, least, context);
+    contenders.evidences.log_near = log_evidence_of_touches(contenders.coarse, least, context);
   } else if (of_strokes) {
-    w.evidences.log_near = log_evidence_near_best(best, 0.0, least, w, context);
+    contenders.evidences.log_near = log_evidence_near_best(best, 0.0, least, contenders, context);
   }
-  return w;
+  return contenders;
 }
 
 }  // namespace palpate

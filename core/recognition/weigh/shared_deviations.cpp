@@ -24,16 +24,17 @@ double log_sum(const ByClass<double>& logs) {
 
 /// The classes that such deviations are asked of, the best of all first: what leaves less
 /// chi-square than the best has no more for them to explain, and is given what the best is.
-std::vector<CurveClass> asked(const Contenders& w, const EvidenceContext& context) {
-  const CurveClass best = best_class(w.fits, context.likelihood, w.evidences);
+std::vector<CurveClass> asked(const Contenders& contenders, const EvidenceContext& context) {
+  const CurveClass best = best_class(contenders.fits, context.likelihood, contenders.evidences);
   if (best == CurveClass::Unclassified) {
     return {};
   }
   std::vector<CurveClass> classes{best};
   for (const CurveClass curve_class : kCurveClasses) {
-    const auto& fit = w.fits[curve_class];
-    if (fit && !fit->at_limit && std::isfinite(fit->chi2) && fit->chi2 > w.fits[best]->chi2 &&
-        w.coarse[curve_class]->chi2 <= context.out_of_reach) {
+    const auto& fit = contenders.fits[curve_class];
+    if (fit && !fit->at_limit && std::isfinite(fit->chi2) &&
+        fit->chi2 > contenders.fits[best]->chi2 &&
+        contenders.coarse[curve_class]->chi2 <= context.out_of_reach) {
       classes.push_back(curve_class);
     }
   }
@@ -41,43 +42,43 @@ std::vector<CurveClass> asked(const Contenders& w, const EvidenceContext& contex
 }
 
 /// Evidences of the classes without such deviations.
-ByClass<double> with_noise_alone(const Contenders& w, const EvidenceContext& context) {
+ByClass<double> with_noise_alone(const Contenders& contenders, const EvidenceContext& context) {
   ByClass<double> logs;
   for (std::size_t i = 0; i < logs.size(); ++i) {
-    const auto& fit = w.fits[i];
-    logs[i] =
-        fit && !fit->at_limit ? log_evidence(context.likelihood, w.evidences, *fit) : kNoEvidence;
+    const auto& fit = contenders.fits[i];
+    logs[i] = fit && !fit->at_limit ? log_evidence(context.likelihood, contenders.evidences, *fit)
+                                    : kNoEvidence;
   }
   return logs;
 }
 
 }  // namespace
 
-Contenders with_shared_deviations(Contenders w, const EvidenceContext& context, bool of_any_size,
-                                  double margin) {
-  const std::vector<CurveClass> classes = asked(w, context);
+Contenders with_shared_deviations(Contenders contenders, const EvidenceContext& context,
+                                  bool of_any_size, double margin) {
+  const std::vector<CurveClass> classes = asked(contenders, context);
   for (const CurveClass curve_class : classes) {
-    weigh_on_reduced(curve_class, context, &w);
+    weigh_on_reduced(curve_class, context, &contenders);
   }
-  const ByClass<double> white = with_noise_alone(w, context);
-  const double paths =
-      log_evidence_of_unclassified(context.likelihood, w.evidences, context.arcs.smooth.chi2);
+  const ByClass<double> white = with_noise_alone(contenders, context);
+  const double paths = log_evidence_of_unclassified(context.likelihood, contenders.evidences,
+                                                    context.arcs.smooth.chi2);
   const double matters = log_sum(white) - margin;
   const bool may_be_other =
       of_any_size && !classes.empty() &&
-      (paths > matters ||
-       log_evidence_near_best(classes.front(), kLargestFormError, matters, w, context) > matters);
+      (paths > matters || log_evidence_near_best(classes.front(), kLargestFormError, matters,
+                                                 contenders, context) > matters);
   if (classes.size() < 2 && !may_be_other) {
-    return w;
+    return contenders;
   }
   ByClass<double> gain{};
   for (const CurveClass curve_class : classes) {
     if (!context.work.allows()) {
-      return w;
+      return contenders;
     }
-    const auto& evidence = w.evidences.classes[curve_class];
+    const auto& evidence = contenders.evidences.classes[curve_class];
     const auto own =
-        evidence ? log_coherent_gain(*w.evidences.on_reduced[curve_class], *evidence,
+        evidence ? log_coherent_gain(*contenders.evidences.on_reduced[curve_class], *evidence,
                                      context.reduced, context.likelihood, context.arcs.sigma,
                                      context.arcs.smooth.chi2, context.work)
                  : std::nullopt;
@@ -91,15 +92,15 @@ Contenders with_shared_deviations(Contenders w, const EvidenceContext& context, 
   for (std::size_t i = 0; i < white.size(); ++i) {
     shared[i] = white[i] + gain[i];
   }
-  w.evidences.shared_or_other = may_be_other && log_sum(shared) > paths;
-  const double more = w.evidences.shared_or_other ? 0.0 : log_sum(shared) - log_sum(white);
+  contenders.evidences.shared_or_other = may_be_other && log_sum(shared) > paths;
+  const double more = contenders.evidences.shared_or_other ? 0.0 : log_sum(shared) - log_sum(white);
   if (!std::isfinite(more)) {
-    return w;
+    return contenders;
   }
   for (std::size_t i = 1; i < gain.size(); ++i) {
-    w.evidences.log_shared[i] = gain[i] - more;
+    contenders.evidences.log_shared[i] = gain[i] - more;
   }
-  return refine_plausible(std::move(w), context, margin);
+  return refine_plausible(std::move(contenders), context, margin);
 }
 
 }  // namespace palpate

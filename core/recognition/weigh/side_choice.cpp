@@ -71,7 +71,7 @@ bool settle_candidate(const SideContext& by, SideChoice* choice) {
   choice->settled.reset();
   choice->refined.reset();
   if (const auto& fit = choice->fits[choice->candidate]) {
-    const bool may_win = !tells_noise(by.arcs, by.likelihood) ||
+    const bool may_win = !noise_is_known_without_class(by.arcs, by.likelihood) ||
                          fits_well(fit->chi2, residual_count(choice->reduced));
     choice->settled =
         settled(*fit, choice->reduced, may_win ? RivalOf::Best : RivalOf::Other, by.work);

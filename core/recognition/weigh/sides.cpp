@@ -44,7 +44,7 @@ bool directions_may_explain(const SideChoice& choice, const FitData& touches,
   const double noise = std::max(1.0, smooth.noise_ratio());
   double most = noise * noise * most_of_noise(static_cast<double>(residual_count(touches)));
   for (const FitPoint& point : touches.points) {
-    const double off = swayed_by(point, noise) * point.inverse_sigma;
+    const double off = tip_removal_error(point, noise) * point.inverse_sigma;
     most += off * off;
   }
   return choice.settled->chi2 <= most;
@@ -121,7 +121,7 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
     }
     choice = std::move(next);
     const double after = least_left(choice, smooth);
-    if (tells_noise(by.arcs, by.likelihood) && after > before / kLeastGain &&
+    if (noise_is_known_without_class(by.arcs, by.likelihood) && after > before / kLeastGain &&
         !fits_well(after, residual_count(by.arcs.data))) {
       break;
     }

@@ -120,10 +120,10 @@ std::vector<SidedStart> starts_of(const SidedFits& sided, const Contenders& cont
   return starts;
 }
 
-/// What the stages say, gathered. `arcs` and `sided` are those that `ground` is of. `best_placed`:
+/// What the stages say, gathered. `arcs` and `sided` are those that `context` is of. `best_placed`:
 /// the best class, if it is placed on all points already; `stated`: the law before any was seen.
 Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders,
-                           const EvidenceContext& context, const SeenDeviation& seen,
+                           const EvidenceContext& context, const ResidualExcess& seen,
                            const Likelihood& stated, std::optional<Placed> best_placed) {
   Weighing w;
   w.probabilities = probabilities_of(contenders, context);
@@ -131,11 +131,7 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   w.margin_of_unclassified = margin_of_unclassified(contenders.fits, arcs.smooth.chi2,
                                                     context.likelihood, contenders.evidences);
   w.rival_share = rival_share(contenders.fits, context.likelihood, contenders.evidences);
-  w.noise_inflation = seen.noise_inflation;
-  w.noise_told_by_class_alone = seen.told_by_class_alone;
-  w.white_variance = seen.white_variance;
-  w.correlation_length = seen.correlation_length;
-  w.inflation = seen.noise_inflation * seen.few_residuals + stated.coherent_variance;
+  w.inflation = seen.noise_inflation * seen.student_inflation + stated.coherent_variance;
   const auto& best = contenders.fits[w.best];
   w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, context.likelihood);
   w.canonical = placed_canonically(contenders, w.probabilities, context, std::move(best_placed));
@@ -146,7 +142,7 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   w.best_evidence = std::move(contenders.evidences.classes[w.best]);
   w.best_on_reduced = std::move(contenders.evidences.on_reduced[w.best]);
   w.stated = stated;
-  w.correlated = seen.correlated;
+  w.seen = seen;
   w.fits = std::move(contenders.fits);
   w.coarse = std::move(contenders.coarse);
   w.sides = std::move(sided.choices[sided.taken].sides);
@@ -182,11 +178,11 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   const EvidenceContext at_first{arcs, sided.choice().reduced, work, stated, hopeless};
   Contenders contenders = contenders_of_choice(at_first, of_paths);
   std::optional<Placed> best_placed = best_on_all(contenders, at_first);
-  SeenDeviation seen = best_placed
-                           ? seen_deviation(arcs, stated, best_placed->chi2, best_placed->canonical,
-                                            most_probable(probabilities_of(contenders, at_first)) ==
-                                                CurveClass::Unclassified)
-                           : SeenDeviation{};
+  ResidualExcess seen =
+      best_placed ? residual_excess(arcs, stated, best_placed->chi2, best_placed->canonical,
+                                    most_probable(probabilities_of(contenders, at_first)) ==
+                                        CurveClass::Unclassified)
+                  : ResidualExcess{};
   seen.correlated = seen.correlated || options.unqualified_probe;
   const Likelihood likelihood = seen.likelihood.value_or(stated);
   const Evidences of_seen_paths =

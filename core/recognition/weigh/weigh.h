@@ -9,6 +9,7 @@
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/class_fits.h"
+#include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/posterior.h"
 #include "core/recognition/samples/sample_memory.h"
 #include "core/recognition/smooth/smooth_model.h"
@@ -46,7 +47,7 @@ struct Weighing {
   std::optional<ClassEvidence> best_evidence;
   std::optional<CanonicalFit> best_on_reduced;
   Likelihood stated;               ///< the likelihood before any deviation was seen
-  bool correlated = false;         ///< neighbours may be correlated
+  ResidualExcess seen;             ///< of the best class
   bool unqualified_probe = false;  ///< WeighOptions::unqualified_probe
   /// Starts for the next weighing. The first belongs to `sides`.
   std::vector<SidedStart> starts;
@@ -59,12 +60,7 @@ struct Weighing {
   double sigma = 0.0;                          ///< noise of the typical point, normalised
   /// Factor on covariances: correlation, misfit, few residuals and stated form error.
   double inflation = 1.0;
-  /// Factor on the variances of residuals, without stated form error and few residuals.
-  double noise_inflation = 1.0;
-  bool noise_told_by_class_alone = false;  ///< SeenDeviation::told_by_class_alone
-  double white_variance = 1.0;             ///< of the white noise, in units of sigma^2
-  double counted_chi2 = 0.0;               ///< chi-square of `best` for the misfit test (misfit_of)
-  double correlation_length = 0.0;         ///< normalised; 0 = white
+  double counted_chi2 = 0.0;  ///< chi-square of `best` for the misfit test (misfit_of)
   /// Normals along strokes that chi-square, shape, pose and covariance of `best` hold, no others'
   /// (best_in_full.h).
   std::size_t stroke_normals = 0;

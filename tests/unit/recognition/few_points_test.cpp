@@ -70,7 +70,7 @@ TEST(FewPoints, AreJoinedByAsManyThatAreMissedMost) {
     squares[i] = 1.0;
     missed.push_back(all.points[i].position);
   }
-  const FitData more = few_and_missed(all, squares);
+  const FitData more = few_and_worst_fitted(all, squares);
   EXPECT_EQ(more.points.size(), few.points.size() + 64);
   const auto has = [&](const Vec2& place) {
     return std::any_of(more.points.begin(), more.points.end(),

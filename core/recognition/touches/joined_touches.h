@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-struct StrungTouches {
+struct JoinedTouches {
   std::vector<StoredPatch> patches;
   /// Fits of every class to the tip centres that were used to find the order. Only if that came
   /// from a curve, cubics were among the classes, the noise is stated and a class fits.
@@ -26,7 +26,7 @@ struct StrungTouches {
 /// polynomial follows it. Touches of different tip radii are not mixed. A run has the probe and
 /// patch number of its first touch and no material side. nullopt if there is no run.
 /// `default_sigma_m`: noise of samples that state none [m]. `classes`: bit 1 << CurveClass of each.
-std::optional<StrungTouches> strung_touches(std::span<const StoredPatch> patches,
+std::optional<JoinedTouches> joined_touches(std::span<const StoredPatch> patches,
                                             double default_sigma_m, unsigned classes,
                                             WorkBudget& work);
 

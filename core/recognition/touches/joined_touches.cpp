@@ -1,4 +1,4 @@
-#include "core/recognition/touches/strung_touches.h"
+#include "core/recognition/touches/joined_touches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -210,7 +210,7 @@ std::vector<PatchSpan> runs_of(const std::vector<Place>& places) {
   return runs;
 }
 
-StoredPatch strung(std::span<const StoredPatch> patches, std::span<const Place> places) {
+StoredPatch run_of(std::span<const StoredPatch> patches, std::span<const Place> places) {
   StoredPatch run;
   run.context = patches[places.front().patch].context;
   run.context.material_side = MaterialSide::Unspecified;
@@ -224,23 +224,23 @@ StoredPatch strung(std::span<const StoredPatch> patches, std::span<const Place> 
     run.details.push_back(of_touch.empty() ? SampleDetail{} : of_touch.front());
   }
   run.newest_m = run.samples.back().position_m;
-  run.strung = true;
+  run.is_joined = true;
   return run;
 }
 
 /// The runs, and the patches they replace.
-struct Strung {
+struct Joined {
   std::vector<StoredPatch> runs;
   std::vector<bool> taken;
   std::vector<Place> alone;        ///< touches not in a run whose direction is known
   std::optional<WarmStart> start;  ///< of the curve that gave the order
 
-  explicit Strung(std::size_t patches) : taken(patches, false) {}
+  explicit Joined(std::size_t patches) : taken(patches, false) {}
 
   void add(std::span<const StoredPatch> patches, const std::vector<Place>& places) {
     for (const PatchSpan& run : runs_of(places)) {
       const auto of_run = std::span(places).subspan(run.begin, run.size());
-      runs.push_back(strung(patches, of_run));
+      runs.push_back(run_of(patches, of_run));
       for (const Place& place : of_run) {
         taken[place.patch] = true;
       }
@@ -263,11 +263,11 @@ std::map<double, Indices> by_tip(std::span<const StoredPatch> patches, const Ind
 
 /// Joins touches in the order of the shortest way through them, which needs no curve. nullopt if
 /// that order is in doubt, or if a smooth path through the runs leaves more than the stated noise.
-std::optional<Strung> strung_by_way(std::span<const StoredPatch> patches, const Indices& lone,
+std::optional<Joined> joined_by_way(std::span<const StoredPatch> patches, const Indices& lone,
                                     double default_sigma_m) {
   // In units of the noise: if vertices were closer, noise would affect their order.
   constexpr double kLeastStep = 20.0;
-  Strung result(patches.size());
+  Joined result(patches.size());
   for (const auto& [tip_radius_m, of_tip] : by_tip(patches, lone)) {
     if (of_tip.size() < kRun) {
       continue;
@@ -314,7 +314,7 @@ std::optional<Strung> strung_by_way(std::span<const StoredPatch> patches, const 
 }
 
 /// Joins touches in the order along the curve that explains them best; nullopt if there is none.
-std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, const Indices& lone,
+std::optional<Joined> joined_by_curve(std::span<const StoredPatch> patches, const Indices& lone,
                                       double default_sigma_m, unsigned classes, WorkBudget& work) {
   std::vector<StoredPatch> sought;
   for (const StoredPatch& patch : patches) {
@@ -332,7 +332,7 @@ std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, cons
   }
   bool sigma_known = false;
   const FitData data = make_fit_data(sought, default_sigma_m, &sigma_known);
-  Strung result(patches.size());
+  Joined result(patches.size());
   const auto found = curve_through(data, sigma_known, classes, &result.start, work);
   if (!found) {
     return std::nullopt;
@@ -357,27 +357,27 @@ std::optional<Strung> strung_by_curve(std::span<const StoredPatch> patches, cons
 
 }  // namespace
 
-std::optional<StrungTouches> strung_touches(std::span<const StoredPatch> patches,
+std::optional<JoinedTouches> joined_touches(std::span<const StoredPatch> patches,
                                             double default_sigma_m, unsigned classes,
                                             WorkBudget& work) {
   const Indices lone = lone_patches(patches);
   if (lone.size() < kRun) {
     return std::nullopt;
   }
-  auto strung = strung_by_way(patches, lone, default_sigma_m);
-  if (!strung) {
-    strung = strung_by_curve(patches, lone, default_sigma_m, classes, work);
+  auto joined = joined_by_way(patches, lone, default_sigma_m);
+  if (!joined) {
+    joined = joined_by_curve(patches, lone, default_sigma_m, classes, work);
   }
-  if (!strung || strung->runs.empty()) {
+  if (!joined || joined->runs.empty()) {
     return std::nullopt;
   }
   std::vector<const Place*> alone(patches.size(), nullptr);
-  for (const Place& place : strung->alone) {
+  for (const Place& place : joined->alone) {
     alone[place.patch] = &place;
   }
-  StrungTouches result;
+  JoinedTouches result;
   for (std::size_t p = 0; p < patches.size(); ++p) {
-    if (strung->taken[p]) {
+    if (joined->taken[p]) {
       continue;
     }
     StoredPatch& patch = result.patches.emplace_back(patches[p]);
@@ -386,8 +386,8 @@ std::optional<StrungTouches> strung_touches(std::span<const StoredPatch> patches
       patch.turn = alone[p]->turn;
     }
   }
-  std::move(strung->runs.begin(), strung->runs.end(), std::back_inserter(result.patches));
-  result.start = std::move(strung->start);
+  std::move(joined->runs.begin(), joined->runs.end(), std::back_inserter(result.patches));
+  result.start = std::move(joined->start);
   return result;
 }
 
