@@ -1,12 +1,50 @@
 #include "node/csv/point_units.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace palpate::csv {
 namespace {
 
 std::optional<double> named_unit(const PointColumns& columns, Column column) {
   return columns.units[static_cast<std::size_t>(column)];
+}
+
+/// Its plainest name.
+std::string_view name_of_unit(double metres) {
+  constexpr std::array<std::string_view, 6> kPlain = {"m", "mm", "cm", "um", "nm", "in"};
+  const auto* const found = std::find_if(kPlain.begin(), kPlain.end(), [&](std::string_view name) {
+    return length_unit_m(name) == metres;
+  });
+  return found == kPlain.end() ? "?" : *found;
+}
+
+/// Columns of lengths without a unit, beside a coordinate that names one; or nothing.
+std::string note_of_lent_unit(const PointColumns& columns) {
+  constexpr std::array<std::pair<Column, const char*>, 5> kLengths = {
+      {{Column::X, "x"},
+       {Column::Y, "y"},
+       {Column::Z, "z"},
+       {Column::Sigma, "sigma"},
+       {Column::TipRadius, "tip_radius"}}};
+  std::string without;
+  std::size_t count = 0;
+  std::string lender;
+  for (const auto& [column, name] : kLengths) {
+    if (!columns.place(column)) continue;
+    const auto unit = named_unit(columns, column);
+    if (!unit) {
+      without += (count++ > 0 ? ", " : "") + std::string(name);
+    } else if (lender.empty()) {
+      // The coordinates come first, and one of them names a unit.
+      lender = std::string(name_of_unit(*unit)) + ", as " + name + " is";
+    }
+  }
+  if (count == 0) return "";
+  return (count == 1 ? "column " + without + " names no unit"
+                     : "columns " + without + " name no unit") +
+         ": taken as " + lender + " (else --unit mm, um or in)";
 }
 
 }  // namespace
@@ -67,7 +105,8 @@ std::string note_of_unit(const PointColumns& columns, const ContactFileOptions& 
       return "the unit is taken from --unit, not from the columns' names";
     }
   }
-  if (options.unit_m || names_unit) return "";
+  if (options.unit_m) return "";
+  if (names_unit) return note_of_lent_unit(columns);
   return is_probe_log ? "the log names no unit: taken as millimetres (else --unit in)"
                       : "no unit is named: taken as metres (else --unit mm, um or in)";
 }

@@ -237,8 +237,12 @@ class Formats(unittest.TestCase):
                 self.assertIn("the coordinates have different units", out + err)
             self.check(names + rows, "--unit", "mm")
         # A unit that one column names holds for the other, and the same unit may be called twice.
-        for names in ("x_mm,y\n", "x_mm,y [mm]\n"):
+        for names, told in (("x_mm,y\n", "column y names no unit: taken as mm, as x is (else --unit"), ("x_mm,y [mm]\n", "")):
             self.check(names + rows)
+            self.assertEqual("names no unit" in self.notes, bool(told))
+            self.assertIn(told, self.notes)
+        self.check("x,y_mm,sigma\n" + rows.replace("\n", ",0.02\n"))
+        self.assertIn("columns x, sigma name no unit: taken as mm, as y is (else --unit", self.notes)
 
     def test_points_of_space_are_brought_into_their_plane(self):
         def cloud(place):
