@@ -313,8 +313,12 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
   judge_tips(probe, patches, source, findings);
   judge_normals(probe, patches, findings);
   if (samples > 0 && largest_stated == 0.0) {
-    add(Severity::Note, "sigma_m is 0: the noise is estimated",
-        "state it where it is known: fewer samples then suffice");
+    add(Severity::Note,
+        is_file ? "no noise is stated: it is estimated" : "sigma_m is 0: the noise is estimated",
+        is_file
+            ? "state it where it is known (--sigma of fit and replay, or a column sigma): fewer "
+              "samples then suffice"
+            : "state it where it is known: fewer samples then suffice");
   }
 }
 

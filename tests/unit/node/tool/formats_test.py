@@ -462,6 +462,10 @@ class Formats(unittest.TestCase):
         for told in ("1 jump of", "221 stamps earlier", "extend over", "--unit mm", "not fit"):
             self.assertIn(told, out)
         self.assertEqual(run(TOOL, "check", self.folder / "absent")[0], 2)
+        # Whoever is to state the noise is told how; and these are options that there are.
+        self.assertIn("no noise is stated: it is estimated\n         state it where it is known (--sigma of fit and replay, or a column sigma)", out)
+        for command in ("fit", "replay"):
+            self.assertIn("--sigma", run(TOOL, command, "--help")[1])
         # Too few places for an answer, however many samples lie there.
         path.write_text("x_m,y_m\n" + 9 * "0.01,0.02\n" + "0.02,0.02\n")
         code, out, _ = run(TOOL, "check", path)
