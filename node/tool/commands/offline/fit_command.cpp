@@ -141,8 +141,11 @@ std::string wrong_with_outputs(const FitCommand& fit, std::size_t groups) {
 }
 
 int run(FitCommand& fit) {
-  if (std::string why = resolve(fit.words, fit.recognizer); !why.empty()) {
-    return complain(why, kUsage);
+  if (const std::string why = resolve(fit.words, fit.recognizer); !why.empty()) {
+    // It begins with the option's name in the table, which is the node's too.
+    const std::size_t name = why.find(':');
+    return complain(
+        flag_of(why.substr(0, name)) + why.substr(name) + "; palpate fit --help says more", kUsage);
   }
   if (!fit.part.empty() && !fit.probe_files.empty()) {
     return complain(

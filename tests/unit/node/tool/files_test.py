@@ -103,6 +103,8 @@ class Files(unittest.TestCase):
                 (["fit", "--sgima", "1e-5", "a.csv"], "there is no option --sgima of fit, did you mean --sigma? palpate fit" + lists),
                 (["watch", "--nonsense"], "there is no option --nonsense of watch; palpate watch" + lists),
                 (["check", "--" + 10_000 * "x"], "there is no option --" + 198 * "x" + "... of check; palpate check" + lists),
+                (["fit", "a.csv", "--touched-from", "top"], "--touched-from: expected outside, inside or unknown; palpate fit --help says more\n"),
+                (["fit", "a.csv", "--method", "best"], "--method: expected ml or tree; palpate fit --help says more\n"),
                 (["fit"], "FILE is required; palpate fit --help says more\n"),
                 (["fit", "a.csv", "--sigma"], "--sigma: 1 required NUMBER:FLOAT in [0 - 1000] missing; palpate fit --help says more\n"),
                 (["estimate", "a.csv", "b.csv"], "The following argument was not expected: b.csv; palpate estimate --help says more\n"),

@@ -104,7 +104,7 @@ class GivenClass(unittest.TestCase):
             self.assertNotIn("WARNING", notes_of(touches(points), *bore, *arguments))
         code, _, err = run(TOOL, "fit", *bore[:3], "within", "-", text_in=touches(points))
         self.assertEqual(code, 2)
-        self.assertIn("touched_from: expected outside, inside or unknown", err)
+        self.assertIn("--touched-from: expected outside, inside or unknown", err)
         stroke = "probe,patch,x_m,y_m,material_side\n" + "".join(f"p,0,{x!r},{y!r},right\n" for x, y in points)
         _, (answer,), _ = fit(stroke, "--tip-radius", "0.001", "--class", "circle")
         self.assertAlmostEqual(answer.recognition.parameters.a, 0.010, delta=1e-12)
