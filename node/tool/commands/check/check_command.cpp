@@ -12,6 +12,7 @@
 #include "node/files/counted.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
+#include "node/tool/commands/check/approach_check.h"
 #include "node/tool/commands/check/file_check.h"
 #include "node/tool/commands/check/stream_check.h"
 #include "node/tool/commands/command.h"
@@ -63,7 +64,8 @@ int check_file(const CheckCommand& command) {
   for (const std::string& note : file.value->notes) {
     findings.push_back({Severity::Note, "", note, ""});
   }
-  for (const ContactGroup& group : contact_groups(command.file, file.value->table)) {
+  const std::vector<ContactGroup> groups = contact_groups(command.file, file.value->table);
+  for (const ContactGroup& group : groups) {
     std::size_t samples = 0;
     std::set<std::pair<std::uint32_t, std::uint32_t>> patches;
     for (const ContactRun& run : group.runs) {
@@ -77,6 +79,9 @@ int check_file(const CheckCommand& command) {
                         ""});
     if (auto few = too_few_places(group, patches.size())) findings.push_back(*std::move(few));
     for (Finding& finding : check_group(group)) findings.push_back(std::move(finding));
+    if (auto approach = judge_approaches(group, groups.size() == 1)) {
+      findings.push_back(*std::move(approach));
+    }
   }
   sort_findings(&findings);
   return print(findings, unit_note_of(*file.value));

@@ -2,22 +2,24 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <iostream>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "node/files/counted.h"
 #include "node/files/overwritten_input.h"
 #include "node/files/printable.h"
 #include "node/files/probe_file.h"
 #include "node/files/written_file.h"
+#include "node/tool/commands/check/approach_check.h"
+#include "node/tool/commands/check/file_check.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/commands/offline/answer_notes.h"
 #include "node/tool/commands/offline/fit_input.h"
 #include "node/tool/commands/offline/given_answer.h"
+#include "node/tool/commands/offline/left_out.h"
 #include "node/tool/commands/offline/measured_group.h"
 #include "node/tool/commands/offline/object_answer.h"
 #include "node/tool/commands/offline/placed_part.h"
@@ -89,43 +91,6 @@ std::string plot_path(const std::string& path, std::size_t number) {
   return stem + "-" + std::to_string(number) + ending;
 }
 
-using SampleNumbers = std::vector<std::size_t>;
-
-/// The samples of --leave-out, by number from 1.
-Result<SampleNumbers> left_out_of(const FitCommand& fit, const std::vector<FitInput>& inputs) {
-  if (fit.left_out.empty()) {
-    return Result<SampleNumbers>::ok({});
-  }
-  if (inputs.size() != 1) {
-    return Result<SampleNumbers>::fail("--leave-out: for one group and object only, here are " +
-                                       std::to_string(inputs.size()));
-  }
-  std::size_t samples = 0;
-  for (const ContactRun& run : inputs.front().group.runs) {
-    samples += run.samples.size();
-  }
-  SampleNumbers numbers;
-  for (const std::string& word : fit.left_out) {
-    const auto number = [&](std::string_view text) {
-      std::size_t value = 0;
-      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-      const bool whole = error == std::errc() && end == text.data() + text.size();
-      return whole && value <= samples ? value : 0;
-    };
-    const std::size_t dash = word.find('-');
-    const std::size_t first = number(std::string_view(word).substr(0, dash));
-    const std::size_t last =
-        dash == std::string::npos ? first : number(std::string_view(word).substr(dash + 1));
-    if (first == 0 || last < first) {
-      return Result<SampleNumbers>::fail("--leave-out: '" + printable(word) +
-                                         "' names no samples: they are 1 to " +
-                                         std::to_string(samples) + ", as in 3,17 or 1-5");
-    }
-    for (std::size_t i = first; i <= last; ++i) numbers.push_back(i);
-  }
-  return Result<SampleNumbers>::ok(std::move(numbers));
-}
-
 /// What is wrong if a file that is read would be written over, or nothing.
 std::string wrong_with_outputs(const FitCommand& fit, std::size_t groups) {
   std::vector<std::string> read = fit.files;
@@ -184,9 +149,16 @@ int run(FitCommand& fit) {
     }
   }
   if (bad) return kUsage;
-  const Result<SampleNumbers> left_out = left_out_of(fit, inputs);
-  if (!left_out) {
-    return complain(left_out.error, kUsage);
+  std::vector<std::size_t> left_out;
+  if (!fit.left_out.empty()) {
+    if (inputs.size() != 1) {
+      return complain(
+          "--leave-out: for one group and object only, here are " + std::to_string(inputs.size()),
+          kUsage);
+    }
+    Result<std::vector<std::size_t>> numbers = left_out_of(fit.left_out, inputs.front().group);
+    if (!numbers) return complain(numbers.error, kUsage);
+    left_out = *std::move(numbers.value);
   }
   if (const std::string why = wrong_with_outputs(fit, inputs.size()); !why.empty()) {
     return complain(why, kUsage);
@@ -196,7 +168,13 @@ int run(FitCommand& fit) {
     return place_part(fit.part, inputs, fit.recognizer, json);
   }
   std::size_t number = 0;
-  for (const FitInput& input : inputs) {
+  for (FitInput& input : inputs) {
+    // By the numbers that the samples have in the file, so before any is left out.
+    const std::optional<Finding> approach = judge_approaches(input.group, input.is_alone, left_out);
+    if (!left_out.empty() && fit.given_class.empty()) {
+      input.group = without_samples(input.group, left_out);
+      input.notes.push_back("left out: " + counted(left_out.size(), "sample") + " (--leave-out)");
+    }
     const ContactGroup& group = input.group;
     v1::Recognition answer;
     std::string text;
@@ -222,8 +200,8 @@ int run(FitCommand& fit) {
     } else {
       notes = input.notes;
       const v1::GivenClassAnswer given =
-          fit_given({*curve_class_from_name(fit.given_class), *left_out.value}, group,
-                    fit.recognizer, probes, notes);
+          fit_given({*curve_class_from_name(fit.given_class), left_out}, group, fit.recognizer,
+                    probes, notes);
       text = json ? json_line(given) : given_class_text(given);
       answer = given.recognition();
     }
@@ -233,12 +211,18 @@ int run(FitCommand& fit) {
       complain(group.file + ": " + note, kDone);
       notes.push_back(std::move(note));
     }
+    // A class that is given is fitted to all samples: none is set aside as a spike.
+    const bool is_found = answer.status() == v1::RECOGNITION_STATUS_RECOGNIZED &&
+                          answer.curve_class() != v1::CURVE_CLASS_UNCLASSIFIED;
+    if (approach && (!is_found || !fit.given_class.empty())) {
+      std::string note = "WARNING: " + sentence_of(*approach);
+      complain(group.file + ": " + note, kDone);
+      notes.push_back(std::move(note));
+    }
     if (json) {
       std::cout << with_notes(text, notes);
     } else {
       std::cout << (number > 0 ? "\n" : "") << printable_path(group.file) << ": " << text;
-      const bool is_found = answer.status() == v1::RECOGNITION_STATUS_RECOGNIZED &&
-                            answer.curve_class() != v1::CURVE_CLASS_UNCLASSIFIED;
       if (fit.given_class.empty() && !is_found) {
         std::cout << "  advice       " << advice_text(answer) << "\n";
       }
@@ -323,13 +307,13 @@ void add_fit_command(CLI::App& app, int& exit_code) {
           ->excludes(invariants_plot)
           ->check(curve_class_name())
           ->type_name("CLASS");
-  command
-      ->add_option("--leave-out", fit->left_out,
-                   "With --class: samples that are not to count, numbered from 1 in the file's "
-                   "order; 1-5 are five of them")
-      ->delimiter(',')
-      ->needs(given)
-      ->type_name("NUMBER,...");
+  CLI::Option* leave_out =
+      command
+          ->add_option("--leave-out", fit->left_out,
+                       "Samples that are not to count, numbered from 1 in the file's order; 1-5 "
+                       "are five of them")
+          ->delimiter(',')
+          ->type_name("NUMBER,...");
   command
       ->add_option(
           "--part", fit->part,
@@ -340,6 +324,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
       ->excludes(plot)
       ->excludes(invariants_plot)
       ->excludes(given)
+      ->excludes(leave_out)
       ->type_name("FILE");
   command
       ->add_option(

@@ -63,8 +63,9 @@ Result<std::vector<FitInput>> read_fit_input(const std::string& file,
   const Result<ContactFile> read = read_contact_file(file, options);
   if (!read) return Read::fail(read.error);
   std::vector<FitInput> inputs;
-  for (ContactGroup& group : contact_groups(file, read.value->table)) {
-    FitInput input{std::move(group), read.value->notes, {}, false};
+  std::vector<ContactGroup> groups = contact_groups(file, read.value->table);
+  for (ContactGroup& group : groups) {
+    FitInput input{std::move(group), read.value->notes, {}, false, groups.size() == 1};
     input.noise_is_known = all_have_sigma(input.group);
     std::vector<Finding> findings = check_group(input.group, sigma_m);
     // What is no stroke is not read as one, unless that or the patches were said. The memory counts

@@ -14,6 +14,7 @@ struct FitInput {
   std::vector<std::string> notes;     ///< what was assumed, merged, dropped or ignored
   std::vector<std::string> warnings;  ///< what makes the answer wrong or worth less
   bool noise_is_known = false;        ///< every sample brings its sigma
+  bool is_alone = false;              ///< the file's only group and object
 };
 
 /// The objects of a file, in its order, judged with this noise of samples that bring none [m].

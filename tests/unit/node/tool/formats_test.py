@@ -3,6 +3,7 @@ import json
 import math
 import pathlib
 import random
+import re
 import tempfile
 import unittest
 
@@ -470,6 +471,62 @@ class Formats(unittest.TestCase):
         path.write_text("x_m,y_m\n" + 9 * "0.01,0.02\n" + "0.02,0.02\n")
         code, out, _ = run(TOOL, "check", path)
         self.assertIn("only 2 places touched", out)
+
+    def approached(self, count, names="x_mm,y_mm", parts=1, seed=2):
+        """Circles of 20 mm that begin and end with so many samples in the air: rows in millimetres."""
+        rng = random.Random(seed)
+        radii = [20 + 0.3 * k for k in range(count, 0, -1)] + 200 * [20] + [20 + 0.3 * k for k in range(1, count + 1)]
+        angles = count * [0.2] + [0.2 + 0.015 * k for k in range(200)] + count * [0.2 + 0.015 * 199]
+        return names + "\n" + "".join(
+            (f"{part}," if parts > 1 else "") + f"{r * math.cos(t) + rng.gauss(0, 0.01):.6f},{r * math.sin(t) + rng.gauss(0, 0.01):.6f}\n"
+            for part in range(parts) for r, t in zip(radii, angles))
+
+    def test_an_approach_that_was_recorded_is_told_with_the_option_that_leaves_it_out(self):
+        path = self.folder / "approached.csv"
+        path.write_text(self.approached(10))
+        told = r"1 stroke runs straight at an end and meets the rest at a corner \(patch 0: the first 1[01] samples " \
+               r"\(1-1[01]\) at (8|9)\d degrees, the last 1[01] samples \((209|210|211)-220\) at (8|9)\d degrees\)"
+        code, out, _ = run(TOOL, "check", path)
+        self.assertEqual(code, 0)
+        self.assertRegex(out, "WARNING  " + told)
+        self.assertIn("fit for the recognizer, but see the warnings", out)
+        advised = re.search(r"fit (--leave-out) (\S+)\n", out).groups()
+        answer = self.fit(path.read_text(), "--sigma", "1e-5")
+        self.assertEqual(answer["curve_class"], "CURVE_CLASS_UNCLASSIFIED")
+        self.assertRegex(self.notes, told)
+        self.assertRegex(self.err, told)
+        self.fit(path.read_text(), "--class", "circle")
+        self.assertRegex(self.notes, told)
+        # What is advised does it, and then nothing is left to be told.
+        answer = self.fit(path.read_text(), "--sigma", "1e-5", *advised)
+        self.assertEqual(answer["curve_class"], "CURVE_CLASS_CIRCLE")
+        self.assertLess(abs(answer["parameters"]["a"] / 0.02 - 1), 1e-3)
+        self.assertIn(int(answer["sample_count"]), range(198, 202))
+        self.assertRegex(self.notes, r"^left out: (19|20|21|22) samples \(--leave-out\)$")
+        self.assertNotIn("straight", self.err)
+        code, out, err = run(TOOL, "fit", path, "--class", "circle", *advised)
+        self.assertEqual((code, err), (0, ""))
+        # Half of it left out: the advice names the whole.
+        self.fit(path.read_text(), "--class", "circle", advised[0], advised[1].split(",")[0])
+        self.assertIn(f"{advised[0]} {advised[1]}", self.notes)
+
+    def test_an_approach_that_does_no_harm_is_told_by_check_alone(self):
+        # Six samples are set aside as spikes.
+        path = self.folder / "approached.csv"
+        path.write_text(self.approached(6, seed=1))
+        self.assertIn("straight at an end", run(TOOL, "check", path)[1])
+        answer = self.fit(path.read_text(), "--sigma", "1e-5")
+        self.assertEqual(answer["curve_class"], "CURVE_CLASS_CIRCLE")
+        self.assertNotIn("straight", self.notes)
+
+    def test_the_approaches_of_two_objects_are_told_without_an_option_that_would_not_do(self):
+        path = self.folder / "two.csv"
+        path.write_text(self.approached(10, names="object,x_mm,y_mm", parts=2))
+        code, out, _ = run(TOOL, "check", path)
+        self.assertEqual(out.count("straight at an end"), 2, out)
+        self.assertEqual(out.count("take its rows out of the file"), 2, out)
+        self.assertNotIn("--leave-out", out)
+        self.assertIn("--leave-out: for one group and object only, here are 2", run(TOOL, "fit", path, "--leave-out", "1")[2])
 
     def test_estimate_and_replay_read_them_too(self):
         path = self.folder / "points.txt"

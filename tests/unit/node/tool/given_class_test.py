@@ -179,7 +179,7 @@ class GivenClass(unittest.TestCase):
                                 (("--class", "circle", "--leave-out", "3-2"), "'3-2'"),
                                 (("--class", "circle", "--leave-out", "1-2-3"), "'1-2-3'"),
                                 (("--class", "circle", "--leave-out", "x"), "1-5"),
-                                (("--leave-out", "1"), "--class")):
+                                (("--class", "circle", "--leave-out", "1-%d" % len(SQUARE)), "leaves none")):
             code, answers, err = fit(touches(SQUARE), *arguments)
             self.assertNotEqual(code, 0)
             self.assertEqual(answers, [])
