@@ -13,6 +13,17 @@
 
 namespace palpate {
 
+/// Which ends of the samples are next to a cusp of the stroke of which they are a part.
+struct CuspEnds {
+  bool first = false;
+  bool last = false;
+
+  /// Whether a block of them, samples [begin, end) of `count`, has such an end.
+  bool touched_by(std::size_t begin, std::size_t end, std::size_t count) const {
+    return (first && begin == 0) || (last && end == count);
+  }
+};
+
 struct BlockSurvey {
   LocalStatus status = LocalStatus::TooFewSamples;
   std::size_t length = 0;   ///< number of samples of a block
@@ -25,11 +36,11 @@ struct BlockSurvey {
 /// Fits blocks of 16 samples, or of 32, 64 ... if those span less than 20 sigma. `sigma_m`: 0 =
 /// unknown. A sample whose residual exceeds `threshold` standard deviations is off.
 BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold,
-                          WorkBudget& work);
+                          const CuspEnds& cusps, WorkBudget& work);
 
 /// The residual beyond which a sample is off its block's quartic. It allows for noise, and for form
 /// that no quartic can follow. [m]
-double residual_limit(const ResidualBlock& block, double sigma_m, double threshold);
+double residual_limit(const ResidualBlock& block, double sigma_m, double threshold, bool at_cusp);
 
 /// Whether a sample in use lies farther behind an earlier one than noise explains.
 bool turns_back(const ResidualBlock& block, double sigma_m);

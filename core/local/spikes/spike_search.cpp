@@ -40,11 +40,12 @@ struct Block {
 class Search {
  public:
   Search(std::span<const Vec2> samples, const BlockSurvey& survey, double threshold,
-         WorkBudget& work)
+         const CuspEnds& cusps, WorkBudget& work)
       : samples_(samples),
         threshold_(threshold),
         length_(survey.length),
         sigma_m_(survey.sigma_m),
+        cusps_(cusps),
         work_(work) {
     for_each_block(samples.size(), length_, std::max<std::size_t>(length_ / 4, 1),
                    [&](std::size_t start) {
@@ -142,12 +143,13 @@ class Search {
     constexpr int kMostReturns = 6;  // a sample may leave and join alternately
     std::size_t left = 0;
     int returns = 0;
+    const bool at_cusp = cusps_.touched_by(block->start, block->start + length_, samples_.size());
     bool may_be_lonely[] = {block->start == 0, block->start + length_ == samples_.size()};
     while (true) {
       if (left > most_leave || fit(*block) != LocalStatus::Ok) {
         return false;
       }
-      const double limit = residual_limit(residuals_, sigma_m_, threshold_);
+      const double limit = residual_limit(residuals_, sigma_m_, threshold_, at_cusp);
       std::size_t worst = length_;
       double largest = limit;
       for (std::size_t i = 0; i < length_; ++i) {
@@ -225,6 +227,7 @@ class Search {
   double threshold_;
   std::size_t length_;
   double sigma_m_;
+  CuspEnds cusps_;
   WorkBudget& work_;
   std::vector<Block> blocks_;
   ResidualBlock residuals_;
@@ -234,8 +237,8 @@ class Search {
 }  // namespace
 
 SpikeSearch search_spikes(std::span<const Vec2> samples, const BlockSurvey& survey, double sigma_m,
-                          double threshold, WorkBudget& work) {
-  Search search(samples, survey, threshold, work);
+                          double threshold, const CuspEnds& cusps, WorkBudget& work) {
+  Search search(samples, survey, threshold, cusps, work);
   if (!(sigma_m > 0.0)) {
     search.refine_noise();
   }

@@ -26,6 +26,6 @@ struct SpikeSearch {
 /// step. Each sample is judged by the block that removes fewest samples. `sigma_m`: 0 = estimate it
 /// from the residuals of the samples that joined.
 SpikeSearch search_spikes(std::span<const Vec2> samples, const BlockSurvey& survey, double sigma_m,
-                          double threshold, WorkBudget& work);
+                          double threshold, const CuspEnds& cusps, WorkBudget& work);
 
 }  // namespace palpate

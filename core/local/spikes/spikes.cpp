@@ -79,13 +79,13 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
   WorkBudget& work = options.work != nullptr ? *options.work : unbounded;
   for (int pass = 0; pass < kMostPasses && kept.samples.size() >= kFewestSamples; ++pass) {
     if (doublings == 0) {
-      survey = survey_blocks(kept.samples, sigma_m, result.threshold, work);
+      survey = survey_blocks(kept.samples, sigma_m, result.threshold, options.cusps, work);
       if (pass == 0 && !(sigma_m > 0.0)) {
         // Rounded readings may agree to the last digit: their noise is no less than the rounding's.
         const double rounding_m = noise_of_rounding_m(reading_step_m(kept.samples, survey.sigma_m));
         if (survey.sigma_m < rounding_m) {
           sigma_m = rounding_m;
-          survey = survey_blocks(kept.samples, sigma_m, result.threshold, work);
+          survey = survey_blocks(kept.samples, sigma_m, result.threshold, options.cusps, work);
         }
       }
     }
@@ -101,7 +101,8 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
     }
     BlockSurvey longer = survey;
     longer.length = std::min(survey.length << doublings, kept.samples.size());
-    SpikeSearch found = search_spikes(kept.samples, longer, sigma_m, result.threshold, work);
+    SpikeSearch found =
+        search_spikes(kept.samples, longer, sigma_m, result.threshold, options.cusps, work);
     if (doublings > 0) {
       spare_runs(survey.length / 2, &found.is_spike);
     }

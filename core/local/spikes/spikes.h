@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/local/local_status.h"
+#include "core/local/spikes/block_survey.h"
 #include "core/numerics/work_budget.h"
 
 namespace palpate {
@@ -16,6 +17,7 @@ struct SpikeOptions {
   /// |residual| > z * its standard deviation, where z is the two-sided normal quantile of this
   /// probability divided by the number of samples: 3.9 for 111 samples.
   double false_alarms_per_patch = 0.01;
+  CuspEnds cusps = {};
   /// Steps 2 and 3 are counted in it, and are made as far as it goes: what a block has not been
   /// asked about is no spike. nullptr: as far as they lead.
   WorkBudget* work = nullptr;

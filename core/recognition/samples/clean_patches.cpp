@@ -32,11 +32,11 @@ StoredPatch moving(const StoredPatch& patch, bool is_one_place, double default_s
                       : without_dwells(patch, default_sigma_m);
 }
 
-/// Converts `returns`, found without spikes, to indices among all samples. The turn is the farthest
+/// Converts `turns`, found without spikes, to indices among all samples. The turn is the farthest
 /// sample on the way, even if it was taken for a spike.
-std::vector<std::size_t> returns_among_all(std::span<const StoredSample> all,
-                                           const std::vector<bool>& is_spike,
-                                           std::span<const std::size_t> returns) {
+std::vector<std::size_t> among_all(std::span<const StoredSample> all,
+                                   const std::vector<bool>& is_spike,
+                                   std::span<const std::size_t> turns) {
   std::vector<std::size_t> kept;
   kept.reserve(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -45,7 +45,7 @@ std::vector<std::size_t> returns_among_all(std::span<const StoredSample> all,
   // So many samples farther back, noise does not reverse the direction of the way.
   constexpr std::size_t kBehind = 4;
   std::vector<std::size_t> result;
-  for (const std::size_t k : returns) {
+  for (const std::size_t k : turns) {
     const std::size_t behind = kept[k - 1 - kBehind];
     const Vec2 way = all[kept[k - 1]].position_m - all[behind].position_m;
     std::size_t turn = behind;
@@ -61,44 +61,66 @@ bool has_any(const std::vector<bool>& flags) {
   return std::find(flags.begin(), flags.end(), true) != flags.end();
 }
 
-/// Whether any part of a patch, which begins at 0 or at one of `cuts`, has a spike.
-bool has_spikes_between(std::span<const StoredSample> samples, std::span<const std::size_t> cuts,
-                        double false_alarm, WorkBudget& work) {
-  for (std::size_t part = 0; part <= cuts.size(); ++part) {
-    const std::size_t begin = part == 0 ? 0 : cuts[part - 1];
-    const std::size_t end = part == cuts.size() ? samples.size() : cuts[part];
-    if (has_any(spikes_of(samples.subspan(begin, end - begin), false_alarm, work))) {
-      return true;
-    }
+/// The spikes of a patch, each part of it searched by itself: no polynomial follows a stroke around
+/// a turn, so that good samples look like spikes there. The farthest sample at a cusp may be of
+/// either arm and bends the polynomial of the other: it waits for a class to judge it. The parts
+/// share the probability of a false alarm by their samples.
+std::vector<bool> spikes_between(const Turns& turns, std::span<const StoredSample> samples,
+                                 double false_alarm, WorkBudget& work) {
+  std::vector<PatchSpan> gaps;  // between parts: nothing, or the sample at a cusp
+  for (const std::size_t turn : turns.returns) gaps.push_back({turn, turn});
+  for (const std::size_t turn : turns.cusps) gaps.push_back({turn - 1, turn});
+  gaps.push_back({samples.size(), samples.size()});
+  std::sort(gaps.begin(), gaps.end(),
+            [](const PatchSpan& a, const PatchSpan& b) { return a.begin < b.begin; });
+  std::vector<bool> is_spike;
+  is_spike.reserve(samples.size());
+  bool after_cusp = false;
+  for (const PatchSpan& gap : gaps) {
+    const auto part = samples.subspan(is_spike.size(), gap.begin - is_spike.size());
+    const double share = static_cast<double>(part.size()) / static_cast<double>(samples.size());
+    const CuspEnds cusps{after_cusp, gap.size() > 0};
+    const std::vector<bool> of_part = spikes_of(part, false_alarm * share, work, cusps);
+    is_spike.insert(is_spike.end(), of_part.begin(), of_part.end());
+    is_spike.resize(gap.end, false);
+    after_cusp = cusps.last;
   }
-  return false;
+  return is_spike;
 }
 
-/// Cuts a patch into passes, with and without spikes. Where a stroke turns back, no polynomial
-/// follows it and good samples look like spikes, so spikes are searched between the turns. A spike
-/// also turns back, so where there are any, the turns are found once more without them.
-void clean_passes(StoredPatch patch, double false_alarm, std::vector<StoredPatch>* passes,
+/// The passes of a patch without its spikes. Every second one is reversed (passes_of).
+std::vector<StoredPatch> each_without_spikes(std::span<const StoredPatch> passes,
+                                             const std::vector<bool>& is_spike) {
+  std::vector<StoredPatch> clean;
+  clean.reserve(passes.size());
+  auto begin = is_spike.begin();
+  for (const StoredPatch& pass : passes) {
+    const auto end = begin + static_cast<std::ptrdiff_t>(pass.samples.size());
+    std::vector<bool> of_pass(begin, end);
+    if (clean.size() % 2 == 1) std::reverse(of_pass.begin(), of_pass.end());
+    clean.push_back(without_spikes(pass, of_pass));
+    begin = end;
+  }
+  return clean;
+}
+
+/// Cuts a patch into passes, with and without spikes. A spike also turns back, so where there are
+/// any, the turns are found once more without them.
+void clean_passes(const StoredPatch& patch, double false_alarm, std::vector<StoredPatch>* passes,
                   std::vector<StoredPatch>* clean, WorkBudget& work) {
-  const std::vector<std::size_t> seen_returns = returns_of(patch.samples);
-  if (!seen_returns.empty() &&
-      !has_spikes_between(patch.samples, seen_returns, false_alarm, work)) {
-    *passes = passes_of(patch, seen_returns);
-    *clean = *passes;
-    return;
+  Turns turns = turns_of(patch.samples);
+  std::vector<bool> is_spike = spikes_between(turns, patch.samples, false_alarm, work);
+  if (has_any(is_spike)) {
+    const Turns seen = turns_of(without_spikes(patch.samples, is_spike));
+    Turns among{among_all(patch.samples, is_spike, seen.returns),
+                among_all(patch.samples, is_spike, seen.cusps)};
+    if (among != turns) {
+      turns = std::move(among);
+      is_spike = spikes_between(turns, patch.samples, false_alarm, work);
+    }
   }
-  const std::vector<bool> is_spike = spikes_of(patch.samples, false_alarm, work);
-  StoredPatch rest = without_spikes(patch, is_spike);
-  const std::vector<std::size_t> returns =
-      has_any(is_spike) ? returns_of(rest.samples) : seen_returns;
-  if (returns.empty()) {
-    passes->push_back(std::move(patch));
-    clean->push_back(std::move(rest));
-    return;
-  }
-  *passes = passes_of(patch, returns_among_all(patch.samples, is_spike, returns));
-  for (const StoredPatch& pass : *passes) {
-    clean->push_back(without_spikes(pass, spikes_of(pass.samples, false_alarm, work)));
-  }
+  *passes = passes_of(patch, turns.returns);
+  *clean = each_without_spikes(*passes, is_spike);
 }
 
 }  // namespace

@@ -54,8 +54,9 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples) {
   return Lengths{noise_m, std::max(noise_m, kFarSteps * median_of(steps))};
 }
 
-/// Where the stroke turns back: it came from farther than `far_m` and returns by more than `far_m`,
-/// within 45 degrees of the way it came. Gives the index of the farthest sample of each turn.
+/// Where the stroke turns back: it came from farther than `far_m` and returns by more than `far_m`
+/// along the way it came, however far beside it: the arms of a cusp soon part. (A bend wider than
+/// `far_m` turns the way with it.) Gives the index of the farthest sample of each turn.
 std::vector<std::size_t> reversals_of(std::span<const StoredSample> samples, double far_m) {
   std::vector<std::size_t> reversals;
   std::size_t behind = 0;  // far enough from `head` for the two to show the direction
@@ -69,7 +70,7 @@ std::vector<std::size_t> reversals_of(std::span<const StoredSample> samples, dou
     }
     const Vec2 step = samples[i].position_m - samples[head].position_m;
     const double on = step.dot(way) / length;
-    if (on < -far_m && std::abs(cross(way, step)) < -on * length) {
+    if (on < -far_m) {
       reversals.push_back(head);
       behind = head;
       head = i;
@@ -126,35 +127,41 @@ bool leads_back(std::span<const StoredSample> before, std::span<const StoredSamp
 
 }  // namespace
 
-std::vector<std::size_t> returns_of(std::span<const StoredSample> samples) {
-  std::vector<std::size_t> returns;
+Turns turns_of(std::span<const StoredSample> samples) {
+  Turns turns;
   if (samples.size() < 2 * kFewestOfPass || !steps_back(samples)) {
-    return returns;
+    return turns;
   }
   const auto lengths = lengths_of(samples);
   if (!lengths) {
-    return returns;
+    return turns;
   }
   const std::vector<std::size_t> reversals = reversals_of(samples, lengths->far_m);
-  std::size_t begin = 0;
+  std::size_t begin = 0;   // of this pass
+  std::size_t before = 0;  // the turn before this one, whatever it is
   for (std::size_t r = 0; r < reversals.size(); ++r) {
     // The sample at the turn ends one pass; the next pass begins after it.
     const std::size_t turn = reversals[r] + 1;
     std::size_t next = r + 1;
+    const bool goes_on = next == reversals.size() || reversals[next] + 1 >= turn + kFewestOfPass;
     while (next < reversals.size() && reversals[next] + 1 < turn + kFewestOfPass) {
       ++next;
     }
     const std::size_t end = next < reversals.size() ? reversals[next] + 1 : samples.size();
     // Compares the way back with at most four times as many samples: that bounds the time.
     const std::size_t from = turn - std::min(turn - begin, 4 * (end - turn));
-    if (turn - begin >= kFewestOfPass && end - turn >= kFewestOfPass &&
+    const bool is_long = end - turn >= kFewestOfPass;
+    if (is_long && turn - begin >= kFewestOfPass &&
         leads_back(samples.subspan(from, turn - from), samples.subspan(turn, end - turn),
                    *lengths)) {
-      returns.push_back(turn);
+      turns.returns.push_back(turn);
       begin = turn;
+    } else if (is_long && goes_on && turn - before >= kFewestOfPass) {
+      turns.cusps.push_back(turn);
     }
+    before = turn;
   }
-  return returns;
+  return turns;
 }
 
 std::vector<StoredPatch> passes_of(const StoredPatch& patch, std::span<const std::size_t> returns) {

@@ -9,11 +9,19 @@
 
 namespace palpate {
 
-/// Indices of the samples at which a new pass begins (not the first pass), ascending. A pass has at
-/// least 6 samples and leads back over the path of the one before it. A stroke that turns back
-/// beside its path (a cusp, the end of a needle), or by no more than the samples' own noise, is not
-/// cut. O(samples).
-std::vector<std::size_t> returns_of(std::span<const StoredSample> samples);
+/// Where a stroke turns back: indices of the samples after the turns, ascending.
+struct Turns {
+  /// It leads back over the path that it came: a new pass, of at least 6 samples, begins. A stroke
+  /// that turns back beside its path (a cusp, the end of a needle) begins none.
+  std::vector<std::size_t> returns;
+  /// It turns back beside its path, for at least 6 samples. (A spike turns a stroke back twice.)
+  std::vector<std::size_t> cusps;
+
+  bool operator==(const Turns&) const = default;
+};
+
+/// A turn by no more than the samples' own noise is none. O(samples).
+Turns turns_of(std::span<const StoredSample> samples);
 
 /// Cuts the patch before each of these samples. Every second pass is reversed, so that all passes
 /// have the direction of the first and the material on the same side of travel.

@@ -5,7 +5,7 @@
 namespace palpate {
 
 std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_alarm,
-                            WorkBudget& work) {
+                            WorkBudget& work, const CuspEnds& cusps) {
   std::vector<Vec2> positions;
   positions.reserve(samples.size());
   for (const StoredSample& sample : samples) {
@@ -13,7 +13,9 @@ std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_
   }
   std::vector<bool> is_spike(samples.size(), false);
   for (const std::size_t i :
-       find_spikes(positions, {.false_alarms_per_patch = false_alarm, .work = &work}).indices) {
+       find_spikes(positions,
+                   {.false_alarms_per_patch = false_alarm, .cusps = cusps, .work = &work})
+           .indices) {
     is_spike[i] = true;
   }
   return is_spike;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/local/spikes/block_survey.h"
 #include "core/numerics/work_budget.h"
 #include "core/recognition/samples/sample_memory.h"
 
@@ -29,7 +30,7 @@ constexpr std::size_t most_set_aside(std::size_t count) {
 /// from the patch itself. One flag per sample. `false_alarm`: probability that a patch without
 /// spikes loses any sample.
 std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_alarm,
-                            WorkBudget& work);
+                            WorkBudget& work, const CuspEnds& cusps = {});
 
 /// The samples without a flag. One flag per sample.
 std::vector<StoredSample> without_spikes(std::span<const StoredSample> samples,
