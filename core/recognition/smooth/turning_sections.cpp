@@ -13,6 +13,10 @@ namespace {
 /// Largest turn of a section, so that it is a graph over its chord. [rad]
 constexpr double kLongestTurn = 1.0;
 
+/// Shortest chord, in standard deviations of the distance between its ends. Its direction is then
+/// known to a sixth of a radian, and two such directions differ by a radian once in 30,000 times.
+constexpr double kFewestDeviations = 6.0;
+
 /// The mean of some consecutive samples.
 struct Block {
   PatchSpan points;
@@ -96,15 +100,50 @@ std::vector<PatchSpan> cut_by_chords(const PatchSpan& patch, const std::vector<B
   return sections;
 }
 
-}  // namespace
+/// Cuts where the path turns back sharply: having gone on by more than noise of the variance shows,
+/// it comes back by as much. (A wider bend turns the way with it.) No graph leads round a cusp, and
+/// one sample of the other arm bends a polynomial by more than the noise. The farthest sample may
+/// be of either arm: it is cut out, with the one before it, which shows its direction.
+std::vector<std::size_t> cut_at_folds(const FitData& data, const PatchSpan& patch,
+                                      double variance) {
+  constexpr std::size_t kFewest = 2;  // samples that show a direction
+  const auto at = [&](std::size_t i) -> const Vec2& { return data.points[i].position; };
+  const double far = kFewestDeviations * std::sqrt(2.0 * variance);  // between two samples
+  std::vector<std::size_t> cuts;
+  const auto cut = [&](std::size_t i) {
+    if (i >= (cuts.empty() ? patch.begin : cuts.back()) + kFewest && i + kFewest <= patch.end) {
+      cuts.push_back(i);
+    }
+  };
+  std::size_t behind = patch.begin;  // so far from `head` that the two show the way
+  std::size_t head = patch.begin;    // the farthest sample on it
+  for (std::size_t i = patch.begin + 1; i < patch.end; ++i) {
+    const Vec2 way = at(head) - at(behind);
+    const double length = way.norm();
+    if (!(length > far)) {
+      head = i;
+      continue;
+    }
+    const double on = (at(i) - at(head)).dot(way) / length;
+    if (on < -far) {
+      cut(head - 1);
+      cut(head + 1);
+      behind = head;
+      head = i;
+    } else if (on > 0.0) {
+      head = i;
+      while ((at(head) - at(behind + 1)).norm() > far) {
+        ++behind;
+      }
+    }
+  }
+  return cuts;
+}
 
-std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch, bool sigma_known) {
+std::vector<Block> blocks_of(const FitData& data, const PatchSpan& patch) {
   // A block has at least four samples, so that its mean has half of their noise. With 48 blocks a
   // patch that goes all the way round has seven per radian.
   constexpr std::size_t kMostBlocks = 48;
-  // Shortest chord, in standard deviations of the distance between two means. Its direction is then
-  // known to a sixth of a radian, and two such directions differ by a radian once in 30,000 times.
-  constexpr double kFewestDeviations = 6.0;
   const std::size_t n = patch.size();
   const std::size_t count = std::clamp<std::size_t>(n / 4, 1, kMostBlocks);
   std::vector<Block> blocks;
@@ -113,13 +152,33 @@ std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch, 
     blocks.push_back(
         block_of(data, {patch.begin + b * n / count, patch.begin + (b + 1) * n / count}));
   }
+  return blocks;
+}
+
+}  // namespace
+
+std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch, bool sigma_known) {
+  const std::vector<Block> blocks = blocks_of(data, patch);
   std::vector<PatchSpan> sections = cut_by_chords(patch, blocks, 0.0);
   // A long chord is a sum of short ones and turns no more: a patch that these leave whole stays
-  // whole.
-  if (sections.size() > 1) {
-    sections = cut_by_chords(
-        patch, blocks,
-        kFewestDeviations * kFewestDeviations * typical_variance(data, patch, blocks, sigma_known));
+  // whole, unless single samples go back.
+  if (sections.size() == 1 && cut_at_folds(data, patch, 0.0).empty()) {
+    return sections;
+  }
+  const double variance = typical_variance(data, patch, blocks, sigma_known);
+  const double least_square = kFewestDeviations * kFewestDeviations * variance;
+  std::vector<std::size_t> ends = cut_at_folds(data, patch, variance);
+  if (ends.empty()) {
+    return sections.size() == 1 ? sections : cut_by_chords(patch, blocks, least_square);
+  }
+  ends.push_back(patch.end);
+  sections.clear();
+  std::size_t begin = patch.begin;
+  for (const std::size_t end : ends) {
+    const PatchSpan arm{begin, end};
+    const auto of_arm = cut_by_chords(arm, blocks_of(data, arm), least_square);
+    sections.insert(sections.end(), of_arm.begin(), of_arm.end());
+    begin = end;
   }
   return sections;
 }

@@ -117,6 +117,46 @@ TEST(SmoothModel, NoiseCutsNoPatch) {
   }
 }
 
+TEST(SmoothModel, NoSectionLeadsRoundACusp) {
+  std::mt19937_64 rng = test::test_rng();
+  constexpr double kSigma = 5e-4;
+  std::normal_distribution<double> noise(0.0, kSigma);
+  for (int i = 0; i < 50; ++i) {
+    FitData data;
+    data.scale = 1.0;
+    // y^2 = x^3, the cusp anywhere between two samples, or near an end.
+    const double begin = i % 2 == 0 ? -1.0 : -0.2;
+    constexpr std::size_t kCount = 101;
+    const double shift = test::uniform(rng, 0.0, 1.0);
+    for (std::size_t k = 0; k < kCount; ++k) {
+      const double t = begin + (1.0 - begin) * (static_cast<double>(k) + shift) / kCount;
+      FitPoint point;
+      const double dx = noise(rng);
+      point.position = {t * t + dx, t * t * t + noise(rng)};
+      point.inverse_sigma = 1.0 / kSigma;
+      data.points.push_back(point);
+    }
+    data.patches.push_back({0, kCount});
+    // The reduced points say of the curve what its samples do: chi-square of the samples is that of
+    // the smooth model and of the reduced points, which is what the model absorbed.
+    const SmoothModel smooth = fit_smooth_model(&data, true);
+    const auto chi2_of = [](const std::vector<FitPoint>& points) {
+      double chi2 = 0.0;
+      for (const FitPoint& point : points) {
+        PolynomialCoefficients curve = PolynomialCoefficients::Zero();
+        curve(0, 2) = curve(1, 3) = 1.0;
+        const double t = nearest_parameter(curve, point.position);
+        const double r = (point.position - position_at(curve, t)).norm() * point.inverse_sigma;
+        chi2 += r * r;
+      }
+      return chi2;
+    };
+    // A term that a section leaves out adds less than the logarithm of its samples (BIC).
+    const double most = std::log(static_cast<double>(kCount)) * 2.0;
+    EXPECT_NEAR(chi2_of(smooth.reduced.points) + smooth.chi2, chi2_of(data.points), most) << i;
+  }
+}
+
 TEST(SmoothModel, NoiseThatIsStatedTooLowIsNotFollowed) {
   std::mt19937_64 rng = test::test_rng();
   constexpr double kTooLow = 1e-3;
