@@ -263,9 +263,9 @@ class PolynomialProblem {
  private:
   static constexpr int exponent(int k) { return kExponents[static_cast<std::size_t>(k)]; }
 
-  /// Mean parameter of the nearest feet before and after that are not doubtful; that of point `i`
-  /// if there are none.
-  double parameter_beside(std::size_t i, const std::vector<bool>& doubtful) const {
+  /// Parameters of the nearest feet before and after that are not doubtful; of the other one where
+  /// one side has none, and of point `i` if there are none.
+  std::array<double, 2> parameters_beside(std::size_t i, const std::vector<bool>& doubtful) const {
     std::size_t before = i;
     while (before > 0 && (before == i || doubtful[before])) {
       --before;
@@ -276,21 +276,26 @@ class PolynomialProblem {
     }
     if (before == i || doubtful[before]) before = after;
     if (after == i || doubtful[after]) after = before;
-    return 0.5 * (feet_[before].t + feet_[after].t);
+    return {feet_[before].t, feet_[after].t};
   }
 
-  /// seek_feet for one point.
+  /// seek_feet for one point. From half way, and from the feet on either side: half way between two
+  /// arms may be the cusp, where every way ends, and the foot is on one of them.
   double seek_foot(std::size_t i, const std::vector<bool>& doubtful) {
-    const PlacedPoint foot = follow_foot_point(coefficients_, points_[i].position,
-                                               parameter_beside(i, doubtful), last_step_);
-    const double before = residual_at(feet_[i], i);
-    const double after = residual_at(foot, i);
     constexpr double kSame = 1e-2;  // of chi-square: a tenth of a standard deviation
-    if (!(after * after < before * before - kSame)) {
-      return 0.0;
+    const auto [from, to] = parameters_beside(i, doubtful);
+    const double before = residual_at(feet_[i], i);
+    double least = before * before - kSame;
+    for (const double t : {0.5 * (from + to), from, to}) {
+      const PlacedPoint foot = follow_foot_point(coefficients_, points_[i].position, t, last_step_);
+      const double after = residual_at(foot, i);
+      if (after * after < least) {
+        least = after * after;
+        feet_[i] = foot;
+      }
     }
-    feet_[i] = foot;
-    return before * before - after * after;
+    const double lowered = before * before - least;
+    return lowered > kSame ? lowered : 0.0;
   }
 
   double residual_at(const PlacedPoint& foot, std::size_t i) const {

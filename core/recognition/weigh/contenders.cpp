@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/recognition/fit/cusp_of_spline.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/posterior/class_limits.h"
 #include "core/recognition/posterior/laplace_evidences.h"
@@ -68,6 +69,29 @@ const ClassFit& settle(CurveClass i, RivalOf rival, const FitData& reduced, Cont
     contenders->coarse[i] = settled(*contenders->coarse[i], reduced, rival, work);
   }
   return *contenders->coarse[i];
+}
+
+/// The semi-cubical parabola next to the best spline, where its own fit leaves more. Asked where
+/// the reduced points do not tell what all points do: no polynomial of a section leads round a cusp
+/// that was not seen as one.
+void seek_cusp(const EvidenceContext& context, Contenders* w) {
+  constexpr auto kSemiCubical = CurveClass::SemiCubicalParabola;
+  const auto& spline = w->fits[CurveClass::CubicSpline];
+  auto& fit = w->fits[kSemiCubical];
+  auto& coarse = w->coarse[kSemiCubical];
+  if (!fit || !coarse || fit->polished || !std::isfinite(spline->chi2) || !context.work.allows()) {
+    return;
+  }
+  auto found = cusp_of_spline(*spline, context.arcs.data, context.work);
+  if (!found || !(found->chi2 < fit->chi2)) {
+    return;
+  }
+  ClassFit there = settled(placed_on_reduced(*found, context.reduced, context.work),
+                           context.reduced, RivalOf::Other, context.work);
+  if (there.chi2 < coarse->chi2) {
+    coarse = std::move(there);
+  }
+  fit = std::move(found);
 }
 
 /// Classes that end at their limit, or worse than it, are what it is.
@@ -164,6 +188,9 @@ Contenders refine_plausible(Contenders contenders, const EvidenceContext& contex
         error = std::max(error, 2.0 * (told - best->chi2));
         const double settled_chi2 = contenders.coarse[b]->chi2 + smooth.chi2;
         trusted = trusted && std::abs(settled_chi2 - best->chi2) <= misfit_ratio * kLeastError;
+        if (b == CurveClass::CubicSpline && !trusted) {
+          seek_cusp(context, &w);
+        }
       }
       changed = true;
       continue;

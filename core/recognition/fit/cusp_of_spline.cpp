@@ -1,0 +1,53 @@
+#include "core/recognition/fit/cusp_of_spline.h"
+
+#include <cmath>
+#include <vector>
+
+#include "core/curves/algebraic/polynomial_curve.h"
+#include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/fit/polynomial_foot.h"
+
+namespace palpate {
+
+std::optional<ClassFit> cusp_of_spline(const ClassFit& spline, const FitData& data,
+                                       WorkBudget& work) {
+  const PolynomialFit& from = *spline.polynomial;
+  // The canonical axis is perpendicular to the coefficient of t^3; along it the vertex stands
+  // still.
+  const Vec2 axis = left_of(from.coefficients.col(3));
+  const double vertex =
+      -axis.dot(from.coefficients.col(1)) / (2.0 * axis.dot(from.coefficients.col(2)));
+  if (!std::isfinite(vertex)) {
+    return std::nullopt;
+  }
+  ClassFit fit;
+  fit.curve_class = CurveClass::SemiCubicalParabola;
+  fit.chi2_of_all = fit.on_all = true;
+  fit.polynomial = from;
+  fit.polynomial->coefficients = PolynomialCurve2{from.coefficients}.shifted(vertex).coefficients;
+  fit.polynomial->coefficients.col(1).setZero();
+  for (double& t : fit.polynomial->t) {
+    t -= vertex;
+  }
+  auto found = polish(fit, data, work);
+  if (found) {
+    found->polished = true;
+  }
+  return found;
+}
+
+ClassFit placed_on_reduced(const ClassFit& on_all, const FitData& reduced, WorkBudget& work) {
+  ClassFit fit = on_all;
+  fit.chi2_of_all = fit.on_all = fit.polished = false;
+  fit.polynomial->side = 0;  // these are surface points
+  work.spend(WorkKind::SoughtFoot, reduced.points.size());
+  fit.polynomial->t.clear();
+  for (const FitPoint& point : reduced.points) {
+    fit.polynomial->t.push_back(nearest_parameter(fit.polynomial->coefficients, point.position));
+  }
+  fit.polynomial = placed_on(reduced.points, *std::move(fit.polynomial));
+  fit.chi2 = fit.polynomial->chi2;
+  return fit;
+}
+
+}  // namespace palpate

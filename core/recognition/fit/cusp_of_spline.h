@@ -1,0 +1,20 @@
+// The semi-cubical parabola that a spline is next to.
+#pragma once
+
+#include <optional>
+
+#include "core/recognition/fit/class_fits.h"
+
+namespace palpate {
+
+/// The optimum of the semi-cubical parabola (a spline of c = 0) on all points, from that of a
+/// spline: its vertex becomes the cusp, every point keeps its place. A spline that is one to within
+/// the noise leads there even where feet or reduced points about the cusp do not. nullopt if that
+/// is no curve that was touched so. O(points) per iteration.
+std::optional<ClassFit> cusp_of_spline(const ClassFit& spline, const FitData& data,
+                                       WorkBudget& work);
+
+/// A fit on all points as one on the reduced points, not refined there. O(reduced points).
+ClassFit placed_on_reduced(const ClassFit& on_all, const FitData& reduced, WorkBudget& work);
+
+}  // namespace palpate
