@@ -1,0 +1,189 @@
+// Strokes over the cusp of a semi-cubical parabola: again and again, slowly, and with a rest.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <random>
+#include <vector>
+
+#include "core/curves/semi_cubical_parabola.h"
+#include "core/numerics/negligible.h"
+#include "core/recognition/recognizer.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kHalfExtent = 0.025;          // [m]
+constexpr double kSigma = 5e-4 * kHalfExtent;  // [m]
+constexpr double kFalseOutliers = 0.01;        // RecognizerOptions::false_outlier_probability
+
+/// A place on the way over the cusp, of -1 to 1 by arc length about the middle of the way.
+using Stroke = std::vector<double>;
+
+/// How an object is stroked: its patches.
+using Habit = std::function<std::vector<Stroke>(std::mt19937_64&)>;
+
+Stroke even(double from, double to, int samples) {
+  Stroke stroke;
+  for (int i = 0; i < samples; ++i) {
+    stroke.push_back(from + (to - from) * i / (samples - 1));
+  }
+  return stroke;
+}
+
+Stroke backwards(Stroke stroke) {
+  std::reverse(stroke.begin(), stroke.end());
+  return stroke;
+}
+
+/// Slower and slower towards a place, which is not quite the cusp, and away from it.
+Stroke slow_about(double place, int samples) {
+  Stroke stroke = even(-1.0, 1.0, samples);
+  for (double& s : stroke) {
+    s = std::clamp(place + 0.9 * s * std::abs(s), -1.0, 1.0);
+  }
+  return stroke;
+}
+
+/// Evenly, with a rest of `samples` at a place.
+Stroke resting_at(double place, int samples) {
+  Stroke stroke = even(-0.9, 0.8, 120);
+  stroke.insert(std::upper_bound(stroke.begin(), stroke.end(), place),
+                static_cast<std::size_t>(samples), place);
+  return stroke;
+}
+
+/// The way over the cusp that is 2 kHalfExtent high, at even arc lengths.
+class Way {
+ public:
+  Way(const SemiCubicalParabola& curve, double t_end) : curve_(curve) {
+    constexpr int kSteps = 4000;
+    for (int i = 0; i <= kSteps; ++i) {
+      const double t = t_end * (2.0 * i / kSteps - 1.0);
+      const double before = length_.empty() ? 0.0 : length_.back();
+      length_.push_back(
+          t_.empty() ? 0.0 : before + (curve.position(t) - curve.position(t_.back())).norm());
+      t_.push_back(t);
+    }
+  }
+
+  Vec2 at(double s) const {
+    const double length = 0.5 * (1.0 + s) * length_.back();
+    const auto after =
+        std::max(std::lower_bound(length_.begin(), length_.end(), length), length_.begin() + 1);
+    const auto i = after - length_.begin();
+    const double share = (length - *(after - 1)) / (*after - *(after - 1));
+    const auto k = static_cast<std::size_t>(i);
+    return curve_.position(t_[k - 1] + share * (t_[k] - t_[k - 1]));
+  }
+
+ private:
+  SemiCubicalParabola curve_;
+  std::vector<double> t_;
+  std::vector<double> length_;
+};
+
+Recognition touched(const std::vector<Stroke>& strokes, std::mt19937_64& rng) {
+  const double t_end = std::sqrt(1.5 * kHalfExtent);
+  const SemiCubicalParabola curve{test::uniform(rng, 0.3, 1.0) / std::sqrt(kHalfExtent),
+                                  test::uniform(rng, -0.3, 0.3)};
+  const Way way(curve, t_end);
+  const Pose2 pose{test::uniform(rng, -0.5, 0.5), test::uniform(rng, -0.5, 0.5),
+                   test::uniform(rng, -kPi, kPi)};
+  std::normal_distribution<double> noise(0.0, kSigma);
+  Recognizer recognizer;
+  for (std::size_t p = 0; p < strokes.size(); ++p) {
+    std::vector<ContactSample> samples;
+    for (const double s : strokes[p]) {
+      const double dx = noise(rng);
+      samples.push_back({pose * way.at(s) + Vec2(dx, noise(rng)), kSigma, 0});
+    }
+    PatchContext context;
+    context.patch = static_cast<std::uint32_t>(p);
+    recognizer.add(context, samples);
+  }
+  return recognizer.recognize();
+}
+
+TEST(CuspStrokes, AreOfTheirClassAndHaveNoSpikes) {
+  const auto over = [] { return even(-0.9, 0.8, 100); };
+  // As far from the cusp as a tenth of an arm: among them are rests on the other arm's first step.
+  const auto near_cusp = [](std::mt19937_64& rng) { return test::uniform(rng, -0.1, 0.1); };
+  const std::vector<std::pair<const char*, Habit>> habits = {
+      {"twice",
+       [&](auto&) {
+         return std::vector{over(), over()};
+       }},
+      {"three times",
+       [&](auto&) {
+         return std::vector{over(), over(), over()};
+       }},
+      {"there and back",
+       [&](auto&) {
+         return std::vector{over(), backwards(over())};
+       }},
+      {"there, back and there in one",
+       [&](auto&) {
+         Stroke all = over();
+         for (const Stroke& more : {backwards(over()), over()}) {
+           all.insert(all.end(), more.begin(), more.end());
+         }
+         return std::vector{all};
+       }},
+      {"slowly", [&](auto& rng) { return std::vector{slow_about(near_cusp(rng), 200)}; }},
+      {"with a rest", [&](auto& rng) { return std::vector{resting_at(near_cusp(rng), 60)}; }},
+      {"two, the second begins near the cusp",
+       [&](auto& rng) {
+         return std::vector{even(-0.9, 0.2, 100), even(near_cusp(rng), 0.9, 100)};
+       }},
+  };
+  std::mt19937_64 rng = test::test_rng();
+  const int scenes = test::stress_count(30);
+  int all = 0;
+  int right = 0;
+  int wrong = 0;
+  double stated_wrong = 0.0;
+  int with_outliers = 0;
+  double allowed_outliers = 0.0;
+  for (const auto& [name, habit] : habits) {
+    int of_habit = 0;
+    int out_of_habit = 0;
+    for (int i = 0; i < scenes; ++i) {
+      const std::vector<Stroke> strokes = habit(rng);
+      const Recognition answer = touched(strokes, rng);
+      EXPECT_FALSE(answer.work.was_cut()) << name << " " << i;
+      double of_truth = 0.0;
+      for (const Hypothesis& hypothesis : answer.hypotheses) {
+        if (hypothesis.shape.curve_class == CurveClass::SemiCubicalParabola) {
+          of_truth = hypothesis.probability;
+        }
+      }
+      EXPECT_GT(of_truth, kNegligibleProbability) << name << " " << i;
+      const bool recognized = answer.status == RecognitionStatus::Recognized;
+      const bool is_right =
+          recognized && answer.shape.curve_class == CurveClass::SemiCubicalParabola;
+      stated_wrong += recognized ? 1.0 - answer.hypotheses.front().probability : 0.0;
+      of_habit += is_right ? 1 : 0;
+      wrong += recognized && !is_right ? 1 : 0;
+      out_of_habit += answer.outlier_count > 0 ? 1 : 0;
+      // Each stroke may lose a sample before a class is known, and the scene one by its class.
+      allowed_outliers += kFalseOutliers * static_cast<double>(strokes.size() + 1);
+      ++all;
+    }
+    right += of_habit;
+    with_outliers += out_of_habit;
+    std::cout << name << ": of " << scenes << " RECOGNIZED " << of_habit << ", with outliers "
+              << out_of_habit << "\n";
+  }
+  // Four deviations, and one where few are expected.
+  EXPECT_LE(wrong, stated_wrong + 4.0 * std::sqrt(stated_wrong) + 1.0);
+  EXPECT_LE(with_outliers, allowed_outliers + 4.0 * std::sqrt(allowed_outliers) + 1.0);
+  // What is asked of scenes whose class the data determine (bench_posterior).
+  EXPECT_GE(right, 0.92 * all);
+}
+
+}  // namespace
+}  // namespace palpate
