@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/recognition/samples/merged_samples.h"
 
@@ -70,11 +71,29 @@ constexpr std::size_t kBlock = 8;
 /// Fewer block means show no order. Six evenly spaced ones have the ratio 6 / 35.
 constexpr std::size_t kFewestMeans = 6;
 
+/// Mean square distance from their mean that samples with their stated noise have, at most, where
+/// they are of one place. [m^2] nullopt if the noise of any is not stated.
+std::optional<double> most_square_of_noise(std::span<const StoredSample> samples,
+                                           double default_sigma_m) {
+  // In units of the spread of pure noise. Motion over six standard deviations gives as much.
+  constexpr double kSpread = 1.6;
+  double stated = 0.0;
+  for (const StoredSample& sample : samples) {
+    const double sigma_m = sigma_m_of(sample, default_sigma_m);
+    if (!(sigma_m > 0.0)) {
+      return std::nullopt;
+    }
+    stated += sigma_m * sigma_m / sample.weight;
+  }
+  return 2.0 * kSpread * kSpread * stated / static_cast<double>(samples.size());
+}
+
 /// Consecutive blocks of a stroke in which it moves slowly.
 class SlowStretch {
  public:
-  SlowStretch(std::span<const StoredSample> samples, std::span<const Block> blocks)
-      : samples_(samples), blocks_(blocks) {}
+  SlowStretch(std::span<const StoredSample> samples, std::span<const Block> blocks,
+              double default_sigma_m)
+      : samples_(samples), blocks_(blocks), default_sigma_m_(default_sigma_m) {}
 
   /// Adds the dwells of this stretch: the whole stretch, or the dwells of its two parts, cut at the
   /// longest step. After 16 such cuts (a stroke that slows down gradually) it is cut in the middle
@@ -99,8 +118,8 @@ class SlowStretch {
         after = b;
       }
     }
-    SlowStretch(samples_, blocks_.first(after)).add_to(dwells, cuts + 1);
-    SlowStretch(samples_, blocks_.subspan(after)).add_to(dwells, cuts + 1);
+    SlowStretch(samples_, blocks_.first(after), default_sigma_m_).add_to(dwells, cuts + 1);
+    SlowStretch(samples_, blocks_.subspan(after), default_sigma_m_).add_to(dwells, cuts + 1);
   }
 
  private:
@@ -108,9 +127,18 @@ class SlowStretch {
 
   /// A jitter that neighbouring samples share shows no order from block to block.
   bool is_still() const {
-    return step_ratio(samples_, whole()) > kLeastRatio ||
-           (blocks_.size() >= kFewestMeans && goes_back_and_forth(blocks_) &&
+    const Block all = whole();
+    return step_ratio(samples_, all) > kLeastRatio ||
+           (blocks_.size() >= kFewestMeans && may_be_jitter(all) && goes_back_and_forth(blocks_) &&
             step_ratio(blocks_, block_of(blocks_, 0, blocks_.size())) > kLeastRatio);
+  }
+
+  /// Whether the stated noise, which contains a jitter, is as large. A few means on the way over a
+  /// cusp, slow on one arm, show as little order.
+  bool may_be_jitter(const Block& all) const {
+    const auto most =
+        most_square_of_noise(samples_.subspan(all.begin, all.end - all.begin), default_sigma_m_);
+    return !most || all.square <= *most;
   }
 
   /// The dwell's exact range: drops samples at the ends that lie farther off than the others, and
@@ -143,6 +171,7 @@ class SlowStretch {
 
   std::span<const StoredSample> samples_;
   std::span<const Block> blocks_;
+  double default_sigma_m_;
 };
 
 /// The number of independent contacts that the mean of `dwell` is worth. `of_all`: their total
@@ -184,7 +213,7 @@ double effective_weight(std::span<const StoredSample> samples, const PatchSpan& 
 
 }  // namespace
 
-std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples) {
+std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples, double default_sigma_m) {
   // In units of a block's length at the mean speed. At that speed, without noise, a block scatters
   // by 0.29 of this length about its mean. Slower blocks are examined further.
   constexpr double kSlow = 0.25;
@@ -207,7 +236,7 @@ std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples) {
     while (end < count && blocks[end].square < slow * slow) {
       ++end;
     }
-    SlowStretch(samples, std::span(blocks).subspan(b, end - b)).add_to(&dwells);
+    SlowStretch(samples, std::span(blocks).subspan(b, end - b), default_sigma_m).add_to(&dwells);
     b = std::max(end, b + 1);
   }
   // Ranges that were widened may overlap.
@@ -245,20 +274,12 @@ bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
   // Five evenly spaced places have the ratio 0.25, four have kLeastRatio itself.
   constexpr std::size_t kFewest = 5;
   constexpr double kSmall = 1e-2;
-  // In units of the spread of pure noise. Motion over six standard deviations gives as much.
-  constexpr double kSpread = 1.6;
   if (samples.size() < kFewest) {
     return false;
   }
-  double stated = 0.0;
-  bool is_stated = true;
-  for (const StoredSample& sample : samples) {
-    const double sigma_m = sigma_m_of(sample, default_sigma_m);
-    is_stated = is_stated && sigma_m > 0.0;
-    stated += sigma_m * sigma_m / sample.weight;
-  }
+  const auto most = most_square_of_noise(samples, default_sigma_m);
+  const double of_noise = most.value_or(0.0);
   const double n = static_cast<double>(samples.size());
-  const double of_noise = is_stated ? 2.0 * kSpread * kSpread * stated / n : 0.0;
   const double small = kSmall * kSmall * half_extent_m * half_extent_m;
   // Two samples alone, if so far apart, make the mean square as large: a quick test.
   const Vec2 across = samples[samples.size() / 2].position_m - samples.front().position_m;
@@ -266,7 +287,7 @@ bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
     return false;
   }
   const Block all = block_of(samples, 0, samples.size());
-  return (is_stated && all.square <= of_noise) ||
+  return (most && all.square <= of_noise) ||
          (all.square <= small && step_ratio(samples, all) > kLeastRatio);
 }
 
@@ -316,7 +337,7 @@ StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m) {
     }
     result = with_means(result, repeats, default_sigma_m);
   }
-  const std::vector<PatchSpan> dwells = dwells_of(result.samples);
+  const std::vector<PatchSpan> dwells = dwells_of(result.samples, default_sigma_m);
   return dwells.empty() ? result : with_means(result, dwells, default_sigma_m);
 }
 

@@ -10,8 +10,10 @@ namespace palpate {
 
 /// The stretches of a stroke, in order, in which the probe stood still: it moved much less than at
 /// its mean speed, and its steps show no order. Such samples must be merged because the fits would
-/// take their scatter for travel. At least 16 samples each. O(samples).
-std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples);
+/// take their scatter for travel. At least 16 samples each. A jitter that neighbours share is no
+/// larger than the noise, if that is stated (by the samples or `default_sigma_m` [m]). O(samples).
+std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples,
+                                 double default_sigma_m = 0.0);
 
 /// The stretches of a stroke, in order, in which samples repeat the one before to a hundredth of
 /// the mean step. This happens if a probe is read more often than it moves. O(samples).

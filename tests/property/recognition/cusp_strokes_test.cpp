@@ -6,6 +6,7 @@
 #include <functional>
 #include <iostream>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "core/curves/semi_cubical_parabola.h"
@@ -22,9 +23,10 @@ constexpr double kFalseOutliers = 0.01;        // RecognizerOptions::false_outli
 
 /// A place on the way over the cusp, of -1 to 1 by arc length about the middle of the way.
 using Stroke = std::vector<double>;
+using Strokes = std::vector<Stroke>;
 
 /// How an object is stroked: its patches.
-using Habit = std::function<std::vector<Stroke>(std::mt19937_64&)>;
+using Habit = std::function<Strokes(std::mt19937_64&)>;
 
 Stroke even(double from, double to, int samples) {
   Stroke stroke;
@@ -86,7 +88,7 @@ class Way {
   std::vector<double> length_;
 };
 
-Recognition touched(const std::vector<Stroke>& strokes, std::mt19937_64& rng) {
+Recognition touched(const Strokes& strokes, std::mt19937_64& rng) {
   const double t_end = std::sqrt(1.5 * kHalfExtent);
   const SemiCubicalParabola curve{test::uniform(rng, 0.3, 1.0) / std::sqrt(kHalfExtent),
                                   test::uniform(rng, -0.3, 0.3)};
@@ -114,33 +116,34 @@ TEST(CuspStrokes, AreOfTheirClassAndHaveNoSpikes) {
   const auto near_cusp = [](std::mt19937_64& rng) { return test::uniform(rng, -0.1, 0.1); };
   const std::vector<std::pair<const char*, Habit>> habits = {
       {"twice",
-       [&](auto&) {
-         return std::vector{over(), over()};
+       [&](std::mt19937_64&) {
+         return Strokes{over(), over()};
        }},
       {"three times",
-       [&](auto&) {
-         return std::vector{over(), over(), over()};
+       [&](std::mt19937_64&) {
+         return Strokes{over(), over(), over()};
        }},
       {"there and back",
-       [&](auto&) {
-         return std::vector{over(), backwards(over())};
+       [&](std::mt19937_64&) {
+         return Strokes{over(), backwards(over())};
        }},
       {"there, back and there in one",
-       [&](auto&) {
+       [&](std::mt19937_64&) {
          Stroke all = over();
          for (const Stroke& more : {backwards(over()), over()}) {
            all.insert(all.end(), more.begin(), more.end());
          }
-         return std::vector{all};
+         return Strokes{all};
        }},
-      {"slowly", [&](auto& rng) { return std::vector{slow_about(near_cusp(rng), 200)}; }},
-      {"with a rest", [&](auto& rng) { return std::vector{resting_at(near_cusp(rng), 60)}; }},
+      {"slowly", [&](std::mt19937_64& rng) { return Strokes{slow_about(near_cusp(rng), 200)}; }},
+      {"with a rest",
+       [&](std::mt19937_64& rng) { return Strokes{resting_at(near_cusp(rng), 60)}; }},
       {"two, the second begins near the cusp",
-       [&](auto& rng) {
-         return std::vector{even(-0.9, 0.2, 100), even(near_cusp(rng), 0.9, 100)};
+       [&](std::mt19937_64& rng) {
+         return Strokes{even(-0.9, 0.2, 100), even(near_cusp(rng), 0.9, 100)};
        }},
   };
-  std::mt19937_64 rng = test::test_rng();
+  std::mt19937_64 scenes_rng = test::test_rng();
   const int scenes = test::stress_count(30);
   int all = 0;
   int right = 0;
@@ -152,8 +155,8 @@ TEST(CuspStrokes, AreOfTheirClassAndHaveNoSpikes) {
     int of_habit = 0;
     int out_of_habit = 0;
     for (int i = 0; i < scenes; ++i) {
-      const std::vector<Stroke> strokes = habit(rng);
-      const Recognition answer = touched(strokes, rng);
+      const Strokes strokes = habit(scenes_rng);
+      const Recognition answer = touched(strokes, scenes_rng);
       EXPECT_FALSE(answer.work.was_cut()) << name << " " << i;
       double of_truth = 0.0;
       for (const Hypothesis& hypothesis : answer.hypotheses) {
