@@ -38,8 +38,10 @@ const ClassEvidence* known_of(const Evidences& evidences, CurveClass curve_class
   if (const auto& evidence = evidences.classes[curve_class]) {
     return &*evidence;
   }
-  const auto& earlier = evidences.earlier_modes[curve_class];
-  return earlier ? &*earlier : nullptr;
+  const auto earlier =
+      std::find_if(evidences.earlier_modes.begin(), evidences.earlier_modes.end(),
+                   [&](const ClassEvidence& e) { return e.touch.curve_class == curve_class; });
+  return earlier != evidences.earlier_modes.end() ? &*earlier : nullptr;
 }
 
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
@@ -25,8 +26,8 @@ inline constexpr ByClass<double> kNoEvidences = [] {
 /// Evidence of every model. A class without one has no share in the posterior.
 struct Evidences {
   ByClass<std::optional<ClassEvidence>> classes;
-  /// Modes that the prior has led to, of classes that have no evidence now.
-  ByClass<std::optional<ClassEvidence>> earlier_modes;
+  /// Modes that the prior has led to, of classes that have no evidence now; one of a class.
+  std::vector<ClassEvidence> earlier_modes;
   /// Of the spline's other optimum, on the other side of c = 0 or of other arms, if that is a
   /// separate mode.
   std::optional<ClassEvidence> rival;

@@ -77,10 +77,10 @@ KeptModes kept_modes(const Evidences& evidences, const FitData& reduced) {
   return result;
 }
 
-ByClass<std::optional<ClassEvidence>> carried_modes(const KeptModes& kept, const ClassFits& fits,
-                                                    const FitData& reduced, double inflation,
-                                                    WorkBudget& work) {
-  ByClass<std::optional<ClassEvidence>> carried;
+std::vector<ClassEvidence> carried_modes(const KeptModes& kept, const ClassFits& fits,
+                                         const FitData& reduced, double inflation,
+                                         WorkBudget& work) {
+  std::vector<ClassEvidence> carried;
   if (kept.modes.empty()) {
     return carried;
   }
@@ -97,7 +97,7 @@ ByClass<std::optional<ClassEvidence>> carried_modes(const KeptModes& kept, const
       evidence->prior_mode_sought = true;
       evidence->log_all_modes = mode.log_all_modes;
       evidence->log_occam += mode.log_all_modes;
-      carried[mode.place.shape.curve_class] = *std::move(evidence);
+      carried.push_back(*std::move(evidence));
     }
   }
   return carried;

@@ -31,8 +31,8 @@ KeptModes kept_modes(const Evidences& evidences, const FitData& reduced);
 /// The evidences at these modes on `reduced`, where a few samples have come to: each is followed
 /// from where it was. One that has lost against its class's fit is left out, so that it is sought
 /// again. `fits`: to `reduced`.
-ByClass<std::optional<ClassEvidence>> carried_modes(const KeptModes& kept, const ClassFits& fits,
-                                                    const FitData& reduced, double inflation,
-                                                    WorkBudget& work);
+std::vector<ClassEvidence> carried_modes(const KeptModes& kept, const ClassFits& fits,
+                                         const FitData& reduced, double inflation,
+                                         WorkBudget& work);
 
 }  // namespace palpate

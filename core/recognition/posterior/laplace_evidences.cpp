@@ -70,7 +70,7 @@ void keep_known(const Evidences& before, Evidences* found) {
   for (const CurveClass curve_class : kCurveClasses) {
     const ClassEvidence* known = known_of(before, curve_class);
     if (!found->classes[curve_class] && known != nullptr && known->prior_mode_sought) {
-      found->earlier_modes[curve_class] = *known;
+      found->earlier_modes.push_back(*known);
     }
   }
 }

@@ -74,11 +74,11 @@ const ClassFit& settle(CurveClass i, RivalOf rival, const FitData& reduced, Cont
 /// The semi-cubical parabola next to the best spline, where its own fit leaves more. Asked where
 /// the reduced points do not tell what all points do: no polynomial of a section leads round a cusp
 /// that was not seen as one.
-void seek_cusp(const EvidenceContext& context, Contenders* w) {
+void seek_cusp(const EvidenceContext& context, Contenders* contenders) {
   constexpr auto kSemiCubical = CurveClass::SemiCubicalParabola;
-  const auto& spline = w->fits[CurveClass::CubicSpline];
-  auto& fit = w->fits[kSemiCubical];
-  auto& coarse = w->coarse[kSemiCubical];
+  const auto& spline = contenders->fits[CurveClass::CubicSpline];
+  auto& fit = contenders->fits[kSemiCubical];
+  auto& coarse = contenders->coarse[kSemiCubical];
   if (!fit || !coarse || fit->polished || !std::isfinite(spline->chi2) || !context.work.allows()) {
     return;
   }
@@ -189,7 +189,7 @@ Contenders refine_plausible(Contenders contenders, const EvidenceContext& contex
         const double settled_chi2 = contenders.coarse[b]->chi2 + smooth.chi2;
         trusted = trusted && std::abs(settled_chi2 - best->chi2) <= misfit_ratio * kLeastError;
         if (b == CurveClass::CubicSpline && !trusted) {
-          seek_cusp(context, &w);
+          seek_cusp(context, &contenders);
         }
       }
       changed = true;

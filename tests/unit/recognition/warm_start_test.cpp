@@ -97,15 +97,16 @@ TEST(KeptModes, AreFoundAgain) {
                              test::uniform(rng, -kPi, kPi)});
     const auto carried = carried_modes(modes, w.coarse, moved, 1.0, test::unbounded_work());
     const auto unmoved = carried_modes(modes, w.coarse, w.reduced, 1.0, test::unbounded_work());
-    for (const KeptMode& mode : modes.modes) {
-      const auto& there = carried[mode.place.shape.curve_class];
-      const auto& here = unmoved[mode.place.shape.curve_class];
-      ASSERT_TRUE(there && here) << test::test_seed() << ' ' << i;
-      const double mass = log_mass(there->nodes[there->mode].curve);
-      EXPECT_TRUE(there->prior_mode_sought);
+    ASSERT_EQ(carried.size(), modes.modes.size()) << test::test_seed() << ' ' << i;
+    ASSERT_EQ(unmoved.size(), modes.modes.size()) << test::test_seed() << ' ' << i;
+    for (std::size_t k = 0; k < carried.size(); ++k) {
+      const KeptMode& mode = modes.modes[k];
+      const double mass = log_mass(carried[k].nodes[carried[k].mode].curve);
+      EXPECT_EQ(carried[k].touch.curve_class, mode.place.shape.curve_class);
+      EXPECT_TRUE(carried[k].prior_mode_sought);
       // A descent that was ended by its number of steps goes on.
       EXPECT_GT(mass, mode.log_mass - 2.0 * kFiftieth) << test::test_seed() << ' ' << i;
-      EXPECT_NEAR(mass, log_mass(here->nodes[here->mode].curve), kSettledPotential)
+      EXPECT_NEAR(mass, log_mass(unmoved[k].nodes[unmoved[k].mode].curve), kSettledPotential)
           << test::test_seed() << ' ' << i;
       ++kept;
     }
