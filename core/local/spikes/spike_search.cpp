@@ -210,8 +210,9 @@ class Search {
     const std::size_t first = first_of(block);
     const std::size_t last = last_of(block);
     for (std::size_t i = 0; i < length_; ++i) {
-      const bool goes_on =
-          (i < first && block.start > 0) || (i > last && block.start + length_ < samples_.size());
+      // Round a cusp the stroke goes on too.
+      const bool goes_on = (i < first && (block.start > 0 || cusps_.first)) ||
+                           (i > last && (block.start + length_ < samples_.size() || cusps_.last));
       if (goes_on) {
         continue;
       }

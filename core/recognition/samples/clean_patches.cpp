@@ -104,18 +104,22 @@ std::vector<StoredPatch> each_without_spikes(std::span<const StoredPatch> passes
   return clean;
 }
 
-/// Cuts a patch into passes, with and without spikes. A spike also turns back, so where there are
-/// any, the turns are found once more without them.
+/// Cuts a patch into passes, with and without spikes. Spikes also turn back, and where they are
+/// many, the parts between their turns are too short to show them. So where there are any, the
+/// patch is searched as a whole, the turns are found once more without what that finds, and the
+/// parts between these are searched.
 void clean_passes(const StoredPatch& patch, double false_alarm, std::vector<StoredPatch>* passes,
                   std::vector<StoredPatch>* clean, WorkBudget& work) {
   Turns turns = turns_of(patch.samples);
   std::vector<bool> is_spike = spikes_between(turns, patch.samples, false_alarm, work);
   if (has_any(is_spike)) {
-    const Turns seen = turns_of(without_spikes(patch.samples, is_spike));
-    Turns among{among_all(patch.samples, is_spike, seen.returns),
-                among_all(patch.samples, is_spike, seen.cusps)};
-    if (among != turns) {
-      turns = std::move(among);
+    if (turns != Turns{}) {
+      is_spike = spikes_between({}, patch.samples, false_alarm, work);
+    }
+    const Turns among_rest = turns_of(without_spikes(patch.samples, is_spike));
+    turns = {among_all(patch.samples, is_spike, among_rest.returns),
+             among_all(patch.samples, is_spike, among_rest.cusps)};
+    if (turns != Turns{}) {
       is_spike = spikes_between(turns, patch.samples, false_alarm, work);
     }
   }

@@ -100,24 +100,11 @@ std::vector<PatchSpan> cut_by_chords(const PatchSpan& patch, const std::vector<B
   return sections;
 }
 
-/// Cuts where the path turns back sharply: having gone on by more than noise of the variance shows,
-/// it comes back by as much. (A wider bend turns the way with it.) No graph leads round a cusp, and
-/// one sample of the other arm bends a polynomial by more than the noise. The farthest sample may
-/// be of either arm: it is cut out, with the one before it, which shows its direction.
-std::vector<std::size_t> cut_at_folds(const FitData& data, const PatchSpan& patch,
-                                      double variance) {
-  constexpr std::size_t kFewest = 2;  // samples that show a direction
+/// The farthest samples where the path turns back sharply: having gone on by more than `far`, it
+/// comes back by as much. (A wider bend turns the way with it.)
+std::vector<std::size_t> turning_points(const FitData& data, const PatchSpan& patch, double far) {
   const auto at = [&](std::size_t i) -> const Vec2& { return data.points[i].position; };
-  // Of a thousand samples at one place, noise puts any two ten standard deviations apart once in a
-  // million times (pairs by the tail of a normal law); across their best line they show 0.8 of it.
-  constexpr double kFar = 12.0;
-  const double far = kFar * std::sqrt(variance);
-  std::vector<std::size_t> cuts;
-  const auto cut = [&](std::size_t i) {
-    if (i >= (cuts.empty() ? patch.begin : cuts.back()) + kFewest && i + kFewest <= patch.end) {
-      cuts.push_back(i);
-    }
-  };
+  std::vector<std::size_t> turns;
   std::size_t behind = patch.begin;  // so far from `head` that the two show the way
   std::size_t head = patch.begin;    // the farthest sample on it
   for (std::size_t i = patch.begin + 1; i < patch.end; ++i) {
@@ -129,8 +116,7 @@ std::vector<std::size_t> cut_at_folds(const FitData& data, const PatchSpan& patc
     }
     const double on = (at(i) - at(head)).dot(way) / length;
     if (on < -far) {
-      cut(head - 1);
-      cut(head + 1);
+      turns.push_back(head);
       behind = head;
       head = i;
     } else if (on > 0.0) {
@@ -138,6 +124,35 @@ std::vector<std::size_t> cut_at_folds(const FitData& data, const PatchSpan& patc
       while ((at(head) - at(behind + 1)).norm() > far) {
         ++behind;
       }
+    }
+  }
+  return turns;
+}
+
+/// Cuts at cusps: where the path turns back by more than noise of the variance does. No graph leads
+/// round a cusp, and one sample of the other arm bends a polynomial by more than the noise. The
+/// farthest sample may be of either arm: it is cut out, with the one before it, which shows its
+/// direction. A sample out of order, a spike along the curve, turns the path back twice at once: it
+/// cuts nothing.
+std::vector<std::size_t> cut_at_cusps(const FitData& data, const PatchSpan& patch,
+                                      double variance) {
+  // Of a thousand samples at one place, noise puts any two ten standard deviations apart once in a
+  // million times (pairs by the tail of a normal law); across their best line they show 0.8 of it.
+  constexpr double kFar = 12.0;
+  constexpr std::size_t kFewest = 2;  // samples that show a direction
+  std::vector<std::size_t> cuts;
+  const auto cut = [&](std::size_t i) {
+    if (i >= (cuts.empty() ? patch.begin : cuts.back()) + kFewest && i + kFewest <= patch.end) {
+      cuts.push_back(i);
+    }
+  };
+  const auto turns = turning_points(data, patch, kFar * std::sqrt(variance));
+  for (std::size_t k = 0; k < turns.size(); ++k) {
+    const bool after_another = k > 0 && turns[k] - turns[k - 1] < kFewestOfSection;
+    const bool before_another = k + 1 < turns.size() && turns[k + 1] - turns[k] < kFewestOfSection;
+    if (!after_another && !before_another) {
+      cut(turns[k] - 1);
+      cut(turns[k] + 1);
     }
   }
   return cuts;
@@ -165,12 +180,12 @@ std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch, 
   std::vector<PatchSpan> sections = cut_by_chords(patch, blocks, 0.0);
   // A long chord is a sum of short ones and turns no more: a patch that these leave whole stays
   // whole, unless single samples go back.
-  if (sections.size() == 1 && cut_at_folds(data, patch, 0.0).empty()) {
+  if (sections.size() == 1 && cut_at_cusps(data, patch, 0.0).empty()) {
     return sections;
   }
   const double variance = typical_variance(data, patch, blocks, sigma_known);
   const double least_square = kFewestDeviations * kFewestDeviations * variance;
-  std::vector<std::size_t> ends = cut_at_folds(data, patch, variance);
+  std::vector<std::size_t> ends = cut_at_cusps(data, patch, variance);
   if (ends.empty()) {
     return sections.size() == 1 ? sections : cut_by_chords(patch, blocks, least_square);
   }
