@@ -11,14 +11,37 @@
 namespace palpate {
 namespace {
 
-/// True if the samples turn too far to be a graph over their chord: by more than two radians, as
-/// the chords between the means of their thirds show, which turn a third as much. Sections are cut
-/// before that, except where their samples are few. Samples that scatter about a place show no
-/// turn: along an even stroke a chord is 3.5 times as long as the scatter of a third about its
-/// mean, which is a third of the stroke over sqrt(12); of noise alone it is as long at most.
-bool is_no_graph(std::span<const FitPoint> points) {
-  constexpr double kLargestTurn = 2.0 / 3.0;  // rad, of chords between thirds
-  constexpr double kOfMotion = 2.0;           // chord over scatter, between 1 and 3.5
+/// Radians by which a stroke turns that is no graph over its chord. Sections are cut before that,
+/// except where their samples are few.
+constexpr double kLargestTurn = 2.0;
+
+/// Whether the steps from sample to sample show that turn: steps that go on, each turned by less
+/// than a right angle, one way. Of samples that scatter about a place a step goes on the same way
+/// one time in four: five steps that do are no scatter.
+bool steps_turn_far(std::span<const FitPoint> points) {
+  constexpr int kFewestTurns = 4;
+  int turns = 0;
+  double sum = 0.0;
+  for (std::size_t i = 2; i < points.size(); ++i) {
+    const Vec2 before = points[i - 1].position - points[i - 2].position;
+    const double turn = turn_between(before, points[i].position - points[i - 1].position);
+    const bool goes_on = std::abs(turn) < 0.5 * kPi;
+    const bool same_way = turn * sum > 0.0;
+    turns = goes_on ? (same_way ? turns + 1 : 1) : 0;
+    sum = goes_on ? (same_way ? sum + turn : turn) : 0.0;
+    if (turns >= kFewestTurns && std::abs(sum) > kLargestTurn) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Whether the chords between the means of the samples' thirds show it, which turn a third as much.
+/// Samples that scatter about a place show no turn: along an even stroke a chord is 3.5 times as
+/// long as the scatter of a third about its mean, which is a third of the stroke over sqrt(12); of
+/// noise alone it is as long at most.
+bool thirds_turn_far(std::span<const FitPoint> points) {
+  constexpr double kOfMotion = 2.0;  // chord over scatter, between 1 and 3.5
   const std::size_t n = points.size();
   double scatter = 0.0;
   const auto mean_of = [&](std::size_t begin, std::size_t end) {
@@ -38,7 +61,7 @@ bool is_no_graph(std::span<const FitPoint> points) {
   const Vec2 after = mean_of(n - n / 3, n) - middle;
   const double least = kOfMotion * kOfMotion * scatter;
   return before.squaredNorm() > least && after.squaredNorm() > least &&
-         std::abs(turn_between(before, after)) > kLargestTurn;
+         std::abs(turn_between(before, after)) > kLargestTurn / 3.0;
 }
 
 }  // namespace
@@ -93,7 +116,8 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
   };
   const int by_residuals = choose(false);
   fit.degree = noise.known ? choose(true) : by_residuals;
-  fit.shows_noise = by_residuals + 2 <= highest && !is_no_graph(points);
+  fit.shows_noise =
+      by_residuals + 2 <= highest && !thirds_turn_far(points) && !steps_turn_far(points);
   return fit;
 }
 

@@ -45,8 +45,20 @@ Recognition answer_to(const Strokes& strokes, double sigma_m, std::mt19937_64& r
   return recognizer.recognize();
 }
 
-/// Scenes of one class. RECOGNIZED answers may be wrong as often as their probabilities say: a
-/// Poisson law of a mean up to two exceeds it by more than three once in fifty times.
+/// More than so many of a Poisson law of this mean are one case in a thousand.
+int most_of_poisson(double mean) {
+  double term = std::exp(-mean);
+  double beyond = 1.0 - term;
+  int most = 0;
+  while (beyond > 1e-3) {
+    ++most;
+    term *= mean / most;
+    beyond -= term;
+  }
+  return most;
+}
+
+/// Scenes of one class. RECOGNIZED answers may be wrong as often as their probabilities say.
 void expect_honest(const std::string& name, CurveClass truth,
                    const std::function<Strokes(std::mt19937_64&)>& touched) {
   std::mt19937_64 rng = test::test_rng();
@@ -64,7 +76,7 @@ void expect_honest(const std::string& name, CurveClass truth,
       expected += 1.0 - answer.hypotheses.front().probability;
     }
   }
-  EXPECT_LE(wrong, std::floor(expected) + 3) << name;
+  EXPECT_LE(wrong, most_of_poisson(expected)) << name << ", expected " << expected;
   // The noise is a ten-thousandth of the size at most, and more samples than parameters speak.
   EXPECT_GE(right, kScenes / 2) << name;
 }
