@@ -104,21 +104,27 @@ std::vector<StoredPatch> each_without_spikes(std::span<const StoredPatch> passes
   return clean;
 }
 
-/// Cuts a patch into passes, with and without spikes. Spikes also turn back, and where they are
-/// many, the parts between their turns are too short to show them. So where there are any, the
-/// patch is searched as a whole, the turns are found once more without what that finds, and the
-/// parts between these are searched.
+/// The turns of a patch without the samples that are flagged and those at `cusps`, which spikes may
+/// be, by index among all.
+Turns turns_without(std::vector<bool> is_spike, std::span<const std::size_t> cusps,
+                    std::span<const StoredSample> samples) {
+  for (const std::size_t cusp : cusps) is_spike[cusp - 1] = true;
+  const Turns turns = turns_of(without_spikes(samples, is_spike));
+  return {among_all(samples, is_spike, turns.returns), among_all(samples, is_spike, turns.cusps)};
+}
+
+/// Cuts a patch into passes, with and without spikes. Spikes also turn back, and the parts between
+/// the turns of many are too short to show them. So where other turns are left without what is
+/// found, the patch is searched as a whole, to find those that made or hid a turn.
 void clean_passes(const StoredPatch& patch, double false_alarm, std::vector<StoredPatch>* passes,
                   std::vector<StoredPatch>* clean, WorkBudget& work) {
   Turns turns = turns_of(patch.samples);
   std::vector<bool> is_spike = spikes_between(turns, patch.samples, false_alarm, work);
-  if (has_any(is_spike)) {
+  if (has_any(is_spike) && turns_without(is_spike, turns.cusps, patch.samples) != turns) {
     if (turns != Turns{}) {
       is_spike = spikes_between({}, patch.samples, false_alarm, work);
     }
-    const Turns among_rest = turns_of(without_spikes(patch.samples, is_spike));
-    turns = {among_all(patch.samples, is_spike, among_rest.returns),
-             among_all(patch.samples, is_spike, among_rest.cusps)};
+    turns = turns_without(is_spike, {}, patch.samples);
     if (turns != Turns{}) {
       is_spike = spikes_between(turns, patch.samples, false_alarm, work);
     }
