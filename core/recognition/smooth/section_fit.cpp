@@ -20,16 +20,34 @@ constexpr double kLargestTurn = 2.0;
 /// one time in four: five steps that do are no scatter.
 bool steps_turn_far(std::span<const FitPoint> points) {
   constexpr int kFewestTurns = 4;
-  int turns = 0;
-  double sum = 0.0;
-  for (std::size_t i = 2; i < points.size(); ++i) {
-    const Vec2 before = points[i - 1].position - points[i - 2].position;
-    const double turn = turn_between(before, points[i].position - points[i - 1].position);
-    const bool goes_on = std::abs(turn) < 0.5 * kPi;
-    const bool same_way = turn * sum > 0.0;
-    turns = goes_on ? (same_way ? turns + 1 : 1) : 0;
-    sum = goes_on ? (same_way ? sum + turn : turn) : 0.0;
-    if (turns >= kFewestTurns && std::abs(sum) > kLargestTurn) {
+  const double cos_of_largest = std::cos(kLargestTurn);
+  const auto step = [&](std::size_t i) -> Vec2 {
+    return points[i + 1].position - points[i].position;
+  };
+  int turns = 0;  // one way, up to here
+  bool far = false;
+  double way = 0.0;
+  Vec2 first = Vec2::Zero();
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const Vec2 before = step(i - 1);
+    const Vec2 here = step(i);
+    const double turn = cross(before, here);
+    if (!(before.dot(here) > 0.0)) {
+      turns = 0;
+      continue;
+    }
+    if (turns == 0 || !(turn * way > 0.0)) {
+      turns = 0;
+      far = false;
+      way = turn;
+      first = before;
+    }
+    ++turns;
+    // A turn by less than a right angle passes all directions so far from the first.
+    const double along = first.dot(here);
+    far = far || (along < 0.0 && along * along > cos_of_largest * cos_of_largest *
+                                                     first.squaredNorm() * here.squaredNorm());
+    if (far && turns >= kFewestTurns) {
       return true;
     }
   }
