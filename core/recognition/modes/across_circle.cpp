@@ -43,7 +43,7 @@ std::optional<ShapePoseCovariance> moment_across_circle(const CanonicalFit& elli
   const Mat5 covariance = to_oval * linear * to_oval.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
       Eigen::Matrix2d(covariance.block<2, 2>(1, 1)));
-  const Eigen::Vector2d variances = axes.eigenvalues();
+  const Eigen::Vector2d& variances = axes.eigenvalues();
   if (!(variances[0] > 0.0) || ovality * ovality > kFar * kFar * variances[1]) {
     return std::nullopt;
   }

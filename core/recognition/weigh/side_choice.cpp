@@ -114,6 +114,10 @@ bool agrees(const SideChoice& choice, const SmoothModel& smooth) {
   return choice.refined && disagreement(choice, smooth) <= agreement(choice.refined->chi2, smooth);
 }
 
+bool fits_all(const SideChoice& choice, const SideContext& by) {
+  return choice.refined && fits_well(choice.refined->chi2, residual_count(by.arcs.data));
+}
+
 double least_left(const SideChoice& choice, const SmoothModel& smooth) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const double on_reduced = choice.settled ? choice.settled->chi2 + smooth.chi2 : kNone;

@@ -72,6 +72,9 @@ double disagreement(const SideChoice& choice, const SmoothModel& smooth);
 /// Whether the reduced points tell of the candidate what all points do.
 bool agrees(const SideChoice& choice, const SmoothModel& smooth);
 
+/// Whether all points have the candidate, as far as noise lets them.
+bool fits_all(const SideChoice& choice, const SideContext& by);
+
 /// What the candidate leaves, on the reduced points with their directions or on all without.
 double least_left(const SideChoice& choice, const SmoothModel& smooth);
 

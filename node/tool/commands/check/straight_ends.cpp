@@ -137,7 +137,7 @@ std::size_t samples_on_line(std::span<const Vec2> samples, double sigma_m) {
 /// of samples if there is none within reach.
 std::size_t sample_beyond(std::span<const Vec2> samples, std::size_t i, std::ptrdiff_t step,
                           double distance_m, std::size_t reach) {
-  const Vec2 from = samples[i];
+  const Vec2& from = samples[i];
   for (std::size_t k = 0; k < reach && i < samples.size(); ++k) {
     if ((samples[i] - from).norm() >= distance_m) return i;
     i += static_cast<std::size_t>(step);  // below 0 it wraps to a number beyond all

@@ -1,0 +1,199 @@
+#include "core/recognition/weigh/fit_way.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/curves/cubic_spline.h"
+#include "core/numerics/negligible.h"
+#include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/posterior/likelihood_of.h"
+#include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/weigh/tip_directions.h"
+
+namespace palpate {
+namespace {
+
+/// Whether a way leaves no more than `chi2` on all points, by its candidate or the class that was
+/// the candidate before: a class with fewer parameters always leaves more.
+bool is_as_near(const SideChoice& choice, CurveClass before, double chi2, const SideContext& by) {
+  if (!choice.refined) {
+    return false;
+  }
+  if (choice.refined->chi2 <= chi2) {
+    return true;
+  }
+  const auto& fit = choice.fits[before];
+  const auto refined = fit && before != choice.candidate
+                           ? refine_on_all(settled(*fit, choice.reduced, RivalOf::Other, by.work),
+                                           by.arcs.smooth, by.arcs.data, kOnAllEffort, by.work)
+                           : std::nullopt;
+  return refined && refined->chi2 <= chi2;
+}
+
+/// Whether directions could be what keeps the settled candidate from the reduced points.
+bool directions_may_explain(const SideChoice& choice, const FitData& touches,
+                            const SmoothModel& smooth) {
+  // What all points have without any directions is kept from the reduced ones by theirs.
+  if (choice.refined && fits_well(choice.refined->chi2, static_cast<std::size_t>(smooth.points))) {
+    return true;
+  }
+  const double noise = std::max(1.0, smooth.noise_ratio());
+  double most = noise * noise * most_of_noise(static_cast<double>(residual_count(touches)));
+  for (const FitPoint& point : touches.points) {
+    const double off = tip_removal_error(point, noise) * point.inverse_sigma;
+    most += off * off;
+  }
+  return choice.settled->chi2 <= most;
+}
+
+/// Directions that turn by less are settled: a touched point moves by a thousandth of the tip's
+/// radius along the surface, and off it, if that is straight there, by half a millionth. [rad]
+constexpr double kSettledTurn = 1e-3;
+
+/// Lets the class of a fit in the same frame start from there, if it is a spline: wrong directions
+/// make a valley of their own about its sharp bend.
+void start_at(const ClassFit& fit, WarmStart* start) {
+  if (fit.curve_class == CurveClass::CubicSpline) {
+    start->polynomials.cubic_spline = fit.polynomial;
+  }
+}
+
+/// Fits with the tips on these sides of `touches`. Where points show no direction of their own, or
+/// one so swayed by noise that tips taken off along it no longer lie as all points do, directions
+/// come from the curve found: one that is off by an angle puts the surface off by half its square
+/// times the tip's radius, so that each round squares the error.
+SideChoice fit_along(FitData touches, std::span<const int> sides, const SideContext& by,
+                     std::span<const SidedStart> starts) {
+  const SmoothModel& smooth = by.arcs.smooth;
+  FitData reduced = on_surface(touches, sides);
+  ClassFits fits = fit_classes_from(starts, sides, reduced, by, by.out_of_reach);
+  if (std::none_of(fits.begin(), fits.end(),
+                   [&](const auto& fit) { return fit && fit->chi2 <= by.out_of_reach; })) {
+    SideChoice choice;  // nothing that could be, whatever directions and evidence say
+    choice.fits = std::move(fits);
+    choice.reduced = std::move(reduced);
+    return choice;
+  }
+  SideChoice choice = choice_of(sides, std::move(fits), std::move(reduced), by);
+  // A third of a radian leads to a millionth within three.
+  constexpr int kRounds = 3;
+  // Of chi-square by a round: residuals that directions leave fall with the error's square, from a
+  // third of a radian to a ninth of what they were. What is not even halved they do not leave.
+  constexpr double kLeastGain = 2.0;
+  for (int round = 0; round < kRounds; ++round) {
+    if (!choice.settled || !directions_may_explain(choice, touches, smooth) || !by.work.allows()) {
+      break;
+    }
+    // (a candidate that is no such curve on all points says nothing about the directions of all)
+    const bool swayed = choice.refined && !agrees(choice, smooth);
+    // On all points distances are those of the tips' centres, whatever the directions.
+    const bool of_all = swayed && choice.refined->chi2 < choice.settled->chi2 + smooth.chi2;
+    const auto curve = of_all ? to_canonical(*choice.refined, by.arcs.data)
+                       : swayed || has_kept_tips(smooth)
+                           ? to_canonical(*choice.settled, choice.reduced)
+                           : std::nullopt;
+    if (!curve) {
+      break;
+    }
+    const DirectionsOf which = swayed ? DirectionsOf::AllPoints : DirectionsOf::KeptPoints;
+    if (set_directions(which, *curve, smooth, &touches, by.work) < kSettledTurn) {
+      break;
+    }
+    FitData nearer = on_surface(touches, sides);
+    WarmStart start = warm_start_from(choice.fits, choice.reduced);
+    if (of_all) {
+      start_at(*choice.refined, &start);
+    }
+    ClassFits again = fit_classes(nearer, by.work, &start, by.classes, by.out_of_reach);
+    const double before = least_left(choice, smooth);
+    SideChoice next = choice_of(sides, std::move(again), std::move(nearer), by);
+    if (!agrees(next, smooth) && disagreement(next, smooth) > disagreement(choice, smooth)) {
+      break;  // worse directions than before, by what all points say
+    }
+    if (choice.refined &&
+        !is_as_near(next, choice.candidate,
+                    choice.refined->chi2 + agreement(choice.refined->chi2, smooth), by)) {
+      break;  // led astray
+    }
+    choice = std::move(next);
+    const double after = least_left(choice, smooth);
+    if (noise_is_known_without_class(by.arcs, by.likelihood) && after > before / kLeastGain &&
+        !fits_well(after, residual_count(by.arcs.data))) {
+      break;
+    }
+  }
+  return choice;
+}
+
+/// The way with its evidence.
+SideChoice judged(SideChoice choice, const SideContext& by) {
+  choice.log_evidence = log_evidence_of(choice, by);
+  return choice;
+}
+
+double largest_tip_m(const FitData& touches) {
+  double largest = 0.0;
+  for (const FitPoint& point : touches.points) {
+    largest = std::max(largest, point.offset);
+  }
+  return largest * touches.scale;
+}
+
+/// The spline, or the cusp, with a bend at t = 0 that is no sharper than a circle of that radius,
+/// as centres go about a corner; nullopt of other curves, and where the bend is none.
+std::optional<CanonicalFit> rounded(const CanonicalFit& curve, double radius_m) {
+  const double least = CubicSpline::c_of_bend(radius_m);
+  const CurveClass curve_class = curve.shape.curve_class;
+  const bool is_sharper = curve_class == CurveClass::SemiCubicalParabola ||
+                          (curve_class == CurveClass::CubicSpline && curve.shape.values[2] < least);
+  if (!is_sharper) {
+    return std::nullopt;
+  }
+  CanonicalFit result = curve;
+  result.shape.curve_class = CurveClass::CubicSpline;
+  result.shape.values[2] = least;
+  return result;
+}
+
+}  // namespace
+
+SideChoice fit_way(const FitData& touches, std::span<const int> sides, const SideContext& by,
+                   std::span<const SidedStart> starts, double highest, CurveOfCentres* centres) {
+  const SmoothModel& smooth = by.arcs.smooth;
+  SideChoice choice = judged(fit_along(touches, sides, by, starts), by);
+  const auto may_gain = [&] {
+    return choice.settled && directions_may_explain(choice, touches, smooth) &&
+           choice.log_evidence >= highest - kNegligibleLogOdds && by.work.allows();
+  };
+  const auto take_along = [&](const CanonicalFit& curve, const WarmStart* start) {
+    FitData turned = touches;
+    if (set_directions(DirectionsOf::AllPoints, curve, smooth, &turned, by.work) < kSettledTurn) {
+      return;
+    }
+    std::vector<SidedStart> from;
+    if (start != nullptr) {
+      from.push_back({{sides.begin(), sides.end()}, *start});
+    }
+    SideChoice again = fit_along(std::move(turned), sides, by, from);
+    if (again.refined && (!choice.refined || again.refined->chi2 < choice.refined->chi2)) {
+      choice = judged(std::move(again), by);
+    }
+  };
+  if (start_for(starts, sides) != nullptr || !may_gain()) {
+    return choice;
+  }
+  if (!agrees(choice, smooth) && centres->get()) {
+    take_along(*centres->get(), centres->start());
+  }
+  if (has_kept_tips(smooth) && !fits_all(choice, by) && may_gain() && centres->get()) {
+    if (const auto curve = rounded(*centres->get(), largest_tip_m(touches))) {
+      take_along(*curve, nullptr);
+    }
+  }
+  return choice;
+}
+
+}  // namespace palpate

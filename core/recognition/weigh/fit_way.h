@@ -1,0 +1,21 @@
+// One way in which the tips may lie, fitted along the directions that the curve found has.
+#pragma once
+
+#include <span>
+
+#include "core/recognition/weigh/curve_of_centres.h"
+#include "core/recognition/weigh/side_choice.h"
+#include "core/recognition/weigh/sided_start.h"
+
+namespace palpate {
+
+/// The way with the tips on these sides, judged. Where directions led to no curve that all points
+/// have, it is fitted once more along those of the curve of the centres, whose normals are nearly
+/// the surface's whichever side that is on, and then with its bend rounded: next to a corner that
+/// no touch lies on, the curve of the others' centres is a cusp. What is followed has been tried
+/// along these when it was sought. What is out on all points beside `highest`, the log evidence of
+/// another way that all points have, need not be told better.
+SideChoice fit_way(const FitData& touches, std::span<const int> sides, const SideContext& by,
+                   std::span<const SidedStart> starts, double highest, CurveOfCentres* centres);
+
+}  // namespace palpate
