@@ -24,12 +24,19 @@ bool estimate_noise(FitData* data, SmoothModel* smooth) {
 
 }  // namespace
 
+Arcs arcs_of_stated_noise(Arcs arcs) {
+  arcs.smooth = fit_smooth_model(&arcs.data, true, StatedNoise::Holds);
+  arcs.may_not_follow = false;
+  return arcs;
+}
+
 Arcs smooth_arcs(FitData data, bool sigma_known) {
   Arcs arcs;
   arcs.smooth = fit_smooth_model(&data, sigma_known);
   if (!data.details.empty() && weigh_across_path(arcs.smooth, &data)) {
     arcs.smooth = fit_smooth_model(&data, sigma_known);
   }
+  arcs.may_not_follow = sigma_known;
   arcs.sigma_known = sigma_known || estimate_noise(&data, &arcs.smooth);
   if (!sigma_known && rms_sigma(data) < data.reading_noise) {
     // Sections may follow rounded readings to the last digit, from step to step.

@@ -16,7 +16,13 @@ struct Arcs {
   /// False if the noise is only estimated, from the smooth model's residuals.
   bool sigma_known = true;
   double sigma = 0.0;  ///< root mean square noise of the points, normalised
+  /// The noise is stated, and sections that leave more have not been cut (arcs_of_stated_noise).
+  bool may_not_follow = false;
 };
+
+/// The arcs with sections that leave more than the stated noise cut until they do not, or taken for
+/// points. `arcs`: of stated noise.
+Arcs arcs_of_stated_noise(Arcs arcs);
 
 /// Fits the smooth model. `data`: from make_fit_data. If the noise is not stated, sets it from the
 /// model's residuals.

@@ -11,55 +11,14 @@
 namespace palpate {
 namespace {
 
-/// Radians by which a stroke turns that is no graph over its chord. Sections are cut before that,
-/// except where their samples are few.
-constexpr double kLargestTurn = 2.0;
-
-/// Whether the steps from sample to sample show that turn: steps that go on, each turned by less
-/// than a right angle, one way. Of samples that scatter about a place a step goes on the same way
-/// one time in four: five steps that do are no scatter.
-bool steps_turn_far(std::span<const FitPoint> points) {
-  constexpr int kFewestTurns = 4;
-  const double cos_of_largest = std::cos(kLargestTurn);
-  const auto step = [&](std::size_t i) -> Vec2 {
-    return points[i + 1].position - points[i].position;
-  };
-  int turns = 0;  // one way, up to here
-  bool far = false;
-  double way = 0.0;
-  Vec2 first = Vec2::Zero();
-  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-    const Vec2 before = step(i - 1);
-    const Vec2 here = step(i);
-    const double turn = cross(before, here);
-    if (!(before.dot(here) > 0.0)) {
-      turns = 0;
-      continue;
-    }
-    if (turns == 0 || !(turn * way > 0.0)) {
-      turns = 0;
-      far = false;
-      way = turn;
-      first = before;
-    }
-    ++turns;
-    // A turn by less than a right angle passes all directions so far from the first.
-    const double along = first.dot(here);
-    far = far || (along < 0.0 && along * along > cos_of_largest * cos_of_largest *
-                                                     first.squaredNorm() * here.squaredNorm());
-    if (far && turns >= kFewestTurns) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Whether the chords between the means of the samples' thirds show it, which turn a third as much.
-/// Samples that scatter about a place show no turn: along an even stroke a chord is 3.5 times as
-/// long as the scatter of a third about its mean, which is a third of the stroke over sqrt(12); of
-/// noise alone it is as long at most.
-bool thirds_turn_far(std::span<const FitPoint> points) {
-  constexpr double kOfMotion = 2.0;  // chord over scatter, between 1 and 3.5
+/// True if the samples turn too far to be a graph over their chord: by more than two radians, as
+/// the chords between the means of their thirds show, which turn a third as much. Sections are cut
+/// before that, except where their samples are few. Samples that scatter about a place show no
+/// turn: along an even stroke a chord is 3.5 times as long as the scatter of a third about its
+/// mean, which is a third of the stroke over sqrt(12); of noise alone it is as long at most.
+bool is_no_graph(std::span<const FitPoint> points) {
+  constexpr double kLargestTurn = 2.0 / 3.0;  // rad, of chords between thirds
+  constexpr double kOfMotion = 2.0;           // chord over scatter, between 1 and 3.5
   const std::size_t n = points.size();
   double scatter = 0.0;
   const auto mean_of = [&](std::size_t begin, std::size_t end) {
@@ -79,7 +38,7 @@ bool thirds_turn_far(std::span<const FitPoint> points) {
   const Vec2 after = mean_of(n - n / 3, n) - middle;
   const double least = kOfMotion * kOfMotion * scatter;
   return before.squaredNorm() > least && after.squaredNorm() > least &&
-         std::abs(turn_between(before, after)) > kLargestTurn / 3.0;
+         std::abs(turn_between(before, after)) > kLargestTurn;
 }
 
 }  // namespace
@@ -134,8 +93,7 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
   };
   const int by_residuals = choose(false);
   fit.degree = noise.known ? choose(true) : by_residuals;
-  fit.shows_noise =
-      by_residuals + 2 <= highest && !thirds_turn_far(points) && !steps_turn_far(points);
+  fit.shows_noise = by_residuals + 2 <= highest && !is_no_graph(points);
   return fit;
 }
 

@@ -234,7 +234,7 @@ double SmoothModel::noise_ratio() const {
   return dof() > 0 ? std::sqrt(chi2 / static_cast<double>(dof())) : 0.0;
 }
 
-SmoothModel fit_smooth_model(FitData* data, bool sigma_known) {
+SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated) {
   SmoothModel model;
   model.points = static_cast<int>(data->points.size());
   model.nearest_reduced.resize(data->points.size());
@@ -243,7 +243,9 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known) {
   SectionNoise noise{sigma_known, 1.0};
   std::vector<Section> sections = smoothed(*data, noise);
   QuietSections quiet = quiet_of(sections, sigma_known);
-  if (sigma_known && is_no_noise(quiet.chi2, quiet.dof, 1.0)) {
+  if (sigma_known && stated == StatedNoise::Holds) {
+    quiet.highest = 1.0;
+  } else if (sigma_known && is_no_noise(quiet.chi2, quiet.dof, 1.0)) {
     // The stated noise is too low everywhere: with it, the fits would follow the noise itself.
     noise.variance = quiet.chi2 / quiet.dof;
     sections = smoothed(*data, noise);

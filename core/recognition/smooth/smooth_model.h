@@ -42,10 +42,15 @@ struct SmoothModel {
   double noise_ratio() const;
 };
 
+/// What is thought of a stated noise if all sections leave more: that it is too low, or that they
+/// do not follow the path.
+enum class StatedNoise { MayBeTooLow, Holds };
+
 /// Cuts each patch into sections that turn by less than about a radian and fits each by a
 /// polynomial. The Bayesian information criterion chooses its degree. `sigma_known`: the points'
 /// noise is known; otherwise the criterion profiles it. Sets the tangents of `data`. O(points).
-SmoothModel fit_smooth_model(FitData* data, bool sigma_known);
+SmoothModel fit_smooth_model(FitData* data, bool sigma_known,
+                             StatedNoise stated = StatedNoise::MayBeTooLow);
 
 /// Multiplies the noise of all points and reduced points by `factor`, and divides chi2 by its
 /// square.

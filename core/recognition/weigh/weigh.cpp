@@ -155,12 +155,16 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   return w;
 }
 
-}  // namespace
+/// Whether a class that leaves no more than noise leaves less than the smooth model. No class can
+/// where sections follow the path: these do not, and neither they nor the reduced points tell
+/// anything of the other classes.
+bool are_bettered(const Arcs& arcs, const std::optional<Placed>& best) {
+  return best && arcs.may_not_follow && fits_well(best->chi2, residual_count(arcs.data)) &&
+         arcs.smooth.chi2 > best->chi2 + 2.0 * kNegligibleLogOdds;
+}
 
-Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
-               WorkBudget& work, const WeighOptions& options, std::span<const SidedStart> starts) {
-  work.spend(WorkKind::Sample, data.points.size());
-  Arcs arcs = smooth_arcs(std::move(data), sigma_known);
+Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget& work,
+                    const WeighOptions& options, std::span<const SidedStart> starts) {
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
   const Evidences of_paths = evidences_of_paths(arcs.smooth, stated, work);
   const double hopeless = out_of_reach(arcs, stated, of_paths);
@@ -178,6 +182,9 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
   const EvidenceContext at_first{arcs, sided.choice().reduced, work, stated, hopeless};
   Contenders contenders = contenders_of_choice(at_first, of_paths);
   std::optional<Placed> best_placed = best_on_all(contenders, at_first);
+  if (are_bettered(arcs, best_placed) && work.allows()) {
+    return weigh_arcs(arcs_of_stated_noise(std::move(arcs)), patches, work, options, starts);
+  }
   ResidualExcess seen =
       best_placed ? residual_excess(arcs, stated, best_placed->chi2, best_placed->canonical,
                                     most_probable(probabilities_of(contenders, at_first)) ==
@@ -209,6 +216,14 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
                                         context, seen, stated, std::move(best_placed));
   weighing.unqualified_probe = options.unqualified_probe;
   return weighing;
+}
+
+}  // namespace
+
+Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
+               WorkBudget& work, const WeighOptions& options, std::span<const SidedStart> starts) {
+  work.spend(WorkKind::Sample, data.points.size());
+  return weigh_arcs(smooth_arcs(std::move(data), sigma_known), patches, work, options, starts);
 }
 
 }  // namespace palpate
