@@ -8,6 +8,7 @@
 
 #include "core/local/noise.h"
 #include "core/numerics/median.h"
+#include "core/recognition/samples/turning_points.h"
 
 namespace palpate {
 namespace {
@@ -52,36 +53,6 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples) {
   }
   const double noise_m = kFarDeviations * noise.sigma_m;
   return Lengths{noise_m, std::max(noise_m, kFarSteps * median_of(steps))};
-}
-
-/// Where the stroke turns back: it came from farther than `far_m` and returns by more than `far_m`
-/// along the way it came, however far beside it: the arms of a cusp soon part. (A bend wider than
-/// `far_m` turns the way with it.) Gives the index of the farthest sample of each turn.
-std::vector<std::size_t> reversals_of(std::span<const StoredSample> samples, double far_m) {
-  std::vector<std::size_t> reversals;
-  std::size_t behind = 0;  // far enough from `head` for the two to show the direction
-  std::size_t head = 0;    // the farthest sample on its way
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    const Vec2 way = samples[head].position_m - samples[behind].position_m;
-    const double length = way.norm();
-    if (!(length > far_m)) {
-      head = i;
-      continue;
-    }
-    const Vec2 step = samples[i].position_m - samples[head].position_m;
-    const double on = step.dot(way) / length;
-    if (on < -far_m) {
-      reversals.push_back(head);
-      behind = head;
-      head = i;
-    } else if (on > 0.0) {
-      head = i;
-      while ((samples[head].position_m - samples[behind + 1].position_m).norm() > far_m) {
-        ++behind;
-      }
-    }
-  }
-  return reversals;
 }
 
 /// Distance from a place to the nearest step of a path through samples; nullopt if the nearest
@@ -136,7 +107,9 @@ Turns turns_of(std::span<const StoredSample> samples) {
   if (!lengths) {
     return turns;
   }
-  const std::vector<std::size_t> reversals = reversals_of(samples, lengths->far_m);
+  const std::vector<std::size_t> reversals =
+      turning_points(0, samples.size(), lengths->far_m,
+                     [&](std::size_t i) -> const Vec2& { return samples[i].position_m; });
   std::size_t begin = 0;   // of this pass
   std::size_t before = 0;  // the turn before this one, whatever it is
   for (std::size_t r = 0; r < reversals.size(); ++r) {

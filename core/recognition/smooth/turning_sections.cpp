@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/numerics/median.h"
+#include "core/recognition/samples/turning_points.h"
 
 namespace palpate {
 namespace {
@@ -100,35 +101,6 @@ std::vector<PatchSpan> cut_by_chords(const PatchSpan& patch, const std::vector<B
   return sections;
 }
 
-/// The farthest samples where the path turns back sharply: having gone on by more than `far`, it
-/// comes back by as much. (A wider bend turns the way with it.)
-std::vector<std::size_t> turning_points(const FitData& data, const PatchSpan& patch, double far) {
-  const auto at = [&](std::size_t i) -> const Vec2& { return data.points[i].position; };
-  std::vector<std::size_t> turns;
-  std::size_t behind = patch.begin;  // so far from `head` that the two show the way
-  std::size_t head = patch.begin;    // the farthest sample on it
-  for (std::size_t i = patch.begin + 1; i < patch.end; ++i) {
-    const Vec2 way = at(head) - at(behind);
-    const double length = way.norm();
-    if (!(length > far)) {
-      head = i;
-      continue;
-    }
-    const double on = (at(i) - at(head)).dot(way) / length;
-    if (on < -far) {
-      turns.push_back(head);
-      behind = head;
-      head = i;
-    } else if (on > 0.0) {
-      head = i;
-      while ((at(head) - at(behind + 1)).norm() > far) {
-        ++behind;
-      }
-    }
-  }
-  return turns;
-}
-
 /// Cuts at cusps: where the path turns back by more than noise of the variance does. No graph leads
 /// round a cusp, and one sample of the other arm bends a polynomial by more than the noise. The
 /// farthest sample may be of either arm: it is cut out, with the one before it, which shows its
@@ -146,7 +118,9 @@ std::vector<std::size_t> cut_at_cusps(const FitData& data, const PatchSpan& patc
       cuts.push_back(i);
     }
   };
-  const auto turns = turning_points(data, patch, kFar * std::sqrt(variance));
+  const std::vector<std::size_t> turns =
+      turning_points(patch.begin, patch.end, kFar * std::sqrt(variance),
+                     [&](std::size_t i) -> const Vec2& { return data.points[i].position; });
   for (std::size_t k = 0; k < turns.size(); ++k) {
     const bool after_another = k > 0 && turns[k] - turns[k - 1] < kFewestOfSection;
     const bool before_another = k + 1 < turns.size() && turns[k + 1] - turns[k] < kFewestOfSection;
