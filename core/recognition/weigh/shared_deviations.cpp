@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/numerics/log_add.h"
 #include "core/recognition/coherent/coherent_gain.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/weigh/near_best.h"
@@ -52,6 +53,22 @@ ByClass<double> with_noise_alone(const Contenders& contenders, const EvidenceCon
   return logs;
 }
 
+/// The gain of a class over its evidence on all points. The reduced points tell `gain` over what
+/// they leave; where that is more than all points do, the difference is no deviation.
+double over_all_points(double gain, const ClassFit& fit, const ClassFit& on_reduced,
+                       const Contenders& contenders, const EvidenceContext& context) {
+  const Likelihood& likelihood = context.likelihood;
+  const double told = std::max(on_reduced.chi2 + context.arcs.smooth.chi2, fit.chi2);
+  const double difference = log_evidence(likelihood, contenders.evidences, fit) -
+                            log_evidence(likelihood, contenders.evidences, fit.curve_class, told);
+  // Half of it is noise alone, which all points tell.
+  const double log_half = std::log(0.5);
+  const double of_deviations = gain + std::log1p(-std::exp(log_half - gain));
+  return std::isfinite(difference) && gain > log_half
+             ? log_add(log_half, of_deviations - difference)
+             : gain;
+}
+
 }  // namespace
 
 Contenders with_shared_deviations(Contenders contenders, const EvidenceContext& context,
@@ -77,11 +94,15 @@ Contenders with_shared_deviations(Contenders contenders, const EvidenceContext& 
       return contenders;
     }
     const auto& evidence = contenders.evidences.classes[curve_class];
-    const auto own =
-        evidence ? log_coherent_gain(*contenders.evidences.on_reduced[curve_class], *evidence,
-                                     context.reduced, context.likelihood, context.arcs.sigma,
-                                     context.arcs.smooth.chi2, context.work)
-                 : std::nullopt;
+    auto own = evidence
+                   ? log_coherent_gain(*contenders.evidences.on_reduced[curve_class], *evidence,
+                                       context.reduced, context.likelihood, context.arcs.sigma,
+                                       context.arcs.smooth.chi2, context.work)
+                   : std::nullopt;
+    if (own) {
+      own = over_all_points(*own, *contenders.fits[curve_class], *contenders.coarse[curve_class],
+                            contenders, context);
+    }
     if (curve_class == classes.front()) {
       gain.fill(own.value_or(0.0));
     } else if (own) {
