@@ -85,7 +85,7 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
     polynomials.lowest_chi2 = std::min(polynomials.lowest_chi2, polynomials.parabola->chi2);
   }
   const bool conic_fits = fits_well(polynomials.lowest_chi2, residuals);
-  const bool line_fits = fits(result[static_cast<std::size_t>(CurveClass::Line)]);
+  const bool line_fits = fits(result[CurveClass::Line]);
   if (starts == nullptr && !line_fits) {  // a line is the limit of all
     refine_every_seed(reduced, out_of_reach, &polynomials, work);
   } else if (starts != nullptr && !starts->every_seed && !conic_fits &&

@@ -1,8 +1,9 @@
 #include "core/recognition/modes/across_circle.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
+
+#include "core/numerics/symmetric_eigen.h"
 
 namespace palpate {
 namespace {
@@ -41,19 +42,18 @@ std::optional<ShapePoseCovariance> moment_across_circle(const CanonicalFit& elli
   }
   const Mat5 to_oval = by_ellipse(ovality, theta);
   const Mat5 covariance = to_oval * linear * to_oval.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(
-      Eigen::Matrix2d(covariance.block<2, 2>(1, 1)));
-  const Eigen::Vector2d& variances = axes.eigenvalues();
+  const SymmetricEigen axes = symmetric_eigen(covariance.block<2, 2>(1, 1));
+  const Eigen::Vector2d variances = axes.values;
+  const Eigen::Matrix2d directions = axes.vectors;
   if (!(variances[0] > 0.0) || ovality * ovality > kFar * kFar * variances[1]) {
     return std::nullopt;
   }
-  const Eigen::Matrix2d root = axes.eigenvectors() * variances.cwiseSqrt().asDiagonal();
+  const Eigen::Matrix2d root = directions * variances.cwiseSqrt().asDiagonal();
   // How mean radius and centre follow the ovality, and what is left of them.
   Eigen::Matrix<double, 3, 2> with_oval;
   with_oval << covariance.row(0).segment<2>(1), covariance.block<2, 2>(3, 1);
-  const Eigen::Matrix<double, 3, 2> follow = with_oval * axes.eigenvectors() *
-                                             variances.cwiseInverse().asDiagonal() *
-                                             axes.eigenvectors().transpose();
+  const Eigen::Matrix<double, 3, 2> follow =
+      with_oval * directions * variances.cwiseInverse().asDiagonal() * directions.transpose();
   Eigen::Matrix3d left;
   left << covariance(0, 0), covariance.row(0).tail<2>(), covariance.col(0).tail<2>(),
       covariance.bottomRightCorner<2, 2>();

@@ -113,6 +113,12 @@ void take_limits(ClassFits* fits) {
 
 }  // namespace
 
+double chi2_without_deviation(const Contenders& contenders, const EvidenceContext& context,
+                              CurveClass curve_class) {
+  return std::max(contenders.coarse[curve_class]->chi2 + context.arcs.smooth.chi2,
+                  contenders.fits[curve_class]->chi2);
+}
+
 ClassFits with_inferred_chi2(const ClassFits& coarse, const SmoothModel& smooth) {
   ClassFits told = coarse;
   for (auto& fit : told) {

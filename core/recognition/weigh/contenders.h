@@ -28,6 +28,11 @@ struct Contenders {
   Evidences evidences;
 };
 
+/// Chi-square of a class beside which deviations are sought: on all points, or what the reduced
+/// points tell where that is more. The difference is no deviation.
+double chi2_without_deviation(const Contenders& contenders, const EvidenceContext& context,
+                              CurveClass curve_class);
+
 /// Copies the fits to the reduced points, with the chi-square of all points that these imply.
 ClassFits with_inferred_chi2(const ClassFits& coarse, const SmoothModel& smooth);
 

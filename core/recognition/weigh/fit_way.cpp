@@ -73,6 +73,7 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
   if (std::none_of(fits.begin(), fits.end(),
                    [&](const auto& fit) { return fit && fit->chi2 <= by.out_of_reach; })) {
     SideChoice choice;  // nothing that could be, whatever directions and evidence say
+    choice.sides.assign(sides.begin(), sides.end());
     choice.fits = std::move(fits);
     choice.reduced = std::move(reduced);
     return choice;

@@ -22,10 +22,8 @@ double log_evidence_near_best(CurveClass best, double least_size, double least,
   if (!evidence) {
     return kNoEvidence;
   }
-  // What the reduced points leave beside the class and all points do not is no deviation.
-  const double on_reduced = contenders.coarse[best]->chi2 + arcs.smooth.chi2;
   const double of_class = log_evidence(context.likelihood, contenders.evidences, best,
-                                       std::max(on_reduced, contenders.fits[best]->chi2));
+                                       chi2_without_deviation(contenders, context, best));
   const auto gain = log_gain_near_class(
       *contenders.evidences.on_reduced[best], *evidence, context.reduced, context.likelihood,
       arcs.sigma, arcs.smooth.chi2, least_size, least - of_class - kLogOfParts, context.work);

@@ -53,14 +53,15 @@ ByClass<double> with_noise_alone(const Contenders& contenders, const EvidenceCon
   return logs;
 }
 
-/// The gain of a class over its evidence on all points. The reduced points tell `gain` over what
-/// they leave; where that is more than all points do, the difference is no deviation.
-double over_all_points(double gain, const ClassFit& fit, const ClassFit& on_reduced,
-                       const Contenders& contenders, const EvidenceContext& context) {
+/// The gain of a class over its evidence on all points, of one that the reduced points tell over
+/// what they leave.
+double over_all_points(double gain, CurveClass curve_class, const Contenders& contenders,
+                       const EvidenceContext& context) {
   const Likelihood& likelihood = context.likelihood;
-  const double told = std::max(on_reduced.chi2 + context.arcs.smooth.chi2, fit.chi2);
-  const double difference = log_evidence(likelihood, contenders.evidences, fit) -
-                            log_evidence(likelihood, contenders.evidences, fit.curve_class, told);
+  const double difference =
+      log_evidence(likelihood, contenders.evidences, *contenders.fits[curve_class]) -
+      log_evidence(likelihood, contenders.evidences, curve_class,
+                   chi2_without_deviation(contenders, context, curve_class));
   // Half of it is noise alone, which all points tell.
   const double log_half = std::log(0.5);
   const double of_deviations = gain + std::log1p(-std::exp(log_half - gain));
@@ -100,8 +101,7 @@ Contenders with_shared_deviations(Contenders contenders, const EvidenceContext& 
                                        context.arcs.smooth.chi2, context.work)
                    : std::nullopt;
     if (own) {
-      own = over_all_points(*own, *contenders.fits[curve_class], *contenders.coarse[curve_class],
-                            contenders, context);
+      own = over_all_points(*own, curve_class, contenders, context);
     }
     if (curve_class == classes.front()) {
       gain.fill(own.value_or(0.0));

@@ -57,11 +57,6 @@ bool may_bend_to_one_side(const FitData& touches, std::span<const double> bends)
   return true;
 }
 
-bool is_among(std::span<const SideChoice> choices, const std::vector<int>& sides) {
-  return std::any_of(choices.begin(), choices.end(),
-                     [&](const SideChoice& choice) { return choice.sides == sides; });
-}
-
 /// The reduced points with directions for those that show none, the sides to which the patches
 /// bend, and how they travel along the curve of the centres where that was needed.
 struct Directed {
@@ -159,15 +154,11 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
   double highest = -std::numeric_limits<double>::infinity();
   const auto try_ways = [&](const std::vector<std::vector<int>>& ways) {
     for (const std::vector<int>& sides : ways) {
-      if (is_among(sided.choices, sides)) {
-        continue;
-      }
       if (!sided.choices.empty() && !by.work.allows()) {
         break;
       }
       const double by_normals = log_likelihood_of_normals(patches, seen.touches, sides);
       SideChoice choice = fit_way(seen.touches, sides, by, starts, highest - by_normals, &centres);
-      choice.sides = sides;
       choice.expected = sides == possible.ways.front();
       choice.contrary = possible.ways.size() > 1 && sides == possible.ways[1];
       choice.log_of_normals = by_normals;

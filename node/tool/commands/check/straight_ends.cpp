@@ -55,10 +55,7 @@ class StraightLine {
 
   const Vec2& direction() const { return direction_; }
   double along(const Vec2& p) const { return direction_.dot(p - mean_); }
-  double across(const Vec2& p) const {
-    const Vec2 d = p - mean_;
-    return direction_.x() * d.y() - direction_.y() * d.x();
-  }
+  double across(const Vec2& p) const { return cross(direction_, p - mean_); }
   double length() const { return along(samples_.back()) - along(samples_.front()); }
   double end() const { return along(samples_.back()); }
 
@@ -102,10 +99,6 @@ class StraightLine {
   double along_squares_ = 0.0;
   double across_squares_ = 0.0;
 };
-
-double turn_between(const Vec2& a, const Vec2& b) {
-  return std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
-}
 
 /// Whether a line goes on to that sample. A way back, as behind a cusp, is another line.
 bool leads_to(const StraightLine& line, const Vec2& p, double limit_m) {
@@ -160,7 +153,8 @@ double sharpest_turn(std::span<const Vec2> samples, double chord_m) {
     const std::size_t before = sample_beyond(moved, i, -1, chord_m, kReach);
     const std::size_t after = sample_beyond(moved, i, 1, chord_m, kReach);
     if (before == moved.size() || after == moved.size()) continue;
-    sharpest = std::max(sharpest, turn_between(moved[i] - moved[before], moved[after] - moved[i]));
+    sharpest = std::max(sharpest,
+                        std::abs(turn_between(moved[i] - moved[before], moved[after] - moved[i])));
   }
   return sharpest;
 }
@@ -240,7 +234,7 @@ StraightEnd judged(std::span<const Vec2> end, std::span<const Vec2> samples,
   if (rest.chord_m > kMostSteps * rest.step_m) return {};
   const std::size_t after = sample_beyond(samples, 0, 1, rest.chord_m, samples.size());
   if (after == samples.size()) return {};
-  const double corner = turn_between(line.direction(), samples[after] - samples.front());
+  const double corner = std::abs(turn_between(line.direction(), samples[after] - samples.front()));
   if (corner < kLeastCorner || corner > kMostCorner) return {};
   if (corner < kTimesSharper * rest.turn_rad) return {};
   if (!is_straight(line, corner, std::max(sigma_m, line.sigma()))) return {};
