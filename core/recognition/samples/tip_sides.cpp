@@ -142,31 +142,38 @@ std::vector<double> turns_of(const FitData& reduced) {
   return turns;
 }
 
-PossibleSides possible_sides(std::span<const StoredPatch> patches, const FitData& reduced,
-                             std::span<const double> bends, std::span<const double> senses,
-                             WorkBudget& work) {
+std::vector<int> known_sides(std::span<const StoredPatch> patches, const FitData& reduced) {
   std::vector<int> known(reduced.patches.size(), 0);
-  std::vector<bool> has_tip(reduced.patches.size(), false);
-  const auto any_unknown = [&] {
-    bool any = false;
-    for (std::size_t i = 0; i < known.size(); ++i) {
-      any = any || (has_tip[i] && known[i] == 0);
-    }
-    return any;
-  };
   std::size_t p = 0;
   for (const StoredPatch& patch : patches) {
     if (patch.samples.empty()) {
       continue;
     }
     if (patch.context.tip_radius_m > 0.0) {
-      has_tip[p] = true;
       const bool lone = patch.samples.size() == 1;
       const int measured = measured_side(patch, reduced, reduced.patch(p));
       known[p] = measured != 0 ? measured : lone ? 0 : stated_side(patch.context.material_side);
     }
     ++p;
   }
+  return known;
+}
+
+PossibleSides possible_sides(std::span<const StoredPatch> patches, const FitData& reduced,
+                             std::span<const double> bends, std::span<const double> senses,
+                             WorkBudget& work) {
+  std::vector<int> known = known_sides(patches, reduced);
+  const auto has_tip = [&](std::size_t p) {
+    const auto points = reduced.patch(p);
+    return !points.empty() && points.front().offset > 0.0;
+  };
+  const auto any_unknown = [&] {
+    bool any = false;
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      any = any || (has_tip(i) && known[i] == 0);
+    }
+    return any;
+  };
   if (!any_unknown()) {
     return {{known}, 0};
   }
@@ -182,7 +189,7 @@ PossibleSides possible_sides(std::span<const StoredPatch> patches, const FitData
   PossibleSides sides;
   std::vector<bool> counted(known.size(), false);
   for (std::size_t i = 0; i < known.size(); ++i) {
-    if (has_tip[i] && known[i] == 0 && !counted[strokes[i].first]) {
+    if (has_tip(i) && known[i] == 0 && !counted[strokes[i].first]) {
       counted[strokes[i].first] = true;
       ++sides.open;
     }
@@ -190,7 +197,7 @@ PossibleSides possible_sides(std::span<const StoredPatch> patches, const FitData
   const auto add = [&](auto side_of) {
     std::vector<int> way(known.size());
     for (std::size_t i = 0; i < known.size(); ++i) {
-      way[i] = known[i] != 0 || !has_tip[i] ? known[i] : side_of(i);
+      way[i] = known[i] != 0 || !has_tip(i) ? known[i] : side_of(i);
     }
     if (std::find(sides.ways.begin(), sides.ways.end(), way) == sides.ways.end()) {
       sides.ways.push_back(std::move(way));

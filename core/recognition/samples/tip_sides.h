@@ -24,6 +24,10 @@ std::optional<double> certain_turn(std::span<const FitPoint> patch);
 /// The turns of all patches, significant or not. [rad]
 std::vector<double> turns_of(const FitData& reduced);
 
+/// For each patch the side of its tips, as `PossibleSides::ways` has it, if measured normals show
+/// it beyond doubt or else the probe states it; 0 where it is open or there is no tip.
+std::vector<int> known_sides(std::span<const StoredPatch> patches, const FitData& reduced);
+
 /// Ways in which the tips may lie.
 struct PossibleSides {
   /// Each has one side per patch, +1 if the tip centres lie left of travel, -1 right, 0 without a
@@ -39,12 +43,11 @@ struct PossibleSides {
   }
 };
 
-/// The possible sides of the tips. A patch's side is known if measured normals show it
-/// beyond doubt, else if the probe states it, else if it runs along a patch whose side is known
-/// (strokes_together.h). If all sides are known, there is one way. Otherwise
-/// the unknown sides are such that the part is convex everywhere, concave everywhere, or always on
-/// the left or always on the right of the curve, in this order. Patches that run together bend as
-/// the one of them that bends most.
+/// The possible sides of the tips. A patch's side is known as known_sides() has it, else if it runs
+/// along a patch whose side is known (strokes_together.h). If all sides are known, there is one
+/// way. Otherwise the unknown sides are such that the part is convex everywhere, concave
+/// everywhere, or always on the left or always on the right of the curve, in this order. Patches
+/// that run together bend as the one of them that bends most.
 ///
 /// `bends`: side to which each patch bends, > 0 for left. `senses`: < 0 if a patch travels against
 /// the curve; empty if no curve is known: then left and right are those of each patch's own travel.

@@ -70,7 +70,8 @@ Directed directed(std::span<const StoredPatch> patches, const SmoothModel& smoot
                   CurveOfCentres* centres, WorkBudget& work) {
   Directed result{smooth.reduced, {}, {}};
   const bool untold = has_untold_tips(smooth);
-  if ((untold || has_uncertain_bends(smooth)) && work.allows()) {
+  const bool asked = untold || has_uncertain_bends(smooth, known_sides(patches, smooth.reduced));
+  if (asked && work.allows()) {
     if (const auto& curve = centres->get()) {
       set_directions(DirectionsOf::UntoldPoints, *curve, smooth, &result.touches, work);
       if (work.allows()) {

@@ -69,11 +69,12 @@ bool has_kept_tips(const SmoothModel& smooth) {
   });
 }
 
-bool has_uncertain_bends(const SmoothModel& smooth) {
+bool has_uncertain_bends(const SmoothModel& smooth, std::span<const int> sides) {
   for (std::size_t p = 0; p < smooth.reduced.patches.size(); ++p) {
     const auto patch = smooth.reduced.patch(p);
     const bool told = patch.size() == 1 && !patch.front().tangent.isZero();
-    if (!patch.empty() && patch.front().offset > 0.0 && !told && !certain_turn(patch)) {
+    if (!patch.empty() && patch.front().offset > 0.0 && !told && sides[p] == 0 &&
+        !certain_turn(patch)) {
       return true;
     }
   }

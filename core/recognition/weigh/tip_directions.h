@@ -1,6 +1,7 @@
 // Directions and bends for round-tip samples that do not show them themselves.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/numerics/work_budget.h"
@@ -15,9 +16,9 @@ bool has_kept_tips(const SmoothModel& smooth);
 /// True if any of these has no known direction (StoredPatch::direction).
 bool has_untold_tips(const SmoothModel& smooth);
 
-/// True if any patch of tip centres has neither a significant bend (certain_turn) nor a known
-/// direction.
-bool has_uncertain_bends(const SmoothModel& smooth);
+/// True if any patch of tip centres has neither a known side (`sides`, one per patch, else 0) nor a
+/// significant bend (certain_turn) nor a known direction.
+bool has_uncertain_bends(const SmoothModel& smooth, std::span<const int> sides);
 
 enum class DirectionsOf { UntoldPoints, KeptPoints, AllPoints };
 
