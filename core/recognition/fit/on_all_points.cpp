@@ -96,16 +96,18 @@ void carry_to_all(const SmoothModel& smooth, PolynomialFit* curve) {
 }
 
 /// For points whose foot, followed from their reduced point, ended on the wrong arm of a bend, or
-/// on a cusp, where every way ends: the parameters of the nearest feet.
+/// on a cusp, where every way ends: the parameters of the nearest feet. Near a cusp a tip's centre
+/// may be as far from the wrong arm as from its own, on the other side of it.
 void seek_feet(std::span<const FitPoint> points, PolynomialFit* curve, WorkBudget& work) {
-  // Of a residual, in deviations of the noise, on either side of the curve: what lies nearer than
-  // noise leaves one point in twenty gains next to nothing from another foot, and seeking costs as
-  // much as ten steps of following.
+  // Of a residual, in deviations of the noise: what lies nearer than noise leaves one point in
+  // twenty gains next to nothing from another foot, and seeking costs as much as ten steps of
+  // following.
   constexpr double kFar = 2.0;
   const std::vector<double> distances = distances_from(*curve, points);
+  const int side = side_of_tips(distances, points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const FitPoint& point = points[i];
-    const double off = std::abs(distances[i]) - std::abs(point.offset);
+    const double off = distances[i] - side * point.offset;
     if (std::abs(off) * point.inverse_sigma > kFar && work.allows()) {
       work.spend(WorkKind::SoughtFoot, 1);
       curve->t[i] = nearest_parameter(curve->coefficients, point.position);

@@ -14,7 +14,7 @@ namespace palpate {
 /// A point's foot point and distance.
 struct PlacedPoint {
   double t = 0.0;                ///< parameter of the foot point
-  double signed_distance = 0.0;  ///< positive to the left of increasing t
+  double signed_distance = 0.0;  ///< positive to the left of increasing t, about a cusp too
   Vec2 normal = Vec2::Zero();    ///< unit, left of increasing t; at a cusp along the distance
 };
 
@@ -71,12 +71,14 @@ inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2
   }
   // At a cusp, or if the foot point is not stationary, the normal does not point along the
   // distance: uses the distance itself. (Next to the curve a small error along it looks the same.)
+  // What has a cusp for its nearest place lies outside of the bend, as what is there on both arms.
   constexpr double kPerpendicular = 0.9;
   const double square = away.squaredNorm();
   const bool stationary = std::abs(away.dot(first)) < last_step * speed2;
   if (!stationary &&
       placed.signed_distance * placed.signed_distance < kPerpendicular * kPerpendicular * square) {
-    placed.signed_distance = std::sqrt(square);
+    const double outside = cross(second_derivative(c, t), Vec2(c.col(3)));
+    placed.signed_distance = std::copysign(std::sqrt(square), outside);
     placed.normal = away / placed.signed_distance;
   }
   return placed;

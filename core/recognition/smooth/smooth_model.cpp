@@ -13,8 +13,10 @@
 namespace palpate {
 namespace {
 
-/// Keeps the samples of a section that no polynomial fits as its reduced points.
-void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
+/// Keeps the samples of a section that no polynomial fits as its reduced points, their directions
+/// those of the chords between their neighbours in the patch.
+void keep_points(FitData* data, const PatchSpan& patch, const PatchSpan& section,
+                 SmoothModel* model) {
   const Vec2 first = data->points[section.begin].position;
   const Vec2 along = data->points[section.end - 1].position - first;
   const double whole = along.norm();
@@ -24,11 +26,11 @@ void keep_points(FitData* data, const PatchSpan& section, SmoothModel* model) {
                              model->reduced.points.size() + section.size(), first + 0.5 * along,
                              axis, whole > 0.0 ? 0.5 * whole : 1.0, false, true});
   for (std::size_t i = section.begin; i < section.end; ++i) {
-    const std::size_t before = i > section.begin ? i - 1 : i;
-    const std::size_t after = i + 1 < section.end ? i + 1 : i;
+    const std::size_t before = i > patch.begin ? i - 1 : i;
+    const std::size_t after = i + 1 < patch.end ? i + 1 : i;
     const Vec2 chord = data->points[after].position - data->points[before].position;
     const double length = chord.norm();
-    if (section.size() > 1) {
+    if (patch.size() > 1) {
       data->points[i].tangent = length > 0.0 ? Vec2(chord / length) : Vec2(0.0, 0.0);
     }
     model->nearest_reduced[i] = static_cast<std::uint32_t>(model->reduced.points.size());
@@ -220,11 +222,12 @@ std::vector<Section> smoothed(const FitData& data, const SectionNoise& noise) {
   return sections;
 }
 
-void add_section(FitData* data, const Section& section, SmoothModel* model) {
+void add_section(FitData* data, const PatchSpan& patch, const Section& section,
+                 SmoothModel* model) {
   if (section.fit) {
     add_smoothed(data, *section.fit, model);
   } else {
-    keep_points(data, section.points, model);
+    keep_points(data, patch, section.points, model);
   }
 }
 
@@ -260,7 +263,7 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated
     const std::size_t begin = model.reduced.points.size();
     const auto first = section;
     for (; section != sections.end() && section->points.begin < patch.end; ++section) {
-      add_section(data, *section, &model);
+      add_section(data, patch, *section, &model);
       model.sections.back().joined = section != first;
     }
     model.reduced.patches.push_back({begin, model.reduced.points.size()});

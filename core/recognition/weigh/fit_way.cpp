@@ -61,6 +61,25 @@ void start_at(const ClassFit& fit, WarmStart* start) {
   }
 }
 
+/// The class that has all points as noise lets it, whatever the reduced points with their
+/// directions say of it: where a tip rolls about a cusp, these are what keeps them from it. nullopt
+/// if none.
+std::optional<ClassFit> best_on_all(const SideChoice& choice, const SideContext& by) {
+  std::optional<ClassFit> best;
+  for (const auto& fit : choice.fits) {
+    if (fit && !fit->at_limit && fit->chi2 <= by.out_of_reach && by.work.allows()) {
+      auto on_all =
+          refine_on_all(settled(*fit, choice.reduced, RivalOf::Other, by.work), by.arcs.smooth,
+                        by.arcs.data, kOnAllEffort, by.work, RivalOf::Best);
+      if (on_all && fits_well(on_all->chi2, residual_count(by.arcs.data)) &&
+          (!best || on_all->chi2 < best->chi2)) {
+        best = std::move(on_all);
+      }
+    }
+  }
+  return best;
+}
+
 /// Fits with the tips on these sides of `touches`. Where points show no direction of their own, or
 /// one so swayed by noise that tips taken off along it no longer lie as all points do, directions
 /// come from the curve found: one that is off by an angle puts the surface off by half its square
@@ -92,7 +111,11 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
     const bool swayed = choice.refined && !agrees(choice, smooth);
     // On all points distances are those of the tips' centres, whatever the directions.
     const bool of_all = swayed && choice.refined->chi2 < choice.settled->chi2 + smooth.chi2;
-    const auto curve = of_all ? to_canonical(*choice.refined, by.arcs.data)
+    const auto on_all = swayed && !of_all && has_kept_tips(smooth) && !fits_all(choice, by)
+                            ? best_on_all(choice, by)
+                            : std::nullopt;
+    const auto curve = on_all   ? to_canonical(*on_all, by.arcs.data)
+                       : of_all ? to_canonical(*choice.refined, by.arcs.data)
                        : swayed || has_kept_tips(smooth)
                            ? to_canonical(*choice.settled, choice.reduced)
                            : std::nullopt;
@@ -120,6 +143,9 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
       break;  // led astray
     }
     choice = std::move(next);
+    if ((of_all || on_all) && fits_all(choice, by)) {
+      break;  // a curve that all points have gave the directions: they get no better
+    }
     const double after = least_left(choice, smooth);
     if (noise_is_known_without_class(by.arcs, by.likelihood) && after > before / kLeastGain &&
         !fits_well(after, residual_count(by.arcs.data))) {
@@ -186,7 +212,7 @@ SideChoice fit_way(const FitData& touches, std::span<const int> sides, const Sid
   if (start_for(starts, sides) != nullptr || !may_gain()) {
     return choice;
   }
-  if (!agrees(choice, smooth) && centres->get()) {
+  if (!agrees(choice, smooth) && !fits_all(choice, by) && centres->get()) {
     take_along(*centres->get(), centres->start());
   }
   if (has_kept_tips(smooth) && !fits_all(choice, by) && may_gain() && centres->get()) {

@@ -4,15 +4,37 @@
 #include <cmath>
 
 #include "core/curves/curve.h"
+#include "core/numerics/negligible.h"
 #include "core/recognition/samples/tip_sides.h"
 
 namespace palpate {
 namespace {
 
-/// The curve's directions at the feet of the touches' points, in their frame; zero on a cusp, and
-/// where `work` is spent. Feet of the tips' centres, from which the curve is seen the same however
-/// little of it bends: a surface point that is a little off may have its foot on the other side of
-/// a sharp bend.
+/// The curve's direction, with rising parameter, at the foot of a tip's centre (curve's frame);
+/// zero if unknown. About a cusp, where the curve has none, the tip rolls: its way is across the
+/// line to its foot, if that is longer than noise.
+Vec2 direction_at_foot(const Curve& curve, const Vec2& centre_m, double sigma_m) {
+  // Of a right angle between the curve and the line to a foot, the cosine.
+  constexpr double kNotAcross = 0.1;
+  const FootPoint foot = foot_point(curve, centre_m);
+  const CurveDerivatives at = derivatives(curve, foot.t);
+  const Vec2 away = centre_m - at.position;
+  const bool at_cusp = std::abs(away.dot(at.first)) >= kNotAcross * away.norm() * at.first.norm();
+  if (!at_cusp) {
+    return at.first.normalized();
+  }
+  if (!(away.norm() > kNegligibleDeviations * sigma_m)) {
+    return Vec2::Zero();
+  }
+  // What has a cusp for its foot lies outside of the bend.
+  const bool is_left = cross(at.second, at.third) > 0.0;
+  return (is_left ? -1.0 : 1.0) * left_of(away).normalized();
+}
+
+/// The curve's directions at the feet of the touches' points, in their frame; zero where it has
+/// none, and where `work` is spent. Feet of the tips' centres, from which the curve is seen the
+/// same however little of it bends: a surface point that is a little off may have its foot on the
+/// other side of a sharp bend.
 std::vector<Vec2> directions_of(const Curve& curve, const CanonicalFit& fit, const FitData& touches,
                                 WorkBudget& work) {
   std::vector<Vec2> directions;
@@ -22,12 +44,9 @@ std::vector<Vec2> directions_of(const Curve& curve, const CanonicalFit& fit, con
       continue;
     }
     work.spend(kind_of_foot(fit.shape.curve_class), 1);
-    const Vec2 local = fit.world_T_curve.to_local(world_m(touches, point));
-    const Vec2 along = derivatives(curve, foot_point(curve, local).t).first;
-    const double length = along.norm();
-    directions.push_back(
-        length > 0.0 ? Vec2(touches.frame.rotate_back(fit.world_T_curve.rotate(along)) / length)
-                     : Vec2(0.0, 0.0));
+    const Vec2 along = direction_at_foot(curve, fit.world_T_curve.to_local(world_m(touches, point)),
+                                         touches.scale / point.inverse_sigma);
+    directions.push_back(touches.frame.rotate_back(fit.world_T_curve.rotate(along)));
   }
   return directions;
 }
@@ -49,9 +68,10 @@ double turned_by(const Vec2& before, const Vec2& after) {
   return before.isZero() ? kPi : std::abs(std::atan2(cross(before, after), before.dot(after)));
 }
 
-/// Whether a touch alone has its direction from elsewhere.
+/// Whether a section shows its directions: a touch alone may have its one from elsewhere, samples
+/// in a row have their neighbours.
 bool is_told(const ReducedSection& section, const FitData& reduced) {
-  return section.end - section.begin == 1 && !reduced.points[section.begin].tangent.isZero();
+  return section.end - section.begin > 1 || !reduced.points[section.begin].tangent.isZero();
 }
 
 }  // namespace
