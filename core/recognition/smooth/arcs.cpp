@@ -8,6 +8,9 @@
 namespace palpate {
 namespace {
 
+/// Whether enough degrees of freedom are left to estimate the noise from.
+bool shows_noise(const SmoothModel& smooth) { return smooth.dof() >= kFewestDegreesOfNoise; }
+
 /// Sets the noise of all points from the smooth model's residuals. Returns true if it is no larger
 /// than rounding: then it counts as known.
 bool estimate_noise(FitData* data, SmoothModel* smooth) {
@@ -15,14 +18,27 @@ bool estimate_noise(FitData* data, SmoothModel* smooth) {
   // half extent are then taken as exact.
   constexpr double kNoEstimate = 1e-6;
   const double rounding = rounding_level(*data);
-  const double estimate =
-      smooth->dof() >= kFewestDegreesOfNoise ? smooth->noise_ratio() : kNoEstimate;
+  const double estimate = shows_noise(*smooth) ? smooth->noise_ratio() : kNoEstimate;
   const double sigma = std::max(estimate, rounding);
   scale_noise(sigma, data, smooth);
   return estimate <= rounding;
 }
 
+/// Takes what rounding leaves for the noise.
+void take_rounding(FitData* data, Arcs* arcs) {
+  scale_noise(data->reading_noise / rms_sigma(*data), data, &arcs->smooth);
+  arcs->smooth = fit_smooth_model(data, true);
+  arcs->sigma_known = true;
+}
+
 }  // namespace
+
+Arcs arcs_of_rounding(Arcs arcs) {
+  take_rounding(&arcs.data, &arcs);
+  arcs.sigma = rms_sigma(arcs.data);
+  arcs.may_be_rounding = false;
+  return arcs;
+}
 
 Arcs arcs_of_stated_noise(Arcs arcs) {
   arcs.smooth = fit_smooth_model(&arcs.data, true, StatedNoise::Holds);
@@ -39,10 +55,11 @@ Arcs smooth_arcs(FitData data, bool sigma_known) {
   arcs.may_not_follow = sigma_known;
   arcs.sigma_known = sigma_known || estimate_noise(&data, &arcs.smooth);
   if (!sigma_known && rms_sigma(data) < data.reading_noise) {
-    // Sections may follow rounded readings to the last digit, from step to step.
-    scale_noise(data.reading_noise / rms_sigma(data), &data, &arcs.smooth);
-    arcs.smooth = fit_smooth_model(&data, true);
-    arcs.sigma_known = true;
+    arcs.may_be_rounding = !shows_noise(arcs.smooth);
+    if (!arcs.may_be_rounding) {
+      // Sections may follow rounded readings to the last digit, from step to step.
+      take_rounding(&data, &arcs);
+    }
   }
   arcs.sigma = rms_sigma(data);
   arcs.data = std::move(data);

@@ -18,7 +18,13 @@ struct Arcs {
   double sigma = 0.0;  ///< root mean square noise of the points, normalised
   /// The noise is stated, and sections that leave more have not been cut (arcs_of_stated_noise).
   bool may_not_follow = false;
+  /// The readings are rounded, and nothing but a class can show whether by more than they scatter:
+  /// touches one at a time (arcs_of_rounding).
+  bool may_be_rounding = false;
 };
+
+/// The arcs with what rounding leaves for their noise, which is known then.
+Arcs arcs_of_rounding(Arcs arcs);
 
 /// The arcs with sections that leave more than the stated noise cut until they do not, or taken for
 /// points. `arcs`: of stated noise.

@@ -163,6 +163,17 @@ bool are_bettered(const Arcs& arcs, const std::optional<Placed>& best) {
          arcs.smooth.chi2 > best->chi2 + 2.0 * kNegligibleLogOdds;
 }
 
+/// Whether rounding explains all that the best class leaves.
+bool are_rounded(const Arcs& arcs, const std::optional<Placed>& best) {
+  if (!best || !arcs.may_be_rounding) {
+    return false;
+  }
+  const auto left_over = static_cast<double>(residual_count(arcs.data)) -
+                         degrees_of_freedom(best->canonical.shape.curve_class);
+  const double rounding = arcs.data.reading_noise / arcs.sigma;
+  return best->chi2 <= rounding * rounding * left_over;
+}
+
 Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget& work,
                     const WeighOptions& options, std::span<const SidedStart> starts) {
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
@@ -184,6 +195,9 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
   std::optional<Placed> best_placed = best_on_all(contenders, at_first);
   if (are_bettered(arcs, best_placed) && work.allows()) {
     return weigh_arcs(arcs_of_stated_noise(std::move(arcs)), patches, work, options, starts);
+  }
+  if (are_rounded(arcs, best_placed) && work.allows()) {
+    return weigh_arcs(arcs_of_rounding(std::move(arcs)), patches, work, options, starts);
   }
   ResidualExcess seen =
       best_placed ? residual_excess(arcs, stated, best_placed->chi2, best_placed->canonical,
