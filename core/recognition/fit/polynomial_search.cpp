@@ -297,6 +297,9 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
     }
   }
   start_from_limits(reduced, highest_chi2, out_of_reach, &fits, work);
+  if (fits.cubic_spline && fits.cubic_spline->chi2 <= highest_chi2) {
+    start_from_spline(reduced, out_of_reach, &fits, work);
+  }
   return fits;
 }
 

@@ -5,16 +5,19 @@
 #include <array>
 #include <limits>
 
+#include "core/recognition/fit/polynomial_foot.h"
+
 namespace palpate {
 namespace {
 
 /// The parameter of the place nearest to a point, among places along the curve: so dense that a
-/// sharp bend has places on both its arms.
+/// sharp bend has places on both its arms. Where these are as near to one another as the places of
+/// one arm are, the nearest foot is sought.
 class NearestPlace {
  public:
   /// Of the points before, the feet were between `least` and `most`.
   NearestPlace(const PolynomialCoefficients& c, double least, double most)
-      : middle_(0.5 * (least + most)), half_(0.5 * (most - least)) {
+      : c_(c), middle_(0.5 * (least + most)), half_(0.5 * (most - least)) {
     for (std::size_t k = 0; k < kPlaces; ++k) {
       const double t = parameter(k);
       const Vec2 place = position_at(c, t);
@@ -32,11 +35,32 @@ class NearestPlace {
     // The least of them first: that takes several at a time.
     const float least =
         Eigen::Map<const Eigen::Array<float, kPlaces, 1>>(squares_.data()).minCoeff();
-    const auto nearest = std::find(squares_.begin(), squares_.end(), least) - squares_.begin();
-    return parameter(static_cast<std::size_t>(nearest));
+    const auto nearest = static_cast<std::size_t>(
+        std::find(squares_.begin(), squares_.end(), least) - squares_.begin());
+    return is_of_two_arms(nearest) ? nearest_parameter(c_, point) : parameter(nearest);
   }
 
  private:
+  /// Whether a place along the curve from the nearest one is hardly farther from the point.
+  bool is_of_two_arms(std::size_t nearest) const {
+    const std::size_t after = std::min(nearest + 1, kPlaces - 1);
+    const std::size_t before = nearest > 0 ? nearest - 1 : 0;
+    const float dx = 0.5F * (x_[after] - x_[before]);
+    const float dy = 0.5F * (y_[after] - y_[before]);
+    const float step2 = dx * dx + dy * dy;
+    if (squares_[nearest] > step2) {
+      return false;  // far from all of it
+    }
+    constexpr std::size_t kNeighbours = 3;  // of its own arm
+    for (std::size_t k = 0; k < kPlaces; ++k) {
+      const std::size_t apart = k > nearest ? k - nearest : nearest - k;
+      if (apart > kNeighbours && squares_[k] < 4.0F * step2) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   // At either end there may be more by three tenths of what there was: a new search is made before
   // there is a quarter more (recognizer.cpp).
   // Steps of a fortieth: a bend that is sharper has its arms told apart by the points themselves.
@@ -46,6 +70,7 @@ class NearestPlace {
     return middle_ + half_ * kFarthest * (2.0 * static_cast<double>(k) / (kPlaces - 1) - 1.0);
   }
 
+  const PolynomialCoefficients& c_;
   double middle_;  ///< of the feet
   double half_;    ///< half their range
   // Single precision is plenty for a start.

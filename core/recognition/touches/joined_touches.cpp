@@ -26,6 +26,9 @@ namespace {
 constexpr std::size_t kRun = 12;
 constexpr double kTurn = 0.6;  // rad
 
+/// Touches that lie this far apart, in units of the noise, are in no wrong order by it.
+constexpr double kLeastStep = 20.0;
+
 /// A step of the path that turns by no more tells the direction of a touch on it: to half of that,
 /// even if all of it is a corner at the touch. The rounds that remove tips (weigh/sides.cpp) start
 /// from there; the curve of the centres, which turns about an edge with them, may know none. [rad]
@@ -115,14 +118,13 @@ struct PlacedCurve {
   std::vector<Vec2> touches_m;  ///< in their order along the curve
 };
 
-/// The curve that explains the points best by the Bayesian information criterion. Each touch may
-/// lie anywhere along the curve with the same density. (Without that, a needle whose two sides
-/// share the points of a line would explain their noise.)
-std::optional<PlacedCurve> best_of(const ClassFits& fits, const Arcs& arcs, unsigned classes) {
+/// The curves in the order in which they explain the points by the Bayesian information criterion.
+/// Each touch may lie anywhere along the curve with the same density. (Without that, a needle whose
+/// two sides share the points of a line would explain their noise.)
+std::vector<PlacedCurve> best_first(const ClassFits& fits, const Arcs& arcs, unsigned classes) {
   const FitData& reduced = arcs.smooth.reduced;
   const auto n = static_cast<double>(reduced.points.size());
-  std::optional<PlacedCurve> best;
-  double lowest = std::numeric_limits<double>::infinity();
+  std::vector<std::pair<double, PlacedCurve>> curves;
   for (const auto& fit : fits) {
     const bool wanted = fit && !fit->at_limit && (classes & class_bit(fit->curve_class)) != 0;
     const auto canonical = wanted ? to_canonical(*fit, reduced) : std::nullopt;
@@ -136,36 +138,43 @@ std::optional<PlacedCurve> best_of(const ClassFits& fits, const Arcs& arcs, unsi
     const double criterion = (arcs.sigma_known ? chi2 : n * std::log(chi2)) +
                              degrees_of_freedom(fit->curve_class) * std::log(n) +
                              2.0 * n * std::log(length_of(ordered.feet_m));
-    if (criterion < lowest) {
-      lowest = criterion;
-      best = PlacedCurve{*curve, canonical->world_T_curve, chi2, std::move(ordered.points_m)};
+    if (!std::isnan(criterion)) {
+      curves.emplace_back(criterion, PlacedCurve{*curve, canonical->world_T_curve, chi2,
+                                                 std::move(ordered.points_m)});
     }
   }
-  return best;
+  std::stable_sort(curves.begin(), curves.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<PlacedCurve> result;
+  for (auto& [criterion, curve] : curves) {
+    result.push_back(std::move(curve));
+  }
+  return result;
 }
 
-/// A curve by which to order the touches. `start` receives the fits if every class was searched and
-/// one fits.
-std::optional<PlacedCurve> curve_through(const FitData& data, bool sigma_known, unsigned classes,
-                                         std::optional<WarmStart>* start, WorkBudget& work) {
+/// Curves by which to order the touches, the likeliest first. `start` receives the fits if every
+/// class was searched and one fits.
+std::vector<PlacedCurve> curves_through(const FitData& data, bool sigma_known, unsigned classes,
+                                        std::optional<WarmStart>* start, WorkBudget& work) {
   const Arcs arcs = smooth_arcs(data, sigma_known);
   const FitData& reduced = arcs.smooth.reduced;
   // A conic gives the order, whatever other classes fit, if it explains the touches within their
   // noise and does not go back and forth between them (as the two sides of a needle would).
-  std::optional<PlacedCurve> conic =
-      best_of(fit_classes(reduced, work, nullptr, classes & ~kCubics), arcs, ~kCubics);
-  const bool orders = conic && arcs.sigma_known &&
-                      fits_well(conic->chi2, residual_count(reduced)) &&
-                      length_of(conic->touches_m) <= kDetour * shortest_tree(conic->touches_m);
+  std::vector<PlacedCurve> conics =
+      best_first(fit_classes(reduced, work, nullptr, classes & ~kCubics), arcs, ~kCubics);
+  const bool orders =
+      !conics.empty() && arcs.sigma_known &&
+      fits_well(conics.front().chi2, residual_count(reduced)) &&
+      length_of(conics.front().touches_m) <= kDetour * shortest_tree(conics.front().touches_m);
   if (orders || (classes & kCubics) == 0) {
-    return conic;
+    return conics;
   }
   const ClassFits fits = fit_classes(reduced, work, nullptr, classes);
   WarmStart found = warm_start_from(fits, reduced);
   if (arcs.sigma_known && !found.polynomials.every_seed) {
     *start = std::move(found);
   }
-  return best_of(fits, arcs, kAllClasses);
+  return best_first(fits, arcs, kAllClasses);
 }
 
 /// A touch's place in the order of all.
@@ -261,12 +270,23 @@ std::map<double, Indices> by_tip(std::span<const StoredPatch> patches, const Ind
   return of_tip;
 }
 
+/// Whether a smooth model must follow all bends of the runs.
+enum class Bends { AreFollowed, MayBeSharp };
+
+/// Whether a smooth path through the runs, in their order, leaves no more than the stated noise.
+bool leaves_noise(std::span<const StoredPatch> runs, Bends bends, double default_sigma_m) {
+  bool sigma_known = false;
+  FitData data = make_fit_data(runs, default_sigma_m, &sigma_known);
+  const SmoothModel smooth = fit_smooth_model(&data, sigma_known);
+  const bool followed = std::none_of(smooth.sections.begin(), smooth.sections.end(),
+                                     [](const ReducedSection& section) { return section.kept; });
+  return (followed || bends == Bends::MayBeSharp) && can_be_noise(smooth.chi2, smooth.dof());
+}
+
 /// Joins touches in the order of the shortest way through them, which needs no curve. nullopt if
 /// that order is in doubt, or if a smooth path through the runs leaves more than the stated noise.
 std::optional<Joined> joined_by_way(std::span<const StoredPatch> patches, const Indices& lone,
                                     double default_sigma_m) {
-  // In units of the noise: if vertices were closer, noise would affect their order.
-  constexpr double kLeastStep = 20.0;
   Joined result(patches.size());
   for (const auto& [tip_radius_m, of_tip] : by_tip(patches, lone)) {
     if (of_tip.size() < kRun) {
@@ -301,19 +321,45 @@ std::optional<Joined> joined_by_way(std::span<const StoredPatch> patches, const 
     }
     result.add(patches, places);
   }
-  if (result.runs.empty()) {
-    return result;
-  }
-  bool sigma_known = false;
-  FitData data = make_fit_data(result.runs, default_sigma_m, &sigma_known);
-  const SmoothModel smooth = fit_smooth_model(&data, sigma_known);
-  const bool followed = std::none_of(smooth.sections.begin(), smooth.sections.end(),
-                                     [](const ReducedSection& section) { return section.kept; });
-  return followed && can_be_noise(smooth.chi2, smooth.dof()) ? std::optional(std::move(result))
-                                                             : std::nullopt;
+  const bool holds =
+      result.runs.empty() || leaves_noise(result.runs, Bends::AreFollowed, default_sigma_m);
+  return holds ? std::optional(std::move(result)) : std::nullopt;
 }
 
-/// Joins touches in the order along the curve that explains them best; nullopt if there is none.
+/// Joins touches in the order along a curve.
+Joined joined_along(std::span<const StoredPatch> patches, const Indices& lone,
+                    const PlacedCurve& found) {
+  Joined result(patches.size());
+  for (const auto& [tip_radius_m, of_tip] : by_tip(patches, lone)) {
+    std::vector<Place> places;
+    for (const std::size_t p : of_tip) {
+      const Vec2 local = found.world_T_curve.to_local(patches[p].samples.front().position_m);
+      places.push_back({p, foot_point(found.curve, local).t, 0.0, 0.0, Vec2(0.0, 0.0), 0.0});
+    }
+    sort_along(found.curve, &places, [](const Place& place) { return place.along; });
+    for (std::size_t i = 1; i < places.size(); ++i) {
+      places[i].least_angle = places[i].most_angle =
+          places[i - 1].most_angle + turn_along(found.curve, places[i - 1].along, places[i].along);
+    }
+    result.add(patches, places);
+  }
+  return result;
+}
+
+/// Whether a run goes back and forth among touches that noise does not put in a wrong order.
+bool goes_back_and_forth(const StoredPatch& run, double default_sigma_m) {
+  std::vector<Vec2> apart;
+  for (const StoredSample& sample : run.samples) {
+    const double least_m = kLeastStep * sigma_m_of(sample, default_sigma_m);
+    if (apart.empty() || (sample.position_m - apart.back()).norm() >= least_m) {
+      apart.push_back(sample.position_m);
+    }
+  }
+  return length_of(apart) > kDetour * shortest_tree(apart);
+}
+
+/// Joins touches in the order along the likeliest curve whose order holds; nullopt if there is
+/// none. A curve that is not of the part may lead from one of its arms to another and back.
 std::optional<Joined> joined_by_curve(std::span<const StoredPatch> patches, const Indices& lone,
                                       double default_sigma_m, unsigned classes, WorkBudget& work) {
   std::vector<StoredPatch> sought;
@@ -332,27 +378,21 @@ std::optional<Joined> joined_by_curve(std::span<const StoredPatch> patches, cons
   }
   bool sigma_known = false;
   const FitData data = make_fit_data(sought, default_sigma_m, &sigma_known);
-  Joined result(patches.size());
-  const auto found = curve_through(data, sigma_known, classes, &result.start, work);
-  if (!found) {
-    return std::nullopt;
-  }
-  const Curve& curve = found->curve;
-  work.spend(kind_of_foot(class_of(curve)), lone.size());
-  for (const auto& [tip_radius_m, of_tip] : by_tip(patches, lone)) {
-    std::vector<Place> places;
-    for (const std::size_t p : of_tip) {
-      const Vec2 local = found->world_T_curve.to_local(patches[p].samples.front().position_m);
-      places.push_back({p, foot_point(curve, local).t, 0.0, 0.0, Vec2(0.0, 0.0), 0.0});
+  std::optional<WarmStart> start;
+  for (const PlacedCurve& curve : curves_through(data, sigma_known, classes, &start, work)) {
+    work.spend(kind_of_foot(class_of(curve.curve)), lone.size());
+    Joined joined = joined_along(patches, lone, curve);
+    const bool holds =
+        !stated || joined.runs.empty() ||
+        (std::none_of(joined.runs.begin(), joined.runs.end(),
+                      [&](const auto& run) { return goes_back_and_forth(run, default_sigma_m); }) &&
+         leaves_noise(joined.runs, Bends::MayBeSharp, default_sigma_m));
+    if (holds) {
+      joined.start = std::move(start);
+      return joined;
     }
-    sort_along(curve, &places, [](const Place& place) { return place.along; });
-    for (std::size_t i = 1; i < places.size(); ++i) {
-      places[i].least_angle = places[i].most_angle =
-          places[i - 1].most_angle + turn_along(curve, places[i - 1].along, places[i].along);
-    }
-    result.add(patches, places);
   }
-  return result;
+  return std::nullopt;
 }
 
 }  // namespace
