@@ -1,19 +1,28 @@
 #include "core/recognition/fewest_places.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
+
+#include "core/recognition/samples/repeated_touches.h"
 
 namespace palpate {
 
-bool have_places(const FitData& data, std::size_t count) {
+bool have_places(const FitData& data, std::size_t count, double touch_sigma) {
+  const double one_place = kOnePlace * std::sqrt(2.0) * touch_sigma;
   std::vector<Vec2> places;
   places.reserve(count);
-  for (const FitPoint& point : data.points) {
-    if (places.size() == count) {
-      break;
-    }
-    if (std::find(places.begin(), places.end(), point.position) == places.end()) {
-      places.push_back(point.position);
+  for (std::size_t p = 0; p < data.patches.size(); ++p) {
+    const double apart = data.patches[p].size() == 1 ? one_place : 0.0;
+    for (const FitPoint& point : data.patch(p)) {
+      if (places.size() == count) {
+        return true;
+      }
+      if (std::none_of(places.begin(), places.end(), [&](const Vec2& place) {
+            return (point.position - place).norm() <= apart;
+          })) {
+        places.push_back(point.position);
+      }
     }
   }
   return places.size() == count;

@@ -25,8 +25,9 @@ inline constexpr std::size_t kFewestPlaces = kFewestCompared + kFewestLeftOver;
 /// could be, and where it would lie. A circle takes three, and one speaks for or against it.
 inline constexpr std::size_t kFewestPatches = 4;
 
-/// Whether the points lie at so many different places.
-bool have_places(const FitData& data, std::size_t count);
+/// Whether the points lie at so many different places. `touch_sigma`: noise, normalised, beyond
+/// which single touches must lie apart (repeated_touches.h); 0 where those of one place are merged.
+bool have_places(const FitData& data, std::size_t count, double touch_sigma = 0.0);
 
 /// At how many its class can be RECOGNIZED, by evidence and of stated noise. A sample that is set
 /// aside is an unknown more.

@@ -10,6 +10,7 @@
 #include "core/numerics/normal_law.h"
 #include "core/recognition/estimate_stream.h"
 #include "core/recognition/fewest_places.h"
+#include "core/recognition/gross_touches.h"
 #include "core/recognition/likelihood_answer.h"
 #include "core/recognition/outliers.h"
 #include "core/recognition/patch_contacts.h"
@@ -163,7 +164,8 @@ class Recognizer::Impl {
       doubt(&answer, Doubt::Misfit);
     }
     const bool by_evidence = options_.method == RecognitionMethod::MaximumLikelihood && sigma_known;
-    if (!have_places(data, by_evidence ? fewest_places(answer) : kFewestPlaces)) {
+    const double touch_sigma = sigma_known ? 0.0 : answer.sigma_m / data.scale;
+    if (!have_places(data, by_evidence ? fewest_places(answer) : kFewestPlaces, touch_sigma)) {
       doubt(&answer, Doubt::FewPlaces);
     }
     // Told of the samples as they came, not of the means that stand for them.
@@ -287,13 +289,17 @@ class Recognizer::Impl {
         {},
         {}};
     Weighing& w = weighed.w;
-    const auto kept = without_outliers(w, data, sigma_known, options_.false_outlier_probability);
+    auto kept = without_outliers(w, data, sigma_known, options_.false_outlier_probability);
+    if (!kept && sigma_known && w.best == CurveClass::Unclassified && work.allows()) {
+      kept = without_gross_touches(w, data, work);
+    }
     if (kept && work.allows()) {
       // A search is not followed: the outliers may have led it astray.
       const std::vector<SidedStart> nearer =
           which == Starts::OfSearch ? std::vector<SidedStart>{} : std::move(w.starts);
-      Weighing again = weigh_in_full(*kept, sigma_known, patches, work,
-                                     weigh_options(*kept, sigma_known), nearer);
+      WeighOptions options = weigh_options(*kept, sigma_known);
+      options.log_odds_against_gross = log_odds_against_gross(data, *kept);
+      Weighing again = weigh_in_full(*kept, sigma_known, patches, work, options, nearer);
       if (!work.was_cut()) {  // else the one before says more
         w = std::move(again);
         weighed.outliers = left_out(data, *kept);

@@ -7,6 +7,7 @@
 
 #include "core/recognition/samples/dwells.h"
 #include "core/recognition/samples/passes.h"
+#include "core/recognition/samples/repeated_touches.h"
 #include "core/recognition/samples/stored_spikes.h"
 
 namespace palpate {
@@ -163,6 +164,8 @@ void CleanPatches::update(const std::vector<StoredPatch>& patches, double defaul
     moved_.insert(moved_.end(), seen.moved.begin(), seen.moved.end());
     clean_.insert(clean_.end(), seen.clean.begin(), seen.clean.end());
   }
+  moved_ = without_repeated_touches(std::move(moved_), default_sigma_m);
+  clean_ = without_repeated_touches(std::move(clean_), default_sigma_m);
 }
 
 std::size_t CleanPatches::dwelling_count() const {

@@ -177,7 +177,12 @@ bool are_rounded(const Arcs& arcs, const std::optional<Placed>& best) {
 Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget& work,
                     const WeighOptions& options, std::span<const SidedStart> starts) {
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
-  const Evidences of_paths = evidences_of_paths(arcs.smooth, stated, work);
+  const auto paths_under = [&](const Likelihood& likelihood) {
+    Evidences of_paths = evidences_of_paths(arcs.smooth, likelihood, work);
+    of_paths.free_form.log_occam += options.log_odds_against_gross;
+    return of_paths;
+  };
+  const Evidences of_paths = paths_under(stated);
   const double hopeless = out_of_reach(arcs, stated, of_paths);
   std::optional<WorkBudget::Reserve> for_verdict(std::in_place, work, kShareOfVerdict);
   SidedFits sided = fit_over_sides(
@@ -206,8 +211,7 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
                   : ResidualExcess{};
   seen.correlated = seen.correlated || options.unqualified_probe;
   const Likelihood likelihood = seen.likelihood.value_or(stated);
-  const Evidences of_seen_paths =
-      seen.likelihood ? evidences_of_paths(arcs.smooth, likelihood, work) : Evidences{};
+  const Evidences of_seen_paths = seen.likelihood ? paths_under(likelihood) : Evidences{};
   const bool otherwise =
       seen.likelihood && rejudge_sides({arcs, likelihood, work, of_seen_paths, options.classes,
                                         hopeless, options.touched_from},

@@ -27,6 +27,9 @@ struct WeighOptions {
   /// if the probe may deviate so, or spikes that were not found.
   bool near_parts = true;
   TouchedFrom touched_from = TouchedFrom::Unknown;
+  /// log odds against the gross errors of the touches that were set aside for the classes: those
+  /// of "unclassified", which needs none, are higher by them.
+  double log_odds_against_gross = 0.0;
 };
 
 struct Weighing {
