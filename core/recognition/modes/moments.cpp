@@ -163,6 +163,9 @@ std::optional<ShapePoseCovariance> bend_added(const ShapePoseCovariance& covaria
   // In units of the moment's deviations; a free component has none.
   Eigen::Matrix<double, 6, 6> scaled = Eigen::Matrix<double, 6, 6>::Identity();
   for (Eigen::Index i = 0; i < sum.rows(); ++i) {
+    if (!(moment(i, i) > 0.0) && sum(i, i) != 0.0) {
+      return std::nullopt;
+    }
     for (Eigen::Index j = 0; j < sum.cols(); ++j) {
       const double size = std::sqrt(moment(i, i) * moment(j, j));
       scaled(i, j) = size > 0.0 ? sum(i, j) / size : i == j ? 1.0 : 0.0;

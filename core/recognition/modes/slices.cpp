@@ -120,11 +120,11 @@ std::vector<Slice> walk(const Touch& touch, const FitData& data, const Slice& st
     }
     const double length = std::copysign(std::min(std::abs(step), room), step);
     auto curve = slice(touch, data, last->curve, k, length, valley, how.settled, work);
-    if (!curve) {
+    const double density = curve ? log_density(*curve, k) : 0.0;
+    if (!curve || !std::isfinite(density)) {
       outside = walked + std::abs(length);
       continue;
     }
-    const double density = log_density(*curve, k);
     const double top = std::max(*highest, density);
     const double before = deviations_below(top, last->log_density);
     const double here = deviations_below(top, density);
@@ -190,7 +190,8 @@ int widest_coordinate(const Touch& touch, const TouchedCurve& best, const Touche
 }
 
 /// log of the integral over the widest coordinate, by trapezoids between slices, which become the
-/// nodes. nullopt where the class is a single slice wide.
+/// nodes. nullopt where there is no valley to walk along on one side of the mode, though the class
+/// does not end there: feet leap from arm to arm, and slices beside the mode are of another.
 /// `deviation`: of that coordinate at the mode.
 std::optional<double> integrate(const FitData& data, double deviation, const Walk& how,
                                 ClassEvidence* evidence, WorkBudget& work) {
@@ -203,6 +204,13 @@ std::optional<double> integrate(const FitData& data, double deviation, const Wal
   double top = density;
   std::vector<Slice> behind = walk(evidence->touch, data, start, k, -deviation, how, &top, work);
   std::vector<Slice> ahead = walk(evidence->touch, data, start, k, deviation, how, &top, work);
+  const auto is_lost = [&](const std::vector<Slice>& side, double direction) {
+    return side.empty() &&
+           std::isinf(longest_walk(evidence->touch.curve_class, k, start.curve.z[k], direction));
+  };
+  if (is_lost(behind, -1.0) || is_lost(ahead, 1.0)) {
+    return std::nullopt;
+  }
   const std::size_t middle = behind.size();
   slices.insert(slices.begin(), std::make_move_iterator(behind.rbegin()),
                 std::make_move_iterator(behind.rend()));
@@ -283,7 +291,9 @@ std::optional<ClassEvidence> by_slices(ClassEvidence evidence, const FitData& da
   evidence.nodes = {{mode, 1.0}};
   if (k >= 0) {
     const double deviation = std::sqrt(covariance(k, k)) * mode.widths[k];
-    log_integral = integrate(data, deviation, how, &evidence, work).value_or(log_integral);
+    const auto integral = integrate(data, deviation, how, &evidence, work);
+    log_integral = integral.value_or(log_integral);
+    evidence.widest = integral ? k : -1;
   }
   evidence.log_occam = log_integral + 0.5 * evidence.fitted_chi2 + evidence.log_all_modes;
   return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;

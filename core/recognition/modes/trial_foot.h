@@ -31,6 +31,19 @@ inline FootStep foot_step(const CurveDerivatives& at, const Vec2& point) {
   return {-dot(away, at.first) / (slope > kLeastFootSlope * speed2 ? slope : speed2), slope};
 }
 
+/// The step, no longer than leads as far as a foot can be: not farther from where it starts than
+/// twice the distance. Beside a cusp, where the curve has hardly any speed, Newton's would leave
+/// the data.
+inline double within_reach(double step, const CurveDerivatives& at, const Vec2& point) {
+  const Vec2 away = at.position - point;
+  const double away2 = dot(away, away);
+  const double second2 = dot(at.second, at.second);
+  const double step2 = step * step;
+  return step2 * step2 * second2 <= 16.0 * away2
+             ? step
+             : std::copysign(std::sqrt(4.0 * std::sqrt(away2 / second2)), step);
+}
+
 /// Where a foot is sought: for a conic, whose parameter has no unit of length and changes with the
 /// shape, a step from where the point's own coordinates put it, which takes no function of t; for a
 /// cubic at `t`, on the arm where it was.
@@ -77,7 +90,8 @@ TrialFoot trial_foot(const C& curve, const Vec2& point, double t, double sigma) 
   constexpr double kConverging = 0.1;
   for (int i = 0;; ++i) {
     const CurveDerivatives at = curve.derivatives(t);
-    const auto [step, slope] = foot_step(at, point);
+    const auto [newton, slope] = foot_step(at, point);
+    const double step = within_reach(newton, at, point);
     if (i == kMostFootSteps || !std::isfinite(step)) {  // as at a cusp, of speed 0
       return {t, at.position, at.first};
     }
