@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/recognition/fit/algebraic_fit.h"
+#include "core/recognition/fit/feet_in_order.h"
 #include "core/recognition/fit/few_points.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/touchable.h"
@@ -32,6 +33,26 @@ ClassFit polynomial_class(CurveClass curve_class, const PolynomialFit& fit) {
   return result;
 }
 
+/// A polynomial that fits, but with strokes that run back and forth along it, as it fits with these
+/// in order; unchanged where it cannot.
+void put_in_order(PolynomialModel model, const FitData& reduced, const RefineEffort& effort,
+                  std::optional<PolynomialFit>* fit, WorkBudget& work) {
+  const std::size_t residuals = residual_count(reduced);
+  if (!*fit || !fits_well((*fit)->chi2, residuals) || is_touchable(**fit, reduced) ||
+      !work.allows()) {
+    return;
+  }
+  constexpr int kSurfacePoints = 0;
+  RefineEffort follow = effort;
+  follow.seek_feet = false;
+  PolynomialFit ordered =
+      refine_polynomial(model, reduced.points, with_feet_in_order(**fit, reduced, work),
+                        kSurfacePoints, follow, work);
+  if (fits_well(ordered.chi2, residuals) && is_touchable(ordered, reduced)) {
+    *fit = std::move(ordered);
+  }
+}
+
 /// As fit_classes, searched on all points or from `starts`; nullopt where these fitted and nothing
 /// does any more.
 std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& reduced,
@@ -52,6 +73,10 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
       starts != nullptr          ? follow_polynomials(reduced, *starts, out_of_reach, work)
       : (classes & kCubics) != 0 ? search_polynomials(reduced, out_of_reach, work)
                                  : search_parabola(reduced, work);
+  put_in_order(PolynomialModel::Parabola, reduced, near_enough, &polynomials.parabola, work);
+  put_in_order(PolynomialModel::SemiCubicalParabola, reduced, near_enough,
+               &polynomials.semi_cubical_parabola, work);
+  put_in_order(PolynomialModel::CubicSpline, reduced, near_enough, &polynomials.cubic_spline, work);
   // The algebraic start serves unless it led to a conic that nothing touches, or one that a limit
   // betters; then the limits are the starts.
   const bool started = starts != nullptr && starts->conic;
