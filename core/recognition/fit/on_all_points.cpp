@@ -15,6 +15,9 @@
 namespace palpate {
 namespace {
 
+/// To which all points and reduced ones agree. Of chi-square: odds are right to a factor of 1.6.
+constexpr double kAgreement = 1.0;
+
 /// How far above a spline's chi-square its rival's may be.
 constexpr double kHopeless = 2.0 * kNegligibleLogOdds;
 
@@ -220,7 +223,6 @@ double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData
 std::optional<ClassFit> where_all_agree(const ClassFit& settled, const FitData& reduced,
                                         const SmoothModel& smooth, const FitData& data,
                                         WorkBudget& work) {
-  constexpr double kAgreement = 1.0;  // of chi-square: odds are right to a factor of 1.6
   if (!is_what_it_says(settled, reduced)) {
     return std::nullopt;
   }
@@ -238,16 +240,23 @@ std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& sm
   work.spend(WorkKind::PlacedRow, points.size());
   ClassFit refined = refine_parts(start_on_all(fit, smooth, points, Feet::Followed, work), points,
                                   effort, RivalOf::Best, work);
-  // All points can leave no more than the reduced ones and the smooth model do: some feet are on
-  // the wrong arm of a bend. So they may be of the best class where the reduced points fit no
-  // better, about a cusp that no section follows.
+  // All points leave what the reduced ones and the smooth model do: where they leave more, some
+  // feet are on the wrong arm of a bend. So they may be of the best class where the reduced points
+  // fit no better, about a cusp that no section follows.
   const std::size_t reduced = residual_count(smooth.reduced);
-  if (fit.polynomial && (rival == RivalOf::Best || fits_well(fit.chi2, reduced)) &&
-      !fits_well(refined.chi2 - smooth.chi2, reduced) && work.allows()) {
+  const double more = refined.chi2 - smooth.chi2;
+  // Of a spline not unless noise cannot leave it: between the nearest feet of some points on either
+  // side a loop, as thin as noise, would pass twice.
+  const bool on_wrong_arm = fit.curve_class == CurveClass::SemiCubicalParabola
+                                ? more > fit.chi2 + kAgreement
+                                : !fits_well(more, reduced);
+  if (fit.polynomial && (rival == RivalOf::Best || fits_well(fit.chi2, reduced)) && on_wrong_arm &&
+      work.allows()) {
     work.spend(WorkKind::PlacedRow, points.size());
     ClassFit again = refine_parts(start_on_all(fit, smooth, points, Feet::Sought, work), points,
                                   effort, RivalOf::Best, work);
-    if (again.chi2 < refined.chi2) {
+    if (again.chi2 < refined.chi2 &&
+        (is_what_it_says(again, data) || !is_what_it_says(refined, data))) {
       refined = std::move(again);
     }
   }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "core/recognition/fit/polynomial_foot.h"
@@ -26,21 +27,28 @@ class NearestPlace {
     }
   }
 
-  double operator()(const Vec2& point) {
-    const auto x = static_cast<float>(point.x());
-    const auto y = static_cast<float>(point.y());
+  double operator()(const FitPoint& point) {
+    const auto x = static_cast<float>(point.position.x());
+    const auto y = static_cast<float>(point.position.y());
     for (std::size_t k = 0; k < kPlaces; ++k) {
       squares_[k] = (x_[k] - x) * (x_[k] - x) + (y_[k] - y) * (y_[k] - y);
     }
     // The least of them first: that takes several at a time.
-    const float least =
-        Eigen::Map<const Eigen::Array<float, kPlaces, 1>>(squares_.data()).minCoeff();
+    const float least = least_between(0, kPlaces);
     const auto nearest = static_cast<std::size_t>(
         std::find(squares_.begin(), squares_.end(), least) - squares_.begin());
-    return is_of_two_arms(nearest) ? nearest_parameter(c_, point) : parameter(nearest);
+    const double t = parameter(nearest);
+    return is_of_two_arms(nearest) && is_far(point, t) ? nearest_parameter(c_, point.position) : t;
   }
 
  private:
+  float least_between(std::size_t begin, std::size_t end) const {
+    return begin < end ? Eigen::Map<const Eigen::ArrayXf>(squares_.data() + begin,
+                                                          static_cast<Eigen::Index>(end - begin))
+                             .minCoeff()
+                       : std::numeric_limits<float>::infinity();
+  }
+
   /// Whether a place along the curve from the nearest one is hardly farther from the point.
   bool is_of_two_arms(std::size_t nearest) const {
     const std::size_t after = std::min(nearest + 1, kPlaces - 1);
@@ -48,17 +56,19 @@ class NearestPlace {
     const float dx = 0.5F * (x_[after] - x_[before]);
     const float dy = 0.5F * (y_[after] - y_[before]);
     const float step2 = dx * dx + dy * dy;
-    if (squares_[nearest] > step2) {
-      return false;  // far from all of it
-    }
     constexpr std::size_t kNeighbours = 3;  // of its own arm
-    for (std::size_t k = 0; k < kPlaces; ++k) {
-      const std::size_t apart = k > nearest ? k - nearest : nearest - k;
-      if (apart > kNeighbours && squares_[k] < 4.0F * step2) {
-        return true;
-      }
-    }
-    return false;
+    const float other =
+        std::min(least_between(0, nearest > kNeighbours ? nearest - kNeighbours : 0),
+                 least_between(std::min(nearest + kNeighbours + 1, kPlaces), kPlaces));
+    return squares_[nearest] <= step2 && other < 4.0F * step2;
+  }
+
+  /// Whether the foot that a place leads to is farther from the point than noise.
+  bool is_far(const FitPoint& point, double t) const {
+    constexpr double kFar = 3.0;  // standard deviations
+    const PlacedPoint foot =
+        follow_foot_point(c_, point.position, t, last_foot_step(1.0 / point.inverse_sigma));
+    return std::abs(foot.signed_distance) * point.inverse_sigma > kFar;
   }
 
   // At either end there may be more by three tenths of what there was: a new search is made before
@@ -96,7 +106,7 @@ std::optional<PolynomialFit> carried(const std::optional<PolynomialFit>& fit, co
   NearestPlace nearest(start.coefficients, *least, *most);
   start.t.reserve(reduced.points.size());
   for (const FitPoint& point : reduced.points) {
-    start.t.push_back(nearest(point.position));
+    start.t.push_back(nearest(point));
   }
   return start;
 }
