@@ -77,6 +77,16 @@ MemoryOptions at_least_usable(MemoryOptions options) {
   return options;
 }
 
+/// Whether samples continue a patch. What is said of its tip holds for all of it: another radius, or
+/// the other side, is of another stroke that has the same number.
+bool is_of_one_stroke(const PatchContext& patch, const PatchContext& more) {
+  const bool same_side = patch.material_side == more.material_side ||
+                         patch.material_side == MaterialSide::Unspecified ||
+                         more.material_side == MaterialSide::Unspecified;
+  return patch.probe == more.probe && patch.patch == more.patch &&
+         patch.tip_radius_m == more.tip_radius_m && same_side;
+}
+
 }  // namespace
 
 SampleMemory::SampleMemory(const MemoryOptions& options) : options_(at_least_usable(options)) {}
@@ -93,8 +103,11 @@ AddResult SampleMemory::add(const PatchContext& context, std::span<const Contact
     return result;
   }
   auto place = std::find_if(patches_.begin(), patches_.end(), [&](const StoredPatch& patch) {
-    return patch.context.probe == context.probe && patch.context.patch == context.patch;
+    return is_of_one_stroke(patch.context, context);
   });
+  if (place != patches_.end() && place->context.material_side == MaterialSide::Unspecified) {
+    place->context.material_side = context.material_side;
+  }
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const ContactSample& sample = samples[i];
     if (!sample.position_m.allFinite() || !std::isfinite(sample.sigma_m)) {

@@ -57,9 +57,10 @@ class SampleMemory {
  public:
   explicit SampleMemory(const MemoryOptions& options = {});
 
-  /// Appends to the patch of that probe and number, or begins it. `details`: one per sample, or
-  /// empty; another number of them, or an invalid tip radius, rejects all samples. Amortised
-  /// O(samples + patches).
+  /// Appends to the patch of that probe and number, or begins it. A patch has one tip radius and at
+  /// most one side, stated with any of its samples: others begin a patch of their own. `details`:
+  /// one per sample, or empty; another number of them, or an invalid tip radius, rejects all
+  /// samples. Amortised O(samples + patches).
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples,
                 std::span<const SampleDetail> details = {});
 

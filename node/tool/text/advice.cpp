@@ -134,7 +134,8 @@ std::string nearest(const v1::Recognition& answer) {
 std::string advice_text(const v1::Recognition& answer) {
   switch (answer.status()) {
     case v1::RECOGNITION_STATUS_COLLECTING:
-      return "Too few samples yet (" + std::to_string(answer.sample_count()) + "): keep stroking.";
+      return "Too few places yet, as far as noise tells them apart (samples: " +
+             std::to_string(answer.sample_count()) + "): touch more of the part.";
     case v1::RECOGNITION_STATUS_RECOGNIZED:
       return answer.curve_class() == v1::CURVE_CLASS_UNCLASSIFIED
                  ? "None of the known classes explains the samples: the part has another shape, "

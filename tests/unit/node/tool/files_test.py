@@ -148,7 +148,7 @@ class Files(unittest.TestCase):
         code, out, err = run(TOOL, "fit", "-", "--format", "text", text_in=HEADER + "p,0,1,2\n")
         self.assertEqual(code, 0, err)
         self.assertIn("noise        not known yet", out)
-        self.assertIn("advice       Too few samples yet", out)
+        self.assertIn("advice       Too few places yet, as far as noise tells them apart (samples: 1)", out)
         self.assertNotIn("hypothesis", out)
         rng = random.Random(3)
         edge = HEADER + "".join(f"p,0,{2e-5 * i + rng.gauss(0, 2e-5)},{2e-5 * abs(i % 500 - 250) + rng.gauss(0, 2e-5)}\n"
