@@ -168,6 +168,9 @@ class Recognizer::Impl {
     if (!have_places(data, by_evidence ? fewest_places(answer) : kFewestPlaces, touch_sigma)) {
       doubt(&answer, Doubt::FewPlaces);
     }
+    if (!sigma_known) {  // rounding is the least that it can be
+      answer.sigma_m = std::max(answer.sigma_m, data.reading_noise * data.scale);
+    }
     // Told of the samples as they came, not of the means that stand for them.
     answer.sigma_m *= noise_over_means(clean, options_.sigma_m);
     return answer;

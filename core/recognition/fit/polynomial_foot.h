@@ -30,6 +30,16 @@ inline double last_foot_step(double sigma) {
 /// For exact points: the foot is accurate to rounding.
 inline constexpr double kExactFootStep = 1e-5;
 
+/// Whether t has come to a cusp that is the curve's nearest place to `p` (a semi-cubical parabola's
+/// at t = 0): both arms lead away from it.
+inline bool is_nearest_cusp(const PolynomialCoefficients& c, const Vec2& p, double t) {
+  // Of the distance: the curve is that near to the cusp.
+  constexpr double kAtCusp = 1e-2;
+  const Vec2 away = p - c.col(0);
+  return c.col(1).isZero(0.0) && away.dot(c.col(2)) < 0.0 &&
+         t * t * t * t * c.col(2).squaredNorm() < kAtCusp * kAtCusp * away.squaredNorm();
+}
+
 /// Follows the foot point of `p` from `t` by Halley's method on (C(t) - p) . C'(t) = 0, until a
 /// step is shorter than `last_step`.
 inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, double t,
@@ -71,12 +81,14 @@ inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2
   }
   // At a cusp, or if the foot point is not stationary, the normal does not point along the
   // distance: uses the distance itself. (Next to the curve a small error along it looks the same.)
-  // What has a cusp for its nearest place lies outside of the bend, as what is there on both arms.
   constexpr double kPerpendicular = 0.9;
   const double square = away.squaredNorm();
   const bool stationary = std::abs(away.dot(first)) < last_step * speed2;
-  if (!stationary &&
-      placed.signed_distance * placed.signed_distance < kPerpendicular * kPerpendicular * square) {
+  const bool across =
+      placed.signed_distance * placed.signed_distance >= kPerpendicular * kPerpendicular * square;
+  if (is_nearest_cusp(c, p, t) || (!stationary && !across)) {
+    // What has a cusp for its nearest place lies outside of the bend, as what is there on both
+    // arms.
     const double outside = cross(second_derivative(c, t), Vec2(c.col(3)));
     placed.signed_distance = std::copysign(std::sqrt(square), outside);
     placed.normal = away / placed.signed_distance;

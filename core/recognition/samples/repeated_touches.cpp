@@ -83,10 +83,8 @@ StoredPatch mean_of(std::span<const StoredPatch> patches, const Indices& touches
   return mean;
 }
 
-}  // namespace
-
-std::vector<StoredPatch> without_repeated_touches(std::vector<StoredPatch> patches,
-                                                  double default_sigma_m) {
+/// One round: each touch with those about it.
+std::vector<StoredPatch> merged_once(std::vector<StoredPatch> patches, double default_sigma_m) {
   Indices along_x;
   double widest_m = 0.0;
   for (std::size_t p = 0; p < patches.size(); ++p) {
@@ -145,6 +143,22 @@ std::vector<StoredPatch> without_repeated_touches(std::vector<StoredPatch> patch
     }
   }
   return result;
+}
+
+}  // namespace
+
+std::vector<StoredPatch> without_repeated_touches(std::vector<StoredPatch> patches,
+                                                  double default_sigma_m) {
+  // A touch that noise has taken from those about which it was sought may still be of their mean.
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::size_t before = patches.size();
+    patches = merged_once(std::move(patches), default_sigma_m);
+    if (patches.size() == before) {
+      break;
+    }
+  }
+  return patches;
 }
 
 }  // namespace palpate
