@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/recognition/recognizer.h"
+#include "tests/support/most_of_poisson.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
@@ -45,19 +46,6 @@ Recognition answer_to(const Strokes& strokes, double sigma_m, std::mt19937_64& r
   return recognizer.recognize();
 }
 
-/// More than so many of a Poisson law of this mean are one case in a thousand.
-int most_of_poisson(double mean) {
-  double term = std::exp(-mean);
-  double beyond = 1.0 - term;
-  int most = 0;
-  while (beyond > 1e-3) {
-    ++most;
-    term *= mean / most;
-    beyond -= term;
-  }
-  return most;
-}
-
 /// Scenes of one class. RECOGNIZED answers may be wrong as often as their probabilities say.
 void expect_honest(const std::string& name, CurveClass truth,
                    const std::function<Strokes(std::mt19937_64&)>& touched) {
@@ -76,7 +64,7 @@ void expect_honest(const std::string& name, CurveClass truth,
       expected += 1.0 - answer.hypotheses.front().probability;
     }
   }
-  EXPECT_LE(wrong, most_of_poisson(expected)) << name << ", expected " << expected;
+  EXPECT_LE(wrong, test::most_of_poisson(expected)) << name << ", expected " << expected;
   // The noise is a ten-thousandth of the size at most, and more samples than parameters speak.
   EXPECT_GE(right, kScenes / 2) << name;
 }
