@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "core/recognition/fit/polynomial_foot.h"
 
@@ -12,13 +14,12 @@ namespace palpate {
 namespace {
 
 /// The parameter of the place nearest to a point, among places along the curve: so dense that a
-/// sharp bend has places on both its arms. Where these are as near to one another as the places of
-/// one arm are, the nearest foot is sought.
+/// sharp bend has places on both its arms.
 class NearestPlace {
  public:
   /// Of the points before, the feet were between `least` and `most`.
   NearestPlace(const PolynomialCoefficients& c, double least, double most)
-      : c_(c), middle_(0.5 * (least + most)), half_(0.5 * (most - least)) {
+      : middle_(0.5 * (least + most)), half_(0.5 * (most - least)) {
     for (std::size_t k = 0; k < kPlaces; ++k) {
       const double t = parameter(k);
       const Vec2 place = position_at(c, t);
@@ -27,50 +28,20 @@ class NearestPlace {
     }
   }
 
-  double operator()(const FitPoint& point) {
-    const auto x = static_cast<float>(point.position.x());
-    const auto y = static_cast<float>(point.position.y());
+  double operator()(const Vec2& point) {
+    const auto x = static_cast<float>(point.x());
+    const auto y = static_cast<float>(point.y());
     for (std::size_t k = 0; k < kPlaces; ++k) {
       squares_[k] = (x_[k] - x) * (x_[k] - x) + (y_[k] - y) * (y_[k] - y);
     }
     // The least of them first: that takes several at a time.
-    const float least = least_between(0, kPlaces);
-    const auto nearest = static_cast<std::size_t>(
-        std::find(squares_.begin(), squares_.end(), least) - squares_.begin());
-    const double t = parameter(nearest);
-    return is_of_two_arms(nearest) && is_far(point, t) ? nearest_parameter(c_, point.position) : t;
+    const float least =
+        Eigen::Map<const Eigen::Array<float, kPlaces, 1>>(squares_.data()).minCoeff();
+    const auto nearest = std::find(squares_.begin(), squares_.end(), least) - squares_.begin();
+    return parameter(static_cast<std::size_t>(nearest));
   }
 
  private:
-  float least_between(std::size_t begin, std::size_t end) const {
-    return begin < end ? Eigen::Map<const Eigen::ArrayXf>(squares_.data() + begin,
-                                                          static_cast<Eigen::Index>(end - begin))
-                             .minCoeff()
-                       : std::numeric_limits<float>::infinity();
-  }
-
-  /// Whether a place along the curve from the nearest one is hardly farther from the point.
-  bool is_of_two_arms(std::size_t nearest) const {
-    const std::size_t after = std::min(nearest + 1, kPlaces - 1);
-    const std::size_t before = nearest > 0 ? nearest - 1 : 0;
-    const float dx = 0.5F * (x_[after] - x_[before]);
-    const float dy = 0.5F * (y_[after] - y_[before]);
-    const float step2 = dx * dx + dy * dy;
-    constexpr std::size_t kNeighbours = 3;  // of its own arm
-    const float other =
-        std::min(least_between(0, nearest > kNeighbours ? nearest - kNeighbours : 0),
-                 least_between(std::min(nearest + kNeighbours + 1, kPlaces), kPlaces));
-    return squares_[nearest] <= step2 && other < 4.0F * step2;
-  }
-
-  /// Whether the foot that a place leads to is farther from the point than noise.
-  bool is_far(const FitPoint& point, double t) const {
-    constexpr double kFar = 3.0;  // standard deviations
-    const PlacedPoint foot =
-        follow_foot_point(c_, point.position, t, last_foot_step(1.0 / point.inverse_sigma));
-    return std::abs(foot.signed_distance) * point.inverse_sigma > kFar;
-  }
-
   // At either end there may be more by three tenths of what there was: a new search is made before
   // there is a quarter more (recognizer.cpp).
   // Steps of a fortieth: a bend that is sharper has its arms told apart by the points themselves.
@@ -80,7 +51,6 @@ class NearestPlace {
     return middle_ + half_ * kFarthest * (2.0 * static_cast<double>(k) / (kPlaces - 1) - 1.0);
   }
 
-  const PolynomialCoefficients& c_;
   double middle_;  ///< of the feet
   double half_;    ///< half their range
   // Single precision is plenty for a start.
@@ -88,6 +58,28 @@ class NearestPlace {
   std::array<float, kPlaces> y_;
   std::array<float, kPlaces> squares_;  ///< of distances from the point last asked for
 };
+
+/// Seeks the feet of points that lie farther from the curve than noise, from the places found:
+/// between the arms of a cusp, which are nearer to one another than places are, they may be on the
+/// wrong one. Where they are many the curve itself is wrong.
+void seek_far_feet(std::span<const FitPoint> points, PolynomialFit* fit) {
+  constexpr double kFar = 3.0;  // standard deviations
+  constexpr std::size_t kOneIn = 10;
+  std::vector<std::size_t> far;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PlacedPoint foot = place_on(*fit, fit->t[i], points[i].position,
+                                      last_foot_step(1.0 / points[i].inverse_sigma));
+    if (std::abs(foot.signed_distance) * points[i].inverse_sigma > kFar) {
+      far.push_back(i);
+      if (kOneIn * far.size() > points.size() + kOneIn) {
+        return;
+      }
+    }
+  }
+  for (const std::size_t i : far) {
+    fit->t[i] = nearest_parameter(fit->coefficients, points[i].position);
+  }
+}
 
 std::optional<PolynomialFit> carried(const std::optional<PolynomialFit>& fit, const WarmStart& warm,
                                      const FitData& reduced) {
@@ -106,8 +98,9 @@ std::optional<PolynomialFit> carried(const std::optional<PolynomialFit>& fit, co
   NearestPlace nearest(start.coefficients, *least, *most);
   start.t.reserve(reduced.points.size());
   for (const FitPoint& point : reduced.points) {
-    start.t.push_back(nearest(point));
+    start.t.push_back(nearest(point.position));
   }
+  seek_far_feet(reduced.points, &start);
   return start;
 }
 
