@@ -296,7 +296,7 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
     } else {
       const double t = fit.polynomial->t[i];
       fitted.t = placement->t_scale * t + placement->t_shift;
-      const PlacedPoint placed = place_on(*fit.polynomial, t, point.position);
+      const PlacedPoint placed = place_on(*fit.polynomial, t, point);
       distance = placed.signed_distance;
       fitted.normal = placed.normal;
       local = position(*curve, fitted.t);

@@ -43,8 +43,7 @@ std::optional<Run> run_on(const Arms& arms, const PolynomialFit& fit, double ver
   Run run;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double arm = i < turn ? arms.before : arms.after;
-    const PlacedPoint foot =
-        place_on(fit, vertex + arm * std::abs(t[i] - vertex), points[i].position);
+    const PlacedPoint foot = place_on(fit, vertex + arm * std::abs(t[i] - vertex), points[i]);
     if (arm * (foot.t - vertex) < 0.0) {
       return std::nullopt;
     }

@@ -41,7 +41,7 @@ std::vector<double> distances_from(const PolynomialFit& curve, std::span<const F
   distances.reserve(points.size());
   const double last_step = last_foot_step(least_sigma(points));
   for (std::size_t i = 0; i < points.size(); ++i) {
-    distances.push_back(place_on(curve, curve.t[i], points[i].position, last_step).signed_distance);
+    distances.push_back(place_on(curve, curve.t[i], points[i], last_step).signed_distance);
   }
   return distances;
 }
@@ -66,8 +66,8 @@ double squares_of_normals(const ClassFit& fit, const SmoothModel& smooth,
     }
     double residual = 0.0;
     if (fit.polynomial) {
-      const PlacedPoint foot = place_on(
-          *fit.polynomial, fit.polynomial->t[smooth.nearest_reduced[i]], points[i].position);
+      const PlacedPoint foot =
+          place_on(*fit.polynomial, fit.polynomial->t[smooth.nearest_reduced[i]], points[i]);
       residual = normal_residual(fit.polynomial->coefficients, foot, points[i]);
     } else {
       Vec2 foot;

@@ -102,14 +102,14 @@ bool is_same_curve(const PolynomialFit& a, const PolynomialFit& b) {
   return std::abs(a.chi2 - b.chi2) <= kSameChi2 && std::abs(cross(u, v)) <= kSameAngle;
 }
 
-PlacedPoint place_on(const PolynomialFit& fit, double t, const Vec2& point, double last_step) {
-  return follow_foot_point(fit.coefficients, point, t, last_step);
+PlacedPoint place_on(const PolynomialFit& fit, double t, const FitPoint& point, double last_step) {
+  return follow_foot_point(fit.coefficients, point.position, t, last_step, point_of(point));
 }
 
 PolynomialFit placed_on(std::span<const FitPoint> points, PolynomialFit fit) {
   fit.chi2 = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const PlacedPoint placed = place_on(fit, fit.t[i], points[i].position);
+    const PlacedPoint placed = place_on(fit, fit.t[i], points[i]);
     const double residual = placed.signed_distance * points[i].inverse_sigma;
     fit.t[i] = placed.t;
     fit.chi2 += residual * residual;

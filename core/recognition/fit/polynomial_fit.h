@@ -34,7 +34,7 @@ bool is_same_curve(const PolynomialFit& a, const PolynomialFit& b);
 
 /// The foot point and distance of a point, followed from `t` until a step is shorter than
 /// `last_step`.
-PlacedPoint place_on(const PolynomialFit& fit, double t, const Vec2& point,
+PlacedPoint place_on(const PolynomialFit& fit, double t, const FitPoint& point,
                      double last_step = kExactFootStep);
 
 /// The unchanged fit with the foot points and chi-square of surface points. `fit.t` must be near

@@ -40,10 +40,15 @@ inline bool is_nearest_cusp(const PolynomialCoefficients& c, const Vec2& p, doub
          t * t * t * t * c.col(2).squaredNorm() < kAtCusp * kAtCusp * away.squaredNorm();
 }
 
+/// What a point stands for: a place of the surface, within noise of its curve, or a round tip's
+/// centre, which is off it by the tip's radius.
+enum class PointOf { Surface, Tip };
+
 /// Follows the foot point of `p` from `t` by Halley's method on (C(t) - p) . C'(t) = 0, until a
 /// step is shorter than `last_step`.
 inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2& p, double t,
-                                     double last_step = kExactFootStep) {
+                                     double last_step = kExactFootStep,
+                                     PointOf of = PointOf::Surface) {
   constexpr int kMaxIterations = 5;  // each step trebles the digits: four from half a digit to all
   constexpr double kLongestStep = 0.5;  // of the data's parameter range, about [-1, 1]
   Vec2 away;
@@ -86,7 +91,7 @@ inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2
   const bool stationary = std::abs(away.dot(first)) < last_step * speed2;
   const bool across =
       placed.signed_distance * placed.signed_distance >= kPerpendicular * kPerpendicular * square;
-  if (is_nearest_cusp(c, p, t) || (!stationary && !across)) {
+  if ((of == PointOf::Tip && is_nearest_cusp(c, p, t)) || (!stationary && !across)) {
     // What has a cusp for its nearest place lies outside of the bend, as what is there on both
     // arms.
     const double outside = cross(second_derivative(c, t), Vec2(c.col(3)));

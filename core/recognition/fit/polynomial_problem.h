@@ -37,6 +37,10 @@ constexpr auto exponents_of_model() {
   }
 }
 
+inline PointOf point_of(const FitPoint& point) {
+  return point.offset > 0.0 ? PointOf::Tip : PointOf::Surface;
+}
+
 /// The curve at a foot point.
 inline NormalAtFoot normal_at(const PolynomialCoefficients& c, const PlacedPoint& foot) {
   NormalAtFoot at;
@@ -106,7 +110,8 @@ class PolynomialProblem {
     const PolynomialCoefficients c = coefficients(x);
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (has_normal(points_[i])) {
-        const PlacedPoint foot = follow_foot_point(c, points_[i].position, feet_[i].t, last_step_);
+        const PlacedPoint foot =
+            follow_foot_point(c, points_[i].position, feet_[i].t, last_step_, point_of(points_[i]));
         normals_.push_back({i, weight_of_normal(c, foot, points_[i])});
       }
     }
@@ -116,7 +121,8 @@ class PolynomialProblem {
     tried_ = coefficients(x);
     double chi2 = 0.0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      tried_feet_[i] = follow_foot_point(tried_, points_[i].position, feet_[i].t, last_step_);
+      tried_feet_[i] = follow_foot_point(tried_, points_[i].position, feet_[i].t, last_step_,
+                                         point_of(points_[i]));
       const double residual = residual_at(tried_feet_[i], i);
       chi2 += residual * residual;
     }
@@ -287,7 +293,8 @@ class PolynomialProblem {
     const double before = residual_at(feet_[i], i);
     double least = before * before - kSame;
     for (const double t : {0.5 * (from + to), from, to}) {
-      const PlacedPoint foot = follow_foot_point(coefficients_, points_[i].position, t, last_step_);
+      const PlacedPoint foot = follow_foot_point(coefficients_, points_[i].position, t, last_step_,
+                                                 point_of(points_[i]));
       const double after = residual_at(foot, i);
       if (after * after < least) {
         least = after * after;

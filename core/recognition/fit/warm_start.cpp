@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+
 #include <limits>
 #include <span>
 #include <vector>
@@ -59,16 +60,23 @@ class NearestPlace {
   std::array<float, kPlaces> squares_;  ///< of distances from the point last asked for
 };
 
+struct ParameterRange {
+  double least = 0.0;
+  double most = 0.0;
+};
+
 /// Seeks the feet of points that lie farther from the curve than noise, from the places found:
 /// between the arms of a cusp, which are nearer to one another than places are, they may be on the
-/// wrong one. Where they are many the curve itself is wrong.
-void seek_far_feet(std::span<const FitPoint> points, PolynomialFit* fit) {
+/// wrong one. Where they are many the curve itself is wrong, and beyond the `range` of the feet
+/// before a cubic may come back to any point.
+void seek_far_feet(std::span<const FitPoint> points, const ParameterRange& range,
+                   PolynomialFit* fit) {
   constexpr double kFar = 3.0;  // standard deviations
   constexpr std::size_t kOneIn = 10;
   std::vector<std::size_t> far;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const PlacedPoint foot = place_on(*fit, fit->t[i], points[i].position,
-                                      last_foot_step(1.0 / points[i].inverse_sigma));
+    const PlacedPoint foot =
+        place_on(*fit, fit->t[i], points[i], last_foot_step(1.0 / points[i].inverse_sigma));
     if (std::abs(foot.signed_distance) * points[i].inverse_sigma > kFar) {
       far.push_back(i);
       if (kOneIn * far.size() > points.size() + kOneIn) {
@@ -77,7 +85,10 @@ void seek_far_feet(std::span<const FitPoint> points, PolynomialFit* fit) {
     }
   }
   for (const std::size_t i : far) {
-    fit->t[i] = nearest_parameter(fit->coefficients, points[i].position);
+    const double t = nearest_parameter(fit->coefficients, points[i].position);
+    if (t >= range.least && t <= range.most) {
+      fit->t[i] = t;
+    }
   }
 }
 
@@ -100,7 +111,7 @@ std::optional<PolynomialFit> carried(const std::optional<PolynomialFit>& fit, co
   for (const FitPoint& point : reduced.points) {
     start.t.push_back(nearest(point.position));
   }
-  seek_far_feet(reduced.points, &start);
+  seek_far_feet(reduced.points, {*least, *most}, &start);
   return start;
 }
 

@@ -70,18 +70,19 @@ double longest_walk(CurveClass curve_class, int k, double z, double direction) {
 /// highest density: what falls faster or slower has its slices closer or farther apart.
 struct Walk {
   double apart = 0.0;
-  double end = 0.0;      ///< from the highest density
-  double settled = 0.0;  ///< descend()'s
+  double end = 0.0;         ///< from the highest density
+  double settled = 0.0;     ///< descend()'s
+  bool both_sides = false;  ///< of the mode are asked for
 };
 
 /// Sums of a normal law's density this far apart are off by 2 exp(-2 pi^2 / apart^2), half a
 /// thousandth.
 /// Two of them pass three deviations, beyond which it has 0.3 % of its mass: what odds are told to
 /// is seven times that (kSettledPotential).
-constexpr Walk kWalkForMass{1.55, 3.0, kSettledPotential};
+constexpr Walk kWalkForMass{1.55, 3.0, kSettledPotential, false};
 
 /// Of its second moment a normal law has 0.3 % beyond the end.
-constexpr Walk kWalkForMoment{1.0, 3.75, kSettledPlace};
+constexpr Walk kWalkForMoment{1.0, 3.75, kSettledPlace, true};
 
 /// How far from its highest density a normal law has fallen from one to the other.
 double deviations_below(double highest, double log_density) {
@@ -190,9 +191,10 @@ int widest_coordinate(const Touch& touch, const TouchedCurve& best, const Touche
 }
 
 /// log of the integral over the widest coordinate, by trapezoids between slices, which become the
-/// nodes. nullopt where there is no valley to walk along on one side of the mode, though the class
-/// does not end there: feet leap from arm to arm, and slices beside the mode are of another.
-/// `deviation`: of that coordinate at the mode.
+/// nodes. nullopt where the class is a single slice wide; for a moment also where there is no
+/// valley to walk along on one side of the mode, though the class does not end there: feet leap
+/// from arm to arm, and slices beside the mode are of another. `deviation`: of that coordinate at
+/// the mode.
 std::optional<double> integrate(const FitData& data, double deviation, const Walk& how,
                                 ClassEvidence* evidence, WorkBudget& work) {
   const int k = evidence->widest;
@@ -208,7 +210,7 @@ std::optional<double> integrate(const FitData& data, double deviation, const Wal
     return side.empty() &&
            std::isinf(longest_walk(evidence->touch.curve_class, k, start.curve.z[k], direction));
   };
-  if (is_lost(behind, -1.0) || is_lost(ahead, 1.0)) {
+  if (how.both_sides && (is_lost(behind, -1.0) || is_lost(ahead, 1.0))) {
     return std::nullopt;
   }
   const std::size_t middle = behind.size();

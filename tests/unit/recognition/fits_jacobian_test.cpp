@@ -85,7 +85,7 @@ TEST(PolynomialFit, InformationMatchesFiniteDifferencesOfTheResiduals) {
     moved.coefficients = c;
     double sum = 0.0;
     for (std::size_t i = 0; i < data.points.size(); ++i) {
-      const PlacedPoint placed = place_on(moved, fit.t[i], data.points[i].position);
+      const PlacedPoint placed = place_on(moved, fit.t[i], data.points[i]);
       sum += std::pow(placed.signed_distance * data.points[i].inverse_sigma, 2);
     }
     return sum;
@@ -99,7 +99,7 @@ TEST(PolynomialFit, InformationMatchesFiniteDifferencesOfTheResiduals) {
     moved(axis, 0) += step;
     double predicted = 0.0;
     for (std::size_t i = 0; i < data.points.size(); ++i) {
-      const Vec2 normal = place_on(fit, fit.t[i], data.points[i].position).normal;
+      const Vec2 normal = place_on(fit, fit.t[i], data.points[i]).normal;
       predicted += std::pow(normal[axis] * step * data.points[i].inverse_sigma, 2);
     }
     PolynomialCoefficients opposite = fit.coefficients;
