@@ -10,11 +10,11 @@
 
 #include "core/curves/curve.h"
 #include "core/numerics/negligible.h"
-#include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/polynomial_seeds.h"
 #include "core/recognition/samples/farthest_first.h"
-#include "core/recognition/smooth/arcs.h"
+#include "core/recognition/smooth/smooth_model.h"
+#include "core/recognition/touches/ordering_curves.h"
 #include "core/recognition/touches/shortest_way.h"
 
 namespace palpate {
@@ -68,113 +68,6 @@ Indices spread(std::span<const StoredPatch> patches, const Indices& lone, std::s
     chosen.push_back(lone[k]);
   }
   return chosen;
-}
-
-/// Sorts by the parameter along the curve. A closed curve starts after the largest gap.
-template <typename T, typename ParameterOf>
-void sort_along(const Curve& curve, std::vector<T>* things, const ParameterOf& parameter_of) {
-  const auto before = [&](const T& a, const T& b) { return parameter_of(a) < parameter_of(b); };
-  std::sort(things->begin(), things->end(), before);
-  const double period = domain(curve).period;
-  if (!(period > 0.0) || things->size() < 2) {
-    return;
-  }
-  double widest = period + parameter_of(things->front()) - parameter_of(things->back());
-  std::size_t first = 0;
-  for (std::size_t i = 1; i < things->size(); ++i) {
-    const double gap = parameter_of((*things)[i]) - parameter_of((*things)[i - 1]);
-    if (gap > widest) {
-      widest = gap;
-      first = i;
-    }
-  }
-  std::rotate(things->begin(), things->begin() + static_cast<std::ptrdiff_t>(first), things->end());
-}
-
-/// Touches in the order of their feet along the curve. [m]
-struct Ordered {
-  std::vector<Vec2> feet_m;
-  std::vector<Vec2> points_m;
-};
-
-Ordered ordered_along(const CanonicalFit& fit, const Curve& curve, const FitData& data) {
-  std::vector<std::pair<double, Vec2>> places;
-  for (std::size_t i = 0; i < fit.points.size(); ++i) {
-    places.emplace_back(fit.points[i].t, data.scale * data.points[i].position);
-  }
-  sort_along(curve, &places, [](const auto& place) { return place.first; });
-  Ordered ordered;
-  for (const auto& [t, point_m] : places) {
-    ordered.feet_m.push_back(position(curve, t));
-    ordered.points_m.push_back(point_m);
-  }
-  return ordered;
-}
-
-struct PlacedCurve {
-  Curve curve;
-  Pose2 world_T_curve;
-  double chi2 = 0.0;
-  std::vector<Vec2> touches_m;  ///< in their order along the curve
-};
-
-/// The curves in the order in which they explain the points by the Bayesian information criterion.
-/// Each touch may lie anywhere along the curve with the same density. (Without that, a needle whose
-/// two sides share the points of a line would explain their noise.)
-std::vector<PlacedCurve> best_first(const ClassFits& fits, const Arcs& arcs, unsigned classes) {
-  const FitData& reduced = arcs.smooth.reduced;
-  const auto n = static_cast<double>(reduced.points.size());
-  std::vector<std::pair<double, PlacedCurve>> curves;
-  for (const auto& fit : fits) {
-    const bool wanted = fit && !fit->at_limit && (classes & class_bit(fit->curve_class)) != 0;
-    const auto canonical = wanted ? to_canonical(*fit, reduced) : std::nullopt;
-    const auto curve = canonical ? make_curve(canonical->shape.curve_class, canonical->shape.values)
-                                 : std::nullopt;
-    if (!curve) {
-      continue;
-    }
-    const double chi2 = std::max(fit->chi2, std::numeric_limits<double>::min());
-    Ordered ordered = ordered_along(*canonical, *curve, reduced);
-    const double criterion = (arcs.sigma_known ? chi2 : n * std::log(chi2)) +
-                             degrees_of_freedom(fit->curve_class) * std::log(n) +
-                             2.0 * n * std::log(length_of(ordered.feet_m));
-    if (!std::isnan(criterion)) {
-      curves.emplace_back(criterion, PlacedCurve{*curve, canonical->world_T_curve, chi2,
-                                                 std::move(ordered.points_m)});
-    }
-  }
-  std::stable_sort(curves.begin(), curves.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<PlacedCurve> result;
-  for (auto& [criterion, curve] : curves) {
-    result.push_back(std::move(curve));
-  }
-  return result;
-}
-
-/// Curves by which to order the touches, the likeliest first. `start` receives the fits if every
-/// class was searched and one fits.
-std::vector<PlacedCurve> curves_through(const FitData& data, bool sigma_known, unsigned classes,
-                                        std::optional<WarmStart>* start, WorkBudget& work) {
-  const Arcs arcs = smooth_arcs(data, sigma_known);
-  const FitData& reduced = arcs.smooth.reduced;
-  // A conic gives the order, whatever other classes fit, if it explains the touches within their
-  // noise and does not go back and forth between them (as the two sides of a needle would).
-  std::vector<PlacedCurve> conics =
-      best_first(fit_classes(reduced, work, nullptr, classes & ~kCubics), arcs, ~kCubics);
-  const bool orders =
-      !conics.empty() && arcs.sigma_known &&
-      fits_well(conics.front().chi2, residual_count(reduced)) &&
-      length_of(conics.front().touches_m) <= kDetour * shortest_tree(conics.front().touches_m);
-  if (orders || (classes & kCubics) == 0) {
-    return conics;
-  }
-  const ClassFits fits = fit_classes(reduced, work, nullptr, classes);
-  WarmStart found = warm_start_from(fits, reduced);
-  if (arcs.sigma_known && !found.polynomials.every_seed) {
-    *start = std::move(found);
-  }
-  return best_first(fits, arcs, kAllClasses);
 }
 
 /// A touch's place in the order of all.
