@@ -17,7 +17,8 @@ namespace {
 
 using Indices = std::vector<std::size_t>;
 
-/// The most touches of one fit that are left out in turn: those that it misses most.
+/// The most touches of one fit that are left out in turn, those that it misses most: what errs by
+/// far more than noise is among them, and the work is linear in the touches.
 constexpr std::size_t kMostInTurn = 16;
 
 /// A class on the touches that are left.

@@ -39,9 +39,8 @@ inline double within_reach(double step, const CurveDerivatives& at, const Vec2& 
   const double away2 = dot(away, away);
   const double second2 = dot(at.second, at.second);
   const double step2 = step * step;
-  return step2 * step2 * second2 <= 16.0 * away2
-             ? step
-             : std::copysign(std::sqrt(4.0 * std::sqrt(away2 / second2)), step);
+  const bool is_too_long = step2 * step2 * second2 > 16.0 * away2;  // not if it is no number
+  return is_too_long ? std::copysign(std::sqrt(4.0 * std::sqrt(away2 / second2)), step) : step;
 }
 
 /// Where a foot is sought: for a conic, whose parameter has no unit of length and changes with the

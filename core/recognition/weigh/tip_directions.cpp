@@ -11,20 +11,18 @@ namespace palpate {
 namespace {
 
 /// The curve's direction, with rising parameter, at the foot of a tip's centre (curve's frame);
-/// zero if unknown. About a cusp, where the curve has none, the tip rolls: its way is across the
-/// line to its foot, if that is longer than noise.
+/// zero if it has none. About a cusp the tip rolls: its way is across the line to its foot, if that
+/// is longer than noise.
 Vec2 direction_at_foot(const Curve& curve, const Vec2& centre_m, double sigma_m) {
   // Of a right angle between the curve and the line to a foot, the cosine.
   constexpr double kNotAcross = 0.1;
   const FootPoint foot = foot_point(curve, centre_m);
   const CurveDerivatives at = derivatives(curve, foot.t);
   const Vec2 away = centre_m - at.position;
-  const bool at_cusp = std::abs(away.dot(at.first)) >= kNotAcross * away.norm() * at.first.norm();
+  const bool at_cusp = away.norm() > kNegligibleDeviations * sigma_m &&
+                       std::abs(away.dot(at.first)) >= kNotAcross * away.norm() * at.first.norm();
   if (!at_cusp) {
-    return at.first.normalized();
-  }
-  if (!(away.norm() > kNegligibleDeviations * sigma_m)) {
-    return Vec2::Zero();
+    return at.first.isZero(0.0) ? Vec2(0.0, 0.0) : Vec2(at.first.normalized());
   }
   // What has a cusp for its foot lies outside of the bend.
   const bool is_left = cross(at.second, at.third) > 0.0;
