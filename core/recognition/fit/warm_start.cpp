@@ -72,14 +72,14 @@ struct ParameterRange {
 void seek_far_feet(std::span<const FitPoint> points, const ParameterRange& range,
                    PolynomialFit* fit) {
   constexpr double kFar = 3.0;  // standard deviations
-  constexpr std::size_t kOneIn = 10;
+  constexpr std::size_t kOneFarIn = 10;
   std::vector<std::size_t> far;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const PlacedPoint foot =
         place_on(*fit, fit->t[i], points[i], last_foot_step(1.0 / points[i].inverse_sigma));
     if (std::abs(foot.signed_distance) * points[i].inverse_sigma > kFar) {
       far.push_back(i);
-      if (kOneIn * far.size() > points.size() + kOneIn) {
+      if (kOneFarIn * far.size() > points.size() + kOneFarIn) {
         return;
       }
     }
