@@ -52,8 +52,8 @@ void print(const std::string& what, std::vector<double> values) {
               at(0.99), at(1.0));
 }
 
-/// Costs of the updates of one stream divided by their median. The first answer is not an update.
-std::vector<double> updates_over_median(const TouchedInput& input) {
+/// Costs of the updates of one stream.
+std::vector<double> update_costs_us(const TouchedInput& input) {
   Recognizer recognizer;
   std::vector<double> us;
   for (const bench::TouchedPatch& patch : input) {
@@ -63,13 +63,24 @@ std::vector<double> updates_over_median(const TouchedInput& input) {
       us.push_back(recognize_us(recognizer));
     }
   }
-  std::vector<double> sorted = us;
+  return us;
+}
+
+/// The same divided by their median.
+std::vector<double> updates_over_median(const TouchedInput& input) {
+  std::vector<double> least = update_costs_us(input);
+  for (int i = 1; i < kRepetitions; ++i) {
+    const std::vector<double> us = update_costs_us(input);
+    std::transform(us.begin(), us.end(), least.begin(), least.begin(),
+                   [](double a, double b) { return std::min(a, b); });
+  }
+  std::vector<double> sorted = least;
   std::sort(sorted.begin(), sorted.end());
   const double median = sorted[sorted.size() / 2];
-  for (double& value : us) {
+  for (double& value : least) {
     value /= median;
   }
-  return us;
+  return least;
 }
 
 }  // namespace
