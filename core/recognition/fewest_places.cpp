@@ -28,13 +28,17 @@ bool have_places(const FitData& data, std::size_t count, double touch_sigma) {
   return places.size() == count;
 }
 
+std::size_t fewest_places(CurveClass curve_class) {
+  const auto parameters = static_cast<std::size_t>(degrees_of_freedom(curve_class));
+  return std::max(kFewestCompared, parameters + kFewestLeftOver);
+}
+
 std::size_t fewest_places(const Recognition& answer) {
   const CurveClass curve_class = answer.shape.curve_class;
   if (curve_class == CurveClass::Unclassified) {
     return kFewestPlaces;
   }
-  const auto parameters = static_cast<std::size_t>(degrees_of_freedom(curve_class));
-  return std::max(kFewestCompared, parameters + kFewestLeftOver) + answer.outlier_count;
+  return fewest_places(curve_class) + answer.outlier_count;
 }
 
 }  // namespace palpate

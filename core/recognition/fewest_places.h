@@ -29,8 +29,10 @@ inline constexpr std::size_t kFewestPatches = 4;
 /// which single touches must lie apart (repeated_touches.h); 0 where those of one place are merged.
 bool have_places(const FitData& data, std::size_t count, double touch_sigma = 0.0);
 
-/// At how many its class can be RECOGNIZED, by evidence and of stated noise. A sample that is set
-/// aside is an unknown more.
+/// At how many a class can be RECOGNIZED, by evidence and of stated noise.
+std::size_t fewest_places(CurveClass curve_class);
+
+/// The same of an answer's class. A sample that is set aside is an unknown more.
 std::size_t fewest_places(const Recognition& answer);
 
 }  // namespace palpate

@@ -49,11 +49,7 @@ Indices most_missed(const Left& left) {
   const std::vector<FitPoint>& points = left.points.points;
   std::vector<double> miss;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const ClassFit& fit = left.fit;
-    const Vec2 foot = fit.polynomial
-                          ? position_at(fit.polynomial->coefficients, fit.polynomial->t[i])
-                          : fit.implicit->feet[i];
-    miss.push_back((points[i].position - foot).norm() * points[i].inverse_sigma);
+    miss.push_back((points[i].position - foot_of(left.fit, i)).norm() * points[i].inverse_sigma);
   }
   Indices order(points.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -84,24 +80,6 @@ bool is_told(const Left& left) {
          is_what_it_says(left.fit, left.points);
 }
 
-FitData only(const FitData& data, const Indices& numbers) {
-  FitData kept = data;
-  kept.points.clear();
-  kept.patches.clear();
-  kept.details.clear();
-  auto next = numbers.begin();
-  for (std::size_t i = 0; i < data.points.size(); ++i) {
-    const std::size_t begin = kept.points.size();
-    if (next != numbers.end() && *next == i) {
-      ++next;
-      kept.points.push_back(data.points[i]);
-      if (!data.details.empty()) kept.details.push_back(data.details[i]);
-    }
-    kept.patches.push_back({begin, kept.points.size()});
-  }
-  return kept;
-}
-
 }  // namespace
 
 std::optional<FitData> without_gross_touches(const Weighing& weighing, const FitData& data,
@@ -126,8 +104,7 @@ std::optional<FitData> without_gross_touches(const Weighing& weighing, const Fit
   const Left* told = nullptr;
   for (std::size_t out = 1; told == nullptr && out <= most_set_aside(n); ++out) {
     for (Left& left : classes) {
-      const auto parameters = static_cast<std::size_t>(degrees_of_freedom(left.fit.curve_class));
-      if (n < std::max(kFewestCompared, parameters + kFewestLeftOver) + 2 * out) {
+      if (n < fewest_places(left.fit.curve_class) + 2 * out) {
         continue;  // as many touches must speak for the class as against it
       }
       auto fewer = best_without_one(left, work);
@@ -140,7 +117,14 @@ std::optional<FitData> without_gross_touches(const Weighing& weighing, const Fit
       }
     }
   }
-  return told != nullptr ? std::optional(only(data, told->numbers)) : std::nullopt;
+  if (told == nullptr) {
+    return std::nullopt;
+  }
+  std::vector<bool> is_out(n, true);
+  for (const std::size_t i : told->numbers) {
+    is_out[i] = false;
+  }
+  return without_points(data, is_out);
 }
 
 double log_odds_against_gross(const FitData& data, const FitData& kept) {

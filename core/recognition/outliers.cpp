@@ -52,19 +52,16 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
   if (std::none_of(magnitude.begin(), magnitude.end(), [&](double m) { return m > limit; })) {
     return std::nullopt;
   }
-  FitData kept = data;
-  kept.points.clear();
-  kept.patches.clear();
-  kept.details.clear();
+  std::vector<bool> is_out(n, false);
   std::size_t dropped = 0;
   double squares_of_kept = 0.0;
   double squares_of_dropped = 0.0;
   for (const PatchSpan& patch : data.patches) {
-    const std::size_t begin = kept.points.size();
     std::size_t run = 0;
     for (std::size_t i = patch.begin; i < patch.end; ++i) {
       const double square = magnitude[i] * magnitude[i];
-      if (magnitude[i] > limit) {
+      is_out[i] = magnitude[i] > limit;
+      if (is_out[i]) {
         ++dropped;
         squares_of_dropped += square;
         if (++run > kLongestRunOfSpikes) {
@@ -73,12 +70,10 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
       } else {
         run = 0;
         squares_of_kept += square;
-        kept.points.push_back(data.points[i]);
-        if (!data.details.empty()) kept.details.push_back(data.details[i]);
       }
     }
-    kept.patches.push_back({begin, kept.points.size()});
   }
+  FitData kept = without_points(data, is_out);
   // An outlier that brings a chi-square into a fit leaves itself 1 - h of it, h its leverage: more
   // than half, unless it alone determines the curve. So a larger misfit of the other points is not
   // its doing.

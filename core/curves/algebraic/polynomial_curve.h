@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <optional>
 
 #include "core/curves/plane_curve.h"
 
@@ -21,6 +23,16 @@ using PolynomialCoefficients = Eigen::Matrix<double, 2, 4>;
 
 [[gnu::always_inline]] inline Vec2 second_derivative(const PolynomialCoefficients& c, double t) {
   return 2.0 * c.col(2) + 6.0 * t * c.col(3);
+}
+
+/// The parameter of the bend, where the curve stands still along its axis; nullopt where it never
+/// does. The canonical axis is perpendicular to the coefficient of t^3; a parabola's is that of
+/// t^2.
+inline std::optional<double> vertex_of(const PolynomialCoefficients& c) {
+  const Vec2 third = c.col(3);
+  const Vec2 axis = third.isZero(0.0) ? Vec2(c.col(2)) : left_of(third);
+  const double vertex = -axis.dot(c.col(1)) / (2.0 * axis.dot(c.col(2)));
+  return std::isfinite(vertex) ? std::optional(vertex) : std::nullopt;
 }
 
 /// x(t) = sum c(0, k) t^k, y(t) = sum c(1, k) t^k, k = 0 ... 3. [m]

@@ -256,10 +256,7 @@ std::vector<double> squares_of_best(const ClassFits& fits, std::span<const FitPo
   squares.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const FitPoint& point = points[i];
-    const Vec2 foot = best->implicit
-                          ? best->implicit->feet[i]
-                          : position_at(best->polynomial->coefficients, best->polynomial->t[i]);
-    squares.push_back((point.position - foot).squaredNorm() * point.inverse_sigma *
+    squares.push_back((point.position - foot_of(*best, i)).squaredNorm() * point.inverse_sigma *
                       point.inverse_sigma);
   }
   return squares;

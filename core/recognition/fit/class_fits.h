@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/curves/algebraic/polynomial_curve.h"
 #include "core/curves/curve_class.h"
 #include "core/numerics/negligible.h"
 #include "core/numerics/work_budget.h"
@@ -42,6 +43,12 @@ using ClassFits = ByClass<std::optional<ClassFit>>;
 
 /// The implicit form of a parabola's polynomials, of unit norm.
 ConicCoefficients conic_of_parabola(const PolynomialFit& fit);
+
+/// The foot of a point of those that the fit is of.
+inline Vec2 foot_of(const ClassFit& fit, std::size_t point) {
+  return fit.polynomial ? position_at(fit.polynomial->coefficients, fit.polynomial->t[point])
+                        : fit.implicit->feet[point];
+}
 
 /// True if noise alone can leave this chi-square on reduced points with that many residuals.
 inline bool fits_well(double chi2, std::size_t residuals) {

@@ -1,6 +1,5 @@
 #include "core/recognition/fit/cusp_of_spline.h"
 
-#include <cmath>
 #include <vector>
 
 #include "core/curves/algebraic/polynomial_curve.h"
@@ -12,22 +11,18 @@ namespace palpate {
 std::optional<ClassFit> cusp_of_spline(const ClassFit& spline, const FitData& data,
                                        WorkBudget& work) {
   const PolynomialFit& from = *spline.polynomial;
-  // The canonical axis is perpendicular to the coefficient of t^3; along it the vertex stands
-  // still.
-  const Vec2 axis = left_of(from.coefficients.col(3));
-  const double vertex =
-      -axis.dot(from.coefficients.col(1)) / (2.0 * axis.dot(from.coefficients.col(2)));
-  if (!std::isfinite(vertex)) {
+  const auto vertex = vertex_of(from.coefficients);
+  if (!vertex) {
     return std::nullopt;
   }
   ClassFit fit;
   fit.curve_class = CurveClass::SemiCubicalParabola;
   fit.chi2_of_all = fit.on_all = true;
   fit.polynomial = from;
-  fit.polynomial->coefficients = PolynomialCurve2{from.coefficients}.shifted(vertex).coefficients;
+  fit.polynomial->coefficients = PolynomialCurve2{from.coefficients}.shifted(*vertex).coefficients;
   fit.polynomial->coefficients.col(1).setZero();
   for (double& t : fit.polynomial->t) {
-    t -= vertex;
+    t -= *vertex;
   }
   auto found = polish(fit, data, work);
   if (found) {

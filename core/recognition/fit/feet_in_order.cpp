@@ -12,16 +12,6 @@
 namespace palpate {
 namespace {
 
-/// The parameter of the bend, where the curve stands still along its axis; nullopt where it never
-/// does.
-std::optional<double> vertex_of(const PolynomialCoefficients& c) {
-  // The canonical axis is perpendicular to the coefficient of t^3; a parabola's is that of t^2.
-  const Vec2 third = c.col(3);
-  const Vec2 axis = third.isZero(0.0) ? Vec2(c.col(2)) : left_of(third);
-  const double vertex = -axis.dot(c.col(1)) / (2.0 * axis.dot(c.col(2)));
-  return std::isfinite(vertex) ? std::optional(vertex) : std::nullopt;
-}
-
 /// On which arms a stroke runs: the signs of t - vertex before and after it is nearest to the bend.
 struct Arms {
   double before = 1.0;

@@ -65,6 +65,25 @@ inline double normal_residual(const PolynomialCoefficients& c, const PlacedPoint
   return weight_of_normal(c, foot, point) * normal_miss(point.normal, normal_at(c, foot).normal);
 }
 
+/// Points farther from the curve than noise. Their feet may have been followed to the wrong arm of
+/// a bend or cusp, where the steps end whatever the curve does. Empty if there are many: the curve
+/// itself is wrong. `residual_of`: point `i`'s, in standard deviations.
+template <typename ResidualOf>
+std::vector<std::size_t> few_far_points(std::size_t count, const ResidualOf& residual_of) {
+  constexpr double kFar = 3.0;  // good points exceed it once in 370
+  constexpr std::size_t kOneFarIn = 10;
+  std::vector<std::size_t> far;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (std::abs(residual_of(i)) > kFar) {
+      far.push_back(i);
+      if (kOneFarIn * far.size() > count + kOneFarIn) {
+        return {};
+      }
+    }
+  }
+  return far;
+}
+
 /// Orthogonal distances as functions of the model's coefficients, for `minimise`.
 template <PolynomialModel kModel>
 class PolynomialProblem {
@@ -141,22 +160,8 @@ class PolynomialProblem {
     feet_.swap(tried_feet_);
   }
 
-  /// Points farther from the curve than noise. Their feet may have been followed to the wrong arm
-  /// of a bend or cusp, where the steps end whatever the curve does. Empty if there are many: the
-  /// curve itself is wrong.
   std::vector<std::size_t> far_points() const {
-    constexpr double kFar = 3.0;  // standard deviations: good points exceed it once in 370
-    constexpr std::size_t kOneIn = 10;
-    std::vector<std::size_t> far;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (std::abs(residual_at(feet_[i], i)) > kFar) {
-        far.push_back(i);
-        if (kOneIn * far.size() > points_.size() + kOneIn) {
-          return {};
-        }
-      }
-    }
-    return far;
+    return few_far_points(points_.size(), [&](std::size_t i) { return residual_at(feet_[i], i); });
   }
 
   /// Follows the feet of far points, and of their neighbours, again from the feet of the points

@@ -3,13 +3,10 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <cmath>
-
 #include <limits>
 #include <span>
-#include <vector>
 
-#include "core/recognition/fit/polynomial_foot.h"
+#include "core/recognition/fit/polynomial_problem.h"
 
 namespace palpate {
 namespace {
@@ -67,24 +64,15 @@ struct ParameterRange {
 
 /// Seeks the feet of points that lie farther from the curve than noise, from the places found:
 /// between the arms of a cusp, which are nearer to one another than places are, they may be on the
-/// wrong one. Where they are many the curve itself is wrong, and beyond the `range` of the feet
-/// before a cubic may come back to any point.
+/// wrong one. Not beyond the `range` of the feet before: there a cubic may come back to any point.
 void seek_far_feet(std::span<const FitPoint> points, const ParameterRange& range,
                    PolynomialFit* fit) {
-  constexpr double kFar = 3.0;  // standard deviations
-  constexpr std::size_t kOneFarIn = 10;
-  std::vector<std::size_t> far;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PlacedPoint foot =
-        place_on(*fit, fit->t[i], points[i], last_foot_step(1.0 / points[i].inverse_sigma));
-    if (std::abs(foot.signed_distance) * points[i].inverse_sigma > kFar) {
-      far.push_back(i);
-      if (kOneFarIn * far.size() > points.size() + kOneFarIn) {
-        return;
-      }
-    }
-  }
-  for (const std::size_t i : far) {
+  const auto residual_of = [&](std::size_t i) {
+    const double last_step = last_foot_step(1.0 / points[i].inverse_sigma);
+    return place_on(*fit, fit->t[i], points[i], last_step).signed_distance *
+           points[i].inverse_sigma;
+  };
+  for (const std::size_t i : few_far_points(points.size(), residual_of)) {
     const double t = nearest_parameter(fit->coefficients, points[i].position);
     if (t >= range.least && t <= range.most) {
       fit->t[i] = t;

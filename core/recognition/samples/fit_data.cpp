@@ -137,6 +137,24 @@ std::size_t residual_count(const FitData& data) {
   return count;
 }
 
+FitData without_points(const FitData& data, const std::vector<bool>& is_out) {
+  FitData kept = data;
+  kept.points.clear();
+  kept.patches.clear();
+  kept.details.clear();
+  for (const PatchSpan& patch : data.patches) {
+    const std::size_t begin = kept.points.size();
+    for (std::size_t i = patch.begin; i < patch.end; ++i) {
+      if (!is_out[i]) {
+        kept.points.push_back(data.points[i]);
+        if (!data.details.empty()) kept.details.push_back(data.details[i]);
+      }
+    }
+    kept.patches.push_back({begin, kept.points.size()});
+  }
+  return kept;
+}
+
 std::size_t contacts_with_details(const FitData& data) {
   double count = 0.0;
   for (const PointDetail& detail : data.details) {

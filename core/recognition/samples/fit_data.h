@@ -87,6 +87,9 @@ double noise_over_means(std::span<const StoredPatch> patches, double default_sig
 /// Number of residuals: one per point, plus one per normal. O(patches).
 std::size_t residual_count(const FitData& data);
 
+/// The data without some of their points: one flag per point. Each patch stays, if an empty one.
+FitData without_points(const FitData& data, const std::vector<bool>& is_out);
+
 /// Number of contacts with a detail that is not used.
 std::size_t contacts_with_details(const FitData& data);
 

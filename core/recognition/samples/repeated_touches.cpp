@@ -26,11 +26,8 @@ bool has_same_tip(const StoredPatch& a, const StoredPatch& b) {
 /// Whether measured normals of both, if any, are one direction by their noise. A touch with one and
 /// a touch without stay apart: their mean would have none.
 bool have_one_normal(const StoredPatch& a, const StoredPatch& b) {
-  const auto detail_of = [](const StoredPatch& patch) {
-    return patch.details.empty() ? SampleDetail{} : patch.details.front();
-  };
-  const SampleDetail of_a = detail_of(a);
-  const SampleDetail of_b = detail_of(b);
+  const SampleDetail of_a = first_detail(a);
+  const SampleDetail of_b = first_detail(b);
   const bool has_a = of_a.normal_sigma_rad > 0.0;
   const bool has_b = of_b.normal_sigma_rad > 0.0;
   return has_a == has_b &&
@@ -67,13 +64,10 @@ bool is_one_place(std::span<const StoredPatch> patches, const Indices& touches,
 /// Their mean in place of the first.
 StoredPatch mean_of(std::span<const StoredPatch> patches, const Indices& touches) {
   StoredPatch mean = patches[touches.front()];
-  const auto detail_of = [](const StoredPatch& patch) {
-    return patch.details.empty() ? SampleDetail{} : patch.details.front();
-  };
-  SampleDetail detail = detail_of(mean);
+  SampleDetail detail = first_detail(mean);
   bool is_detailed = !mean.details.empty();
   for (auto p = touches.begin() + 1; p != touches.end(); ++p) {
-    detail = merged(touch_of(mean), detail, touch_of(patches[*p]), detail_of(patches[*p]));
+    detail = merged(touch_of(mean), detail, touch_of(patches[*p]), first_detail(patches[*p]));
     mean.samples.front() = merged(touch_of(mean), touch_of(patches[*p]));
     is_detailed = is_detailed || !patches[*p].details.empty();
   }

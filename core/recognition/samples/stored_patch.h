@@ -45,6 +45,11 @@ struct StoredPatch {
   double turn = 0.0;
 };
 
+/// What is said of a patch's first sample: of a single touch all there is.
+inline SampleDetail first_detail(const StoredPatch& patch) {
+  return patch.details.empty() ? SampleDetail{} : patch.details.front();
+}
+
 /// Whether most of the patches are of one sample: no neighbours tell noise, order or directions.
 inline bool are_mostly_touches(std::span<const StoredPatch> patches) {
   const auto lone = std::count_if(patches.begin(), patches.end(), [](const StoredPatch& patch) {

@@ -122,8 +122,7 @@ StoredPatch run_of(std::span<const StoredPatch> patches, std::span<const Place> 
     detailed = detailed || !patches[place.patch].details.empty();
   }
   for (std::size_t i = 0; detailed && i < places.size(); ++i) {
-    const std::vector<SampleDetail>& of_touch = patches[places[i].patch].details;
-    run.details.push_back(of_touch.empty() ? SampleDetail{} : of_touch.front());
+    run.details.push_back(first_detail(patches[places[i].patch]));
   }
   run.newest_m = run.samples.back().position_m;
   run.is_joined = true;

@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/curves/algebraic/polynomial_curve.h"
 #include "core/recognition/coherent/coherent_evidence.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/posterior/laplace_evidences.h"
@@ -15,11 +14,6 @@
 
 namespace palpate {
 namespace {
-
-Vec2 foot_of(const ClassFit& fit, std::size_t point) {
-  return fit.polynomial ? position_at(fit.polynomial->coefficients, fit.polynomial->t[point])
-                        : fit.implicit->feet[point];
-}
 
 /// Whether the tips' centres lie on these sides of their travel, as a curve fitted to all of them
 /// has it.

@@ -12,22 +12,11 @@
 
 #include "core/recognition/recognizer.h"
 #include "tests/support/answer_invariants.h"
+#include "tests/support/answered_touches.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
 namespace {
-
-/// Every position is a patch of its own: the probe is lifted each time.
-Recognition touched_apart(const std::vector<Vec2>& positions, double sigma_m) {
-  Recognizer recognizer;
-  PatchContext context;
-  for (const Vec2& position : positions) {
-    const ContactSample sample{position, sigma_m, 0};
-    recognizer.add(context, {&sample, 1});
-    ++context.patch;
-  }
-  return recognizer.recognize();
-}
 
 Recognition stroked(const std::vector<Vec2>& positions, double sigma_m) {
   Recognizer recognizer;
@@ -66,7 +55,7 @@ TEST(DegenerateInput, NineTouchesOfOnePlaceAreNoCurve) {
     for (const Vec2& place : {Vec2(0.1, -0.03), Vec2(0.0, 0.0), Vec2(1e6, 1e-6)}) {
       SCOPED_TRACE(testing::Message() << "sigma " << sigma_m << " at " << place.transpose());
       const std::vector<Vec2> positions(9, place);
-      expect_certain_of_nothing(touched_apart(positions, sigma_m), positions);
+      expect_certain_of_nothing(test::answer_to_touches(positions, sigma_m), positions);
     }
   }
 }
@@ -78,7 +67,7 @@ TEST(DegenerateInput, TwoPlacesAreNoCurve) {
   }
   for (const double sigma_m : kStated) {
     SCOPED_TRACE(sigma_m);
-    expect_certain_of_nothing(touched_apart(positions, sigma_m), positions);
+    expect_certain_of_nothing(test::answer_to_touches(positions, sigma_m), positions);
     expect_certain_of_nothing(stroked(positions, sigma_m), positions);
   }
 }
@@ -145,7 +134,7 @@ TEST(DegenerateInput, IdenticalCollinearSteps) {
       if (answer.status == RecognitionStatus::Recognized) {
         EXPECT_EQ(answer.shape.curve_class, CurveClass::Line);
       }
-      const Recognition apart = touched_apart(positions, sigma_m);
+      const Recognition apart = test::answer_to_touches(positions, sigma_m);
       EXPECT_EQ(broken(apart, positions), "");
     }
   }

@@ -1,10 +1,10 @@
 // The odds against gross errors of touches.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <initializer_list>
+#include <vector>
 
 #include "core/recognition/gross_touches.h"
 #include "core/recognition/samples/fit_data.h"
@@ -24,21 +24,13 @@ FitData touches_and_a_stroke() {
   return test::fit_data(scene, 1e-3);
 }
 
-/// Only points with these numbers set aside, each patch where it was.
+/// Points with these numbers set aside, each patch where it was.
 FitData set_aside(const FitData& data, std::initializer_list<std::size_t> gone) {
-  FitData kept = data;
-  kept.points.clear();
-  kept.patches.clear();
-  for (const PatchSpan& patch : data.patches) {
-    const std::size_t begin = kept.points.size();
-    for (std::size_t i = patch.begin; i < patch.end; ++i) {
-      if (std::find(gone.begin(), gone.end(), i) == gone.end()) {
-        kept.points.push_back(data.points[i]);
-      }
-    }
-    kept.patches.push_back({begin, kept.points.size()});
+  std::vector<bool> is_out(data.points.size(), false);
+  for (const std::size_t i : gone) {
+    is_out[i] = true;
   }
-  return kept;
+  return without_points(data, is_out);
 }
 
 TEST(GrossOdds, AreOfTouchesAloneAndOfEachOfThem) {
