@@ -37,11 +37,66 @@ struct Block {
   bool is_settled = false;
 };
 
+/// Which samples are far from both neighbours, compared with the short steps of the stroke.
+std::vector<std::uint8_t> jumps_of(std::span<const Vec2> samples) {
+  constexpr double kShort = 0.2;  // of all steps; with a third of spikes, (2/3)^2 have none
+  constexpr double kJump = 4.0;   // short steps
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    steps.push_back((samples[i] - samples[i - 1]).norm());
+  }
+  std::vector<double> sorted = steps;
+  const auto place =
+      sorted.begin() + static_cast<std::ptrdiff_t>(kShort * static_cast<double>(sorted.size()));
+  std::nth_element(sorted.begin(), place, sorted.end());
+  std::vector<std::uint8_t> jumps(samples.size());
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    jumps[i] = std::min(steps[i - 1], steps[i]) > kJump * *place ? 1 : 0;
+  }
+  return jumps;
+}
+
+/// How many samples at an end of a block, where the stroke goes on, the block does not judge: up to
+/// its outermost inlier, and farther in where the stroke may have left the form that the quartic
+/// has. Samples beyond a bend are off, but for those that lie on the quartic by chance; with one of
+/// these alone outside of them, they were all taken for spikes. `use`, `end`, `jump`: from that end
+/// inwards.
+template <typename Flag>
+std::size_t beyond_form(Flag use, const Flag end, Flag jump) {
+  constexpr double kSpikes = 0.3;  // of samples, as many as are found (least_median_parabola.cpp)
+  // To an order: what they weigh against each other decides between two samples and three.
+  constexpr double kBend = 0.1;         // probability beforehand that a block goes beyond a bend
+  constexpr double kOnByChance = 0.1;   // of samples beyond one
+  constexpr double kMayBeBeyond = 0.1;  // a sample that is so probably beyond: others judge it
+  const auto first = static_cast<std::size_t>(std::find(use, end, 1) - use);
+  std::vector<double> of_bends;  // by how many samples are beyond it
+  double of_bend = kBend;
+  double all = 1.0 - kBend;
+  for (; use != end; ++use, ++jump) {
+    if (*use != 0) {
+      of_bend *= kOnByChance / (1.0 - kSpikes);
+    } else if (*jump == 0) {  // a spike anywhere else
+      of_bend *= (1.0 - kOnByChance) / kSpikes;
+    }
+    all += of_bend;
+    of_bends.push_back(of_bend);
+  }
+  std::size_t beyond = of_bends.size();
+  for (double of_farther = 0.0; beyond > first; --beyond) {
+    of_farther += of_bends[beyond - 1];
+    if (of_farther > kMayBeBeyond * all) {
+      break;
+    }
+  }
+  return beyond;
+}
+
 class Search {
  public:
   Search(std::span<const Vec2> samples, const BlockSurvey& survey, double threshold,
          const CuspEnds& cusps, WorkBudget& work)
       : samples_(samples),
+        jumps_(jumps_of(samples)),
         threshold_(threshold),
         length_(survey.length),
         sigma_m_(survey.sigma_m),
@@ -207,12 +262,14 @@ class Search {
   void judge_by(const Block& block, std::vector<Verdict>* verdicts) const {
     const std::size_t lost = length_ - block.used;
     const std::size_t counted = lost > length_ / 8 ? lost : 0;
-    const std::size_t first = first_of(block);
-    const std::size_t last = last_of(block);
+    const std::span<const std::uint8_t> use(block.use);
+    const auto jumps = std::span<const std::uint8_t>(jumps_).subspan(block.start, length_);
+    const std::size_t begin = beyond_form(use.begin(), use.end(), jumps.begin());
+    const std::size_t end = length_ - beyond_form(use.rbegin(), use.rend(), jumps.rbegin());
     for (std::size_t i = 0; i < length_; ++i) {
       // Round a cusp the stroke goes on too.
-      const bool goes_on = (i < first && (block.start > 0 || cusps_.first)) ||
-                           (i > last && (block.start + length_ < samples_.size() || cusps_.last));
+      const bool goes_on = (i < begin && (block.start > 0 || cusps_.first)) ||
+                           (i >= end && (block.start + length_ < samples_.size() || cusps_.last));
       if (goes_on) {
         continue;
       }
@@ -225,6 +282,7 @@ class Search {
   }
 
   std::span<const Vec2> samples_;
+  std::vector<std::uint8_t> jumps_;
   double threshold_;
   std::size_t length_;
   double sigma_m_;
