@@ -20,7 +20,7 @@ double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidence
   const FreeForm& paths = evidences.free_form;
   const double log_paths = likelihood.log_evidence(
       smooth_chi2 + likelihood.inflation() * paths.chi2, paths.log_occam, paths.determined);
-  return log_add(log_paths, evidences.log_near);
+  return log_add(log_add(log_paths, evidences.log_near), evidences.log_edges);
 }
 
 void add_laplace_evidence(const ClassFit& on_reduced, const FitData& reduced, Evidences* evidences,

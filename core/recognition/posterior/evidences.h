@@ -37,6 +37,9 @@ struct Evidences {
   /// log of the evidence of parts near a class, times what these are as probable beforehand as free
   /// paths (weigh/near_parts.h).
   double log_near = kNoEvidence;
+  /// log of the evidence of two edges with a fillet, as probable beforehand as free paths
+  /// (weigh/edges_of_part.h).
+  double log_edges = kNoEvidence;
   /// log of what each class has in nearly straight paths, where the line is in question
   /// (straight_paths.h): that or what lies about its fit, whichever is more.
   ByClass<double> log_straight = kNoEvidences;
@@ -59,7 +62,7 @@ struct Evidences {
 Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
                              WorkBudget& work);
 
-/// log of the evidence of "unclassified": free-form paths and parts near a class.
+/// log of the evidence of "unclassified": free-form paths, parts near a class, and edges.
 double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidences& evidences,
                                     double smooth_chi2);
 

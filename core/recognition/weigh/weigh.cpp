@@ -11,6 +11,7 @@
 #include "core/recognition/posterior/out_of_reach.h"
 #include "core/recognition/samples/work_limit.h"
 #include "core/recognition/weigh/contenders.h"
+#include "core/recognition/weigh/edges_of_part.h"
 #include "core/recognition/weigh/near_parts.h"
 #include "core/recognition/weigh/shared_deviations.h"
 #include "core/recognition/weigh/sides.h"
@@ -228,6 +229,7 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
                                         margin_of(options));
   }
   contenders = decided(std::move(contenders), context, margin_of(options));
+  contenders = with_edges(std::move(contenders), context, margin_of(options));
   contenders =
       with_near_parts(std::move(contenders), context, options.near_parts, margin_of(options));
   Weighing weighing = assemble_weighing(std::move(arcs), std::move(sided), std::move(contenders),

@@ -1,0 +1,248 @@
+#include "core/recognition/posterior/edges.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "core/numerics/levenberg_marquardt.h"
+#include "core/numerics/small_cholesky.h"
+
+namespace palpate {
+namespace {
+
+using Vector = Eigen::Matrix<double, kEdgesCoordinates, 1>;
+using Matrix = Eigen::Matrix<double, kEdgesCoordinates, kEdgesCoordinates>;
+
+/// Radii of fillets are alike probable by their logarithm, from where no stroke shows them to where
+/// no edge is left. In half extents.
+constexpr double kLeastRadius = 1.0 / 1024.0;
+constexpr double kLargestRadius = 4.0;
+
+/// Difference between chi-square on all points and the one that the reduced points tell up to which
+/// these are believed: as of a class (weigh/contenders.h).
+constexpr double kLeastError = 4.0;
+
+/// Centre, bisector, half turn and log radius: the radius is positive.
+RoundedCorner corner_of(const Vector& x) { return {x.head<2>(), x[2], x[3], std::exp(x[4])}; }
+
+/// Distances from the curve of a corner, for `minimise`.
+class EdgesProblem {
+ public:
+  static constexpr int kParameters = kEdgesCoordinates;
+
+  explicit EdgesProblem(std::span<const FitPoint> points) : points_(points) {}
+
+  double chi2_at(const Vector& x) {
+    tried_ = x;
+    if (!(x[3] > 0.0 && x[3] <= 0.5 * std::numbers::pi)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    const RoundedCorner corner = corner_of(x);
+    double chi2 = 0.0;
+    for (const FitPoint& point : points_) {
+      const double residual = point.inverse_sigma * corner.distance(point.position).value;
+      chi2 += residual * residual;
+    }
+    return chi2;
+  }
+
+  void accept() { at_ = tried_; }
+
+  void linearise(Matrix* information, Vector* gradient) const {
+    information->setZero();
+    gradient->setZero();
+    const RoundedCorner corner = corner_of(at_);
+    for (const FitPoint& point : points_) {
+      const RoundedCorner::Distance distance = corner.distance(point.position);
+      Vector row = point.inverse_sigma * distance.gradient.transpose();
+      row[4] *= corner.radius;
+      *information += row * row.transpose();
+      *gradient += point.inverse_sigma * distance.value * row;
+    }
+  }
+
+ private:
+  std::span<const FitPoint> points_;
+  Vector tried_ = Vector::Zero();
+  Vector at_ = Vector::Zero();
+};
+
+/// A straight edge.
+struct Edge {
+  Vec2 place = Vec2::Zero();
+  Vec2 along = Vec2::UnitX();
+
+  double distance(const Vec2& point) const { return std::abs(cross(along, point - place)); }
+};
+
+/// The two edges, along the strokes at two of their points, that all points are next to.
+std::optional<std::array<Edge, 2>> seen_edges(std::span<const FitPoint> points, WorkBudget& work) {
+  constexpr std::size_t kTried = 12;   // points: of 66 pairs one has both edges, if seen
+  constexpr double kLeastTurn = 0.02;  // sine; a flatter corner bends like a class
+  std::vector<Edge> edges;
+  const std::size_t step = std::max<std::size_t>(points.size() / kTried, 1);
+  for (std::size_t i = step / 2; i < points.size(); i += step) {
+    if (!points[i].tangent.isZero(0.0)) {
+      edges.push_back({points[i].position, points[i].tangent});
+    }
+  }
+  std::vector<double> distances(edges.size() * points.size());
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      distances[e * points.size() + i] =
+          points[i].inverse_sigma * edges[e].distance(points[i].position);
+    }
+  }
+  std::optional<std::array<Edge, 2>> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    for (std::size_t f = 0; f < e; ++f) {
+      if (std::abs(cross(edges[e].along, edges[f].along)) < kLeastTurn) {
+        continue;
+      }
+      // Not their squares: those of points on the arc would decide.
+      double sum = 0.0;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        sum += std::min(distances[e * points.size() + i], distances[f * points.size() + i]);
+      }
+      if (sum < least) {
+        least = sum;
+        best = {edges[e], edges[f]};
+      }
+    }
+  }
+  work.spend(WorkKind::SeedRow, edges.size() * edges.size() / 2 * points.size());
+  return best;
+}
+
+/// The corner of two edges, sharp so far: where they meet, and the directions of their normals on
+/// the outside.
+struct SharpCorner {
+  Vec2 place = Vec2::Zero();
+  Vec2 first = Vec2::UnitX();
+  Vec2 second = Vec2::UnitX();
+
+  Vector rounded(double radius) const {
+    const Vec2 ahead = first + second;
+    Vector x;
+    x << place - radius / (1.0 + first.dot(second)) * ahead, std::atan2(ahead.y(), ahead.x()),
+        0.5 * std::abs(turn_between(first, second)), std::log(radius);
+    return x;
+  }
+};
+
+SharpCorner corner_between(const std::array<Edge, 2>& edges, std::span<const FitPoint> points) {
+  SharpCorner corner;
+  const double turn = cross(edges[0].along, edges[1].along);
+  const double s = cross(edges[1].place - edges[0].place, edges[1].along) / turn;
+  corner.place = edges[0].place + s * edges[0].along;
+  std::array<double, 2> way{};  // from the corner, along each edge, of the points next to it
+  for (const FitPoint& point : points) {
+    const bool second = edges[1].distance(point.position) < edges[0].distance(point.position);
+    way[second ? 1 : 0] += edges[second ? 1 : 0].along.dot(point.position - corner.place);
+  }
+  const Vec2 arm = way[0] < 0.0 ? Vec2(-edges[0].along) : edges[0].along;
+  const Vec2 other = way[1] < 0.0 ? Vec2(-edges[1].along) : edges[1].along;
+  corner.first = (arm.dot(other) * arm - other).normalized();
+  corner.second = (arm.dot(other) * other - arm).normalized();
+  return corner;
+}
+
+/// What the prior leaves: each coordinate by the width of the normal law that is as high.
+double log_occam_of(const Matrix& information, double inflation) {
+  // The place of the corner across an edge as that of any class; along it within the half extents.
+  const double across = std::sqrt(0.5 * std::numbers::pi);
+  const double along = 2.0 / std::sqrt(2.0 * std::numbers::pi);
+  // The direction of an edge as that of any class; the turn to the other one, twice the half turn,
+  // uniform to either side.
+  const double turn = 0.5 * std::sqrt(2.0 * std::numbers::pi);
+  const double radius = std::log(kLargestRadius / kLeastRadius) / std::sqrt(2.0 * std::numbers::pi);
+  const double place = std::sqrt(across * along);
+  const Vector widths = (Vector() << place, place, across, turn, radius).finished();
+  Matrix relative = widths.asDiagonal() * information * widths.asDiagonal() / inflation;
+  relative.diagonal().array() += 1.0;
+  Matrix lower;
+  if (!cholesky(relative, &lower)) {
+    return -std::numeric_limits<double>::infinity();
+  }
+  return -std::log(lower.diagonal().prod());
+}
+
+constexpr double kAnyChi2 = std::numeric_limits<double>::infinity();
+
+/// The optimum on `points` from `x`, in so many steps.
+MinimiseSummary refine(EdgesProblem* problem, std::span<const FitPoint> points, int steps,
+                       double out_of_reach, Vector* x, WorkBudget& work) {
+  constexpr double kTolerance = 1e-2;  // of chi-square; evidence is asked for to a tenth
+  MinimiseOptions options{steps, kTolerance};
+  options.out_of_reach = out_of_reach;
+  options.work = &work;
+  options.row = WorkKind::AxisRow;
+  options.rows = points.size();
+  return minimise(problem, x, options);
+}
+
+/// The radius at which the corner is nearest to the points, to a factor of two.
+Vector start_of(const SharpCorner& corner, EdgesProblem* problem) {
+  Vector best = Vector::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  for (double radius = kLeastRadius; radius <= kLargestRadius; radius *= 2.0) {
+    const Vector x = corner.rounded(radius);
+    const double chi2 = problem->chi2_at(x);
+    if (chi2 < least) {
+      least = chi2;
+      best = x;
+    }
+  }
+  return best;
+}
+
+bool are_of_one_tip(std::span<const FitPoint> points) {
+  return std::all_of(points.begin(), points.end(),
+                     [&](const FitPoint& point) { return point.offset == points.front().offset; });
+}
+
+}  // namespace
+
+std::optional<Edges> edges_of(const Arcs& arcs, double inflation, double out_of_reach,
+                              WorkBudget& work) {
+  const std::span<const FitPoint> points(arcs.data.points);
+  const std::span<const FitPoint> reduced(arcs.smooth.reduced.points);
+  if (residual_count(arcs.data) > points.size() || !are_of_one_tip(points) || !work.allows()) {
+    return std::nullopt;
+  }
+  const auto seen = seen_edges(reduced, work);
+  if (!seen) {
+    return std::nullopt;
+  }
+  EdgesProblem on_reduced(reduced);
+  Vector x = start_of(corner_between(*seen, reduced), &on_reduced);
+  // The directions of the edges are those of the strokes at one point each. The first steps set
+  // them right, and tell which points lie on the arc: before, no linear model holds.
+  constexpr int kFirstSteps = 4;
+  constexpr int kSteps = 20;
+  refine(&on_reduced, reduced, kFirstSteps, kAnyChi2, &x, work);
+  const MinimiseSummary coarse = refine(&on_reduced, reduced, kSteps, out_of_reach, &x, work);
+  if (!(coarse.chi2 <= out_of_reach)) {
+    return std::nullopt;
+  }
+  EdgesProblem on_all(points);
+  work.spend(WorkKind::AxisRow, points.size());
+  double chi2 = on_all.chi2_at(x);
+  EdgesProblem* settled = &on_reduced;
+  if (std::abs(chi2 - (arcs.smooth.chi2 + coarse.chi2)) > kLeastError) {
+    // No section leads round a corner that is sharper than it is long.
+    chi2 = refine(&on_all, points, kSteps, kAnyChi2, &x, work).chi2;
+    settled = &on_all;
+  }
+  Matrix information;
+  Vector gradient;
+  settled->linearise(&information, &gradient);
+  return Edges{corner_of(x), chi2, log_occam_of(information, inflation)};
+}
+
+}  // namespace palpate

@@ -1,0 +1,83 @@
+// Strokes over an edge of a part: two straight flanks with a fillet between them. A hyperbola with
+// a vertex as tight fits them, and was RECOGNIZED in a quarter.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <random>
+#include <vector>
+
+#include "core/curves/rounded_corner.h"
+#include "core/recognition/recognizer.h"
+#include "tests/support/answered_touches.h"
+#include "tests/support/most_of_poisson.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kMillimetre = 1e-3;  // [m]
+
+/// Once from one flank to the other; lengths in units of the spacing of samples.
+std::vector<Vec2> over_edge(double before, double after, double radius, double turn,
+                            std::mt19937_64& rng) {
+  std::vector<Vec2> places;
+  for (double s = -before + test::uniform(rng, 0.0, 1.0); s < radius * turn + after; s += 1.0) {
+    const double angle = std::clamp(s / radius, 0.0, turn);
+    const Vec2 normal(std::sin(angle), -std::cos(angle));
+    places.push_back(radius * normal + (s - radius * angle) * left_of(normal));
+  }
+  return places;
+}
+
+Recognition stroked_over_edge(int strokes, bool stated, std::mt19937_64& rng) {
+  const double spacing_m = test::uniform(rng, 0.3, 0.8) * kMillimetre;
+  const double radius = test::log_uniform(rng, 0.02, 3.0);
+  const double turn = test::uniform(rng, 0.3, 2.5);
+  const double sigma_m = test::log_uniform(rng, 1e-3, 2e-2) * kMillimetre;
+  const Pose2 pose = test::pose_within(rng, 0.05);
+  Recognizer recognizer;
+  for (int p = 0; p < strokes; ++p) {
+    const double before = test::uniform(rng, 15.0, 50.0);
+    const double after = test::uniform(rng, 15.0, 50.0);
+    std::vector<ContactSample> samples;
+    for (const Vec2& place : over_edge(before, after, radius, turn, rng)) {
+      samples.push_back({pose * Vec2(spacing_m * place) + test::normal_pair(rng, sigma_m),
+                         stated ? sigma_m : 0.0, 0});
+    }
+    PatchContext context;
+    context.patch = static_cast<std::uint32_t>(p);
+    recognizer.add(context, samples);
+  }
+  return recognizer.recognize();
+}
+
+TEST(Edges, AreOfNoClass) {
+  std::mt19937_64 rng = test::test_rng();
+  int recognized = 0;
+  double stated = 0.0;
+  int none_first = 0;
+  const int scenes = test::stress_count(200);
+  for (int i = 0; i < scenes; ++i) {
+    const Recognition answer = stroked_over_edge(1 + i % 3, i % 2 == 0, rng);
+    const bool is_wrong = test::is_recognized(answer);
+    recognized += is_wrong ? 1 : 0;
+    stated += is_wrong ? test::stated_doubt(answer) : 0.0;
+    if (is_wrong) {
+      std::cout << i << ": " << test::said(answer) << "\n";
+    }
+    none_first += answer.hypotheses.front().shape.curve_class == CurveClass::Unclassified ? 1 : 0;
+  }
+  std::cout << "of " << scenes << " RECOGNIZED as a class " << recognized
+            << ", of no class most probably " << none_first << "\n";
+  EXPECT_LE(recognized, test::most_of_poisson(stated));
+  if (test::counts_tell()) {
+    // A sharp hyperbola that fits as well is half as probable beforehand: the edges are then the
+    // more probable in two of three.
+    EXPECT_GE(none_first, 2 * scenes / 3);
+  }
+}
+
+}  // namespace
+}  // namespace palpate
