@@ -31,6 +31,11 @@ struct ProbeCharacter {
   std::optional<Estimate> lag_m;
 };
 
+/// E[x^2] of the estimated quantity.
+inline double mean_square(const Estimate& estimate) {
+  return estimate.value * estimate.value + estimate.deviation * estimate.deviation;
+}
+
 /// Covariance of the offset's coefficients for a part that is touched in another set-up. [m^2]
 inline Eigen::MatrixXd covariance_elsewhere(const ProbeCharacter& probe) {
   Eigen::MatrixXd covariance = probe.offset.covariance_m2;

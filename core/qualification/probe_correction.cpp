@@ -41,11 +41,6 @@ Slope distance_slope(const Curve& curve, const Pose2& pose, const Vec2& normal,
   return slope;
 }
 
-/// E[x^2] of the estimated quantity.
-double mean_square(const Estimate& estimate) {
-  return estimate.value * estimate.value + estimate.deviation * estimate.deviation;
-}
-
 /// Where a sample touches, and the normal out of the material there (to the right of increasing
 /// parameter if the side is not known).
 struct Touch {

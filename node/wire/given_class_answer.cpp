@@ -8,8 +8,10 @@
 #include "core/curves/curve.h"
 #include "core/numerics/negligible.h"
 #include "core/qualification/probe_correction.h"
+#include "core/qualification/probe_residuals.h"
 #include "core/recognition/given/given_class.h"
 #include "core/recognition/posterior/likelihood.h"
+#include "core/recognition/smooth/residual_correlation.h"
 #include "core/recognition/verdict/determined.h"
 #include "node/wire/convert.h"
 
@@ -81,6 +83,8 @@ bool is_told(const GivenFit& fit) {
 struct PointsFitted {
   std::vector<GivenPoint> points;
   GivenFit fit;
+  /// The largest chi-square that the noise, and the deviation of the probes' files, may leave.
+  double most_chi2 = 0.0;
 };
 
 PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
@@ -99,6 +103,7 @@ PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
   for (int round = 0;; ++round) {
     fitted.points = points_of(corrected, left_out);
     fitted.fit = fit_given_class(curve_class, fitted.points, options);
+    fitted.most_chi2 = most_chi2_of_probes(corrected, fitted.fit.dof);
     if (!probed || !is_told(fitted.fit)) {
       return fitted;
     }
@@ -118,6 +123,26 @@ PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
   }
 }
 
+/// What neighbours' residuals have in common where the noise is not stated: n of them are worth so
+/// many fewer independent ones. Part and probe are not asked which of them it is.
+ResidualCorrelation correlation_of(std::span<const ContactRun> runs,
+                                   std::span<const GivenPoint> points, const GivenFit& fit) {
+  FitData data;
+  std::vector<double> residuals;
+  std::size_t i = 0;
+  for (const ContactRun& run : runs) {
+    const std::size_t begin = data.points.size();
+    for (std::size_t k = 0; k < run.samples.size(); ++k, ++i) {
+      if (!points[i].set_aside) {
+        data.points.push_back({points[i].position_m});
+        residuals.push_back(fit.residuals[i].distance_m);
+      }
+    }
+    data.patches.push_back({begin, data.points.size()});
+  }
+  return correlation_of(data, residuals);
+}
+
 double half_extent_m(std::span<const GivenPoint> points) {
   Vec2 low = points.front().position_m;
   Vec2 high = low;
@@ -134,7 +159,7 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
                                         std::span<const ProbeCharacter* const> probes,
                                         std::span<const std::size_t> left_out,
                                         const RecognizerOptions& options) {
-  const auto [points, fit] =
+  auto [points, fit, most_chi2] =
       fit_runs(curve_class, runs, probes, left_out, {options.sigma_m, options.touched_from});
   const bool fitted = fit.status == GivenStatus::Fitted;
   const bool told = is_told(fit);
@@ -161,9 +186,14 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
     answer.set_doubt(v1::RECOGNITION_DOUBT_UNDETERMINED);
     return given;
   }
-  // Deviations are those of the noise alone: of residuals that it cannot have left they say
-  // nothing.
-  const bool by_noise = !fit.sigma_stated || fit.dof <= 0 || can_be_noise(fit.chi2, fit.dof);
+  if (!fit.sigma_stated) {
+    const ResidualCorrelation correlation = correlation_of(runs, points, fit);
+    fit.covariance *= correlation.time;
+    answer.set_noise_correlation_m(correlation.length);
+  }
+  // Deviations are those of the noise and of the probes: of residuals that these cannot have left
+  // they say nothing.
+  const bool by_noise = !fit.sigma_stated || fit.dof <= 0 || fit.chi2 <= most_chi2;
   const bool determined =
       fitted && fit.bounded &&
       is_determined(fit.shape, fit.covariance, half_extent_m(points), options.determined_fraction);

@@ -168,6 +168,7 @@ int run(FitCommand& fit) {
     return place_part(fit.part, inputs, fit.recognizer, json);
   }
   std::size_t number = 0;
+  int code = kDone;  // of what could not be written: the other answers are not lost with it
   for (FitInput& input : inputs) {
     // By the numbers that the samples have in the file, so before any is left out.
     const std::optional<Finding> approach = judge_approaches(input.group, input.is_alone, left_out);
@@ -190,7 +191,7 @@ int run(FitCommand& fit) {
                                                      std::to_string(group.object));
         const std::string path = plot_path(fit.invariants_plot, number + 1);
         if (const std::string why = write_file(path, picture); !why.empty()) {
-          return complain(why, kFailed);
+          code = complain(why, kFailed);
         }
       }
       answer = std::move(answered.wire);
@@ -233,18 +234,18 @@ int run(FitCommand& fit) {
       const std::string path = plot_path(fit.plot, number);
       if (const std::string why = write_file(path, svg_plot(measured, answer, spikes));
           !why.empty()) {
-        return complain(why, kFailed);
+        code = complain(why, kFailed);
       }
     }
     if (!fit.curve_file.empty()) {
       const std::string path = plot_path(fit.curve_file, number);
       if (const std::string why = export_curve(measured, answer, path); !why.empty()) {
-        return complain(why, kFailed);
+        code = complain(why, kFailed);
       }
     }
   }
   std::cout.flush();
-  return std::cout ? kDone : complain("standard output: cannot be written", kFailed);
+  return std::cout ? code : complain("standard output: cannot be written", kFailed);
 }
 
 }  // namespace

@@ -567,6 +567,16 @@ class Formats(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("cannot be written", err)
 
+    def test_an_object_without_a_curve_to_export_costs_no_other_its_answer(self):
+        path = self.folder / "two.csv"
+        circle = "".join(f"2,{0.015 * math.cos(t / 9)!r},{0.015 * math.sin(t / 9)!r}\n" for t in range(60))
+        path.write_text("object,x_m,y_m\n" + "".join(f"1,{0.001 * t!r},{0.002 * t!r}\n" for t in range(9)) + circle)
+        code, out, err = run(TOOL, "fit", path, "--class", "circle", "--export", self.folder / "curve.csv")
+        self.assertEqual(code, 1)
+        self.assertIn("curve.csv: not written: no curve was found", err)
+        self.assertEqual(len(out.splitlines()), 2)
+        self.assertEqual([p.name for p in self.folder.glob("curve*")], ["curve-2.csv"])
+
 
 if __name__ == "__main__":
     unittest.main()

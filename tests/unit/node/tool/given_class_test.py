@@ -156,6 +156,31 @@ class GivenClass(unittest.TestCase):
         self.assertTrue(answer.sigma_stated)
         self.assertAlmostEqual(answer.recognition.parameters.a, math.hypot(0.02, 0.002), delta=1e-6)
 
+    def test_deviations_are_wider_where_neighbours_err_together(self):
+        """Of a Markov chain with correlation c, n samples are worth n (1 - c) / (1 + c). The radius of 60 full turns."""
+        rng = random.Random(1)
+        count = 300
+        for correlation in (0.0, 0.8):
+            squares = []
+            for _ in range(60):
+                error = rng.gauss(0, 1)
+                rows = []
+                for k in range(count):
+                    radius, angle = 0.03 + 1e-5 * error, 2 * math.pi * k / count
+                    rows.append(f"p,0,{radius * math.cos(angle)!r},{radius * math.sin(angle)!r}\n")
+                    error = correlation * error + math.sqrt(1 - correlation ** 2) * rng.gauss(0, 1)
+                _, (answer,), _ = fit(HEADER + "".join(rows), "--class", "circle")
+                recognition = answer.recognition
+                squares.append((recognition.parameters.a - 0.03) ** 2 / recognition.covariance[0])
+            mean = sum(squares) / len(squares)
+            # Four deviations of a mean of 60 chi-squares of one degree of freedom. The fit's three unknowns take of the
+            # independent residuals what is not seen of the correlation either. (Before, the mean was 9.)
+            worth = count * (1 - correlation) / (1 + correlation)
+            four = 4 * math.sqrt(2 / 60)
+            self.assertLess(mean, (1 + four) * worth / (worth - 2 * 3))
+            self.assertGreater(mean, 1 - four)
+            self.assertEqual(recognition.noise_correlation_m > 0, correlation > 0)
+
     def test_an_outlier_is_left_out_by_its_number(self):
         points = SQUARE[:2] + [(0.7, 0.7)] + SQUARE[2:]
         _, (answer,), _ = fit(touches(points), "--class", "circle", "--leave-out", "3")
