@@ -264,7 +264,11 @@ PointColumns columns_of(const std::vector<std::string_view>& names) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto named = column_of(names[i]);
     if (!named) {
-      if (!names[i].empty()) columns.ignored.push_back(printable(names[i], 40));
+      if (names[i].empty()) {
+        columns.unnamed.push_back(i);
+      } else {
+        columns.ignored.push_back(printable(names[i], 40));
+      }
       continue;
     }
     auto& place = columns.places[static_cast<std::size_t>(named->column)];

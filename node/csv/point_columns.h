@@ -39,6 +39,7 @@ struct PointColumns {
   std::array<std::optional<std::size_t>, kPointColumnCount> places;
   std::array<std::optional<double>, kPointColumnCount> units;
   std::vector<std::string> ignored;  ///< columns that are none of these
+  std::vector<std::size_t> unnamed;  ///< places of columns whose name is empty
   std::string twice;                 ///< name of a column that comes a second time; else empty
   /// Why columns of normals or covariances are not used, a sentence each.
   std::vector<std::string> unused_details;

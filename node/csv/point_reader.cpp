@@ -291,6 +291,9 @@ class PointReader {
         return;
       }
     }
+    unnamed_used_ = unnamed_used_ || std::ranges::any_of(columns_.unnamed, [&](std::size_t place) {
+                      return !fields_[place].empty();
+                    });
     ContactRow row;
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
     int axes = 0;
@@ -334,6 +337,24 @@ class PointReader {
     if (axes == 3) result_.points.push_back(point);
   }
 
+  /// What of a column of noise is not one.
+  void tell_of_noise(std::vector<std::string>& notes) const {
+    const std::vector<ContactRow>& rows = result_.table.rows;
+    const auto unknown = static_cast<std::size_t>(
+        std::ranges::count_if(rows, [](const ContactRow& r) { return r.sample.sigma_m == 0.0; }));
+    if (columns_.place(Column::Sigma) && unknown == rows.size()) {
+      notes.emplace_back("sigma is 0 or empty in every row: the noise counts as not stated");
+    } else if (columns_.place(Column::Sigma) && unknown > 0) {
+      notes.push_back(
+          "sigma is 0 or empty in " + std::to_string(unknown) + " of " +
+          counted(rows.size(), "row") +
+          ": without --sigma, the noise of all of an object with such a row is estimated");
+    }
+    if (columns_.place(Column::CovarianceXx) && !columns_.place(Column::CovarianceXy)) {
+      notes.emplace_back("no column cov_xy: it counts as 0");
+    }
+  }
+
   void tell() {
     result_.has_patches = columns_.place(Column::Patch).has_value() || block_ > 0;
     std::vector<std::string>& notes = result_.notes;
@@ -348,7 +369,9 @@ class PointReader {
       }
       notes.push_back("columns ignored: " + names);
     }
+    if (unnamed_used_) notes.emplace_back("columns without a name are ignored");
     notes.insert(notes.end(), columns_.unused_details.begin(), columns_.unused_details.end());
+    tell_of_noise(notes);
     if (marks_.comma()) notes.emplace_back("commas are read as decimal points");
     if (block_ > 0) {
       notes.push_back(
@@ -371,6 +394,7 @@ class PointReader {
   std::string_view names_;         ///< the line or comment that names the columns
   std::size_t names_again_ = 0;    ///< times that it comes again
   char told_separator_ = '\0';     ///< by the file itself
+  bool unnamed_used_ = false;      ///< a column without a name has a value
   bool units_may_follow_ = false;  ///< the names were the line before
   bool is_known_ = false;          ///< the columns
   bool gap_ = false;               ///< an empty line came before

@@ -19,7 +19,7 @@ std::string_view words_of(DetailFault fault) {
     case DetailFault::NormalDeviation:
       return "a normal needs its deviation";
     case DetailFault::Covariance:
-      return "cov_xx_m2, cov_xy_m2, cov_yy_m2 are no positive definite covariance";
+      return "cov_xx, cov_xy, cov_yy are no positive definite covariance";
   }
   return "";
 }
