@@ -95,7 +95,7 @@ std::optional<FitData> without_gross_touches(const Weighing& weighing, const Fit
   std::vector<Left> classes;
   for (const auto& fit : weighing.coarse) {
     if (fit && !fit->at_limit && (fit->implicit || fit->polynomial->t.size() == n)) {
-      classes.push_back({*fit, weighing.reduced, all});
+      classes.push_back({*fit, points_of(*fit, weighing.reduced), all});
       if (is_told(classes.back())) {
         return std::nullopt;
       }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "core/curves/algebraic/polynomial_curve.h"
@@ -36,7 +37,15 @@ struct ClassFit {
   /// A spline's optimum on the other side of c = 0; of few touches, the second best of all. If it
   /// fits as well, the shape is not known.
   std::optional<PolynomialFit> rival;
+  /// The surface points that the fit is of, where tips were taken off along the class's own
+  /// directions; nullptr: those that all classes share.
+  std::shared_ptr<const FitData> own_points = nullptr;
 };
+
+/// The reduced points that a class is fitted to.
+inline const FitData& points_of(const ClassFit& fit, const FitData& shared) {
+  return fit.own_points != nullptr ? *fit.own_points : shared;
+}
 
 /// Indexed by CurveClass; entry 0 (Unclassified) is empty.
 using ClassFits = ByClass<std::optional<ClassFit>>;

@@ -97,11 +97,12 @@ class SphereResiduals {
   using Step = Eigen::Matrix<double, K - 1, 1>;
 
   SphereResiduals(std::span<const FitPoint> points, const ModelBasis<K>& basis, const Start& start,
-                  int side)
+                  int side, std::span<const Vec2> near)
       : points_(points),
         basis_(basis),
         start_(start.normalized()),
         side_(side),
+        near_(near.begin(), near.end()),
         feet_(points.size()) {
     trial_.setConstant(std::numeric_limits<double>::quiet_NaN());
     tangent_ = tangent_space<K>(start_);
@@ -144,6 +145,9 @@ class SphereResiduals {
     if (jacobian == nullptr) {
       return true;
     }
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+      near_[i] = feet_[i].position;
+    }
     const Eigen::Matrix<double, 6, K - 1> q_by_step =
         basis_ * ((tangent_ - u * (u.transpose() * tangent_)) / norm);
     for (std::size_t i = 0; i < n; ++i) {
@@ -185,7 +189,11 @@ class SphereResiduals {
  private:
   void place(const ConicCoefficients& q, const Step& step) const {
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      feet_[i].distance = signed_distance(q, points_[i].position, &feet_[i].position);
+      Foot& foot = feet_[i];
+      const Vec2& point = points_[i].position;
+      foot.distance = !near_.empty() && points_[i].offset > 0.0
+                          ? signed_distance_of_tip(near_[i], q, point, &foot.position)
+                          : signed_distance(q, point, &foot.position);
     }
     trial_ = step;
   }
@@ -207,6 +215,7 @@ class SphereResiduals {
   Eigen::Matrix<double, K, K - 1> tangent_;
   int side_;
   std::vector<WeighedNormal> normals_;
+  mutable std::vector<Vec2> near_;  ///< feet of tips at the last accepted step; empty: not known
   mutable std::vector<Foot> feet_;  ///< at trial_
   mutable Step trial_;
 };
@@ -214,9 +223,9 @@ class SphereResiduals {
 template <int K>
 ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
                    const ConicCoefficients& start, int side, const RefineEffort& effort,
-                   WorkBudget& work) {
+                   WorkBudget& work, std::span<const Vec2> near) {
   const Eigen::Matrix<double, K, 1> start_in_model = basis.transpose() * start;
-  const SphereResiduals<K> residuals(points, basis, start_in_model, side);
+  const SphereResiduals<K> residuals(points, basis, start_in_model, side, near);
   Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
   const auto summary =
       minimise_residuals(residuals,
@@ -232,36 +241,20 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
   return {residuals.coefficients(step), summary.chi2, side, residuals.feet(step)};
 }
 
-}  // namespace
-
-double weight_of_normal(const ConicCoefficients& q, const Vec2& foot, const FitPoint& point) {
-  const NormalAtFoot at = conic_at(q, {foot, signed_distance_from(foot, q, point.position)}).at;
-  return at.normal.allFinite() && at.is_followed() ? normal_weight(point, at.turn_along()) : 0.0;
-}
-
-double normal_residual(const ConicCoefficients& q, const Vec2& foot, const FitPoint& point) {
-  return weight_of_normal(q, foot, point) *
-         normal_miss(point.normal, conic_gradient(q, foot).normalized());
-}
-
-double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot) {
-  // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}, whose first step from the point
-  // itself is the first-order (Sampson) foot point.
+/// The distance with the foot sought from `near`.
+double distance_followed(const Vec2& near, const ConicCoefficients& q, const Vec2& point,
+                         Vec2* foot) {
+  // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}.
   constexpr int kMoreIterations = 5;
   // After a last step s the foot point is off by about s^2 in normalised extents: by so much at
   // most, absolute and of the distance.
   constexpr double kAbsoluteError = 1e-12;
   constexpr double kRelativeError = 1e-8;
-  Vec2 f = point;
-  Vec2 g = conic_gradient(q, f);
-  double g2 = g.squaredNorm();
-  if (g2 > 0.0) {  // otherwise the centre of a conic: no direction to go
-    f -= value(q, f) / g2 * g;
-  }
+  Vec2 f = near;
   for (int iteration = 0; iteration < kMoreIterations; ++iteration) {
     const double v = value(q, f);
-    g = conic_gradient(q, f);
-    g2 = g.squaredNorm();
+    const Vec2 g = conic_gradient(q, f);
+    const double g2 = g.squaredNorm();
     if (g2 <= 0.0) {
       break;
     }
@@ -286,6 +279,46 @@ double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot
   return signed_distance_from(f, q, point);
 }
 
+/// Whether two points of a conic lie on two branches of a hyperbola: halfway between them is then
+/// where the centre is, between the branches, and else within one.
+bool are_on_two_branches(const ConicCoefficients& q, const Vec2& a, const Vec2& b) {
+  const double d = discriminant(q);
+  if (!(d < 0.0)) {
+    return false;
+  }
+  const Vec2 centre((q[1] * q[4] - 2.0 * q[2] * q[3]) / d, (q[1] * q[3] - 2.0 * q[0] * q[4]) / d);
+  return value(q, 0.5 * (a + b)) * value(q, centre) > 0.0;
+}
+
+}  // namespace
+
+double weight_of_normal(const ConicCoefficients& q, const Vec2& foot, const FitPoint& point) {
+  const NormalAtFoot at = conic_at(q, {foot, signed_distance_from(foot, q, point.position)}).at;
+  return at.normal.allFinite() && at.is_followed() ? normal_weight(point, at.turn_along()) : 0.0;
+}
+
+double normal_residual(const ConicCoefficients& q, const Vec2& foot, const FitPoint& point) {
+  return weight_of_normal(q, foot, point) *
+         normal_miss(point.normal, conic_gradient(q, foot).normalized());
+}
+
+double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot) {
+  // Newton's first step from the point itself: the first-order (Sampson) foot point.
+  Vec2 f = point;
+  const Vec2 g = conic_gradient(q, f);
+  const double g2 = g.squaredNorm();
+  if (g2 > 0.0) {  // otherwise the centre of a conic: no direction to go
+    f -= value(q, f) / g2 * g;
+  }
+  return distance_followed(f, q, point, foot);
+}
+
+double signed_distance_of_tip(const Vec2& near, const ConicCoefficients& q, const Vec2& point,
+                              Vec2* foot) {
+  const double distance = signed_distance(q, point, foot);
+  return are_on_two_branches(q, *foot, near) ? distance_followed(near, q, point, foot) : distance;
+}
+
 double signed_distance_from(const Vec2& foot, const ConicCoefficients& q, const Vec2& point) {
   const double distance = (point - foot).norm();
   return (point - foot).dot(conic_gradient(q, foot)) >= 0.0 ? distance : -distance;
@@ -307,18 +340,19 @@ ImplicitFit placed_on(std::span<const FitPoint> points, ImplicitFit fit) {
 }
 
 ImplicitFit refine_conic(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
-                         const RefineEffort& effort, WorkBudget& work) {
-  return refine<6>(points, conic_basis(), start, side, effort, work);
+                         const RefineEffort& effort, WorkBudget& work, std::span<const Vec2> near) {
+  return refine<6>(points, conic_basis(), start, side, effort, work, near);
 }
 
 ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficients& start,
-                          int side, const RefineEffort& effort, WorkBudget& work) {
-  return refine<4>(points, circle_basis(), start, side, effort, work);
+                          int side, const RefineEffort& effort, WorkBudget& work,
+                          std::span<const Vec2> near) {
+  return refine<4>(points, circle_basis(), start, side, effort, work, near);
 }
 
 ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
-                        const RefineEffort& effort, WorkBudget& work) {
-  return refine<3>(points, line_basis(), start, side, effort, work);
+                        const RefineEffort& effort, WorkBudget& work, std::span<const Vec2> near) {
+  return refine<3>(points, line_basis(), start, side, effort, work, near);
 }
 
 }  // namespace palpate

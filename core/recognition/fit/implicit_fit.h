@@ -21,13 +21,18 @@ struct ImplicitFit {
 
 /// Refines over all conics (5 degrees of freedom), all circles and lines (3), or all lines (2). The
 /// coefficients move on the unit sphere of the model's subspace, so that the passage from ellipse
-/// through parabola to hyperbola, or from circle to line, is smooth.
+/// through parabola to hyperbola, or from circle to line, is smooth. `near`: places on the
+/// branch that the tips have touched, one for each point; empty: the nearest branch. A tip that is
+/// larger than a hyperbola's a may have its centre nearer to the other one.
 ImplicitFit refine_conic(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
-                         const RefineEffort& effort, WorkBudget& work);
+                         const RefineEffort& effort, WorkBudget& work,
+                         std::span<const Vec2> near = {});
 ImplicitFit refine_circle(std::span<const FitPoint> points, const ConicCoefficients& start,
-                          int side, const RefineEffort& effort, WorkBudget& work);
+                          int side, const RefineEffort& effort, WorkBudget& work,
+                          std::span<const Vec2> near = {});
 ImplicitFit refine_line(std::span<const FitPoint> points, const ConicCoefficients& start, int side,
-                        const RefineEffort& effort, WorkBudget& work);
+                        const RefineEffort& effort, WorkBudget& work,
+                        std::span<const Vec2> near = {});
 
 /// The unchanged fit with the foot points and chi-square of these surface points.
 ImplicitFit placed_on(std::span<const FitPoint> points, ImplicitFit fit);
@@ -36,6 +41,11 @@ ImplicitFit placed_on(std::span<const FitPoint> points, ImplicitFit fit);
 /// the foot point, found by Newton's method from the point itself. It is the nearest one if the
 /// distance is small compared with the radius of curvature.
 double signed_distance(const ConicCoefficients& coefficients, const Vec2& point, Vec2* foot);
+
+/// The same of a tip's centre, with the foot on the branch of a hyperbola on which `near` lies. (On
+/// the side of a needle on which the centre is, whatever the side of `near`.)
+double signed_distance_of_tip(const Vec2& near, const ConicCoefficients& coefficients,
+                              const Vec2& point, Vec2* foot);
 
 /// The same for a known foot point.
 double signed_distance_from(const Vec2& foot, const ConicCoefficients& coefficients,

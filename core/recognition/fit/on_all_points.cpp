@@ -49,9 +49,13 @@ std::vector<double> distances_from(const PolynomialFit& curve, std::span<const F
 std::vector<double> distances_from(const ImplicitFit& curve, std::span<const FitPoint> points) {
   std::vector<double> distances;
   distances.reserve(points.size());
-  for (const FitPoint& point : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const FitPoint& point = points[i];
     Vec2 foot;
-    distances.push_back(signed_distance(curve.coefficients, point.position, &foot));
+    distances.push_back(
+        point.offset > 0.0
+            ? signed_distance_of_tip(curve.feet[i], curve.coefficients, point.position, &foot)
+            : signed_distance(curve.coefficients, point.position, &foot));
   }
   return distances;
 }
@@ -70,8 +74,14 @@ double squares_of_normals(const ClassFit& fit, const SmoothModel& smooth,
           place_on(*fit.polynomial, fit.polynomial->t[smooth.nearest_reduced[i]], points[i]);
       residual = normal_residual(fit.polynomial->coefficients, foot, points[i]);
     } else {
+      const ConicCoefficients& q = fit.implicit->coefficients;
       Vec2 foot;
-      signed_distance(fit.implicit->coefficients, points[i].position, &foot);
+      if (points[i].offset > 0.0) {
+        signed_distance_of_tip(fit.implicit->feet[smooth.nearest_reduced[i]], q, points[i].position,
+                               &foot);
+      } else {
+        signed_distance(q, points[i].position, &foot);
+      }
       residual = normal_residual(fit.implicit->coefficients, foot, points[i]);
     }
     squares += residual * residual;
@@ -96,6 +106,18 @@ void carry_to_all(const SmoothModel& smooth, PolynomialFit* curve) {
     t.push_back(curve->t[nearest]);
   }
   curve->t = std::move(t);
+}
+
+/// The same of an implicit curve: each foot moved as its point lies from the reduced one.
+void carry_to_all(const SmoothModel& smooth, std::span<const FitPoint> points, ImplicitFit* curve) {
+  std::vector<Vec2> feet;
+  feet.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t nearest = smooth.nearest_reduced[i];
+    feet.push_back(curve->feet[nearest] +
+                   (points[i].position - smooth.reduced.points[nearest].position));
+  }
+  curve->feet = std::move(feet);
 }
 
 /// For points whose foot, followed from their reduced point, ended on the wrong arm of a bend, or
@@ -131,6 +153,7 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
     start.rival.reset();
   }
   if (start.implicit && tips) {
+    carry_to_all(smooth, points, &*start.implicit);
     start.implicit->side = side_of_tips(distances_from(*start.implicit, points), points);
   }
   for (auto* curve : {&start.polynomial, &start.rival}) {
@@ -169,12 +192,15 @@ ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const Refi
   }
   const ConicCoefficients start = fit.implicit->coefficients;
   const int side = fit.implicit->side;
+  const std::span<const Vec2> near =
+      side != 0 ? std::span<const Vec2>(fit.implicit->feet) : std::span<const Vec2>();
   RefineEffort to_the_end = effort;
   to_the_end.chi2_tolerance = RefineEffort{}.chi2_tolerance;
-  fit.implicit =
-      fit.curve_class == CurveClass::Line     ? refine_line(points, start, side, to_the_end, work)
-      : fit.curve_class == CurveClass::Circle ? refine_circle(points, start, side, to_the_end, work)
-                                              : refine_conic(points, start, side, to_the_end, work);
+  fit.implicit = fit.curve_class == CurveClass::Line
+                     ? refine_line(points, start, side, to_the_end, work, near)
+                 : fit.curve_class == CurveClass::Circle
+                     ? refine_circle(points, start, side, to_the_end, work, near)
+                     : refine_conic(points, start, side, to_the_end, work, near);
   fit.chi2 = fit.implicit->chi2;
   return fit;
 }
@@ -198,6 +224,13 @@ ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival, Wor
   return refine_parts(fit, reduced.points, effort, rival, work);
 }
 
+ClassFit beside_centres(ClassFit fit, int side, const FitData& centres, const RefineEffort& effort,
+                        WorkBudget& work) {
+  (fit.polynomial ? fit.polynomial->side : fit.implicit->side) = side;
+  fit.rival.reset();
+  return refine_parts(std::move(fit), centres.points, effort, RivalOf::Other, work);
+}
+
 double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data,
                    WorkBudget& work) {
   const std::span<const FitPoint> points(data.points);
@@ -208,7 +241,11 @@ double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData
     carry_to_all(smooth, &curve);
     distances = distances_from(curve, points);
   } else {
-    distances = distances_from(*fit.implicit, points);
+    ImplicitFit curve = *fit.implicit;
+    if (has_tips(points)) {
+      carry_to_all(smooth, points, &curve);
+    }
+    distances = distances_from(curve, points);
   }
   const int side = side_of_tips(distances, points);
   double chi2 =

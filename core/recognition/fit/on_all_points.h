@@ -17,6 +17,12 @@ enum class RivalOf { Best, Other };
 /// Refines a fit to its optimum on the reduced points.
 ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival, WorkBudget& work);
 
+/// Refines a fit on the centres of tips that lie on that side of it: +1 where the polynomial is
+/// positive, or left of increasing t, -1 on the other. `fit.polynomial->t` must be near the
+/// centres' feet. Leaves out a spline's rival.
+ClassFit beside_centres(ClassFit fit, int side, const FitData& centres, const RefineEffort& effort,
+                        WorkBudget& work);
+
 /// Chi-square of all points for an unchanged fit to the reduced points. O(points).
 double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData& data,
                    WorkBudget& work);

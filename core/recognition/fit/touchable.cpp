@@ -28,8 +28,10 @@ double quadratic_part(const ConicCoefficients& q, const Vec2& v) {
   return q[0] * v.x() * v.x() + q[1] * v.x() * v.y() + q[2] * v.y() * v.y();
 }
 
-/// Whether all points lie on one branch of a hyperbola: on one side of its conjugate axis.
-bool on_one_branch(const ConicCoefficients& q, std::span<const FitPoint> points) {
+/// Whether all points lie on one branch of a hyperbola: on one side of its conjugate axis. Tips'
+/// centres may be beyond that, between the branches, where their feet are not.
+bool on_one_branch(const ImplicitFit& fit, std::span<const FitPoint> points) {
+  const ConicCoefficients& q = fit.coefficients;
   const double d = discriminant(q);
   const Vec2 centre((q[1] * q[4] - 2.0 * q[2] * q[3]) / d, (q[1] * q[3] - 2.0 * q[0] * q[4]) / d);
   // Along the real axis the polynomial changes sign from the centre outwards.
@@ -41,8 +43,9 @@ bool on_one_branch(const ConicCoefficients& q, std::span<const FitPoint> points)
   }
   bool any_positive = false;
   bool any_negative = false;
-  for (const FitPoint& point : points) {
-    const double along = (point.position - centre).dot(axis);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec2& place = points[i].offset > 0.0 ? fit.feet[i] : points[i].position;
+    const double along = (place - centre).dot(axis);
     any_positive = any_positive || along > 0.0;
     any_negative = any_negative || along < 0.0;
   }
@@ -97,7 +100,7 @@ struct Directions {
 
 bool is_touchable(const ImplicitFit& fit, const FitData& data) {
   const ConicCoefficients& q = fit.coefficients;
-  if (!(discriminant(q) > 0.0 || on_one_branch(q, data.points))) {
+  if (!(discriminant(q) > 0.0 || on_one_branch(fit, data.points))) {
     return false;
   }
   for (std::size_t p = 0; p < data.patches.size(); ++p) {

@@ -82,7 +82,8 @@ void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood&
         evidences->classes[beyond] = std::move(counted);
       }
     } else {
-      evidences->classes[beyond] = from_prior(beyond, fitted_chi2, *path, reduced, work);
+      evidences->classes[beyond] =
+          from_prior(beyond, fitted_chi2, *path, points_of(*fits[*limit], reduced), work);
     }
     evidences->on_reduced_chi2[beyond] = fitted_chi2;
     if (evidences->classes[beyond]) {

@@ -23,8 +23,9 @@ double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidence
   return log_add(log_add(log_paths, evidences.log_near), evidences.log_edges);
 }
 
-void add_laplace_evidence(const ClassFit& on_reduced, const FitData& reduced, Evidences* evidences,
+void add_laplace_evidence(const ClassFit& on_reduced, const FitData& shared, Evidences* evidences,
                           WorkBudget& work) {
+  const FitData& reduced = points_of(on_reduced, shared);
   const CurveClass i = on_reduced.curve_class;
   evidences->on_reduced_chi2[i] = on_reduced.chi2;
   evidences->classes[i].reset();

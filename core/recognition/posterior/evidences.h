@@ -68,7 +68,7 @@ double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidence
 
 /// Places a class, fitted to the reduced points, on them, and adds its evidence by Laplace's
 /// formula, if it has any.
-void add_laplace_evidence(const ClassFit& on_reduced, const FitData& reduced, Evidences* evidences,
+void add_laplace_evidence(const ClassFit& on_reduced, const FitData& shared, Evidences* evidences,
                           WorkBudget& work);
 
 /// The class's evidence, or else what is known of its modes; nullptr if nothing is.

@@ -90,8 +90,8 @@ std::vector<ClassEvidence> carried_modes(const KeptModes& kept, const ClassFits&
     if (!fits[i]) {
       continue;
     }
-    auto evidence = at_mode(as_fit(mode, nearest), mode.as_arc, fits[i]->chi2 / inflation, reduced,
-                            inflation, work);
+    auto evidence = at_mode(as_fit(mode, nearest), mode.as_arc, fits[i]->chi2 / inflation,
+                            points_of(*fits[i], reduced), inflation, work);
     const double before = mode.log_mass + 0.5 * mode.fitted_chi2;
     if (evidence && evidence->log_occam > before - kWorthAMode) {
       evidence->prior_mode_sought = true;

@@ -126,7 +126,8 @@ class LaplaceEvidences {
   std::optional<BendOfLine> bend() const {
     constexpr auto kLine = CurveClass::Line;
     return is_seen(CurveClass::Line) && work_.allows()
-               ? bend_of_line(*found.classes[kLine], chi2(CurveClass::Line), reduced_, likelihood_)
+               ? bend_of_line(*found.classes[kLine], chi2(kLine),
+                              points_of(*on_reduced_[kLine], reduced_), likelihood_)
                : std::nullopt;
   }
 

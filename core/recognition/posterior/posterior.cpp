@@ -89,8 +89,9 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
         has_straight_paths(evidences, curve_class)) {
       continue;
     }
-    auto evidence = by_slices(*evidences.classes[curve_class], reduced, evidences.inflation,
-                              Slices::ForMass, work);
+    auto evidence =
+        by_slices(*evidences.classes[curve_class], points_of(*on_reduced[curve_class], reduced),
+                  evidences.inflation, Slices::ForMass, work);
     if (!evidence) {
       continue;
     }
@@ -101,15 +102,16 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
       !has_straight_paths(evidences, CurveClass::CubicSpline)) {
     // Of a class that is only one of several, Laplace's formula tells the other mode's share well
     // enough.
-    evidences.rival = rival_of(*on_reduced[kSpline], reduced, evidences.inflation, work);
+    const FitData& points = points_of(*on_reduced[kSpline], reduced);
+    evidences.rival = rival_of(*on_reduced[kSpline], points, evidences.inflation, work);
     const auto held = evidences.rival ? share_in_slices(*evidences.classes[kSpline],
-                                                        *evidences.rival, reduced, work)
+                                                        *evidences.rival, points, work)
                                       : std::nullopt;
     if (held) {
       evidences.rival_in_slices = *held;
       evidences.rival.reset();
     } else if (evidences.rival && spline_is_best) {
-      evidences.rival = by_slices(*std::move(evidences.rival), reduced, evidences.inflation,
+      evidences.rival = by_slices(*std::move(evidences.rival), points, evidences.inflation,
                                   Slices::ForMass, work);
     }
   }

@@ -46,7 +46,7 @@ void add_prior_mode(CurveClass i, const ClassFits& fits, const FitData& reduced,
     const double seen_occam = found->log_occam + seen_from - told;
     const ClassEvidence& path =
         *evidences->classes[path_for(i, fits, likelihood, best, *evidences)];
-    found = with_prior_mode(*found, path, reduced, seen_occam, work);
+    found = with_prior_mode(*found, path, points_of(*fits[i], reduced), seen_occam, work);
   }
 }
 
@@ -65,7 +65,7 @@ void add_mode_at_cusp(const ClassFits& fits, const FitData& reduced, const Likel
   const double of_cusp = log_evidence(likelihood, *evidences, *fits[kCusp]);
   const double of_spline = log_evidence(likelihood, *evidences, *fits[kSpline]);
   if (of_cusp > std::max(of_spline + kMissing, best - kUnseenLogOdds)) {
-    spline = with_mode_at_cusp(*std::move(spline), *cusp, reduced, work);
+    spline = with_mode_at_cusp(*std::move(spline), *cusp, points_of(*fits[kSpline], reduced), work);
   }
 }
 

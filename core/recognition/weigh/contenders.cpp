@@ -52,7 +52,8 @@ ClassFit polished(const ClassFit& settled, const SmoothModel& smooth, const FitD
 /// followed to the noise, feet on the wrong arm) it has another one, or none.
 ClassFit with_chi2_of_all(const ClassFit& coarse, const FitData& reduced, bool trusted,
                           const SmoothModel& smooth, const FitData& data, WorkBudget& work) {
-  auto fit = trusted ? where_all_agree(coarse, reduced, smooth, data, work) : std::nullopt;
+  auto fit = trusted ? where_all_agree(coarse, points_of(coarse, reduced), smooth, data, work)
+                     : std::nullopt;
   if (!fit) {
     fit = refine_on_all(coarse, smooth, data, kOnAllEffort, work);
   }
@@ -63,10 +64,11 @@ ClassFit with_chi2_of_all(const ClassFit& coarse, const FitData& reduced, bool t
 /// leaves more than any noise after all that a search has tried: that is no curve of the class.
 const ClassFit& settle(CurveClass i, RivalOf rival, const FitData& reduced, Contenders* contenders,
                        WorkBudget& work) {
-  if (contenders->coarse[i]->chi2 <= most_chi2_of_noise(reduced.points) &&
+  const FitData& points = points_of(*contenders->coarse[i], reduced);
+  if (contenders->coarse[i]->chi2 <= most_chi2_of_noise(points.points) &&
       (!contenders->fits[i]->chi2_of_all ||
        (rival == RivalOf::Best && contenders->coarse[i]->rival))) {
-    contenders->coarse[i] = settled(*contenders->coarse[i], reduced, rival, work);
+    contenders->coarse[i] = settled(*contenders->coarse[i], points, rival, work);
   }
   return *contenders->coarse[i];
 }
@@ -86,8 +88,10 @@ void seek_cusp(const EvidenceContext& context, Contenders* contenders) {
   if (!found || !(found->chi2 < fit->chi2)) {
     return;
   }
-  ClassFit there = settled(placed_on_reduced(*found, context.reduced, context.work),
-                           context.reduced, RivalOf::Other, context.work);
+  found->own_points = spline->own_points;
+  const FitData& points = points_of(*found, context.reduced);
+  ClassFit there = settled(placed_on_reduced(*found, points, context.work), points, RivalOf::Other,
+                           context.work);
   if (there.chi2 < coarse->chi2) {
     coarse = std::move(there);
   }

@@ -1,5 +1,7 @@
 #include "core/recognition/weigh/curve_of_centres.h"
 
+#include <utility>
+
 #include "core/recognition/fit/on_all_points.h"
 
 namespace palpate {
@@ -37,6 +39,7 @@ const std::optional<CanonicalFit>& CurveOfCentres::get() {
     const auto& best = conic ? conic : choice.settled;
     curve_ = best ? to_canonical(*best, centres) : std::nullopt;
     start_ = warm_start_from(choice.fits, centres);
+    fits_ = std::move(choice.fits);
   }
   return curve_;
 }

@@ -24,6 +24,9 @@ class CurveOfCentres {
   /// where none fits the centres themselves, a search has shown that. nullptr where one does.
   const WarmStart* start() const { return start_.polynomials.every_seed ? &start_ : nullptr; }
 
+  /// Every class fitted to the centres themselves; nullptr where nobody asked for the curve.
+  const ClassFits* fits() const { return sought_ ? &fits_ : nullptr; }
+
   /// Where it is to be followed from in the next weighing: tips on neither side; nullopt where
   /// nobody asked for it.
   std::optional<SidedStart> next_start() const {
@@ -36,6 +39,7 @@ class CurveOfCentres {
   std::vector<int> sides_;
   bool sought_ = false;
   std::optional<CanonicalFit> curve_;
+  ClassFits fits_;
   WarmStart start_;
 };
 

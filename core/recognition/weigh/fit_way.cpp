@@ -11,6 +11,7 @@
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/weigh/own_directions.h"
 #include "core/recognition/weigh/tip_directions.h"
 
 namespace palpate {
@@ -26,10 +27,11 @@ bool is_as_near(const SideChoice& choice, CurveClass before, double chi2, const 
     return true;
   }
   const auto& fit = choice.fits[before];
-  const auto refined = fit && before != choice.candidate
-                           ? refine_on_all(settled(*fit, choice.reduced, RivalOf::Other, by.work),
-                                           by.arcs.smooth, by.arcs.data, kOnAllEffort, by.work)
-                           : std::nullopt;
+  const auto refined =
+      fit && before != choice.candidate
+          ? refine_on_all(settled(*fit, points_of(*fit, choice.reduced), RivalOf::Other, by.work),
+                          by.arcs.smooth, by.arcs.data, kOnAllEffort, by.work)
+          : std::nullopt;
   return refined && refined->chi2 <= chi2;
 }
 
@@ -69,8 +71,8 @@ std::optional<ClassFit> best_on_all(const SideChoice& choice, const SideContext&
   for (const auto& fit : choice.fits) {
     if (fit && !fit->at_limit && fit->chi2 <= by.out_of_reach && by.work.allows()) {
       auto on_all =
-          refine_on_all(settled(*fit, choice.reduced, RivalOf::Other, by.work), by.arcs.smooth,
-                        by.arcs.data, kOnAllEffort, by.work, RivalOf::Best);
+          refine_on_all(settled(*fit, points_of(*fit, choice.reduced), RivalOf::Other, by.work),
+                        by.arcs.smooth, by.arcs.data, kOnAllEffort, by.work, RivalOf::Best);
       if (on_all && fits_well(on_all->chi2, residual_count(by.arcs.data)) &&
           (!best || on_all->chi2 < best->chi2)) {
         best = std::move(on_all);
@@ -80,15 +82,34 @@ std::optional<ClassFit> best_on_all(const SideChoice& choice, const SideContext&
   return best;
 }
 
+/// Whether the surface points on which the classes were sought are not those of the curve found: it
+/// fits along its own directions, and not along those. What else fits was then sought in vain.
+bool was_sought_elsewhere(const SideChoice& choice) {
+  const ClassFit& found = *choice.settled;
+  const std::size_t residuals = residual_count(choice.reduced);
+  if (found.own_points == nullptr || !fits_well(found.chi2, residuals)) {
+    return false;
+  }
+  const std::span<const FitPoint> points(choice.reduced.points);
+  return !fits_well(found.polynomial ? placed_on(points, *found.polynomial).chi2
+                                     : placed_on(points, *found.implicit).chi2,
+                    residuals);
+}
+
 /// Fits with the tips on these sides of `touches`. Where points show no direction of their own, or
 /// one so swayed by noise that tips taken off along it no longer lie as all points do, directions
 /// come from the curve found: one that is off by an angle puts the surface off by half its square
 /// times the tip's radius, so that each round squares the error.
 SideChoice fit_along(FitData touches, std::span<const int> sides, const SideContext& by,
-                     std::span<const SidedStart> starts) {
+                     std::span<const SidedStart> starts, const CurveOfCentres& centres) {
   const SmoothModel& smooth = by.arcs.smooth;
+  const auto along_own = [&](ClassFits fits, const FitData& reduced, const ClassFits* before) {
+    return along_own_directions(std::move(fits), reduced, sides, smooth, {centres.fits(), before},
+                                by.work);
+  };
   FitData reduced = on_surface(touches, sides);
-  ClassFits fits = fit_classes_from(starts, sides, reduced, by, by.out_of_reach);
+  ClassFits fits =
+      along_own(fit_classes_from(starts, sides, reduced, by, by.out_of_reach), reduced, nullptr);
   if (std::none_of(fits.begin(), fits.end(),
                    [&](const auto& fit) { return fit && fit->chi2 <= by.out_of_reach; })) {
     SideChoice choice;  // nothing that could be, whatever directions and evidence say
@@ -114,11 +135,12 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
     const auto on_all = swayed && !of_all && has_kept_tips(smooth) && !fits_all(choice, by)
                             ? best_on_all(choice, by)
                             : std::nullopt;
-    const auto curve = on_all   ? to_canonical(*on_all, by.arcs.data)
-                       : of_all ? to_canonical(*choice.refined, by.arcs.data)
-                       : swayed || has_kept_tips(smooth)
-                           ? to_canonical(*choice.settled, choice.reduced)
-                           : std::nullopt;
+    const auto curve =
+        on_all   ? to_canonical(*on_all, by.arcs.data)
+        : of_all ? to_canonical(*choice.refined, by.arcs.data)
+        : swayed || has_kept_tips(smooth)
+            ? to_canonical(*choice.settled, points_of(*choice.settled, choice.reduced))
+            : std::nullopt;
     if (!curve) {
       break;
     }
@@ -131,7 +153,10 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
     if (of_all) {
       start_at(*choice.refined, &start);
     }
-    ClassFits again = fit_classes(nearer, by.work, &start, by.classes, by.out_of_reach);
+    const bool misled = round == 0 && was_sought_elsewhere(choice);
+    ClassFits again = along_own(
+        fit_classes(nearer, by.work, misled ? nullptr : &start, by.classes, by.out_of_reach),
+        nearer, &choice.fits);
     const double before = least_left(choice, smooth);
     SideChoice next = choice_of(sides, std::move(again), std::move(nearer), by);
     if (!agrees(next, smooth) && disagreement(next, smooth) > disagreement(choice, smooth)) {
@@ -190,7 +215,7 @@ std::optional<CanonicalFit> rounded(const CanonicalFit& curve, double radius_m) 
 SideChoice fit_way(const FitData& touches, std::span<const int> sides, const SideContext& by,
                    std::span<const SidedStart> starts, double highest, CurveOfCentres* centres) {
   const SmoothModel& smooth = by.arcs.smooth;
-  SideChoice choice = judged(fit_along(touches, sides, by, starts), by);
+  SideChoice choice = judged(fit_along(touches, sides, by, starts, *centres), by);
   const auto may_gain = [&] {
     return choice.settled && directions_may_explain(choice, touches, smooth) &&
            choice.log_evidence >= highest - kNegligibleLogOdds && by.work.allows();
@@ -204,7 +229,7 @@ SideChoice fit_way(const FitData& touches, std::span<const int> sides, const Sid
     if (start != nullptr) {
       from.push_back({{sides.begin(), sides.end()}, *start});
     }
-    SideChoice again = fit_along(std::move(turned), sides, by, from);
+    SideChoice again = fit_along(std::move(turned), sides, by, from, *centres);
     if (again.refined && (!choice.refined || again.refined->chi2 < choice.refined->chi2)) {
       choice = judged(std::move(again), by);
     }

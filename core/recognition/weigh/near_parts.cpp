@@ -55,7 +55,7 @@ double log_deviations(const CanonicalFit& placed, const FitData& data) {
 
 /// log of the evidence of the parts near the curve of one class. `least`: less is not computed.
 double log_evidence_near(const ClassFit& coarse, double least, const EvidenceContext& context) {
-  const FitData& reduced = context.reduced;
+  const FitData& reduced = points_of(coarse, context.reduced);
   std::optional<double> at_noise;
   const double n = static_cast<double>(reduced.points.size());
   const double of_each = kLogOfTouches + (context.likelihood.sigma_known ? 0.0 : kLogOfNoises) -

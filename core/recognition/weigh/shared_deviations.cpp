@@ -97,7 +97,8 @@ Contenders with_shared_deviations(Contenders contenders, const EvidenceContext& 
     const auto& evidence = contenders.evidences.classes[curve_class];
     auto own = evidence
                    ? log_coherent_gain(*contenders.evidences.on_reduced[curve_class], *evidence,
-                                       context.reduced, context.likelihood, context.arcs.sigma,
+                                       points_of(*contenders.coarse[curve_class], context.reduced),
+                                       context.likelihood, context.arcs.sigma,
                                        context.arcs.smooth.chi2, context.work)
                    : std::nullopt;
     if (own) {

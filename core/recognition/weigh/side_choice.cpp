@@ -67,15 +67,16 @@ bool settle_candidate(const SideContext& by, SideChoice* choice) {
   if (const auto& fit = choice->fits[choice->candidate]) {
     const bool may_win = !noise_is_known_without_class(by.arcs, by.likelihood) ||
                          fits_well(fit->chi2, residual_count(choice->reduced));
-    choice->settled =
-        settled(*fit, choice->reduced, may_win ? RivalOf::Best : RivalOf::Other, by.work);
+    choice->settled = settled(*fit, points_of(*fit, choice->reduced),
+                              may_win ? RivalOf::Best : RivalOf::Other, by.work);
   }
   return true;
 }
 
 void take_candidate(const SideContext& by, SideChoice* choice) {
   if (settle_candidate(by, choice) && choice->settled) {
-    choice->refined = seen_by_all(*choice->settled, choice->reduced, by);
+    choice->refined =
+        seen_by_all(*choice->settled, points_of(*choice->settled, choice->reduced), by);
     if (choice->refined && choice->refined->on_all &&
         !lie_so(choice->sides, *choice->refined, by.arcs.data)) {
       choice->refined.reset();
@@ -120,19 +121,22 @@ double least_left(const SideChoice& choice, const SmoothModel& smooth) {
 
 double log_evidence_of(const SideChoice& choice, const SideContext& by) {
   constexpr double kNone = -std::numeric_limits<double>::infinity();
-  const auto placed = choice.refined ? to_canonical(*choice.settled, choice.reduced) : std::nullopt;
+  if (!choice.refined) {
+    return kNone;
+  }
+  const FitData& reduced = points_of(*choice.settled, choice.reduced);
+  const auto placed = to_canonical(*choice.settled, reduced);
   if (!placed) {
     return kNone;
   }
   auto evidence = choice.evidences.classes[choice.candidate];
   if (!evidence) {
-    evidence = evidence_of(*placed, choice.reduced, by.likelihood.inflation(), by.work);
+    evidence = evidence_of(*placed, reduced, by.likelihood.inflation(), by.work);
   }
-  return evidence
-             ? log_coherent_evidence(by.likelihood, *evidence, *placed, choice.reduced,
-                                     by.arcs.sigma, static_cast<double>(by.arcs.data.points.size()),
-                                     choice.refined->chi2, by.arcs.smooth.chi2, by.work)
-             : kNone;
+  return evidence ? log_coherent_evidence(by.likelihood, *evidence, *placed, reduced, by.arcs.sigma,
+                                          static_cast<double>(by.arcs.data.points.size()),
+                                          choice.refined->chi2, by.arcs.smooth.chi2, by.work)
+                  : kNone;
 }
 
 }  // namespace palpate

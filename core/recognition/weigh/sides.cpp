@@ -98,6 +98,44 @@ Directed directed(std::span<const StoredPatch> patches, const SmoothModel& smoot
   return result;
 }
 
+/// The sides on which the tips lie as the curve found has them along its own directions.
+std::vector<int> sides_found(const SideChoice& choice, const FitData& touches,
+                             const FitData& centres) {
+  std::vector<int> sides = choice.sides;
+  if (!choice.settled || choice.settled->own_points == nullptr) {
+    return sides;
+  }
+  const FitData& surface = *choice.settled->own_points;
+  for (std::size_t p = 0; p < sides.size(); ++p) {
+    double to_the_left = 0.0;
+    for (std::size_t i = touches.patches[p].begin; i < touches.patches[p].end; ++i) {
+      to_the_left += left_of(touches.points[i].tangent)
+                         .dot(centres.points[i].position - surface.points[i].position);
+    }
+    if (sides[p] * to_the_left < 0.0) {
+      sides[p] = -sides[p];
+    }
+  }
+  return sides;
+}
+
+/// Whether two ways have led to one: along their own directions single touches may lie otherwise
+/// than along those that their sides were told by.
+bool are_one_way(const SideChoice& a, const SideChoice& b, const FitData& centres) {
+  if (!a.settled || !b.settled) {
+    return false;
+  }
+  const FitData& on_a = points_of(*a.settled, a.reduced);
+  const FitData& on_b = points_of(*b.settled, b.reduced);
+  for (std::size_t i = 0; i < centres.points.size(); ++i) {
+    const Vec2& centre = centres.points[i].position;
+    if ((on_a.points[i].position - centre).dot(on_b.points[i].position - centre) < 0.0) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// The way of the highest evidence, the expected one (from outside the bends) at the odds of the
 /// prior.
 void take_most_probable(const SideContext& by, SidedFits* sided) {
@@ -128,7 +166,10 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
   }
   double second = -kInfinity;
   for (std::size_t i = 0; i < evidences.size(); ++i) {
-    second = i == sided->taken ? second : std::max(second, evidences[i]);
+    if (i != sided->taken &&
+        !are_one_way(sided->choices[i], sided->choice(), by.arcs.smooth.reduced)) {
+      second = std::max(second, evidences[i]);
+    }
   }
   sided->margin = std::isfinite(second) ? evidences[sided->taken] - second : kInfinity;
 }
@@ -162,9 +203,10 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
       SideChoice choice = fit_way(seen.touches, sides, by, starts, highest - by_normals, &centres);
       choice.expected = sides == possible.ways.front();
       choice.contrary = possible.ways.size() > 1 && sides == possible.ways[1];
-      choice.log_of_normals = by_normals;
+      choice.log_of_normals = log_likelihood_of_normals(
+          patches, seen.touches, sides_found(choice, seen.touches, by.arcs.smooth.reduced));
       if (fits_all(choice, by)) {
-        highest = std::max(highest, choice.log_evidence + by_normals);
+        highest = std::max(highest, choice.log_evidence + choice.log_of_normals);
       }
       sided.choices.push_back(std::move(choice));
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -94,7 +95,9 @@ ByClass<std::optional<CanonicalFit>> placed_canonically(const Contenders& conten
       continue;
     }
     if (!fit->on_all) {
-      canonical[curve_class] = to_canonical(*contenders.coarse[curve_class], context.reduced);
+      canonical[curve_class] =
+          to_canonical(*contenders.coarse[curve_class],
+                       points_of(*contenders.coarse[curve_class], context.reduced));
     } else if (before && before->canonical.shape.curve_class == curve_class &&
                before->chi2 == fit->chi2) {
       canonical[curve_class] = std::move(before->canonical);
@@ -144,10 +147,19 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   w.best_on_reduced = std::move(contenders.evidences.on_reduced[w.best]);
   w.stated = stated;
   w.seen = seen;
+  w.reduced = std::move(sided.choices[sided.taken].reduced);
+  if (const auto& coarse = contenders.coarse[w.best]; coarse && coarse->own_points != nullptr) {
+    const auto shared = std::make_shared<const FitData>(std::move(w.reduced));
+    w.reduced = *coarse->own_points;
+    for (auto& fit : contenders.coarse) {
+      if (fit && fit->own_points == nullptr) {
+        fit->own_points = shared;
+      }
+    }
+  }
   w.fits = std::move(contenders.fits);
   w.coarse = std::move(contenders.coarse);
   w.sides = std::move(sided.choices[sided.taken].sides);
-  w.reduced = std::move(sided.choices[sided.taken].reduced);
   w.sides_margin = sided.margin;
   w.sides_against_normals = sided.against_normals();
   w.sigma = arcs.sigma;

@@ -35,7 +35,7 @@ struct WeighOptions {
 struct Weighing {
   FitData data;  ///< with noise and tangents set
   SmoothModel smooth;
-  FitData reduced;   ///< the smooth model's reduced points, moved to the surface
+  FitData reduced;   ///< the smooth model's reduced points, as the best class has the surface
   ClassFits coarse;  ///< on the reduced points
   ClassFits fits;    ///< plausible ones with chi-square of all points; the best refined on them
   /// Of the classes that are not negligible, and of the best in any case. The points are those of
