@@ -10,6 +10,8 @@
 
 #include "core/numerics/levenberg_marquardt.h"
 #include "core/numerics/small_cholesky.h"
+#include "core/recognition/fit/algebraic_fit.h"
+#include "core/recognition/fit/class_fits.h"
 
 namespace palpate {
 namespace {
@@ -152,26 +154,6 @@ SharpCorner corner_between(const std::array<Edge, 2>& edges, std::span<const Fit
   return corner;
 }
 
-/// What the prior leaves: each coordinate by the width of the normal law that is as high.
-double log_occam_of(const Matrix& information, double inflation) {
-  // The place of the corner across an edge as that of any class; along it within the half extents.
-  const double across = std::sqrt(0.5 * std::numbers::pi);
-  const double along = 2.0 / std::sqrt(2.0 * std::numbers::pi);
-  // The direction of an edge as that of any class; the turn to the other one, twice the half turn,
-  // uniform to either side.
-  const double turn = 0.5 * std::sqrt(2.0 * std::numbers::pi);
-  const double radius = std::log(kLargestRadius / kLeastRadius) / std::sqrt(2.0 * std::numbers::pi);
-  const double place = std::sqrt(across * along);
-  const Vector widths = (Vector() << place, place, across, turn, radius).finished();
-  Matrix relative = widths.asDiagonal() * information * widths.asDiagonal() / inflation;
-  relative.diagonal().array() += 1.0;
-  Matrix lower;
-  if (!cholesky(relative, &lower)) {
-    return -std::numeric_limits<double>::infinity();
-  }
-  return -std::log(lower.diagonal().prod());
-}
-
 constexpr double kAnyChi2 = std::numeric_limits<double>::infinity();
 
 /// The optimum on `points` from `x`, in so many steps.
@@ -201,6 +183,15 @@ Vector start_of(const SharpCorner& corner, EdgesProblem* problem) {
   return best;
 }
 
+/// Whether one edge, or its arc, is all that the points show.
+bool are_line_or_circle(std::span<const FitPoint> points, WorkBudget& work) {
+  work.spend(WorkKind::ConicRow, 2 * points.size());
+  const auto fits = [&](const ConicCoefficients& coefficients) {
+    return fits_well(placed_on(points, ImplicitFit{coefficients, 0.0, 0, {}}).chi2, points.size());
+  };
+  return fits(algebraic_line(points)) || fits(algebraic_circle(points));
+}
+
 bool are_of_one_tip(std::span<const FitPoint> points) {
   return std::all_of(points.begin(), points.end(),
                      [&](const FitPoint& point) { return point.offset == points.front().offset; });
@@ -208,14 +199,13 @@ bool are_of_one_tip(std::span<const FitPoint> points) {
 
 }  // namespace
 
-std::optional<Edges> edges_of(const Arcs& arcs, double inflation, double out_of_reach,
-                              WorkBudget& work) {
+std::optional<Edges> edges_of(const Arcs& arcs, double out_of_reach, WorkBudget& work) {
   const std::span<const FitPoint> points(arcs.data.points);
   const std::span<const FitPoint> reduced(arcs.smooth.reduced.points);
   if (residual_count(arcs.data) > points.size() || !are_of_one_tip(points) || !work.allows()) {
     return std::nullopt;
   }
-  const auto seen = seen_edges(reduced, work);
+  const auto seen = are_line_or_circle(reduced, work) ? std::nullopt : seen_edges(reduced, work);
   if (!seen) {
     return std::nullopt;
   }
@@ -239,10 +229,30 @@ std::optional<Edges> edges_of(const Arcs& arcs, double inflation, double out_of_
     chi2 = refine(&on_all, points, kSteps, kAnyChi2, &x, work).chi2;
     settled = &on_all;
   }
-  Matrix information;
+  Edges edges{corner_of(x), chi2, {}};
   Vector gradient;
-  settled->linearise(&information, &gradient);
-  return Edges{corner_of(x), chi2, log_occam_of(information, inflation)};
+  settled->linearise(&edges.information, &gradient);
+  return edges;
+}
+
+double log_occam_of(const Edges& edges, double inflation) {
+  // Each coordinate by the width of the normal law that is as high as its prior. The place of the
+  // corner across an edge as that of any class's; along it within the half extents.
+  const double across = std::sqrt(0.5 * std::numbers::pi);
+  const double along = 2.0 / std::sqrt(2.0 * std::numbers::pi);
+  // The direction of an edge as that of any class; the turn to the other one, twice the half turn,
+  // uniform to either side.
+  const double turn = 0.5 * std::sqrt(2.0 * std::numbers::pi);
+  const double radius = std::log(kLargestRadius / kLeastRadius) / std::sqrt(2.0 * std::numbers::pi);
+  const double place = std::sqrt(across * along);
+  const Vector widths = (Vector() << place, place, across, turn, radius).finished();
+  Matrix relative = widths.asDiagonal() * edges.information * widths.asDiagonal() / inflation;
+  relative.diagonal().array() += 1.0;
+  Matrix lower;
+  if (!cholesky(relative, &lower)) {
+    return -std::numeric_limits<double>::infinity();
+  }
+  return -std::log(lower.diagonal().prod());
 }
 
 }  // namespace palpate

@@ -10,20 +10,23 @@
 
 namespace palpate {
 
-struct Edges {
-  RoundedCorner corner;    ///< of the points as they are: of a tip's centres, if these are given
-  double chi2 = 0.0;       ///< of all points
-  double log_occam = 0.0;  ///< log of what the prior leaves of the likelihood
-};
-
 /// Coordinates that the data may determine: of edges and arc.
 inline constexpr int kEdgesCoordinates = 5;
 
-/// The edges that all points lie on best. Noise variances count `inflation` times in log_occam.
-/// `out_of_reach`: chi-square of the reduced points above which they change no answer. nullopt if
-/// no two directions of the strokes differ, if tips of different radii or measured normals are
-/// among the points, or if no edges are within reach. O(points).
-std::optional<Edges> edges_of(const Arcs& arcs, double inflation, double out_of_reach,
-                              WorkBudget& work);
+struct Edges {
+  RoundedCorner corner;  ///< of the points as they are: of a tip's centres, if these are given
+  double chi2 = 0.0;     ///< of all points
+  /// Of the corner's centre, bisector, half turn and log radius.
+  Eigen::Matrix<double, kEdgesCoordinates, kEdgesCoordinates> information;
+};
+
+/// The edges that all points lie on best. `out_of_reach`: chi-square of the reduced points above
+/// which they change no answer. nullopt if no two directions of the strokes differ, if tips of
+/// different radii or measured normals are among the points, or if no edges are within reach.
+/// O(points).
+std::optional<Edges> edges_of(const Arcs& arcs, double out_of_reach, WorkBudget& work);
+
+/// log of what the prior leaves of the likelihood, with so many times the variances of the noise.
+double log_occam_of(const Edges& edges, double inflation);
 
 }  // namespace palpate

@@ -13,10 +13,6 @@ namespace palpate {
 /// than the logarithm of the section's samples (BIC): 4 for 55.
 inline constexpr double kLeastError = 4.0;
 
-/// log: of a part of "unclassified", less than a hundredth of what keeps the best class from being
-/// RECOGNIZED is not asked for.
-inline constexpr double kNotAsked = 4.6;
-
 /// What all classes are compared on.
 struct EvidenceContext {
   const Arcs& arcs;

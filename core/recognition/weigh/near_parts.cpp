@@ -111,7 +111,8 @@ Contenders with_near_parts(Contenders contenders, const EvidenceContext& context
   }
   const double of_class =
       log_evidence(context.likelihood, contenders.evidences, *contenders.fits[best]);
-  const double least = of_class - margin - kNotAsked;
+  // Less than a hundredth of what keeps the best from being RECOGNIZED is not asked for.
+  const double least = of_class - margin - std::log(100.0);
   if (all_lie_apart(context.arcs.data)) {
     contenders.evidences.log_near = log_evidence_of_touches(contenders.coarse, least, context);
   } else if (of_strokes) {

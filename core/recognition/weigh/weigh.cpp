@@ -197,6 +197,8 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
   };
   const Evidences of_paths = paths_under(stated);
   const double hopeless = out_of_reach(arcs, stated, of_paths);
+  // First: they take little, and a search for classes that there are none of may take all work.
+  const std::optional<Edges> edges = edges_of(arcs, reach_of_edges(arcs, stated, of_paths), work);
   std::optional<WorkBudget::Reserve> for_verdict(std::in_place, work, kShareOfVerdict);
   SidedFits sided = fit_over_sides(
       patches, {arcs, stated, work, of_paths, options.classes, hopeless, options.touched_from},
@@ -241,7 +243,7 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
                                         margin_of(options));
   }
   contenders = decided(std::move(contenders), context, margin_of(options));
-  contenders = with_edges(std::move(contenders), context, margin_of(options));
+  contenders = with_edges(std::move(contenders), context, edges);
   contenders =
       with_near_parts(std::move(contenders), context, options.near_parts, margin_of(options));
   Weighing weighing = assemble_weighing(std::move(arcs), std::move(sided), std::move(contenders),
