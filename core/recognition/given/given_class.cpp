@@ -145,7 +145,7 @@ Explored explore(CurveClass curve_class, const LocalPoints& local, const GivenNo
   if (explored.minima.empty()) {
     return explored;
   }
-  for (int walk = 0; walk < kMostWalks; ++walk) {
+  for (int walk = 1;; ++walk) {
     explored.choice = choose(explored.minima, local, noise.points, touched_from);
     const GivenCandidate& taken = explored.minima[explored.choice.taken];
     explored.reach = {};
@@ -154,8 +154,8 @@ Explored explore(CurveClass curve_class, const LocalPoints& local, const GivenNo
     }
     const double deviations =
         noise.stated ? kReach : student_quantile(kReach, static_cast<double>(dof));
-    explored.reach = reach_of(
-        taken, deviations * deviations * variance_of(taken.cost, dof, local, noise.stated));
+    const double rise = deviations * deviations * variance_of(taken.cost, dof, local, noise.stated);
+    explored.reach = reach_of(taken, rise, walk < kMostWalks ? AtLower::Stop : AtLower::Pass);
     if (!explored.reach.lower) {
       break;
     }
@@ -165,6 +165,8 @@ Explored explore(CurveClass curve_class, const LocalPoints& local, const GivenNo
     lower.curve = *explored.reach.lower;
     settle(local, noise, &lower);
     if (!is_better(lower, taken)) {
+      // The walk has stopped there: the reach of the rest of the way is not yet known.
+      explored.reach = reach_of(taken, rise, AtLower::Pass);
       break;
     }
     explored.minima.push_back(std::move(lower));

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/recognition/given/curve_moves.h"
-#include "core/recognition/given/thinned.h"
+#include "core/recognition/given/foot_parameter.h"
+#include "core/recognition/given/orthogonal_squares.h"
 
 namespace palpate {
 namespace {
@@ -24,11 +26,12 @@ struct Held {
 class Walk {
  public:
   Walk(const PlacedCurve<double>& minimum, int arm, std::span<const WeighedPoint<double>> points,
-       double asked, GivenReach* reach)
+       double asked, AtLower at_lower, GivenReach* reach)
       : minimum_(minimum),
         arm_(arm),
         points_(points),
         asked_(asked),
+        at_lower_(at_lower),
         n_(static_cast<std::size_t>(Unknowns(minimum.curve_class).count)),
         reach_(reach) {}
 
@@ -153,7 +156,7 @@ class Walk {
         here = *next;
       }
     }
-    if (lowest.rise < -kNoRise * asked_) {
+    if (at_lower_ == AtLower::Stop && lowest.rise < -kNoRise * asked_) {
       reach_->lower = lowest.curve;
       return;
     }
@@ -165,38 +168,95 @@ class Walk {
   int arm_ = 0;
   std::span<const WeighedPoint<double>> points_;
   double asked_ = 0.0;
+  AtLower at_lower_ = AtLower::Stop;
   std::size_t n_ = 0;
   GivenReach* reach_;
   double cost_ = 0.0;
   std::array<double, kMostUnknowns> moves_{};
 };
 
+/// One point for points with neighbouring feet: at the foot of the one in the middle, so that none
+/// comes to lie in a gap, and as far off the curve as they are on average, with the weight of all.
+/// Where a neighbouring curve passes all of them at one distance, its sum of squares over the
+/// points differs from that over the means by a constant: any rise is the same.
+WeighedPoint<double> mean_of(std::span<const std::size_t> neighbours, const GivenCandidate& minimum,
+                             std::span<const Placement<double>> placed) {
+  const PlacedCurve<double>& curve = minimum.curve;
+  const std::size_t middle = neighbours[neighbours.size() / 2];
+  double squares = 0.0;
+  double miss = 0.0;
+  double normal_squares = 0.0;
+  double normal_turn = 0.0;
+  for (const std::size_t i : neighbours) {
+    const WeighedPoint<double>& point = minimum.points[i];
+    const double square = point.weight * point.weight;
+    squares += square;
+    miss += square * (placed[i].distance - point.offset);
+    if (compares_normals(placed[i], point)) {
+      const double normal_square = point.normal_weight * point.normal_weight;
+      normal_squares += normal_square;
+      normal_turn += normal_square * normal_miss(curve, placed[i], point.normal);
+    }
+  }
+  const auto in_points_frame = [&](const PlaneVector<double>& v) {
+    return v.x * curve.axis + v.y * left(curve.axis);
+  };
+  WeighedPoint<double> mean = minimum.points[middle];
+  const double distance = mean.offset + miss / squares;
+  mean.position = curve.origin +
+                  in_points_frame(placed[middle].foot.position + distance * placed[middle].normal);
+  mean.weight = std::sqrt(squares);
+  mean.normal_weight = std::sqrt(normal_squares);
+  if (normal_squares > 0.0) {
+    mean.normal = in_points_frame(turned(placed[middle].normal, normal_turn / normal_squares));
+  }
+  return mean;
+}
+
+/// The minimum with neighbours along its curve taken together, so that `most` points are left.
+GivenCandidate with_fewer_points(const GivenCandidate& minimum, std::size_t most) {
+  GivenCandidate fewer = minimum;
+  const std::size_t count = minimum.points.size();
+  std::vector<Placement<double>> placed;
+  std::vector<double> t;
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < count; ++i) {
+    PlaneVector<double>& foot = fewer.curve.feet[i];
+    placed.push_back(
+        place(minimum.curve, minimum.curve.to_curve(minimum.points[i].position), &foot));
+    t.push_back(t_at(minimum.curve.curve_class, foot));
+    order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t u, std::size_t v) { return t[u] < t[v]; });
+  const std::vector<PlaneVector<double>> feet = std::move(fewer.curve.feet);
+  fewer.curve.feet.clear();
+  fewer.points.clear();
+  for (std::size_t k = 0; k < most; ++k) {
+    const std::size_t first = k * count / most;
+    const std::size_t last = (k + 1) * count / most;
+    const auto neighbours = std::span<const std::size_t>(order).subspan(first, last - first);
+    fewer.points.push_back(mean_of(neighbours, minimum, placed));
+    fewer.curve.feet.push_back(feet[neighbours[neighbours.size() / 2]]);
+  }
+  return fewer;
+}
+
 }  // namespace
 
-GivenReach reach_of(const GivenCandidate& minimum, double rise) {
+GivenReach reach_of(const GivenCandidate& minimum, double rise, AtLower at_lower) {
+  // So near one another that the distance of a neighbouring curve, which crosses the points at most
+  // once per unknown, changes by about 6 / 256 of its largest from one to the next: their squares
+  // of distances from the mean are then lost, less than a thousandth of all.
   constexpr std::size_t kMostPoints = 256;
   GivenReach reach;
   if (minimum.points.size() <= kMostPoints) {
-    Walk(minimum.curve, minimum.arm, minimum.points, rise, &reach).run();
+    Walk(minimum.curve, minimum.arm, minimum.points, rise, at_lower, &reach).run();
     return reach;
   }
-  std::vector<WeighedPoint<double>> few =
-      thinned<WeighedPoint<double>>(minimum.points, kMostPoints);
-  // As much weight as all points have.
-  const double factor =
-      std::sqrt(static_cast<double>(minimum.points.size()) / static_cast<double>(few.size()));
-  for (WeighedPoint<double>& point : few) {
-    point.weight *= factor;
-    point.normal_weight *= factor;
-  }
-  GivenCandidate of_few = minimum;
-  of_few.curve.feet.clear();
-  constexpr DescentEffort kToTheirs{60, 1e-6, 0.0};
-  descend_on(few, kToTheirs, &of_few);
-  if (of_few.settled) {
-    Walk(of_few.curve, minimum.arm, few, rise, &reach).run();
-    reach.lower.reset();  // of a part of the points only
-  }
+  // Their own minimum is beside that of all points by some hundredths of a deviation.
+  const GivenCandidate fewer = with_fewer_points(minimum, kMostPoints);
+  Walk(fewer.curve, fewer.arm, fewer.points, rise, at_lower, &reach).run();
   return reach;
 }
 

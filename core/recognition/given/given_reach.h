@@ -30,12 +30,18 @@ struct GivenReach {
 /// Deviations that differ by less are alike: no more than what ten touches know of their noise.
 inline constexpr double kAlikeDeviations = 1.25;
 
+/// What a walk does at a lower place than the minimum that it started from.
+enum class AtLower {
+  Stop,  ///< that place is to be looked at
+  Pass,  ///< it is known to be none of the better minima
+};
+
 /// Moves each shape parameter either way, with all other unknowns at their best, until the sum of
 /// squares has risen by `rise`. With a linear model the parameter would move by sqrt(rise) of the
 /// deviations that a unit noise gives. Where it does, only the bend of the way is noted; a valley
-/// that flattens is followed, and its points are noted. At most 256 points are looked at, for more
-/// ones hide no bend of the valley that few show.
-GivenReach reach_of(const GivenCandidate& minimum, double rise);
+/// that flattens is followed, and its points are noted. Of more than 256 points, neighbours along
+/// the curve are taken together.
+GivenReach reach_of(const GivenCandidate& minimum, double rise, AtLower at_lower = AtLower::Stop);
 
 /// Widens the covariance of the unknowns, for unit noise, until each point of the reach lies no
 /// further than sqrt(its rise) deviations. Across a valley that only bends, it is widened by the
