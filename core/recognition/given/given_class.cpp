@@ -1,7 +1,9 @@
 #include "core/recognition/given/given_class.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -24,9 +26,6 @@ namespace palpate {
 namespace {
 
 using Exact = DoubleDouble;
-
-/// So many deviations of a normal law the truth is hardly ever off: once in 370 cases.
-constexpr double kReach = 3.0;
 
 /// A line can slide freely: its origin is set to the place nearest to the mean of the points.
 void slide_to_mean(const LocalPoints& local, PlacedCurve<double>* line) {
@@ -62,6 +61,20 @@ PlacedCurve<Exact> exact_of(const PlacedCurve<double>& curve) {
   return exact;
 }
 
+PlacedCurve<double> rounded(const PlacedCurve<Exact>& exact) {
+  PlacedCurve<double> curve;
+  curve.curve_class = exact.curve_class;
+  for (int i = 0; i < 3; ++i) {
+    curve.shape[i] = to_double(exact.shape[i]);
+  }
+  curve.origin = as_double(exact.origin);
+  curve.axis = as_double(exact.axis);
+  for (const PlaneVector<Exact>& foot : exact.feet) {
+    curve.feet.push_back(as_double(foot));
+  }
+  return curve;
+}
+
 /// Residuals are taken as at least the rounding of the coordinates.
 double stationarity_of(const Squares<Exact>& squares, const LocalPoints& local, std::size_t n) {
   const auto moves = unit_moves(squares.information, n);
@@ -95,6 +108,12 @@ double log_odds_of(const GivenCandidate& one, const GivenCandidate& other, int d
   const auto n = static_cast<double>(local.index.size());
   const double least = 0.5 * n * local.rounding * local.rounding;
   return 0.5 * std::max(dof, 0) * std::log((other.cost + least) / (one.cost + least));
+}
+
+/// By how much a sum of squares, in the costs' unit, rises to where the truth hardly ever is.
+double rise_of_reach(double cost, int dof, const LocalPoints& local, bool stated) {
+  const double deviations = stated ? kReach : student_quantile(kReach, static_cast<double>(dof));
+  return deviations * deviations * variance_of(cost, dof, local, stated);
 }
 
 /// The minima, with those that a walk along the valley of the taken one comes through.
@@ -173,6 +192,29 @@ Explored explore(CurveClass curve_class, const LocalPoints& local, const GivenNo
     std::stable_sort(explored.minima.begin(), explored.minima.end(), is_better);
   }
   return explored;
+}
+
+/// What a descent that has not come to an end would still gain of the cost, were the valley
+/// straight.
+double gain_ahead(const GivenCandidate& valley) {
+  PlacedCurve<double> at = valley.curve;
+  const auto n = static_cast<std::size_t>(Unknowns(at.curve_class).count);
+  const auto squares = squares_about(&at, std::span<const WeighedPoint<double>>(valley.points));
+  const auto moves = unit_moves(squares.information, n);
+  const auto lower = lower_factor(in_unit_moves(squares.information, n, moves), n, 0.0);
+  if (!lower) {
+    return std::numeric_limits<double>::infinity();
+  }
+  std::array<double, kMostUnknowns> slope{};
+  for (std::size_t i = 0; i < n; ++i) {
+    slope[i] = squares.gradient[i] / moves[i];
+  }
+  const auto step = solve(*lower, n, slope);
+  double gain = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    gain += 0.5 * step[i] * slope[i];
+  }
+  return gain;
 }
 
 /// Whether `other` lies outside of where the covariance of the unknowns says that the curve is.
@@ -281,10 +323,17 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   }
   fit.stationarity = stationarity_of(descent.squares, *local,
                                      static_cast<std::size_t>(Unknowns(curve_class).count));
-  fit.bounded = explored.reach.bounded;
+  GivenReach reach = explored.reach;
+  if (!found.settled && (stated || dof > 0)) {
+    // Only twice the digits have told where the valley is lowest: nobody has walked from there.
+    found.curve = rounded(placed);
+    reach = reach_of(found, rise_of_reach(found.cost, dof, *local, stated));
+    reach.bounded = reach.bounded && !reach.lower;
+  }
+  fit.bounded = reach.bounded;
   report_place(placed, *local, &fit.shape, &fit.world_T_curve);
   const ShapePoseCovariance of_unknowns =
-      report_covariance(placed, descent.squares, *local, explored.reach, &fit);
+      report_covariance(placed, descent.squares, *local, reach, &fit);
   const double variance = variance_of(found.cost, dof, *local, stated);
   std::vector<std::size_t> others = choice.twins;
   if (choice.other_side) {
@@ -298,7 +347,12 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
     }
     if (!minima[twin].settled) {
       // A valley with no end in sight leads away from the curve: there is no other shape to tell.
-      fit.bounded = fit.bounded && odds_over(twin) > 0.5 * kReach * kReach;
+      GivenCandidate end = minima[twin];
+      const double gain = std::min(gain_ahead(end), end.cost);
+      end.cost -= gain;
+      end.misfit -= gain;
+      fit.bounded = fit.bounded && log_odds_of(minima[choice.taken], end, dof, *local, stated) >
+                                       0.5 * kReach * kReach;
     } else if (!rival || odds_over(twin) < odds_over(*rival)) {
       rival = twin;
     }

@@ -108,6 +108,27 @@ void add_rounded(double radius, std::vector<GivenStart>* starts) {
   }
 }
 
+/// Hyperbolas that bend at their vertex as the parabolas do. Of a short arc, the conics of least
+/// algebraic distance may all be ellipses, but for a pair of lines.
+std::vector<GivenStart> beside_parabolas(std::span<const GivenStart> parabolas) {
+  // In half extents of the points: over these, the nearer one turns towards its asymptotes, and the
+  // farther one is a parabola to some hundredths.
+  constexpr std::array kHalfAxes{1.0, 8.0};
+  std::vector<GivenStart> hyperbolas;
+  for (const GivenStart& parabola : parabolas) {
+    for (const double a : kHalfAxes) {
+      // Beside the vertex y^2 = 2 b^2 (x - a) / a, of a parabola 4 (its a) x.
+      GivenStart hyperbola = parabola;
+      hyperbola.shape.curve_class = CurveClass::Hyperbola;
+      hyperbola.shape.values = {a, std::sqrt(2.0 * a * parabola.shape.values[0]), 0.0};
+      hyperbola.pose.x -= a * std::cos(parabola.pose.theta);
+      hyperbola.pose.y -= a * std::sin(parabola.pose.theta);
+      hyperbolas.push_back(hyperbola);
+    }
+  }
+  return hyperbolas;
+}
+
 /// Starts from the points. If normals are measured, also from two extra places per point, on its
 /// tangent to either side: so there are starts for fewer points than the class has unknowns.
 std::vector<GivenStart> starts_of(CurveClass curve_class, const LocalPoints& local) {
@@ -119,7 +140,10 @@ std::vector<GivenStart> starts_of(CurveClass curve_class, const LocalPoints& loc
   if (curve_class == CurveClass::CubicSpline) {
     add_rounded(*std::max_element(radii.begin(), radii.end()), &starts);
   }
-  const std::vector<GivenStart> by_axis = starts_by_axis(curve_class, local.rough, radii);
+  const std::vector<GivenStart> by_axis =
+      curve_class == CurveClass::Hyperbola
+          ? beside_parabolas(starts_by_axis(CurveClass::Parabola, local.rough, radii))
+          : starts_by_axis(curve_class, local.rough, radii);
   starts.insert(starts.end(), by_axis.begin(), by_axis.end());
   // Twice as many points as the most unknowns: then the scan needs no normals.
   constexpr std::size_t kEnough = 2 * kMostUnknowns;
@@ -303,7 +327,12 @@ void descend_on(std::span<const WeighedPoint<double>> points, const DescentEffor
 }
 
 bool is_better(const GivenCandidate& u, const GivenCandidate& v) {
-  return u.settled != v.settled ? u.settled : u.misfit < v.misfit;
+  // Of the noise, so much of -log likelihood is hardly ever: then the truth is in the valley.
+  constexpr double kExcluded = 0.5 * kReach * kReach;
+  const auto handicapped = [](const GivenCandidate& candidate) {
+    return candidate.misfit + (candidate.settled ? 0.0 : kExcluded);
+  };
+  return handicapped(u) < handicapped(v);
 }
 
 void settle(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* candidate) {
@@ -325,10 +354,10 @@ void settle(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* c
 
 std::vector<GivenCandidate> search_minima(CurveClass curve_class, const LocalPoints& local,
                                           const GivenNoise& noise) {
-  // Of either side. So many valleys has a short arm of a semi-cubical parabola, seen from few
-  // touches; further ones lie above these.
+  // Of either side, minima and valleys each. So many has a short arm of a semi-cubical parabola,
+  // seen from few touches; further ones lie above these. A valley that has not been followed on all
+  // points may hold the truth as well as a minimum.
   constexpr std::size_t kMostOnAll = 8;
-  constexpr std::size_t kMostUnsettled = 2;
   // In the logarithm of the likelihood: far beyond what any odds asked for need. From the minimum
   // on few points to that on all, each unknown gains half of their ratio on average.
   constexpr double kHopeless = 50.0;
@@ -342,7 +371,7 @@ std::vector<GivenCandidate> search_minima(CurveClass curve_class, const LocalPoi
     const auto few = thinned<WeighedPoint<double>>(on_side(local.exact, side), kMostSearchedPoints);
     std::vector<GivenCandidate> distinct;
     std::size_t settled_left = kMostOnAll;
-    std::size_t unsettled_left = kMostUnsettled;
+    std::size_t unsettled_left = kMostOnAll;
     for (GivenCandidate& candidate : minima_on_few(starts, side, few)) {
       std::size_t& left = candidate.settled ? settled_left : unsettled_left;
       if (left > 0 && !is_among(candidate, distinct)) {
@@ -354,7 +383,7 @@ std::vector<GivenCandidate> search_minima(CurveClass curve_class, const LocalPoi
       look_at_all(local, noise, &candidate);
     }
     std::stable_sort(distinct.begin(), distinct.end(), is_better);
-    // The first one of a side is always settled: it tells by how much that side fits worse.
+    // The first one of a side is always followed: it tells by how much that side fits worse.
     for (std::size_t k = 0; k < distinct.size(); ++k) {
       GivenCandidate& candidate = distinct[k];
       if (k > 0 && candidate.misfit > lowest + hopeless) {

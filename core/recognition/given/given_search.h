@@ -10,6 +10,9 @@
 
 namespace palpate {
 
+/// So many deviations of a normal law the truth is hardly ever off: once in 370 cases.
+inline constexpr double kReach = 3.0;
+
 struct GivenCandidate {
   PlacedCurve<double> curve;
   double cost = std::numeric_limits<double>::infinity();
@@ -43,7 +46,8 @@ void descend_on(std::span<const WeighedPoint<double>> points, const DescentEffor
 /// Descends from the candidate's curve on all points, with the weights at its feet.
 void settle(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* candidate);
 
-/// True if the first is to be preferred: settled ones come first, then the lower misfit.
+/// True if the first is to be preferred: it has the lower misfit. A minimum has priority over a
+/// valley in which no descent has come to an end, as long as noise can be what makes it worse.
 bool is_better(const GivenCandidate& u, const GivenCandidate& v);
 
 /// All minima that any start leads to, with tips on either side, and valleys without a minimum. The

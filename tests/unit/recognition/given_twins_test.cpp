@@ -178,6 +178,37 @@ TEST(GivenTwins, NormalsTellTheSideOfACubicalParabola) {
   EXPECT_GT(away.norm(), kTip_m);
 }
 
+// A curve that fits thousands of times worse is no answer because the search has come to an end
+// there: the part would seem to be none of its class.
+TEST(GivenTwins, NoMinimumIsToldThatTheNoiseExcludes) {
+  auto rng = test::test_rng();
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  const int scenes = test::stress_count(16);
+  for (int i = 0; i < scenes; ++i) {
+    const double from = 2.0 * uniform(rng) - 1.0;
+    const double part = 0.1 + 0.3 * uniform(rng);
+    const double start = 0.173 + 0.087 * (1.0 - part) * uniform(rng);
+    for (const Scene& scene :
+         {touched(Hyperbola{0.01 + 0.02 * uniform(rng), 0.01 + 0.01 * uniform(rng)},
+                  {from, from + part}, 80, 3e-6, 0.0, rng),
+          touched(SemiCubicalParabola{5.77, 0.0}, {start, start + 0.087 * part}, 80, 1e-6, 0.0,
+                  rng)}) {
+      const CurveClass curve_class = class_of(scene.curve);
+      SCOPED_TRACE(name_of(curve_class));
+      const GivenFit fit = fit_given_class(curve_class, scene.points);
+      if (fit.status != GivenStatus::AtLimit) {
+        // The true curve has chi-square of one degree of freedom per touch, the best one less. A
+        // minimum may be preferred to a valley by three deviations.
+        EXPECT_LT(fit.chi2,
+                  chi_square_threshold(1e-6, static_cast<int>(scene.points.size())) + 9.0);
+      }
+      if (told_with(fit, scene)) {
+        EXPECT_TRUE(holds(fit, scene));
+      }
+    }
+  }
+}
+
 // Any single arm, tip between the arms or outside: the part may end before the other arm begins.
 TEST(GivenTwins, ATipMayLieWhereTheOtherArmWouldBe) {
   auto rng = test::test_rng();
