@@ -60,27 +60,28 @@ class Scan {
 
   /// All minima over the direction, `before` the first point along the axis by that distance.
   std::vector<Graph> minima(double before) {
-    // A valley is as narrow as the points' extent across the axis over that along it allows: for
-    // arcs that bend by a few degrees, some degrees.
-    constexpr int kDirections = 120;
     constexpr int kSections = 16;  // each leaves 0.618 of the bracket: to 1e-4 of two directions
-    const double turn = columns_.arm ? 2.0 * kPi : kPi;
-    const double step = turn / kDirections;
-    std::array<double, kDirections> cost{};
-    for (int k = 0; k < kDirections; ++k) {
-      cost[static_cast<std::size_t>(k)] = graph(k * step, before).cost;
+    const std::vector<double> angles = directions();
+    const int count = static_cast<int>(angles.size());
+    std::vector<double> cost;
+    for (const double angle : angles) {
+      cost.push_back(graph(angle, before).cost);
     }
+    const double turn = columns_.arm ? 2.0 * kPi : kPi;
     std::vector<Graph> found;
-    for (int k = 0; k < kDirections; ++k) {
-      const auto at = [&](int i) {
-        return cost[static_cast<std::size_t>((i + kDirections) % kDirections)];
+    for (int k = 0; k < count; ++k) {
+      const auto at = [&](int i) { return cost[static_cast<std::size_t>((i + count) % count)]; };
+      const auto angle_at = [&](int i) {
+        return angles[static_cast<std::size_t>((i + count) % count)] + (i < 0       ? -turn
+                                                                        : i < count ? 0.0
+                                                                                    : turn);
       };
       if (at(k) > at(k - 1) || !(at(k) < at(k + 1))) {
         continue;
       }
       constexpr double kGolden = 0.6180339887498949;
-      double low = (k - 1) * step;
-      double high = (k + 1) * step;
+      double low = angle_at(k - 1);
+      double high = angle_at(k + 1);
       Graph left = graph(high - kGolden * (high - low), before);
       Graph right = graph(low + kGolden * (high - low), before);
       for (int i = 0; i < kSections; ++i) {
@@ -125,6 +126,47 @@ class Scan {
   }
 
  private:
+  /// Directions of the axis to be looked at, in increasing order. The class stays the same when the
+  /// plane is stretched, and of points as wide as long a valley is some degrees wide. So the lines
+  /// across the axis, along which the graph's value is measured, are evenly spread both as they are
+  /// and after the points have been stretched to be as wide as long: of a slim part, whose graph
+  /// rises along it, a valley is as narrow as the part is slim.
+  std::vector<double> directions() const {
+    constexpr int kDirections = 120;  // of a turn, or of half a turn
+    const double turn = columns_.arm ? 2.0 * kPi : kPi;
+    const double step = turn / kDirections;
+    Vec2 mean = Vec2::Zero();
+    for (const Vec2& point : points_) {
+      mean += point / static_cast<double>(points_.size());
+    }
+    double xx = 0.0;
+    double xy = 0.0;
+    double yy = 0.0;
+    for (const Vec2& point : points_) {
+      const Vec2 d = point - mean;
+      xx += d.x() * d.x();
+      xy += d.x() * d.y();
+      yy += d.y() * d.y();
+    }
+    const double along = 0.5 * std::atan2(2.0 * xy, xx - yy);  // of the longer axis of the points
+    const double spread = std::hypot(xx - yy, 2.0 * xy);
+    const double slimness = std::sqrt(std::max(0.0, (xx + yy - spread) / (xx + yy + spread)));
+    std::vector<double> angles;
+    for (int k = 0; k < kDirections; ++k) {
+      angles.push_back(k * step);
+      // A line across the axis at this angle to the stretched points' longer axis.
+      const double stretched = (k + 0.5) * step;
+      const double across = std::atan2(slimness * std::sin(stretched), std::cos(stretched));
+      // Only where these are closer to one another: near the longer axis.
+      if (std::abs(std::sin(across)) < std::sqrt(slimness) * std::abs(std::cos(across))) {
+        const double angle = std::fmod(along + across - 0.5 * kPi + 2.0 * turn, turn);
+        angles.push_back(angle);
+      }
+    }
+    std::sort(angles.begin(), angles.end());
+    return angles;
+  }
+
   static double slope_of(const Graph& g, double s) {
     return g.coefficient[1] + s * (2.0 * g.coefficient[2] + 3.0 * g.coefficient[3] * s);
   }

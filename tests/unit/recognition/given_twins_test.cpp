@@ -209,6 +209,38 @@ TEST(GivenTwins, NoMinimumIsToldThatTheNoiseExcludes) {
   }
 }
 
+double chi2_of_truth(const Scene& scene) {
+  double sum = 0.0;
+  for (const GivenPoint& point : scene.points) {
+    const Vec2 local = scene.world_T_curve.to_local(point.position_m);
+    const double deviations = foot_point(scene.curve, local).distance / point.sigma_m;
+    sum += deviations * deviations;
+  }
+  return sum;
+}
+
+// Of a part that is far longer than wide, a valley over the axis's direction is as narrow as the
+// part is slim. A curve that fits worse than the true one is not that of least squares.
+TEST(GivenTwins, ASlimCubicalParabolaIsFoundInItsNarrowValley) {
+  auto rng = test::test_rng();
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  const int scenes = test::stress_count(150);
+  int fitted = 0;
+  for (int i = 0; i < scenes; ++i) {
+    const double part = 0.3 + 0.7 * uniform(rng);
+    const double from = 0.015 * (2.0 * (1.0 - part) * uniform(rng) - 1.0);
+    const CubicalParabola curve{test::log_uniform(rng, 3e4, 3e5), 0.0};
+    const Scene scene = touched(curve, {from, from + 0.03 * part}, 60, 1e-5, 0.0, rng);
+    const GivenFit fit = fit_given_class(CurveClass::CubicalParabola, scene.points);
+    if (fit.status == GivenStatus::Fitted) {
+      ++fitted;
+      // Beside a valley, a minimum may be preferred by three deviations.
+      EXPECT_LT(fit.chi2, chi2_of_truth(scene) + 9.0) << i;
+    }
+  }
+  EXPECT_GE(fitted, scenes / 2);
+}
+
 // Any single arm, tip between the arms or outside: the part may end before the other arm begins.
 TEST(GivenTwins, ATipMayLieWhereTheOtherArmWouldBe) {
   auto rng = test::test_rng();
