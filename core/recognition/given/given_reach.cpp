@@ -95,6 +95,18 @@ class Walk {
     reach_->points.push_back(point);
   }
 
+  /// Beside a circle an ellipse of any direction is as good: the one with its axes exchanged is the
+  /// farthest turned.
+  void note_circle(const Held& circle) {
+    // Of the rise that is asked, which three deviations have: an angle that may be any within a
+    // quarter turn to either side has a variance of a third of that turn's square.
+    constexpr double kAnyDirection = 1.0 / 3.0;
+    ReachPoint turned;
+    turned.step[static_cast<std::size_t>(Unknowns(CurveClass::Ellipse).angle)] = 0.5 * kPi;
+    turned.rise = std::max(circle.rise, kAnyDirection * asked_);
+    reach_->points.push_back(turned);
+  }
+
   void follow(int unknown, double way, const Step& along) {
     const double whole = std::sqrt(asked_);
     const auto scaled = [&](const Step& step, double by) {
@@ -129,6 +141,7 @@ class Walk {
     double at = 0.0;
     double length = kFirst * whole;
     bool ended = false;
+    bool at_circle = false;
     for (int i = 0; i < kMostSteps && at < kFarthest * whole && !ended; ++i) {
       const auto next = held_at(here.curve, scaled(ahead, length), unknown);
       const bool lost = !next || (!next->settled && next->rise > asked_);
@@ -138,9 +151,10 @@ class Walk {
       }
       if (!next) {
         // An ellipse beyond the circle is one again, with its axes exchanged.
-        ended = minimum_.curve_class == CurveClass::Ellipse &&
-                here.curve.shape[0] - here.curve.shape[1] <
-                    2.0 * std::abs(ahead[static_cast<std::size_t>(unknown)]) * length;
+        at_circle = minimum_.curve_class == CurveClass::Ellipse &&
+                    here.curve.shape[0] - here.curve.shape[1] <
+                        2.0 * std::abs(ahead[static_cast<std::size_t>(unknown)]) * length;
+        ended = at_circle;
         break;
       }
       ended = next->rise >= asked_ + lowest.rise;
@@ -161,6 +175,9 @@ class Walk {
       return;
     }
     note(here);
+    if (at_circle) {
+      note_circle(here);
+    }
     reach_->bounded = reach_->bounded && ended;
   }
 

@@ -11,6 +11,7 @@
 #include "core/curves/curve.h"
 #include "core/recognition/given/given_class.h"
 #include "core/recognition/verdict/determined.h"
+#include "tests/support/calibration.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
@@ -121,6 +122,26 @@ TEST(GivenReach, TwoTouchesOfManyChangeLittle) {
   if (test::counts_tell()) {
     EXPECT_GT(told, scenes / 10);
   }
+}
+
+// If noise alone can have made the circle an ellipse, it can have turned it any way.
+TEST(GivenReach, TheDirectionOfANearCircleIsNoSurerThanItsOvality) {
+  auto rng = test::test_rng();
+  const Arc ring{Ellipse{0.03, 0.029997}, 0.0, 2.0 * kPi, 3e-5};
+  // An ovality is two numbers, here a few tenths of a deviation off 0. Further than three
+  // deviations off, the covariance holds to first order.
+  const double further = std::exp(-0.5 * kReach * kReach);
+  std::vector<double> probabilities;
+  int surer = 0;
+  const int scenes = test::stress_count(300);
+  for (int i = 0; i < scenes; ++i) {
+    const GivenFit fit = fit_given_class(CurveClass::Ellipse, touches_of(ring, 60, rng));
+    ASSERT_EQ(fit.status, GivenStatus::Fitted);
+    const double error = std::remainder(fit.world_T_curve.theta - 0.7, kPi);
+    surer += std::abs(error) > kReach * std::sqrt(fit.covariance(4, 4)) ? 1 : 0;
+    probabilities.push_back(further);
+  }
+  EXPECT_LE(surer, test::binomial_band(probabilities, 1.0 - 2e-4).most);
 }
 
 }  // namespace
