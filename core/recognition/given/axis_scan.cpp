@@ -64,6 +64,7 @@ class Scan {
     const std::vector<double> angles = directions();
     const int count = static_cast<int>(angles.size());
     std::vector<double> cost;
+    cost.reserve(angles.size());
     for (const double angle : angles) {
       cost.push_back(graph(angle, before).cost);
     }
@@ -72,9 +73,8 @@ class Scan {
     for (int k = 0; k < count; ++k) {
       const auto at = [&](int i) { return cost[static_cast<std::size_t>((i + count) % count)]; };
       const auto angle_at = [&](int i) {
-        return angles[static_cast<std::size_t>((i + count) % count)] + (i < 0       ? -turn
-                                                                        : i < count ? 0.0
-                                                                                    : turn);
+        const int turns = i < 0 ? -1 : i / count;
+        return angles[static_cast<std::size_t>((i + count) % count)] + turns * turn;
       };
       if (at(k) > at(k - 1) || !(at(k) < at(k + 1))) {
         continue;
