@@ -12,6 +12,9 @@ inline constexpr double kNegligibleProbability = 1e-6;
 /// -log of it. A difference of log odds or log evidences of this size is decisive.
 inline constexpr double kNegligibleLogOdds = 13.815510557964274;
 
+/// A log evidence that speaks "strongly" against something, by Kass and Raftery's scale (1995).
+inline constexpr double kStrongEvidence = 3.0;
+
 /// How far below its maximum, in logarithms, a density may be left out of an integral: a
 /// thousandth. A normal distribution has 2e-4 of its mass beyond that.
 inline constexpr double kTailOfDensity = 7.0;

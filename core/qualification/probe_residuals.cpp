@@ -17,41 +17,34 @@ struct Spectrum {
   double largest = 1.0;  ///< at most
 };
 
-/// Row sums of D / (deviation^2 sigma) over the samples before each, in the order of `patch`, or
-/// from its end. D_ij = deviation^2 exp(-distance / length): a recursion.
-std::vector<double> sums_before(const ProbedPatch& patch, bool from_end) {
+/// For each sample, the sum of (exp(-distance / length) / sigma)^power over the samples before it,
+/// or after it: a recursion.
+std::vector<double> sums_beside(const ProbedPatch& patch, int power, bool after) {
   const std::size_t n = patch.samples.size();
+  const double length_m = patch.probe->deviation_length_m.value / power;
   std::vector<double> sums(n);
-  double sum = 0.0;
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t i = from_end ? n - 1 - k : k;
-    if (k > 0) {
-      const ContactSample& last = patch.samples[from_end ? i + 1 : i - 1];
-      const double step = (patch.samples[i].position_m - last.position_m).norm();
-      sum = (sum + 1.0 / last.sigma_m) * std::exp(-step / patch.probe->deviation_length_m.value);
-    }
-    sums[i] = sum;
+  for (std::size_t k = 1; k < n; ++k) {
+    const std::size_t i = after ? n - 1 - k : k;
+    const std::size_t last = after ? i + 1 : i - 1;
+    const ContactSample& beside = patch.samples[last];
+    const double step_m = (patch.samples[i].position_m - beside.position_m).norm();
+    sums[i] = (sums[last] + std::pow(beside.sigma_m, -power)) * std::exp(-step_m / length_m);
   }
   return sums;
 }
 
+/// D_ij = deviation^2 exp(-distance / length).
 void add_patch(const ProbedPatch& patch, Spectrum* spectrum) {
   const double variance = mean_square(patch.probe->deviation_m);
-  const std::vector<double> before = sums_before(patch, false);
-  const std::vector<double> after = sums_before(patch, true);
-  double squares_before = 0.0;  // sum of (D_ij / deviation^2 / sigma_j)^2 over the samples before
+  const std::vector<double> before = sums_beside(patch, 1, false);
+  const std::vector<double> after = sums_beside(patch, 1, true);
+  const std::vector<double> squares_before = sums_beside(patch, 2, false);
   for (std::size_t i = 0; i < patch.samples.size(); ++i) {
     const double sigma = patch.samples[i].sigma_m;
-    if (i > 0) {
-      const ContactSample& last = patch.samples[i - 1];
-      const double step = (patch.samples[i].position_m - last.position_m).norm();
-      squares_before = (squares_before + 1.0 / (last.sigma_m * last.sigma_m)) *
-                       std::exp(-2.0 * step / patch.probe->deviation_length_m.value);
-    }
     const double own = variance / (sigma * sigma);
     const double shared = variance / sigma;
     spectrum->excess += own;
-    spectrum->squares += 2.0 * own + own * own + 2.0 * shared * shared * squares_before;
+    spectrum->squares += 2.0 * own + own * own + 2.0 * shared * shared * squares_before[i];
     spectrum->largest =
         std::max(spectrum->largest, 1.0 + own + shared * (before[i] + after[i]));  // Gershgorin
   }

@@ -103,17 +103,15 @@ PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
   for (int round = 0;; ++round) {
     fitted.points = points_of(corrected, left_out);
     fitted.fit = fit_given_class(curve_class, fitted.points, options);
-    fitted.most_chi2 = most_chi2_of_probes(corrected, fitted.fit.dof);
-    if (!probed || !is_told(fitted.fit)) {
-      return fitted;
-    }
-    const auto curve = make_curve(curve_class, fitted.fit.shape.values);
-    if (!curve) {
-      return fitted;
-    }
-    if (round == kRounds) {
+    const auto curve = probed && is_told(fitted.fit)
+                           ? make_curve(curve_class, fitted.fit.shape.values)
+                           : std::nullopt;
+    if (curve && round == kRounds) {
       fitted.fit.covariance +=
           covariance_of_probes(*curve, fitted.fit.world_T_curve, corrected, options.touched_from);
+    }
+    if (!curve || round == kRounds) {
+      fitted.most_chi2 = most_chi2_of_probes(corrected, fitted.fit.dof);
       return fitted;
     }
     for (std::size_t i = 0; i < raw.size(); ++i) {

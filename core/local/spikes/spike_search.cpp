@@ -264,15 +264,13 @@ class Search {
     const std::size_t counted = lost > length_ / 8 ? lost : 0;
     const std::span<const std::uint8_t> use(block.use);
     const auto jumps = std::span<const std::uint8_t>(jumps_).subspan(block.start, length_);
-    const std::size_t begin = beyond_form(use.begin(), use.end(), jumps.begin());
-    const std::size_t end = length_ - beyond_form(use.rbegin(), use.rend(), jumps.rbegin());
-    for (std::size_t i = 0; i < length_; ++i) {
-      // Round a cusp the stroke goes on too.
-      const bool goes_on = (i < begin && (block.start > 0 || cusps_.first)) ||
-                           (i >= end && (block.start + length_ < samples_.size() || cusps_.last));
-      if (goes_on) {
-        continue;
-      }
+    // Round a cusp the stroke goes on too.
+    const bool comes = block.start > 0 || cusps_.first;
+    const bool goes_on = block.start + length_ < samples_.size() || cusps_.last;
+    const std::size_t begin = comes ? beyond_form(use.begin(), use.end(), jumps.begin()) : 0;
+    const std::size_t end =
+        length_ - (goes_on ? beyond_form(use.rbegin(), use.rend(), jumps.rbegin()) : 0);
+    for (std::size_t i = begin; i < end; ++i) {
       const std::size_t off_centre = 2 * i > length_ ? 2 * i - length_ : length_ - 2 * i;
       Verdict& verdict = (*verdicts)[block.start + i];
       if (counted < verdict.lost || (counted == verdict.lost && off_centre < verdict.off_centre)) {

@@ -22,11 +22,6 @@ constexpr double kLargest = 0.25;
 constexpr int kSizes = 9;  // by factors of 4
 constexpr int kLengths = (kMostHalvings + kPowerStep - 1) / kPowerStep;
 
-/// A deviation counts if points that lie on the class speak against it by at least this much, in
-/// log evidence: "strongly", by Kass and Raftery's scale (1995). Smaller ones are hidden by
-/// the noise, and a part that has no others is of the class.
-constexpr double kSeen = 3.0;
-
 struct LeftBySmooth {
   double chi2 = 0.0;
   double log_determinant = 0.0;
@@ -68,7 +63,7 @@ double largest_hidden(const std::vector<CoherentStep>& steps) {
   for (const CoherentStep& step : steps) {
     information += 1.0 / step.at.variance;
   }
-  return std::sqrt(2.0 * kSeen / information);
+  return std::sqrt(2.0 * kStrongEvidence / information);
 }
 
 }  // namespace
@@ -105,7 +100,9 @@ std::optional<double> log_gain_near_class(const CanonicalFit& placed, const Clas
       work.spend(WorkKind::DriftRow, steps->size());
       const auto left = left_by_smooth(*steps, {deviation, std::ldexp(longest, -halvings)});
       const double cost = left ? 0.5 * (left->log_determinant - none->log_determinant) : 0.0;
-      if (cost < kSeen) {
+      // A deviation counts if points that lie on the class speak strongly against it. Smaller ones
+      // are hidden by the noise, and a part that has no others is of the class.
+      if (cost < kStrongEvidence) {
         continue;
       }
       if (highest - cost < std::max(sum - kTailOfDensity, least)) {

@@ -282,12 +282,7 @@ double distance_followed(const Vec2& near, const ConicCoefficients& q, const Vec
 /// Whether two points of a conic lie on two branches of a hyperbola: halfway between them is then
 /// where the centre is, between the branches, and else within one.
 bool are_on_two_branches(const ConicCoefficients& q, const Vec2& a, const Vec2& b) {
-  const double d = discriminant(q);
-  if (!(d < 0.0)) {
-    return false;
-  }
-  const Vec2 centre((q[1] * q[4] - 2.0 * q[2] * q[3]) / d, (q[1] * q[3] - 2.0 * q[0] * q[4]) / d);
-  return value(q, 0.5 * (a + b)) * value(q, centre) > 0.0;
+  return discriminant(q) < 0.0 && value(q, 0.5 * (a + b)) * value(q, centre_of(q)) > 0.0;
 }
 
 }  // namespace

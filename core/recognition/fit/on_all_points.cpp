@@ -46,16 +46,20 @@ std::vector<double> distances_from(const PolynomialFit& curve, std::span<const F
   return distances;
 }
 
+/// The distance of a point, and its foot: a tip's on the branch of the curve's foot of that number.
+double distance_from(const ImplicitFit& curve, std::size_t number, const FitPoint& point,
+                     Vec2* foot) {
+  return point.offset > 0.0
+             ? signed_distance_of_tip(curve.feet[number], curve.coefficients, point.position, foot)
+             : signed_distance(curve.coefficients, point.position, foot);
+}
+
 std::vector<double> distances_from(const ImplicitFit& curve, std::span<const FitPoint> points) {
   std::vector<double> distances;
   distances.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const FitPoint& point = points[i];
     Vec2 foot;
-    distances.push_back(
-        point.offset > 0.0
-            ? signed_distance_of_tip(curve.feet[i], curve.coefficients, point.position, &foot)
-            : signed_distance(curve.coefficients, point.position, &foot));
+    distances.push_back(distance_from(curve, i, points[i], &foot));
   }
   return distances;
 }
@@ -74,14 +78,8 @@ double squares_of_normals(const ClassFit& fit, const SmoothModel& smooth,
           place_on(*fit.polynomial, fit.polynomial->t[smooth.nearest_reduced[i]], points[i]);
       residual = normal_residual(fit.polynomial->coefficients, foot, points[i]);
     } else {
-      const ConicCoefficients& q = fit.implicit->coefficients;
       Vec2 foot;
-      if (points[i].offset > 0.0) {
-        signed_distance_of_tip(fit.implicit->feet[smooth.nearest_reduced[i]], q, points[i].position,
-                               &foot);
-      } else {
-        signed_distance(q, points[i].position, &foot);
-      }
+      distance_from(*fit.implicit, smooth.nearest_reduced[i], points[i], &foot);
       residual = normal_residual(fit.implicit->coefficients, foot, points[i]);
     }
     squares += residual * residual;

@@ -32,8 +32,7 @@ double quadratic_part(const ConicCoefficients& q, const Vec2& v) {
 /// centres may be beyond that, between the branches, where their feet are not.
 bool on_one_branch(const ImplicitFit& fit, std::span<const FitPoint> points) {
   const ConicCoefficients& q = fit.coefficients;
-  const double d = discriminant(q);
-  const Vec2 centre((q[1] * q[4] - 2.0 * q[2] * q[3]) / d, (q[1] * q[3] - 2.0 * q[0] * q[4]) / d);
+  const Vec2 centre = centre_of(q);
   // Along the real axis the polynomial changes sign from the centre outwards.
   const double at_centre = 0.5 * (q[3] * centre.x() + q[4] * centre.y()) + q[5];
   const double angle = 0.5 * std::atan2(q[1], q[0] - q[2]);

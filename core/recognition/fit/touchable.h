@@ -10,6 +10,11 @@ namespace palpate {
 /// Positive for ellipses, negative for hyperbolas; unit-norm coefficients.
 inline double discriminant(const ConicCoefficients& q) { return 4.0 * q[0] * q[2] - q[1] * q[1]; }
 
+/// The centre of an ellipse or hyperbola; not finite for a parabola.
+inline Vec2 centre_of(const ConicCoefficients& q) {
+  return Vec2(q[1] * q[4] - 2.0 * q[2] * q[3], q[1] * q[3] - 2.0 * q[0] * q[4]) / discriminant(q);
+}
+
 /// True if a probe could have touched the conic at these points: one branch, with each patch on one
 /// side of it. A thin ellipse, or the two branches of a flat hyperbola, can "explain" straight
 /// noisy points if neighbours lie on opposite sides. Its direction of travel then flips from point

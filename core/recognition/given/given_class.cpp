@@ -171,9 +171,7 @@ Explored explore(CurveClass curve_class, const LocalPoints& local, const GivenNo
     if (!taken.settled || (!noise.stated && dof <= 0)) {
       break;
     }
-    const double deviations =
-        noise.stated ? kReach : student_quantile(kReach, static_cast<double>(dof));
-    const double rise = deviations * deviations * variance_of(taken.cost, dof, local, noise.stated);
+    const double rise = rise_of_reach(taken.cost, dof, local, noise.stated);
     explored.reach = reach_of(taken, rise, walk < kMostWalks ? AtLower::Stop : AtLower::Pass);
     if (!explored.reach.lower) {
       break;

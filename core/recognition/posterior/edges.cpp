@@ -24,10 +24,6 @@ using Matrix = Eigen::Matrix<double, kEdgesCoordinates, kEdgesCoordinates>;
 constexpr double kLeastRadius = 1.0 / 1024.0;
 constexpr double kLargestRadius = 4.0;
 
-/// Difference between chi-square on all points and the one that the reduced points tell up to which
-/// these are believed: as kLeastError of a class (weigh/contenders.h).
-constexpr double kAgreement = 4.0;
-
 /// Centre, bisector, half turn and log radius: the radius is positive.
 RoundedCorner corner_of(const Vector& x) { return {x.head<2>(), x[2], x[3], std::exp(x[4])}; }
 
@@ -224,7 +220,7 @@ std::optional<Edges> edges_of(const Arcs& arcs, double out_of_reach, WorkBudget&
   work.spend(WorkKind::AxisRow, points.size());
   double chi2 = on_all.chi2_at(x);
   EdgesProblem* settled = &on_reduced;
-  if (std::abs(chi2 - (arcs.smooth.chi2 + coarse.chi2)) > kAgreement) {
+  if (std::abs(chi2 - (arcs.smooth.chi2 + coarse.chi2)) > kLeastError) {
     // No section leads round a corner that is sharper than it is long.
     chi2 = refine(&on_all, points, kSteps, kAnyChi2, &x, work).chi2;
     settled = &on_all;

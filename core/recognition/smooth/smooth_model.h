@@ -42,6 +42,11 @@ struct SmoothModel {
   double noise_ratio() const;
 };
 
+/// Largest expected difference between chi-square on all points and the one inferred from the
+/// reduced points, if these follow the points. A term left out of a section's polynomial adds less
+/// than the logarithm of the section's samples (BIC): 4 for 55.
+inline constexpr double kLeastError = 4.0;
+
 /// What is thought of a stated noise if all sections leave more: that it is too low, or that they
 /// do not follow the path.
 enum class StatedNoise { MayBeTooLow, Holds };

@@ -8,11 +8,6 @@
 
 namespace palpate {
 
-/// Largest expected difference between chi-square on all points and the one inferred from the
-/// reduced points, if these follow the points. A term left out of a section's polynomial adds less
-/// than the logarithm of the section's samples (BIC): 4 for 55.
-inline constexpr double kLeastError = 4.0;
-
 /// What all classes are compared on.
 struct EvidenceContext {
   const Arcs& arcs;

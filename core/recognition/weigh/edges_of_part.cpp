@@ -8,15 +8,14 @@
 namespace palpate {
 namespace {
 
-/// Whether the points show more than one edge, and more than its arc.
+/// Whether the points show more than one edge, and more than its arc: they speak strongly against
+/// a line and a circle.
 bool are_seen(const Edges& edges, const Contenders& contenders, const Likelihood& likelihood) {
-  // log of the evidence that speaks against a line or circle: "strongly", by the scale of Kass and
-  // Raftery (1995).
-  constexpr double kSeen = 3.0;
   return std::ranges::all_of(
       std::array{CurveClass::Line, CurveClass::Circle}, [&](CurveClass curve_class) {
         const auto& fit = contenders.fits[curve_class];
-        return !fit || likelihood.counted(fit->chi2) > likelihood.counted(edges.chi2) + 2.0 * kSeen;
+        return !fit || likelihood.counted(fit->chi2) >
+                           likelihood.counted(edges.chi2) + 2.0 * kStrongEvidence;
       });
 }
 
