@@ -21,8 +21,8 @@ struct OtherStarts {
 ///
 /// Points that show no direction of their own lie on `reduced` along that of one curve. Another
 /// class does not have them: directions that differ by an angle put the surface off by half its
-/// square times the tip's radius. Centres have no directions. `sides`: of the patches, as `reduced`
-/// has them. O(points) per step.
+/// square times the tip's radius. Centres have no directions. Where no tip touches alone, the fits
+/// stay. `sides`: of the patches, as `reduced` has them. O(points) per step.
 ClassFits along_own_directions(ClassFits fits, const FitData& reduced, std::span<const int> sides,
                                const SmoothModel& smooth, const OtherStarts& others,
                                WorkBudget& work);
