@@ -27,29 +27,74 @@ struct RoundedCorner {
     Row gradient = Row::Zero();
   };
 
-  Distance distance(const Vec2& point) const {
-    const Vec2 ahead(std::cos(bisector), std::sin(bisector));
-    const double cosine = std::cos(half_turn);
-    const double sine = std::sin(half_turn);
-    const Vec2 away = point - centre;
-    const double u = ahead.dot(away);
-    const double v = cross(ahead, away);
-    const double side = v < 0.0 ? -1.0 : 1.0;
-    const double beyond = side * v * cosine - u * sine;  // the end of the arc, along the edge
-    Distance result;
-    if (beyond > 0.0) {
-      const Vec2 normal = cosine * ahead + side * sine * left_of(ahead);
-      result.value = normal.dot(away) - radius;
-      result.part = side < 0.0 ? Part::FirstEdge : Part::SecondEdge;
-      result.gradient << -normal.transpose(), side * beyond, beyond, -1.0;
+  Distance distance(const Vec2& point) const;
+
+  /// Of the curve at its nearest point, unit, counter-clockwise about the arc.
+  Vec2 tangent(const Vec2& point) const {
+    return -left_of(distance(point).gradient.head<2>().transpose().eval());
+  }
+};
+
+/// The same for many points: sines and cosines are taken once.
+class RoundedCornerAxes {
+ public:
+  explicit RoundedCornerAxes(const RoundedCorner& corner)
+      : centre_(corner.centre),
+        ahead_(std::cos(corner.bisector), std::sin(corner.bisector)),
+        cosine_(std::cos(corner.half_turn)),
+        sine_(std::sin(corner.half_turn)),
+        radius_(corner.radius) {}
+
+  /// RoundedCorner::Distance::value.
+  double distance(const Vec2& point) const {
+    const Seen at = seen(point);
+    return at.beyond > 0.0 ? cosine_ * at.u + sine_ * at.side * at.v - radius_
+                           : (point - centre_).norm() - radius_;
+  }
+
+  RoundedCorner::Distance with_gradient(const Vec2& point) const {
+    const Seen at = seen(point);
+    const Vec2 away = point - centre_;
+    RoundedCorner::Distance result;
+    if (at.beyond > 0.0) {
+      const Vec2 normal = cosine_ * ahead_ + at.side * sine_ * left_of(ahead_);
+      result.value = normal.dot(away) - radius_;
+      result.part =
+          at.side < 0.0 ? RoundedCorner::Part::FirstEdge : RoundedCorner::Part::SecondEdge;
+      result.gradient << -normal.transpose(), at.side * at.beyond, at.beyond, -1.0;
       return result;
     }
     const double length = away.norm();
-    result.value = length - radius;
-    result.gradient << (length > 0.0 ? Vec2(-away / length) : Vec2(-ahead)).transpose(), 0.0, 0.0,
+    result.value = length - radius_;
+    result.gradient << (length > 0.0 ? Vec2(-away / length) : Vec2(-ahead_)).transpose(), 0.0, 0.0,
         -1.0;
     return result;
   }
+
+ private:
+  /// A point from the centre, along and across the bisector.
+  struct Seen {
+    double u, v, side;
+    double beyond;  ///< the end of the arc, along the edge
+  };
+
+  Seen seen(const Vec2& point) const {
+    const Vec2 away = point - centre_;
+    const double u = ahead_.dot(away);
+    const double v = cross(ahead_, away);
+    const double side = v < 0.0 ? -1.0 : 1.0;
+    return {u, v, side, side * v * cosine_ - u * sine_};
+  }
+
+  Vec2 centre_;
+  Vec2 ahead_;
+  double cosine_;
+  double sine_;
+  double radius_;
 };
+
+inline RoundedCorner::Distance RoundedCorner::distance(const Vec2& point) const {
+  return RoundedCornerAxes(*this).with_gradient(point);
+}
 
 }  // namespace palpate

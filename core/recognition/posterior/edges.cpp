@@ -39,10 +39,10 @@ class EdgesProblem {
     if (!(x[3] > 0.0 && x[3] <= 0.5 * std::numbers::pi)) {
       return std::numeric_limits<double>::infinity();
     }
-    const RoundedCorner corner = corner_of(x);
+    const RoundedCornerAxes corner(corner_of(x));
     double chi2 = 0.0;
     for (const FitPoint& point : points_) {
-      const double residual = point.inverse_sigma * corner.distance(point.position).value;
+      const double residual = point.inverse_sigma * corner.distance(point.position);
       chi2 += residual * residual;
     }
     return chi2;
@@ -50,14 +50,17 @@ class EdgesProblem {
 
   void accept() { at_ = tried_; }
 
+  std::size_t points() const { return points_.size(); }
+
   void linearise(Matrix* information, Vector* gradient) const {
     information->setZero();
     gradient->setZero();
-    const RoundedCorner corner = corner_of(at_);
+    const double radius = corner_of(at_).radius;
+    const RoundedCornerAxes corner(corner_of(at_));
     for (const FitPoint& point : points_) {
-      const RoundedCorner::Distance distance = corner.distance(point.position);
+      const RoundedCorner::Distance distance = corner.with_gradient(point.position);
       Vector row = point.inverse_sigma * distance.gradient.transpose();
-      row[4] *= corner.radius;
+      row[4] *= radius;
       *information += row * row.transpose();
       *gradient += point.inverse_sigma * distance.value * row;
     }
@@ -164,19 +167,32 @@ MinimiseSummary refine(EdgesProblem* problem, std::span<const FitPoint> points, 
   return minimise(problem, x, options);
 }
 
-/// The radius at which the corner is nearest to the points, to a factor of two.
-Vector start_of(const SharpCorner& corner, EdgesProblem* problem) {
+/// Of corners with these edges, the one that is nearest to the points: its radius to a `factor`.
+Vector with_best_radius(const SharpCorner& corner, double factor, EdgesProblem* problem,
+                        WorkBudget& work) {
+  constexpr std::size_t kDistancesOfRow = 4;  // that take the time of one
   Vector best = Vector::Zero();
   double least = std::numeric_limits<double>::infinity();
-  for (double radius = kLeastRadius; radius <= kLargestRadius; radius *= 2.0) {
+  for (double radius = kLeastRadius; radius <= kLargestRadius; radius *= factor) {
     const Vector x = corner.rounded(radius);
     const double chi2 = problem->chi2_at(x);
+    work.spend(WorkKind::SeedRow, problem->points() / kDistancesOfRow);
     if (chi2 < least) {
       least = chi2;
       best = x;
     }
   }
   return best;
+}
+
+/// The edges of a rounded corner.
+SharpCorner sharp(const Vector& x) {
+  const RoundedCorner corner = corner_of(x);
+  const Vec2 ahead(std::cos(corner.bisector), std::sin(corner.bisector));
+  const Vec2 across = std::sin(corner.half_turn) * left_of(ahead);
+  const double cosine = std::cos(corner.half_turn);
+  return {corner.centre + corner.radius / cosine * ahead, cosine * ahead - across,
+          cosine * ahead + across};
 }
 
 /// Whether one edge, or its arc, is all that the points show.
@@ -206,12 +222,20 @@ std::optional<Edges> edges_of(const Arcs& arcs, double out_of_reach, WorkBudget&
     return std::nullopt;
   }
   EdgesProblem on_reduced(reduced);
-  Vector x = start_of(corner_between(*seen, reduced), &on_reduced);
+  constexpr double kRoughly = 2.0;
+  Vector x = with_best_radius(corner_between(*seen, reduced), kRoughly, &on_reduced, work);
   // The directions of the edges are those of the strokes at one point each. The first steps set
   // them right, and tell which points lie on the arc: before, no linear model holds.
   constexpr int kFirstSteps = 4;
   constexpr int kSteps = 20;
   refine(&on_reduced, reduced, kFirstSteps, kAnyChi2, &x, work);
+  // Beside edges that are right, the radius: where it leaves no point on the arc, or all, no step
+  // leads to it.
+  constexpr double kClosely = 1.19;  // 2^(1/4): nearer than any of these, the steps converge
+  const Vector other = with_best_radius(sharp(x), kClosely, &on_reduced, work);
+  if (on_reduced.chi2_at(other) < on_reduced.chi2_at(x)) {
+    x = other;
+  }
   const MinimiseSummary coarse = refine(&on_reduced, reduced, kSteps, out_of_reach, &x, work);
   if (!(coarse.chi2 <= out_of_reach)) {
     return std::nullopt;

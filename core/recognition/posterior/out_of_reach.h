@@ -14,4 +14,10 @@ namespace palpate {
 /// free-form paths.
 double out_of_reach(const Arcs& arcs, const Likelihood& likelihood, const Evidences& of_paths);
 
+/// The same where all points lie on a curve as noise lets them, so that none is a spike, and
+/// `touches`, the reduced points, have the directions of that curve. `log_evidence`: of what a
+/// class must not be hopeless beside.
+double out_of_reach(const Arcs& arcs, const FitData& touches, const Likelihood& likelihood,
+                    double log_evidence);
+
 }  // namespace palpate

@@ -51,6 +51,14 @@ bool directions_may_explain(const SideChoice& choice, const FitData& touches,
   return choice.settled->chi2 <= most;
 }
 
+/// Whether directions that a curve of all points has told may still keep the candidate from them:
+/// it fits all points, or it fits the reduced ones.
+bool may_be_misdirected(const SideChoice& choice, const SideContext& by) {
+  return fits_all(choice, by) ||
+         fits_well(choice.settled->chi2,
+                   residual_count(points_of(*choice.settled, choice.reduced)));
+}
+
 /// Directions that turn by less are settled: a touched point moves by a thousandth of the tip's
 /// radius along the surface, and off it, if that is straight there, by half a millionth. [rad]
 constexpr double kSettledTurn = 1e-3;
@@ -125,7 +133,8 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
   // third of a radian to a ninth of what they were. What is not even halved they do not leave.
   constexpr double kLeastGain = 2.0;
   for (int round = 0; round < kRounds; ++round) {
-    if (!choice.settled || !directions_may_explain(choice, touches, smooth) || !by.work.allows()) {
+    if (!choice.settled || !directions_may_explain(choice, touches, smooth) ||
+        (by.directions_told && !may_be_misdirected(choice, by)) || !by.work.allows()) {
       break;
     }
     // (a candidate that is no such curve on all points says nothing about the directions of all)
@@ -213,34 +222,48 @@ std::optional<CanonicalFit> rounded(const CanonicalFit& curve, double radius_m) 
 }  // namespace
 
 SideChoice fit_way(const FitData& touches, std::span<const int> sides, const SideContext& by,
-                   std::span<const SidedStart> starts, double highest, CurveOfCentres* centres) {
+                   std::span<const SidedStart> starts, const CurveOfCentres& centres) {
+  SideChoice choice = judged(fit_along(touches, sides, by, starts, centres), by);
+  choice.along_told = by.directions_told;
+  return choice;
+}
+
+SideChoice fit_way_again(SideChoice choice, const FitData& touches, const SideContext& by,
+                         double highest, CurveOfCentres* centres) {
   const SmoothModel& smooth = by.arcs.smooth;
-  SideChoice choice = judged(fit_along(touches, sides, by, starts, *centres), by);
+  const std::vector<int> sides = choice.sides;
   const auto may_gain = [&] {
-    return choice.settled && directions_may_explain(choice, touches, smooth) &&
+    return choice.settled && !fits_all(choice, by) &&
+           directions_may_explain(choice, touches, smooth) &&
            choice.log_evidence >= highest - kNegligibleLogOdds && by.work.allows();
   };
-  const auto take_along = [&](const CanonicalFit& curve, const WarmStart* start) {
-    FitData turned = touches;
-    if (set_directions(DirectionsOf::AllPoints, curve, smooth, &turned, by.work) < kSettledTurn) {
-      return;
-    }
+  const auto take = [&](const FitData& turned, const WarmStart* start) {
     std::vector<SidedStart> from;
     if (start != nullptr) {
-      from.push_back({{sides.begin(), sides.end()}, *start});
+      from.push_back({sides, *start});
     }
-    SideChoice again = fit_along(std::move(turned), sides, by, from, *centres);
+    SideChoice again = fit_along(turned, sides, by, from, *centres);
     if (again.refined && (!choice.refined || again.refined->chi2 < choice.refined->chi2)) {
       choice = judged(std::move(again), by);
     }
   };
-  if (start_for(starts, sides) != nullptr || !may_gain()) {
+  const auto take_along = [&](const CanonicalFit& curve, const WarmStart* start) {
+    FitData turned = touches;
+    if (set_directions(DirectionsOf::AllPoints, curve, smooth, &turned, by.work) >= kSettledTurn) {
+      take(turned, start);
+    }
+  };
+  if (choice.along_told || !may_gain()) {
     return choice;
   }
-  if (!agrees(choice, smooth) && !fits_all(choice, by) && centres->get()) {
+  if (by.directions_told) {
+    take(touches, nullptr);
+    return choice;
+  }
+  if (!agrees(choice, smooth) && centres->get()) {
     take_along(*centres->get(), centres->start());
   }
-  if (has_kept_tips(smooth) && !fits_all(choice, by) && may_gain() && centres->get()) {
+  if (has_kept_tips(smooth) && may_gain() && centres->get()) {
     if (const auto curve = rounded(*centres->get(), largest_tip_m(touches))) {
       take_along(*curve, nullptr);
     }

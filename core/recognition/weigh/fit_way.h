@@ -9,13 +9,17 @@
 
 namespace palpate {
 
-/// The way with the tips on these sides, judged. Where directions led to no curve that all points
-/// have, it is fitted once more along those of the curve of the centres, whose normals are nearly
-/// the surface's whichever side that is on, and then with its bend rounded: next to a corner that
-/// no touch lies on, the curve of the others' centres is a cusp. What is followed has been tried
-/// along these when it was sought. What is out on all points beside `highest`, the log evidence of
-/// another way that all points have, need not be told better.
+/// The way with the tips on these sides, judged.
 SideChoice fit_way(const FitData& touches, std::span<const int> sides, const SideContext& by,
-                   std::span<const SidedStart> starts, double highest, CurveOfCentres* centres);
+                   std::span<const SidedStart> starts, const CurveOfCentres& centres);
+
+/// The same way, tried once more where its directions led to no curve that all points have: along
+/// those that `touches` have been told since; else along those of the curve of the centres, whose
+/// normals are nearly the surface's whichever side that is on, and then with its bend rounded: next
+/// to a corner that no touch lies on, the curve of the others' centres is a cusp. What is out on
+/// all points beside `highest`, the log evidence of another way that all points have, need not be
+/// told better.
+SideChoice fit_way_again(SideChoice choice, const FitData& touches, const SideContext& by,
+                         double highest, CurveOfCentres* centres);
 
 }  // namespace palpate

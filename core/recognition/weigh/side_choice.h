@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/numerics/work_budget.h"
+#include "core/recognition/posterior/edges.h"
 #include "core/recognition/posterior/evidences.h"
 #include "core/recognition/smooth/arcs.h"
 #include "core/recognition/weigh/sided_start.h"
@@ -17,10 +18,11 @@ namespace palpate {
 struct SideChoice {
   /// For each patch, the side of travel on which the tip centres lie (tip_sides.h).
   std::vector<int> sides;
-  bool expected = false;  ///< outside the bends, or where TouchedFrom says
-  bool contrary = false;  ///< the other of the two
-  ClassFits fits;         ///< of every class, to `reduced`
-  FitData reduced;        ///< the arcs' reduced points, moved to the surface
+  bool expected = false;    ///< outside the bends, or where TouchedFrom says
+  bool contrary = false;    ///< the other of the two
+  bool along_told = false;  ///< fitted along directions that are told (SideContext)
+  ClassFits fits;           ///< of every class, to `reduced`
+  FitData reduced;          ///< the arcs' reduced points, moved to the surface
   CurveClass candidate = CurveClass::Unclassified;
   std::optional<ClassFit> settled;  ///< the candidate at its optimum on the reduced points
   /// The candidate on all points, unless they agree with the reduced points; nullopt where it is no
@@ -43,6 +45,10 @@ struct SideContext {
   /// As in fit_classes(), for all sides.
   double out_of_reach = std::numeric_limits<double>::infinity();
   TouchedFrom touched_from = TouchedFrom::Unknown;
+  const Edges* edges = nullptr;  ///< that the tips' centres lie on; nullptr if none are
+  /// The directions are those of a curve that all points lie on as noise lets them: what not all
+  /// points have knows none better.
+  bool directions_told = false;
 };
 
 /// The classes followed from where they were with the tips on these sides, or sought.

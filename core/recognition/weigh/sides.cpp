@@ -9,6 +9,7 @@
 
 #include "core/numerics/negligible.h"
 #include "core/recognition/posterior/likelihood_of.h"
+#include "core/recognition/posterior/out_of_reach.h"
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/weigh/curve_of_centres.h"
 #include "core/recognition/weigh/fit_way.h"
@@ -63,12 +64,29 @@ struct Directed {
   FitData touches;
   std::vector<double> bends;
   std::vector<double> senses;
+  bool told;  ///< of SideContext::directions_told
 };
 
-/// What the tips do not show by themselves comes from the curve of their centres.
-Directed directed(std::span<const StoredPatch> patches, const SmoothModel& smooth,
-                  CurveOfCentres* centres, WorkBudget& work) {
-  Directed result{smooth.reduced, {}, {}};
+/// Whether the way of each tip is seen.
+bool are_strokes(const FitData& touches) {
+  return std::all_of(touches.patches.begin(), touches.patches.end(),
+                     [](const PatchSpan& patch) { return patch.size() > 1; });
+}
+
+/// What the tips do not show by themselves comes from edges that their centres lie on, or from the
+/// curve of these.
+Directed directed(std::span<const StoredPatch> patches, const SideContext& by,
+                  CurveOfCentres* centres) {
+  const SmoothModel& smooth = by.arcs.smooth;
+  WorkBudget& work = by.work;
+  Directed result{smooth.reduced, {}, {}, false};
+  if (by.edges != nullptr && has_tips(result.touches.points) && are_strokes(result.touches) &&
+      fits_well(by.edges->chi2, residual_count(by.arcs.data))) {
+    result.bends = tell_directions(by.edges->corner, smooth, &result.touches, work);
+    result.senses = result.bends;
+    result.told = true;
+    return result;
+  }
   const bool untold = has_untold_tips(smooth);
   const bool asked = untold || has_uncertain_bends(smooth, known_sides(patches, smooth.reduced));
   if (asked && work.allows()) {
@@ -136,6 +154,132 @@ bool are_one_way(const SideChoice& a, const SideChoice& b, const FitData& centre
   return true;
 }
 
+/// The ways tried so far, and what is known of the tips' directions by now.
+class TriedWays {
+ public:
+  TriedWays(std::span<const StoredPatch> patches, const SideContext& by,
+            std::span<const SidedStart> starts, CurveOfCentres* centres, Directed seen)
+      : patches_(patches),
+        by_(by),
+        now_(by),
+        starts_(starts),
+        centres_(*centres),
+        seen_(std::move(seen)) {
+    if (seen_.told) {
+      take_told(log_evidence_of_unclassified(by.likelihood, by.of_paths, by.arcs.smooth.chi2));
+    }
+    possible_ = possible_along(seen_.senses);
+    if (by.touched_from == TouchedFrom::Inside && possible_.ways.size() > 1) {
+      std::swap(possible_.ways[0], possible_.ways[1]);
+    }
+  }
+
+  const std::vector<SideChoice>& choices() const { return choices_; }
+
+  /// All ways that are possible, by what strokes show of bend and travel.
+  void try_possible() { try_all(possible_.ways); }
+
+  /// Whether strokes that travel against one another may lie on one side of a curve by different
+  /// sides of their own travel.
+  bool may_turn() const { return seen_.senses.empty() && possible_.may_be_otherwise(); }
+
+  bool may_bend_to_one_side() const {
+    return palpate::may_bend_to_one_side(seen_.touches, seen_.bends);
+  }
+
+  /// The ways that are possible where strokes travel as the curve of the centres tells.
+  void try_along_centres() {
+    if (const auto& curve = centres_.get()) {
+      std::vector<std::vector<int>> ways =
+          possible_along(senses_of(*curve, seen_.touches, by_.work)).ways;
+      std::erase_if(ways, [&](const std::vector<int>& way) {
+        return std::find(possible_.ways.begin(), possible_.ways.end(), way) != possible_.ways.end();
+      });
+      try_all(ways);
+    }
+  }
+
+  /// The choice where no tips are to be removed.
+  SideChoice without_tips() const {
+    SideChoice choice;
+    choice.sides = possible_.ways.front();
+    choice.reduced = on_surface(seen_.touches, choice.sides);
+    choice.fits = fit_classes_from(starts_, choice.sides, choice.reduced, by_, by_.out_of_reach);
+    return choice;
+  }
+
+  bool have_tips() const { return has_tips(seen_.touches.points); }
+
+  std::vector<SideChoice> take() && { return std::move(choices_); }
+
+ private:
+  PossibleSides possible_along(const std::vector<double>& senses) const {
+    return possible_sides(patches_, seen_.touches, seen_.bends, senses, by_.work);
+  }
+
+  /// First all as they are, then those once more that no curve has and that might gain: the search
+  /// of a way that is none may take all work, and a curve that all points have on one side tells
+  /// the directions on the other.
+  void try_all(const std::vector<std::vector<int>>& ways) {
+    const std::size_t before = choices_.size();
+    for (const std::vector<int>& sides : ways) {
+      if (choices_.empty() || by_.work.allows()) {
+        choices_.push_back(judged(fit_way(seen_.touches, sides, now_, starts_, centres_)));
+      }
+    }
+    for (std::size_t i = before; i < choices_.size(); ++i) {
+      SideChoice& choice = choices_[i];
+      if (start_for(starts_, choice.sides) == nullptr) {
+        const double of_others = highest_ - choice.log_of_normals;
+        choice =
+            judged(fit_way_again(std::move(choice), seen_.touches, now_, of_others, &centres_));
+      }
+    }
+  }
+
+  SideChoice judged(SideChoice choice) {
+    choice.expected = choice.sides == possible_.ways.front();
+    choice.contrary = possible_.ways.size() > 1 && choice.sides == possible_.ways[1];
+    choice.log_of_normals = log_likelihood_of_normals(
+        patches_, seen_.touches, sides_found(choice, seen_.touches, by_.arcs.smooth.reduced));
+    if (fits_all(choice, by_)) {
+      highest_ = std::max(highest_, choice.log_evidence + choice.log_of_normals);
+      learn_directions(choice);
+    }
+    return choice;
+  }
+
+  /// From a curve that all points have. Parallel curves have the same normals: those of the tips,
+  /// whichever side they are on.
+  void learn_directions(const SideChoice& choice) {
+    if (now_.directions_told || !has_kept_tips(by_.arcs.smooth) || !are_strokes(seen_.touches)) {
+      return;
+    }
+    if (const auto curve = to_canonical(*choice.refined, by_.arcs.data)) {
+      tell_directions(*curve, by_.arcs.smooth, &seen_.touches, by_.work);
+      take_told(choice.log_evidence);
+    }
+  }
+
+  /// `log_evidence`: of what a class must not be hopeless beside.
+  void take_told(double log_evidence) {
+    now_.directions_told = true;
+    now_.out_of_reach = std::min(
+        by_.out_of_reach, out_of_reach(by_.arcs, seen_.touches, by_.likelihood, log_evidence));
+  }
+
+  std::span<const StoredPatch> patches_;
+  const SideContext& by_;
+  SideContext now_;
+  std::span<const SidedStart> starts_;
+  CurveOfCentres& centres_;
+  Directed seen_;
+  PossibleSides possible_;
+  std::vector<SideChoice> choices_;
+  /// log of the evidence of a way that all points have, with that of the normals.
+  double highest_ = -std::numeric_limits<double>::infinity();
+};
+
 /// The way of the highest evidence, the expected one (from outside the bends) at the odds of the
 /// prior.
 void take_most_probable(const SideContext& by, SidedFits* sided) {
@@ -179,69 +323,34 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
 SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext& by,
                          std::span<const SidedStart> starts) {
   CurveOfCentres centres(by, starts);
-  const Directed seen = directed(patches, by.arcs.smooth, &centres, by.work);
+  TriedWays tried(patches, by, starts, &centres, directed(patches, by, &centres));
   SidedFits sided;
-  PossibleSides possible = possible_sides(patches, seen.touches, seen.bends, seen.senses, by.work);
-  if (by.touched_from == TouchedFrom::Inside && possible.ways.size() > 1) {
-    std::swap(possible.ways[0], possible.ways[1]);
-  }
-  if (!has_tips(seen.touches.points)) {
-    SideChoice choice;
-    choice.sides = possible.ways.front();
-    choice.reduced = on_surface(seen.touches, choice.sides);
-    choice.fits = fit_classes_from(starts, choice.sides, choice.reduced, by, by.out_of_reach);
-    sided.choices.push_back(std::move(choice));
+  if (!tried.have_tips()) {
+    sided.choices.push_back(tried.without_tips());
     return sided;
   }
-  double highest = -std::numeric_limits<double>::infinity();
-  const auto try_ways = [&](const std::vector<std::vector<int>>& ways) {
-    for (const std::vector<int>& sides : ways) {
-      if (!sided.choices.empty() && !by.work.allows()) {
-        break;
-      }
-      const double by_normals = log_likelihood_of_normals(patches, seen.touches, sides);
-      SideChoice choice = fit_way(seen.touches, sides, by, starts, highest - by_normals, &centres);
-      choice.expected = sides == possible.ways.front();
-      choice.contrary = possible.ways.size() > 1 && sides == possible.ways[1];
-      choice.log_of_normals = log_likelihood_of_normals(
-          patches, seen.touches, sides_found(choice, seen.touches, by.arcs.smooth.reduced));
-      if (fits_all(choice, by)) {
-        highest = std::max(highest, choice.log_evidence + choice.log_of_normals);
-      }
-      sided.choices.push_back(std::move(choice));
-    }
+  const auto any_that = [&](auto holds) {
+    return std::any_of(
+        tried.choices().begin(), tried.choices().end(),
+        [&](const SideChoice& choice) { return fits_all(choice, by) && holds(choice); });
   };
-  // Strokes that travel against one another lie on one side of a curve by different sides of their
-  // own travel: the curve of the centres tells.
-  const bool may_turn = seen.senses.empty() && possible.may_be_otherwise();
-  const auto try_ways_along = [&] {
-    if (const auto& curve = centres.get()) {
-      const std::vector<double> along = senses_of(*curve, seen.touches, by.work);
-      std::vector<std::vector<int>> ways =
-          possible_sides(patches, seen.touches, seen.bends, along, by.work).ways;
-      std::erase_if(ways, [&](const std::vector<int>& way) {
-        return std::find(possible.ways.begin(), possible.ways.end(), way) != possible.ways.end();
-      });
-      try_ways(ways);
-    }
-  };
-  const bool at_first = may_turn && !may_bend_to_one_side(seen.touches, seen.bends);
-  if (at_first) {
-    try_ways_along();
+  const bool may_turn = tried.may_turn();
+  const bool turn_first = may_turn && !tried.may_bend_to_one_side();
+  if (turn_first) {
+    tried.try_along_centres();
   }
-  if (std::none_of(sided.choices.begin(), sided.choices.end(), [&](const SideChoice& choice) {
-        return fits_all(choice, by) && agrees(choice, by.arcs.smooth);
-      })) {
-    try_ways(possible.ways);
+  if (!any_that([&](const SideChoice& choice) { return agrees(choice, by.arcs.smooth); })) {
+    tried.try_possible();
   }
   // A line or a conic that all points have tells how they lie; a cubic, which turns to either side
   // and goes far away, may go through any two strokes.
-  if (may_turn && !at_first && by.work.allows() &&
-      std::none_of(sided.choices.begin(), sided.choices.end(), [&](const SideChoice& choice) {
-        return fits_all(choice, by) && (class_bit(choice.candidate) & kCubics) == 0;
-      })) {
-    try_ways_along();
+  const auto is_no_cubic = [](const SideChoice& choice) {
+    return (class_bit(choice.candidate) & kCubics) == 0;
+  };
+  if (may_turn && !turn_first && by.work.allows() && !any_that(is_no_cubic)) {
+    tried.try_along_centres();
   }
+  sided.choices = std::move(tried).take();
   sided.centres = centres.next_start();
   take_most_probable(by, &sided);
   return sided;

@@ -72,6 +72,66 @@ bool is_told(const ReducedSection& section, const FitData& reduced) {
   return section.end - section.begin > 1 || !reduced.points[section.begin].tangent.isZero();
 }
 
+/// As set_directions().
+double turn_to(const std::vector<Vec2>& directions, DirectionsOf which, const SmoothModel& smooth,
+               FitData* touches) {
+  double largest = 0.0;
+  auto section = smooth.sections.begin();
+  for (const PatchSpan& patch : touches->patches) {
+    // As the smooth model saw it travelled: sides are told by that, and a sense that followed each
+    // round's curve could turn about within some rounds.
+    double sense = sense_of(directions, smooth.reduced, patch);
+    if (sense == 0.0) sense = sense_of(directions, *touches, patch) < 0.0 ? -1.0 : 1.0;
+    for (; section != smooth.sections.end() && section->begin < patch.end; ++section) {
+      if ((which != DirectionsOf::AllPoints && !section->kept) ||
+          (which == DirectionsOf::UntoldPoints && is_told(*section, smooth.reduced))) {
+        continue;
+      }
+      for (std::size_t i = section->begin; i < section->end; ++i) {
+        const Vec2 along = sense * directions[i];
+        if (!along.isZero()) {
+          largest = std::max(largest, turned_by(touches->points[i].tangent, along));
+          touches->points[i].tangent = along;
+        }
+      }
+    }
+  }
+  return largest;
+}
+
+/// What noise turns the line between the neighbours of each point of a stroke by: no error of its
+/// direction is larger.
+void take_errors_of_neighbours(FitData* touches) {
+  for (const PatchSpan& patch : touches->patches) {
+    for (std::size_t i = patch.begin; patch.size() > 1 && i < patch.end; ++i) {
+      const FitPoint& before = touches->points[std::max(i, patch.begin + 1) - 1];
+      const FitPoint& after = touches->points[std::min(i + 1, patch.end - 1)];
+      const double turn = std::hypot(1.0 / before.inverse_sigma, 1.0 / after.inverse_sigma) /
+                          (after.position - before.position).norm();
+      touches->points[i].tangent_sigma = std::min(touches->points[i].tangent_sigma, turn);
+    }
+  }
+}
+
+/// Where an edge goes over into the arc: a radius that is as well may have the place of a sample on
+/// the arc or beside it. An arc that turns by d leaves its tangent by r d^2 / 2, which noise hides.
+void add_errors_of_fillet(const RoundedCorner& edges, FitData* touches) {
+  const auto part = [&](std::size_t i) { return edges.distance(touches->points[i].position).part; };
+  for (const PatchSpan& patch : touches->patches) {
+    for (std::size_t i = patch.begin; i < patch.end; ++i) {
+      const auto before = part(std::max(i, patch.begin + 1) - 1);
+      const auto after = part(std::min(i + 1, patch.end - 1));
+      if (before == after && before != RoundedCorner::Part::Arc) {
+        continue;
+      }
+      FitPoint& point = touches->points[i];
+      const double hidden = kNegligibleDeviations / point.inverse_sigma;
+      const double turn = std::min(std::sqrt(2.0 * hidden / edges.radius), 2.0 * edges.half_turn);
+      point.tangent_sigma = std::hypot(point.tangent_sigma, turn / kNegligibleDeviations);
+    }
+  }
+}
+
 }  // namespace
 
 bool has_untold_tips(const SmoothModel& smooth) {
@@ -102,32 +162,30 @@ bool has_uncertain_bends(const SmoothModel& smooth, std::span<const int> sides) 
 double set_directions(DirectionsOf which, const CanonicalFit& fit, const SmoothModel& smooth,
                       FitData* touches, WorkBudget& work) {
   const auto curve = make_curve(fit.shape.curve_class, fit.shape.values);
-  double largest = 0.0;
-  if (!curve) {
-    return largest;
+  return curve ? turn_to(directions_of(*curve, fit, *touches, work), which, smooth, touches) : 0.0;
+}
+
+void tell_directions(const CanonicalFit& curve, const SmoothModel& smooth, FitData* touches,
+                     WorkBudget& work) {
+  set_directions(DirectionsOf::KeptPoints, curve, smooth, touches, work);
+  take_errors_of_neighbours(touches);
+}
+
+std::vector<double> tell_directions(const RoundedCorner& edges, const SmoothModel& smooth,
+                                    FitData* touches, WorkBudget& work) {
+  work.spend(WorkKind::PlacedRow, touches->points.size());
+  std::vector<Vec2> directions;
+  for (const FitPoint& point : touches->points) {
+    directions.push_back(edges.tangent(point.position));
   }
-  const std::vector<Vec2> directions = directions_of(*curve, fit, *touches, work);
-  auto section = smooth.sections.begin();
+  turn_to(directions, DirectionsOf::KeptPoints, smooth, touches);
+  take_errors_of_neighbours(touches);
+  add_errors_of_fillet(edges, touches);
+  std::vector<double> bends;  // about the arc, to the left
   for (const PatchSpan& patch : touches->patches) {
-    // As the smooth model saw it travelled: sides are told by that, and a sense that followed each
-    // round's curve could turn about within some rounds.
-    double sense = sense_of(directions, smooth.reduced, patch);
-    if (sense == 0.0) sense = sense_of(directions, *touches, patch) < 0.0 ? -1.0 : 1.0;
-    for (; section != smooth.sections.end() && section->begin < patch.end; ++section) {
-      if ((which != DirectionsOf::AllPoints && !section->kept) ||
-          (which == DirectionsOf::UntoldPoints && is_told(*section, smooth.reduced))) {
-        continue;
-      }
-      for (std::size_t i = section->begin; i < section->end; ++i) {
-        const Vec2 along = sense * directions[i];
-        if (!along.isZero()) {
-          largest = std::max(largest, turned_by(touches->points[i].tangent, along));
-          touches->points[i].tangent = along;
-        }
-      }
-    }
+    bends.push_back(sense_of(directions, *touches, patch));
   }
-  return largest;
+  return bends;
 }
 
 std::vector<double> bends_of(const CanonicalFit& fit, const FitData& touches, WorkBudget& work) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/curves/rounded_corner.h"
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/smooth/smooth_model.h"
@@ -28,6 +29,16 @@ enum class DirectionsOf { UntoldPoints, KeptPoints, AllPoints };
 /// of a tangent. [rad]
 double set_directions(DirectionsOf which, const CanonicalFit& curve, const SmoothModel& smooth,
                       FitData* touches, WorkBudget& work);
+
+/// The directions of all points of strokes from a curve that all tips' centres lie on as noise lets
+/// them. Their errors are what noise turns the line between neighbours by: any other curve that has
+/// the centres, too, has these directions but for that. (Chords lead round a bend, and are off by
+/// half its turn.)
+void tell_directions(const CanonicalFit& curve, const SmoothModel& smooth, FitData* touches,
+                     WorkBudget& work);
+/// Returns the sides to which edges bend from the patches' travel.
+std::vector<double> tell_directions(const RoundedCorner& edges, const SmoothModel& smooth,
+                                    FitData* touches, WorkBudget& work);
 
 /// The sides to which the patches bend (tip_sides.h), > 0 for left: from their own turn if it is
 /// significant, else from the curvature of the curve through the tip centres.

@@ -200,9 +200,10 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
   // First: they take little, and a search for classes that there are none of may take all work.
   const std::optional<Edges> edges = edges_of(arcs, reach_of_edges(arcs, stated, of_paths), work);
   std::optional<WorkBudget::Reserve> for_verdict(std::in_place, work, kShareOfVerdict);
-  SidedFits sided = fit_over_sides(
-      patches, {arcs, stated, work, of_paths, options.classes, hopeless, options.touched_from},
-      starts);
+  SidedFits sided = fit_over_sides(patches,
+                                   {arcs, stated, work, of_paths, options.classes, hopeless,
+                                    options.touched_from, edges ? &*edges : nullptr},
+                                   starts);
   for_verdict.reset();
   const auto contenders_of_choice = [&](const EvidenceContext& context, const Evidences& paths) {
     SideChoice& choice = sided.choices[sided.taken];

@@ -61,6 +61,19 @@ TEST(RoundedCorner, DistanceIsThatOfTheNearestPlace) {
   }
 }
 
+TEST(RoundedCorner, TangentGoesAboutTheCentreAcrossTheDistance) {
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < test::stress_count(50); ++i) {
+    const RoundedCorner corner = any_corner(rng);
+    for (const Vec2& place : places_of(corner, 20)) {
+      const Vec2 tangent = corner.tangent(place);
+      EXPECT_NEAR(tangent.norm(), 1.0, 1e-14);
+      EXPECT_NEAR(corner.distance(place).gradient.head<2>().dot(tangent), 0.0, 1e-14);
+      EXPECT_GT(cross(place - corner.centre, tangent), 0.0);
+    }
+  }
+}
+
 TEST(RoundedCorner, IsItsOwnPlaces) {
   std::mt19937_64 rng = test::test_rng();
   for (int i = 0; i < test::stress_count(50); ++i) {
