@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/recognition/given/axis_directions.h"
 #include "core/recognition/given/thinned.h"
 
 namespace palpate {
@@ -61,14 +62,14 @@ class Scan {
   /// All minima over the direction, `before` the first point along the axis by that distance.
   std::vector<Graph> minima(double before) {
     constexpr int kSections = 16;  // each leaves 0.618 of the bracket: to 1e-4 of two directions
-    const std::vector<double> angles = directions();
+    const double turn = columns_.arm ? 2.0 * kPi : kPi;
+    const std::vector<double> angles = axis_directions(points_, turn);
     const int count = static_cast<int>(angles.size());
     std::vector<double> cost;
     cost.reserve(angles.size());
     for (const double angle : angles) {
       cost.push_back(graph(angle, before).cost);
     }
-    const double turn = columns_.arm ? 2.0 * kPi : kPi;
     std::vector<Graph> found;
     for (int k = 0; k < count; ++k) {
       const auto at = [&](int i) { return cost[static_cast<std::size_t>((i + count) % count)]; };
@@ -126,47 +127,6 @@ class Scan {
   }
 
  private:
-  /// Directions of the axis to be looked at, in increasing order. The class stays the same when the
-  /// plane is stretched, and of points as wide as long a valley is some degrees wide. So the lines
-  /// across the axis, along which the graph's value is measured, are evenly spread both as they are
-  /// and after the points have been stretched to be as wide as long: of a slim part, whose graph
-  /// rises along it, a valley is as narrow as the part is slim.
-  std::vector<double> directions() const {
-    constexpr int kDirections = 120;  // of a turn, or of half a turn
-    const double turn = columns_.arm ? 2.0 * kPi : kPi;
-    const double step = turn / kDirections;
-    Vec2 mean = Vec2::Zero();
-    for (const Vec2& point : points_) {
-      mean += point / static_cast<double>(points_.size());
-    }
-    double xx = 0.0;
-    double xy = 0.0;
-    double yy = 0.0;
-    for (const Vec2& point : points_) {
-      const Vec2 d = point - mean;
-      xx += d.x() * d.x();
-      xy += d.x() * d.y();
-      yy += d.y() * d.y();
-    }
-    const double along = 0.5 * std::atan2(2.0 * xy, xx - yy);  // of the longer axis of the points
-    const double spread = std::hypot(xx - yy, 2.0 * xy);
-    const double slimness = std::sqrt(std::max(0.0, (xx + yy - spread) / (xx + yy + spread)));
-    std::vector<double> angles;
-    for (int k = 0; k < kDirections; ++k) {
-      angles.push_back(k * step);
-      // A line across the axis at this angle to the stretched points' longer axis.
-      const double stretched = (k + 0.5) * step;
-      const double across = std::atan2(slimness * std::sin(stretched), std::cos(stretched));
-      // Only where these are closer to one another: near the longer axis.
-      if (std::abs(std::sin(across)) < std::sqrt(slimness) * std::abs(std::cos(across))) {
-        const double angle = std::fmod(along + across - 0.5 * kPi + 2.0 * turn, turn);
-        angles.push_back(angle);
-      }
-    }
-    std::sort(angles.begin(), angles.end());
-    return angles;
-  }
-
   static double slope_of(const Graph& g, double s) {
     return g.coefficient[1] + s * (2.0 * g.coefficient[2] + 3.0 * g.coefficient[3] * s);
   }
