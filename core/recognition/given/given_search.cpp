@@ -1,18 +1,15 @@
 #include "core/recognition/given/given_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "core/curves/cubic_spline.h"
 #include "core/recognition/fit/few_points.h"
-#include "core/recognition/given/axis_scan.h"
+#include "core/recognition/given/all_starts.h"
 #include "core/recognition/given/curve_moves.h"
-#include "core/recognition/given/foot_parameter.h"
 #include "core/recognition/given/foot_weights.h"
-#include "core/recognition/given/given_starts.h"
+#include "core/recognition/given/seated_feet.h"
 #include "core/recognition/given/thinned.h"
 
 namespace palpate {
@@ -21,63 +18,10 @@ namespace {
 /// A good start settles within ten steps; a long valley may take many dozens.
 constexpr DescentEffort kOnFew{60, 1e-6, 0.0};
 
-/// Moves every foot to the nearest place of the curve beside it. False if the shape is outside the
-/// class.
-bool seat_nearby(PlacedCurve<double>* placed, std::span<const WeighedPoint<double>> points) {
-  const auto curve = curve_of(*placed);
-  if (!curve) {
-    return false;
-  }
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PlaneVector<double> p = placed->to_curve(points[i].position);
-    const double t = t_at(placed->curve_class, placed->feet[i]);
-    const FootPoint foot = foot_point_near(*curve, {p.x, p.y}, t);
-    if (!std::isfinite(foot.distance)) {
-      return false;
-    }
-    placed->feet[i] = parameter_at(placed->curve_class, foot.t);
-  }
-  return true;
-}
-
-bool is_on_arm(int arm, const PlacedCurve<double>& placed) {
-  return std::all_of(placed.feet.begin(), placed.feet.end(),
-                     [arm](const PlaneVector<double>& foot) { return arm * foot.x > 0.0; });
-}
-
-/// Sets the feet where the candidate has none: on its arm, of a curve whose points are (t^2, ...),
-/// or to the nearest places.
+/// Sets the feet where the candidate has none.
 bool seat_first(std::span<const WeighedPoint<double>> points, GivenCandidate* candidate) {
-  PlacedCurve<double>& placed = candidate->curve;
-  if (candidate->arm == 0) {
-    return seat_globally(&placed, points);
-  }
-  double farthest = 0.0;
-  for (const WeighedPoint<double>& point : points) {
-    farthest = std::max(farthest, placed.to_curve(point.position).x);
-  }
-  // So near one another that Newton's method reaches the foot from the nearest one.
-  constexpr int kPlaces = 48;
-  std::array<PlaneVector<double>, kPlaces> places;
-  std::array<double, kPlaces> t{};
-  for (std::size_t k = 0; k < kPlaces; ++k) {
-    t[k] = candidate->arm * std::sqrt(farthest) * (static_cast<double>(k) + 0.5) / kPlaces;
-    places[k] = curve_point<double>(placed.curve_class, placed.shape, {t[k], 0.0}).position;
-  }
-  placed.feet.clear();
-  for (const WeighedPoint<double>& point : points) {
-    const PlaneVector<double> p = placed.to_curve(point.position);
-    std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < kPlaces; ++k) {
-      const PlaneVector<double> away = p - places[k];
-      const double square = inner(away, away);
-      nearest = square < least ? k : nearest;
-      least = std::min(least, square);
-    }
-    placed.feet.push_back({t[nearest], 0.0});
-  }
-  return seat_nearby(&placed, points) && is_on_arm(candidate->arm, placed);
+  return candidate->arm == 0 ? seat_globally(&candidate->curve, points)
+                             : seat_on_arm(candidate->arm, &candidate->curve, points);
 }
 
 bool is_same_cost(double u, double v) {
@@ -96,74 +40,6 @@ std::vector<WeighedPoint<double>> on_side(std::span<const WeighedPoint<DoubleDou
                       to_double(point.normal_weight)});
   }
   return points;
-}
-
-/// Appends the best spline with its bend at t = 0 no sharper than a circle of that radius, as tip
-/// centres go about a corner. Where none of them lies on that bend, splines through them are cusps.
-void add_rounded(double radius, std::vector<GivenStart>* starts) {
-  const double least = CubicSpline::c_of_bend(radius);
-  if (!starts->empty() && starts->front().shape.values[2] < least) {
-    starts->push_back(starts->front());
-    starts->back().shape.values[2] = least;
-  }
-}
-
-/// Hyperbolas that bend at their vertex as the parabolas do. Of a short arc, the conics of least
-/// algebraic distance may all be ellipses, but for a pair of lines.
-std::vector<GivenStart> beside_parabolas(std::span<const GivenStart> parabolas) {
-  // In half extents of the points: over these, the nearer one turns towards its asymptotes, and the
-  // farther one is a parabola to some hundredths.
-  constexpr std::array kHalfAxes{1.0, 8.0};
-  std::vector<GivenStart> hyperbolas;
-  for (const GivenStart& parabola : parabolas) {
-    for (const double a : kHalfAxes) {
-      // Beside the vertex y^2 = 2 b^2 (x - a) / a, of a parabola 4 (its a) x.
-      GivenStart hyperbola = parabola;
-      hyperbola.shape.curve_class = CurveClass::Hyperbola;
-      hyperbola.shape.values = {a, std::sqrt(2.0 * a * parabola.shape.values[0]), 0.0};
-      hyperbola.pose.x -= a * std::cos(parabola.pose.theta);
-      hyperbola.pose.y -= a * std::sin(parabola.pose.theta);
-      hyperbolas.push_back(hyperbola);
-    }
-  }
-  return hyperbolas;
-}
-
-/// Starts from the points. If normals are measured, also from two extra places per point, on its
-/// tangent to either side: so there are starts for fewer points than the class has unknowns.
-std::vector<GivenStart> starts_of(CurveClass curve_class, const LocalPoints& local) {
-  std::vector<GivenStart> starts = given_starts(curve_class, local.rough);
-  std::vector<double> radii;
-  for (const WeighedPoint<DoubleDouble>& point : local.exact) {
-    radii.push_back(to_double(point.offset));
-  }
-  if (curve_class == CurveClass::CubicSpline) {
-    add_rounded(*std::max_element(radii.begin(), radii.end()), &starts);
-  }
-  const std::vector<GivenStart> by_axis =
-      curve_class == CurveClass::Hyperbola
-          ? beside_parabolas(starts_by_axis(CurveClass::Parabola, local.rough, radii))
-          : starts_by_axis(curve_class, local.rough, radii);
-  starts.insert(starts.end(), by_axis.begin(), by_axis.end());
-  // Twice as many points as the most unknowns: then the scan needs no normals.
-  constexpr std::size_t kEnough = 2 * kMostUnknowns;
-  if (local.normals == 0 || (!by_axis.empty() && local.rough.size() >= kEnough)) {
-    return starts;
-  }
-  // Of the points' extent, which is about 1. So near, a curve has hardly left its tangent.
-  constexpr double kAside = 0.1;
-  std::vector<Vec2> more = local.rough;
-  for (const WeighedPoint<DoubleDouble>& point : local.exact) {
-    if (to_double(point.normal_weight) > 0.0) {
-      const PlaneVector<double> n = as_double(point.normal);
-      const PlaneVector<double> p = as_double(point.position);
-      more.emplace_back(p.x - kAside * n.y, p.y + kAside * n.x);
-      more.emplace_back(p.x + kAside * n.y, p.y - kAside * n.x);
-    }
-  }
-  const std::vector<GivenStart> by_normals = given_starts(curve_class, more);
-  starts.insert(starts.end(), by_normals.begin(), by_normals.end());
-  return starts;
 }
 
 /// The sides of the curve on which tips may lie.
@@ -276,23 +152,6 @@ bool is_among(const GivenCandidate& candidate, std::span<const GivenCandidate> o
 }
 
 }  // namespace
-
-bool seat_globally(PlacedCurve<double>* placed, std::span<const WeighedPoint<double>> points) {
-  const auto curve = curve_of(*placed);
-  if (!curve) {
-    return false;
-  }
-  placed->feet.resize(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PlaneVector<double> p = placed->to_curve(points[i].position);
-    const FootPoint foot = foot_point(*curve, {p.x, p.y});
-    if (!std::isfinite(foot.distance)) {
-      return false;
-    }
-    placed->feet[i] = parameter_at(placed->curve_class, foot.t);
-  }
-  return true;
-}
 
 void descend_on(std::span<const WeighedPoint<double>> points, const DescentEffort& effort,
                 GivenCandidate* candidate) {

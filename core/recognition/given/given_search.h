@@ -34,10 +34,6 @@ struct GivenNoise {
   bool stated = false;  ///< the noise of every point is known
 };
 
-/// Sets every foot to the nearest point of the whole curve. False if the shape is outside the
-/// class.
-bool seat_globally(PlacedCurve<double>* placed, std::span<const WeighedPoint<double>> points);
-
 /// Descends from the candidate's curve, and sets its cost and whether it settled. Every foot is the
 /// nearest one, or moves along the arm that the candidate keeps to.
 void descend_on(std::span<const WeighedPoint<double>> points, const DescentEffort& effort,
