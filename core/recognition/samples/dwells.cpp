@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/recognition/samples/merged_samples.h"
+#include "core/recognition/samples/step_ratio.h"
 
 namespace palpate {
 namespace {
@@ -38,17 +39,10 @@ Block block_of(const Places& places, std::size_t begin, std::size_t end) {
   return block;
 }
 
-/// J. von Neumann's ratio (1941): mean square step over twice the mean square distance from the
-/// mean. It is 1 for places in random order and 6 / (n^2 - 1) for n places evenly spaced along a
-/// line.
 template <typename Places>
-double step_ratio(const Places& places, const Block& of) {
-  double steps = 0.0;
-  for (std::size_t i = of.begin + 1; i < of.end; ++i) {
-    steps += (place_of(places[i]) - place_of(places[i - 1])).squaredNorm();
-  }
-  const double n = static_cast<double>(of.end - of.begin);
-  return of.square > 0.0 ? steps / (n - 1.0) / (2.0 * of.square) : 1.0;
+double ratio_of(const Places& places, const Block& of) {
+  return step_ratio([&](std::size_t i) { return place_of(places[i]); }, of.begin, of.end,
+                    of.square);
 }
 
 /// True if a step tends to go back on the step before it. Of places in random order the mean
@@ -61,10 +55,6 @@ bool goes_back_and_forth(std::span<const Block> blocks) {
   }
   return products < 0.0;
 }
-
-/// Motion over a length l with noise s gives the ratio 2 s^2 / (2 s^2 + l^2 / 12). This limit is l
-/// = 6 s: over such a length a curve deviates from its mean by less than the mean's uncertainty.
-constexpr double kLeastRatio = 0.4;
 
 constexpr std::size_t kBlock = 8;
 
@@ -128,9 +118,9 @@ class SlowStretch {
   /// A jitter that neighbouring samples share shows no order from block to block.
   bool is_still() const {
     const Block all = whole();
-    return step_ratio(samples_, all) > kLeastRatio ||
+    return ratio_of(samples_, all) > kNoOrder ||
            (blocks_.size() >= kFewestMeans && may_be_jitter(all) && goes_back_and_forth(blocks_) &&
-            step_ratio(blocks_, block_of(blocks_, 0, blocks_.size())) > kLeastRatio);
+            ratio_of(blocks_, block_of(blocks_, 0, blocks_.size())) > kNoOrder);
   }
 
   /// Whether the stated noise, which contains a jitter, is as large. A few means on the way over a
@@ -206,7 +196,7 @@ double effective_weight(std::span<const StoredSample> samples, const PatchSpan& 
   constexpr double kDeviations = 3.0;
   const double same = std::max(stated - scatter * (1.0 + kDeviations / std::sqrt(n)), 0.0);
   // If neighbours share a part 1 - r of their error, n of them are worth n r / (2 - r).
-  const double ratio = std::min(step_ratio(samples, block), 1.0);
+  const double ratio = std::min(ratio_of(samples, block), 1.0);
   const double of_mean = same + stated / of_all * (2.0 - ratio) / ratio;
   return std::clamp(stated / of_mean, most, of_all);
 }
@@ -271,7 +261,7 @@ std::vector<PatchSpan> repeats_of(std::span<const StoredSample> samples) {
 
 bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
                   double half_extent_m) {
-  // Five evenly spaced places have the ratio 0.25, four have kLeastRatio itself.
+  // Five evenly spaced places have the ratio 0.25, four have kNoOrder itself.
   constexpr std::size_t kFewest = 5;
   constexpr double kSmall = 1e-2;
   if (samples.size() < kFewest) {
@@ -288,7 +278,7 @@ bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
   }
   const Block all = block_of(samples, 0, samples.size());
   return (most && all.square <= of_noise) ||
-         (all.square <= small && step_ratio(samples, all) > kLeastRatio);
+         (all.square <= small && ratio_of(samples, all) > kNoOrder);
 }
 
 StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwells,
