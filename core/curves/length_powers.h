@@ -21,4 +21,18 @@ inline Eigen::Vector3d length_powers(CurveClass curve_class) {
   }
 }
 
+/// Power of length in the unit of the curve's parameter t.
+inline double length_power_of_t(CurveClass curve_class) {
+  switch (curve_class) {
+    case CurveClass::Line:
+    case CurveClass::CubicalParabola:
+      return 1.0;
+    case CurveClass::SemiCubicalParabola:
+    case CurveClass::CubicSpline:
+      return 0.5;
+    default:
+      return 0.0;
+  }
+}
+
 }  // namespace palpate

@@ -37,7 +37,7 @@ enum class GivenStatus {
 std::string_view name_of(GivenStatus status);
 
 struct GivenResidual {
-  double t = 0.0;           ///< canonical parameter of the foot point
+  double t = 0.0;           ///< parameter of the foot point on the canonical curve, in its unit
   double distance_m = 0.0;  ///< signed, positive left of increasing t; minus the tip radius
   Vec2 foot_m = Vec2::Zero();
   /// Angle from the curve's normal to the measured one, both taken without sign, in (-pi/2, pi/2];

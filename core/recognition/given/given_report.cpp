@@ -116,6 +116,7 @@ ShapePoseCovariance report_covariance(const PlacedCurve<Exact>& placed,
 void report_residuals(PlacedCurve<Exact>* placed, const LocalPoints& local,
                       std::span<const GivenPoint> points, GivenFit* fit) {
   const auto curve = curve_of(*placed);
+  const double unit_of_t = std::pow(local.unit_m, length_power_of_t(placed->curve_class));  // of 2
   fit->residuals.resize(points.size());
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
@@ -138,7 +139,11 @@ void report_residuals(PlacedCurve<Exact>* placed, const LocalPoints& local,
     const Exact distance =
         Exact(local.unit_m) * there.distance - Exact(fit->side * points[i].tip_radius_m);
     GivenResidual& residual = fit->residuals[i];
-    residual.t = t_at(placed->curve_class, as_double(foot));
+    residual.t = unit_of_t * t_at(placed->curve_class, as_double(foot));
+    if (placed->curve_class == CurveClass::Circle) {
+      // Its pose is told without a turn.
+      residual.t = wrap_angle(residual.t + std::atan2(axis.y(), axis.x()));
+    }
     residual.distance_m = to_double(distance);
     const Vec2 at(to_double(there.foot.position.x), to_double(there.foot.position.y));
     const Vec2 local_foot = axis * at.x() + left_of(axis) * at.y() +

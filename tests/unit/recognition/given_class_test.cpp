@@ -122,6 +122,22 @@ TEST(GivenClass, IsTheLeastSquaresOfFiftyDigits) {
   EXPECT_GT(compared, 50);
 }
 
+// A part of centimetres has a parameter of roots of centimetres, where the class has such a one.
+TEST(GivenClass, AFootIsWhereTheCurveHasItsParameter) {
+  for (const ReferenceFit& reference : reference_fits()) {
+    SCOPED_TRACE(reference.name);
+    const GivenFit fit = fit_given_class(reference.curve_class, reference.points);
+    const auto curve = make_curve(reference.curve_class, fit.shape.values);
+    ASSERT_TRUE(curve.has_value());
+    const double size =
+        fit.residuals.front().foot_m.norm() + fit.world_T_curve.translation().norm();
+    for (const GivenResidual& residual : fit.residuals) {
+      const Vec2 there = fit.world_T_curve * position(*curve, residual.t);
+      EXPECT_LE((there - residual.foot_m).norm(), 1e-6 * size);
+    }
+  }
+}
+
 std::vector<GivenPoint> on_curve(const Curve& curve, const Pose2& pose, double t0, double t1,
                                  int count, double noise_m, std::uint64_t stream) {
   std::mt19937_64 rng = test::test_rng(stream);
