@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/curves/all_feet.h"
 #include "core/curves/arc_length.h"
 #include "core/curves/foot_point.h"
 #include "core/curves/place_refinement.h"
@@ -27,18 +28,40 @@ LocalGeometry CubicSpline::geometry(double t) const {
   return {std::atan2(y1, 2.0 * t), kappa, kappa_s};
 }
 
-FootPoint CubicSpline::foot_point(const Vec2& point) const {
-  if (!point.allFinite()) {
-    return no_foot_point(*this);
-  }
-  // 2 t (t^2 - x) + (a t^3 + b t^2 + c t - y)(3 a t^2 + 2 b t + c) = 0.
+namespace {
+
+/// (C - p) . C' = 2 t (t^2 - x) + (a t^3 + b t^2 + c t - y)(3 a t^2 + 2 b t + c), which is 0 at
+/// feet.
+Polynomial<5> foot_condition(const CubicSpline& curve, const Vec2& point) {
+  const auto [a, b, c] = curve;
   const double x = point.x();
   const double y = point.y();
   Polynomial<5> condition;
   condition << -c * y, c * c - 2.0 * x - 2.0 * b * y, 3.0 * b * c - 3.0 * a * y,
       2.0 + 2.0 * b * b + 4.0 * a * c, 5.0 * a * b, 3.0 * a * a;
-  return nearest_foot_point(*this, point,
-                            [&](const auto& visit) { visit_real_roots<5>(condition, visit); });
+  return condition;
+}
+
+}  // namespace
+
+FootPoint CubicSpline::foot_point(const Vec2& point) const {
+  if (!point.allFinite()) {
+    return no_foot_point(*this);
+  }
+  return nearest_foot_point(*this, point, [&](const auto& visit) {
+    visit_real_roots<5>(foot_condition(*this, point), visit);
+  });
+}
+
+FootPlaces all_feet(const CubicSpline& curve, const Vec2& point) {
+  FootPlaces places;
+  visit_real_roots<5>(foot_condition(curve, point), [&](double t) {
+    const CurveDerivatives d = curve.derivatives(t);
+    if (d.first.squaredNorm() + (d.position - point).dot(d.second) > 0.0) {
+      places.add(t);
+    }
+  });
+  return places;
 }
 
 double CubicSpline::speed(double t) const {

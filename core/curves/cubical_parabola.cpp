@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/curves/all_feet.h"
 #include "core/curves/arc_length.h"
 #include "core/curves/foot_point.h"
 #include "core/curves/place_refinement.h"
@@ -18,16 +19,37 @@ LocalGeometry CubicalParabola::geometry(double t) const {
           6.0 * a * (1.0 - 18.0 * a * t * t * (slope / q)) / (q * q)};
 }
 
+namespace {
+
+/// (C - p) . C' = (t - x) + (a t^3 + c t - y)(3 a t^2 + c), which is 0 at feet.
+Polynomial<5> foot_condition(const CubicalParabola& curve, const Vec2& point) {
+  const auto [a, c] = curve;
+  Polynomial<5> condition;
+  condition << -point.x() - c * point.y(), 1.0 + c * c, -3.0 * a * point.y(), 4.0 * a * c, 0.0,
+      3.0 * a * a;
+  return condition;
+}
+
+}  // namespace
+
 FootPoint CubicalParabola::foot_point(const Vec2& point) const {
   if (!point.allFinite()) {
     return no_foot_point(*this);
   }
-  // (t - x) + (a t^3 + c t - y)(3 a t^2 + c) = 0.
-  Polynomial<5> condition;
-  condition << -point.x() - c * point.y(), 1.0 + c * c, -3.0 * a * point.y(), 4.0 * a * c, 0.0,
-      3.0 * a * a;
-  return nearest_foot_point(*this, point,
-                            [&](const auto& visit) { visit_real_roots<5>(condition, visit); });
+  return nearest_foot_point(*this, point, [&](const auto& visit) {
+    visit_real_roots<5>(foot_condition(*this, point), visit);
+  });
+}
+
+FootPlaces all_feet(const CubicalParabola& curve, const Vec2& point) {
+  FootPlaces places;
+  visit_real_roots<5>(foot_condition(curve, point), [&](double t) {
+    const CurveDerivatives d = curve.derivatives(t);
+    if (d.first.squaredNorm() + (d.position - point).dot(d.second) > 0.0) {
+      places.add(t);
+    }
+  });
+  return places;
 }
 
 double CubicalParabola::speed(double t) const {

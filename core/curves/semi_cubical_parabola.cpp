@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/curves/all_feet.h"
 #include "core/curves/arc_length.h"
 #include "core/curves/foot_point.h"
 #include "core/curves/place_refinement.h"
@@ -26,18 +27,40 @@ LocalGeometry SemiCubicalParabola::geometry(double t) const {
   return {std::atan2(direction * slope, direction), kappa, kappa_s};
 }
 
+namespace {
+
+/// (C - p) . C' / t = 2 (t^2 - x) + (a t^3 + b t^2 - y)(3 a t + 2 b), which is 0 at feet besides
+/// the cusp.
+Polynomial<4> foot_condition(const SemiCubicalParabola& curve, const Vec2& point) {
+  const auto [a, b] = curve;
+  Polynomial<4> condition;
+  condition << -2.0 * point.x() - 2.0 * b * point.y(), -3.0 * a * point.y(), 2.0 + 2.0 * b * b,
+      5.0 * a * b, 3.0 * a * a;
+  return condition;
+}
+
+}  // namespace
+
 FootPoint SemiCubicalParabola::foot_point(const Vec2& point) const {
   if (!point.allFinite()) {
     return no_foot_point(*this);
   }
-  // (C - p) . C' / t = 2 (t^2 - x) + (a t^3 + b t^2 - y)(3 a t + 2 b) = 0; and the cusp t = 0.
-  Polynomial<4> condition;
-  condition << -2.0 * point.x() - 2.0 * b * point.y(), -3.0 * a * point.y(), 2.0 + 2.0 * b * b,
-      5.0 * a * b, 3.0 * a * a;
   return nearest_foot_point(*this, point, [&](const auto& visit) {
     visit(0.0);
-    visit_real_roots<4>(condition, visit);
+    visit_real_roots<4>(foot_condition(*this, point), visit);
   });
+}
+
+FootPlaces all_feet(const SemiCubicalParabola& curve, const Vec2& point) {
+  FootPlaces places;
+  places.add(0.0);
+  visit_real_roots<4>(foot_condition(curve, point), [&](double t) {
+    const CurveDerivatives d = curve.derivatives(t);
+    if (d.first.squaredNorm() + (d.position - point).dot(d.second) > 0.0) {
+      places.add(t);
+    }
+  });
+  return places;
 }
 
 FootPoint foot_point_at(const SemiCubicalParabola& curve, double t, const Vec2& point) {

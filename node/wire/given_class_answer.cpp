@@ -51,14 +51,17 @@ Vec2 into_material(const ProbedPatch& run, std::size_t i) {
 std::vector<GivenPoint> points_of(std::span<const ProbedPatch> runs,
                                   std::span<const std::size_t> left_out) {
   std::vector<GivenPoint> points;
+  std::size_t stroke = 0;
   for (const ProbedPatch& run : runs) {
     const std::vector<SampleDetail>& details = run.details;
+    ++stroke;
     for (std::size_t i = 0; i < run.samples.size(); ++i) {
       GivenPoint point;
       point.position_m = run.samples[i].position_m;
       point.sigma_m = run.samples[i].sigma_m;
       point.tip_radius_m = run.context.tip_radius_m;
       point.into_material = into_material(run, i);
+      point.stroke = stroke;
       if (!details.empty()) {
         point.normal = details[i].normal;
         point.normal_sigma_rad = details[i].normal_sigma_rad;

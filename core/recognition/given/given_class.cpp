@@ -21,6 +21,7 @@
 #include "core/recognition/given/given_report.h"
 #include "core/recognition/given/given_search.h"
 #include "core/recognition/given/local_points.h"
+#include "core/recognition/given/stroke_feet.h"
 
 namespace palpate {
 namespace {
@@ -295,7 +296,16 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   // Newton converges quadratically: after a step that moves residuals by 1e-17, the next one is
   // below the rounding of a double.
   constexpr DescentEffort kToRounding{40, 1e-17, 1e-6};
-  const auto seat = [](PlacedCurve<Exact>* trial) { return curve_of(*trial).has_value(); };
+  // Feet move along with the curve. A step from where no descent has come to an end may be so long
+  // that feet of a stroke come to other branches: that is no way down.
+  const int jumps = jumps_of(found.curve, found.points);
+  const auto seat = [&](PlacedCurve<Exact>* trial) {
+    if (!curve_of(*trial)) {
+      return false;
+    }
+    half_squares(trial, std::span<const WeighedPoint<Exact>>(exact));
+    return jumps_of(rounded(*trial), found.points) <= jumps;
+  };
   auto descent = descend(&placed, std::span<const WeighedPoint<Exact>>(exact), kToRounding, seat);
   if (stated) {
     // Each round reduces the error of the weights by about noise / radius of curvature.

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 
 #include "core/curves/pose2.h"
 
 namespace palpate {
 
-/// One contact point. The order of points does not matter.
+/// One contact point. The order of points does not matter, but for those of a stroke.
 struct GivenPoint {
   Vec2 position_m = Vec2::Zero();
   double sigma_m = 0.0;  ///< 1-sigma isotropic noise; 0 = not known [m]
@@ -22,6 +23,9 @@ struct GivenPoint {
   double normal_sigma_rad = 0.0;  ///< standard deviation of that direction; 0 = not measured [rad]
   /// Covariance [xx, xy, yy] of the position, in place of sigma_m; zeros = not known. [m^2]
   Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();
+  /// Number of the stroke that the point was touched in, from 1. Its points follow one another as
+  /// the probe went. 0 = no stroke, or one whose order is not known.
+  std::size_t stroke = 0;
   /// An outlier by the caller's decision: gets a residual, but is not fitted.
   bool set_aside = false;
 };

@@ -253,8 +253,13 @@ GivenCandidate with_fewer_points(const GivenCandidate& minimum, std::size_t most
     const std::size_t first = k * count / most;
     const std::size_t last = (k + 1) * count / most;
     const auto neighbours = std::span<const std::size_t>(order).subspan(first, last - first);
-    fewer.points.push_back(mean_of(neighbours, minimum, placed));
-    fewer.curve.feet.push_back(feet[neighbours[neighbours.size() / 2]]);
+    WeighedPoint<double>& mean = fewer.points.emplace_back(mean_of(neighbours, minimum, placed));
+    const PlaneVector<double>& foot =
+        fewer.curve.feet.emplace_back(feet[neighbours[neighbours.size() / 2]]);
+    if (mean.stroke != 0) {
+      // In the order of t, those of one arm follow one another along it.
+      mean.stroke = foot.x < 0.0 ? 1 : 2;
+    }
   }
   return fewer;
 }

@@ -4,7 +4,45 @@
 #include <cmath>
 #include <limits>
 
+#include "core/recognition/samples/step_ratio.h"
+
 namespace palpate {
+namespace {
+
+/// Of points that follow one another in one stroke: whether they do so in the plane too. Of places
+/// to and fro all over the part, or of no longer a way than their noise, no order is known.
+bool show_order(std::span<const Vec2> stroke) {
+  Vec2 mean = Vec2::Zero();
+  for (const Vec2& point : stroke) {
+    mean += point / static_cast<double>(stroke.size());
+  }
+  double square = 0.0;
+  for (const Vec2& point : stroke) {
+    square += (point - mean).squaredNorm() / static_cast<double>(stroke.size());
+  }
+  return step_ratio([&](std::size_t i) { return stroke[i]; }, 0, stroke.size(), square) < kNoOrder;
+}
+
+/// Sets the strokes of the points in use, where they show their order.
+void number_strokes(std::span<const GivenPoint> points, LocalPoints* local) {
+  const std::vector<std::size_t>& index = local->index;
+  for (std::size_t begin = 0; begin < index.size();) {
+    const std::size_t stroke = points[index[begin]].stroke;
+    std::size_t end = begin + 1;
+    while (end < index.size() && points[index[end]].stroke == stroke) {
+      ++end;
+    }
+    if (stroke != 0 && end - begin > 1 &&
+        show_order(std::span(local->rough).subspan(begin, end - begin))) {
+      for (std::size_t i = begin; i < end; ++i) {
+        local->exact[i].stroke = stroke;
+      }
+    }
+    begin = end;
+  }
+}
+
+}  // namespace
 
 std::optional<LocalPoints> local_points(std::span<const GivenPoint> points, double sigma_m,
                                         bool weighted) {
@@ -47,6 +85,7 @@ std::optional<LocalPoints> local_points(std::span<const GivenPoint> points, doub
     local.exact.push_back(exact);
     local.rough.emplace_back(to_double(exact.position.x), to_double(exact.position.y));
   }
+  number_strokes(points, &local);
   return local;
 }
 

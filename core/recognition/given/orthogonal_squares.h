@@ -19,6 +19,7 @@ struct WeighedPoint {
   T offset{};               ///< signed distance that the point should have: side times tip radius
   PlaneVector<T> normal{};  ///< measured, unit; its sign does not matter
   T normal_weight{};        ///< 1 / standard deviation of its direction; 0 = no normal
+  std::size_t stroke = 0;   ///< neighbours of the same one follow one another along it; 0 = none
 };
 
 template <typename T>

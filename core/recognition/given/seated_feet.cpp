@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/recognition/given/foot_parameter.h"
+#include "core/recognition/given/stroke_feet.h"
 
 namespace palpate {
 
@@ -23,7 +24,7 @@ bool seat_globally(PlacedCurve<double>* placed, std::span<const WeighedPoint<dou
     }
     placed->feet[i] = parameter_at(placed->curve_class, foot.t);
   }
-  return true;
+  return put_in_order(placed, points);
 }
 
 bool seat_nearby(PlacedCurve<double>* placed, std::span<const WeighedPoint<double>> points) {

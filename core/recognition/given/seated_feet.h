@@ -8,8 +8,8 @@
 
 namespace palpate {
 
-/// Sets every foot to the nearest point of the whole curve. False if the shape is outside the
-/// class.
+/// Sets every foot to the nearest point of the whole curve, those of strokes in an order in which a
+/// probe can have gone there (stroke_feet.h). False if the shape is outside the class.
 bool seat_globally(PlacedCurve<double>* placed, std::span<const WeighedPoint<double>> points);
 
 /// Moves every foot to the nearest place of the curve beside it. False if the shape is outside the

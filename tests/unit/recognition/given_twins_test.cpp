@@ -16,6 +16,7 @@
 #include "core/recognition/recognizer.h"
 #include "core/recognition/verdict/determined.h"
 #include "tests/support/calibration.h"
+#include "tests/support/random_scene.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
@@ -120,6 +121,35 @@ TEST(GivenTwins, OneArmOfASemiCubicalParabolaIsToldOnlyIfItIsKnown) {
   }
   // Two thirds of the scenes have a noise below a thousandth of their size.
   expect_to_hold(told, scenes / 10);
+}
+
+/// The samples of a random scene, in strokes.
+Scene stroked(const test::Scene& random) {
+  Scene scene{*make_curve(random.curve_class, random.values), random.world_T_curve, {}};
+  for (std::size_t p = 0; p < random.patches.size(); ++p) {
+    for (const Vec2& place : random.patches[p]) {
+      GivenPoint& point = scene.points.emplace_back();
+      point.position_m = place;
+      point.sigma_m = random.sigma_m;
+      point.stroke = p + 1;
+    }
+  }
+  return scene;
+}
+
+// Where the noise is half a percent of the part, a cusp laid over it explains some of it.
+TEST(GivenTwins, StrokesWithCoarseNoiseAreNoNarrowCusp) {
+  auto rng = test::test_rng();
+  Told told;
+  const int scenes = test::stress_count(120);
+  for (int i = 0; i < scenes; ++i) {
+    test::SceneOptions options;
+    options.patches = 2 + i % 2;
+    options.points_per_patch = 111;
+    options.sigma_over_size = test::log_uniform(rng, 0.003, 0.01);
+    count(stroked(test::random_scene(CurveClass::SemiCubicalParabola, options, rng)), &told);
+  }
+  expect_to_hold(told, scenes / 4);
 }
 
 // Of few touches on a short arc the linear covariance is too small.
