@@ -30,6 +30,8 @@ v1::GivenClassStatus to_wire(GivenStatus status) {
       return v1::GIVEN_CLASS_STATUS_COLLINEAR;
     case GivenStatus::AtLimit:
       return v1::GIVEN_CLASS_STATUS_AT_LIMIT;
+    case GivenStatus::Unfinished:
+      return v1::GIVEN_CLASS_STATUS_UNFINISHED;
     case GivenStatus::NotDetermined:
       return v1::GIVEN_CLASS_STATUS_NOT_DETERMINED;
   }

@@ -14,14 +14,13 @@
 #include "core/numerics/student_quantile.h"
 #include "core/recognition/given/curve_moves.h"
 #include "core/recognition/given/descent.h"
-#include "core/recognition/given/foot_parameter.h"
-#include "core/recognition/given/foot_weights.h"
+#include "core/recognition/given/exact_fit.h"
 #include "core/recognition/given/given_choice.h"
+#include "core/recognition/given/given_limit.h"
 #include "core/recognition/given/given_reach.h"
 #include "core/recognition/given/given_report.h"
 #include "core/recognition/given/given_search.h"
 #include "core/recognition/given/local_points.h"
-#include "core/recognition/given/stroke_feet.h"
 
 namespace palpate {
 namespace {
@@ -40,40 +39,6 @@ void slide_to_mean(const LocalPoints& local, PlacedCurve<double>* line) {
   for (PlaneVector<double>& foot : line->feet) {
     foot.x -= along;
   }
-}
-
-PlacedCurve<Exact> exact_of(const PlacedCurve<double>& curve) {
-  PlacedCurve<Exact> exact;
-  exact.curve_class = curve.curve_class;
-  for (int i = 0; i < 3; ++i) {
-    exact.shape[i] = Exact(curve.shape[i]);
-  }
-  exact.origin = as<Exact>(curve.origin);
-  exact.axis = as<Exact>(curve.axis);
-  exact.axis = Exact(1.0) / sqrt(inner(exact.axis, exact.axis)) * exact.axis;
-  for (const PlaneVector<double>& foot : curve.feet) {
-    exact.feet.push_back(as<Exact>(foot));
-  }
-  if (curve.curve_class == CurveClass::Circle || curve.curve_class == CurveClass::Ellipse) {
-    for (PlaneVector<Exact>& foot : exact.feet) {
-      foot = Exact(1.0) / sqrt(inner(foot, foot)) * foot;
-    }
-  }
-  return exact;
-}
-
-PlacedCurve<double> rounded(const PlacedCurve<Exact>& exact) {
-  PlacedCurve<double> curve;
-  curve.curve_class = exact.curve_class;
-  for (int i = 0; i < 3; ++i) {
-    curve.shape[i] = to_double(exact.shape[i]);
-  }
-  curve.origin = as_double(exact.origin);
-  curve.axis = as_double(exact.axis);
-  for (const PlaneVector<Exact>& foot : exact.feet) {
-    curve.feet.push_back(as_double(foot));
-  }
-  return curve;
 }
 
 /// Residuals are taken as at least the rounding of the coordinates.
@@ -241,6 +206,8 @@ std::string_view name_of(GivenStatus status) {
       return "collinear";
     case GivenStatus::AtLimit:
       return "at limit";
+    case GivenStatus::Unfinished:
+      return "unfinished";
     case GivenStatus::NotDetermined:
       return "not determined";
   }
@@ -274,52 +241,40 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
     fit.status = GivenStatus::Collinear;
     return fit;
   }
-  fit.status = GivenStatus::AtLimit;
   const int dof =
       static_cast<int>(local->index.size() + local->normals) - degrees_of_freedom(curve_class);
   const GivenNoise noise{points, options.sigma_m, stated};
-  const Explored explored = explore(curve_class, *local, noise, options.touched_from, dof);
+  Explored explored = explore(curve_class, *local, noise, options.touched_from, dof);
   const std::vector<GivenCandidate>& minima = explored.minima;
   const GivenChoice& choice = explored.choice;
   if (minima.empty()) {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    fit.status = limit_fits_no_worse(curve_class, kNone, *local, noise) ? GivenStatus::AtLimit
+                                                                        : GivenStatus::Unfinished;
     return fit;
   }
   GivenCandidate found = minima[choice.taken];
   if (curve_class == CurveClass::Line) {
     slide_to_mean(*local, &found.curve);
   }
-  PlacedCurve<Exact> placed = exact_of(found.curve);
-  std::vector<WeighedPoint<Exact>> exact = local->exact;
-  for (WeighedPoint<Exact>& point : exact) {
-    point.offset = Exact(static_cast<double>(found.side)) * point.offset;
-  }
-  // Newton converges quadratically: after a step that moves residuals by 1e-17, the next one is
-  // below the rounding of a double.
-  constexpr DescentEffort kToRounding{40, 1e-17, 1e-6};
-  // Feet move along with the curve. A step from where no descent has come to an end may be so long
-  // that feet of a stroke come to other branches: that is no way down.
-  const int jumps = jumps_of(found.curve, found.points);
-  const auto seat = [&](PlacedCurve<Exact>* trial) {
-    if (!curve_of(*trial)) {
-      return false;
+  ExactFit exact = exact_fit(found, *local, noise);
+  const bool walked = found.settled;  // explore() has, from there
+  if (!exact.descent.settled && !found.settled) {
+    if (limit_fits_no_worse(curve_class, found.misfit, *local, noise)) {
+      fit.status = GivenStatus::AtLimit;
+      return fit;
     }
-    half_squares(trial, std::span<const WeighedPoint<Exact>>(exact));
-    return jumps_of(rounded(*trial), found.points) <= jumps;
-  };
-  auto descent = descend(&placed, std::span<const WeighedPoint<Exact>>(exact), kToRounding, seat);
-  if (stated) {
-    // Each round reduces the error of the weights by about noise / radius of curvature.
-    constexpr int kMostRounds = 40;
-    constexpr double kSame = 1e-14;
-    for (int round = 0; round < kMostRounds; ++round) {
-      if (weigh_at_feet(placed, *local, points, options.sigma_m, &exact) <= kSame) {
-        break;
-      }
-      descent = descend(&placed, std::span<const WeighedPoint<Exact>>(exact), kToRounding, seat);
+    // There is a minimum. Valleys that bend so much are short of it by some hundreds of steps.
+    constexpr int kMostDescents = 10;  // of a hundred steps each
+    for (int i = 0; i < kMostDescents && !found.settled; ++i) {
+      settle(*local, noise, &found);
     }
-  }
-  if (!descent.settled && !found.settled) {
-    return fit;
+    if (!found.settled) {
+      fit.status = GivenStatus::Unfinished;
+      return fit;
+    }
+    explored.minima[choice.taken] = found;
+    exact = exact_fit(found, *local, noise);
   }
   fit.status = GivenStatus::Fitted;
   fit.side = found.side;
@@ -329,19 +284,19 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   if (choice.other_side) {
     fit.side_log_odds = odds_over(*choice.other_side);
   }
-  fit.stationarity = stationarity_of(descent.squares, *local,
+  fit.stationarity = stationarity_of(exact.descent.squares, *local,
                                      static_cast<std::size_t>(Unknowns(curve_class).count));
   GivenReach reach = explored.reach;
-  if (!found.settled && (stated || dof > 0)) {
+  if (!walked && (stated || dof > 0)) {
     // Only twice the digits have told where the valley is lowest: nobody has walked from there.
-    found.curve = rounded(placed);
+    found.curve = rounded(exact.placed);
     reach = reach_of(found, rise_of_reach(found.cost, dof, *local, stated));
     reach.bounded = reach.bounded && !reach.lower;
   }
   fit.bounded = reach.bounded;
-  report_place(placed, *local, &fit.shape, &fit.world_T_curve);
+  report_place(exact.placed, *local, &fit.shape, &fit.world_T_curve);
   const ShapePoseCovariance of_unknowns =
-      report_covariance(placed, descent.squares, *local, reach, &fit);
+      report_covariance(exact.placed, exact.descent.squares, *local, reach, &fit);
   const double variance = variance_of(found.cost, dof, *local, stated);
   std::vector<std::size_t> others = choice.twins;
   if (choice.other_side) {
@@ -371,8 +326,8 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
     told.log_odds = odds_over(*rival);
     told.chi2 = 2.0 * minima[*rival].cost / (stated ? 1.0 : variance);
   }
-  report_residuals(&placed, *local, points, &fit);
-  report_noise(points, *local, stated, options.sigma_m, 2.0 * to_double(descent.squares.cost),
+  report_residuals(&exact.placed, *local, points, &fit);
+  report_noise(points, *local, stated, options.sigma_m, 2.0 * to_double(exact.descent.squares.cost),
                &fit);
   settle_pose(points, *local, &fit);
   return fit;

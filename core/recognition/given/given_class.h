@@ -26,10 +26,15 @@ struct GivenOptions {
 
 enum class GivenStatus {
   Fitted,
-  NotFinite,      ///< a number is not finite, or a noise, normal, covariance or radius is invalid
-  TooFewPoints,   ///< fewer different points and used normals than the class has unknowns
-  Collinear,      ///< all points lie on one straight line: no curve is determined
-  AtLimit,        ///< no best curve: the sum of squares falls all the way to the limit of the class
+  NotFinite,     ///< a number is not finite, or a noise, normal, covariance or radius is invalid
+  TooFewPoints,  ///< fewer different points and used normals than the class has unknowns
+  Collinear,     ///< all points lie on one straight line: no curve is determined
+  /// No best curve: the sum of squares falls along a valley, and the limit of the class fits no
+  /// worse than all that the search has found there.
+  AtLimit,
+  /// The sum of squares falls along a valley, and no limit of the class fits as well as a curve in
+  /// it: there is a best one, to which the search has not come.
+  Unfinished,
   NotDetermined,  ///< rounding of the coordinates leaves a shape parameter as uncertain as its size
 };
 
