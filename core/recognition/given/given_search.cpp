@@ -5,11 +5,13 @@
 #include <limits>
 #include <utility>
 
+#include "core/numerics/negligible.h"
 #include "core/recognition/fit/few_points.h"
 #include "core/recognition/given/all_starts.h"
 #include "core/recognition/given/curve_moves.h"
 #include "core/recognition/given/foot_weights.h"
 #include "core/recognition/given/seated_feet.h"
+#include "core/recognition/given/stroke_feet.h"
 #include "core/recognition/given/thinned.h"
 
 namespace palpate {
@@ -51,13 +53,18 @@ std::vector<int> sides_of(std::span<const GivenPoint> points) {
 }
 
 /// -log likelihood of the candidate's points, up to a constant. Noise that is not stated is the one
-/// that the residuals have; at least the rounding of the coordinates.
+/// that the residuals have; at least the rounding of the coordinates. That a stroke goes on where
+/// it cannot have come to is negligibly probable.
 double misfit_of(const GivenCandidate& candidate, const LocalPoints& local, bool stated) {
+  const bool placed = std::isfinite(candidate.cost);
+  const double of_jumps =
+      placed ? kNegligibleLogOdds * jumps_of(candidate.curve, candidate.points) : 0.0;
   if (!stated) {
     const auto n = static_cast<double>(local.index.size());
-    return 0.5 * n * std::log(candidate.cost + 0.5 * n * local.rounding * local.rounding);
+    return 0.5 * n * std::log(candidate.cost + 0.5 * n * local.rounding * local.rounding) +
+           of_jumps;
   }
-  double sum = candidate.cost;
+  double sum = candidate.cost + of_jumps;
   for (const WeighedPoint<double>& point : candidate.points) {
     sum -= std::log(point.weight);
     sum -= point.normal_weight > 0.0 ? std::log(point.normal_weight) : 0.0;

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "core/curves/all_feet.h"
+#include "core/numerics/negligible.h"
 #include "core/recognition/given/foot_parameter.h"
 
 namespace palpate {
@@ -64,16 +64,6 @@ struct Place {
   Vec2 position = Vec2::Zero();
 };
 
-/// How good a way through the places of a stroke is: less often out of order, else fewer squares.
-struct Cost {
-  int jumps = 0;
-  double squares = 0.0;
-
-  friend bool operator<(const Cost& u, const Cost& v) {
-    return std::pair(u.jumps, u.squares) < std::pair(v.jumps, v.squares);
-  }
-};
-
 template <typename C>
 class StrokeFeet {
  public:
@@ -96,26 +86,26 @@ class StrokeFeet {
     return count;
   }
 
-  /// The cheapest way through all the feet of each point, by R. Bellman's recursion (1957).
+  /// The likeliest way through all the feet of each point, by R. Bellman's recursion (1957).
   void put_in_order(std::span<const WeighedPoint<double>> stroke,
                     std::span<PlaneVector<double>> feet) const {
+    const double of_jump = 2.0 * kNegligibleLogOdds * mean_square(stroke, feet);
     std::vector<Step> steps(stroke.size());
     for (std::size_t i = 0; i < stroke.size(); ++i) {
       Step& now = steps[i];
       find_places(stroke[i], &now);
       for (std::size_t k = 0; i > 0 && k < now.count; ++k) {
         const Step& before = steps[i - 1];
-        Cost least{std::numeric_limits<int>::max(), 0.0};
+        double least = std::numeric_limits<double>::infinity();
         for (std::size_t j = 0; j < before.count; ++j) {
-          Cost cost = before.cost[j];
-          cost.jumps += jumps(before.place[j], now.place[k], stroke, i) ? 1 : 0;
+          const double cost =
+              before.cost[j] + (jumps(before.place[j], now.place[k], stroke, i) ? of_jump : 0.0);
           if (cost < least) {
             least = cost;
             now.from[k] = j;
           }
         }
-        now.cost[k].jumps += least.jumps;
-        now.cost[k].squares += least.squares;
+        now.cost[k] += least;
       }
     }
     const auto& costs = steps.back().cost;
@@ -134,7 +124,7 @@ class StrokeFeet {
   struct Step {
     std::size_t count = 0;
     std::array<Place, FootPlaces::kMost> place{};
-    std::array<Cost, FootPlaces::kMost> cost{};
+    std::array<double, FootPlaces::kMost> cost{};  ///< sum of squares, and what jumps cost
     std::array<std::size_t, FootPlaces::kMost> from{};
   };
 
@@ -146,13 +136,25 @@ class StrokeFeet {
     return place;
   }
 
+  /// Of the residuals at the feet: that of the noise, if the curve is near the points.
+  double mean_square(std::span<const WeighedPoint<double>> stroke,
+                     std::span<const PlaneVector<double>> feet) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < stroke.size(); ++i) {
+      const PlaneVector<double> p = placed_.to_curve(stroke[i].position);
+      sum += stroke[i].weight * stroke[i].weight *
+             (curve_.position(feet[i].x) - Vec2(p.x, p.y)).squaredNorm();
+    }
+    return sum / static_cast<double>(stroke.size());
+  }
+
   void find_places(const WeighedPoint<double>& point, Step* step) const {
     const PlaneVector<double> p = placed_.to_curve(point.position);
     const FootPlaces feet = all_feet(curve_, {p.x, p.y});
     step->count = feet.count;
     for (std::size_t k = 0; k < feet.count; ++k) {
       step->place[k] = place_at(feet.t[k]);
-      step->cost[k].squares =
+      step->cost[k] =
           point.weight * point.weight * (step->place[k].position - Vec2(p.x, p.y)).squaredNorm();
     }
   }

@@ -60,19 +60,28 @@ TEST(StrokeFeet, AStrokeBesideACuspKeepsToOneArm) {
   EXPECT_EQ(on_upper_arm(placed), 0U) << "most points are nearer to the lower one";
 }
 
-TEST(StrokeFeet, AStrokeOverACuspChangesArmsThere) {
-  PlacedCurve<double> placed = cusp_of(0.05, 0.3);
+/// Over the cusp of (t^2, t^3 / 20 + 3 t^2 / 10), from t = 1 to -1 in even steps along the axis,
+/// without the samples that are nearer to the cusp than `hole`.
+std::vector<WeighedPoint<double>> over_the_cusp(double sigma, double hole) {
   std::mt19937_64 rng = test::test_rng();
-  std::normal_distribution<double> noise(0.0, 0.01);
+  std::normal_distribution<double> noise(0.0, sigma);
   std::vector<WeighedPoint<double>> stroke;
-  std::vector<double> t;
   for (int i = 0; i <= 40; ++i) {
     const double root = 1.0 - 0.05 * i;
-    t.push_back(std::copysign(std::sqrt(std::abs(root)), root));  // even steps along the axis
-    const Vec2 place = SemiCubicalParabola{0.05, 0.3}.position(t.back());
-    stroke.push_back(touch(place + Vec2(noise(rng), noise(rng)), 1));
+    const double t = std::copysign(std::sqrt(std::abs(root)), root);
+    const double y = noise(rng);
+    if (std::abs(root) >= hole) {
+      stroke.push_back(touch(SemiCubicalParabola{0.05, 0.3}.position(t) + Vec2(noise(rng), y), 1));
+    }
   }
+  return stroke;
+}
+
+TEST(StrokeFeet, AStrokeOverACuspChangesArmsThere) {
+  PlacedCurve<double> placed = cusp_of(0.05, 0.3);
+  const auto stroke = over_the_cusp(0.01, 0.0);
   ASSERT_TRUE(seat_globally(&placed, stroke));
+  EXPECT_EQ(jumps_of(placed, stroke), 0);
   int changes = 0;
   for (std::size_t i = 1; i < stroke.size(); ++i) {
     if (placed.feet[i - 1].x * placed.feet[i].x < 0.0) {
@@ -83,6 +92,18 @@ TEST(StrokeFeet, AStrokeOverACuspChangesArmsThere) {
   EXPECT_GE(changes, 1);
   EXPECT_GT(placed.feet.front().x, 0.9);
   EXPECT_LT(placed.feet.back().x, -0.9);
+}
+
+// Where a probe has lost the part about the cusp, its stroke goes on elsewhere than it can have
+// come to: once.
+TEST(StrokeFeet, AStrokeWithAHoleLiesOnBothArms) {
+  PlacedCurve<double> placed = cusp_of(0.05, 0.3);
+  const auto stroke = over_the_cusp(0.002, 0.42);
+  ASSERT_TRUE(seat_globally(&placed, stroke));
+  EXPECT_EQ(jumps_of(placed, stroke), 1);
+  for (std::size_t i = 0; i < stroke.size(); ++i) {
+    EXPECT_EQ(placed.feet[i].x > 0.0, 2 * i < stroke.size()) << i;
+  }
 }
 
 // Without order, the nearest place is all that is known.
