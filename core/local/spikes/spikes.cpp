@@ -46,6 +46,30 @@ void spare_runs(std::size_t shortest, std::vector<std::uint8_t>* is_spike) {
   }
 }
 
+/// Leaves out the runs that go a way of their own: these are form, however many passes took them
+/// for spikes. So many spikes in a row by chance do not follow one another.
+void spare_ways(std::span<const Vec2> samples, std::vector<std::size_t>* indices) {
+  constexpr std::ptrdiff_t kShortestWay = 8;  // samples: half of a short block
+  constexpr std::ptrdiff_t kJumpOneIn = 2;    // of a run that is no way
+  std::vector<std::uint8_t> is_spike(samples.size());
+  for (const std::size_t i : *indices) {
+    is_spike[i] = samples[i].allFinite() ? 1 : 0;
+  }
+  const std::vector<std::uint8_t> jumps = jumps_of(samples);
+  for (auto begin = is_spike.begin(); begin != is_spike.end();) {
+    const auto end = std::find_if(begin, is_spike.end(), [&](auto flag) { return flag != *begin; });
+    const auto from = jumps.begin() + (begin - is_spike.begin());
+    if (*begin != 0 && end - begin >= kShortestWay &&
+        kJumpOneIn * std::count(from, from + (end - begin), 1) < end - begin) {
+      std::erase_if(*indices, [&](std::size_t i) {
+        const auto at = is_spike.begin() + static_cast<std::ptrdiff_t>(i);
+        return begin <= at && at < end;
+      });
+    }
+    begin = end;
+  }
+}
+
 }  // namespace
 
 Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
@@ -118,6 +142,7 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
       break;
     }
   }
+  spare_ways(samples, &result.indices);
   std::sort(result.indices.begin(), result.indices.end());
   return result;
 }

@@ -207,7 +207,7 @@ ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const Refi
 
 bool is_what_it_says(const ClassFit& fit, const FitData& data) {
   if (fit.polynomial) {
-    return is_touchable(*fit.polynomial, data);
+    return is_touchable(*fit.polynomial, data) && !leaps(*fit.polynomial, data);
   }
   const bool ellipse = fit.curve_class == CurveClass::Ellipse;
   if (!ellipse && fit.curve_class != CurveClass::Hyperbola) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace palpate {
 namespace {
@@ -82,6 +83,11 @@ bool tells_side(const ConicCoefficients& q, const Vec2& g, const FitPoint& point
   return g2 * std::sqrt(g2) * point.inverse_sigma > kDeviations * std::abs(quadratic_part(q, g));
 }
 
+Vec2 place_at(const PolynomialFit& fit, double t) {
+  const auto& c = fit.coefficients;
+  return c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3)));
+}
+
 /// On which side of the travel a conic's polynomial grows, counted.
 struct Directions {
   std::size_t left = 0;
@@ -143,6 +149,29 @@ bool is_touchable(const PolynomialFit& fit, const FitData& data) {
     }
   }
   return true;
+}
+
+bool leaps(const PolynomialFit& fit, const FitData& data) {
+  return std::any_of(data.patches.begin(), data.patches.end(), [&](const PatchSpan& patch) {
+    if (patch.size() < 2 || data.points[patch.begin].offset > 0.0) {
+      return false;
+    }
+    double stroke = 0.0;
+    for (std::size_t i = patch.begin; i + 1 < patch.end; ++i) {
+      stroke += (data.points[i + 1].position - data.points[i].position).norm();
+    }
+    // In the order of the curve: where its arms are within noise, feet may be on either.
+    std::vector<double> feet(fit.t.begin() + static_cast<std::ptrdiff_t>(patch.begin),
+                             fit.t.begin() + static_cast<std::ptrdiff_t>(patch.end));
+    std::sort(feet.begin(), feet.end());
+    double way = 0.0;  // at least
+    for (std::size_t i = 0; i + 1 < feet.size(); ++i) {
+      const Vec2 between = place_at(fit, 0.5 * (feet[i] + feet[i + 1]));
+      way = std::max(way, (between - place_at(fit, feet[i])).norm() +
+                              (place_at(fit, feet[i + 1]) - between).norm());
+    }
+    return way > stroke;
+  });
 }
 
 }  // namespace palpate

@@ -25,4 +25,9 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data);
 /// samples half a patch apart, whose order noise does not reverse.
 bool is_touchable(const PolynomialFit& fit, const FitData& data);
 
+/// Whether between two of its points a patch leaves out more of the curve than it is long itself: a
+/// cubic that crosses itself fits two edges, with a loop between them that no sample is on. Of
+/// tips' centres nothing is said: between two walls they go from one to the other.
+bool leaps(const PolynomialFit& fit, const FitData& data);
+
 }  // namespace palpate

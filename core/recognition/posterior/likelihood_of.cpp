@@ -83,8 +83,8 @@ ResidualExcess residual_excess(const Arcs& arcs, const Likelihood& likelihood, d
   // What is stated holds against residuals too few to tell a noise: of touches that lie apart,
   // which no smooth model follows.
   const bool tells_more = smooth.dof() > 0 || dof >= kFewestDegreesOfNoise;
-  const bool noisy = correlation.time == 1.0 && tells_more && !can_be_noise(chi2 / noise, dof) &&
-                     excess <= kLargestNoise;
+  const bool noisy = likelihood.sigma_known && correlation.time == 1.0 && tells_more &&
+                     !can_be_noise(chi2 / noise, dof) && excess <= kLargestNoise;
   const bool form_error = correlation.time > 1.0 && (excess <= kLargestFormError || !noise_is_told);
   ResidualExcess seen;
   // White noise looks so once in a thousand times by its neighbours, and hardly ever by the smooth

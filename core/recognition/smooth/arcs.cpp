@@ -14,11 +14,9 @@ bool shows_noise(const SmoothModel& smooth) { return smooth.dof() >= kFewestDegr
 /// Sets the noise of all points from the smooth model's residuals. Returns true if it is no larger
 /// than rounding: then it counts as known.
 bool estimate_noise(FitData* data, SmoothModel* smooth) {
-  // With too few degrees of freedom there is no estimate; points that fit to a millionth of the
-  // half extent are then taken as exact.
-  constexpr double kNoEstimate = 1e-6;
+  // With too few degrees of freedom there is no estimate.
   const double rounding = rounding_level(*data);
-  const double estimate = shows_noise(*smooth) ? smooth->noise_ratio() : kNoEstimate;
+  const double estimate = shows_noise(*smooth) ? smooth->noise_ratio() : kExact;
   const double sigma = std::max(estimate, rounding);
   scale_noise(sigma, data, smooth);
   return estimate <= rounding;
@@ -29,6 +27,7 @@ void take_rounding(FitData* data, Arcs* arcs) {
   scale_noise(data->reading_noise / rms_sigma(*data), data, &arcs->smooth);
   arcs->smooth = fit_smooth_model(data, true);
   arcs->sigma_known = true;
+  arcs->may_not_follow = false;
 }
 
 }  // namespace
@@ -46,14 +45,21 @@ Arcs arcs_of_stated_noise(Arcs arcs) {
   return arcs;
 }
 
+Arcs arcs_of_noise(Arcs arcs, double times) {
+  scale_noise(times, &arcs.data, &arcs.smooth);
+  arcs = arcs_of_stated_noise(std::move(arcs));
+  arcs.sigma = rms_sigma(arcs.data);
+  return arcs;
+}
+
 Arcs smooth_arcs(FitData data, bool sigma_known) {
   Arcs arcs;
   arcs.smooth = fit_smooth_model(&data, sigma_known);
   if (!data.details.empty() && weigh_across_path(arcs.smooth, &data)) {
     arcs.smooth = fit_smooth_model(&data, sigma_known);
   }
-  arcs.may_not_follow = sigma_known;
   arcs.sigma_known = sigma_known || estimate_noise(&data, &arcs.smooth);
+  arcs.may_not_follow = sigma_known || !arcs.sigma_known;
   if (!sigma_known && rms_sigma(data) < data.reading_noise) {
     arcs.may_be_rounding = !shows_noise(arcs.smooth);
     if (!arcs.may_be_rounding) {

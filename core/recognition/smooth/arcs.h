@@ -10,13 +10,16 @@ namespace palpate {
 /// relative standard deviation of 1 / sqrt(2 * 4), 35 %.
 inline constexpr int kFewestDegreesOfNoise = 4;
 
+/// Of the half extent: points that fit to this are taken as exact where nobody states their noise.
+inline constexpr double kExact = 1e-6;
+
 struct Arcs {
   FitData data;  ///< all points, with noise and tangents set
   SmoothModel smooth;
   /// False if the noise is only estimated, from the smooth model's residuals.
   bool sigma_known = true;
   double sigma = 0.0;  ///< root mean square noise of the points, normalised
-  /// The noise is stated, and sections that leave more have not been cut (arcs_of_stated_noise).
+  /// Sections that leave more than the noise, stated or what a class shows, have not been cut.
   bool may_not_follow = false;
   /// The readings are rounded, and nothing but a class can show whether by more than they scatter:
   /// touches one at a time (arcs_of_rounding).
@@ -29,6 +32,9 @@ Arcs arcs_of_rounding(Arcs arcs);
 /// The arcs with sections that leave more than the stated noise cut until they do not, or taken for
 /// points. `arcs`: of stated noise.
 Arcs arcs_of_stated_noise(Arcs arcs);
+
+/// The same where nobody states the noise, by so many times the noise that the sections have shown.
+Arcs arcs_of_noise(Arcs arcs, double times);
 
 /// Fits the smooth model. `data`: from make_fit_data. If the noise is not stated, sets it from the
 /// model's residuals.

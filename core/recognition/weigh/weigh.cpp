@@ -168,12 +168,34 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   return w;
 }
 
-/// Whether a class that leaves no more than noise leaves less than the smooth model. No class can
-/// where sections follow the path: these do not, and neither they nor the reduced points tell
-/// anything of the other classes.
-bool are_bettered(const Arcs& arcs, const std::optional<Placed>& best) {
-  return best && arcs.may_not_follow && fits_well(best->chi2, residual_count(arcs.data)) &&
-         arcs.smooth.chi2 > best->chi2 + 2.0 * kNegligibleLogOdds;
+/// The arcs by less noise, where a class that leaves no more than noise leaves less than the smooth
+/// model. No class can where sections follow the path: these do not, and neither they nor the
+/// reduced points tell anything of the other classes. nullopt where none does.
+std::optional<Arcs> bettered(Arcs* arcs, const std::optional<Placed>& best) {
+  if (!best || !arcs->may_not_follow) {
+    return std::nullopt;
+  }
+  const std::size_t residuals = residual_count(arcs->data);
+  if (arcs->sigma_known) {
+    const bool better = fits_well(best->chi2, residuals) &&
+                        arcs->smooth.chi2 > best->chi2 + 2.0 * kNegligibleLogOdds;
+    return better ? std::optional(arcs_of_stated_noise(std::move(*arcs))) : std::nullopt;
+  }
+  const double dof =
+      static_cast<double>(residuals) - degrees_of_freedom(best->canonical.shape.curve_class);
+  const double smooth_dof = arcs->smooth.dof();
+  if (dof < kFewestDegreesOfNoise || smooth_dof < kFewestDegreesOfNoise ||
+      arcs->sigma * std::sqrt(best->chi2 / dof) < kExact) {
+    return std::nullopt;
+  }
+  // Of its standard deviations; a false alarm, one in a thousand, costs a weighing by less noise.
+  constexpr double kSeen = 3.0;
+  // Log variances of normal samples have the variance 2 / dof.
+  const double variance = best->chi2 / dof;
+  const bool better = std::log(arcs->smooth.chi2 / smooth_dof / variance) >
+                      kSeen * std::sqrt(2.0 / dof + 2.0 / smooth_dof);
+  return better ? std::optional(arcs_of_noise(std::move(*arcs), std::sqrt(variance)))
+                : std::nullopt;
 }
 
 /// Whether rounding explains all that the best class leaves.
@@ -214,8 +236,10 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
   const EvidenceContext at_first{arcs, sided.choice().reduced, work, stated, hopeless};
   Contenders contenders = contenders_of_choice(at_first, of_paths);
   std::optional<Placed> best_placed = best_on_all(contenders, at_first);
-  if (are_bettered(arcs, best_placed) && work.allows()) {
-    return weigh_arcs(arcs_of_stated_noise(std::move(arcs)), patches, work, options, starts);
+  if (work.allows()) {
+    if (auto nearer = bettered(&arcs, best_placed)) {
+      return weigh_arcs(*std::move(nearer), patches, work, options, starts);
+    }
   }
   if (are_rounded(arcs, best_placed) && work.allows()) {
     return weigh_arcs(arcs_of_rounding(std::move(arcs)), patches, work, options, starts);
