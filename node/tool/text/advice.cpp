@@ -30,8 +30,15 @@ v1::CurveClass rival_of(const v1::Recognition& answer) {
   return v1::CURVE_CLASS_UNSPECIFIED;
 }
 
+/// Few data may have a class of an unusual shape, which is improbable beforehand.
+std::string not_excluded(const v1::Recognition& answer) {
+  const v1::CurveClass rival = rival_of(answer);
+  return "Most probably of no class, but the samples do not exclude " +
+         (rival == v1::CURVE_CLASS_UNSPECIFIED ? std::string("one") : with_article(rival)) +
+         " of a shape that is improbable beforehand: touch more of the part.";
+}
+
 std::string several_classes(const v1::Recognition& answer) {
-  constexpr double kWorthNaming = 0.01;
   constexpr int kMostNamed = 3;
   std::string names;
   int named = 0;
@@ -67,7 +74,7 @@ std::string ambiguous(const v1::Recognition& answer) {
   const std::string name = spoken_name(answer.curve_class());
   switch (answer.doubt()) {
     case v1::RECOGNITION_DOUBT_SEVERAL_CLASSES:
-      return several_classes(answer);
+      return is_of_no_class_alone(answer) ? not_excluded(answer) : several_classes(answer);
     case v1::RECOGNITION_DOUBT_AT_LIMIT:
       return "The " + name + " fits best where it turns into another class: touch further round.";
     case v1::RECOGNITION_DOUBT_FORM_ERROR:
@@ -75,7 +82,9 @@ std::string ambiguous(const v1::Recognition& answer) {
              " follows a pattern along the arc: the part deviates from its ideal curve, or is of a "
              "class not known here. Tell the recognizer the part's tolerance (form_deviation_m).";
     case v1::RECOGNITION_DOUBT_MISFIT:
-      return "The samples lie further from the " + name +
+      return "The samples lie further from " +
+             (answer.curve_class() == v1::CURVE_CLASS_UNCLASSIFIED ? std::string("any smooth path")
+                                                                   : "the " + name) +
              " than their noise can put them. Check sigma_m and tip_radius_m of the probes, and "
              "that "
              "all patches lie on one curve.";

@@ -178,6 +178,15 @@ std::vector<Quantity> quantities_of(const v1::Recognition& answer) {
   return quantities;
 }
 
+bool is_of_no_class_alone(const v1::Recognition& answer) {
+  return answer.curve_class() == v1::CURVE_CLASS_UNCLASSIFIED &&
+         std::all_of(answer.hypotheses().begin(), answer.hypotheses().end(),
+                     [](const v1::Hypothesis& hypothesis) {
+                       return hypothesis.curve_class() == v1::CURVE_CLASS_UNCLASSIFIED ||
+                              hypothesis.probability() < kWorthNaming;
+                     });
+}
+
 std::string status_text(const v1::Recognition& answer) {
   switch (answer.status()) {
     case v1::RECOGNITION_STATUS_COLLECTING:
@@ -185,6 +194,9 @@ std::string status_text(const v1::Recognition& answer) {
     case v1::RECOGNITION_STATUS_RECOGNIZED:
       return "recognized";
     case v1::RECOGNITION_STATUS_AMBIGUOUS:
+      if (answer.doubt() == v1::RECOGNITION_DOUBT_SEVERAL_CLASSES && is_of_no_class_alone(answer)) {
+        return "ambiguous: most probably of no class, but one is not excluded";
+      }
       return "ambiguous: " + std::string(sentence_of(answer.doubt()));
     default:
       return "unknown status";

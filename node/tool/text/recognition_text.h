@@ -9,6 +9,12 @@
 
 namespace palpate {
 
+/// Less probable hypotheses are not named in texts.
+inline constexpr double kWorthNaming = 0.01;
+
+/// Whether the answer is "unclassified" and names no class beside it.
+bool is_of_no_class_alone(const v1::Recognition& answer);
+
 /// The sentence for a doubt, e.g. "several classes remain plausible".
 std::string_view sentence_of(v1::RecognitionDoubt doubt);
 

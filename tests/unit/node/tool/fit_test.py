@@ -97,6 +97,21 @@ class Fit(unittest.TestCase):
         _, out, _ = run(TOOL, "fit", "--format", "text", "-", text_in=HEADER + short)
         self.assertRegex(out, r"status +ambiguous: \w+")
 
+    def test_no_class_that_is_ambiguous_names_what_is_not_excluded(self):
+        rng = random.Random(3)
+        rows = [f"finger,{number},{x + rng.gauss(0, SIGMA)!r},{y + rng.gauss(0, SIGMA)!r},"
+                f"{SIGMA!r},1\n"
+                for number, wall in enumerate(
+                    ([(0.001 * i, 0.0) for i in range(30)], [(0.035, 0.005 + 0.001 * i)
+                                                            for i in range(30)]))
+                for x, y in wall]
+        path = self.write("walls.csv", HEADER + "".join(rows))
+        code, out, _ = run(TOOL, "fit", "--format", "text", str(path))
+        self.assertEqual(code, 0)
+        self.assertIn("ambiguous: most probably of no class, but one is not excluded", out)
+        self.assertNotIn("Several classes", out)
+        self.assertRegex(out, "do not exclude an? ")
+
     def test_sigma_is_used_where_the_file_has_none(self):
         text = "".join(line.rsplit(",", 2)[0] + "\n"
                        for line in (HEADER + ellipse()).splitlines())
