@@ -27,6 +27,15 @@ Eigen::RowVectorXd offset_basis_slope(double phi, int order) {
   return slope;
 }
 
+double largest_lobe_m(const NormalOffset& offset) {
+  double largest = 0.0;
+  for (int k = 2; k <= offset.order; ++k) {
+    largest = std::max(
+        largest, std::hypot(offset.coefficients_m[2 * k - 3], offset.coefficients_m[2 * k - 2]));
+  }
+  return largest;
+}
+
 double offset_at(const NormalOffset& offset, double phi) {
   return offset_basis(phi, offset.order).dot(offset.coefficients_m);
 }

@@ -23,6 +23,9 @@ int offset_coefficients(int order);
 Eigen::RowVectorXd offset_basis(double phi, int order);
 Eigen::RowVectorXd offset_basis_slope(double phi, int order);
 
+/// The largest amplitude of any of its harmonics. [m]
+double largest_lobe_m(const NormalOffset& offset);
+
 /// The offset in direction `phi`. [m]
 double offset_at(const NormalOffset& offset, double phi);
 /// Standard deviation of the offset in direction `phi`. [m]

@@ -286,8 +286,13 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   // With an offset and a noise of its own size, a ring of another size, a wrong unit or no curve at
   // all fits anything. No probe is as bad as a tenth of that.
   constexpr double kMostOff = 0.1;
-  const double most = kMostOff * radius_of(artefact, ground, unknowns.poses);
-  if (std::abs(unknowns.offset.coefficients_m[0]) > most || evidence.sigma_m.value > most) {
+  // With lobes of its own size, a circle is any oval. A probe whose lobes are a hundredth of what
+  // it touches measures nothing there: no answer is RECOGNIZED with such a noise.
+  constexpr double kLargestLobe = 0.01;
+  const double radius = radius_of(artefact, ground, unknowns.poses);
+  if (std::abs(unknowns.offset.coefficients_m[0]) > kMostOff * radius ||
+      evidence.sigma_m.value > kMostOff * radius ||
+      largest_lobe_m(unknowns.offset) > kLargestLobe * radius) {
     return failed(QualificationStatus::NotTheArtefact);
   }
 

@@ -211,6 +211,11 @@ TEST(Qualify, AnotherArtefactIsNotTakenForThis) {
   const ArtefactRecording recording = simulate(scene, rng);
   EXPECT_EQ(qualify(Circle{0.05}, {{recording}}).status, QualificationStatus::NotTheArtefact);
   EXPECT_EQ(qualify(Circle{25.0}, {{recording}}).status, QualificationStatus::NotTheArtefact);
+  ProbeScene oval;
+  oval.curve = Ellipse{0.026, 0.024};
+  oval.probe = plain_probe(1e-5);
+  EXPECT_EQ(qualify(Circle{0.025}, {{simulate(oval, rng)}}).status,
+            QualificationStatus::NotTheArtefact);
   ArtefactRecording cloud;
   std::normal_distribution<double> normal;
   cloud.strokes.emplace_back();
