@@ -1,5 +1,6 @@
 #include "core/recognition/given/exact_fit.h"
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "core/recognition/given/stroke_feet.h"
 
 namespace palpate {
+
 PlacedCurve<DoubleDouble> exact_of(const PlacedCurve<double>& curve) {
   PlacedCurve<DoubleDouble> exact;
   exact.curve_class = curve.curve_class;
@@ -56,9 +58,14 @@ ExactFit exact_fit(const GivenCandidate& found, const LocalPoints& local, const 
   // Feet move along with the curve. A step from where no descent has come to an end may be so long
   // that feet of a stroke come to other branches: that is no way down.
   const int jumps = jumps_of(found.curve, found.points);
+  const bool has_strokes = std::any_of(found.points.begin(), found.points.end(),
+                                       [](const auto& point) { return point.stroke != 0; });
   const auto seat = [&](PlacedCurve<DoubleDouble>* trial) {
     if (!curve_of(*trial)) {
       return false;
+    }
+    if (!has_strokes) {
+      return true;
     }
     half_squares(trial, std::span<const WeighedPoint<DoubleDouble>>(exact));
     return jumps_of(rounded(*trial), found.points) <= jumps;

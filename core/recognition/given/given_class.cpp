@@ -11,6 +11,7 @@
 
 #include "core/numerics/chi_square.h"
 #include "core/numerics/mahalanobis.h"
+#include "core/numerics/negligible.h"
 #include "core/numerics/student_quantile.h"
 #include "core/recognition/given/curve_moves.h"
 #include "core/recognition/given/descent.h"
@@ -21,6 +22,7 @@
 #include "core/recognition/given/given_report.h"
 #include "core/recognition/given/given_search.h"
 #include "core/recognition/given/local_points.h"
+#include "core/recognition/given/stroke_feet.h"
 
 namespace palpate {
 namespace {
@@ -65,7 +67,8 @@ double variance_of(double cost, int dof, const LocalPoints& local, bool stated) 
 
 /// log odds of one minimum over another one. Noise that is not stated may be of any size, alike
 /// probable by its logarithm: integrated over it and over the unknowns, a sum of squares has the
-/// power of -dof / 2. Below the rounding of the coordinates no residual says anything.
+/// power of -dof / 2. Below the rounding of the coordinates no residual says anything. A stroke
+/// that jumps pays for the samples that are missing.
 double log_odds_of(const GivenCandidate& one, const GivenCandidate& other, int dof,
                    const LocalPoints& local, bool stated) {
   if (stated) {
@@ -73,7 +76,9 @@ double log_odds_of(const GivenCandidate& one, const GivenCandidate& other, int d
   }
   const auto n = static_cast<double>(local.index.size());
   const double least = 0.5 * n * local.rounding * local.rounding;
-  return 0.5 * std::max(dof, 0) * std::log((other.cost + least) / (one.cost + least));
+  const int jumps = jumps_of(other.curve, other.points) - jumps_of(one.curve, one.points);
+  return 0.5 * std::max(dof, 0) * std::log((other.cost + least) / (one.cost + least)) +
+         kNegligibleLogOdds * jumps;
 }
 
 /// By how much a sum of squares, in the costs' unit, rises to where the truth hardly ever is.
@@ -156,6 +161,23 @@ Explored explore(CurveClass curve_class, const LocalPoints& local, const GivenNo
     std::stable_sort(explored.minima.begin(), explored.minima.end(), is_better);
   }
   return explored;
+}
+
+/// Follows a valley whose descent was short of its end, while that gains: for as many steps as ten
+/// descents have, if the limit of its class (of that misfit) fits worse than what is found, so that
+/// there is a minimum; else for as many as two, in which a minimum shows that the limit is beside.
+void follow(double limit, const LocalPoints& local, const GivenNoise& noise,
+            GivenCandidate* valley) {
+  constexpr int kMostDescents = 10;
+  constexpr int kDescentsToLimit = 2;
+  for (int i = 0; i < kMostDescents && !valley->settled; ++i) {
+    const double before = valley->cost;
+    settle(local, noise, valley);
+    const bool may_end = limit > valley->misfit + kAlike || i + 1 < kDescentsToLimit;
+    if (!(valley->cost < before) || !may_end) {
+      break;
+    }
+  }
 }
 
 /// What a descent that has not come to an end would still gain of the cost, were the valley
@@ -248,9 +270,9 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   const std::vector<GivenCandidate>& minima = explored.minima;
   const GivenChoice& choice = explored.choice;
   if (minima.empty()) {
-    constexpr double kNone = std::numeric_limits<double>::infinity();
-    fit.status = limit_fits_no_worse(curve_class, kNone, *local, noise) ? GivenStatus::AtLimit
-                                                                        : GivenStatus::Unfinished;
+    fit.status = std::isfinite(misfit_of_limit(curve_class, *local, noise))
+                     ? GivenStatus::AtLimit
+                     : GivenStatus::Unfinished;
     return fit;
   }
   GivenCandidate found = minima[choice.taken];
@@ -260,17 +282,10 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   ExactFit exact = exact_fit(found, *local, noise);
   const bool walked = found.settled;  // explore() has, from there
   if (!exact.descent.settled && !found.settled) {
-    if (limit_fits_no_worse(curve_class, found.misfit, *local, noise)) {
-      fit.status = GivenStatus::AtLimit;
-      return fit;
-    }
-    // There is a minimum. Valleys that bend so much are short of it by some hundreds of steps.
-    constexpr int kMostDescents = 10;  // of a hundred steps each
-    for (int i = 0; i < kMostDescents && !found.settled; ++i) {
-      settle(*local, noise, &found);
-    }
+    const double limit = misfit_of_limit(curve_class, *local, noise);
+    follow(limit, *local, noise, &found);
     if (!found.settled) {
-      fit.status = GivenStatus::Unfinished;
+      fit.status = limit <= found.misfit + kAlike ? GivenStatus::AtLimit : GivenStatus::Unfinished;
       return fit;
     }
     explored.minima[choice.taken] = found;

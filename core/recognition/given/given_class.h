@@ -32,8 +32,8 @@ enum class GivenStatus {
   /// No best curve: the sum of squares falls along a valley, and the limit of the class fits no
   /// worse than all that the search has found there.
   AtLimit,
-  /// The sum of squares falls along a valley, and no limit of the class fits as well as a curve in
-  /// it: there is a best one, to which the search has not come.
+  /// The sum of squares falls along a valley in which the search has not come to an end, and no
+  /// other class that the class turns into fits as well as a curve in it.
   Unfinished,
   NotDetermined,  ///< rounding of the coordinates leaves a shape parameter as uncertain as its size
 };

@@ -1,6 +1,7 @@
 #include "core/recognition/given/given_limit.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace palpate {
@@ -27,18 +28,14 @@ std::vector<CurveClass> limits_of(CurveClass curve_class) {
 
 }  // namespace
 
-bool limit_fits_no_worse(CurveClass curve_class, double misfit, const LocalPoints& local,
-                         const GivenNoise& noise) {
-  // Of the logarithm of the likelihood: far above what rounding makes of a sum of squares, and far
-  // below what tells one curve from another.
-  constexpr double kAlike = 1e-6;
-  const std::vector<CurveClass> limits = limits_of(curve_class);
-  return std::any_of(limits.begin(), limits.end(), [&](CurveClass limit) {
-    const std::vector<GivenCandidate> found = search_minima(limit, local, noise);
-    return std::any_of(found.begin(), found.end(), [&](const GivenCandidate& candidate) {
-      return candidate.misfit <= misfit + kAlike;
-    });
-  });
+double misfit_of_limit(CurveClass curve_class, const LocalPoints& local, const GivenNoise& noise) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const CurveClass limit : limits_of(curve_class)) {
+    for (const GivenCandidate& candidate : search_minima(limit, local, noise)) {
+      least = std::min(least, candidate.misfit);
+    }
+  }
+  return least;
 }
 
 }  // namespace palpate

@@ -5,11 +5,14 @@
 
 namespace palpate {
 
-/// True if a class that is the limit of the given one fits the points no worse than a curve of
-/// `misfit` in whose valley no descent has come to an end: then nothing shows that the sum of
-/// squares has a minimum before the limit. Else there is one somewhere, which the search has not
-/// reached.
-bool limit_fits_no_worse(CurveClass curve_class, double misfit, const LocalPoints& local,
-                         const GivenNoise& noise);
+/// Of the logarithm of the likelihood: far above what rounding makes of a sum of squares, and far
+/// below what tells one curve from another.
+inline constexpr double kAlike = 1e-6;
+
+/// The misfit of the class that is the limit of the given one and fits best; infinite if none does.
+/// Where it is no larger than that of a curve in whose valley no descent has come to an end,
+/// nothing shows that the sum of squares has a minimum before the limit. Else there is one
+/// somewhere.
+double misfit_of_limit(CurveClass curve_class, const LocalPoints& local, const GivenNoise& noise);
 
 }  // namespace palpate

@@ -32,7 +32,7 @@ void number_strokes(std::span<const GivenPoint> points, LocalPoints* local) {
     while (end < index.size() && points[index[end]].stroke == stroke) {
       ++end;
     }
-    if (stroke != 0 && end - begin > 1 &&
+    if (stroke != 0 && end - begin >= kFewestInOrder &&
         show_order(std::span(local->rough).subspan(begin, end - begin))) {
       for (std::size_t i = begin; i < end; ++i) {
         local->exact[i].stroke = stroke;

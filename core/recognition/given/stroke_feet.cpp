@@ -150,7 +150,10 @@ class StrokeFeet {
 
   void find_places(const WeighedPoint<double>& point, Step* step) const {
     const PlaneVector<double> p = placed_.to_curve(point.position);
-    const FootPlaces feet = all_feet(curve_, {p.x, p.y});
+    FootPlaces feet = all_feet(curve_, {p.x, p.y});
+    if (feet.count == 0) {  // rounding hides it where three meet
+      feet.add(curve_.foot_point({p.x, p.y}).t);
+    }
     step->count = feet.count;
     for (std::size_t k = 0; k < feet.count; ++k) {
       step->place[k] = place_at(feet.t[k]);

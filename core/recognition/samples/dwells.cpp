@@ -261,10 +261,8 @@ std::vector<PatchSpan> repeats_of(std::span<const StoredSample> samples) {
 
 bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
                   double half_extent_m) {
-  // Five evenly spaced places have the ratio 0.25, four have kNoOrder itself.
-  constexpr std::size_t kFewest = 5;
   constexpr double kSmall = 1e-2;
-  if (samples.size() < kFewest) {
+  if (samples.size() < kFewestInOrder) {
     return false;
   }
   const auto most = most_square_of_noise(samples, default_sigma_m);

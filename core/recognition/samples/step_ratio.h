@@ -24,4 +24,7 @@ double step_ratio(const PlaceAt& place_at, std::size_t begin, std::size_t end, d
 /// = 6 s: over such a length a curve deviates from its mean by less than the mean's uncertainty.
 inline constexpr double kNoOrder = 0.4;
 
+/// Fewest places that show their order: five evenly spaced ones have the ratio 0.25, four kNoOrder.
+inline constexpr std::size_t kFewestInOrder = 5;
+
 }  // namespace palpate

@@ -30,10 +30,10 @@ enum class DirectionsOf { UntoldPoints, KeptPoints, AllPoints };
 double set_directions(DirectionsOf which, const CanonicalFit& curve, const SmoothModel& smooth,
                       FitData* touches, WorkBudget& work);
 
-/// The directions of all points of strokes from a curve that all tips' centres lie on as noise lets
-/// them. Their errors are what noise turns the line between neighbours by: any other curve that has
-/// the centres, too, has these directions but for that. (Chords lead round a bend, and are off by
-/// half its turn.)
+/// The directions of strokes' points that no polynomial follows, from a curve that all tips'
+/// centres lie on as noise lets them. Their errors are what noise turns the line between neighbours
+/// by: any other curve that has the centres, too, has these directions but for that. (Chords lead
+/// round a bend, and are off by half its turn.)
 void tell_directions(const CanonicalFit& curve, const SmoothModel& smooth, FitData* touches,
                      WorkBudget& work);
 /// Returns the sides to which edges bend from the patches' travel.

@@ -73,8 +73,7 @@ TEST(GivenLimit, IsSaidOnlyWhereItFitsBest) {
         const double of_limit =
             std::min(chi2_of(CurveClass::Parabola, points), chi2_of(CurveClass::Line, points));
         if (std::isfinite(of_limit)) {
-          // A search may miss a minimum that is lower by less than one deviation of the noise.
-          EXPECT_GE(least_from_truth(scene, points), of_limit - 1.0) << "scene " << i;
+          EXPECT_GE(least_from_truth(scene, points), of_limit - 1e-5) << "scene " << i;
         }
       }
     }
