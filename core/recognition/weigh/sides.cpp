@@ -255,7 +255,11 @@ class TriedWays {
     if (now_.directions_told || !has_kept_tips(by_.arcs.smooth) || !are_strokes(seen_.touches)) {
       return;
     }
-    if (const auto curve = to_canonical(*choice.refined, by_.arcs.data)) {
+    const ClassFit& settled = *choice.settled;
+    const auto curve = choice.refined->on_all
+                           ? to_canonical(*choice.refined, by_.arcs.data)
+                           : to_canonical(settled, points_of(settled, choice.reduced));
+    if (curve) {
       tell_directions(*curve, by_.arcs.smooth, &seen_.touches, by_.work);
       take_told(choice.log_evidence);
     }
