@@ -44,8 +44,7 @@ FootPoint CubicalParabola::foot_point(const Vec2& point) const {
 FootPlaces all_feet(const CubicalParabola& curve, const Vec2& point) {
   FootPlaces places;
   visit_real_roots<5>(foot_condition(curve, point), [&](double t) {
-    const CurveDerivatives d = curve.derivatives(t);
-    if (d.first.squaredNorm() + (d.position - point).dot(d.second) > 0.0) {
+    if (is_nearest_beside(curve, t, point)) {
       places.add(t);
     }
   });

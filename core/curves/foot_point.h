@@ -24,6 +24,17 @@ FootPoint foot_point_at(const C& curve, double t, const Vec2& point) {
   return {t, d.position, cross(d.first, away) < 0.0 ? -distance : distance};
 }
 
+/// Half the second derivative of the squared distance by t.
+inline double bend_of_distance(const CurveDerivatives& at, const Vec2& point) {
+  return at.first.squaredNorm() + (at.position - point).dot(at.second);
+}
+
+/// Whether the curve is nearer to the point at a stationary t than beside it.
+template <typename C>
+bool is_nearest_beside(const C& curve, double t, const Vec2& point) {
+  return bend_of_distance(curve.derivatives(t), point) > 0.0;
+}
+
 /// Improves a foot that is known to a few digits to full precision: Newton's method on (C(t) - p) .
 /// C'(t) = 0 from t. It stops when the left side no longer shrinks or the distance grows by more
 /// than rounding.
@@ -45,10 +56,8 @@ double polish_foot_point(const C& curve, double t, const Vec2& point) {
     best = t;
     best_slope = std::abs(slope);
     best_distance2 = distance2;
-    const double speed2 = d.first.squaredNorm();
-    const double second =
-        speed2 + away.dot(d.second);  // half the second derivative of the squared distance
-    const double step = -slope / (second > 0.0 ? second : speed2);
+    const double second = bend_of_distance(d, point);
+    const double step = -slope / (second > 0.0 ? second : d.first.squaredNorm());
     if (!std::isfinite(step) || step == 0.0) {
       break;
     }

@@ -55,8 +55,7 @@ FootPlaces all_feet(const SemiCubicalParabola& curve, const Vec2& point) {
   FootPlaces places;
   places.add(0.0);
   visit_real_roots<4>(foot_condition(curve, point), [&](double t) {
-    const CurveDerivatives d = curve.derivatives(t);
-    if (d.first.squaredNorm() + (d.position - point).dot(d.second) > 0.0) {
+    if (is_nearest_beside(curve, t, point)) {
       places.add(t);
     }
   });

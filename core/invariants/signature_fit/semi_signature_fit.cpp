@@ -14,19 +14,6 @@
 namespace palpate {
 namespace {
 
-/// The power of length with which the curve parameter scales.
-double parameter_power(CurveClass curve_class) {
-  switch (curve_class) {
-    case CurveClass::CubicalParabola:
-      return 1.0;
-    case CurveClass::SemiCubicalParabola:
-    case CurveClass::CubicSpline:
-      return 0.5;
-    default:
-      return 0.0;
-  }
-}
-
 /// Converts a fit to the conventions of the class: a >= b, a > 0. The t and the orientation change
 /// with it.
 void canonicalise(SemiSignatureFit& fit) {
@@ -144,7 +131,7 @@ void fit_model(const std::vector<detail::WhitePoint>& points, double unit,
   using ModelFitter = detail::SemiSignatureFitter<Model>;
   constexpr int kShape = ModelFitter::kShape;
   const Eigen::Vector3d to_normal = to_units_of(fit.curve_class, unit);
-  const double t_unit = std::pow(unit, parameter_power(fit.curve_class));
+  const double t_unit = std::pow(unit, length_power_of_t(fit.curve_class));
   const Eigen::Vector3d normal = to_normal.cwiseProduct(fit.parameters);
   typename ModelFitter::Global start;
   start << normal.head<kShape>(), fit.orientation;

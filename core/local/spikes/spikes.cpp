@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/local/reading_step.h"
 #include "core/local/spikes/block_survey.h"
@@ -34,16 +35,23 @@ struct Kept {
   }
 };
 
-/// A run of at least `shortest` neighbours is form: no short block would have condemned them.
-void spare_runs(std::size_t shortest, std::vector<std::uint8_t>* is_spike) {
-  for (auto begin = is_spike->begin(); begin != is_spike->end();) {
-    const auto end =
-        std::find_if(begin, is_spike->end(), [&](auto flag) { return flag != *begin; });
-    if (end - begin >= static_cast<std::ptrdiff_t>(shortest)) {
-      std::fill(begin, end, std::uint8_t{0});
-    }
-    begin = end;
+/// Calls `visit(begin, end)` for each run of flagged samples.
+template <typename Visit>
+void for_each_run(std::span<const std::uint8_t> flags, const Visit& visit) {
+  for (auto begin = std::find(flags.begin(), flags.end(), 1); begin != flags.end();) {
+    const auto end = std::find(begin, flags.end(), 0);
+    visit(begin - flags.begin(), end - flags.begin());
+    begin = std::find(end, flags.end(), 1);
   }
+}
+
+/// A run of at least `shortest` neighbours is form: no short block would have condemned them.
+void spare_runs(std::ptrdiff_t shortest, std::vector<std::uint8_t>* is_spike) {
+  for_each_run(*is_spike, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    if (end - begin >= shortest) {
+      std::fill(is_spike->begin() + begin, is_spike->begin() + end, std::uint8_t{0});
+    }
+  });
 }
 
 /// Leaves out the runs that go a way of their own: these are form, however many passes took them
@@ -51,23 +59,32 @@ void spare_runs(std::size_t shortest, std::vector<std::uint8_t>* is_spike) {
 void spare_ways(std::span<const Vec2> samples, std::vector<std::size_t>* indices) {
   constexpr std::ptrdiff_t kShortestWay = 8;  // samples: half of a short block
   constexpr std::ptrdiff_t kJumpOneIn = 2;    // of a run that is no way
-  std::vector<std::uint8_t> is_spike(samples.size());
+  if (std::ssize(*indices) < kShortestWay) {
+    return;
+  }
+  std::vector<std::uint8_t> is_left_out(samples.size());
   for (const std::size_t i : *indices) {
-    is_spike[i] = samples[i].allFinite() ? 1 : 0;
+    is_left_out[i] = 1;
   }
-  const std::vector<std::uint8_t> jumps = jumps_of(samples);
-  for (auto begin = is_spike.begin(); begin != is_spike.end();) {
-    const auto end = std::find_if(begin, is_spike.end(), [&](auto flag) { return flag != *begin; });
-    const auto from = jumps.begin() + (begin - is_spike.begin());
-    if (*begin != 0 && end - begin >= kShortestWay &&
-        kJumpOneIn * std::count(from, from + (end - begin), 1) < end - begin) {
-      std::erase_if(*indices, [&](std::size_t i) {
-        const auto at = is_spike.begin() + static_cast<std::ptrdiff_t>(i);
-        return begin <= at && at < end;
-      });
+  std::vector<Vec2> finite;
+  std::vector<std::size_t> numbers;
+  std::vector<std::uint8_t> is_spike;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].allFinite()) {
+      finite.push_back(samples[i]);
+      numbers.push_back(i);
+      is_spike.push_back(is_left_out[i]);
     }
-    begin = end;
   }
+  const std::vector<std::uint8_t> jumps = jumps_of(finite);
+  for_each_run(is_spike, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    const auto jumping = std::count(jumps.begin() + begin, jumps.begin() + end, 1);
+    if (end - begin >= kShortestWay && kJumpOneIn * jumping < end - begin) {
+      std::for_each(numbers.begin() + begin, numbers.begin() + end,
+                    [&](std::size_t i) { is_left_out[i] = 0; });
+    }
+  });
+  std::erase_if(*indices, [&](std::size_t i) { return is_left_out[i] == 0; });
 }
 
 }  // namespace
@@ -128,7 +145,7 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
     SpikeSearch found =
         search_spikes(kept.samples, longer, sigma_m, result.threshold, options.cusps, work);
     if (doublings > 0) {
-      spare_runs(survey.length / 2, &found.is_spike);
+      spare_runs(static_cast<std::ptrdiff_t>(survey.length / 2), &found.is_spike);
     }
     result.sigma_m = found.sigma_m;
     const std::size_t before = kept.samples.size();

@@ -384,6 +384,23 @@ TEST(SpikesHardCases, ALeastMedianParabolaShowsTheNoiseOfHalfASpikedBlock) {
   }
 }
 
+TEST(SpikesHardCases, WhatIsNoNumberIsOneAndSaysNothingOfItsNeighbours) {
+  const std::vector<Vec2> clean = noisy_ellipse();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Vec2> samples;
+  std::vector<std::size_t> none;
+  for (std::size_t i = 0; i < clean.size(); ++i) {
+    if (i % 7 == 3) {
+      none.push_back(samples.size());
+      samples.emplace_back(nan, clean[i].y());
+    }
+    samples.push_back(clean[i]);
+  }
+  ASSERT_GT(none.size(), 8U);
+  EXPECT_TRUE(find_spikes(clean, {.sigma_m = kSigma}).indices.empty());
+  EXPECT_EQ(find_spikes(samples, {.sigma_m = kSigma}).indices, none);
+}
+
 TEST(SpikesHardCases, FewSamples) {
   EXPECT_EQ(find_spikes({}).status, LocalStatus::TooFewSamples);
   EXPECT_EQ(find_spikes(noisy_ellipse(5)).status, LocalStatus::TooFewSamples);

@@ -23,13 +23,13 @@ constexpr double kWall = 0.03;  // [m]
 /// Two bent walls that meet in a corner, evenly touched.
 std::vector<Vec2> over_corner(int count, std::mt19937_64& rng) {
   constexpr int kFine = 2000;
-  const auto wall = [&](double direction, double sense, double length) {
+  const auto wall = [&](double direction, double length) {
     const double bend = test::uniform(rng, -1.2, 1.2);
     const double change = test::uniform(rng, -1.0, 1.0);
     std::vector<Vec2> way{Vec2::Zero()};
     for (int i = 1; i < kFine; ++i) {
       const double s = length * i / kFine;
-      const double angle = direction + sense * (bend * s + 0.5 * change * s * s);
+      const double angle = direction + bend * s + 0.5 * change * s * s;
       way.push_back(way.back() + kWall * length / kFine * Vec2(std::cos(angle), std::sin(angle)));
     }
     return way;
@@ -37,9 +37,9 @@ std::vector<Vec2> over_corner(int count, std::mt19937_64& rng) {
   const double turn = test::uniform(rng, 25.0, 120.0) * kPi / 180.0;
   const double before = test::uniform(rng, 0.3, 1.0);
   const double after = test::uniform(rng, 0.3, 1.0);
-  std::vector<Vec2> way = wall(kPi, 1.0, before);
+  std::vector<Vec2> way = wall(kPi, before);
   std::reverse(way.begin(), way.end());
-  const std::vector<Vec2> second = wall(turn, 1.0, after);
+  const std::vector<Vec2> second = wall(turn, after);
   way.insert(way.end(), second.begin() + 1, second.end());
   const double step = kWall * (before + after) / (count - 1);
   std::vector<Vec2> places{way.front()};
@@ -55,7 +55,7 @@ std::vector<Vec2> over_corner(int count, std::mt19937_64& rng) {
 }
 
 /// Of parts of no class, RECOGNIZED answers of one may be as many as these say.
-void expect_honest(const std::string& name, double sigma_stated,
+void expect_honest(const std::string& name, bool stated_noise,
                    const std::function<std::vector<Vec2>(double, std::mt19937_64&)>& touched) {
   std::mt19937_64 rng = test::test_rng();
   const int scenes = test::stress_count(300);
@@ -65,7 +65,7 @@ void expect_honest(const std::string& name, double sigma_stated,
     const double sigma_m = kWall * test::log_uniform(rng, 1e-5, 1e-4);
     std::vector<ContactSample> samples;
     for (const Vec2& place : touched(sigma_m, rng)) {
-      samples.push_back({place + test::normal_pair(rng, sigma_m), sigma_stated * sigma_m, 0});
+      samples.push_back({place + test::normal_pair(rng, sigma_m), stated_noise ? sigma_m : 0.0, 0});
     }
     Recognizer recognizer;
     recognizer.add({}, samples);
@@ -82,14 +82,14 @@ void expect_honest(const std::string& name, double sigma_stated,
 }
 
 TEST(SparseParts, ACornerIsNoNoiseOfACubic) {
-  expect_honest("corner", 0.0, [](double, std::mt19937_64& rng) {
+  expect_honest("corner", false, [](double, std::mt19937_64& rng) {
     return over_corner(30 + static_cast<int>(rng() % 35), rng);
   });
 }
 
 // A spline that crosses itself fits both walls, with a loop between them that no sample is on.
 TEST(SparseParts, ACornerIsNoCubicWithALoop) {
-  expect_honest("corner, stated", 1.0, [](double, std::mt19937_64& rng) {
+  expect_honest("corner, stated", true, [](double, std::mt19937_64& rng) {
     return over_corner(30 + static_cast<int>(rng() % 130), rng);
   });
 }
