@@ -11,8 +11,10 @@
 #include "core/recognition/samples/stored_spikes.h"
 
 namespace palpate {
-std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,
-                                        bool sigma_known, double false_outlier_probability) {
+namespace {
+
+/// The best class placed on all points; nullptr if there is none.
+const CanonicalFit* best_class_of(const Weighing& weighing) {
   const CanonicalFit* fit = nullptr;
   double best = -1.0;
   for (std::size_t i = 1; i < weighing.canonical.size(); ++i) {
@@ -21,68 +23,89 @@ std::optional<FitData> without_outliers(const Weighing& weighing, const FitData&
       fit = &*weighing.canonical[i];
     }
   }
-  if (fit == nullptr) {
-    return std::nullopt;
-  }
-  const std::size_t n = data.points.size();
-  // Robust scale of the residuals: their noise may be unknown, and spikes must not widen it.
-  std::vector<double> magnitude(n);
+  return fit;
+}
+
+/// By how many deviations of the noise each point misses the class, its normal likewise, and how
+/// far noise lets it.
+struct Misses {
+  std::vector<double> magnitude;
+  double limit = 0.0;
+};
+
+Misses misses_of(const CanonicalFit& fit, const Weighing& weighing, bool sigma_known,
+                 double false_outlier_probability) {
+  const std::size_t n = fit.points.size();
+  Misses misses{std::vector<double>(n), 0.0};
   for (std::size_t i = 0; i < n; ++i) {
-    magnitude[i] = std::abs(fit->points[i].residual);
+    misses.magnitude[i] = std::abs(fit.points[i].residual);
   }
-  std::vector<double> sorted = magnitude;
+  // Robust scale of the residuals: their noise may be unknown, and spikes must not widen it. What
+  // is stated is the least, else rounding: the smooth model may have taken a feature of the part,
+  // which few samples show, for noise.
+  std::vector<double> sorted = misses.magnitude;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n / 2),
                    sorted.end());
   // The fit absorbs part of the noise. And a median knows a scale only as well as a root mean
   // square of 0.37 times the degrees of freedom (its efficiency).
   constexpr double kEfficiencyOfMedian = 0.37;
-  const double dof = static_cast<double>(n) - degrees_of_freedom(fit->shape.curve_class);
+  const double dof = static_cast<double>(n) - degrees_of_freedom(fit.shape.curve_class);
   const double taken = std::sqrt(static_cast<double>(n) / std::max(dof, 1.0));
-  const double scale = std::max(1.0, taken * sorted[n / 2] / kMedianOfNormal);
-  const std::size_t residuals = residual_count(data);
+  const double least = sigma_known ? 1.0 : rounding_level(weighing.data) / weighing.sigma;
+  const double scale = std::max(least, taken * sorted[n / 2] / kMedianOfNormal);
+  const std::size_t residuals = residual_count(weighing.data);
   const double z =
       two_sided_normal_quantile(false_outlier_probability / static_cast<double>(residuals));
-  const double limit =
+  misses.limit =
       scale * (sigma_known ? z : student_quantile(z, kEfficiencyOfMedian * std::max(dof, 1.0)));
   if (residuals > n) {
     for (std::size_t i = 0; i < n; ++i) {
-      magnitude[i] = std::max(magnitude[i], std::abs(fit->points[i].normal_residual));
+      misses.magnitude[i] = std::max(misses.magnitude[i], std::abs(fit.points[i].normal_residual));
     }
   }
-  if (std::none_of(magnitude.begin(), magnitude.end(), [&](double m) { return m > limit; })) {
-    return std::nullopt;
+  return misses;
+}
+
+}  // namespace
+
+FarSamples far_samples(const Weighing& weighing, const FitData& data, std::vector<bool> aside,
+                       bool sigma_known, double false_outlier_probability) {
+  const CanonicalFit* fit = best_class_of(weighing);
+  if (fit == nullptr) {
+    return {};
   }
-  std::vector<bool> is_out(n, false);
-  std::size_t dropped = 0;
+  const auto [magnitude, limit] = misses_of(*fit, weighing, sigma_known, false_outlier_probability);
+  if (std::none_of(magnitude.begin(), magnitude.end(),
+                   [limit = limit](double m) { return m > limit; })) {
+    return {};
+  }
+  std::size_t weighed = 0;  // of the points before
   double squares_of_kept = 0.0;
   double squares_of_dropped = 0.0;
   for (const PatchSpan& patch : data.patches) {
     std::size_t run = 0;
     for (std::size_t i = patch.begin; i < patch.end; ++i) {
-      const double square = magnitude[i] * magnitude[i];
-      is_out[i] = magnitude[i] > limit;
-      if (is_out[i]) {
-        ++dropped;
-        squares_of_dropped += square;
-        if (++run > kLongestRunOfSpikes) {
-          return std::nullopt;
-        }
-      } else {
-        run = 0;
-        squares_of_kept += square;
+      if (!aside[i]) {
+        const double miss = magnitude[weighed++];
+        aside[i] = miss > limit;
+        (aside[i] ? squares_of_dropped : squares_of_kept) += miss * miss;
+      }
+      run = aside[i] ? run + 1 : 0;
+      if (run > kLongestRunOfSpikes) {
+        return {{}, true};
       }
     }
   }
-  FitData kept = without_points(data, is_out);
+  const FitData kept = without_points(data, aside);
   // An outlier that brings a chi-square into a fit leaves itself 1 - h of it, h its leverage: more
   // than half, unless it alone determines the curve. So a larger misfit of the other points is not
   // its doing.
   const bool misfits =
       squares_of_kept > most_chi2_of_noise(kept.points) && squares_of_kept > squares_of_dropped;
-  if (misfits || dropped > most_set_aside(n)) {
-    return std::nullopt;
+  if (misfits || data.points.size() - kept.points.size() > most_set_aside(data.points.size())) {
+    return {};
   }
-  return kept;
+  return {std::move(aside), false};
 }
 
 std::vector<Vec2> places_set_aside(std::span<const StoredPatch> all,

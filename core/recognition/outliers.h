@@ -9,14 +9,22 @@
 
 namespace palpate {
 
-/// `data` without the outliers of the best class: points whose residual exceeds a limit. Gaussian
-/// noise exceeds it anywhere in a scene with probability `false_outlier_probability`. nullopt if
-/// there are none. Also nullopt if the curve itself does not fit: runs of more than three such
-/// points, more than two plus a twentieth of all points, or a misfit of the other points.
-/// `sigma_known`: as given by make_fit_data; if false, the limit is Student's quantile, because
-/// the residuals themselves determine the noise.
-std::optional<FitData> without_outliers(const Weighing& weighing, const FitData& data,
-                                        bool sigma_known, double false_outlier_probability);
+/// Samples that lie farther from the best class than noise lets any.
+struct FarSamples {
+  /// One flag a sample, where they are outliers: those that were set aside before are, too. Empty
+  /// if there are no more.
+  std::vector<bool> aside;
+  /// More of them follow one another than spikes do: the part leaves the class there.
+  bool are_form = false;
+};
+
+/// Gaussian noise puts a sample so far anywhere in a scene with probability
+/// `false_outlier_probability`. They are no outliers if the curve itself does not fit: runs of more
+/// than three, more than two plus a twentieth of all points, or a misfit of the other points.
+/// `weighing`: of the points of `data` that have no flag in `aside`. `sigma_known`: as given by
+/// make_fit_data; if false, most residuals tell the noise, and the limit is Student's quantile.
+FarSamples far_samples(const Weighing& weighing, const FitData& data, std::vector<bool> aside,
+                       bool sigma_known, double false_outlier_probability);
 
 /// Positions of the samples of `all` that are not in `used`, or flagged there: one flag per sample,
 /// or none at all.

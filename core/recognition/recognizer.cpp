@@ -182,6 +182,7 @@ class Recognizer::Impl {
     std::vector<bool> outliers;  ///< one flag per sample of the patches; empty where there are none
     /// Where these are others than were asked about.
     std::optional<std::vector<StoredPatch>> patches;
+    bool leaves_class = false;  ///< FarSamples::are_form
   };
 
   /// `patches`: those that the data are of; `sought`: what joining them has found.
@@ -205,6 +206,10 @@ class Recognizer::Impl {
     }
     Recognition answer = answer_by_likelihood(
         w, moments, {options_.recognized_probability, options_.determined_fraction}, stored);
+    // A stated noise says so by the chi-square.
+    if (!sigma_known && weighed.leaves_class && w.best != CurveClass::Unclassified) {
+      doubt(&answer, Doubt::Misfit);
+    }
     answer.outlier_count = stored - w.data.points.size();
     if (answer.outlier_count > 0) {
       answer.outliers_m = places_set_aside(
@@ -290,25 +295,48 @@ class Recognizer::Impl {
     Weighed weighed{
         weigh_in_full(data, sigma_known, patches, work, weigh_options(data, sigma_known), starts),
         {},
-        {}};
-    Weighing& w = weighed.w;
-    auto kept = without_outliers(w, data, sigma_known, options_.false_outlier_probability);
-    if (!kept && sigma_known && w.best == CurveClass::Unclassified && work.allows()) {
-      kept = without_gross_touches(w, data, work);
-    }
-    if (kept && work.allows()) {
-      // A search is not followed: the outliers may have led it astray.
-      const std::vector<SidedStart> nearer =
-          which == Starts::OfSearch ? std::vector<SidedStart>{} : std::move(w.starts);
-      WeighOptions options = weigh_options(*kept, sigma_known);
-      options.log_odds_against_gross = log_odds_against_gross(data, *kept);
-      Weighing again = weigh_in_full(*kept, sigma_known, patches, work, options, nearer);
-      if (!work.was_cut()) {  // else the one before says more
-        w = std::move(again);
-        weighed.outliers = left_out(data, *kept);
+        {},
+        false};
+    const Weighing& w = weighed.w;
+    const auto look_again = [&] {
+      std::vector<bool> aside =
+          weighed.outliers.empty() ? std::vector<bool>(data.points.size()) : weighed.outliers;
+      FarSamples far =
+          far_samples(w, data, std::move(aside), sigma_known, options_.false_outlier_probability);
+      weighed.leaves_class = far.are_form;
+      return std::move(far.aside);
+    };
+    std::vector<bool> aside = look_again();
+    if (aside.empty() && sigma_known && w.best == CurveClass::Unclassified && work.allows()) {
+      if (const auto kept = without_gross_touches(w, data, work)) {
+        weigh_again(left_out(data, *kept), data, sigma_known, patches, which, &weighed, work);
       }
+      return weighed;
+    }
+    // Those that are farthest keep the curve off the others beside them, which are seen next.
+    while (!aside.empty() && work.allows()) {
+      weigh_again(std::move(aside), data, sigma_known, patches,
+                  weighed.outliers.empty() ? which : Starts::OfLast, &weighed, work);
+      aside = work.was_cut() ? std::vector<bool>{} : look_again();
     }
     return weighed;
+  }
+
+  /// Weighs without the samples that have a flag.
+  void weigh_again(std::vector<bool> aside, const FitData& data, bool sigma_known,
+                   std::span<const StoredPatch> patches, Starts which, Weighed* weighed,
+                   WorkBudget& work) const {
+    const FitData kept = without_points(data, aside);
+    // A search is not followed: the outliers may have led it astray.
+    const std::vector<SidedStart> nearer =
+        which == Starts::OfSearch ? std::vector<SidedStart>{} : std::move(weighed->w.starts);
+    WeighOptions options = weigh_options(kept, sigma_known);
+    options.log_odds_against_gross = log_odds_against_gross(data, kept);
+    Weighing again = weigh_in_full(kept, sigma_known, patches, work, options, nearer);
+    if (!work.was_cut()) {  // else the one before says more
+      weighed->w = std::move(again);
+      weighed->outliers = std::move(aside);
+    }
   }
 
   WeighOptions weigh_options(const FitData& data, bool sigma_known) const {

@@ -20,6 +20,9 @@ AxisFit refine(std::span<const FitPoint> points, AxisFit fit, int max_iterations
   const Residuals residuals(points, fit.arms);
   // A start for the refinement proper: chi-square to a tenth is plenty.
   constexpr double kChi2Tolerance = 0.1;
+  // What no noise leaves need not be known so well: two walks that end so near are one valley's
+  // (polynomial_search.cpp).
+  constexpr double kRelativeTolerance = 1e-2;
   Eigen::Matrix<double, Residuals::NUM_PARAMETERS, 1> x;
   x[0] = fit.theta;
   if constexpr (Residuals::kArms) {
@@ -28,6 +31,8 @@ AxisFit refine(std::span<const FitPoint> points, AxisFit fit, int max_iterations
   fit.chi2 = minimise_residuals(residuals,
                                 {.iterations = max_iterations,
                                  .chi2_tolerance = kChi2Tolerance,
+                                 .relative_tolerance = kRelativeTolerance,
+                                 .coarse_above = most_chi2_of_noise(points),
                                  .work = &work,
                                  .row = WorkKind::AxisRow,
                                  .rows = points.size()},

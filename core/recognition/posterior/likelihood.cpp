@@ -27,8 +27,13 @@ double Likelihood::log_evidence(double chi2, double log_occam, double determined
   }
   // Integral of sigma^-(n - d) exp(-chi2 / (2 sigma^2)) d(log sigma): each determined coordinate
   // narrows as sigma does.
-  const double half = 0.5 * freedom(determined);
-  return log_occam - half * std::log(0.5 * left(chi2)) + log_gamma(half);
+  const auto integral = [&](double coordinates) {
+    const double half = 0.5 * freedom(coordinates);
+    return log_gamma(half) - half * std::log(0.5 * left(chi2));
+  };
+  // That ends where the noise of a bad fit leaves a coordinate to the prior: no prior leaves more
+  // than all of the likelihood.
+  return std::min(log_occam + integral(determined), integral(0.0));
 }
 
 double misfit_of(double chi2, const Likelihood& likelihood) {

@@ -66,8 +66,10 @@ ResidualExcess residual_excess(const Arcs& arcs, const Likelihood& likelihood, d
   const double noise = smooth.dof() > 0 ? smooth.chi2 / smooth.dof() : 1.0;
   const double excess = arcs.sigma * std::sqrt(std::max(0.0, variance - noise));
   const ResidualCorrelation correlation = correlation_along(placed, arcs.data);
-  // Whether a class that tells the noise misfits only neighbours on it show, which err together.
-  const bool noise_is_told = noise_is_known_without_class(arcs, likelihood);
+  // Whether a class that tells the noise misfits only neighbours on it show, which err together. It
+  // does where sections leave more than the class: what they do not follow is no noise.
+  const bool noise_is_told = noise_is_known_without_class(arcs, likelihood) &&
+                             (likelihood.sigma_known || variance >= noise);
   // What the smooth model explains and the class does not, beyond what noise gives the smooth
   // model's further coefficients; a false alarm costs an answer its certainty.
   const int more = smooth.parameters - parameters;

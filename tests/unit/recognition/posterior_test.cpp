@@ -235,22 +235,46 @@ TEST(ClassEvidence, ABetterProbeLeavesLessOfThePrior) {
   }
 }
 
-TEST(Likelihood, UnknownNoiseIsIntegratedOut) {
-  // Against the integral over log sigma by the trapezoidal rule, two models' ratio.
+/// log of the integral of sigma^-exponent exp(-chi2 / (2 sigma^2)) over log sigma, by the
+/// trapezoidal rule.
+double log_integral(double chi2, double exponent) {
+  double sum = 0.0;
+  constexpr double kStep = 1e-3;
+  const double middle = 0.5 * std::log(chi2 / exponent);
+  for (double x = middle - 6.0; x < middle + 6.0; x += kStep) {
+    sum += kStep * std::exp(-exponent * (x - middle) - 0.5 * chi2 * std::exp(-2.0 * x));
+  }
+  return std::log(sum) - exponent * middle;
+}
+
+Likelihood of_unknown_noise(double samples) {
   Likelihood likelihood;
   likelihood.sigma_known = false;
-  likelihood.samples = 40.0;
-  const auto by_rule = [](double chi2, double exponent) {
-    double sum = 0.0;
-    constexpr double kStep = 1e-3;
-    for (double x = -6.0; x < 6.0; x += kStep) {
-      sum += kStep * std::exp(-exponent * x - 0.5 * chi2 * std::exp(-2.0 * x));
-    }
-    return std::log(sum);
-  };
+  likelihood.samples = samples;
+  return likelihood;
+}
+
+TEST(Likelihood, UnknownNoiseIsIntegratedOut) {
+  const Likelihood likelihood = of_unknown_noise(40.0);
+  constexpr double kOccam = -12.0;
   const double ratio =
-      likelihood.log_evidence(35.0, 0.0, 3.0) - likelihood.log_evidence(44.0, 0.0, 3.0);
-  EXPECT_NEAR(ratio, by_rule(35.0, 37.0) - by_rule(44.0, 37.0), 1e-6);
+      likelihood.log_evidence(35.0, kOccam, 3.0) - likelihood.log_evidence(44.0, kOccam, 3.0);
+  EXPECT_NEAR(ratio, log_integral(35.0, 37.0) - log_integral(44.0, 37.0), 1e-6);
+}
+
+// Five coordinates of a fit so bad that the noise it tells leaves them to the prior: a normal law
+// of the width 1 where the likelihood's is a thousandth of the noise.
+TEST(Likelihood, NoPriorLeavesMoreThanAllOfABadFit) {
+  const Likelihood likelihood = of_unknown_noise(8.0);
+  constexpr double kCoordinates = 5.0;
+  const double occam = -kCoordinates * std::log(1e3);
+  constexpr double kGood = 4.0;
+  constexpr double kBad = 1e12;
+  const double good = likelihood.log_evidence(kGood, occam, kCoordinates);
+  const double bad = likelihood.log_evidence(kBad, occam, kCoordinates);
+  EXPECT_NEAR(bad - good,
+              log_integral(kBad, 8.0) - (log_integral(kGood, 8.0 - kCoordinates) + occam), 1e-6);
+  EXPECT_LE(bad, likelihood.log_evidence(kBad, 0.0, 0.0));
 }
 
 TEST(Likelihood, NoStatedFormErrorChangesNothing) {
