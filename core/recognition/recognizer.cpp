@@ -317,7 +317,8 @@ class Recognizer::Impl {
     while (!aside.empty() && work.allows()) {
       weigh_again(std::move(aside), data, sigma_known, patches,
                   weighed.outliers.empty() ? which : Starts::OfLast, &weighed, work);
-      aside = work.was_cut() ? std::vector<bool>{} : look_again();
+      const bool done = work.was_cut() || w.best == CurveClass::Unclassified;
+      aside = done ? std::vector<bool>{} : look_again();
     }
     return weighed;
   }
