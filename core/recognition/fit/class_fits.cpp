@@ -63,15 +63,17 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
   ClassFits result;
   const auto set = [&](ClassFit fit) { result[fit.curve_class] = std::move(fit); };
 
-  set(implicit_class(CurveClass::Line,
-                     refine_line(points, algebraic_line(points), side, near_enough, work)));
+  const ImplicitFit line = refine_line(points, algebraic_line(points), side, near_enough, work);
+  const std::size_t residuals = residual_count(reduced);
+  const bool line_fits = fits_well(line.chi2, residuals);
+  set(implicit_class(CurveClass::Line, line));
   const ImplicitFit circle =
       refine_circle(points, algebraic_circle(points), side, near_enough, work);
   set(implicit_class(CurveClass::Circle, circle));
 
   PolynomialFits polynomials =
       starts != nullptr          ? follow_polynomials(reduced, *starts, out_of_reach, work)
-      : (classes & kCubics) != 0 ? search_polynomials(reduced, out_of_reach, work)
+      : (classes & kCubics) != 0 ? search_polynomials(reduced, line_fits, out_of_reach, work)
                                  : search_parabola(reduced, work);
   put_in_order(PolynomialModel::Parabola, reduced, near_enough, &polynomials.parabola, work);
   put_in_order(PolynomialModel::SemiCubicalParabola, reduced, near_enough,
@@ -103,14 +105,12 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
   // A parabola is the cubics' limit, and data that leave a conic possible tell no cubic from it.
   // Where none of these fits, one cubic that does says nothing of another: the best seed by the
   // walk need not be the best by distances.
-  const std::size_t residuals = residual_count(reduced);
   const auto fits = [&](const auto& fit) { return fit && fits_well(fit->chi2, residuals); };
   polynomials.lowest_chi2 = std::min(circle.chi2, usable ? conic.chi2 : circle.chi2);
   if (polynomials.parabola) {
     polynomials.lowest_chi2 = std::min(polynomials.lowest_chi2, polynomials.parabola->chi2);
   }
   const bool conic_fits = fits_well(polynomials.lowest_chi2, residuals);
-  const bool line_fits = fits(result[CurveClass::Line]);
   if (starts == nullptr && !line_fits) {  // a line is the limit of all
     refine_every_seed(reduced, out_of_reach, &polynomials, work);
   } else if (starts != nullptr && !starts->every_seed && !conic_fits &&

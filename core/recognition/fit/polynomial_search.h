@@ -30,7 +30,8 @@ struct PolynomialFits {
 
 /// Exhaustive coarse search; then walks the valleys and refines the best of each class with coarse
 /// effort. The cubics are left out if they are `out_of_reach` (as fit_classes).
-PolynomialFits search_polynomials(const FitData& reduced, double out_of_reach, WorkBudget& work);
+PolynomialFits search_polynomials(const FitData& reduced, bool line_fits, double out_of_reach,
+                                  WorkBudget& work);
 
 /// The parabola alone, which the conics need at their limit.
 PolynomialFits search_parabola(const FitData& reduced, WorkBudget& work);
