@@ -8,6 +8,7 @@
 #include "core/recognition/samples/side_words.h"
 #include "node/csv/decimal_marks.h"
 #include "node/csv/point_columns.h"
+#include "node/csv/point_notes.h"
 #include "node/csv/point_units.h"
 #include "node/csv/row_detail.h"
 #include "node/csv/text_fields.h"
@@ -44,20 +45,20 @@ class PointReader {
         is_names(line) ? begin_again() : read_row(line);
         continue;
       }
-      if (const char told = told_separator(line); told != '\0' && preface_.empty()) {
+      if (const char told = told_separator(line); told != '\0' && seen_.preface.empty()) {
         told_separator_ = told;
         continue;
       }
       const First first = know_columns(line);
       if (first == First::Neither) {
         // A title, a date: the names of the columns may follow.
-        if (preface_.empty()) {
-          preface_ = trim(line);
+        if (seen_.preface.empty()) {
+          seen_.preface = trim(line);
           without_names_ =
-              lines_.error(line.data(), "no columns of two coordinates: " + shown(preface_) +
+              lines_.error(line.data(), "no columns of two coordinates: " + shown(seen_.preface) +
                                             "; known are " + known_columns());
         }
-        ++preface_lines_;
+        ++seen_.preface_lines;
         continue;
       }
       gap_ = false;
@@ -72,7 +73,11 @@ class PointReader {
            is_known_ ? "no samples after the header line" : "no samples: the file is empty");
     }
     if (!error_.empty()) return Result<PointTable>::fail(error_);
-    tell();
+    result_.has_patches = columns_.place(Column::Patch).has_value() || seen_.blocks > 1;
+    seen_.has_comma = marks_.comma();
+    for (std::string& note : notes_of_points(result_, columns_, options_, seen_)) {
+      result_.notes.push_back(std::move(note));
+    }
     return Result<PointTable>::ok(std::move(result_));
   }
 
@@ -102,7 +107,7 @@ class PointReader {
       return First::Names;
     }
     width_ = fields_.size();
-    if (!preface_.empty()) {
+    if (!seen_.preface.empty()) {
       error_ = without_names_;
     } else if (!know_by_comment()) {
       know_by_width(line);
@@ -121,7 +126,7 @@ class PointReader {
   void begin_again() {
     if (columns_.place(Column::Patch)) fail(lines_.line().data(), std::string(kNamesAgain));
     gap_ = units_may_follow_ = true;
-    ++names_again_;
+    ++seen_.names_again;
   }
 
   /// numpy.savetxt writes its header as a comment.
@@ -291,9 +296,10 @@ class PointReader {
         return;
       }
     }
-    unnamed_used_ = unnamed_used_ || std::ranges::any_of(columns_.unnamed, [&](std::size_t place) {
-                      return !fields_[place].empty();
-                    });
+    seen_.unnamed_used =
+        seen_.unnamed_used || std::ranges::any_of(columns_.unnamed, [&](std::size_t place) {
+          return !fields_[place].empty();
+        });
     ContactRow row;
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
     int axes = 0;
@@ -322,9 +328,9 @@ class PointReader {
     }
     const bool has_patches = columns_.place(Column::Patch).has_value();
     // As gnuplot has it, an empty line begins another stroke.
-    if (gap_ && !has_patches && !result_.table.rows.empty()) ++block_;
+    if (gap_ && !has_patches && !result_.table.rows.empty()) ++seen_.blocks;
     gap_ = false;
-    row.context.patch = has_patches ? 0 : block_;
+    row.context.patch = has_patches ? 0 : seen_.blocks - 1;
     if (field(Column::Probe).empty()) row.probe = intern("probe");
     if (!name(Column::Probe, "probe", row.probe)) return;
     row.group = row.probe;
@@ -337,73 +343,23 @@ class PointReader {
     if (axes == 3) result_.points.push_back(point);
   }
 
-  /// What of a column of noise is not one.
-  void tell_of_noise(std::vector<std::string>& notes) const {
-    const std::vector<ContactRow>& rows = result_.table.rows;
-    const auto unknown = static_cast<std::size_t>(
-        std::ranges::count_if(rows, [](const ContactRow& r) { return r.sample.sigma_m == 0.0; }));
-    if (columns_.place(Column::Sigma) && unknown == rows.size()) {
-      notes.emplace_back("sigma is 0 or empty in every row: the noise counts as not stated");
-    } else if (columns_.place(Column::Sigma) && unknown > 0) {
-      notes.push_back(
-          "sigma is 0 or empty in " + std::to_string(unknown) + " of " +
-          counted(rows.size(), "row") +
-          ": without --sigma, the noise of all of an object with such a row is estimated");
-    }
-    if (columns_.place(Column::CovarianceXx) && !columns_.place(Column::CovarianceXy)) {
-      notes.emplace_back("no column cov_xy: it counts as 0");
-    }
-  }
-
-  void tell() {
-    result_.has_patches = columns_.place(Column::Patch).has_value() || block_ > 0;
-    std::vector<std::string>& notes = result_.notes;
-    if (preface_lines_ > 0) {
-      notes.push_back("lines ignored before the names of the columns: " +
-                      std::to_string(preface_lines_) + ", the first " + shown(preface_));
-    }
-    if (!columns_.ignored.empty()) {
-      std::string names;
-      for (const std::string& name : columns_.ignored) {
-        names += (names.empty() ? "" : ", ") + name;
-      }
-      notes.push_back("columns ignored: " + names);
-    }
-    if (unnamed_used_) notes.emplace_back("columns without a name are ignored");
-    notes.insert(notes.end(), columns_.unused_details.begin(), columns_.unused_details.end());
-    tell_of_noise(notes);
-    if (marks_.comma()) notes.emplace_back("commas are read as decimal points");
-    if (block_ > 0) {
-      notes.push_back(
-          std::string(names_again_ > 0 ? "empty lines and lines of names" : "empty lines") +
-          " part the rows into " + std::to_string(block_ + 1) + " patches");
-    }
-    if (std::string note = note_of_unit(columns_, options_, result_.is_probe_log); !note.empty()) {
-      notes.push_back(std::move(note));
-    }
-  }
-
   TextLines lines_;
   ContactFileOptions options_;
   PointTable result_;
   std::string error_;
-  std::string_view comment_;   ///< the last one before the data
-  std::string_view preface_;   ///< the first line before the names that names nothing
-  std::string without_names_;  ///< the error where no names follow it
-  std::size_t preface_lines_ = 0;
+  std::string_view comment_;       ///< the last one before the data
+  std::string without_names_;      ///< the error where no names follow the preface
   std::string_view names_;         ///< the line or comment that names the columns
-  std::size_t names_again_ = 0;    ///< times that it comes again
   char told_separator_ = '\0';     ///< by the file itself
-  bool unnamed_used_ = false;      ///< a column without a name has a value
   bool units_may_follow_ = false;  ///< the names were the line before
   bool is_known_ = false;          ///< the columns
   bool gap_ = false;               ///< an empty line came before
-  std::uint32_t block_ = 0;        ///< of rows between empty lines
   char separator_ = ',';           ///< ' ' = any blanks
   DecimalMarks marks_;
   std::size_t width_ = 0;
   PointColumns columns_;
   std::vector<std::string_view> fields_;
+  SeenInPoints seen_;
   std::map<std::string, std::size_t> indices_;
 };
 
