@@ -26,9 +26,11 @@ struct ShapeAndLeft : LeftByDrift<kHighestOrder> {
       Eigen::Matrix<double, kUnknowns, kOffsets>::Zero();  ///< shape and pose move by -taken c
 };
 
-ShapeAndLeft left_by(const WhiteRows<kHighestOrder>& white, Eigen::Index unknowns, int rank) {
+ShapeAndLeft left_by(const WhiteRows<kHighestOrder>& white, const CanonicalFit& placed) {
+  const Eigen::Index unknowns = placed.covariance.rows();
   const InverseInformation inverse =
-      inverse_information(white.sums.topLeftCorner(unknowns, unknowns), rank);
+      inverse_information(white.sums.topLeftCorner(unknowns, unknowns), placed.shape.curve_class,
+                          placed.world_T_curve.theta);
   const auto with_offsets = white.sums.topRightCorner(unknowns, kOffsets);
   const auto with_residual = white.sums.col(kResidualColumn).head(unknowns);
   ShapeAndLeft left;
@@ -103,7 +105,7 @@ struct OverSizes {
   double log_prior = 0.0;
 };
 
-OverSizes over_all_sizes(const std::vector<CoherentStep>& steps, Eigen::Index unknowns, int rank,
+OverSizes over_all_sizes(const std::vector<CoherentStep>& steps, const CanonicalFit& placed,
                          const NoiseLaw& noise, double scatter, double samples, WorkBudget& work) {
   double squares = 0.0;
   for (const CoherentStep& step : steps) {
@@ -127,7 +129,7 @@ OverSizes over_all_sizes(const std::vector<CoherentStep>& steps, Eigen::Index un
       work.spend(WorkKind::DriftRow, kRowsOfMoment * steps.size());
       work.spend(WorkKind::OffsetCell, 1 + kLargestOffset - kLeastOffset);
       const Drift drift{deviation, std::ldexp(longest, -halvings)};
-      const ShapeAndLeft left = left_by(white_rows<kHighestOrder>(steps, drift), unknowns, rank);
+      const ShapeAndLeft left = left_by(white_rows<kHighestOrder>(steps, drift), placed);
       for (int power = kLeastOffset; power <= kLargestOffset; ++power) {
         const OffsetSize size = offset_size(drift, power);
         prior += kHighestOrder * std::exp(size.log_prior);
@@ -154,12 +156,12 @@ std::optional<CoherentMoment> coherent_moment(const CanonicalFit& placed, const 
   const std::vector<CoherentStep> steps = coherent_steps(placed, reduced, *curve, sigma);
   const Eigen::Index unknowns = placed.covariance.rows();
   const auto [mixture, log_prior] =
-      over_all_sizes(steps, unknowns, rank, noise, scatter, likelihood.samples, work);
+      over_all_sizes(steps, placed, noise, scatter, likelihood.samples, work);
   const auto& [top, total] = mixture.weights;
   if (!(total > 0.0)) {
     return std::nullopt;
   }
-  const ShapeAndLeft none = left_by(white_rows<kHighestOrder>(steps, {}), unknowns, rank);
+  const ShapeAndLeft none = left_by(white_rows<kHighestOrder>(steps, {}), placed);
   const double log_none = noise.log_evidence(scatter + none.chi2) - 0.5 * none.log_determinant;
   CoherentMoment result;
   result.probability = 1.0 / (1.0 + std::exp(log_none + log_prior - top) / total);

@@ -225,7 +225,9 @@ ShapePoseCovariance untold_covariance(Eigen::Index n) {
   return untold;
 }
 
-InverseInformation inverse_information(const ShapePoseCovariance& information, int rank) {
+namespace {
+
+InverseInformation inverse_of_rank(const ShapePoseCovariance& information, int rank) {
   const Eigen::Index n = information.rows();
   if (!information.allFinite()) {  // units in which a square is beyond a double: nothing is told
     return {untold_covariance(n), std::numeric_limits<double>::infinity()};
@@ -251,6 +253,26 @@ InverseInformation inverse_information(const ShapePoseCovariance& information, i
   }
   result.covariance = scale.asDiagonal() * inverse * scale.asDiagonal();
   return result;
+}
+
+}  // namespace
+
+InverseInformation inverse_information(const ShapePoseCovariance& information,
+                                       CurveClass curve_class, double theta) {
+  const int rank = degrees_of_freedom(curve_class);
+  if (curve_class != CurveClass::Line) return inverse_of_rank(information, rank);
+  // It is free along itself, askew to x and y. Inverted there, the place along it would get what
+  // the scales of x and y make of it: kilometres where it lies along one of them.
+  Eigen::Matrix3d world_R_line = Eigen::Matrix3d::Identity();
+  world_R_line.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(theta).toRotationMatrix();
+  ShapePoseCovariance on_line = world_R_line.transpose() * information * world_R_line;
+  on_line.row(0).setZero();  // rounding alone
+  on_line.col(0).setZero();
+  InverseInformation inverse = inverse_of_rank(on_line, rank);
+  if (inverse.covariance.allFinite()) {
+    inverse.covariance = world_R_line * inverse.covariance * world_R_line.transpose();
+  }
+  return inverse;
 }
 
 std::optional<CanonicalPlace> canonical_place(const ClassFit& fit, const FitData& data) {
@@ -326,7 +348,8 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
   information.bottomLeftCorner(3, letters) = pose_first.block(0, 3, 3, letters);
   information.bottomRightCorner<3, 3>() = pose_first.topLeftCorner<3, 3>();
   canonical.covariance =
-      inverse_information(information, degrees_of_freedom(canonical.shape.curve_class)).covariance;
+      inverse_information(information, canonical.shape.curve_class, canonical.world_T_curve.theta)
+          .covariance;
   return canonical;
 }
 

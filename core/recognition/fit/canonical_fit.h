@@ -37,12 +37,15 @@ double chi2_of(const CanonicalFit& fit);
 /// Covariance of n unknown components: infinite variances, no covariances.
 ShapePoseCovariance untold_covariance(Eigen::Index n);
 
-/// Inverse of an information matrix of known rank; its null directions get variance 0.
+/// Inverse of the information of [shape; x; y; theta]; what the pose symmetry leaves free gets
+/// variance 0.
 struct InverseInformation {
   ShapePoseCovariance covariance;
-  double log_determinant = 0.0;  ///< of the information, without its null directions
+  double log_determinant = 0.0;  ///< of the information, without the free directions
 };
-InverseInformation inverse_information(const ShapePoseCovariance& information, int rank);
+/// `theta`: the pose's.
+InverseInformation inverse_information(const ShapePoseCovariance& information,
+                                       CurveClass curve_class, double theta);
 
 /// Shape and pose alone.
 struct CanonicalPlace {

@@ -159,11 +159,17 @@ std::vector<Quantity> quantities_of(const v1::Recognition& answer) {
   // One unit for both coordinates, chosen by the distance of the pose from the world's origin.
   const LengthUnit unit = length_unit_for(std::max(
       {std::abs(pose.x_m()), std::abs(pose.y_m()), sigma_of(answer, x), sigma_of(answer, x + 1)}));
+  // Of a line that lies along x or y, rounding alone is left of the other one's deviation.
+  constexpr double kRounding = 1e-6;
+  const bool is_line = answer.curve_class() == v1::CURVE_CLASS_LINE;
+  const double least =
+      is_line ? kRounding * std::hypot(sigma_of(answer, x), sigma_of(answer, x + 1)) : 0.0;
   const auto add_length = [&](const char* name, double value) {
     const double sigma = sigma_of(answer, quantities.size());
+    const double told = sigma > least ? sigma : 0.0;
     quantities.push_back(
         {name, value, sigma,
-         with_sigma(value * unit.per_m, sigma * unit.per_m) + " " + std::string(unit.name)});
+         with_sigma(value * unit.per_m, told * unit.per_m) + " " + std::string(unit.name)});
   };
   add_length("x", pose.x_m());
   add_length("y", pose.y_m());
@@ -173,6 +179,8 @@ std::vector<Quantity> quantities_of(const v1::Recognition& answer) {
     theta += " (or that + 180)";
   } else if (answer.curve_class() == v1::CURVE_CLASS_CIRCLE) {
     theta = "free";
+  } else if (is_line) {
+    theta += "; free along itself";
   }
   quantities.push_back({"theta", pose.theta_rad(), sigma, theta});
   return quantities;

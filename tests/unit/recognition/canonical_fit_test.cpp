@@ -91,6 +91,34 @@ TEST_P(CanonicalFitOf, CovarianceIsPositiveAndScalesWithTheNoise) {
   }
 }
 
+TEST(CanonicalFit, ALineHasNoVarianceAlongItselfHoweverItLies) {
+  constexpr double kSigma_m = 1e-5;
+  for (const double theta : {0.0, 1e-17, 1e-9, 1e-4, 0.5, 0.5 * kPi, 3.0}) {
+    const Vec2 along(std::cos(theta), std::sin(theta));
+    test::Scene scene;
+    scene.patches.resize(2);
+    for (int i = 0; i < 60; ++i) {
+      const double across_m = (i % 3 - 1) * kSigma_m;  // no fit without residuals
+      for (const int patch : {0, 1}) {
+        scene.patches[static_cast<std::size_t>(patch)].push_back(
+            Vec2(0.2, 0.1) + (0.05 * patch + 5e-4 * i) * along + across_m * left_of(along));
+      }
+    }
+    FitData data = test::fit_data(scene, kSigma_m);
+    const SmoothModel smooth = fit_smooth_model(&data, true);
+    const ClassFits fits = fit_classes(smooth.reduced, test::unbounded_work());
+    const auto& line = fits[static_cast<std::size_t>(CurveClass::Line)];
+    ASSERT_TRUE(line.has_value()) << theta;
+    const auto canonical = to_canonical(*line, smooth.reduced);
+    ASSERT_TRUE(canonical.has_value()) << theta;
+    const Eigen::Matrix2d place = canonical->covariance.topLeftCorner<2, 2>();
+    // Of 120 samples the place across is known to sigma / sqrt(120), at their mean.
+    const double across_m2 = left_of(along).dot(place * left_of(along));
+    EXPECT_NEAR(std::sqrt(120.0 * across_m2), kSigma_m, 0.1 * kSigma_m) << theta;
+    EXPECT_LT(along.dot(place * along), 1e-6 * across_m2) << theta;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(AllClasses, CanonicalFitOf, testing::ValuesIn(kCurveClasses),
                          [](const auto& test) { return std::string(name_of(test.param)); });
 

@@ -3,6 +3,7 @@ import json
 import math
 import pathlib
 import random
+import re
 import tempfile
 import unittest
 import xml.etree.ElementTree
@@ -91,6 +92,41 @@ class Fit(unittest.TestCase):
         self.assertRegex(out, r"status +recognized")
         self.assertRegex(out, r"a +\d\d\.\d+ \+- 0\.\d+ mm")
         self.assertRegex(out, r"theta 3\d\.\d+ \+- .* deg \(or that \+ 180\)")
+
+    def test_text_says_what_is_free(self):
+        rng = random.Random(7)
+        # However it lies: along an axis, a place along it once told metres of deviation.
+        for turn in (0.0, 1e-5, 0.5, math.pi / 2):
+            rows = []
+            for i in range(120):
+                along, across = 0.1 + 5e-4 * i, rng.gauss(0, SIGMA)
+                x = along * math.cos(turn) - across * math.sin(turn)
+                y = along * math.sin(turn) + across * math.cos(turn)
+                rows.append(f"{i // 60},{x!r},{y!r}\n")
+            path = self.write("line.csv", "patch,x_m,y_m\n" + "".join(rows))
+            stated = ("--sigma", SIGMA)
+            for more in (stated, (), ("--class", "line", *stated), ("--method", "tree", *stated)):
+                code, out, err = run(TOOL, "fit", "--format", "text", *more, path)
+                self.assertEqual(code, 0, err)
+                pose = next(line for line in out.splitlines() if line.startswith("  pose "))
+                self.assertRegex(pose, r"theta .* deg; free along itself$", more)
+                lengths = pose.split(", theta")[0]
+                self.assertIn(" mm", lengths)
+                self.assertNotRegex(lengths, r"e[-+]\d\d")
+                for sigma_mm in re.findall(r"\+- ([0-9.e+-]+)", lengths):
+                    self.assertLess(float(sigma_mm), 0.02 if more else 0.2, f"{turn} {more}: {pose}")
+            for more in (stated, ()):
+                answer = self.answers(*more, path)[0][0]
+                xx, xy, yy = (answer.covariance[i] for i in (0, 1, 4))
+                c, s = math.cos(answer.pose.theta_rad), math.sin(answer.pose.theta_rad)
+                across = s * s * xx - 2 * s * c * xy + c * c * yy
+                self.assertGreater(across, 0)
+                self.assertLess(abs(c * c * xx + 2 * s * c * xy + s * s * yy), 1e-6 * across, f"{turn} {more}")
+        ring = "".join(f"finger,0,{0.02 * math.cos(t / 20)!r},{0.02 * math.sin(t / 20)!r},{SIGMA!r},1\n"
+                       for t in range(120))
+        for more in ((), ("--class", "circle"), ("--method", "tree")):
+            _, out, _ = run(TOOL, "fit", "--format", "text", *more, "-", text_in=HEADER + ring)
+            self.assertIn(", theta free\n", out)
 
     def test_text_gives_the_reason_of_a_doubt(self):
         short = ellipse(patches=((0.3, 0.4),), sigma=1e-4)
