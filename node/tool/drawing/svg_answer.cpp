@@ -1,12 +1,12 @@
 #include "node/tool/drawing/svg_answer.h"
 
-#include "node/tool/text/advice.h"
 #include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
 
 namespace palpate {
 
-void add_answer(const ContactGroup& group, const v1::Recognition& answer, SvgTable& table) {
+void add_answer(const ContactGroup& group, const v1::Recognition& answer, const Stated& stated,
+                SvgTable& table) {
   table.heading(spoken_name(answer.curve_class()));
   table.words(status_text(answer));
   table.gap();
@@ -30,7 +30,7 @@ void add_answer(const ContactGroup& group, const v1::Recognition& answer, SvgTab
   }
   table.row("file", file);
   table.gap();
-  table.words(advice_text(answer));
+  table.words(advice_text(answer, stated));
   table.gap();
 }
 

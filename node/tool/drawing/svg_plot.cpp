@@ -16,7 +16,6 @@
 #include "node/tool/drawing/svg_table.h"
 #include "node/tool/drawing/ticks.h"
 #include "node/tool/drawing/visible_samples.h"
-#include "node/tool/text/advice.h"
 #include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
 
@@ -346,7 +345,7 @@ EnlargedResiduals residuals_of_picture(const ContactGroup& group, const v1::Reco
 }  // namespace
 
 std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer,
-                     std::span<const Vec2> set_aside) {
+                     std::span<const Vec2> set_aside, const Stated& stated) {
   const Drawing drawing = make_drawing(group, answer, Curvature::None);
   const View view = view_of(group, answer, drawing);
   // A dot half a pixel from another one cannot be seen.
@@ -356,7 +355,7 @@ std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer,
       visible_samples(group, view.metres(kCellPixels), kMostDots, std::size(kPatchColours));
   const EnlargedResiduals residuals = residuals_of_picture(group, answer, drawing, view, set_aside);
   SvgTable table(kWidth - kRight + 16.0, kTop + 12.0);
-  add_answer(group, answer, table);
+  add_answer(group, answer, stated, table);
   add_keys(group, drawing, visible, residuals, table);
   std::string svg = formatted(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f "

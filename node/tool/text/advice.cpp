@@ -70,7 +70,42 @@ std::string undetermined(const v1::Recognition& answer) {
   return text + ".";
 }
 
-std::string ambiguous(const v1::Recognition& answer) {
+std::string form_error(const std::string& name, const Stated& stated) {
+  const std::string text =
+      "What the samples leave beside the " + name +
+      " follows a pattern along the arc: the part deviates from its ideal curve";
+  if (stated.form_deviation_m > 0.0) {
+    return text + " by more than the stated form_deviation_m of " +
+           text_of_length(stated.form_deviation_m) + ", or is of a class not known here.";
+  }
+  return text +
+         ", or is of a class not known here. Tell the recognizer the part's tolerance "
+         "(form_deviation_m).";
+}
+
+std::string two_shapes(const v1::Recognition& answer, const Stated& stated) {
+  if (stated.tip_sides) return "Two shapes fit alike: touch another place.";
+  // It has no bend to be outside or inside of.
+  if (answer.curve_class() == v1::CURVE_CLASS_LINE) {
+    return "Two lines fit alike, one on either side of the round tips: tell the material side of a "
+           "stroke.";
+  }
+  return std::string("Two shapes fit alike: touch another place, or tell ") +
+         (stated.touched_from
+              ? "the material side of a stroke."
+              : "where round tips touch (touched_from, or the material side of a stroke).");
+}
+
+std::string work_limit(const Stated& stated) {
+  std::string text =
+      "The samples are too hard to look at in full within the work that an answer may take: check "
+      "that all patches lie on one curve";
+  if (!stated.noise && !stated.tip_sides) return text + ", and state noise, tip and material side.";
+  if (!stated.noise) return text + ", and state the noise.";
+  return text + (stated.tip_sides ? "." : ", and state the material side of every stroke.");
+}
+
+std::string ambiguous(const v1::Recognition& answer, const Stated& stated) {
   const std::string name = spoken_name(answer.curve_class());
   switch (answer.doubt()) {
     case v1::RECOGNITION_DOUBT_SEVERAL_CLASSES:
@@ -78,9 +113,7 @@ std::string ambiguous(const v1::Recognition& answer) {
     case v1::RECOGNITION_DOUBT_AT_LIMIT:
       return "The " + name + " fits best where it turns into another class: touch further round.";
     case v1::RECOGNITION_DOUBT_FORM_ERROR:
-      return "What the samples leave beside the " + name +
-             " follows a pattern along the arc: the part deviates from its ideal curve, or is of a "
-             "class not known here. Tell the recognizer the part's tolerance (form_deviation_m).";
+      return form_error(name, stated);
     case v1::RECOGNITION_DOUBT_MISFIT:
       return "The samples lie further from " +
              (answer.curve_class() == v1::CURVE_CLASS_UNCLASSIFIED ? std::string("any smooth path")
@@ -89,8 +122,7 @@ std::string ambiguous(const v1::Recognition& answer) {
              "that "
              "all patches lie on one curve.";
     case v1::RECOGNITION_DOUBT_TWO_SHAPES:
-      return "Two shapes fit alike: touch another place, or tell where round tips touch "
-             "(touched_from, or the material side of a stroke).";
+      return two_shapes(answer, stated);
     case v1::RECOGNITION_DOUBT_RICHER_CLASS: {
       const v1::CurveClass richer = rival_of(answer);
       return "The samples do not exclude " +
@@ -106,17 +138,17 @@ std::string ambiguous(const v1::Recognition& answer) {
              "and "
              "the recognition tree's path where it stays so.";
     case v1::RECOGNITION_DOUBT_FEW_PLACES:
-      return "So few touches fit by chance: touch it at eight places, or state their noise.";
+      return std::string("So few touches fit by chance: touch it at eight places") +
+             (stated.noise ? "." : ", or state their noise.");
     case v1::RECOGNITION_DOUBT_WORK_LIMIT:
-      return "The samples are too hard to look at in full within the work that an answer may take: "
-             "check that all patches lie on one curve, and state noise, tip and material side.";
+      return work_limit(stated);
     default:
       return "Not certain yet: touch further round.";
   }
 }
 
 /// The best class of a part that is of none, and how far it is from that.
-std::string nearest(const v1::Recognition& answer) {
+std::string nearest(const v1::Recognition& answer, const Stated& stated) {
   double of_noise = 0.0;
   const v1::Hypothesis* best = nullptr;
   for (const v1::Hypothesis& hypothesis : answer.hypotheses()) {
@@ -135,12 +167,15 @@ std::string nearest(const v1::Recognition& answer) {
   return " The nearest is " + with_article(best->curve_class()) + ", from which it deviates by " +
          text + std::string(unit.name) +
          " (root mean square, beyond the noise). Is that within the part's tolerance, or within "
-         "what the probe deviates by, state it (form_deviation_m).";
+         "what the probe deviates by, state " +
+         (stated.form_deviation_m > 0.0
+              ? "more than " + text_of_length(stated.form_deviation_m) + " (form_deviation_m)."
+              : "it (form_deviation_m).");
 }
 
 }  // namespace
 
-std::string advice_text(const v1::Recognition& answer) {
+std::string advice_text(const v1::Recognition& answer, const Stated& stated) {
   switch (answer.status()) {
     case v1::RECOGNITION_STATUS_COLLECTING:
       return "Too few places yet, as far as noise tells them apart (samples: " +
@@ -151,11 +186,11 @@ std::string advice_text(const v1::Recognition& answer) {
                    "the "
                    "patches lie on several pieces of it, or a stroke leaves it (through the air, "
                    "over an edge)." +
-                       nearest(answer)
+                       nearest(answer, stated)
                  : "The part is " + with_article(answer.curve_class()) +
                        ": its shape and place are known. No further touch is needed.";
     case v1::RECOGNITION_STATUS_AMBIGUOUS:
-      return ambiguous(answer);
+      return ambiguous(answer, stated);
     default:
       return "Nothing is known yet: touch the part.";
   }

@@ -20,6 +20,15 @@ bool tells_side(const ContactRun& run, bool is_alone) {
 
 }  // namespace
 
+Stated stated_of(const ContactGroup& group, const RecognizerOptions& options, bool noise_is_known) {
+  const bool tip_sides =
+      std::all_of(group.runs.begin(), group.runs.end(), [](const ContactRun& run) {
+        return run.context.tip_radius_m == 0.0 || tells_side(run, run.samples.size() == 1);
+      });
+  return {noise_is_known, options.touched_from != TouchedFrom::Unknown, tip_sides,
+          options.form_deviation_m};
+}
+
 std::string note_of_tip_side(const ContactGroup& group, const v1::Recognition& answer,
                              TouchedFrom touched_from) {
   if (touched_from != TouchedFrom::Unknown) return {};

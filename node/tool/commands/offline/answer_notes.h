@@ -3,12 +3,16 @@
 
 #include <string>
 
-#include "core/recognition/samples/contact_sample.h"
+#include "core/recognition/recognizer.h"
 #include "node/tool/contact_groups.h"
+#include "node/tool/text/advice.h"
 #include "palpate/v1/given_class.pb.h"
 #include "palpate/v1/recognition.pb.h"
 
 namespace palpate {
+
+/// What was stated of the samples, by options or by themselves.
+Stated stated_of(const ContactGroup& group, const RecognizerOptions& options, bool noise_is_known);
 
 /// That nothing tells on which side of a circle its round tips were, and its radius if they were
 /// on the other; empty where that is told or the answer is no circle. The centres are a circle's

@@ -27,7 +27,6 @@
 #include "node/tool/drawing/curve_export.h"
 #include "node/tool/drawing/invariant_plot.h"
 #include "node/tool/drawing/svg_plot.h"
-#include "node/tool/text/advice.h"
 #include "node/tool/text/given_class_text.h"
 #include "node/tool/text/message_json.h"
 #include "node/tool/text/report.h"
@@ -76,8 +75,9 @@ void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
   });
 }
 
-bool noise_is_known(const FitInput& input, const RecognizerOptions& options) {
-  return input.noise_is_known || options.sigma_m > 0.0;
+bool noise_is_known(const FitInput& input, const RecognizerOptions& options,
+                    const v1::Recognition& answer) {
+  return input.noise_is_known || options.sigma_m > 0.0 || answer.probe_files_size() > 0;
 }
 
 /// PLOT.svg for the first group, PLOT-2.svg for the second, ...
@@ -196,8 +196,8 @@ int run(FitCommand& fit) {
       }
       answer = std::move(answered.wire);
       spikes = std::move(answered.recognition.outliers_m);
-      const bool known = noise_is_known(input, options) || answer.probe_files_size() > 0;
-      text = json ? json_line(answer) : report_text(answer, known);
+      text = json ? json_line(answer)
+                  : report_text(answer, noise_is_known(input, fit.recognizer, answer));
     } else {
       notes = input.notes;
       const v1::GivenClassAnswer given =
@@ -207,6 +207,8 @@ int run(FitCommand& fit) {
       answer = given.recognition();
     }
     const ContactGroup measured = as_measured(group, probes, answer, fit.recognizer.touched_from);
+    const Stated stated =
+        stated_of(measured, fit.recognizer, noise_is_known(input, fit.recognizer, answer));
     if (std::string note = note_of_tip_side(measured, answer, fit.recognizer.touched_from);
         !note.empty()) {
       complain(group.file + ": " + note, kDone);
@@ -225,14 +227,14 @@ int run(FitCommand& fit) {
     } else {
       std::cout << (number > 0 ? "\n" : "") << printable_path(group.file) << ": " << text;
       if (fit.given_class.empty() && !is_found) {
-        std::cout << "  advice       " << advice_text(answer) << "\n";
+        std::cout << "  advice       " << advice_text(answer, stated) << "\n";
       }
       for (const std::string& note : notes) std::cout << "  note         " << note << "\n";
     }
     ++number;
     if (!fit.plot.empty()) {
       const std::string path = plot_path(fit.plot, number);
-      if (const std::string why = write_file(path, svg_plot(measured, answer, spikes));
+      if (const std::string why = write_file(path, svg_plot(measured, answer, spikes, stated));
           !why.empty()) {
         code = complain(why, kFailed);
       }

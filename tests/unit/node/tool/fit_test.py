@@ -128,6 +128,28 @@ class Fit(unittest.TestCase):
             _, out, _ = run(TOOL, "fit", "--format", "text", *more, "-", text_in=HEADER + ring)
             self.assertIn(", theta free\n", out)
 
+    def test_no_advice_asks_for_what_was_stated(self):
+        rng = random.Random(8)
+        rows = "".join(f"{1e-3 * i!r},{rng.gauss(0, SIGMA)!r}\n" for i in range(60))
+        path = self.write("line.csv", "x_m,y_m\n" + rows)
+        tip = ("--tip-radius", 0.002, "--sigma", SIGMA)
+        for more in ((), ("--touched-from", "outside")):
+            plot = self.folder / "line.svg"
+            _, out, _ = run(TOOL, "fit", "--format", "text", *tip, *more, "--plot", plot, path)
+            self.assertRegex(out, "status +ambiguous: two shapes")
+            for words in (re.search("advice .*", out).group(), plot.read_text()):
+                self.assertIn("material side", words)
+                self.assertNotIn("touched_from", words)
+        sided = "x_m,y_m,material_side\n" + rows.replace("\n", ",left\n")
+        _, out, _ = run(TOOL, "fit", "--format", "text", *tip, "-", text_in=sided)
+        self.assertRegex(out, "status +recognized")
+        # Six touches of a circle: its noise is stated, or is not.
+        few = "x_m,y_m\n" + "".join(f"{0.02 * math.cos(t)!r},{0.02 * math.sin(t)!r}\n" for t in range(6))
+        for more, asks in (((), True), (("--sigma", 1e-3), False)):
+            _, out, _ = run(TOOL, "fit", "--format", "text", "--touches", *more, "-", text_in=few)
+            advice = re.search("advice .*", out).group()
+            self.assertEqual("state their noise" in advice, asks, advice)
+
     def test_text_gives_the_reason_of_a_doubt(self):
         short = ellipse(patches=((0.3, 0.4),), sigma=1e-4)
         _, out, _ = run(TOOL, "fit", "--format", "text", "-", text_in=HEADER + short)
