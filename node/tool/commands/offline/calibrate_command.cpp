@@ -169,13 +169,14 @@ void add_calibrate_command(CLI::App& app, int& exit_code) {
     }
     command
         ->add_option("--" + flag, calibrate->parameters[static_cast<std::size_t>(curve_class)],
-                     curve_class == CurveClass::Circle    ? "Ring or bore of radius A"
-                     : curve_class == CurveClass::Ellipse ? "Ellipse of semi-axes A >= B"
-                                                          : "The canonical form's parameters")
+                     curve_class == CurveClass::Circle ? "Ring or bore of radius A [m]"
+                     : curve_class == CurveClass::Ellipse
+                         ? "Ellipse of semi-axes A >= B [m]"
+                         : "The canonical form's parameters, in powers of metres")
         ->delimiter(',')
         ->expected(static_cast<int>(letters.size()))
         ->type_name(parameters)
-        ->group("Artefact [m], exactly one");
+        ->group("Artefact, exactly one");
   }
   command
       ->add_option("--output", calibrate->output, "Write the probe file (palpate/v1/probe.proto)")

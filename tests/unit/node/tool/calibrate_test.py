@@ -52,6 +52,12 @@ class Calibrate(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
+    def test_help_says_the_unit_of_every_artefact(self):
+        _, out, _ = run(TOOL, "calibrate", "--help")
+        for artefact, unit in (("circle A", "[m]"), ("ellipse A,B", "[m]"), ("parabola A", "in powers of metres"),
+                               ("cubic-spline A,B,C", "in powers of metres")):
+            self.assertRegex(out, f"--{artefact}.*{re.escape(unit)}")
+
     def calibrated(self, *more):
         path = self.folder / "p.probe"
         code, out, err = run(TOOL, "calibrate", "--circle", "0.025", "--same-setup", "--output", str(path), *more, "-",
