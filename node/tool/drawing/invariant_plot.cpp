@@ -265,9 +265,10 @@ class PanelDrawing {
 };
 
 std::string header(const Recognition& answer, const std::string& title, bool has_panels) {
+  constexpr double kBold = 1.15;  // wider
   std::string svg =
       formatted("<text x=\"%.1f\" y=\"30\" font-size=\"16\" font-weight=\"bold\">", 20.0) +
-      escaped("Invariants: " + title) + "</text>\n";
+      escaped(end_within("Invariants: " + title, kSheetWidth - 40.0, kBold * 16.0)) + "</text>\n";
   const std::string tree =
       answer.tree_class == CurveClass::Unclassified
           ? "The tree ends in no class."

@@ -99,8 +99,9 @@ std::string lobes_plot(const Qualification& qualification, const std::string& ti
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%%\" height=\"100%%\" "
       "fill=\"#fff\"/>\n",
-      kRound + kStrip + 60.0, kRound + 40.0);
-  svg += "<text x=\"12\" y=\"20\" font-size=\"14\">" + escaped(title) + "</text>\n";
+      kRound + kStrip + 60.0, kRound + 60.0);
+  svg += "<text x=\"12\" y=\"20\" font-size=\"14\">" +
+         escaped(end_within(title, kRound + kStrip + 36.0, 14.0)) + "</text>\n";
   svg += "<g transform=\"translate(0 30)\">\n";
   svg += formatted("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"none\" stroke=\"#bbb\"/>\n",
                    0.5 * kRound, 0.5 * kRound, kCircle);
@@ -121,13 +122,10 @@ std::string lobes_plot(const Qualification& qualification, const std::string& ti
   svg += "<polygon fill=\"none\" stroke=\"" + std::string(kCurveColour) +
          "\" stroke-width=\"1.5\" points=\"" + ring(offset, 0.0, px_per_m) + "\"/>\n";
   svg += scale_bar(reach_m, px_per_m);
-  svg += formatted("<text x=\"12\" y=\"%.0f\">%s (grey circle)</text>\n", kRound - 20.0,
-                   mean_text(qualification).c_str());
-  svg += formatted(
-      "<text x=\"12\" y=\"%.0f\">lobes: the offset less its mean, by the normal's "
-      "direction</text>\n",
-      kRound - 4.0);
-  svg += "</g>\n";
+  SvgTable words(12.0, kRound - 20.0, kRound);
+  words.words(mean_text(qualification) + " (grey circle)");
+  words.words("lobes: the offset less its mean, by the normal's direction");
+  svg += words.svg() + "</g>\n";
 
   // Residuals over the direction.
   std::vector<double> residuals;
@@ -154,12 +152,11 @@ std::string lobes_plot(const Qualification& qualification, const std::string& ti
     svg += formatted("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"1.5\" fill=\"%s\"/>\n", x, y,
                      sample.spike ? kSpikeColour : kPatchColours[0]);
   }
-  svg += formatted(
-      "<text x=\"%.0f\" y=\"%.1f\">residuals within %.3g %s, over the normal's direction "
-      "[deg]; red: spikes%s</text>\n",
-      left, middle + half + 36.0, most_m * small.per_m, std::string(small.name).c_str(),
-      step > 1 ? "; not all samples are drawn" : "");
-  return svg + "</svg>\n";
+  SvgTable caption(left, middle + half + 36.0, kStrip);
+  caption.words(formatted("residuals within %.3g ", most_m * small.per_m) +
+                std::string(small.name) + ", over the normal's direction [deg]; red: spikes" +
+                (step > 1 ? "; not all samples are drawn" : ""));
+  return svg + caption.svg() + "</svg>\n";
 }
 
 }  // namespace palpate

@@ -22,13 +22,8 @@ void add_answer(const ContactGroup& group, const v1::Recognition& answer, const 
   const LengthUnit unit = length_unit_for(answer.sigma_m());
   table.row("noise", number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name));
   table.row("group", group.name + ", object " + std::to_string(group.object));
-  // The end of a long path says more than its beginning.
-  constexpr std::size_t kMostOfPath = 36;
-  std::string file = group.file;
-  if (file.size() > kMostOfPath) {
-    file.replace(0, file.size() - kMostOfPath, "...");
-  }
-  table.row("file", file);
+  constexpr double kMostOfPath = 500.0;  // two lines [px]
+  table.row("file", end_within(group.file, kMostOfPath, 12.0));
   table.gap();
   table.words(advice_text(answer, stated));
   table.gap();

@@ -23,7 +23,7 @@ namespace palpate {
 namespace {
 
 constexpr double kWidth = 1064.0;  // of the document; all in pixels
-constexpr double kHeight = 680.0;
+constexpr double kHeight = 680.0;  // at least
 constexpr double kLeft = 80.0;
 constexpr double kTop = 24.0;
 constexpr double kRight = 364.0;  // left edge of the table
@@ -354,14 +354,17 @@ std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer,
   const VisibleSamples visible =
       visible_samples(group, view.metres(kCellPixels), kMostDots, std::size(kPatchColours));
   const EnlargedResiduals residuals = residuals_of_picture(group, answer, drawing, view, set_aside);
-  SvgTable table(kWidth - kRight + 16.0, kTop + 12.0);
+  constexpr double kMargin = 16.0;
+  SvgTable table(kWidth - kRight + kMargin, kTop + 12.0, kRight - 2.0 * kMargin);
   add_answer(group, answer, stated, table);
   add_keys(group, drawing, visible, residuals, table);
+  // Long names take lines of their own.
+  const double height = std::max(kHeight, table.y() + kMargin);
   std::string svg = formatted(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" viewBox=\"0 0 %.0f "
       "%.0f\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n",
-      kWidth, kHeight, kWidth, kHeight);
+      kWidth, height, kWidth, height);
   svg += "<style>.grid{stroke:#e4e4e4}</style>\n";
   svg += formatted(
       "<clipPath id=\"picture\"><rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" "

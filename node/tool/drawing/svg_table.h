@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <string>
 
+#include "node/tool/drawing/svg_text.h"
+
 namespace palpate {
 
 /// Printf-formatted text of at most 511 characters.
@@ -14,28 +16,28 @@ std::string formatted(const char* pattern, Values... values) {
   return text;
 }
 
-/// The text, escaped for use in markup.
-std::string escaped(const std::string& text);
-
-/// Writes lines from a position downwards. [px]
+/// Writes lines from a position downwards, none wider than `width`. [px]
 class SvgTable {
  public:
-  SvgTable(double x, double y) : x_(x), y_(y) {}
+  SvgTable(double x, double y, double width) : x_(x), y_(y), width_(width) {}
 
   void heading(const std::string& text);
   void row(const std::string& name, const std::string& value);
-  /// Breaks the text into lines that fit.
   void words(const std::string& text);
   void key(const char* colour, const std::string& label);
   void gap() { y_ += 8.0; }
 
   const std::string& svg() const { return svg_; }
+  /// Where the next line would be written.
+  double y() const { return y_; }
 
  private:
+  /// As many lines as the text takes.
   void add_text(double indent, const std::string& text);
 
   double x_;
   double y_;
+  double width_;
   std::string svg_;
 };
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <string>
 
+#include "node/files/counted.h"
 #include "node/tool/qualification_answer.h"
 #include "node/tool/text/quantity.h"
 
@@ -96,7 +97,7 @@ std::string qualification_text(const Qualification& qualification,
                : std::string("not told: stroke the artefact both ways"));
   add_line(text, "samples",
            std::to_string(qualification.samples.size()) + " in " +
-               std::to_string(qualification.poses.size()) + " recordings");
+               counted(qualification.poses.size(), "recording"));
   for (const auto& [from, to] : qualification.untouched) {
     add_line(
         text, "not touched",

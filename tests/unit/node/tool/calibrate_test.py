@@ -58,6 +58,22 @@ class Calibrate(unittest.TestCase):
                                ("cubic-spline A,B,C", "in powers of metres")):
             self.assertRegex(out, f"--{artefact}.*{re.escape(unit)}")
 
+    def test_the_words_of_a_picture_stay_on_its_page(self):
+        plot = self.folder / "lobes.svg"
+        # More samples than are drawn, which takes a sentence more.
+        code, _, err = run(TOOL, "calibrate", "--circle", "0.025", "--plot", plot, "-",
+                           text_in=ellipse(0.025, 0.025, 1, count=5000, probe="p" * 64))
+        self.assertEqual(code, 0, err)
+        page = xml.dom.minidom.parse(str(plot)).documentElement
+        width = float(page.getAttribute("viewBox").split()[2])
+        for text in page.getElementsByTagName("text"):
+            words = text.firstChild.data
+            size = float(text.getAttribute("font-size") or 12)
+            if text.getAttribute("text-anchor"):
+                continue
+            # Half its height is what a letter takes at least, on average.
+            self.assertLess(float(text.getAttribute("x")) + 0.5 * size * len(words), width, words)
+
     def calibrated(self, *more):
         path = self.folder / "p.probe"
         code, out, err = run(TOOL, "calibrate", "--circle", "0.025", "--same-setup", "--output", str(path), *more, "-",

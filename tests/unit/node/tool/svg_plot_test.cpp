@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "node/tool/drawing/svg_text.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 #include "tests/unit/node/tool/answered_scene.h"
@@ -117,6 +118,52 @@ TEST(SvgPlot, NamesOfAnyLengthAndBytesLeaveItWellFormed) {
   EXPECT_EQ(count(svg, "&lt;"), 2000U);
   EXPECT_EQ(count(svg, "&amp;"), 3000U);
   EXPECT_EQ(svg.find('\x01'), std::string::npos);
+}
+
+/// The texts of the table, from this x on: their right ends at most, and the last one's y.
+struct TableOfPicture {
+  double right = 0.0;
+  double bottom = 0.0;
+};
+
+TableOfPicture table_of(const std::string& svg) {
+  const std::regex text("<text x=\"([0-9.]+)\" y=\"([0-9.]+)\"( fill=\"#5b6470\")?>([^<]*)</text>");
+  TableOfPicture table;
+  for (std::sregex_iterator at(svg.begin(), svg.end(), text), end; at != end; ++at) {
+    const double x = std::stod((*at)[1]);
+    if (x < 710.0) continue;
+    table.right = std::max(table.right, x + text_width_px((*at)[4].str(), 12.0));
+    table.bottom = std::max(table.bottom, std::stod((*at)[2]));
+  }
+  return table;
+}
+
+TEST(SvgPlot, WordsOfAnyLengthStayOnThePage) {
+  const std::string wide(64, 'W');  // as long as a name may be
+  ContactGroup group{"/a/path/" + std::string(500, 'm') + ".csv", wide, 1, {wide, "b"}, {}};
+  for (std::uint32_t patch = 0; patch < 40; ++patch) {
+    ContactRun run;
+    run.context.probe = patch % 2;
+    run.context.patch = 4000000000U + patch;
+    for (int i = 0; i < 5; ++i) run.samples.push_back({{0.01 * patch, 0.01 * i}, 0.0, 0});
+    group.runs.push_back(run);
+  }
+  v1::Recognition answer;
+  answer.set_status(v1::RECOGNITION_STATUS_AMBIGUOUS);
+  answer.set_curve_class(v1::CURVE_CLASS_SEMI_CUBICAL_PARABOLA);
+  for (const v1::RecognitionDoubt doubt :
+       {v1::RECOGNITION_DOUBT_TWO_SHAPES, v1::RECOGNITION_DOUBT_FORM_ERROR,
+        v1::RECOGNITION_DOUBT_WORK_LIMIT}) {
+    answer.set_doubt(doubt);
+    const std::string svg = svg_plot(group, answer);
+    std::smatch size;
+    ASSERT_TRUE(std::regex_search(svg, size, std::regex("viewBox=\"0 0 ([0-9]+) ([0-9]+)\"")));
+    const TableOfPicture table = table_of(svg);
+    EXPECT_LE(table.right, std::stod(size[1]));
+    EXPECT_LT(table.bottom, std::stod(size[2]));
+    EXPECT_THAT(svg, HasSubstr("patch 4000000007"));  // which tells the strokes of a probe apart
+    EXPECT_THAT(svg, HasSubstr(".csv"));
+  }
 }
 
 TEST(SvgPlot, DrawsSpikesUnlikeSamples) {
