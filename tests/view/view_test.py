@@ -218,6 +218,49 @@ class View(unittest.TestCase):
             self.browser.wait("return document.querySelector('#class').textContent === 'nothing yet' && "
                               "document.querySelector('#curve-path').getAttribute('d') === ''")
 
+    def test_a_place_that_is_the_only_one_is_drawn_at_the_scale_of_a_hand(self):
+        for count in (1, 20):
+            with self.subTest(count=count), Bus() as bus:
+                self.look(bus)
+                probe = Probe(bus.publisher())
+                batch = probe.batch(0, count=1)
+                for _ in range(1, count):
+                    batch.samples.append(batch.samples[0])
+                probe.send(batch)
+                self.browser.wait("return document.querySelector('#plane path.samples')")
+                scale = self.browser.run("return document.querySelector('#plane .world').transform.baseVal[0].matrix.a")
+                self.assertLess(scale, 1000)  # pixels per mm
+                self.assertGreater(scale, 1)
+
+    def test_labels_are_on_the_page_and_tell_their_ticks_apart_wherever_the_part_lies(self):
+        labels = "return [...document.querySelectorAll('#plane .grid text:not(.unit)')].map((text) => { " \
+                 "const box = text.getBBox(); return [text.textContent, text.getAttribute('text-anchor'), box.x]; })"
+        charts = "return ['curvature', 'signature'].flatMap((chart) => [...document.querySelectorAll(" \
+                 "`#${chart} .grid text:not([transform])`)].map((text) => { const box = text.getBBox(); " \
+                 "return [text.textContent, box.x, text.ownerSVGElement.viewBox.baseVal.width - box.x - box.width]; }))"
+        for at, step, unit in ((0.0, 1e-3, "mm"), (1e3, 1e-3, "x − 1000000 mm"), (1e5, 1e-3, "x − 100000000 mm"),
+                               (-1e5, 1.0, "x + 100000 m"), (0.3, 1e-8, "x − 300000000 nm"), (0.0, 1e3, "km")):
+            with self.subTest(at=at, step=step), Bus() as bus:
+                self.look(bus)
+                probe = Probe(bus.publisher())
+                batch = probe.batch(0, count=1)
+                del batch.samples[:]
+                for i in range(60):
+                    batch.samples.add(x_m=at + step * i, y_m=-at + 2e-2 * step * i * i, sigma_m=1e-3 * step)
+                probe.send(batch)
+                self.browser.wait("return document.querySelector('#sample-count')?.value === '60'")
+                said = "return document.querySelector('#plane .grid .unit').textContent"
+                self.assertEqual(self.browser.run(said), unit)
+                shown = self.browser.run(labels)
+                for anchor in ("middle", "end"):
+                    texts = [text for text, its, _ in shown if its == anchor]
+                    self.assertGreater(len(texts), 2)
+                    self.assertEqual(len(set(texts)), len(texts), texts)
+                for text, _, x in shown:
+                    self.assertGreaterEqual(x, 0, text)
+                for text, before, after in self.browser.run(charts):
+                    self.assertGreaterEqual(min(before, after), 0, text)
+
     def test_pause_scrub_and_go_on(self):
         with Bus() as bus:
             self.look(bus)

@@ -19,8 +19,7 @@ void add_answer(const ContactGroup& group, const v1::Recognition& answer, const 
     samples += ", " + std::to_string(answer.dwelling_count()) + " while standing still";
   }
   table.row("samples", samples);
-  const LengthUnit unit = length_unit_for(answer.sigma_m());
-  table.row("noise", number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name));
+  table.row("noise", noise_text(answer));
   table.row("group", group.name + ", object " + std::to_string(group.object));
   constexpr double kMostOfPath = 500.0;  // two lines [px]
   table.row("file", end_within(group.file, kMostOfPath, 12.0));

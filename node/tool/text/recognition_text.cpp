@@ -263,6 +263,10 @@ std::string spoken_name(v1::CurveClass curve_class) {
   }
 }
 
+std::string noise_text(const v1::Recognition& answer) {
+  return answer.sigma_m() == 0.0 ? "not known yet" : text_of_length(answer.sigma_m());
+}
+
 std::string summary_text(const v1::Recognition& answer) {
   std::string text = spoken_name(answer.curve_class()) + " (" + status_text(answer) + ")";
   for (const Quantity& quantity : quantities_of(answer)) {
@@ -321,13 +325,9 @@ std::string report_text(const v1::Recognition& answer, bool noise_is_known) {
     }
   }
   if (!pose.empty()) add_line(text, "pose", pose);
-  const LengthUnit unit = length_unit_for(answer.sigma_m());
-  std::string noise =
-      "sigma " + number(answer.sigma_m() * unit.per_m) + " " + std::string(unit.name);
-  if (answer.sigma_m() == 0.0) {
-    noise = "not known yet";
-  } else if (!noise_is_known) {
-    noise += ", estimated from the samples";
+  std::string noise = noise_text(answer);
+  if (answer.sigma_m() != 0.0) {
+    noise = "sigma " + noise + (noise_is_known ? "" : ", estimated from the samples");
   }
   if (answer.noise_correlation_m() > 0.0) {
     noise += ", correlated over " + number(answer.noise_correlation_m() * 1e3) + " mm of arc";

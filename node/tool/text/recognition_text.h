@@ -35,6 +35,9 @@ std::vector<Quantity> quantities_of(const v1::Recognition& answer);
 /// E.g. "recognized", "ambiguous: several classes remain plausible".
 std::string status_text(const v1::Recognition& answer);
 
+/// Standard deviation of the samples, e.g. "30 um", or "not known yet".
+std::string noise_text(const v1::Recognition& answer);
+
 /// One line: class, parameters and pose with their standard deviations.
 std::string summary_text(const v1::Recognition& answer);
 

@@ -202,7 +202,6 @@ const char* status_word(const v1::Recognition& answer) {
 
 void write_details(LiveGroup& group, const Drawing& drawing, SteadyTime now, JsonText& json) {
   const v1::Recognition& answer = group.answer;
-  const LengthUnit noise_unit = length_unit_for(answer.sigma_m());
   json.begin_object();
   json.member("group", group.touched.name);
   json.member("object", std::to_string(group.touched.object));
@@ -225,8 +224,7 @@ void write_details(LiveGroup& group, const Drawing& drawing, SteadyTime now, Jso
   json.member("sampleCount", answer.sample_count());
   json.member("outlierCount", answer.outlier_count());
   json.member("dwellingCount", answer.dwelling_count());
-  json.member("noise",
-              number(answer.sigma_m() * noise_unit.per_m) + " " + std::string(noise_unit.name));
+  json.member("noise", noise_text(answer));
   json.member("noiseCorrelationMm", 1e3 * answer.noise_correlation_m(), 4);
   json.member("computeMs", 1e-6 * static_cast<double>(answer.compute_ns()), 4);
   json.member("answersPerS", group.answer_rate.per_second(now), 3);

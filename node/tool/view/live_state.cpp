@@ -12,9 +12,10 @@ namespace {
 
 constexpr std::int64_t kNsPerMs = 1'000'000;
 
-// A viewer that follows the touch leaves a group that has been silent for this long if another one
-// is touched.
-constexpr std::chrono::milliseconds kFollowAfter{1000};
+// A viewer that follows the touch leaves a group that has not been touched for this long if another
+// one is: longer than from batch to batch of a stroke, so that strokes on two groups at once do not
+// make it flicker, and shorter than from touch to touch.
+constexpr std::chrono::milliseconds kFollowAfter{250};
 
 /// Keeps every second sample of every run; of runs with a single sample, the later half of the
 /// runs.
@@ -74,12 +75,12 @@ LiveGroup* LiveState::find(std::string_view name) {
 
 std::string LiveState::followed_group(std::string_view shown, SteadyTime now) const {
   const auto present = groups_.find(shown);
-  if (present != groups_.end() && now - present->second.last_heard < kFollowAfter) {
+  if (present != groups_.end() && now - present->second.last_touched < kFollowAfter) {
     return present->first;
   }
   const auto latest = std::max_element(
       groups_.begin(), groups_.end(),
-      [](const auto& a, const auto& b) { return a.second.last_heard < b.second.last_heard; });
+      [](const auto& a, const auto& b) { return a.second.last_touched < b.second.last_touched; });
   return latest == groups_.end() ? "" : latest->first;
 }
 
@@ -187,6 +188,7 @@ void LiveState::take(const v1::ContactBatch& batch, SteadyTime now) {
     live.touched.runs.push_back(
         {{number, batch.patch(), batch.tip_radius_m(), side_of(batch.material_side())}, {}});
   }
+  live.last_touched = now;
   ContactRun& run = live.touched.runs[found->second];
   for (const v1::ContactSample& sample : batch.samples()) {
     run.samples.push_back({{sample.x_m(), sample.y_m()}, sample.sigma_m(), sample.stamp_ns()});
@@ -215,6 +217,8 @@ void LiveState::take(const v1::Recognition& answer, SteadyTime now, std::int64_t
   if (!answer.contacts().empty()) {
     place_origin(live, {answer.contacts(0).x_m(), answer.contacts(0).y_m()});
   }
+  // Of touches whose contacts were lost, or came before this view.
+  if (answer.sample_count() > live.samples_received) live.last_touched = now;
   live.answer = answer;
   live.has_answer = true;
   live.answer_received_ns = received_ns;

@@ -46,6 +46,7 @@ struct LiveGroup {
   /// Changes with every answer and object, so with everything that the group's picture shows.
   std::uint64_t version = 0;
   SteadyTime last_heard;
+  SteadyTime last_touched;  ///< an answer may come long after its touch
 
   /// The era of the present samples, which moments of the history refer to.
   std::shared_ptr<SampleEra> era = std::make_shared<SampleEra>();
@@ -81,7 +82,7 @@ class LiveState {
   /// nullptr if there is no group of that name.
   LiveGroup* find(std::string_view name);
   /// The group to show to a viewer that follows the touch: `shown` as long as it is touched, else
-  /// the one heard last; empty if there is none.
+  /// the one touched last; empty if there is none.
   std::string followed_group(std::string_view shown, SteadyTime now) const;
   /// Changes when the probes or recognizers in the overview change in a way to be shown at once.
   std::uint64_t status_version() const { return status_version_; }

@@ -5,7 +5,8 @@ import {svg, tickStep, ticks, tickText} from "./picture.js";
 /** @typedef {{x: number, y: number, dx?: number|null, dy?: number|null, colour: number}} Dot */
 /** @typedef {{x: (number|null)[], y: (number|null)[], sigma?: number[], className: string}} Line */
 
-const LEFT = 58, BOTTOM = 34, TOP = 8, RIGHT = 10;
+const LEFT = 70, BOTTOM = 34, TOP = 8, RIGHT = 10;
+const HALF_DIGIT = 3.6;  // [px]
 const BAND_SIGMAS = 1.959963984540054;
 
 /** @param {(number|null|undefined)[]} values */
@@ -81,8 +82,9 @@ export class Chart {
     const xStep = tickStep(xs[1] - xs[0], width / 80), yStep = tickStep(ys[1] - ys[0], height / 36);
     for (const x of ticks(xs[0], xs[1], xStep)) {
       svg("line", {x1: px(x), x2: px(x), y1: TOP, y2: height - BOTTOM}, grid);
-      svg("text", {x: px(x), y: height - BOTTOM + 15, "text-anchor": "middle"}, grid).textContent =
-          tickText(x, xStep);
+      const text = tickText(x, xStep);
+      if (px(x) + HALF_DIGIT * text.length > width) continue;
+      svg("text", {x: px(x), y: height - BOTTOM + 15, "text-anchor": "middle"}, grid).textContent = text;
     }
     for (const y of ticks(ys[0], ys[1], yStep)) {
       svg("line", {x1: LEFT, x2: width - RIGHT, y1: py(y), y2: py(y)}, grid);

@@ -78,11 +78,53 @@ export function ticks(low, high, step) {
   return result;
 }
 
-/** The number with as many decimals as the step has.
+/** Decimals that tell multiples of a step apart. @param {number} step */
+function decimalsOf(step) {
+  return Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+}
+
+const LONGEST = 8;  // characters, for which a chart's axis has room
+
+/** The number with as many digits as the step asks for, with an exponent where it would be too long.
  * @param {number} value
  * @param {number} step
  */
 export function tickText(value, step) {
-  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-  return decimals > 9 || Math.abs(value) >= 1e6 ? value.toExponential(2) : value.toFixed(decimals);
+  const decimals = decimalsOf(step);
+  if (decimals <= LONGEST) {
+    const plain = value.toFixed(decimals);
+    if (plain.length <= LONGEST) return plain;
+  }
+  if (Math.abs(value) < 1e-6 * step) return "0";
+  const digits = Math.floor(Math.log10(Math.abs(value)) + 1e-9) - Math.floor(Math.log10(step) + 1e-9);
+  return value.toExponential(Math.min(Math.max(digits, 0), 15));
+}
+
+/** The unit of length in which a step has few digits. @param {number} stepMm */
+export function unitOf(stepMm) {
+  const units = [{name: "nm", mm: 1e-6}, {name: "µm", mm: 1e-3}, {name: "mm", mm: 1}, {name: "m", mm: 1e3}];
+  return units.find((unit) => stepMm < 999 * unit.mm) ?? {name: "km", mm: 1e6};
+}
+
+/** What the labels of an axis are less, so that each has six characters at most: 0, or a round number near by.
+ * @param {number} low
+ * @param {number} high
+ * @param {number} step
+ */
+export function tickOffset(low, high, step) {
+  const room = [1e5, 1e3, 1e2][Math.min(decimalsOf(step), 2)];
+  if (Math.max(Math.abs(low), Math.abs(high)) < room) return 0;
+  const grid = 10 ** Math.ceil(Math.log10(high - low));
+  return Math.round((low + high) / 2 / grid) * grid;
+}
+
+/** "mm", or "x − 100000 mm" where the labels are less an offset.
+ * @param {string} name
+ * @param {number} offset
+ * @param {string} unit
+ */
+export function axisText(name, offset, unit) {
+  // Fifteen digits, without the noise of the last bits.
+  const less = String(Number(Math.abs(offset).toPrecision(15)));
+  return offset === 0 ? unit : `${name} ${offset > 0 ? "−" : "+"} ${less} ${unit}`;
 }

@@ -1,7 +1,7 @@
 // The picture of the touched plane: samples, the curve and its uncertainty. Drawn in millimetres from the object's
 // origin, y upwards. The view is one transform, so that zooming and panning redraw nothing.
 // @ts-check
-import {svg, tickStep, ticks, tickText} from "./picture.js";
+import {axisText, svg, tickOffset, tickStep, ticks, tickText, unitOf} from "./picture.js";
 
 /** @typedef {import("./types.js").Picture} Picture */
 /** @typedef {import("./types.js").Details} Details */
@@ -17,6 +17,7 @@ const TANGENT_PIXELS = 20;
 const WHOLE = 3;  // in sizes of what was touched
 const NEAR = 1;
 const MARGIN = 46;  // room for the numbers at the ticks [px]
+const ALONE = 20;  // width shown of a place that is the only one: it has no size itself [mm]
 
 /** @param {number[]} points @param {boolean} closed */
 function pathOf(points, closed = false) {
@@ -234,7 +235,9 @@ export class Plane {
     const bounds = this.bounds();
     if (!bounds) return;
     const width = this.size.width - MARGIN, height = this.size.height - 24;
-    const extent = [0, 1].map((i) => Math.max(bounds.high[i] - bounds.low[i], 1e-6));
+    const size = [0, 1].map((i) => bounds.high[i] - bounds.low[i]);
+    const least = Math.max(...size) > 0 ? 1e-6 : ALONE;
+    const extent = size.map((length) => Math.max(length, least));
     const scale = 0.86 * Math.min(width / extent[0], height / extent[1]);
     const x = (bounds.low[0] + bounds.high[0]) / 2, y = (bounds.low[1] + bounds.high[1]) / 2;
     // While points arrive, the view stays until they leave it or much of it is empty.
@@ -278,31 +281,49 @@ export class Plane {
     this.drawMarks();
   }
 
-  /** Draws the world coordinates, in mm, along both sides. */
+  /** Draws the world coordinates along both sides. */
   drawGrid() {
     this.grid.replaceChildren();
     const origin = (this.store ?? this.picture)?.origin;
     if (!origin) return;
     const {width, height} = this.size;
     const scale = this.view.scale;
-    const step = tickStep(Math.max(width, height) / scale, Math.max(width, height) / 90);
-    const halfX = (width - MARGIN) / 2 / scale, halfY = (height - 24) / 2 / scale;
-    const ox = origin[0] * MM, oy = origin[1] * MM;
-    for (const x of ticks(ox + this.view.x - halfX, ox + this.view.x + halfX, step)) {
-      const [px] = this.toPixels(x - ox, 0);
-      svg("line", {x1: px, x2: px, y1: 0, y2: height - 24}, this.grid);
-      if (px > MARGIN + 14 && px < width - 40) {
-        svg("text", {x: px, y: height - 8, "text-anchor": "middle"}, this.grid).textContent = tickText(x, step);
+    const stepMm = tickStep(Math.max(width, height) / scale, Math.max(width, height) / 90);
+    const unit = unitOf(stepMm);
+    const step = stepMm / unit.mm;
+    // Both in the unit, y upwards.
+    const at = [origin[0] * MM + this.view.x, origin[1] * MM - this.view.y].map((mm) => mm / unit.mm);
+    const half = [width - MARGIN, height - 24].map((length) => length / 2 / scale / unit.mm);
+    const offset = at.map((centre, i) => tickOffset(centre - half[i], centre + half[i], step));
+    for (const i of [0, 1]) {
+      const from = at[i] - offset[i];
+      for (const label of ticks(from - half[i], from + half[i], step)) {
+        const away = (label - from) * unit.mm;
+        if (i === 0) {
+          const [x] = this.toPixels(this.view.x + away, 0);
+          svg("line", {x1: x, x2: x, y1: 0, y2: height - 24}, this.grid);
+          if (x > MARGIN + 14 && x < width - this.room(offset[0], unit.name)) {
+            svg("text", {x, y: height - 8, "text-anchor": "middle"}, this.grid).textContent = tickText(label, step);
+          }
+        } else {
+          const [, y] = this.toPixels(0, this.view.y - away);
+          svg("line", {x1: MARGIN, x2: width, y1: y, y2: y}, this.grid);
+          if (y > 10 && y < height - 28) {
+            svg("text", {x: MARGIN - 6, y: y + 4, "text-anchor": "end"}, this.grid).textContent = tickText(label, step);
+          }
+        }
       }
     }
-    for (const y of ticks(oy - this.view.y - halfY, oy - this.view.y + halfY, step)) {
-      const [, py] = this.toPixels(0, oy - y);
-      svg("line", {x1: MARGIN, x2: width, y1: py, y2: py}, this.grid);
-      if (py > 10 && py < height - 28) {
-        svg("text", {x: MARGIN - 6, y: py + 4, "text-anchor": "end"}, this.grid).textContent = tickText(y, step);
-      }
+    svg("text", {class: "unit", x: width - 4, y: height - 8, "text-anchor": "end"}, this.grid).textContent =
+        axisText("x", offset[0], unit.name);
+    if (offset[1] !== 0) {
+      svg("text", {class: "unit", x: MARGIN + 6, y: 14}, this.grid).textContent = axisText("y", offset[1], unit.name);
     }
-    svg("text", {x: width - 4, y: height - 8, "text-anchor": "end"}, this.grid).textContent = "mm";
+  }
+
+  /** Room for the unit at the end of the x axis, and half a label. [px] @param {number} offset @param {string} unit */
+  room(offset, unit) {
+    return 26 + 7 * axisText("x", offset, unit).length;
   }
 
   drawMarks() {

@@ -91,6 +91,7 @@ TEST(SvgPlot, WithoutAnAnswerShowsTheSamplesAlone) {
   const std::string svg = svg_plot(group_of(scene, "a<b>.csv"), {});
   EXPECT_EQ(dots_and_left_out(svg), 222U);
   EXPECT_EQ(count(svg, "<polyline"), 0U);
+  EXPECT_THAT(svg, HasSubstr("not known yet"));  // the noise
 }
 
 TEST(SvgPlot, ShowsTheCurveOfTouchesThatAreTooFarApartForAContact) {
