@@ -15,7 +15,7 @@ constexpr double kPlaneSigmas = 2.4477468306808166;
 
 std::optional<PoseEllipse> pose_ellipse(const CurveModel& model) {
   const Eigen::Index size = model.covariance.rows();
-  if (size == 0) return std::nullopt;
+  if (size == 0 || class_of(model.curve) == CurveClass::Line) return std::nullopt;
   const Eigen::Matrix2d block = model.covariance.block(size - 3, size - 3, 2, 2);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(block);
   const auto half_axis = [&](Eigen::Index i) {

@@ -15,7 +15,7 @@ struct PoseEllipse {
   double angle_rad = 0.0;  ///< direction of the long axis in the world
 };
 
-/// nullopt without a covariance.
+/// nullopt without a covariance, and of a line, whose origin may lie anywhere along it.
 std::optional<PoseEllipse> pose_ellipse(const CurveModel& model);
 
 }  // namespace palpate

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "node/tool/drawing/band_area.h"
 #include "node/tool/drawing/colours.h"
 #include "node/tool/drawing/drawing.h"
 #include "node/tool/drawing/enlarged_residuals.h"
@@ -43,7 +44,11 @@ class View {
  public:
   View(const Vec2& low, const Vec2& high) {
     const Vec2 centre = 0.5 * (low + high);
-    const Vec2 extent = (high - low).cwiseMax(1e-12 * (1.0 + centre.cwiseAbs().maxCoeff()));
+    // One place alone has no size: as much is shown as of a small part.
+    constexpr double kAlone_m = 0.02;
+    const double least =
+        (high - low).maxCoeff() > 0.0 ? 1e-12 * (1.0 + centre.cwiseAbs().maxCoeff()) : kAlone_m;
+    const Vec2 extent = (high - low).cwiseMax(least);
     const Vec2 room(kWidth - kLeft - kRight, kHeight - kTop - kBottom);
     constexpr double kFilled = 0.9;
     pixels_per_m_ = kFilled * (room.array() / extent.array()).minCoeff();
@@ -132,20 +137,18 @@ std::string polyline(const View& view, const DrawnCurve& curve, const char* styl
   return svg + "\"/>\n";
 }
 
-/// The area between the borders of the band, as a closed path.
 std::string band_svg(const View& view, const DrawnCurve& curve) {
-  std::string left;
-  std::string right;
-  for (const CurvePlace& place : curve.places) {
-    if (!place.band) return {};
-    left += point_text(view, place.position + place.band->left_m * place.left);
-    right = point_text(view, place.position + place.band->right_m * place.left) + right;
+  const std::vector<std::vector<Vec2>> area = band_area(curve);
+  if (area.empty()) return {};
+  // The group's opacity: where polygons overlap the band is no darker.
+  std::string svg = formatted(
+      "<g class=\"band\" clip-path=\"url(#picture)\" fill=\"%s\" opacity=\"0.3\">\n", kBandColour);
+  for (const std::vector<Vec2>& polygon : area) {
+    svg += "<polygon points=\"";
+    for (const Vec2& corner : polygon) svg += point_text(view, corner);
+    svg += "\"/>\n";
   }
-  return formatted(
-             "<polygon class=\"band\" clip-path=\"url(#picture)\" fill=\"%s\" fill-opacity=\"0.3\" "
-             "points=\"",
-             kBandColour) +
-         left + right + "\"/>\n";
+  return svg + "</g>\n";
 }
 
 std::string curves_svg(const View& view, const Drawing& drawing) {
@@ -185,13 +188,15 @@ std::string frame_svg(const View& view, const v1::Recognition& answer, const Dra
   if (const auto ellipse = model ? pose_ellipse(*model) : std::optional<PoseEllipse>()) {
     // Clamped: the border of a larger ellipse is outside the picture anyway.
     constexpr double kFar = 1e5;
-    svg += formatted(
-        "<ellipse class=\"origin\" clip-path=\"url(#picture)\" rx=\"%.2f\" ry=\"%.2f\" "
-        "transform=\"translate(%.2f %.2f) rotate(%.2f)\" fill=\"%s\" fill-opacity=\"0.3\" "
-        "stroke=\"%s\"/>\n",
-        std::min(ellipse->long_m / view.metres(1.0), kFar),
-        std::min(ellipse->short_m / view.metres(1.0), kFar), origin.x(), origin.y(),
-        -kDegrees * ellipse->angle_rad, kBandColour, kBandColour);
+    // Clipped in the picture's frame, not in its own.
+    svg += "<g clip-path=\"url(#picture)\">" +
+           formatted(
+               "<ellipse class=\"origin\" rx=\"%.2f\" ry=\"%.2f\" "
+               "transform=\"translate(%.2f %.2f) rotate(%.2f)\" fill=\"%s\" fill-opacity=\"0.3\" "
+               "stroke=\"%s\"/></g>\n",
+               std::min(ellipse->long_m / view.metres(1.0), kFar),
+               std::min(ellipse->short_m / view.metres(1.0), kFar), origin.x(), origin.y(),
+               -kDegrees * ellipse->angle_rad, kBandColour, kBandColour);
   }
   return svg;
 }
@@ -273,12 +278,12 @@ std::string contacts_svg(const View& view, const v1::Recognition& answer) {
 std::string band_label(const DrawnCurve& curve) {
   const double widest_m = widest_band_m(curve);
   const LengthUnit unit = length_unit_for(widest_m);
-  return formatted("its 95 %% band, +- %.2g ", widest_m * unit.per_m) + std::string(unit.name) +
-         " where widest";
+  return "its 95 % band, +- " + with_digits(widest_m * unit.per_m, 2) + " " +
+         std::string(unit.name) + " where widest";
 }
 
-void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSamples& visible,
-              const EnlargedResiduals& residuals, SvgTable& table) {
+void add_keys(const ContactGroup& group, const Drawing& drawing, bool has_origin,
+              const VisibleSamples& visible, const EnlargedResiduals& residuals, SvgTable& table) {
   const bool touches = are_touches(group);
   if (touches) {
     for (std::size_t probe = 0; probe < group.probes.size(); ++probe) {
@@ -304,7 +309,7 @@ void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSa
     if (drawing.curve->places.front().band) table.key(kBandColour, band_label(*drawing.curve));
     table.key(kXAxisColour, "its x axis");
     table.key(kYAxisColour, "its y axis");
-    if (drawing.curve->places.front().band) table.key(kBandColour, "where its origin is, 95 %");
+    if (has_origin) table.key(kBandColour, "where its origin is, 95 %");
   }
   for (const DrawnCurve& rival : drawing.rivals) {
     table.key(kRivalColour,
@@ -312,7 +317,9 @@ void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSa
   }
   if (!drawing.contacts.empty()) table.key(kContactColour, "contacts, tangents");
   if (!residuals.lines.empty()) {
-    table.key(kResidualColour, "residuals, " + number(residuals.gain) + " times enlarged");
+    table.key(kResidualColour, residuals.gain > 1.0
+                                   ? "residuals, " + number(residuals.gain) + " times enlarged"
+                                   : std::string("residuals"));
   }
   if (!residuals.set_aside.empty()) {
     table.key(kResidualColour, formatted("x: %zu set aside as spikes", residuals.set_aside.size()));
@@ -326,7 +333,7 @@ void add_keys(const ContactGroup& group, const Drawing& drawing, const VisibleSa
     table.gap();
     table.words(std::to_string(visible.drawn) + " samples drawn; " +
                 std::to_string(visible.left_out) + " lie within " +
-                formatted("%.2g ", visible.cell_m * unit.per_m) + std::string(unit.name) +
+                with_digits(visible.cell_m * unit.per_m, 2) + " " + std::string(unit.name) +
                 " of one of them.");
   }
 }
@@ -357,7 +364,10 @@ std::string svg_plot(const ContactGroup& group, const v1::Recognition& answer,
   constexpr double kMargin = 16.0;
   SvgTable table(kWidth - kRight + kMargin, kTop + 12.0, kRight - 2.0 * kMargin);
   add_answer(group, answer, stated, table);
-  add_keys(group, drawing, visible, residuals, table);
+  const std::optional<CurveModel> model =
+      drawing.curve ? model_of(answer) : std::optional<CurveModel>();
+  const bool has_origin = model && pose_ellipse(*model);
+  add_keys(group, drawing, has_origin, visible, residuals, table);
   // Long names take lines of their own.
   const double height = std::max(kHeight, table.y() + kMargin);
   std::string svg = formatted(

@@ -44,11 +44,7 @@ std::string caption(const ContactGroup& group, const Extent& extent) {
   const Vec2 size = extent.high - extent.low;
   const LengthUnit unit = length_unit_for(size.maxCoeff());
   // Two digits are enough for the size; the table has the rest.
-  const auto short_number = [&](double metres) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2g", metres * unit.per_m);
-    return number(std::stod(text));
-  };
+  const auto short_number = [&](double metres) { return with_digits(metres * unit.per_m, 2); };
   return printable(group.name) + ", object " + std::to_string(group.object) + ": " +
          short_number(size.x()) + " x " + short_number(size.y()) + " " + std::string(unit.name);
 }

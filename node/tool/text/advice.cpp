@@ -1,7 +1,6 @@
 #include "node/tool/text/advice.h"
 
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "node/tool/text/quantity.h"
@@ -11,11 +10,7 @@
 namespace palpate {
 namespace {
 
-std::string percent(double fraction) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * fraction);
-  return text;
-}
+std::string percent(double fraction) { return with_digits(100.0 * fraction, 3) + " %"; }
 
 std::string with_article(v1::CurveClass curve_class) {
   const std::string name = spoken_name(curve_class);
@@ -162,10 +157,8 @@ std::string nearest(const v1::Recognition& answer, const Stated& stated) {
   const double deviation_m =
       answer.sigma_m() * std::sqrt((best->chi2() - of_noise) / static_cast<double>(best->dof()));
   const LengthUnit unit = length_unit_for(deviation_m);
-  char text[64];
-  std::snprintf(text, sizeof text, "%.2g ", deviation_m * unit.per_m);
   return " The nearest is " + with_article(best->curve_class()) + ", from which it deviates by " +
-         text + std::string(unit.name) +
+         with_digits(deviation_m * unit.per_m, 2) + " " + std::string(unit.name) +
          " (root mean square, beyond the noise). Is that within the part's tolerance, or within "
          "what the probe deviates by, state " +
          (stated.form_deviation_m > 0.0

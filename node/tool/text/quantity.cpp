@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <iterator>
 
 namespace palpate {
@@ -35,6 +36,10 @@ std::string with_sigma(double value, double sigma) {
   const int digits =
       std::clamp(static_cast<int>(std::floor(std::log10(larger))) + decimals, kSigmaDigits - 1, 16);
   return print("%.*e", digits, value) + " +- " + print("%.*e", kSigmaDigits - 1, sigma);
+}
+
+std::string with_digits(double value, int digits) {
+  return number(std::strtod(print("%.*e", digits - 1, value).c_str(), nullptr));
 }
 
 LengthUnit length_unit_for(double magnitude_m) {

@@ -26,6 +26,9 @@ std::string with_sigma(double value, double sigma);
 /// Six significant digits.
 std::string number(double value);
 
+/// So many significant digits, without an exponent up to a million.
+std::string with_digits(double value, int digits);
+
 /// A unit of length that suits the magnitude: m, mm, um or nm.
 struct LengthUnit {
   std::string_view name;

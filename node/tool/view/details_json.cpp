@@ -15,18 +15,11 @@
 namespace palpate {
 namespace {
 
-/// Rounds to `digits` significant digits.
-double rounded(double value, int digits) {
-  if (value == 0.0 || !std::isfinite(value)) return value;
-  const double power = std::pow(10.0, digits - 1 - std::floor(std::log10(std::abs(value))));
-  return std::isfinite(power) && power > 0.0 ? std::round(value * power) / power : value;
-}
-
 /// The largest width of the band.
 std::string band_width_text(const DrawnCurve& curve) {
   const double widest_m = widest_band_m(curve);
   const LengthUnit unit = length_unit_for(widest_m);
-  return number(rounded(widest_m * unit.per_m, 2)) + " " + std::string(unit.name);
+  return with_digits(widest_m * unit.per_m, 2) + " " + std::string(unit.name);
 }
 
 template <typename ValueAt>

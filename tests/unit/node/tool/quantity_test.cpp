@@ -16,6 +16,13 @@ TEST(Quantity, ShowsAsManyDigitsAsTheStandardDeviationLeaves) {
   EXPECT_EQ(with_sigma(1.0, 1e-12), "1.0000000000000e+00 +- 1.0e-12");
 }
 
+TEST(Quantity, RoundsWithoutAnExponent) {
+  EXPECT_EQ(with_digits(934.2, 2), "930");
+  EXPECT_EQ(with_digits(0.09951, 2), "0.1");
+  EXPECT_EQ(with_digits(1234.5, 3), "1230");
+  EXPECT_EQ(with_digits(-0.001234, 2), "-0.0012");
+}
+
 TEST(Quantity, SaysWhatIsNotKnown) {
   EXPECT_EQ(with_sigma(1.23456789, 0.0), "1.23457");
   EXPECT_EQ(with_sigma(2.0, std::numeric_limits<double>::infinity()), "2 +- inf");

@@ -52,6 +52,10 @@ TEST(SvgPlot, ShowsEverySampleTheCurveTheFrameAndTheContactsOfEveryClass) {
     EXPECT_EQ(count(svg, "class=\"curve\""), 1U) << name_of(curve_class);
     EXPECT_EQ(count(svg, "class=\"band\""), 1U) << name_of(curve_class);
     EXPECT_THAT(svg, HasSubstr("times enlarged"));
+    // A line's lies anywhere along it. An element's own transform would move its clip path too.
+    const std::size_t origins = curve_class == CurveClass::Line ? 0 : 1;
+    EXPECT_EQ(count(svg, "<g clip-path=\"url(#picture)\"><ellipse class=\"origin\" rx="), origins);
+    EXPECT_EQ(count(svg, "where its origin is"), origins);
     EXPECT_THAT(svg, Not(HasSubstr("nan")));
     EXPECT_THAT(svg, Not(HasSubstr("inf")));
   }
@@ -92,6 +96,17 @@ TEST(SvgPlot, WithoutAnAnswerShowsTheSamplesAlone) {
   EXPECT_EQ(dots_and_left_out(svg), 222U);
   EXPECT_EQ(count(svg, "<polyline"), 0U);
   EXPECT_THAT(svg, HasSubstr("not known yet"));  // the noise
+}
+
+TEST(SvgPlot, OnePlaceAloneIsShownAtTheScaleOfASmallPart) {
+  for (const std::size_t samples : {1U, 20U}) {
+    ContactGroup group{"one.csv", "probe", 0, {"probe"}, {{}}};
+    group.runs[0].samples.assign(samples, {Vec2(0.3, 0.1)});
+    const std::string svg = svg_plot(group, v1::Recognition());
+    EXPECT_THAT(svg, HasSubstr(">x [mm]<"));
+    EXPECT_THAT(svg, HasSubstr(">300<"));
+    EXPECT_THAT(svg, HasSubstr(">100<"));
+  }
 }
 
 TEST(SvgPlot, ShowsTheCurveOfTouchesThatAreTooFarApartForAContact) {
