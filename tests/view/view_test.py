@@ -261,6 +261,38 @@ class View(unittest.TestCase):
                 for text, before, after in self.browser.run(charts):
                     self.assertGreaterEqual(min(before, after), 0, text)
 
+    def test_a_band_wider_than_the_part_is_drawn_within_it(self):
+        # Of a circle of 20 mm: at its centre, between it and there, on it, outside.
+        covered = "const band = document.querySelector('#plane .band'), [x0, y0] = window.palpateOrigin; " \
+                  "return [0, 7, 14, 20.5, 25].map((x) => " \
+                  "band.isPointInFill(new DOMPoint(x - 1000 * x0, 0.1 + 1000 * y0)))"
+        for sigma, expected in ((1e-3, [False, False, False, True, False]), (0.05, [True] * 5)):
+            with self.subTest(sigma=sigma), Bus() as bus:
+                false_node = bus.context.socket(zmq.XPUB)
+                false_node.setsockopt(zmq.XPUB_VERBOSE, 1)
+                false_node.bind(bus.results)
+                _, url = start_view(bus)
+                self.browser.open("about:blank")
+                self.browser.open(url)
+                for _ in range(3):  # recognitions, status, contacts
+                    self.assertTrue(false_node.poll(10000))
+                    false_node.recv()
+                answer = recognition_pb2.Recognition(group="part", object=1, curve_class=curve_pb2.CURVE_CLASS_CIRCLE,
+                                                     status=recognition_pb2.RECOGNITION_STATUS_AMBIGUOUS)
+                answer.header.source, answer.header.epoch = "node", 1
+                answer.parameters.a = 0.02
+                answer.pose.x_m = 0.0
+                answer.hypotheses.add(curve_class=answer.curve_class, probability=1.0)
+                for k in range(8):
+                    angle = 2 * math.pi * k / 8
+                    answer.contacts.add(probe="p", x_m=0.02 * math.cos(angle), y_m=0.02 * math.sin(angle), t=angle)
+                answer.covariance.extend(sigma ** 2 if i in (0, 5, 10) else 0.0 for i in range(16))
+                false_node.send_multipart([b"recognition/part/", answer.SerializeToString()])
+                self.browser.wait("return document.querySelector('#plane .band')?.getAttribute('d')")
+                # Drawn from the first contact on.
+                self.browser.wait("return window.palpateOrigin")
+                self.assertEqual(self.browser.run(covered), expected)
+
     def test_pause_scrub_and_go_on(self):
         with Bus() as bus:
             self.look(bus)

@@ -1,6 +1,7 @@
 // The picture of the touched plane: samples, the curve and its uncertainty. Drawn in millimetres from the object's
 // origin, y upwards. The view is one transform, so that zooming and panning redraw nothing.
 // @ts-check
+import {MM, bandPath, pathOf} from "./outline.js";
 import {axisText, svg, tickOffset, tickStep, ticks, tickText, unitOf} from "./picture.js";
 
 /** @typedef {import("./types.js").Picture} Picture */
@@ -8,7 +9,6 @@ import {axisText, svg, tickOffset, tickStep, ticks, tickText, unitOf} from "./pi
 /** @typedef {import("./types.js").SampleStore} SampleStore */
 /** @typedef {{x: number, y: number, scale: number}} View centre [mm] and pixels per mm */
 
-const MM = 1000;
 // Samples per path. When samples are appended, the browser redraws one path only.
 const CHUNK = 500;
 const COLOURS = 8;
@@ -18,24 +18,6 @@ const WHOLE = 3;  // in sizes of what was touched
 const NEAR = 1;
 const MARGIN = 46;  // room for the numbers at the ticks [px]
 const ALONE = 20;  // width shown of a place that is the only one: it has no size itself [mm]
-
-/** @param {number[]} points @param {boolean} closed */
-function pathOf(points, closed = false) {
-  let d = "";
-  for (let i = 0; i < points.length; i += 2) {
-    d += `${i === 0 ? "M" : "L"}${points[i] * MM} ${-points[i + 1] * MM}`;
-  }
-  return closed ? d + "Z" : d;
-}
-
-/** The area between two borders; for a closed curve it is a ring.
- * @param {number[]} left @param {number[]} right @param {boolean} closed */
-function areaOf(left, right, closed) {
-  if (closed) return pathOf(left, true) + pathOf(right, true);
-  const back = [];
-  for (let i = right.length - 2; i >= 0; i -= 2) back.push(right[i], right[i + 1]);
-  return pathOf(left.concat(back), true);
-}
 
 export class Plane {
   /** @param {SVGSVGElement} root @param {() => void} onViewChange called when the user has moved the view */
@@ -107,8 +89,10 @@ export class Plane {
     const picture = this.picture;
     const curve = picture?.curve;
     this.curve.setAttribute("d", curve ? pathOf(curve.points, curve.closed) : "");
-    this.band.setAttribute("d", curve?.left && curve.right ?
-        areaOf(curve.left, curve.right, curve.closed) : "");
+    const band = curve?.left && curve.right ? bandPath(curve.points, curve.left, curve.right, curve.closed) : null;
+    this.band.setAttribute("d", band?.d ?? "");
+    this.band.setAttribute("fill-rule", band?.isWide ? "nonzero" : "evenodd");
+    this.band.classList.toggle("wide", band?.isWide ?? false);
     this.rivals.replaceChildren();
     for (const rival of picture?.rivals ?? []) {
       const path = svg("path", {class: "rival", d: pathOf(rival.points, rival.closed)}, this.rivals);
