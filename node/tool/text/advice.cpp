@@ -60,7 +60,9 @@ std::string undetermined(const v1::Recognition& answer) {
   }
   std::string text = "The touched arc does not determine the shape: touch further round";
   if (loosest != nullptr && std::isfinite(worst)) {
-    text += " (" + loosest->name + " is known to " + percent(worst) + " only)";
+    const std::string known =
+        worst < 1.0 ? " is known to " + percent(worst) + " only" : " is not known";
+    text += " (" + loosest->name + known + ")";
   }
   return text + ".";
 }

@@ -287,7 +287,8 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
   if (holes > 0) {
     add(static_cast<double>(holes) > kFewHoles * static_cast<double>(samples) ? Severity::Warning
                                                                               : Severity::Note,
-        counted(holes, "hole") + " of 3 to " + number(widest) + " typical spacings within a patch",
+        counted(holes, "hole") + " of 3 to " + with_digits(widest, 2) +
+            " typical spacings within a patch",
         is_file ? "a lift-off begins another patch; else give every sample along the arc"
                 : "publish every contact at an even pace along the arc; a real lift-off needs a "
                   "new patch");

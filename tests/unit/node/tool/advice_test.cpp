@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+
 namespace palpate {
 namespace {
 
@@ -44,6 +46,20 @@ TEST(Advice, AsksForNoNoiseThatWasStated) {
   EXPECT_THAT(advice_text(work, {.noise = true}), HasSubstr("material side"));
   EXPECT_THAT(advice_text(work, {.tip_sides = true}), Not(HasSubstr("side")));
   EXPECT_THAT(advice_text(work, {.noise = true, .tip_sides = true}), Not(HasSubstr("state")));
+}
+
+TEST(Advice, NamesTheLoosestParameterAndHowWellItIsKnown) {
+  v1::Recognition answer = doubted(v1::RECOGNITION_DOUBT_UNDETERMINED);
+  answer.mutable_parameters()->set_a(0.03);
+  answer.mutable_parameters()->set_b(0.02);
+  answer.mutable_pose();
+  for (const auto& [sigma_m, words] :
+       {std::pair(0.005, "(b is known to 25 % only)"), std::pair(0.03, "(b is not known)"),
+        std::pair(6e5, "(b is not known)")}) {
+    answer.clear_covariance();
+    for (int i = 0; i < 25; ++i) answer.add_covariance(i == 6 ? sigma_m * sigma_m : 0.0);
+    EXPECT_THAT(advice_text(answer), HasSubstr(words));
+  }
 }
 
 TEST(Advice, SaysWhatToleranceWasStated) {
