@@ -3,6 +3,7 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <cstddef>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -74,11 +75,29 @@ class PlacedCurve {
   Pose2 world_T_curve_;
 };
 
+/// Says of the points which stroke each is of. `strokes`: numbers of points that follow one
+/// another, n in all; none if all points are touches.
+void number_strokes(const std::vector<std::size_t>& strokes, std::vector<GivenPoint>* points) {
+  std::size_t begin = 0;
+  for (std::size_t k = 0; k < strokes.size(); ++k) {
+    if (strokes[k] > points->size() - begin) {
+      throw std::invalid_argument("strokes: more points than there are");
+    }
+    for (std::size_t i = begin; i < begin + strokes[k]; ++i) (*points)[i].stroke = k + 1;
+    begin += strokes[k];
+  }
+  if (!strokes.empty() && begin < points->size()) {
+    throw std::invalid_argument("strokes: fewer points than there are");
+  }
+}
+
 /// Least squares fit of a given class. `points`: n x 2, in any unit of length. `sigma`: length n, 1
-/// or 0. The others as in PointDetails.
+/// or 0. The others as in PointDetails and number_strokes.
 py::dict fit_given(const std::string& name, const Array& points, const Array& sigma,
-                   const Array& normals, const Array& normal_sigmas, const Array& covariances) {
+                   const Array& normals, const Array& normal_sigmas, const Array& covariances,
+                   const std::vector<std::size_t>& strokes) {
   std::vector<GivenPoint> given(count_of_points(points));
+  number_strokes(strokes, &given);
   check_sigmas(sigma, given.size());
   const PointDetails details(normals, normal_sigmas, covariances, given.size());
   const CurveClass curve_class = class_called(name);

@@ -369,6 +369,68 @@ class Fit(unittest.TestCase):
         self.assertIsNone(circle.rival)
         self.assertTrue(circle.bounded)
 
+    def test_a_stroke_of_a_known_class_goes_along_it_as_fit_has_it(self):
+        # The noise is a tenth of the distance between the arms: a cusp laid across the strokes fits single touches as well.
+        import json
+        import tempfile
+
+        from programs import TOOL, run
+        Cusp = palpate.models.model("semi_cubical_parabola")
+        truth, sigma = np.array([0.5, 0.3, 0, 0, 0]), 0.05
+
+        def arm(rng, t):
+            t = np.sign(t) * np.sqrt(abs(t))
+            return np.column_stack([t**2, truth[0] * t**3 + truth[1] * t**2]) + rng.normal(0, sigma, (len(t), 2))
+
+        for seed in (16, 21, 25, 29):
+            rng = np.random.default_rng(seed)
+            patches = [arm(rng, np.linspace(0.3, 1.0, 40)), arm(rng, np.linspace(-1.0, -0.3, 40))]
+            touched, stroked, listed = Cusp(), Cusp(), Cusp()
+            self.assertTrue(touched.estimate(np.concatenate(patches), sigma), touched.status)
+            self.assertTrue(stroked.estimate(patches, sigma), stroked.status)
+            self.assertGreater(abs(touched.params - truth)[4], 20 * math.sqrt(touched.covariance[4, 4]))
+            self.assertTrue((abs(stroked.params - truth) < 4 * np.sqrt(np.diag(stroked.covariance))).all(), stroked.params)
+            # Any sequence of arrays is a list of patches; what is told per point is for all of them.
+            self.assertTrue(listed.estimate(tuple(patch.tolist() for patch in patches), np.full(80, sigma)))
+            np.testing.assert_array_equal(listed.params, stroked.params)
+            with tempfile.TemporaryDirectory(prefix="palpate-") as folder:
+                with open(f"{folder}/cusp.csv", "w") as file:
+                    file.write("patch,x_m,y_m\n")
+                    file.writelines(f"{number},{float(x)!r},{float(y)!r}\n" for number, patch in enumerate(patches) for x, y in patch)
+                code, out, err = run(TOOL, "fit", f"{folder}/cusp.csv", "--class", "semi_cubical_parabola", "--sigma", sigma, "--format", "json")
+            self.assertEqual(code, 0, err)
+            told = json.loads(out)["recognition"]
+            of_tool = [told["parameters"][name] for name in "ab"] + [told["pose"][name] for name in ("x_m", "y_m", "theta_rad")]
+            np.testing.assert_allclose(stroked.params, of_tool, rtol=1e-12)
+            np.testing.assert_allclose(stroked.covariance.ravel(), told["covariance"], rtol=1e-9)
+
+    def test_patches_of_a_known_class_are_told_as_to_fit(self):
+        Ellipse = palpate.models.model("ellipse")
+        t = np.linspace(0.3, 5, 24)
+        outward = np.column_stack([B * np.cos(t), A * np.sin(t)])
+        outward /= np.linalg.norm(outward, axis=1)[:, None]
+        points = np.column_stack([A * np.cos(t), B * np.sin(t)]) + np.random.default_rng(3).normal(0, SIGMA, (24, 2))
+        together, apart, half, measured = (Ellipse() for _ in range(4))
+        self.assertTrue(together.estimate(points, SIGMA, outward, 0.01))
+        self.assertTrue(apart.estimate([points[:9], points[9:]], SIGMA, [outward[:9], outward[9:]], np.full(24, 0.01)))
+        np.testing.assert_array_equal(apart.params, together.params)  # a conic has no branches to keep to
+        self.assertTrue(half.estimate([points[:9], points[9:]], SIGMA, [None, outward[9:]], 0.01))
+        self.assertTrue(measured.estimate(points, SIGMA, np.where(np.arange(24)[:, None] < 9, 0, outward), 0.01))
+        np.testing.assert_array_equal(half.params, measured.params)
+        self.assertGreater(half.covariance[0, 0], together.covariance[0, 0])
+        for normals in ([outward[:9]], outward, [outward[:8], outward[8:]]):
+            with self.assertRaisesRegex(ValueError, "normals: not in arrays like the points"):
+                Ellipse().estimate([points[:9], points[9:]], SIGMA, normals, 0.01)
+        for wrong in ([points, np.zeros(3)], [points, np.zeros((2, 3))], [points, np.zeros((1, 1, 2))]):
+            with self.assertRaisesRegex(ValueError, r"shape \(n, 2\)"):
+                Ellipse().estimate(wrong)
+        with self.assertRaisesRegex(ValueError, r"shape \(n, 2\)"):
+            Ellipse().estimate([])
+        for nothing in ([np.empty((0, 2))], np.empty((0, 2))):
+            empty = Ellipse()
+            self.assertFalse(empty.estimate(nothing))
+            self.assertEqual(empty.status, "too few points")
+
     def test_normals_narrow_what_few_touches_tell_of_a_known_class(self):
         points, normals = touches_with_normals(7, 0.002, seed=4)
         truth = np.array([A, B, *POSE])

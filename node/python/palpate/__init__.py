@@ -17,6 +17,7 @@ import numpy as np
 
 from . import _core, models
 from .details import details, numbers
+from .patches import patches_of
 from .result import Result, units
 
 if TYPE_CHECKING:
@@ -125,8 +126,8 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
     of a list: that patch has none.
     normal_sigma: standard deviation of their directions in radians, one number or (for one patch) one per normal.
     """
-    patches = _patches(points, touches)
-    of_patches: Sequence = [None] * len(patches) if normals is None else _patches(normals, touches)
+    patches = patches_of(points, touches)
+    of_patches: Sequence = [None] * len(patches) if normals is None else patches_of(normals, touches)
     if len(patches) == 0:
         raise ValueError("points: there are none")
     for what, deviation in (("sigma", sigma), ("normal_sigma", normal_sigma)):
@@ -152,19 +153,6 @@ def _whole(what: str, value: int, least: int = 0) -> int:
     if not least <= number <= _MOST_NUMBER:
         raise ValueError(f"{what}: {value!r} is no whole number from {least} to {_MOST_NUMBER}")
     return number
-
-
-def _patches(points, touches: bool) -> Sequence:
-    if not hasattr(points, "__len__") or isinstance(points, (str, bytes, dict)):
-        raise ValueError(f"points: an array of shape (n, 2) or a list of them, not {type(points).__name__}")
-    patches: Sequence = [points] if getattr(points, "ndim", 0) == 2 or _is_one_patch(points) else points
-    if touches:
-        return [row[np.newaxis, :] for patch in patches for row in numbers(patch)]
-    return patches
-
-
-def _is_one_patch(points) -> bool:
-    return len(points) > 0 and np.ndim(points[0]) == 1
 
 
 def __dir__() -> list[str]:

@@ -4,8 +4,9 @@
     Ellipse = palpate.models.model("ellipse")
     ellipse, inliers = ransac(points, Ellipse, Ellipse.min_samples, residual_threshold=0.1)
 
-estimate() minimises the sum of squared orthogonal distances of all points, in any order. Points may be in any unit of
-length; results are in the same unit.
+estimate() minimises the sum of squared orthogonal distances of all points. An array of points is single touches, in any
+order: ransac draws its samples so. Points of strokes are passed as a list of patches, as to palpate.fit(), and
+lie along the curve in their order. Points may be in any unit of length; results are in the same unit.
 """
 from __future__ import annotations
 
@@ -15,6 +16,7 @@ import numpy as np
 
 from . import _core
 from .details import details, numbers
+from .patches import is_one_array, patches_of
 
 
 class CurveModel:
@@ -42,12 +44,19 @@ class CurveModel:
         self.bounded = True
 
     def estimate(self, data, sigma=None, normals=None, normal_sigma=None, covariances=None) -> bool:
-        """Fits the curve to points (n, 2). Returns True if they determine one curve of the class.
+        """Fits the curve to points. Returns True if they determine one curve of the class.
 
+        data: an array (n, 2) of touches in any order, or a list of such arrays: each is a patch, one unbroken touch with its points in
+        their order along the part. palpate fit --class takes the patches of a file so. Order tells much about cubics: where two arms
+        lie as near to each other as the noise, a stroke keeps to one of them up to the cusp or bend where they meet. Patches whose
+        points show no order are fitted as touches.
         sigma: standard deviation of a point, one number or one per point; None or 0 = estimated. normals, normal_sigma, covariances: see Recognizer.add.
+        Of several patches, normals are in arrays like the points, None in place of an array where a patch has none; all else that is
+        told per point is one array for the points of all patches, one patch after the other.
         Normals are used only if the noise of every point is known."""
-        fit = _core.fit_given(self.curve_class, numbers(data), np.atleast_1d(numbers(0.0 if sigma is None else sigma, "sigma")),
-                              *details(normals, normal_sigma, covariances, 1.0))
+        points, normals, lengths = _joined(data, normals)
+        fit = _core.fit_given(self.curve_class, points, np.atleast_1d(numbers(0.0 if sigma is None else sigma, "sigma")),
+                              *details(normals, normal_sigma, covariances, 1.0), lengths)
         self.status = fit["status"]
         letters = len(_core.parameter_letters(self.curve_class))
         success = self.status == "fitted"
@@ -61,7 +70,8 @@ class CurveModel:
         return success
 
     def residuals(self, data) -> np.ndarray:
-        """Signed distances of points (n, 2) from the curve, positive to the left of increasing t."""
+        """Signed distances of points (n, 2) from the nearest places of the curve, positive to the left of increasing t. Of a
+        stroke near a cusp these are not all on the arm that it was fitted to: their mean square may be below that of `rms`."""
         return self._curve(self.params).feet(numbers(data))[1]
 
     def predict_xy(self, t, params=None) -> np.ndarray:
@@ -77,6 +87,26 @@ class CurveModel:
         shape = np.zeros(3)
         shape[:len(params) - 3] = params[:-3]
         return _core.PlacedCurve(self.curve_class, shape, *params[-3:])
+
+
+def _joined(data, normals):
+    """Returns all points, their normals, and the number of points of each patch; no numbers if they are touches."""
+    patches = patches_of(data)
+    if is_one_array(data) or len(patches) == 0:
+        return numbers(data), normals, []
+    arrays = [numbers(patch) for patch in patches]
+    lengths = [len(array) for array in arrays]
+    if normals is not None:
+        if is_one_array(normals) or len(normals) != len(arrays):
+            raise ValueError("normals: not in arrays like the points")
+        of_patches = [np.zeros_like(array) if some is None else numbers(some, "normals") for array, some in zip(arrays, normals)]
+        if any(some.shape != array.shape for array, some in zip(arrays, of_patches)):
+            raise ValueError("normals: not in arrays like the points")
+        normals = np.concatenate(of_patches)
+    for array in arrays:
+        if array.ndim != 2 or array.shape[1] != 2:
+            raise ValueError("points must be arrays of shape (n, 2)")
+    return np.concatenate(arrays), normals, lengths
 
 
 def model(curve_class: str) -> type[CurveModel]:
