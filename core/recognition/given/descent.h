@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -79,16 +80,20 @@ SquareMatrix<T> in_unit_moves(SquareMatrix<T> m, std::size_t n,
   return m;
 }
 
-/// `m` without an unknown: its step is zero.
+/// Unknowns that stay as they are.
+using HeldUnknowns = std::bitset<kMostUnknowns>;
+
+/// `m` without them: their steps are zero.
 template <typename T>
-SquareMatrix<T> without(SquareMatrix<T> m, std::size_t n, int unknown) {
-  if (unknown >= 0) {
-    const auto k = static_cast<std::size_t>(unknown);
-    for (std::size_t i = 0; i < n; ++i) {
-      m[i][k] = T(0.0);
-      m[k][i] = T(0.0);
+SquareMatrix<T> without(SquareMatrix<T> m, std::size_t n, const HeldUnknowns& held) {
+  for (std::size_t k = 0; k < n; ++k) {
+    if (held[k]) {
+      for (std::size_t i = 0; i < n; ++i) {
+        m[i][k] = T(0.0);
+        m[k][i] = T(0.0);
+      }
+      m[k][k] = T(1.0);
     }
-    m[k][k] = T(1.0);
   }
   return m;
 }
@@ -98,7 +103,7 @@ struct DescentEffort {
   double last_step = 0.0;  ///< converged if a step moves the residuals by less
   /// A Newton step shorter than this is taken even if rounding hides the gain.
   double trusted_step = 0.0;
-  int held = -1;  ///< an unknown that stays as it is; none if negative
+  HeldUnknowns held = {};
 };
 
 template <typename T>
@@ -136,10 +141,7 @@ Descent<T> descend(PlacedCurve<T>* curve, std::span<const WeighedPoint<T>> point
     }
     std::array<T, kMostUnknowns> step{};
     for (std::size_t i = 0; i < n; ++i) {
-      step[i] = -here.gradient[i] / T(moves[i]);
-    }
-    if (effort.held >= 0) {
-      step[static_cast<std::size_t>(effort.held)] = T(0.0);
+      step[i] = effort.held[i] ? T(0.0) : -here.gradient[i] / T(moves[i]);
     }
     step = solve(*lower, n, step);
     double length = 0.0;

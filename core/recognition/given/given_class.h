@@ -33,7 +33,7 @@ enum class GivenStatus {
   /// worse than all that the search has found there.
   AtLimit,
   /// The sum of squares falls along a valley in which the search has not come to an end, and no
-  /// other class that the class turns into fits as well as a curve in it.
+  /// other class, nor two parallel lines, that the class turns into fit as well as a curve in it.
   Unfinished,
   NotDetermined,  ///< rounding of the coordinates leaves a shape parameter as uncertain as its size
 };

@@ -4,10 +4,12 @@
 #include <limits>
 #include <vector>
 
+#include "core/recognition/given/parallel_lines.h"
+
 namespace palpate {
 namespace {
 
-/// Classes that one turns into at its limit, besides a pair of lines.
+/// Classes that one turns into at its limit.
 std::vector<CurveClass> limits_of(CurveClass curve_class) {
   switch (curve_class) {
     case CurveClass::Circle:
@@ -34,6 +36,9 @@ double misfit_of_limit(CurveClass curve_class, const LocalPoints& local, const G
     for (const GivenCandidate& candidate : search_minima(limit, local, noise)) {
       least = std::min(least, candidate.misfit);
     }
+  }
+  if (curve_class != CurveClass::Line && curve_class != CurveClass::Circle) {
+    least = std::min(least, misfit_of_parallels(local, noise));
   }
   return least;
 }

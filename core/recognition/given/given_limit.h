@@ -9,10 +9,10 @@ namespace palpate {
 /// below what tells one curve from another.
 inline constexpr double kAlike = 1e-6;
 
-/// The misfit of the class that is the limit of the given one and fits best; infinite if none does.
-/// Where it is no larger than that of a curve in whose valley no descent has come to an end,
-/// nothing shows that the sum of squares has a minimum before the limit. Else there is one
-/// somewhere.
+/// The misfit of the class, or of two parallel lines (parallel_lines.h), that the given one turns
+/// into at its limit and that fits best; infinite if none does. Where it is no larger than that of
+/// a curve in whose valley no descent has come to an end, nothing shows that the sum of squares has
+/// a minimum before the limit. Else there is one somewhere.
 double misfit_of_limit(CurveClass curve_class, const LocalPoints& local, const GivenNoise& noise);
 
 }  // namespace palpate

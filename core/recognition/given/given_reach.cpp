@@ -79,7 +79,7 @@ class Walk {
       return std::nullopt;
     }
     DescentEffort effort{20, 1e-4 * std::sqrt(asked_), 0.0};
-    effort.held = unknown;
+    effort.held.set(unknown);
     descend_on(points_, effort, &held);
     if (!std::isfinite(held.cost) || held.curve.shape[unknown] != value) {
       return std::nullopt;

@@ -44,14 +44,6 @@ std::vector<WeighedPoint<double>> on_side(std::span<const WeighedPoint<DoubleDou
   return points;
 }
 
-/// The sides of the curve on which tips may lie.
-std::vector<int> sides_of(std::span<const GivenPoint> points) {
-  const bool tips = std::any_of(points.begin(), points.end(), [](const GivenPoint& point) {
-    return point.tip_radius_m > 0.0 && !point.set_aside;
-  });
-  return tips ? std::vector<int>{1, -1} : std::vector<int>{0};
-}
-
 /// -log likelihood of the candidate's points, up to a constant. Noise that is not stated is the one
 /// that the residuals have; at least the rounding of the coordinates. That a stroke goes on where
 /// it cannot have come to is negligibly probable.
@@ -160,6 +152,13 @@ bool is_among(const GivenCandidate& candidate, std::span<const GivenCandidate> o
 
 }  // namespace
 
+std::vector<int> sides_of(std::span<const GivenPoint> points) {
+  const bool tips = std::any_of(points.begin(), points.end(), [](const GivenPoint& point) {
+    return point.tip_radius_m > 0.0 && !point.set_aside;
+  });
+  return tips ? std::vector<int>{1, -1} : std::vector<int>{0};
+}
+
 void descend_on(std::span<const WeighedPoint<double>> points, const DescentEffort& effort,
                 GivenCandidate* candidate) {
   const int arm = candidate->arm;
@@ -201,19 +200,20 @@ bool is_better(const GivenCandidate& u, const GivenCandidate& v) {
   return handicapped(u) < handicapped(v);
 }
 
-void settle(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* candidate) {
-  constexpr DescentEffort kOnAll{100, 1e-8, 0.0};
+void settle(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* candidate,
+            const HeldUnknowns& held) {
+  const DescentEffort on_all{100, 1e-8, 0.0, held};
   constexpr int kMostRounds = 10;
   // Relative: of a weight, then less than that of what the residuals tell of the curve.
   constexpr double kSame = 1e-6;
   candidate->points = on_side(local.exact, candidate->side);
-  descend_on(candidate->points, kOnAll, candidate);
+  descend_on(candidate->points, on_all, candidate);
   for (int round = 0; noise.stated && candidate->settled && round < kMostRounds; ++round) {
     if (weigh_at_feet(candidate->curve, local, noise.points, noise.default_sigma_m,
                       &candidate->points) <= kSame) {
       break;
     }
-    descend_on(candidate->points, kOnAll, candidate);
+    descend_on(candidate->points, on_all, candidate);
   }
   candidate->misfit = misfit_of(*candidate, local, noise.stated);
 }

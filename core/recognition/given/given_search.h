@@ -40,7 +40,11 @@ void descend_on(std::span<const WeighedPoint<double>> points, const DescentEffor
                 GivenCandidate* candidate);
 
 /// Descends from the candidate's curve on all points, with the weights at its feet.
-void settle(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* candidate);
+void settle(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* candidate,
+            const HeldUnknowns& held = {});
+
+/// The sides of the curve on which tips may lie.
+std::vector<int> sides_of(std::span<const GivenPoint> points);
 
 /// True if the first is to be preferred: it has the lower misfit. A minimum has priority over a
 /// valley in which no descent has come to an end, as long as noise can be what makes it worse.

@@ -20,7 +20,8 @@ std::string_view sentence_of(v1::GivenClassStatus status) {
     case v1::GIVEN_CLASS_STATUS_COLLINEAR:
       return "none: all points lie on one straight line";
     case v1::GIVEN_CLASS_STATUS_AT_LIMIT:
-      return "none: the points fit best where the class turns into another";
+      return "none: the points fit best where the class turns into another, or into two parallel "
+             "lines";
     case v1::GIVEN_CLASS_STATUS_UNFINISHED:
       return "none: so many curves fit nearly alike that the search has not found the best";
     case v1::GIVEN_CLASS_STATUS_NOT_DETERMINED:
