@@ -39,7 +39,7 @@ std::vector<WeighedPoint<double>> on_side(std::span<const WeighedPoint<DoubleDou
   for (const WeighedPoint<DoubleDouble>& point : exact) {
     points.push_back({as_double(point.position), to_double(point.weight),
                       side * to_double(point.offset), as_double(point.normal),
-                      to_double(point.normal_weight), point.stroke});
+                      to_double(point.normal_weight), point.stroke, point.stated});
   }
   return points;
 }

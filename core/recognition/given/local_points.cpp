@@ -75,6 +75,7 @@ std::optional<LocalPoints> local_points(std::span<const GivenPoint> points, doub
         inverse_unit * (DoubleDouble(point.position_m.y()) - DoubleDouble(local.middle_m.y()));
     exact.weight = weighted ? DoubleDouble(local.unit_m) / DoubleDouble(noise_of(point, sigma_m))
                             : DoubleDouble(1.0);
+    exact.stated = weighted;
     exact.offset = inverse_unit * DoubleDouble(point.tip_radius_m);
     if (weighted && has_normal(point)) {
       const Vec2 normal = point.normal.normalized();

@@ -15,11 +15,12 @@ namespace palpate {
 template <typename T>
 struct WeighedPoint {
   PlaneVector<T> position;
-  T weight{};               ///< of the residual: 1 / standard deviation
+  T weight{};               ///< of the residual: 1 / standard deviation; 1 if none is stated
   T offset{};               ///< signed distance that the point should have: side times tip radius
   PlaneVector<T> normal{};  ///< measured, unit; its sign does not matter
   T normal_weight{};        ///< 1 / standard deviation of its direction; 0 = no normal
   std::size_t stroke = 0;   ///< neighbours of the same one follow one another along it; 0 = none
+  bool stated = false;      ///< the weight is that of a stated noise
 };
 
 template <typename T>

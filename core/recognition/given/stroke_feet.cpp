@@ -89,7 +89,7 @@ class StrokeFeet {
   /// The likeliest way through all the feet of each point, by R. Bellman's recursion (1957).
   void put_in_order(std::span<const WeighedPoint<double>> stroke,
                     std::span<PlaneVector<double>> feet) const {
-    const double of_jump = 2.0 * kNegligibleLogOdds * mean_square(stroke, feet);
+    const double of_jump = 2.0 * kNegligibleLogOdds * variance(stroke, feet);
     std::vector<Step> steps(stroke.size());
     for (std::size_t i = 0; i < stroke.size(); ++i) {
       Step& now = steps[i];
@@ -136,9 +136,14 @@ class StrokeFeet {
     return place;
   }
 
-  /// Of the residuals at the feet: that of the noise, if the curve is near the points.
-  double mean_square(std::span<const WeighedPoint<double>> stroke,
-                     std::span<const PlaneVector<double>> feet) const {
+  /// Of weighed residuals. That of a stated noise is 1, however far off the curve is: the
+  /// likelihood counts jumps so. An unknown one is that of the residuals at the feet, if the curve
+  /// is near.
+  double variance(std::span<const WeighedPoint<double>> stroke,
+                  std::span<const PlaneVector<double>> feet) const {
+    if (stroke.front().stated) {
+      return 1.0;
+    }
     double sum = 0.0;
     for (std::size_t i = 0; i < stroke.size(); ++i) {
       const PlaneVector<double> p = placed_.to_curve(stroke[i].position);

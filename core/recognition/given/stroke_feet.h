@@ -13,9 +13,9 @@ namespace palpate {
 /// noise, the nearest feet of a stroke lie now on this one and now on that, and a bend laid over
 /// the noise would explain it. But a probe goes from one branch to another only past the place
 /// where they meet: from one sample to the next no foot moves farther along the curve than the
-/// probe went. Of all
-/// ways the likeliest is taken, where it is negligibly probable that samples are missing and the
-/// probe went farther between two of them.
+/// probe went. Of all ways the likeliest is taken, where it is negligibly probable that samples are
+/// missing and the probe went farther between two of them: by the stated noise, and where none is
+/// stated by that of the residuals.
 ///
 /// Round tips are left where they are: they go from branch to branch without coming to where these
 /// meet. False if the shape is outside the class.
