@@ -129,9 +129,14 @@ std::vector<GivenPoint> straight_walls() {
 
 // The vertex moves away from the walls for as long as anybody follows.
 TEST(GivenLimit, TwoParallelWallsAreTheLimitOfParabolaAndHyperbola) {
-  for (const CurveClass curve_class : {CurveClass::Parabola, CurveClass::Hyperbola}) {
-    const GivenFit fit = fit_given_class(curve_class, straight_walls());
-    EXPECT_EQ(name_of(fit.status), name_of(GivenStatus::AtLimit)) << name_of(curve_class);
+  for (const double tip_radius : {0.0, 0.002}) {
+    std::vector<GivenPoint> points = straight_walls();
+    for (GivenPoint& point : points) point.tip_radius_m = tip_radius;
+    for (const CurveClass curve_class : {CurveClass::Parabola, CurveClass::Hyperbola}) {
+      const GivenFit fit = fit_given_class(curve_class, points);
+      EXPECT_EQ(name_of(fit.status), name_of(GivenStatus::AtLimit))
+          << name_of(curve_class) << ", tips of " << tip_radius;
+    }
   }
 }
 
