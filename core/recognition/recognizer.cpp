@@ -18,6 +18,7 @@
 #include "core/recognition/reported_tree_path.h"
 #include "core/recognition/samples/clean_patches.h"
 #include "core/recognition/samples/explained_spikes.h"
+#include "core/recognition/samples/stroke_order.h"
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/samples/work_limit.h"
 #include "core/recognition/touches/joined_touches.h"
@@ -161,6 +162,12 @@ class Recognizer::Impl {
     // Touches in no order whose noise nobody states lie about any curve, if the noise is large
     // enough.
     if (!sigma_known && are_mostly_touches(clean) && answer.sigma_m > kLargestNoise * data.scale) {
+      doubt(&answer, Doubt::Misfit);
+    }
+    // No path leads through what is sent as a stroke and is none: "unclassified" is its doing, and
+    // where nobody states the noise, so is that.
+    const bool by_path = !sigma_known || answer.shape.curve_class == CurveClass::Unclassified;
+    if (by_path && lead_mostly_to_and_fro(clean)) {
       doubt(&answer, Doubt::Misfit);
     }
     const bool by_evidence = options_.method == RecognitionMethod::MaximumLikelihood && sigma_known;

@@ -5,23 +5,10 @@
 #include <limits>
 
 #include "core/recognition/samples/step_ratio.h"
+#include "core/recognition/samples/stroke_order.h"
 
 namespace palpate {
 namespace {
-
-/// Of points that follow one another in one stroke: whether they do so in the plane too. Of places
-/// to and fro all over the part, or of no longer a way than their noise, no order is known.
-bool show_order(std::span<const Vec2> stroke) {
-  Vec2 mean = Vec2::Zero();
-  for (const Vec2& point : stroke) {
-    mean += point / static_cast<double>(stroke.size());
-  }
-  double square = 0.0;
-  for (const Vec2& point : stroke) {
-    square += (point - mean).squaredNorm() / static_cast<double>(stroke.size());
-  }
-  return step_ratio([&](std::size_t i) { return stroke[i]; }, 0, stroke.size(), square) < kNoOrder;
-}
 
 /// Sets the strokes of the points in use, where they show their order.
 void number_strokes(std::span<const GivenPoint> points, LocalPoints* local) {

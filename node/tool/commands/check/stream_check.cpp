@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 
 #include "core/local/noise.h"
 #include "core/numerics/median.h"
 #include "core/recognition/samples/dwells.h"
+#include "core/recognition/samples/stroke_order.h"
 #include "node/files/counted.h"
 #include "node/security/decode_from.h"
 #include "node/tool/commands/check/normal_check.h"
@@ -36,17 +35,6 @@ std::vector<double> spacings(const std::vector<Vec2>& positions) {
     result.push_back((positions[i] - positions[i - 1]).norm());
   }
   return result;
-}
-
-/// Whether steps lead to and fro instead of along a part. A stroke that goes once round a convex
-/// part is at most pi of its extent long; twice that leaves room for bends. Noise lengthens the way
-/// of dense samples by steps as short as itself: those of samples in no order are as long as the
-/// part.
-bool has_no_order(const std::vector<double>& steps, double typical, double extent) {
-  constexpr double kLongestWay = 2.0 * std::numbers::pi;  // of a stroke, in extents
-  constexpr double kLongStep = 0.1;                       // in extents
-  return typical > kLongStep * extent &&
-         std::accumulate(steps.begin(), steps.end(), 0.0) > kLongestWay * extent;
 }
 
 std::string cure_of(v1::RejectReason reason) {
@@ -202,7 +190,7 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
     }
     std::vector<double> sorted = steps;
     const double typical = median_of(sorted);
-    unordered += has_no_order(steps, typical, (high - low).norm()) ? 1 : 0;
+    unordered += leads_to_and_fro(moved) ? 1 : 0;
     // A lift-off is many spacings and of the size of the part; a spike comes back at once.
     constexpr double kJumpSpacings = 20.0;
     for (std::size_t i = 0; i + 1 < moved.size(); ++i) {

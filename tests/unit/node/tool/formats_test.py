@@ -323,6 +323,13 @@ class Formats(unittest.TestCase):
         self.assertIn("1 jump of", self.err)
         self.assertIn("column patch", self.err)
 
+    def test_a_dozen_touches_in_no_order_are_of_the_part(self):
+        turns = [k / 12 for k in range(12)]
+        random.Random(3).shuffle(turns)
+        text = "x_m,y_m\n" + "".join(f"{A * math.cos(2 * math.pi * t)},{B * math.sin(2 * math.pi * t)}\n" for t in turns)
+        self.check(text)
+        self.assertIn("each is taken as a touch of its own", self.err)
+
     def test_rows_in_no_order_are_told(self):
         rows = WHOLE[:]
         random.Random(2).shuffle(rows)
