@@ -19,15 +19,15 @@ double log_evidence_near_best(CurveClass best, double least_size, double least,
                               const Contenders& contenders, const EvidenceContext& context) {
   const Arcs& arcs = context.arcs;
   const auto& evidence = contenders.evidences.classes[best];
-  if (!evidence) {
+  const auto& placed = contenders.evidences.on_reduced[best];
+  if (!evidence || !placed) {
     return kNoEvidence;
   }
   const double of_class = log_evidence(context.likelihood, contenders.evidences, best,
                                        chi2_without_deviation(contenders, context, best));
-  const auto gain = log_gain_near_class(*contenders.evidences.on_reduced[best], *evidence,
-                                        points_of(*contenders.coarse[best], context.reduced),
-                                        context.likelihood, arcs.sigma, arcs.smooth.chi2,
-                                        least_size, least - of_class - kLogOfParts, context.work);
+  const auto gain = log_gain_near_class(
+      *placed, *evidence, points_of(*contenders.coarse[best], context.reduced), context.likelihood,
+      arcs.sigma, arcs.smooth.chi2, least_size, least - of_class - kLogOfParts, context.work);
   return gain ? of_class + kLogOfParts + *gain : kNoEvidence;
 }
 

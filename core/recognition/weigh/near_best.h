@@ -9,7 +9,7 @@ namespace palpate {
 /// beforehand as a class (core/README.md, "The posterior"). A curve near another class is near the
 /// best as well, and counts once. `least_size`: smaller deviations do not count [half extents];
 /// `least`: less need not be computed. -infinity if there is none, or if the best has no evidence
-/// about a fit.
+/// about a fit: what the prior alone has led to is placed nowhere.
 double log_evidence_near_best(CurveClass best, double least_size, double least,
                               const Contenders& contenders, const EvidenceContext& context);
 

@@ -95,8 +95,9 @@ Contenders with_shared_deviations(Contenders contenders, const EvidenceContext& 
       return contenders;
     }
     const auto& evidence = contenders.evidences.classes[curve_class];
-    auto own = evidence
-                   ? log_coherent_gain(*contenders.evidences.on_reduced[curve_class], *evidence,
+    const auto& placed = contenders.evidences.on_reduced[curve_class];
+    auto own = evidence && placed
+                   ? log_coherent_gain(*placed, *evidence,
                                        points_of(*contenders.coarse[curve_class], context.reduced),
                                        context.likelihood, context.arcs.sigma,
                                        context.arcs.smooth.chi2, context.work)

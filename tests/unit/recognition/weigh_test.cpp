@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/weigh/near_best.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/unbounded_work.h"
@@ -79,6 +80,20 @@ INSTANTIATE_TEST_SUITE_P(AllClasses, WeighingOf, testing::ValuesIn(kCurveClasses
                          [](const auto& param_info) {
                            return std::string(name_of(param_info.param));
                          });
+
+// Where a fit cannot be held in canonical coordinates, the prior may have led to a mode of the
+// class all the same.
+TEST(NearBest, AClassThatIsPlacedNowhereHasNoPartsNearIt) {
+  const Arcs arcs;
+  const FitData reduced;
+  const EvidenceContext context{arcs, reduced, test::unbounded_work(), {}, 0.0};
+  constexpr auto kBest = CurveClass::CubicSpline;
+  Contenders contenders;
+  contenders.coarse[kBest].emplace().curve_class = kBest;
+  contenders.fits[kBest] = contenders.coarse[kBest];
+  contenders.evidences.classes[kBest].emplace();
+  EXPECT_EQ(log_evidence_near_best(kBest, 0.0, kNoEvidence, contenders, context), kNoEvidence);
+}
 
 }  // namespace
 }  // namespace palpate
