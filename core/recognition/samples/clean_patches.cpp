@@ -108,24 +108,26 @@ std::vector<StoredPatch> each_without_spikes(std::span<const StoredPatch> passes
 /// The turns of a patch without the samples that are flagged and those at `cusps`, which spikes may
 /// be, by index among all.
 Turns turns_without(std::vector<bool> is_spike, std::span<const std::size_t> cusps,
-                    std::span<const StoredSample> samples) {
+                    std::span<const StoredSample> samples, double default_sigma_m) {
   for (const std::size_t cusp : cusps) is_spike[cusp - 1] = true;
-  const Turns turns = turns_of(without_spikes(samples, is_spike));
+  const Turns turns = turns_of(without_spikes(samples, is_spike), default_sigma_m);
   return {among_all(samples, is_spike, turns.returns), among_all(samples, is_spike, turns.cusps)};
 }
 
 /// Cuts a patch into passes, with and without spikes. Spikes also turn back, and the parts between
 /// the turns of many are too short to show them. So where other turns are left without what is
 /// found, the patch is searched as a whole, to find those that made or hid a turn.
-void clean_passes(const StoredPatch& patch, double false_alarm, std::vector<StoredPatch>* passes,
-                  std::vector<StoredPatch>* clean, WorkBudget& work) {
-  Turns turns = turns_of(patch.samples);
+void clean_passes(const StoredPatch& patch, double default_sigma_m, double false_alarm,
+                  std::vector<StoredPatch>* passes, std::vector<StoredPatch>* clean,
+                  WorkBudget& work) {
+  Turns turns = turns_of(patch.samples, default_sigma_m);
   std::vector<bool> is_spike = spikes_between(turns, patch.samples, false_alarm, work);
-  if (has_any(is_spike) && turns_without(is_spike, turns.cusps, patch.samples) != turns) {
+  if (has_any(is_spike) &&
+      turns_without(is_spike, turns.cusps, patch.samples, default_sigma_m) != turns) {
     if (turns != Turns{}) {
       is_spike = spikes_between({}, patch.samples, false_alarm, work);
     }
-    turns = turns_without(is_spike, {}, patch.samples);
+    turns = turns_without(is_spike, {}, patch.samples, default_sigma_m);
     if (turns != Turns{}) {
       is_spike = spikes_between(turns, patch.samples, false_alarm, work);
     }
@@ -154,8 +156,8 @@ void CleanPatches::update(const std::vector<StoredPatch>& patches, double defaul
     Seen now{version_of(patch), is_one_place(patch.samples, default_sigma_m, half_extent_m)};
     Seen& seen = seen_[p];
     if (!(seen.version == now.version) || seen.is_one_place != now.is_one_place) {
-      clean_passes(moving(patch, now.is_one_place, default_sigma_m), false_alarm, &now.moved,
-                   &now.clean, work);
+      clean_passes(moving(patch, now.is_one_place, default_sigma_m), default_sigma_m, false_alarm,
+                   &now.moved, &now.clean, work);
       seen = std::move(now);
       if (work.was_cut()) {
         seen.version = PatchVersion{};  // none that has a sample

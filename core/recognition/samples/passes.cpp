@@ -35,8 +35,23 @@ struct Lengths {
   double far_m = 0.0;
 };
 
-/// From the samples themselves; nullopt if these do not show their noise.
-std::optional<Lengths> lengths_of(std::span<const StoredSample> samples) {
+/// The largest noise that is stated of a sample; 0 if none is of any. [m]
+double stated_noise_m(std::span<const StoredSample> samples, double default_sigma_m) {
+  double largest = 0.0;
+  for (const StoredSample& sample : samples) {
+    const double sigma_m = sigma_m_of(sample, default_sigma_m);
+    if (!(sigma_m > 0.0)) {
+      return 0.0;
+    }
+    largest = std::max(largest, sigma_m);
+  }
+  return largest;
+}
+
+/// From the samples themselves; where these do not show their noise, as it is stated. (They do not
+/// where nothing but the whole stroke, there and back, is much longer than its noise.) nullopt if
+/// it is not known at all.
+std::optional<Lengths> lengths_of(std::span<const StoredSample> samples, double default_sigma_m) {
   constexpr double kFarDeviations = 10.0;
   constexpr double kFarSteps = 4.0;  // if the samples are noise alone, seven standard deviations
   std::vector<Vec2> positions;
@@ -48,10 +63,12 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples) {
     positions.push_back(sample.position_m);
   }
   const NoiseEstimate noise = estimate_noise(positions);
-  if (noise.status != LocalStatus::Ok) {
+  const double sigma_m =
+      noise.status == LocalStatus::Ok ? noise.sigma_m : stated_noise_m(samples, default_sigma_m);
+  if (noise.status != LocalStatus::Ok && !(sigma_m > 0.0)) {
     return std::nullopt;
   }
-  const double noise_m = kFarDeviations * noise.sigma_m;
+  const double noise_m = kFarDeviations * sigma_m;
   return Lengths{noise_m, std::max(noise_m, kFarSteps * median_of(steps))};
 }
 
@@ -98,12 +115,12 @@ bool leads_back(std::span<const StoredSample> before, std::span<const StoredSamp
 
 }  // namespace
 
-Turns turns_of(std::span<const StoredSample> samples) {
+Turns turns_of(std::span<const StoredSample> samples, double default_sigma_m) {
   Turns turns;
   if (samples.size() < 2 * kFewestOfPass || !steps_back(samples)) {
     return turns;
   }
-  const auto lengths = lengths_of(samples);
+  const auto lengths = lengths_of(samples, default_sigma_m);
   if (!lengths) {
     return turns;
   }

@@ -108,6 +108,22 @@ TEST(Passes, AStrokeShorterThanItsNoiseIsOne) {
   }
 }
 
+// Noise of a thirtieth of the way, by samples a twentieth of it apart: only the whole stroke is
+// much longer than it, and that doubles back.
+TEST(Passes, AreCutByTheStatedNoiseWhereTheSamplesDoNotShowIt) {
+  std::mt19937_64 rng(8);
+  constexpr double kNoise = 3e-4;  // [m]
+  const Way bend = [](double u) { return Vec2(0.01 * std::sin(u), 0.01 * (1.0 - std::cos(u))); };
+  constexpr int kEach = 200;
+  for (int seed = 0; seed < 50; ++seed) {
+    const auto samples = strokes(bend, 2, kEach, rng, kNoise);
+    const auto returns = turns_of(samples, kNoise).returns;
+    ASSERT_EQ(returns.size(), 1U) << seed;
+    EXPECT_NEAR(static_cast<double>(returns.front()), kEach, 1.0 + 8.0 * kNoise / 0.01 * kEach);
+    EXPECT_TRUE(turns_of(strokes(bend, 1, kEach, rng, kNoise), kNoise).returns.empty()) << seed;
+  }
+}
+
 TEST(Passes, HaveAllSamplesInTheDirectionOfTheFirst) {
   std::mt19937_64 rng(6);
   StoredPatch patch;
