@@ -1,6 +1,8 @@
 // Tests whether a probe could have touched a fitted curve at the points.
 #pragma once
 
+#include <span>
+
 #include "core/recognition/fit/implicit_fit.h"
 #include "core/recognition/fit/polynomial_fit.h"
 #include "core/recognition/samples/fit_data.h"
@@ -21,10 +23,14 @@ inline Vec2 centre_of(const ConicCoefficients& q) {
 /// to point against that of the patch. The fit must be one to these points.
 bool is_touchable(const ImplicitFit& fit, const FitData& data);
 
-/// The same for a polynomial curve: its parameter must run one way along each patch. Compares
-/// samples half a patch apart, whose order noise does not reverse. The fit of a given class
-/// (given/stroke_feet.h) puts every sample of a stroke on a branch, by the way that the probe went;
-/// here a fitted curve is only kept or excluded, for which directions over long ways are enough.
+/// Whether feet at these places along a curve, one a point, run one way along each patch. Compares
+/// samples half a patch apart, whose order noise does not reverse.
+bool go_one_way(std::span<const double> along, const FitData& data);
+
+/// The same for a polynomial curve: its parameter must run one way along each patch. The fit of a
+/// given class (given/stroke_feet.h) puts every sample of a stroke on a branch, by the way that the
+/// probe went; here a fitted curve is only kept or excluded, for which directions over long ways
+/// are enough.
 bool is_touchable(const PolynomialFit& fit, const FitData& data);
 
 /// Whether between two of its points a patch leaves out more of the curve than it is long itself: a

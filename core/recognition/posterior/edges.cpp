@@ -12,6 +12,7 @@
 #include "core/numerics/small_cholesky.h"
 #include "core/recognition/fit/algebraic_fit.h"
 #include "core/recognition/fit/class_fits.h"
+#include "core/recognition/fit/touchable.h"
 
 namespace palpate {
 namespace {
@@ -204,6 +205,22 @@ bool are_line_or_circle(std::span<const FitPoint> points, WorkBudget& work) {
   return fits(algebraic_line(points)) || fits(algebraic_circle(points));
 }
 
+/// Whether a probe goes from the one edge to the other along each patch. Two edges that lie within
+/// the noise of one another would each take the points on its side.
+bool are_touchable(const RoundedCorner& corner, const FitData& data) {
+  const Vec2 ahead(std::cos(corner.bisector), std::sin(corner.bisector));
+  const RoundedCornerAxes axes(corner);
+  std::vector<double> along;
+  along.reserve(data.points.size());
+  for (const FitPoint& point : data.points) {
+    const RoundedCorner::Distance distance = axes.with_gradient(point.position);
+    // The centre's derivative is the normal, inwards.
+    const Vec2 foot = point.position + distance.value * distance.gradient.head<2>().transpose();
+    along.push_back(cross(ahead, foot - corner.centre));
+  }
+  return go_one_way(along, data);
+}
+
 bool are_of_one_tip(std::span<const FitPoint> points) {
   return std::all_of(points.begin(), points.end(),
                      [&](const FitPoint& point) { return point.offset == points.front().offset; });
@@ -248,6 +265,10 @@ std::optional<Edges> edges_of(const Arcs& arcs, double out_of_reach, WorkBudget&
     // No section leads round a corner that is sharper than it is long.
     chi2 = refine(&on_all, points, kSteps, kAnyChi2, &x, work).chi2;
     settled = &on_all;
+  }
+  work.spend(WorkKind::AxisRow, points.size());
+  if (!are_touchable(corner_of(x), arcs.data)) {
+    return std::nullopt;
   }
   Edges edges{corner_of(x), chi2, {}};
   Vector gradient;

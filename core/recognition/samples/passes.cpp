@@ -48,9 +48,9 @@ double stated_noise_m(std::span<const StoredSample> samples, double default_sigm
   return largest;
 }
 
-/// From the samples themselves; where these do not show their noise, as it is stated. (They do not
-/// where nothing but the whole stroke, there and back, is much longer than its noise.) nullopt if
-/// it is not known at all.
+/// From the samples themselves and from their stated noise, whichever is more: where nothing but
+/// the whole stroke, there and back, is much longer than its noise, samples show none, or too
+/// little. nullopt if they do not and it is not stated.
 std::optional<Lengths> lengths_of(std::span<const StoredSample> samples, double default_sigma_m) {
   constexpr double kFarDeviations = 10.0;
   constexpr double kFarSteps = 4.0;  // if the samples are noise alone, seven standard deviations
@@ -63,11 +63,12 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples, double 
     positions.push_back(sample.position_m);
   }
   const NoiseEstimate noise = estimate_noise(positions);
-  const double sigma_m =
-      noise.status == LocalStatus::Ok ? noise.sigma_m : stated_noise_m(samples, default_sigma_m);
-  if (noise.status != LocalStatus::Ok && !(sigma_m > 0.0)) {
+  const double stated_m = stated_noise_m(samples, default_sigma_m);
+  if (noise.status != LocalStatus::Ok && stated_m == 0.0) {
     return std::nullopt;
   }
+  const double sigma_m =
+      noise.status == LocalStatus::Ok ? std::max(noise.sigma_m, stated_m) : stated_m;
   const double noise_m = kFarDeviations * sigma_m;
   return Lengths{noise_m, std::max(noise_m, kFarSteps * median_of(steps))};
 }

@@ -99,5 +99,42 @@ TEST(Edges, UnderATipAreOfNoClassWhateverTheSearchTakes) {
   }
 }
 
+// Two edges beside each other within the noise would each take the samples on its side, and leave a
+// third of the chi-square. A probe does not go from the one to the other and back with each sample.
+TEST(Edges, DenseNoisyStrokesOfACubicAreNotBetweenTwo) {
+  std::mt19937_64 rng = test::test_rng();
+  const int scenes = test::stress_count(100);
+  int none = 0;
+  double stated = 0.0;
+  for (int i = 0; i < scenes; ++i) {
+    constexpr double kSigma = 0.3 * kMillimetre;
+    const double length_m = test::uniform(rng, 8.0, 25.0) * kMillimetre;
+    const double sag_m = test::uniform(rng, 2.0, 10.0) * kSigma;  // at its ends, from its tangent
+    const Pose2 pose = test::pose_within(rng, 0.2);
+    Recognizer recognizer;
+    for (std::uint32_t p = 0; p < 3; ++p) {
+      const double begin = 0.3 * p - 0.8;
+      std::vector<ContactSample> samples;
+      constexpr int kSamples = 200;
+      for (int k = 0; k < kSamples; ++k) {
+        const double x = begin + static_cast<double>(k) / kSamples;
+        const Vec2 place(length_m * x, sag_m * x * x * x);
+        samples.push_back({pose * place + test::normal_pair(rng, kSigma), kSigma, 0});
+      }
+      PatchContext context;
+      context.patch = p;
+      recognizer.add(context, samples);
+    }
+    const Recognition answer = recognizer.recognize();
+    if (answer.status == RecognitionStatus::Recognized &&
+        answer.shape.curve_class == CurveClass::Unclassified) {
+      ++none;
+      stated += test::stated_doubt(answer);
+      std::cout << i << ": " << test::said(answer) << "\n";
+    }
+  }
+  EXPECT_LE(none, test::most_of_poisson(stated));
+}
+
 }  // namespace
 }  // namespace palpate
