@@ -36,6 +36,10 @@ double largest_lobe_m(const NormalOffset& offset) {
   return largest;
 }
 
+double mean_square_of_lobes(const NormalOffset& offset) {
+  return 0.5 * offset.coefficients_m.tail(offset.coefficients_m.size() - 1).squaredNorm();
+}
+
 double offset_at(const NormalOffset& offset, double phi) {
   return offset_basis(phi, offset.order).dot(offset.coefficients_m);
 }

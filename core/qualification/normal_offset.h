@@ -26,6 +26,9 @@ Eigen::RowVectorXd offset_basis_slope(double phi, int order);
 /// The largest amplitude of any of its harmonics. [m]
 double largest_lobe_m(const NormalOffset& offset);
 
+/// Mean square of all but its constant, over all directions. [m^2]
+double mean_square_of_lobes(const NormalOffset& offset);
+
 /// The offset in direction `phi`. [m]
 double offset_at(const NormalOffset& offset, double phi);
 /// Standard deviation of the offset in direction `phi`. [m]

@@ -218,21 +218,26 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
   }
   std::vector<ProbedPatch> raw;
   double coherent = 0.0;
+  double lobes = 0.0;  // mean square
   for (const ProbedPatch& patch : patches) {
     raw.push_back(as_qualified(patch));
     if (patch.probe == nullptr) continue;
     options.has_probe_file = true;
     coherent = std::max(coherent, mean_square(patch.probe->deviation_m));
+    lobes = std::max(lobes, mean_square_of_lobes(patch.probe->offset));
   }
   RecognizerOptions cautious = options;
   cautious.form_deviation_m =
       std::sqrt(options.form_deviation_m * options.form_deviation_m + coherent);
+  // Before they are taken off, lobes are a deviation like any other: else no class fits.
+  RecognizerOptions with_lobes = cautious;
+  with_lobes.form_deviation_m = std::hypot(cautious.form_deviation_m, std::sqrt(lobes));
 
   ProbedRecognition result;
   std::vector<ProbedPatch> corrected = raw;
   constexpr int kRounds = 2;
   for (int round = 0; round <= kRounds; ++round) {
-    Recognizer recognizer(cautious);
+    Recognizer recognizer(round == 0 ? with_lobes : cautious);
     result.added = add_all(corrected, recognizer);
     result.recognition = recognizer.recognize();
     const std::optional<Curve> curve = curve_of(result.recognition);

@@ -60,7 +60,8 @@ struct ProbedRecognition {
 };
 
 /// Recognises, removes the offsets along the normals of the curve found, and repeats this: four
-/// recognitions in all.
+/// recognitions in all. In the first, the lobes that are still in the samples count as form
+/// deviation: without, no class fits where they are larger than the noise.
 ///
 /// For the class, and for RECOGNIZED, the coherent deviation of the probes counts as form
 /// deviation, in addition to that of the options: a bound over all coherences. The covariance of

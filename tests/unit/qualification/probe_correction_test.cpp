@@ -84,6 +84,28 @@ TEST(ProbeCorrection, WithTheFileTheEllipseIsAtTheBoundAndHeld) {
   EXPECT_GE(held_without, band(0.9).least);
 }
 
+// Lobes of forty times the noise hide the class, until they are taken off along some curve's
+// normals.
+TEST(ProbeCorrection, LobesFarAboveTheNoiseHideNoClass) {
+  auto rng = test::test_rng();
+  test::ProbeScene part;
+  part.probe = test::lobed_probe();
+  part.probe.sigma_m.value = 2.5e-6;
+  part.probe.deviation_m.value = 1.5e-6;
+  constexpr double kLarger = 40.0;
+  part.probe.offset.coefficients_m *=
+      kLarger * part.probe.sigma_m.value / std::sqrt(mean_square_of_lobes(part.probe.offset));
+  part.curve = Ellipse{0.03, 0.022};
+  part.arc_t = 1.5 * kPi;
+  for (int run = 0; run < test::stress_count(20); ++run) {
+    part.start_t = test::uniform(rng, 0.0, 2.0 * kPi);
+    const ProbedRecognition answer =
+        recognise_probed(patches_of(simulate(part, rng), &part.probe), {});
+    EXPECT_TRUE(answer.corrected);
+    EXPECT_EQ(answer.recognition.shape.curve_class, CurveClass::Ellipse);
+  }
+}
+
 // A file speaks for its own probe only.
 TEST(ProbeCorrection, AProbeBesideOneWithAFileIsUnqualifiedUnlessItsNoiseIsStated) {
   auto rng = test::test_rng();
