@@ -27,6 +27,15 @@ Eigen::RowVectorXd offset_basis_slope(double phi, int order) {
   return slope;
 }
 
+Eigen::RowVectorXd offset_basis_bend(double phi, int order) {
+  Eigen::RowVectorXd bend = -offset_basis(phi, order);
+  bend[0] = 0.0;
+  for (int k = 2; k <= order; ++k) {
+    bend.segment<2>(2 * k - 3) *= k * k;
+  }
+  return bend;
+}
+
 double largest_lobe_m(const NormalOffset& offset) {
   double largest = 0.0;
   for (int k = 2; k <= offset.order; ++k) {

@@ -19,9 +19,10 @@ struct NormalOffset {
 /// Number of coefficients up to `order`.
 int offset_coefficients(int order);
 
-/// The factor of each coefficient at `phi`, and its derivative by phi.
+/// The factor of each coefficient at `phi`, and its first and second derivatives by phi.
 Eigen::RowVectorXd offset_basis(double phi, int order);
 Eigen::RowVectorXd offset_basis_slope(double phi, int order);
+Eigen::RowVectorXd offset_basis_bend(double phi, int order);
 
 /// The largest amplitude of any of its harmonics. [m]
 double largest_lobe_m(const NormalOffset& offset);

@@ -88,7 +88,43 @@ double half_extent(std::span<const ProbedPatch> patches) {
   return box.isEmpty() ? 0.0 : 0.5 * box.diagonal().norm();
 }
 
+/// Adds to a contact what the offset that was taken off is uncertain by: an error d of it along the
+/// left normal moves the surface by d, turns it by d' and bends it by kappa^2 d + d'', by arc
+/// length. (Of kappa_s nothing: that of an offset that fits no harmonic above its order is next to
+/// none.)
+void add_what_offset_leaves(const ProbedPatch& patch, const Curve& curve, const Pose2& pose,
+                            int material, int travel, LocalEstimate* estimate) {
+  const Touch touch = touch_of(patch, curve, pose, material, travel, {estimate->position, 0.0, 0});
+  const int order = patch.probe->offset.order;
+  const Eigen::RowVectorXd at = offset_basis(touch.offset_angle, order);
+  const double kappa = estimate->kappa;
+  const Vec2 forward(std::cos(estimate->tangent_angle), std::sin(estimate->tangent_angle));
+  const double left = left_of(forward).dot(touch.normal) < 0.0 ? -1.0 : 1.0;
+  Eigen::Matrix<double, 4, Eigen::Dynamic> by_offset(4, at.size());
+  by_offset.row(0) = left * at;
+  by_offset.row(1) = left * kappa * offset_basis_slope(touch.offset_angle, order);
+  by_offset.row(2) = left * kappa * kappa * (at + offset_basis_bend(touch.offset_angle, order));
+  by_offset.row(3).setZero();
+  estimate->covariance += by_offset * covariance_elsewhere(*patch.probe) * by_offset.transpose();
+}
+
 }  // namespace
+
+void add_offset_uncertainty(std::span<const ProbedPatch> patches, const Curve& curve,
+                            const Pose2& pose, TouchedFrom touched_from,
+                            std::vector<LocalizedContact>* contacts) {
+  for (const ProbedPatch& patch : patches) {
+    const int material =
+        patch.probe == nullptr ? 0 : material_sign(curve, pose, patch, touched_from);
+    if (material == 0) continue;
+    const int travel = has_lag(patch) ? travel_of(curve, pose, patch.samples) : 0;
+    for (LocalizedContact& contact : *contacts) {
+      if (contact.probe == patch.context.probe && contact.patch == patch.context.patch) {
+        add_what_offset_leaves(patch, curve, pose, material, travel, &contact.estimate);
+      }
+    }
+  }
+}
 
 int material_sign(const Curve& curve, const Pose2& pose, const ProbedPatch& patch,
                   TouchedFrom touched_from) {
@@ -278,6 +314,8 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
   }
   const std::optional<Curve> curve = curve_of(answer);
   if (!curve || answer.covariance.size() == 0) return result;
+  add_offset_uncertainty(corrected, *curve, answer.world_T_curve, options.touched_from,
+                         &answer.contacts);
   const ShapePoseCovariance more =
       covariance_of_probes(*curve, answer.world_T_curve, corrected, options.touched_from);
   if (more.rows() != answer.covariance.rows()) return result;

@@ -11,7 +11,9 @@ namespace {
 std::string verdict(const v1::PartMatch& match) {
   switch (match.status()) {
     case v1::PART_MATCH_STATUS_TOO_FEW_SAMPLES:
-      return "too few samples to place the part";
+      return "too few samples in each patch to place the part (single touches do not: order them "
+             "along the "
+             "part)";
     case v1::PART_MATCH_STATUS_NO_MATCH:
       return "no match: nowhere on the part do the samples fit";
     case v1::PART_MATCH_STATUS_DETERMINED:

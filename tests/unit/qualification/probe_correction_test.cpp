@@ -92,6 +92,8 @@ TEST(ProbeCorrection, LobesFarAboveTheNoiseHideNoClass) {
   part.probe = test::lobed_probe();
   part.probe.sigma_m.value = 2.5e-6;
   part.probe.deviation_m.value = 1.5e-6;
+  const auto coefficients = offset_coefficients(part.probe.offset.order);
+  part.probe.offset.covariance_m2 = Eigen::MatrixXd::Zero(coefficients, coefficients);
   constexpr double kLarger = 40.0;
   part.probe.offset.coefficients_m *=
       kLarger * part.probe.sigma_m.value / std::sqrt(mean_square_of_lobes(part.probe.offset));
@@ -218,6 +220,42 @@ TEST(ProbeCorrection, InAnotherSetupTheEllipseIsHeld) {
   const test::Band band =
       test::binomial_band(std::vector<double>(static_cast<std::size_t>(runs), 0.95), 1.0 - 2e-4);
   EXPECT_GE(held, band.least);
+}
+
+// A constant that differs in another set-up moves all contacts of a part alike, and by far more
+// than their noise: the mean of their errors over what is told has a normal law, one value a
+// set-up.
+TEST(ProbeCorrection, InAnotherSetupTheContactsAreHeld) {
+  auto rng = test::test_rng();
+  std::normal_distribution<double> normal;
+  const int runs = test::stress_count(40);
+  test::ProbeScene part;
+  part.probe = test::lobed_probe();
+  part.probe.setup_m.value = 2e-4;
+  const auto coefficients = offset_coefficients(part.probe.offset.order);
+  part.probe.offset.covariance_m2 = Eigen::MatrixXd::Zero(coefficients, coefficients);
+  part.curve = Ellipse{0.03, 0.022};
+  part.arc_t = 1.5 * kPi;
+  double squares = 0.0;
+  for (int run = 0; run < runs; ++run) {
+    test::ProbeScene there = part;
+    there.probe.offset.coefficients_m[0] += part.probe.setup_m.value * normal(rng);
+    const Recognition answer =
+        recognise_probed(patches_of(simulate(there, rng), &part.probe), {}).recognition;
+    ASSERT_EQ(answer.shape.curve_class, CurveClass::Ellipse);
+    ASSERT_FALSE(answer.contacts.empty());
+    double mean = 0.0;
+    for (const LocalizedContact& contact : answer.contacts) {
+      const Vec2 place = part.world_T_curve.to_local(contact.estimate.position);
+      mean += foot_point(part.curve, place).distance /
+              std::sqrt(contact.estimate.covariance(0, 0)) /
+              static_cast<double>(answer.contacts.size());
+    }
+    squares += mean * mean;
+  }
+  std::cout << "mean square of contacts' errors " << squares / runs << " of what is told\n";
+  EXPECT_LE(squares, chi_square_threshold(1e-4, runs));
+  EXPECT_GE(squares, chi_square_threshold(1.0 - 1e-4, runs));
 }
 
 TEST(ProbeCorrection, FromMemoryTheSameAndFromMeansOfNeighboursNearly) {

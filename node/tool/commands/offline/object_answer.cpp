@@ -63,7 +63,7 @@ std::vector<const ProbeCharacter*> characters_of(const ContactGroup& group,
     const double radius = probe->character.tip_radius_m;
     const double stated = run.context.tip_radius_m;
     if (radius > 0.0 && stated > 0.0 && stated != radius) {
-      notes.push_back("the tip radius of " + probe->file + ", " + text_of_length(radius) +
+      notes.push_back("WARNING: the tip radius of " + probe->file + ", " + text_of_length(radius) +
                       ", counts, not that of the samples, " + text_of_length(stated));
     } else if (!(radius > 0.0) && stated > 0.0) {
       notes.push_back("WARNING: " + probe->file +
