@@ -218,11 +218,11 @@ PolynomialFit semi_cubical_at(const PolynomialFit& spline, std::span<const FitPo
 void start_from_spline(const FitData& reduced, double out_of_reach, PolynomialFits* fits,
                        WorkBudget& work) {
   std::optional<PolynomialFit>& limit = fits->semi_cubical_parabola;
-  if (!fits->cubic_spline || (limit && limit->chi2 <= fits->cubic_spline->chi2) || !work.allows()) {
+  if (!limit || !fits->cubic_spline || limit->chi2 <= fits->cubic_spline->chi2 || !work.allows()) {
     return;
   }
   const PolynomialFit start = semi_cubical_at(*fits->cubic_spline, reduced.points);
-  if (!limit || start.chi2 < limit->chi2) {
+  if (start.chi2 < limit->chi2) {
     keep_better(&limit, refine_polynomial(PolynomialModel::SemiCubicalParabola, reduced.points,
                                           start, kSurfacePoints, coarse(out_of_reach), work));
   }
@@ -237,10 +237,12 @@ PolynomialFits search_polynomials(const FitData& reduced, bool line_fits, double
     return fits;
   }
   add_graph_seeds(reduced.points, &fits.seeds, work);
-  if (!line_fits) {
+  if (line_fits) {
+    add_straight_arm(reduced.points, &fits.seeds);
+  } else {
     add_arm_seeds(reduced.points, reduced.patches, &fits.seeds, work);
-    add_relatives(reduced, &fits.seeds, work);
   }
+  add_relatives(reduced, &fits.seeds, work);
   // Conics start from it too.
   fits.parabola = best_of(&fits.seeds.parabola, reduced, kInfinity, work);
   fits.cubical_parabola = best_of(&fits.seeds.cubical_parabola, reduced, out_of_reach, work);

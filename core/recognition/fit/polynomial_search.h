@@ -29,7 +29,8 @@ struct PolynomialFits {
 };
 
 /// Exhaustive coarse search; then walks the valleys and refines the best of each class with coarse
-/// effort. The cubics are left out if they are `out_of_reach` (as fit_classes).
+/// effort. The cubics are left out if they are `out_of_reach` (as fit_classes). `line_fits`: that
+/// is the limit of all, and no arms are sought.
 PolynomialFits search_polynomials(const FitData& reduced, bool line_fits, double out_of_reach,
                                   WorkBudget& work);
 

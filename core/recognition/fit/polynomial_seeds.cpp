@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/curves/curve_class.h"
+#include "core/recognition/fit/algebraic_fit.h"
 #include "core/recognition/fit/arm_search.h"
 #include "core/recognition/fit/seed_moments.h"
 
@@ -147,6 +148,19 @@ void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> 
   if (are_few_touches(points, patches)) {
     add_other_arms(splines, &search, &seeds->cubic_spline, work);
   }
+}
+
+void add_straight_arm(std::span<const FitPoint> points, PolynomialSeeds* seeds) {
+  const ConicCoefficients line = algebraic_line(points);
+  const Vec2 axis = -left_of(Vec2(line[3], line[4]));
+  const auto [first, last] =
+      std::minmax_element(points.begin(), points.end(), [&](const FitPoint& a, const FitPoint& b) {
+        return a.position.dot(axis) < b.position.dot(axis);
+      });
+  const double least = first->position.dot(axis);
+  const double span = last->position.dot(axis) - least;
+  seeds->cubic_spline.push_back({PolynomialModel::CubicSpline, std::atan2(axis.y(), axis.x()),
+                                 least - span, std::vector<double>(points.size(), 1.0), 0.0});
 }
 
 }  // namespace palpate

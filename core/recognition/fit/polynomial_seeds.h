@@ -47,4 +47,8 @@ void add_graph_seeds(std::span<const FitPoint> points, PolynomialSeeds* seeds, W
 void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> patches,
                    PolynomialSeeds* seeds, WorkBudget& work);
 
+/// The one start of the arm models where all points lie on a line: an arm along it, with the vertex
+/// a span of the points away. Every other arm that is as straight there leads to as good a fit.
+void add_straight_arm(std::span<const FitPoint> points, PolynomialSeeds* seeds);
+
 }  // namespace palpate
