@@ -102,8 +102,10 @@ void add_what_offset_leaves(const ProbedPatch& patch, const Curve& curve, const 
   const double left = left_of(forward).dot(touch.normal) < 0.0 ? -1.0 : 1.0;
   Eigen::Matrix<double, 4, Eigen::Dynamic> by_offset(4, at.size());
   by_offset.row(0) = left * at;
-  by_offset.row(1) = left * kappa * offset_basis_slope(touch.offset_angle, order);
-  by_offset.row(2) = left * kappa * kappa * (at + offset_basis_bend(touch.offset_angle, order));
+  const Eigen::RowVectorXd slope = offset_basis_slope(touch.offset_angle, order);
+  by_offset.row(1) = left * kappa * slope;
+  by_offset.row(2) = left * (kappa * kappa * (at + offset_basis_bend(touch.offset_angle, order)) +
+                             estimate->kappa_s * slope);
   by_offset.row(3).setZero();
   estimate->covariance += by_offset * covariance_elsewhere(*patch.probe) * by_offset.transpose();
 }
@@ -271,14 +273,25 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
 
   ProbedRecognition result;
   std::vector<ProbedPatch> corrected = raw;
+  std::optional<Curve> taken_off_along;
+  Pose2 its_pose;
+  const auto widened = [&] {
+    if (taken_off_along) {
+      add_offset_uncertainty(corrected, *taken_off_along, its_pose, options.touched_from,
+                             &result.recognition.contacts);
+    }
+    return std::move(result);
+  };
   constexpr int kRounds = 2;
   for (int round = 0; round <= kRounds; ++round) {
     Recognizer recognizer(round == 0 ? with_lobes : cautious);
     result.added = add_all(corrected, recognizer);
     result.recognition = recognizer.recognize();
     const std::optional<Curve> curve = curve_of(result.recognition);
-    if (!curve) return result;
+    if (!curve) return widened();
     if (round == kRounds) break;
+    taken_off_along = curve;
+    its_pose = result.recognition.world_T_curve;
     for (std::size_t i = 0; i < raw.size(); ++i) {
       // Always from the original samples: only the normals change from round to round.
       corrected[i].samples =
@@ -313,12 +326,10 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
     }
   }
   const std::optional<Curve> curve = curve_of(answer);
-  if (!curve || answer.covariance.size() == 0) return result;
-  add_offset_uncertainty(corrected, *curve, answer.world_T_curve, options.touched_from,
-                         &answer.contacts);
+  if (!curve || answer.covariance.size() == 0) return widened();
   const ShapePoseCovariance more =
       covariance_of_probes(*curve, answer.world_T_curve, corrected, options.touched_from);
-  if (more.rows() != answer.covariance.rows()) return result;
+  if (more.rows() != answer.covariance.rows()) return widened();
   answer.covariance += more;
   best.covariance += more;
   if (answer.status == RecognitionStatus::Recognized &&
@@ -327,7 +338,7 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
     answer.status = RecognitionStatus::Ambiguous;
     answer.doubt = Doubt::Undetermined;
   }
-  return result;
+  return widened();
 }
 
 ProbedRecognition recognise_probed(const SampleMemory& memory,

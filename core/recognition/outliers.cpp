@@ -41,8 +41,8 @@ Misses misses_of(const CanonicalFit& fit, const Weighing& weighing, bool sigma_k
     misses.magnitude[i] = std::abs(fit.points[i].residual);
   }
   // Robust scale of the residuals: their noise may be unknown, and spikes must not widen it. What
-  // is stated is the least, else rounding: the smooth model may have taken a feature of the part,
-  // which few samples show, for noise.
+  // is stated is the least, else rounding and the readings' step: the smooth model may have taken a
+  // feature of the part, which few samples show, for noise.
   std::vector<double> sorted = misses.magnitude;
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n / 2),
                    sorted.end());
@@ -51,9 +51,11 @@ Misses misses_of(const CanonicalFit& fit, const Weighing& weighing, bool sigma_k
   constexpr double kEfficiencyOfMedian = 0.37;
   const double dof = static_cast<double>(n) - degrees_of_freedom(fit.shape.curve_class);
   const double taken = std::sqrt(static_cast<double>(n) / std::max(dof, 1.0));
-  const double least = sigma_known ? 1.0 : rounding_level(weighing.data) / weighing.sigma;
+  const FitData& data = weighing.data;
+  const double least =
+      sigma_known ? 1.0 : std::max(rounding_level(data), data.reading_noise) / weighing.sigma;
   const double scale = std::max(least, taken * sorted[n / 2] / kMedianOfNormal);
-  const std::size_t residuals = residual_count(weighing.data);
+  const std::size_t residuals = residual_count(data);
   const double z =
       two_sided_normal_quantile(false_outlier_probability / static_cast<double>(residuals));
   misses.limit =
@@ -79,16 +81,22 @@ FarSamples far_samples(const Weighing& weighing, const FitData& data, std::vecto
                    [limit = limit](double m) { return m > limit; })) {
     return {};
   }
-  std::size_t weighed = 0;  // of the points before
+  const bool is_first = std::none_of(aside.begin(), aside.end(), [](bool flag) { return flag; });
+  std::vector<FitPoint> kept;  // with the noise that the misses are told in
+  std::size_t weighed = 0;     // of the points before
   double squares_of_kept = 0.0;
   double squares_of_dropped = 0.0;
   for (const PatchSpan& patch : data.patches) {
     std::size_t run = 0;
     for (std::size_t i = patch.begin; i < patch.end; ++i) {
       if (!aside[i]) {
-        const double miss = magnitude[weighed++];
+        const double miss = magnitude[weighed];
         aside[i] = miss > limit;
         (aside[i] ? squares_of_dropped : squares_of_kept) += miss * miss;
+        if (!aside[i]) {
+          kept.push_back(weighing.data.points[weighed]);
+        }
+        ++weighed;
       }
       run = aside[i] ? run + 1 : 0;
       if (run > kLongestRunOfSpikes) {
@@ -96,13 +104,12 @@ FarSamples far_samples(const Weighing& weighing, const FitData& data, std::vecto
       }
     }
   }
-  const FitData kept = without_points(data, aside);
   // An outlier that brings a chi-square into a fit leaves itself 1 - h of it, h its leverage: more
   // than half, unless it alone determines the curve. So a larger misfit of the other points is not
-  // its doing.
-  const bool misfits =
-      squares_of_kept > most_chi2_of_noise(kept.points) && squares_of_kept > squares_of_dropped;
-  if (misfits || data.points.size() - kept.points.size() > most_set_aside(data.points.size())) {
+  // its doing. (Those beside one that was taken out before did no such thing.)
+  const bool misfits = is_first && squares_of_kept > most_chi2_of_noise(kept) &&
+                       squares_of_kept > squares_of_dropped;
+  if (misfits || data.points.size() - kept.size() > most_set_aside(data.points.size())) {
     return {};
   }
   return {std::move(aside), false};

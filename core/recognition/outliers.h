@@ -1,7 +1,6 @@
 // Sensor spikes, found by the fit that explains all other points.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 

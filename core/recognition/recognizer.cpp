@@ -213,8 +213,9 @@ class Recognizer::Impl {
     }
     Recognition answer = answer_by_likelihood(
         w, moments, {options_.recognized_probability, options_.determined_fraction}, stored);
-    // A stated noise says so by the chi-square.
-    if (!sigma_known && weighed.leaves_class && w.best != CurveClass::Unclassified) {
+    // Of all samples the chi-square says so where the noise is stated.
+    const bool is_told = sigma_known && weighed.outliers.empty();
+    if (!is_told && weighed.leaves_class && w.best != CurveClass::Unclassified) {
       doubt(&answer, Doubt::Misfit);
     }
     answer.outlier_count = stored - w.data.points.size();

@@ -133,11 +133,11 @@ const std::vector<AxisFit>& seeds_of(CurveClass curve_class, const PolynomialSee
 
 void add_polynomials(CurveClass curve_class, const FitData& data, std::vector<GivenStart>* starts) {
   constexpr double kNoneOutOfReach = std::numeric_limits<double>::infinity();
-  constexpr bool kLine = false;
+  constexpr bool kLineFits = false;  // whatever does
   WorkBudget unbounded;
   const PolynomialFits fits = curve_class == CurveClass::Parabola
                                   ? search_parabola(data, unbounded)
-                                  : search_polynomials(data, kLine, kNoneOutOfReach, unbounded);
+                                  : search_polynomials(data, kLineFits, kNoneOutOfReach, unbounded);
   const auto add = [&](const std::optional<PolynomialFit>& fit) {
     if (fit) {
       add_polynomial(curve_class, fit->coefficients, data, starts);

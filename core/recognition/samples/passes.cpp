@@ -35,17 +35,17 @@ struct Lengths {
   double far_m = 0.0;
 };
 
-/// The largest noise that is stated of a sample; 0 if none is of any. [m]
+/// Root mean square noise of the samples, as it is stated; 0 unless it is of all of them. [m]
 double stated_noise_m(std::span<const StoredSample> samples, double default_sigma_m) {
-  double largest = 0.0;
+  double sum = 0.0;
   for (const StoredSample& sample : samples) {
     const double sigma_m = sigma_m_of(sample, default_sigma_m);
     if (!(sigma_m > 0.0)) {
       return 0.0;
     }
-    largest = std::max(largest, sigma_m);
+    sum += sigma_m * sigma_m / sample.weight;
   }
-  return largest;
+  return std::sqrt(sum / static_cast<double>(samples.size()));
 }
 
 /// From the samples themselves and from their stated noise, whichever is more: where nothing but

@@ -22,7 +22,7 @@ struct Turns {
 
 /// A turn by no more than the samples' own noise is none. `default_sigma_m`: noise of samples that
 /// state none; 0 = not known. O(samples).
-Turns turns_of(std::span<const StoredSample> samples, double default_sigma_m = 0.0);
+Turns turns_of(std::span<const StoredSample> samples, double default_sigma_m);
 
 /// Cuts the patch before each of these samples. Every second pass is reversed, so that all passes
 /// have the direction of the first and the material on the same side of travel.

@@ -1,5 +1,6 @@
 #include "core/recognition/samples/stroke_order.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -21,28 +22,40 @@ bool show_order(std::span<const Vec2> stroke) {
   return step_ratio([&](std::size_t i) { return stroke[i]; }, 0, stroke.size(), square) < kNoOrder;
 }
 
-bool leads_to_and_fro(std::span<const Vec2> stroke) {
-  if (stroke.size() < kFewestInOrder || show_order(stroke)) {
-    return false;
-  }
+bool leads_to_and_fro(std::span<const Vec2> stroke, double extent) {
+  // Once round a part by n samples has the ratio 2 sin^2(pi / n): 0.5 for six, 0.38 for seven.
+  constexpr std::size_t kFewest = 7;
   // Of the extent. Where as many as a third of dense samples are spikes, almost half the steps join
   // two that are none.
   constexpr double kLongStep = 0.1;
   constexpr std::size_t kOneInSteps = 3;
-  Vec2 low = stroke.front();
-  Vec2 high = stroke.front();
+  std::vector<Vec2> places;
   std::vector<double> steps;
-  for (std::size_t i = 1; i < stroke.size(); ++i) {
-    low = low.cwiseMin(stroke[i]);
-    high = high.cwiseMax(stroke[i]);
-    steps.push_back((stroke[i] - stroke[i - 1]).norm());
+  for (const Vec2& place : stroke) {
+    if (!places.empty()) {
+      if (place == places.back()) {
+        continue;  // told twice
+      }
+      steps.push_back((place - places.back()).norm());
+    }
+    places.push_back(place);
+  }
+  if (places.size() < kFewest || show_order(places)) {
+    return false;
   }
   const auto third = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / kOneInSteps);
   std::nth_element(steps.begin(), third, steps.end());
-  return *third > kLongStep * (high - low).norm();
+  return *third > kLongStep * extent;
 }
 
 bool lead_mostly_to_and_fro(std::span<const StoredPatch> patches) {
+  Eigen::AlignedBox2d box;
+  for (const StoredPatch& patch : patches) {
+    for (const StoredSample& sample : patch.samples) {
+      box.extend(sample.position_m);
+    }
+  }
+  const double extent_m = box.isEmpty() ? 0.0 : box.diagonal().norm();
   std::size_t all = 0;
   std::size_t unordered = 0;
   std::vector<Vec2> places;
@@ -52,7 +65,7 @@ bool lead_mostly_to_and_fro(std::span<const StoredPatch> patches) {
       places.push_back(sample.position_m);
     }
     all += places.size();
-    unordered += leads_to_and_fro(places) ? places.size() : 0;
+    unordered += leads_to_and_fro(places, extent_m) ? places.size() : 0;
   }
   return 2 * unordered > all;
 }

@@ -156,5 +156,42 @@ TEST(SparseParts, AFeatureOfARingIsNoNoiseOfACircle) {
   EXPECT_LE(wrong, test::most_of_poisson(stated));
 }
 
+// Of an edge along an axis most readings are the same: their median tells no noise, and the others,
+// a step away, are no form.
+TEST(SparseParts, AnEdgeInStepsOfItsReadingsIsALine) {
+  constexpr double kStep = 1e-6;  // [m]
+  std::vector<ContactSample> samples;
+  for (int i = 0; i < 200; ++i) {
+    samples.push_back({{2e-4 * i, i % 50 < 5 ? kStep : 0.0}, 0.0, 0});
+  }
+  Recognizer recognizer;
+  recognizer.add({}, samples);
+  const Recognition answer = recognizer.recognize();
+  EXPECT_EQ(answer.shape.curve_class, CurveClass::Line) << test::said(answer);
+  EXPECT_EQ(answer.status, RecognitionStatus::Recognized) << test::said(answer);
+}
+
+// Its square is less than the sum of the others', however far off it is.
+TEST(SparseParts, OneGrossTouchAmongManyIsSetAside) {
+  std::mt19937_64 rng = test::test_rng();
+  constexpr double kSigma = 1e-5;  // [m]
+  for (int i = 0; i < test::stress_count(10); ++i) {
+    Recognizer recognizer;
+    constexpr std::uint32_t kTouches = 100;
+    for (std::uint32_t k = 0; k < kTouches; ++k) {
+      const double t = test::uniform(rng, 0.0, 2.0 * kPi);
+      const double off = k == 0 ? 10.0 * kSigma : 0.0;
+      PatchContext context;
+      context.patch = k;
+      recognizer.add(context,
+                     std::vector<ContactSample>{{(0.02 + off) * Vec2(std::cos(t), std::sin(t)) +
+                                                     test::normal_pair(rng, kSigma),
+                                                 0.0, 0}});
+    }
+    const Recognition answer = recognizer.recognize();
+    EXPECT_EQ(answer.outlier_count, 1U) << test::said(answer);
+  }
+}
+
 }  // namespace
 }  // namespace palpate

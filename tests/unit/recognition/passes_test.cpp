@@ -30,6 +30,8 @@ Vec2 round_a_needle(double u) {
   return {0.05 * std::cos(t), 1e-3 * std::sin(t)};
 }
 
+constexpr double kUnknown = 0.0;  // noise
+
 /// So many passes of `each` samples, there and back.
 std::vector<StoredSample> strokes(const Way& way, int passes, int each, std::mt19937_64& rng,
                                   double sigma_m = kDeviation) {
@@ -54,7 +56,7 @@ TEST(Passes, AreCutWhereAStrokeTurnsBackOverItself) {
       for (const auto& [passes, each] : {std::pair(2, 16), {2, 60}, {6, 60}, {3, 300}}) {
         for (int seed = 0; seed < 20; ++seed) {
           const auto samples = strokes(way, passes, each, rng, sigma_m);
-          const auto returns = turns_of(samples).returns;
+          const auto returns = turns_of(samples, kUnknown).returns;
           ASSERT_EQ(returns.size(), static_cast<std::size_t>(passes - 1))
               << sigma_m << " " << passes << " " << each;
           for (std::size_t k = 0; k < returns.size(); ++k) {
@@ -74,7 +76,7 @@ TEST(Passes, AStrokeThatOnlyBendsIsOne) {
   for (const Way& way : {Way(circle), Way(over_a_cusp), Way(round_a_needle)}) {
     for (const double sigma_m : {1e-9, 1e-6, 1e-5}) {
       for (const int each : {12, 60, 300, 3000}) {
-        EXPECT_TRUE(turns_of(strokes(way, 1, each, rng, sigma_m)).returns.empty())
+        EXPECT_TRUE(turns_of(strokes(way, 1, each, rng, sigma_m), kUnknown).returns.empty())
             << sigma_m << " " << each;
       }
     }
@@ -86,16 +88,16 @@ TEST(Passes, ACuspIsWhereItIsAndBendsHaveNone) {
   for (const double sigma_m : {1e-9, 1e-6, 1e-5}) {
     for (const int each : {60, 300}) {
       const std::vector<StoredSample> samples = strokes(over_a_cusp, 1, each, rng, sigma_m);
-      const auto cusps = turns_of(samples).cusps;
+      const auto cusps = turns_of(samples, kUnknown).cusps;
       ASSERT_EQ(cusps.size(), 1U) << sigma_m << " " << each;
       // Near the cusp x = 5 cm t^2: within a few deviations of the noise the farthest may be any.
       const double reach = std::sqrt(4.0 * sigma_m / 0.05) / 2.0 * each;
       EXPECT_NEAR(static_cast<double>(cusps.front()), 0.5 * each, 2.0 + reach);
-      EXPECT_TRUE(turns_of(strokes(ellipse, 1, each, rng, sigma_m)).cusps.empty());
+      EXPECT_TRUE(turns_of(strokes(ellipse, 1, each, rng, sigma_m), kUnknown).cusps.empty());
       // A spike turns a stroke back twice, and forward again.
       std::vector<StoredSample> spiked = strokes(ellipse, 1, each, rng, sigma_m);
       spiked[static_cast<std::size_t>(each) / 2].position_m -= Vec2(0.0, 0.03);
-      EXPECT_TRUE(turns_of(spiked).cusps.empty());
+      EXPECT_TRUE(turns_of(spiked, kUnknown).cusps.empty());
     }
   }
 }
@@ -104,7 +106,7 @@ TEST(Passes, AStrokeShorterThanItsNoiseIsOne) {
   std::mt19937_64 rng(5);
   const Way short_way = [](double u) { return Vec2(10.0 * kDeviation * u, 0.0); };
   for (int seed = 0; seed < 50; ++seed) {
-    EXPECT_TRUE(turns_of(strokes(short_way, 1, 500, rng)).returns.empty()) << seed;
+    EXPECT_TRUE(turns_of(strokes(short_way, 1, 500, rng), kUnknown).returns.empty()) << seed;
   }
 }
 
@@ -132,7 +134,8 @@ TEST(Passes, HaveAllSamplesInTheDirectionOfTheFirst) {
   for (std::size_t i = 0; i < patch.details.size(); ++i) {
     patch.details[i].normal_sigma_rad = static_cast<double>(i);
   }
-  const std::vector<StoredPatch> passes = passes_of(patch, turns_of(patch.samples).returns);
+  const std::vector<StoredPatch> passes =
+      passes_of(patch, turns_of(patch.samples, kUnknown).returns);
   ASSERT_EQ(passes.size(), 3U);
   std::size_t before = 0;
   for (std::size_t p = 0; p < passes.size(); ++p) {

@@ -1,5 +1,6 @@
 #include "node/tool/commands/check/stream_check.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -152,7 +153,12 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
     findings->push_back({severity, probe, std::move(what), std::move(cure), true});
   };
   const bool is_file = source == CheckedSource::File;
-  double extent = 0.0;
+  Eigen::AlignedBox2d box;
+  for (const CheckedPatch& patch : patches) {
+    for (const Vec2& position : patch.positions) box.extend(position);
+  }
+  const double extent_of_all = box.isEmpty() ? 0.0 : box.diagonal().norm();
+  double extent = 0.0;  // of a patch
   std::size_t longest = 0;
   std::size_t jumps = 0;
   std::size_t unordered = 0;
@@ -190,7 +196,7 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
     }
     std::vector<double> sorted = steps;
     const double typical = median_of(sorted);
-    unordered += leads_to_and_fro(moved) ? 1 : 0;
+    unordered += leads_to_and_fro(moved, extent_of_all) ? 1 : 0;
     // A lift-off is many spacings and of the size of the part; a spike comes back at once.
     constexpr double kJumpSpacings = 20.0;
     for (std::size_t i = 0; i + 1 < moved.size(); ++i) {
