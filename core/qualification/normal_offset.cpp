@@ -49,6 +49,10 @@ double mean_square_of_lobes(const NormalOffset& offset) {
   return 0.5 * offset.coefficients_m.tail(offset.coefficients_m.size() - 1).squaredNorm();
 }
 
+double mean_variance_of_lobes(const NormalOffset& offset) {
+  return 0.5 * offset.covariance_m2.diagonal().tail(offset.covariance_m2.rows() - 1).sum();
+}
+
 double offset_at(const NormalOffset& offset, double phi) {
   return offset_basis(phi, offset.order).dot(offset.coefficients_m);
 }

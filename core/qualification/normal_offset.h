@@ -27,8 +27,9 @@ Eigen::RowVectorXd offset_basis_bend(double phi, int order);
 /// The largest amplitude of any of its harmonics. [m]
 double largest_lobe_m(const NormalOffset& offset);
 
-/// Mean square of all but its constant, over all directions. [m^2]
+/// Mean square of all but its constant, over all directions, and their mean variance. [m^2]
 double mean_square_of_lobes(const NormalOffset& offset);
+double mean_variance_of_lobes(const NormalOffset& offset);
 
 /// The offset in direction `phi`. [m]
 double offset_at(const NormalOffset& offset, double phi);

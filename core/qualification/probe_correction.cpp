@@ -261,7 +261,8 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
     raw.push_back(as_qualified(patch));
     if (patch.probe == nullptr) continue;
     options.has_probe_file = true;
-    coherent = std::max(coherent, mean_square(patch.probe->deviation_m));
+    coherent = std::max(coherent, mean_square(patch.probe->deviation_m) +
+                                      mean_variance_of_lobes(patch.probe->offset));
     lobes = std::max(lobes, mean_square_of_lobes(patch.probe->offset));
   }
   RecognizerOptions cautious = options;

@@ -70,11 +70,11 @@ struct ProbedRecognition {
 /// deviation: without, no class fits where they are larger than the noise.
 ///
 /// For the class, and for RECOGNIZED, the coherent deviation of the probes counts as form
-/// deviation, in addition to that of the options: a bound over all coherences. The covariance of
-/// the best class comes from a recognition of its own, with white noise and the stated form
-/// deviation, plus covariance_of_probes. Coherence of the residuals beyond what the files say
-/// enlarges it further. An answer whose shape this leaves undetermined is not RECOGNIZED.
-/// `options.unqualified_probe` concerns patches without a file.
+/// deviation, with what the lobes are uncertain by, in addition to that of the options: a bound
+/// over all coherences. The covariance of the best class comes from a recognition of its own, with
+/// white noise and the stated form deviation, plus covariance_of_probes. Coherence of the residuals
+/// beyond what the files say enlarges it further. An answer whose shape this leaves undetermined is
+/// not RECOGNIZED. `options.unqualified_probe` concerns patches without a file.
 ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches, RecognizerOptions options);
 
 /// The same for an object whose samples are in memory. `probes` is indexed by the probe number of a
