@@ -88,10 +88,11 @@ double half_extent(std::span<const ProbedPatch> patches) {
   return box.isEmpty() ? 0.0 : 0.5 * box.diagonal().norm();
 }
 
-/// Adds to a contact what the offset that was taken off is uncertain by: an error d of it along the
-/// left normal moves the surface by d, turns it by d' and bends it by kappa^2 d + d'', by arc
-/// length. (Of kappa_s nothing: that of an offset that fits no harmonic above its order is next to
-/// none.)
+/// Adds to a contact what the offset that was taken off is uncertain by in another set-up: an error
+/// d of it along the left normal moves the surface by d, turns it by d' and bends it by kappa^2 d +
+/// d'', by arc length. Of the normal's direction phi, d' = kappa d_phi and d'' = kappa^2 d_phiphi +
+/// kappa_s d_phi. The variance of kappa_s stays as it is: it would take a derivative more of the
+/// curve than a contact tells.
 void add_what_offset_leaves(const ProbedPatch& patch, const Curve& curve, const Pose2& pose,
                             int material, int travel, LocalEstimate* estimate) {
   const Touch touch = touch_of(patch, curve, pose, material, travel, {estimate->position, 0.0, 0});
@@ -110,8 +111,7 @@ void add_what_offset_leaves(const ProbedPatch& patch, const Curve& curve, const 
   estimate->covariance += by_offset * covariance_elsewhere(*patch.probe) * by_offset.transpose();
 }
 
-}  // namespace
-
+/// The same for all contacts of patches that an offset was taken off.
 void add_offset_uncertainty(std::span<const ProbedPatch> patches, const Curve& curve,
                             const Pose2& pose, TouchedFrom touched_from,
                             std::vector<LocalizedContact>* contacts) {
@@ -127,6 +127,8 @@ void add_offset_uncertainty(std::span<const ProbedPatch> patches, const Curve& c
     }
   }
 }
+
+}  // namespace
 
 int material_sign(const Curve& curve, const Pose2& pose, const ProbedPatch& patch,
                   TouchedFrom touched_from) {
@@ -269,8 +271,9 @@ ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
   cautious.form_deviation_m =
       std::sqrt(options.form_deviation_m * options.form_deviation_m + coherent);
   // Before they are taken off, lobes are a deviation like any other: else no class fits.
-  RecognizerOptions with_lobes = cautious;
-  with_lobes.form_deviation_m = std::hypot(cautious.form_deviation_m, std::sqrt(lobes));
+  RecognizerOptions with_lobes = options;
+  with_lobes.form_deviation_m =
+      std::sqrt(options.form_deviation_m * options.form_deviation_m + coherent + lobes);
 
   ProbedRecognition result;
   std::vector<ProbedPatch> corrected = raw;

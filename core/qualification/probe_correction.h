@@ -48,12 +48,6 @@ ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& world_
                                          std::span<const ProbedPatch> patches,
                                          TouchedFrom touched_from = TouchedFrom::Unknown);
 
-/// Adds to the contacts, from which the offsets of their patches were taken off, what these are
-/// uncertain by in another set-up.
-void add_offset_uncertainty(std::span<const ProbedPatch> patches, const Curve& curve,
-                            const Pose2& world_T_curve, TouchedFrom touched_from,
-                            std::vector<LocalizedContact>* contacts);
-
 /// Factor by which the coherent deviation of the probe files enlarges the covariance of white
 /// noise, for quantities that vary slowly: 1 + the mean over the samples of sum_j D_ij / sigma_i^2.
 double inflation_of_probes(std::span<const ProbedPatch> patches);

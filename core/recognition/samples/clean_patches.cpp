@@ -1,7 +1,6 @@
 #include "core/recognition/samples/clean_patches.h"
 
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -12,19 +11,6 @@
 
 namespace palpate {
 namespace {
-
-/// Half the longer side of the box that holds all samples. [m]
-double half_extent_of(const std::vector<StoredPatch>& patches) {
-  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
-  Vec2 high = -low;
-  for (const StoredPatch& patch : patches) {
-    for (const StoredSample& sample : patch.samples) {
-      low = low.cwiseMin(sample.position_m);
-      high = high.cwiseMax(sample.position_m);
-    }
-  }
-  return 0.5 * (high - low).maxCoeff();
-}
 
 /// The patch without repeats and dwells.
 StoredPatch moving(const StoredPatch& patch, bool is_one_place, double default_sigma_m) {
@@ -143,7 +129,7 @@ void CleanPatches::update(const std::vector<StoredPatch>& patches, double defaul
   seen_.resize(patches.size());
   moved_.clear();
   clean_.clear();
-  const double half_extent_m = half_extent_of(patches);
+  const double half_extent_m = 0.5 * box_of(patches).sizes().maxCoeff();
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const StoredPatch& patch = patches[p];
     if (patch.samples.size() == 1) {  // a touch: it neither dwells nor turns back

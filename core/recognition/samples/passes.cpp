@@ -63,12 +63,11 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples, double 
     positions.push_back(sample.position_m);
   }
   const NoiseEstimate noise = estimate_noise(positions);
-  const double stated_m = stated_noise_m(samples, default_sigma_m);
-  if (noise.status != LocalStatus::Ok && stated_m == 0.0) {
+  // 0 where either is not known.
+  const double sigma_m = std::max(noise.sigma_m, stated_noise_m(samples, default_sigma_m));
+  if (noise.status != LocalStatus::Ok && sigma_m == 0.0) {
     return std::nullopt;
   }
-  const double sigma_m =
-      noise.status == LocalStatus::Ok ? std::max(noise.sigma_m, stated_m) : stated_m;
   const double noise_m = kFarDeviations * sigma_m;
   return Lengths{noise_m, std::max(noise_m, kFarSteps * median_of(steps))};
 }

@@ -1,6 +1,7 @@
 // What is kept of a patch: its samples, some of them means of several contacts.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -56,6 +57,17 @@ inline bool are_mostly_touches(std::span<const StoredPatch> patches) {
     return patch.samples.size() == 1;
   });
   return 2 * lone > static_cast<std::ptrdiff_t>(patches.size());
+}
+
+/// The box that holds all samples. [m]
+inline Eigen::AlignedBox2d box_of(std::span<const StoredPatch> patches) {
+  Eigen::AlignedBox2d box;
+  for (const StoredPatch& patch : patches) {
+    for (const StoredSample& sample : patch.samples) {
+      box.extend(sample.position_m);
+    }
+  }
+  return box;
 }
 
 /// A range of samples or points of one patch, in their order along the arc: [begin, end).

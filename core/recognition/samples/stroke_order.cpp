@@ -1,6 +1,5 @@
 #include "core/recognition/samples/stroke_order.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
 #include <vector>
@@ -49,12 +48,7 @@ bool leads_to_and_fro(std::span<const Vec2> stroke, double extent) {
 }
 
 bool lead_mostly_to_and_fro(std::span<const StoredPatch> patches) {
-  Eigen::AlignedBox2d box;
-  for (const StoredPatch& patch : patches) {
-    for (const StoredSample& sample : patch.samples) {
-      box.extend(sample.position_m);
-    }
-  }
+  const Eigen::AlignedBox2d box = box_of(patches);
   const double extent_m = box.isEmpty() ? 0.0 : box.diagonal().norm();
   std::size_t all = 0;
   std::size_t unordered = 0;

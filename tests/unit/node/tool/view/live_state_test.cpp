@@ -209,14 +209,17 @@ TEST(LiveFeed, TellsEachViewerWhatItDoesNotKnowAndNothingTwice) {
   EXPECT_EQ(message["samples"]["runs"][0]["points"].size(), 28U);
 }
 
+/// The group that a viewer sees then.
+std::string shown_at(SteadyTime now, LiveFeed& feed, Viewer& viewer) {
+  (void)feed.next_message(viewer, now);
+  return viewer.shown;
+}
+
 TEST(LiveFeed, FollowsTheGroupThatIsTouchedUnlessOneIsChosen) {
   LiveState state;
   LiveFeed feed(state);
   Viewer viewer;
-  const auto shown = [&](SteadyTime now) {
-    (void)feed.next_message(viewer, now);
-    return viewer.shown;
-  };
+  const auto shown = [&](SteadyTime now) { return shown_at(now, feed, viewer); };
   state.take(answer_of(1, "one"), kStart, 0);
   EXPECT_EQ(shown(kStart), "one");
   // Two groups touched at once do not make the picture flicker.
@@ -233,10 +236,7 @@ TEST(LiveFeed, FollowsTouchesNotTheAnswersToThem) {
   LiveState state;
   LiveFeed feed(state);
   Viewer viewer;
-  const auto shown = [&](SteadyTime now) {
-    (void)feed.next_message(viewer, now);
-    return viewer.shown;
-  };
+  const auto shown = [&](SteadyTime now) { return shown_at(now, feed, viewer); };
   // Single touches, two a second, on one group after the other.
   const char* names[] = {"one", "two", "three"};
   for (int i = 0; i < 9; ++i) {
