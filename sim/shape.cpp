@@ -40,7 +40,9 @@ double parameter_at_arc_length(const Shape& shape, double t0, double s) {
                  [&](const auto& other) {
                    const auto speed = [&](double t) { return other.point_at(t).first.norm(); };
                    return invert_arc_length(
-                       [&](double from, double to) { return integrate_speed(speed, from, to); },
+                       [&](double from, double to) {
+                         return integrate_speed(speed, from, to, 0.0);
+                       },
                        speed, t0, s, std::abs(s) / speed(t0));
                  }},
       shape);

@@ -71,7 +71,10 @@ double CubicSpline::speed(double t) const {
 
 double CubicSpline::arc_length(double t0, double t1) const {
   // For small c there is a sharp bend near t = 0.
-  return integrate_speed_by_sides([this](double u) { return speed(u); }, t0, t1);
+  const double t = std::max(std::abs(t0), std::abs(t1));
+  const double terms = (3.0 * a * t + 2.0 * std::abs(b)) * t + std::abs(c);  // of y'
+  return integrate_speed_by_sides([this](double u) { return speed(u); }, t0, t1,
+                                  rounding_of_terms(terms));
 }
 
 double CubicSpline::parameter_at_arc_length(double t0, double s) const {

@@ -114,13 +114,16 @@ double Ellipse::arc_length(double t0, double t1) const {
   double length = turns != 0.0 ? turns * perimeter(a, b) : 0.0;
   const double low = std::min(t0, end);
   const double high = std::max(t0, end);
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
   const auto speed_at = [this](double u) { return speed(u); };
   double sum = 0.0;
   for (double u = low; u < high;) {
     // The next multiple of pi/2; if rounding leaves no step to it, the end of the arc.
     const double vertex = 0.5 * kPi * (std::floor(u / (0.5 * kPi)) + 1.0);
     const double v = vertex > u ? std::min(vertex, high) : high;
-    sum += integrate_speed(speed_at, u, v);
+    // Next to half a turn the sine has the rounding of t.
+    const double rounding = a * kEpsilon * std::max(std::abs(u), std::abs(v));
+    sum += integrate_speed(speed_at, u, v, rounding);
     u = v;
   }
   return length + (end < t0 ? -sum : sum);

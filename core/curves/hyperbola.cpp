@@ -75,7 +75,7 @@ double Hyperbola::speed(double t) const {
 
 double Hyperbola::arc_length(double t0, double t1) const {
   // The speed of a slender branch has singularities near the vertex.
-  return integrate_speed_by_sides([this](double u) { return speed(u); }, t0, t1);
+  return integrate_speed_by_sides([this](double u) { return speed(u); }, t0, t1, 0.0);
 }
 
 double Hyperbola::parameter_at_arc_length(double t0, double s) const {

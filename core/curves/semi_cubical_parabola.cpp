@@ -83,7 +83,10 @@ double SemiCubicalParabola::speed(double t) const {
 
 double SemiCubicalParabola::arc_length(double t0, double t1) const {
   // |t| has a corner at the cusp.
-  return integrate_speed_by_sides([this](double u) { return speed(u); }, t0, t1);
+  const double t = std::max(std::abs(t0), std::abs(t1));
+  const double terms = (3.0 * a * t + 2.0 * std::abs(b)) * t;  // of y'
+  return integrate_speed_by_sides([this](double u) { return speed(u); }, t0, t1,
+                                  rounding_of_terms(terms));
 }
 
 double SemiCubicalParabola::parameter_at_arc_length(double t0, double s) const {

@@ -82,11 +82,15 @@ double ClosedSpline::arc_length(double t0, double t1) const {
   if (t1 < t0) {
     return -arc_length(t1, t0);
   }
-  const auto speed = [&](double t) { return derivatives(t).first.norm(); };
   double sum = 0.0;
   for (double from = t0; from < t1;) {  // the speed is smooth only between joints
-    const double to = std::min(std::floor(from) + 1.0, t1);
-    sum += integrate_speed(speed, from, to);
+    const double start = std::floor(from);
+    const double to = std::min(start + 1.0, t1);
+    const PolynomialCurve2& cubic = segments_[segment_at(start)];
+    const auto speed = [&](double u) { return cubic.derivatives(u).first.norm(); };
+    const auto& c = cubic.coefficients;
+    const double terms = c.col(1).norm() + 2.0 * c.col(2).norm() + 3.0 * c.col(3).norm();
+    sum += integrate_speed(speed, from - start, to - start, rounding_of_terms(terms));
     from = to;
   }
   return sum;

@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <iostream>
+#include <limits>
 
+#include "core/curves/arc_length.h"
 #include "core/curves/curve.h"
 
 namespace palpate {
@@ -64,6 +66,32 @@ TEST(ArcLength, IsInvertedFromBothEnds) {
     EXPECT_NEAR(arc_length(known.curve, known.t0, start), 0.0, rounding) << known.name;
     EXPECT_EQ(parameter_at_arc_length(known.curve, known.t0, 0.0), known.t0) << known.name;
   }
+}
+
+// Where large terms of the speed cancel, halving a piece changes it by their rounding, however
+// short it is: without a bound a length takes a second.
+TEST(ArcLength, RoundingOfTheSpeedIsNotHalvedWithoutEnd) {
+  const CubicSpline spline{5302876.2722558016, -36888693.503144391, 85536961.32522054};  // y' -> 0
+  const double from = 2.3187;
+  const double to = 2.3193;
+  const double rounding = rounding_of_terms((3.0 * spline.a * to - 2.0 * spline.b) * to + spline.c);
+  int asked = 0;
+  const auto speed = [&](double t) {
+    ++asked;
+    return spline.derivatives(t).first.norm();
+  };
+  constexpr double kLength = 0.0040996868748434596720532;  // mpmath.quad at 50 digits
+  const double length = integrate_speed(speed, from, to, rounding);
+  EXPECT_NEAR(length, kLength, rounding * (to - from));
+  EXPECT_EQ(spline.arc_length(from, to), length);
+  // The rule asks 12 times a piece. Each level halves the piece that holds the bend, of 1e-4 of t.
+  EXPECT_LT(asked, 12 * 2 * 60);
+
+  // A slender ellipse about the vertex at half a turn, where t has rounding.
+  const Ellipse ellipse{1e10, 1.0};
+  const double of_angle = ellipse.a * std::numeric_limits<double>::epsilon() * kPi;
+  EXPECT_NEAR(ellipse.arc_length(3.1415926535, 3.1415926536), 1.1093107465119032588e-10,
+              of_angle * 1e-10);
 }
 
 TEST(ArcLength, EllipseRunsOnOverManyTurns) {
