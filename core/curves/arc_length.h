@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -58,6 +59,7 @@ double adaptive(const Speed& speed, double t0, double t1, double whole, double t
 /// Where large terms of a speed cancel, halving changes a piece by that without an end.
 template <typename Speed>
 double integrate_speed(const Speed& speed, double t0, double t1, double rounding) {
+  assert(!(rounding < 0.0));
   constexpr double kRelative = 16.0 * std::numeric_limits<double>::epsilon();
   const double whole = arc_length_detail::gauss(speed, t0, t1);
   // A piece and its halves are each off by so much, at most.

@@ -58,7 +58,7 @@ double CubicalParabola::speed(double t) const {
 
 double CubicalParabola::arc_length(double t0, double t1) const {
   const double t = std::max(std::abs(t0), std::abs(t1));
-  const double terms = 3.0 * a * t * t + std::abs(c);  // of y'
+  const double terms = 3.0 * std::abs(a) * t * t + std::abs(c);  // of y'
   return integrate_speed([this](double u) { return speed(u); }, t0, t1, rounding_of_terms(terms));
 }
 

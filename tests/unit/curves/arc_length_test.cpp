@@ -87,6 +87,14 @@ TEST(ArcLength, RoundingOfTheSpeedIsNotHalvedWithoutEnd) {
   // The rule asks 12 times a piece. Each level halves the piece that holds the bend, of 1e-4 of t.
   EXPECT_LT(asked, 12 * 2 * 60);
 
+  // Either sign of a, where the terms of the slope cancel.
+  const CubicalParabola rising{1e9, -3e9};
+  const CubicalParabola falling{-1e9, 3e9};
+  constexpr double kOfCubical = 6.4980591657240570502e-9;
+  const double of_terms = rounding_of_terms(6e9);
+  EXPECT_NEAR(rising.arc_length(1.0 - 1e-9, 1.0 + 1e-9), kOfCubical, of_terms * 2e-9);
+  EXPECT_EQ(falling.arc_length(1.0 - 1e-9, 1.0 + 1e-9), rising.arc_length(1.0 - 1e-9, 1.0 + 1e-9));
+
   // A slender ellipse about the vertex at half a turn, where t has rounding.
   const Ellipse ellipse{1e10, 1.0};
   const double of_angle = ellipse.a * std::numeric_limits<double>::epsilon() * kPi;
