@@ -14,7 +14,7 @@ enum class WorkKind {
   ConicRow,       ///< a point against a conic, circle or line, likewise
   SoughtFoot,     ///< a point whose nearest foot is sought anywhere on a polynomial curve
   FitStep,        ///< a step of such a fit, whatever its points: a small system solved
-  AxisRow,        ///< a point against a curve that is seen along an axis, or against two edges
+  AxisRow,        ///< a point against a curve seen along an axis, two edges or another point
   SeedRow,        ///< a point or a sum of points, for one axis and vertex of the coarse search
   PlacedRow,      ///< a point carried to another fit, or placed on a canonical curve
   PathRow,        ///< a point or section on the free-form paths of one size

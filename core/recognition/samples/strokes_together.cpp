@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/numerics/negligible.h"
@@ -47,8 +48,10 @@ std::optional<Passing> passing(const FitPoint& from, const FitPoint& to, const V
 /// Where the path passes the point nearest to it; nullopt if it ends before.
 std::optional<Passing> nearest_passing(std::span<const FitPoint> path, const Vec2& point) {
   std::size_t nearest = 0;
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    if ((path[i].position - point).squaredNorm() < (path[nearest].position - point).squaredNorm()) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (const double distance2 = (path[i].position - point).squaredNorm(); distance2 < least) {
+      least = distance2;
       nearest = i;
     }
   }
@@ -160,6 +163,8 @@ std::vector<Alongside> strokes_together(std::span<const StoredPatch> patches,
         continue;
       }
       work.spend(WorkKind::PlacedRow, 2 * kAsked);
+      // To compare two distances takes a third of a row.
+      work.spend(WorkKind::AxisRow, kAsked * (paths[a].points.size() + paths[b].points.size()) / 3);
       int sense = sense_along(paths[a].points, paths[b].points);
       sense = sense != 0 ? sense : sense_along(paths[b].points, paths[a].points);
       if (sense == 0) {
