@@ -349,7 +349,6 @@ ProbedRecognition recognise_probed(const SampleMemory& memory,
                                    std::span<const ProbeCharacter* const> probes,
                                    RecognizerOptions options) {
   std::vector<ProbedPatch> patches;
-  double merge_bias_m = 0.0;
   for (const StoredPatch& stored : memory.patches()) {
     const ProbeCharacter* const probe = probes[stored.context.probe];
     ContactRun run = as_contacts(stored);
@@ -361,9 +360,7 @@ ProbedRecognition recognise_probed(const SampleMemory& memory,
       }
     }
     patches.push_back({run.context, std::move(run.samples), probe, std::move(run.details)});
-    merge_bias_m = std::max(merge_bias_m, stored.merge_bias_m);
   }
-  options.form_deviation_m = std::hypot(options.form_deviation_m, merge_bias_m);
   // No limit below the number present: the memory has already dropped what had to make room.
   options.memory.most_patches = std::max<std::size_t>(patches.size(), 1);
   options.memory.most_lone_touches = std::max<std::size_t>(patches.size(), 1);

@@ -10,6 +10,7 @@
 #include "core/local/noise.h"
 #include "core/local/stream/window_fit.h"
 #include "core/local/tip_radius.h"
+#include "core/recognition/samples/mean_on_path.h"
 
 namespace palpate {
 namespace {
@@ -29,11 +30,12 @@ WeightedPath weighted_path(const StoredPatch& patch, double default_sigma_m) {
   WeightedPath path;
   path.nodes.reserve(patch.samples.size());
   double variances = 0.0;
-  for (const StoredSample& sample : patch.samples) {
+  for (std::size_t i = 0; i < patch.samples.size(); ++i) {
+    const StoredSample& sample = patch.samples[i];
     const double sigma = sigma_m_of(sample, default_sigma_m);
     path.stated = path.stated && sigma > 0.0;
     variances += sigma * sigma;
-    path.nodes.push_back({sample.position_m, sample.weight / (sigma * sigma)});
+    path.nodes.push_back({mean_on_path(patch, i), sample.weight / (sigma * sigma)});
   }
   if (path.stated) {
     path.noise = 1.0;
@@ -118,8 +120,8 @@ std::vector<LocalizedContact> fixed_windows(const StoredPatch& patch, EstimatorO
   estimator.sigma_m = sigma_of_samples(patch, default_sigma_m);
   std::vector<Vec2> positions;
   positions.reserve(patch.samples.size());
-  for (const StoredSample& sample : patch.samples) {
-    positions.push_back(sample.position_m);
+  for (std::size_t i = 0; i < patch.samples.size(); ++i) {
+    positions.push_back(mean_on_path(patch, i));
   }
   const std::size_t window = samples_per_estimate(estimator);
   std::vector<LocalizedContact> found;
@@ -161,8 +163,6 @@ void add_contacts(const StoredPatch& patch, std::size_t least_windows, int side,
   if (!path.noise) {
     return;
   }
-  // Means of several contacts deviate from the curve by merge_bias_m, smoothly along the arc.
-  const double form_m = std::hypot(options.form_deviation_m, patch.merge_bias_m);
   const std::size_t fewest = std::max(options.window_samples, kFewestWindowNodes);
   const std::size_t windows = std::clamp<std::size_t>(n / fewest, 1, least_windows);
   const std::size_t longest = n / windows;
@@ -177,8 +177,8 @@ void add_contacts(const StoredPatch& patch, std::size_t least_windows, int side,
     for (bool shortest = false; !fit && !shortest;) {
       const auto shorter = static_cast<std::size_t>(kShrink * static_cast<double>(length));
       shortest = shorter < fewest;
-      fit = fit_window(reduced(std::span(path.nodes).subspan(first, length)), *path.noise, form_m,
-                       shortest && !path.stated);
+      fit = fit_window(reduced(std::span(path.nodes).subspan(first, length)), *path.noise,
+                       options.form_deviation_m, shortest && !path.stated);
       if (!fit && !shortest) {
         length = shorter;
       }

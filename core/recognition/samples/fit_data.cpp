@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/local/reading_step.h"
+#include "core/recognition/samples/mean_on_path.h"
 
 namespace palpate {
 
@@ -230,11 +231,12 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
       continue;
     }
     const std::size_t begin = data.points.size();
-    for (const StoredSample& sample : patch.samples) {
+    for (std::size_t i = 0; i < patch.samples.size(); ++i) {
+      const StoredSample& sample = patch.samples[i];
       const double sigma_m = sigma_m_of(sample, default_sigma_m);
       *sigma_known = *sigma_known && sigma_m > 0.0;
       FitPoint point;
-      point.position = to_frame(sample.position_m) / data.scale;
+      point.position = to_frame(mean_on_path(patch, i)) / data.scale;
       point.tangent = data.frame.rotate_back(patch.direction);
       point.offset = patch.context.tip_radius_m / data.scale;
       const double sigma = sigma_m > 0.0 ? std::max(sigma_m / data.scale, least_sigma) : 1.0;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/recognition/samples/dwells.h"
+#include "core/recognition/samples/mean_on_path.h"
 #include "core/recognition/samples/merged_samples.h"
 
 namespace palpate {
@@ -39,14 +40,6 @@ void merge_pairs(StoredPatch* patch) {
   samples.resize(left);
   if (!patch->details.empty()) patch->details.resize(left);
   patch->contacts_per_sample *= 2.0;
-  // A turn d between chords of length w means kappa = d / w. Noise is included, so this is too
-  // large rather than too small.
-  for (std::size_t k = 2; k < pairs; ++k) {
-    const Vec2 before = samples[k - 1].position_m - samples[k - 2].position_m;
-    const Vec2 after = samples[k].position_m - samples[k - 1].position_m;
-    const double turn = std::abs(turn_between(before, after));
-    patch->merge_bias_m = std::max(patch->merge_bias_m, turn * after.norm() / 24.0);
-  }
 }
 
 /// Merges the dwells of a patch if that frees at least a quarter of its samples; otherwise too many
@@ -205,7 +198,7 @@ ContactRun as_contacts(const StoredPatch& patch) {
   for (std::size_t i = 0; i < patch.samples.size(); ++i) {
     const StoredSample& stored = patch.samples[i];
     ContactSample& sample = run.samples.emplace_back();
-    sample.position_m = stored.position_m;
+    sample.position_m = mean_on_path(patch, i);
     sample.sigma_m = stored.sigma_m / std::sqrt(stored.weight);
     if (!run.details.empty()) run.details[i].covariance_m2 /= stored.weight;
   }

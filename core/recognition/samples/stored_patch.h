@@ -35,8 +35,6 @@ struct StoredPatch {
   /// Contacts per stored sample; a dwell's sample stands for more (dwells.h).
   double contacts_per_sample = 1.0;
   Vec2 newest_m = Vec2::Zero();  ///< the last contact added
-  /// Largest distance from the curve of a mean of contacts over an arc w: kappa w^2 / 24. [m]
-  double merge_bias_m = 0.0;
   /// True for a run of single touches (touches/joined_touches.h). Such a patch may change anywhere,
   /// other patches only at their end.
   bool is_joined = false;

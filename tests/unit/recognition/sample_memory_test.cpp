@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "core/recognition/samples/mean_on_path.h"
+
 namespace palpate {
 namespace {
 
@@ -79,7 +81,7 @@ TEST(SampleMemory, TouchesAloneAreBoundedApartFromStrokes) {
   EXPECT_EQ(memory.sample_count() + forgotten, 20U);
 }
 
-TEST(SampleMemory, LongPatchesAreMergedWithoutLosingContactsAndWithTheBiasStated) {
+TEST(SampleMemory, LongPatchesAreMergedWithoutLosingContactsAndStayOnThePath) {
   MemoryOptions options;
   options.most_samples_per_patch = 64;
   SampleMemory memory(options);
@@ -93,14 +95,21 @@ TEST(SampleMemory, LongPatchesAreMergedWithoutLosingContactsAndWithTheBiasStated
   EXPECT_EQ(memory.sample_count(), 1000U);
   EXPECT_LE(memory.stored_count(), 64U);
   const StoredPatch& patch = memory.patches().front();
-  double farthest = 0.0;
-  for (const StoredSample& sample : patch.samples) {
+  const double step = 1e-3 * patch.contacts_per_sample;
+  for (std::size_t i = 0; i < patch.samples.size(); ++i) {
+    const StoredSample& sample = patch.samples[i];
     EXPECT_NEAR(sample.sigma_m, 1e-5, 1e-18);
-    farthest = std::max(farthest, std::abs(sample.position_m.norm() - 1.0));
+    const double variance = (sample.contacts * sample.contacts - 1.0) * 1e-6 / 12.0;
+    EXPECT_NEAR(1.0 - sample.position_m.norm(), 0.5 * variance, variance * step * step);
+    // What is left: to the second derivative, a parabola through seven adds 804 / (24 * 42) of the
+    // fourth; beyond their middle it is short by the cosine of the way from there, up to four
+    // steps. And means lie on a circle that is smaller by step^2 / 24.
+    const std::size_t count = patch.samples.size();
+    const bool at_end = i < 3 || i + 4 >= count;
+    const double of_parabola = 804.0 / (24.0 * 42.0) + 1.0 / 24.0;
+    const double left_out = of_parabola + (at_end ? 8.0 : 0.0);
+    EXPECT_NEAR(mean_on_path(patch, i).norm(), 1.0, 0.5 * variance * left_out * step * step) << i;
   }
-  EXPECT_GT(farthest, 0.0);
-  // Biases of the merges add up as 1 + 1/4 + 1/16 + ...: a third more than the last one's.
-  EXPECT_LE(farthest, 1.5 * patch.merge_bias_m);
 }
 
 SampleDetail normal_to(double angle, double sigma_rad) {
