@@ -22,6 +22,11 @@ struct SlidePosterior {
   std::vector<double> segment_probability;
 };
 
+/// Sets the probabilities from the logarithms of the masses, one for each candidate and for each
+/// segment, and sorts the candidates. Without any mass there are no candidates.
+void set_probabilities(std::span<const double> log_masses, std::span<const double> by_segment,
+                       SlidePosterior* posterior);
+
 /// The directions of travel that the reference's patch may have along the part.
 struct TravelDirections {
   bool along = true;

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "core/numerics/chi_square.h"
 #include "core/part/part_slides.h"
+#include "core/part/touch_posterior.h"
 #include "core/recognition/samples/stored_spikes.h"
 #include "core/recognition/smooth/smooth_model.h"
 
@@ -50,10 +50,24 @@ std::size_t longest_patch(const FitData& data) {
   return longest;
 }
 
-/// The middle of a patch with its tangent; nullopt if the patch has no direction.
-std::optional<FitPoint> reference_of(std::span<const FitPoint> patch) {
-  const FitPoint& middle = patch[patch.size() / 2];
-  return middle.tangent.squaredNorm() > 0.0 ? std::optional(middle) : std::nullopt;
+/// Index of the middle of a patch among the points.
+std::size_t middle_of(const FitData& data, std::size_t patch) {
+  return data.patches[patch].begin + data.patches[patch].size() / 2;
+}
+
+/// Whether a polynomial follows the samples around a point, so that its tangent is known. Of single
+/// touches, and of touches too few for the bends between them, none does.
+bool is_followed(const SmoothModel& smooth, std::size_t point) {
+  const std::size_t reduced = smooth.nearest_reduced[point];
+  const auto section = std::find_if(smooth.sections.begin(), smooth.sections.end(),
+                                    [&](const ReducedSection& each) { return reduced < each.end; });
+  return section != smooth.sections.end() && !section->kept;
+}
+
+bool lie_at_one_place(std::span<const FitPoint> points) {
+  return std::all_of(points.begin(), points.end(), [&](const FitPoint& point) {
+    return point.position == points.front().position;
+  });
 }
 
 /// Material lies left of increasing t if the outside lies right.
@@ -86,16 +100,9 @@ class Match {
         given_(patches),
         options_(options),
         clean_(clean_patches(patches, spike_probability(patches, options))) {
-    bool sigma_known = false;
-    data_ = make_fit_data(clean_.patches, options.sigma_m, &sigma_known);
-    if (data_.points.empty()) {
-      return;
-    }
-    smooth_ = fit_smooth_model(&data_, sigma_known);
-    if (!sigma_known) {
-      noise_known_ = smooth_.dof() >= kFewestNoiseDegrees;
-      const double sigma = std::max(smooth_.noise_ratio(), rounding_level(data_));
-      scale_noise(sigma, &data_, &smooth_);
+    smooth();
+    if (take_back_spikes()) {
+      smooth();
     }
   }
 
@@ -109,19 +116,26 @@ class Match {
     const ScaledPart part(part_, data_.scale);
     const std::size_t longest = longest_patch(data_);
     match.longest_patch = given_number(longest);
-    const auto reference = reference_of(data_.patch(longest));
-    if (!reference) {
+    if (lie_at_one_place(data_.points)) {
       return match;
     }
+    const std::size_t middle = middle_of(data_, longest);
+    FitPoint reference = data_.points[middle];
+    if (!is_followed(smooth_, middle)) {
+      reference.tangent.setZero();
+    }
     const MaterialSide side = given_[match.longest_patch].context.material_side;
+    const std::span<const FitPoint> points = smooth_.reduced.points;
     const SlidePosterior posterior =
-        slide_posterior(part, smooth_.reduced.points, *reference, directions_of(side, part));
+        reference.tangent.isZero()
+            ? touch_posterior(part, points, reference)
+            : slide_posterior(part, points, reference, directions_of(side, part));
     match.segment_probability = posterior.segment_probability;
     for (const PartCandidate& candidate : posterior.candidates) {
       if (candidate.probability < options_.least_probability) {
         break;
       }
-      PartPlacement placement = place(part, candidate, *reference);
+      PartPlacement placement = place(part, candidate, reference);
       if (agrees_with_material(placement, part)) {
         match.placements.push_back(std::move(placement));
       }
@@ -136,6 +150,47 @@ class Match {
                                   const SegmentMatchOptions& options) {
     return options.false_outlier_probability /
            static_cast<double>(std::max<std::size_t>(patches.size(), 1));
+  }
+
+  /// The data without spikes, their smooth model and their noise.
+  void smooth() {
+    bool sigma_known = false;
+    data_ = make_fit_data(clean_.patches, options_.sigma_m, &sigma_known);
+    if (data_.points.empty()) {
+      return;
+    }
+    // A stated noise is what the verdict tests against. Were it thought too low where samples are
+    // few, polynomials would be taken for their path that miss it by far.
+    smooth_ = fit_smooth_model(&data_, sigma_known, StatedNoise::Holds);
+    noise_known_ = sigma_known || smooth_.dof() >= kFewestNoiseDegrees;
+    if (!sigma_known) {
+      const double sigma = std::max(smooth_.noise_ratio(), rounding_level(data_));
+      scale_noise(sigma, &data_, &smooth_);
+    }
+  }
+
+  /// A spike is told by the smooth path of its neighbours. Where no polynomial follows most samples
+  /// of a patch, as of few touches round a part, none is: up to half of the touches would be set
+  /// aside, and the rest fit another part. Returns whether any was.
+  bool take_back_spikes() {
+    std::vector<std::size_t> taken_back;
+    for (std::size_t p = 0; p < data_.patches.size(); ++p) {
+      const PatchSpan& patch = data_.patches[p];
+      std::size_t followed = 0;
+      for (std::size_t i = patch.begin; i < patch.end; ++i) {
+        followed += is_followed(smooth_, i);
+      }
+      const std::size_t number = given_number(p);
+      if (2 * followed < patch.size() &&
+          clean_.patches[number].samples.size() < given_[number].samples.size()) {
+        taken_back.push_back(number);
+      }
+    }
+    for (const std::size_t number : taken_back) {
+      clean_.patches[number] = given_[number];
+      clean_.is_spike[number].assign(given_[number].samples.size(), false);
+    }
+    return !taken_back.empty();
   }
 
   /// Index of a patch of data_ among the given patches; data_ has no empty patches.
@@ -180,7 +235,10 @@ class Match {
   void judge_slide(const ScaledPart& part, const PartFit& fit, const Eigen::Matrix3d& covariance,
                    const FitPoint& reference, PartPlacement* placement) const {
     const Pose2& pose = fit.data_T_part;
-    const Vec2& tangent = reference.tangent;
+    const double foot = part.foot_of(pose.to_local(reference.position));
+    const Vec2 tangent = reference.tangent.isZero()
+                             ? pose.rotate(part.spline().derivatives(foot).first).normalized()
+                             : reference.tangent;
     const Eigen::Vector3d slide(tangent.x(), tangent.y(),
                                 tangent.dot(left_of(reference.position - pose.translation())));
     const double variance = slide.dot(covariance * slide);

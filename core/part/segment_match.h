@@ -33,7 +33,7 @@ struct SegmentMatchOptions {
 };
 
 enum class SegmentMatchStatus {
-  TooFewSamples,  ///< too few to test anything
+  TooFewSamples,  ///< too few to test anything, or to know their noise
   NoMatch,        ///< the samples fit nowhere on the part
   Ambiguous,      ///< the part fits, but the data do not show where
   Determined,     ///< one placement is clearly the most probable, and well known
@@ -92,12 +92,13 @@ struct SegmentMatch {
   /// Probability that the middle of the longest patch lies on each segment, given that it is this
   /// part; all 0 if there is no placement.
   std::vector<double> segment_probability;
-  std::size_t longest_patch = 0;
-  double sigma_m = 0.0;  ///< root mean square of the noise used [m]
+  std::size_t longest_patch = 0;  ///< of single touches alone: the first
+  double sigma_m = 0.0;           ///< root mean square of the noise used; 0 if it is not known [m]
 };
 
 /// Finds where patches lie on `part`. The patches touch one part and share one world frame; their
 /// order and direction are free. A stated material side excludes the opposite direction of travel.
+/// Single touches (patches of one sample) may be in any order; their noise must be stated.
 /// Foot points are searched on the whole closed curve, so a patch over a joint counts in full
 /// (core/README.md, "A known closed part").
 SegmentMatch match_segment(const ClosedSpline& part, std::span<const StoredPatch> patches,
