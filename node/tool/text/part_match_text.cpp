@@ -11,9 +11,10 @@ namespace {
 std::string verdict(const v1::PartMatch& match) {
   switch (match.status()) {
     case v1::PART_MATCH_STATUS_TOO_FEW_SAMPLES:
-      return "too few samples in each patch to place the part (single touches do not: order them "
-             "along the "
-             "part)";
+      return match.sigma_m() > 0.0
+                 ? "too few samples to place the part"
+                 : "too few samples to place the part: nothing shows their noise, state it "
+                   "(--sigma, column sigma)";
     case v1::PART_MATCH_STATUS_NO_MATCH:
       return "no match: nowhere on the part do the samples fit";
     case v1::PART_MATCH_STATUS_DETERMINED:
@@ -56,9 +57,12 @@ std::string pose_text(const v1::PartPlacement& placement) {
 }
 
 void add_patch(const v1::PatchOnPart& patch, std::string& text) {
-  text += "  patch " + patch.probe() + "/" + std::to_string(patch.patch()) + "    segment " +
-          std::to_string(patch.segment());
-  if (patch.t_size() > 0) {
+  const bool is_touch = patch.t_size() == 1;
+  text += (is_touch ? "  touch " : "  patch ") + patch.probe() + "/" +
+          std::to_string(patch.patch()) + "    segment " + std::to_string(patch.segment());
+  if (is_touch) {
+    add_row(text, ", t %.4f", patch.t(0));
+  } else if (patch.t_size() > 0) {
     add_row(text, ", t %.4f to %.4f", patch.t(0), patch.t(patch.t_size() - 1));
   }
   if (patch.beyond_size() > 0) {
@@ -110,7 +114,9 @@ std::string part_match_text(const v1::PartMatch& match) {
     text += "\n";
   }
   for (const v1::PatchJoints& patch : match.joints()) {
-    add_joints(patch, text);
+    if (patch.end() > 1) {  // a single touch joins nothing
+      add_joints(patch, text);
+    }
   }
   return text;
 }

@@ -321,8 +321,9 @@ void add_fit_command(CLI::App& app, int& exit_code) {
       ->add_option(
           "--part", fit->part,
           "Place the closed spline of this scene file (*.textproto) instead of recognising a "
-          "curve: its pose, the segment of every patch, the samples beyond a joint. Uses "
-          "--sigma, --recognized-probability and --false-outlier-probability; json is one "
+          "curve: its pose, the segment of every patch, the samples beyond a joint. Single touches "
+          "may be in any order, if their noise is stated. Uses --sigma, --recognized-probability "
+          "and --false-outlier-probability; json is one "
           "PartMatch (palpate/v1/part_match.proto) a line")
       ->excludes(plot)
       ->excludes(invariants_plot)

@@ -90,6 +90,40 @@ class Part(unittest.TestCase):
                               r"beyond a joint: samples 120-200\n")
         self.assertRegex(out, r"part         x (300\.0|299\.9)\d+ \+- 0\.\d+ mm, y ")
 
+    def touches(self, count):
+        """Rows x,y of single touches all round the part, in no order."""
+        rng = random.Random(count)
+        places = [5 * (i + rng.uniform(-0.3, 0.3)) / count for i in range(count)]
+        rng.shuffle(places)
+        rows = [tuple(c + rng.gauss(0, SIGMA) for c in position(t % 5)) for t in places]
+        return self.write("touches.csv", "x_m,y_m\n" + "".join(f"{x!r},{y!r}\n" for x, y in rows))
+
+    def test_single_touches_may_be_in_any_order(self):
+        for count in (8, 12, 20):
+            code, out, err = run(TOOL, "fit", "--format", "json", "--touches", "--sigma", str(SIGMA),
+                                 "--part", self.model, self.touches(count))
+            self.assertEqual((code, err), (0, ""))
+            match = json_format.Parse(out, part_match_pb2.PartMatch())
+            self.assertEqual(match.status, part_match_pb2.PART_MATCH_STATUS_DETERMINED)
+            best = match.placements[0]
+            self.assertEqual([len(patch.t) for patch in best.patches], [1] * count)
+            for i, (found, truth) in enumerate(
+                    zip((best.pose.x_m, best.pose.y_m, best.pose.theta_rad), POSE)):
+                self.assertLess(abs(found - truth), 5 * math.sqrt(best.covariance[4 * i]))
+            # Their rows say by themselves that they follow no path.
+            code, out, err = run(TOOL, "fit", "--format", "text", "--sigma", str(SIGMA), "--part", self.model,
+                                 self.touches(count))
+            self.assertEqual(code, 0)
+            self.assertIn("each is taken as a touch of its own", err)
+            self.assertIn(": determined\n", out)
+            self.assertEqual(out.count("  touch "), count)
+            self.assertNotIn("joints of", out)
+
+    def test_single_touches_need_a_stated_noise(self):
+        code, out, err = run(TOOL, "fit", "--format", "text", "--touches", "--part", self.model, self.touches(12))
+        self.assertEqual((code, err), (0, ""))
+        self.assertIn("nothing shows their noise, state it (--sigma, column sigma)", out)
+
     def test_another_curve_is_no_match(self):
         rows = "".join(f"finger,0,{0.03 * math.cos(i / 60)!r},{0.02 * math.sin(i / 60)!r},{SIGMA!r}\n"
                        for i in range(111))
