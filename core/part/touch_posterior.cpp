@@ -45,7 +45,7 @@ class Valleys {
     const std::vector<FitPoint> searched = searched_points(points_);
     std::vector<PartFit> found;
     for (const Pose2& start : pair_starts(part_, searched, reference_)) {
-      // Where the part fits, these are enough; the rest is refined when it is added.
+      // Where the part fits, these are enough.
       constexpr int kMostIterations = 10;
       const PartFit fit = fit_part(part_, searched, start, {}, kMostIterations);
       if (std::isfinite(fit.chi2) &&
@@ -54,8 +54,14 @@ class Valleys {
         found.push_back(fit);
       }
     }
+    std::sort(found.begin(), found.end(),
+              [](const PartFit& a, const PartFit& b) { return a.chi2 < b.chi2; });
     for (const PartFit& fit : found) {
-      add(fit.data_T_part);
+      // More points only raise chi-square: what is negligible for these is so for all.
+      const PartFit refined = fit_part(part_, searched, fit.data_T_part);
+      if (refined.chi2 < best_ + kNegligibleRise) {
+        add(refined.data_T_part);
+      }
     }
     std::erase_if(candidates_, [&](const PartCandidate& candidate) {
       return !(candidate.fit.chi2 < best_ + kNegligibleRise);

@@ -200,6 +200,12 @@ void expect_true_answers(const char* name, int least, int most, double fraction,
     if (match.placements.empty()) continue;
     const PartPlacement& best = match.placements.front();
     const double square = squared_error(best, truth);
+    for (std::size_t a = 0; a < match.placements.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        // One placement counts once: less than a hundredth of a deviation apart is the same.
+        EXPECT_GT(squared_error(match.placements[b], match.placements[a].world_T_part), 1e-4) << i;
+      }
+    }
     if (match.status == SegmentMatchStatus::Determined) {
       ++determined;
       wrong += square > kAnother;
