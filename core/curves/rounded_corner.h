@@ -45,15 +45,27 @@ class RoundedCornerAxes {
         sine_(std::sin(corner.half_turn)),
         radius_(corner.radius) {}
 
+  /// +1 on the second edge's side of the bisector, -1 on the first's.
+  double side_of(const Vec2& point) const {
+    return cross(ahead_, point - centre_) < 0.0 ? -1.0 : 1.0;
+  }
+
   /// RoundedCorner::Distance::value.
-  double distance(const Vec2& point) const {
-    const Seen at = seen(point);
+  double distance(const Vec2& point) const { return distance(point, side_of(point)); }
+
+  /// From the arc and the edge on that side alone.
+  double distance(const Vec2& point, double side) const {
+    const Seen at = seen(point, side);
     return at.beyond > 0.0 ? cosine_ * at.u + sine_ * at.side * at.v - radius_
                            : (point - centre_).norm() - radius_;
   }
 
   RoundedCorner::Distance with_gradient(const Vec2& point) const {
-    const Seen at = seen(point);
+    return with_gradient(point, side_of(point));
+  }
+
+  RoundedCorner::Distance with_gradient(const Vec2& point, double side) const {
+    const Seen at = seen(point, side);
     const Vec2 away = point - centre_;
     RoundedCorner::Distance result;
     if (at.beyond > 0.0) {
@@ -78,11 +90,10 @@ class RoundedCornerAxes {
     double beyond;  ///< the end of the arc, along the edge
   };
 
-  Seen seen(const Vec2& point) const {
+  Seen seen(const Vec2& point, double side) const {
     const Vec2 away = point - centre_;
     const double u = ahead_.dot(away);
     const double v = cross(ahead_, away);
-    const double side = v < 0.0 ? -1.0 : 1.0;
     return {u, v, side, side * v * cosine_ - u * sine_};
   }
 

@@ -222,7 +222,10 @@ void start_from_spline(const FitData& reduced, double out_of_reach, PolynomialFi
     return;
   }
   const PolynomialFit start = semi_cubical_at(*fits->cubic_spline, reduced.points);
-  if (start.chi2 < limit->chi2) {
+  const std::size_t residuals = residual_count(reduced);
+  const bool is_missed =
+      fits_well(fits->cubic_spline->chi2, residuals) && !fits_well(limit->chi2, residuals);
+  if (start.chi2 < limit->chi2 || is_missed) {
     keep_better(&limit, refine_polynomial(PolynomialModel::SemiCubicalParabola, reduced.points,
                                           start, kSurfacePoints, coarse(out_of_reach), work));
   }

@@ -133,7 +133,7 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
   return true;
 }
 
-bool go_one_way(std::span<const double> along, const FitData& data) {
+bool is_touchable(const PolynomialFit& fit, const FitData& data) {
   for (const PatchSpan& patch : data.patches) {
     const std::size_t lag = patch.size() / 2;
     std::size_t forward = 0;
@@ -141,7 +141,7 @@ bool go_one_way(std::span<const double> along, const FitData& data) {
     for (std::size_t i = patch.begin; i + lag < patch.end; ++i) {
       if (tells_direction(data.points[i], data.points[i + lag])) {
         ++told;
-        forward += along[i + lag] >= along[i];
+        forward += fit.t[i + lag] >= fit.t[i];
       }
     }
     if (turns(std::min(forward, told - forward), told)) {
@@ -150,8 +150,6 @@ bool go_one_way(std::span<const double> along, const FitData& data) {
   }
   return true;
 }
-
-bool is_touchable(const PolynomialFit& fit, const FitData& data) { return go_one_way(fit.t, data); }
 
 bool leaps(const PolynomialFit& fit, const FitData& data) {
   return std::any_of(data.patches.begin(), data.patches.end(), [&](const PatchSpan& patch) {

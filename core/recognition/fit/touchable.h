@@ -23,11 +23,8 @@ inline Vec2 centre_of(const ConicCoefficients& q) {
 /// to point against that of the patch. The fit must be one to these points.
 bool is_touchable(const ImplicitFit& fit, const FitData& data);
 
-/// Whether feet at these places along a curve, one a point, run one way along each patch. Compares
-/// samples half a patch apart, whose order noise does not reverse.
-bool go_one_way(std::span<const double> along, const FitData& data);
-
-/// The same for a polynomial curve: its parameter must run one way along each patch. The fit of a
+/// The same for a polynomial curve: its parameter must run one way along each patch. Compares
+/// samples half a patch apart, whose order noise does not reverse. The fit of a
 /// given class (given/stroke_feet.h) puts every sample of a stroke on a branch, by the way that the
 /// probe went; here a fitted curve is only kept or excluded, for which directions over long ways
 /// are enough.

@@ -12,7 +12,6 @@
 #include "core/numerics/small_cholesky.h"
 #include "core/recognition/fit/algebraic_fit.h"
 #include "core/recognition/fit/class_fits.h"
-#include "core/recognition/fit/touchable.h"
 
 namespace palpate {
 namespace {
@@ -28,12 +27,18 @@ constexpr double kLargestRadius = 4.0;
 /// Centre, bisector, half turn and log radius: the radius is positive.
 RoundedCorner corner_of(const Vector& x) { return {x.head<2>(), x[2], x[3], std::exp(x[4])}; }
 
-/// Distances from the curve of a corner, for `minimise`.
+/// +1 and -1: on which side of the bisector a point lies.
+using Sides = std::vector<double>;
+
+/// Distances from the curve of a corner, for `minimise`: of each point from the nearest place, or
+/// from the edge on its side and the arc.
 class EdgesProblem {
  public:
   static constexpr int kParameters = kEdgesCoordinates;
 
   explicit EdgesProblem(std::span<const FitPoint> points) : points_(points) {}
+  EdgesProblem(std::span<const FitPoint> points, const Sides& sides)
+      : points_(points), sides_(sides) {}
 
   double chi2_at(const Vector& x) {
     tried_ = x;
@@ -42,8 +47,10 @@ class EdgesProblem {
     }
     const RoundedCornerAxes corner(corner_of(x));
     double chi2 = 0.0;
-    for (const FitPoint& point : points_) {
-      const double residual = point.inverse_sigma * corner.distance(point.position);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const FitPoint& point = points_[i];
+      const double residual =
+          point.inverse_sigma * corner.distance(point.position, side_of(corner, i));
       chi2 += residual * residual;
     }
     return chi2;
@@ -58,8 +65,10 @@ class EdgesProblem {
     gradient->setZero();
     const double radius = corner_of(at_).radius;
     const RoundedCornerAxes corner(corner_of(at_));
-    for (const FitPoint& point : points_) {
-      const RoundedCorner::Distance distance = corner.with_gradient(point.position);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const FitPoint& point = points_[i];
+      const RoundedCorner::Distance distance =
+          corner.with_gradient(point.position, side_of(corner, i));
       Vector row = point.inverse_sigma * distance.gradient.transpose();
       row[4] *= radius;
       *information += row * row.transpose();
@@ -68,7 +77,12 @@ class EdgesProblem {
   }
 
  private:
+  double side_of(const RoundedCornerAxes& corner, std::size_t i) const {
+    return sides_.empty() ? corner.side_of(points_[i].position) : sides_[i];
+  }
+
   std::span<const FitPoint> points_;
+  std::span<const double> sides_;
   Vector tried_ = Vector::Zero();
   Vector at_ = Vector::Zero();
 };
@@ -205,20 +219,40 @@ bool are_line_or_circle(std::span<const FitPoint> points, WorkBudget& work) {
   return fits(algebraic_line(points)) || fits(algebraic_circle(points));
 }
 
-/// Whether a probe goes from the one edge to the other along each patch. Two edges that lie within
-/// the noise of one another would each take the points on its side.
-bool are_touchable(const RoundedCorner& corner, const FitData& data) {
-  const Vec2 ahead(std::cos(corner.bisector), std::sin(corner.bisector));
+/// The sides of the points where a probe goes from the one edge to the other once along each patch,
+/// or along one of them alone: those that leave the least.
+Sides in_order(const RoundedCorner& corner, const FitData& data) {
   const RoundedCornerAxes axes(corner);
-  std::vector<double> along;
-  along.reserve(data.points.size());
-  for (const FitPoint& point : data.points) {
-    const RoundedCorner::Distance distance = axes.with_gradient(point.position);
-    // The centre's derivative is the normal, inwards.
-    const Vec2 foot = point.position + distance.value * distance.gradient.head<2>().transpose();
-    along.push_back(cross(ahead, foot - corner.centre));
+  Sides sides(data.points.size());
+  for (const PatchSpan& patch : data.patches) {
+    // What the points before one leave on either side over what they leave on the other.
+    double more_on_second = 0.0;
+    double least = 0.0;
+    double most = 0.0;
+    std::size_t at_least = patch.begin;
+    std::size_t at_most = patch.begin;
+    for (std::size_t i = patch.begin; i < patch.end; ++i) {
+      const FitPoint& point = data.points[i];
+      const double first = point.inverse_sigma * axes.distance(point.position, -1.0);
+      const double second = point.inverse_sigma * axes.distance(point.position, 1.0);
+      more_on_second += second * second - first * first;
+      if (more_on_second < least) {
+        least = more_on_second;
+        at_least = i + 1;
+      }
+      if (more_on_second > most) {
+        most = more_on_second;
+        at_most = i + 1;
+      }
+    }
+    // On the second edge before and on the first after, or the other way.
+    const bool second_first = least < more_on_second - most;
+    const std::size_t change = second_first ? at_least : at_most;
+    for (std::size_t i = patch.begin; i < patch.end; ++i) {
+      sides[i] = (i < change) == second_first ? 1.0 : -1.0;
+    }
   }
-  return go_one_way(along, data);
+  return sides;
 }
 
 bool are_of_one_tip(std::span<const FitPoint> points) {
@@ -266,9 +300,20 @@ std::optional<Edges> edges_of(const Arcs& arcs, double out_of_reach, WorkBudget&
     chi2 = refine(&on_all, points, kSteps, kAnyChi2, &x, work).chi2;
     settled = &on_all;
   }
-  work.spend(WorkKind::AxisRow, points.size());
-  if (!are_touchable(corner_of(x), arcs.data)) {
-    return std::nullopt;
+  // Where two edges lie within the noise of one another, the nearest of both leaves less than the
+  // noise, whatever was touched.
+  constexpr int kMostOrders = 4;
+  Sides sides;
+  EdgesProblem ordered(points, sides);
+  for (int i = 0; i < kMostOrders && work.allows(); ++i) {
+    sides = in_order(corner_of(x), arcs.data);
+    ordered = EdgesProblem(points, sides);
+    work.spend(WorkKind::AxisRow, 2 * points.size());
+    if (std::abs(ordered.chi2_at(x) - chi2) <= kLeastError) {
+      break;
+    }
+    chi2 = refine(&ordered, points, kSteps, kAnyChi2, &x, work).chi2;
+    settled = &ordered;
   }
   Edges edges{corner_of(x), chi2, {}};
   Vector gradient;

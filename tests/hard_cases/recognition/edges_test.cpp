@@ -5,11 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <random>
 #include <vector>
 
+#include "core/curves/curve.h"
 #include "core/curves/rounded_corner.h"
+#include "core/numerics/negligible.h"
+#include "core/recognition/posterior/edges.h"
 #include "core/recognition/recognizer.h"
+#include "core/recognition/smooth/arcs.h"
 #include "tests/support/answered_touches.h"
 #include "tests/support/most_of_poisson.h"
 #include "tests/support/test_rng.h"
@@ -134,6 +139,52 @@ TEST(Edges, DenseNoisyStrokesOfACubicAreNotBetweenTwo) {
     }
   }
   EXPECT_LE(none, test::most_of_poisson(stated));
+}
+
+/// Samples of a semi-cubical parabola, stroked over the cusp. `chi2` receives what the curve leaves
+/// of them, each at its place.
+StoredPatch stroked_over_cusp(const Curve& curve, double t_end, double sigma_m,
+                              std::mt19937_64& rng, double* chi2) {
+  const double from = -test::uniform(rng, 0.2, 1.0) * t_end;
+  const double to = test::uniform(rng, 0.2, 1.0) * t_end;
+  const double length = arc_length(curve, from, to);
+  const int count = static_cast<int>(test::uniform(rng, 30.0, 120.0));
+  StoredPatch patch;
+  for (int i = 0; i < count; ++i) {
+    const double t = parameter_at_arc_length(curve, from, length * i / (count - 1));
+    const Vec2 noise = test::normal_pair(rng, sigma_m);
+    const double away = cross(derivatives(curve, t).first.normalized(), noise) / sigma_m;
+    *chi2 += away * away;
+    patch.samples.push_back({position(curve, t) + noise, sigma_m});
+  }
+  return patch;
+}
+
+// The arms of a narrow cusp lie within the noise of one another for a while. With each sample on
+// the nearest of two edges, these left far less than the cusp that was touched.
+TEST(Edges, LeaveNoLessThanANarrowCusp) {
+  std::mt19937_64 rng = test::test_rng();
+  constexpr double kSize = 0.02;  // [m]
+  double less = 0.0;
+  int scenes = 0;
+  for (int i = 0; i < test::stress_count(300); ++i) {
+    const double a = test::uniform(rng, 0.05, 0.2) / std::sqrt(kSize);
+    const Curve curve = make_curve(CurveClass::SemiCubicalParabola, {a, 0.0, 0.0}).value();
+    const double sigma_m = 0.01 * kSize;
+    double of_cusp = 0.0;
+    const StoredPatch patch = stroked_over_cusp(curve, std::sqrt(kSize), sigma_m, rng, &of_cusp);
+    bool sigma_known = false;
+    const Arcs arcs = smooth_arcs(make_fit_data({&patch, 1}, 0.0, &sigma_known), sigma_known);
+    WorkBudget work;
+    const auto edges = edges_of(arcs, std::numeric_limits<double>::infinity(), work);
+    if (edges) {
+      ++scenes;
+      less += std::max(of_cusp - edges->chi2, 0.0);
+    }
+  }
+  ASSERT_GT(scenes, 0);
+  // Each coordinate takes a square of the noise, and so does the place of the change.
+  EXPECT_LE(less, most_of_noise((kEdgesCoordinates + 1.0) * scenes));
 }
 
 }  // namespace
