@@ -16,6 +16,7 @@
 #include "node/process/clock.h"
 #include "node/process/quiet_protobuf.h"
 #include "node/process/stop_signals.h"
+#include "node/wire/key_flags.h"
 #include "sim/contact_export.h"
 #include "sim/contacts.h"
 #include "sim/playback.h"
@@ -82,13 +83,8 @@ void add_options(CLI::App& app, CommandLine& options) {
          "Write class, parameters and pose to FILE (- = standard output), one JSON line for "
          "each group and object")
       ->type_name("FILE");
-  CLI::Option* own = app.add_option("--curve-secret-key", options.own_key,
-                                    "CURVE: this probe's secret key file (palpate keygen)")
-                         ->type_name("FILE");
-  app.add_option("--curve-server-key", options.recognizer_key,
-                 "CURVE: the recognizer's public key file")
-      ->needs(own)
-      ->type_name("FILE");
+  add_key_flags(app, options.own_key, "CURVE: this probe's secret key file (palpate keygen)",
+                options.recognizer_key, "CURVE: the recognizer's public key file");
   app.add_flag("--quiet", options.quiet, "Say nothing unless it fails");
 }
 
@@ -185,7 +181,7 @@ struct Player {
     publisher_options.endpoint = options.contacts;
     // Room for the messages that accumulate when playing as fast as possible.
     publisher_options.high_water_mark = options.fast ? 100000 : 1000;
-    if (!options.recognizer_key.empty()) {
+    if (!options.own_key.empty()) {
       Result<CurveClient> curve =
           client::read_curve_client(options.own_key, options.recognizer_key);
       if (!curve) return failed(curve.error);

@@ -20,6 +20,8 @@ def main():
     parser.add_argument("--curve-secret-key", metavar="FILE", help="CURVE: our own key (palpate keygen)")
     parser.add_argument("--curve-server-key", metavar="FILE", help="CURVE: the recognizer's public key")
     options = parser.parse_args()
+    if (options.curve_secret_key is None) != (options.curve_server_key is None):
+        parser.error("--curve-secret-key and --curve-server-key: give both or neither")
 
     socket = zmq.Context().socket(zmq.SUB)
     socket.setsockopt(zmq.SUBSCRIBE, b"recognition/")  # or b"recognition/cup/" for one group
@@ -27,7 +29,7 @@ def main():
     # Notices a cut cable. Not HEARTBEAT_IVL: with it, libzmq 4.3 can abort a reader that pauses.
     socket.setsockopt(zmq.TCP_KEEPALIVE, 1)
     socket.setsockopt(zmq.TCP_KEEPALIVE_IDLE, 1)  # [s]
-    if options.curve_secret_key:
+    if options.curve_secret_key is not None:
         socket.curve_publickey, socket.curve_secretkey = load_certificate(options.curve_secret_key)
         socket.curve_serverkey, _ = load_certificate(options.curve_server_key)
     socket.connect(options.endpoint)

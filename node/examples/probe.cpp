@@ -11,8 +11,8 @@
 int main(int argc, char** argv) {
   palpate::client::ContactPublisherOptions options;
   if (argc > 1) options.endpoint = argv[1];
-  if (argc > 3) {  // CURVE: our secret key file, the recognizer's public key file
-    const auto keys = palpate::client::read_curve_client(argv[2], argv[3]);
+  if (argc > 2) {  // CURVE: our secret key file, the recognizer's public key file
+    const auto keys = palpate::client::read_curve_client(argv[2], argc > 3 ? argv[3] : "");
     if (!keys) {
       std::fprintf(stderr, "%s\n", keys.error.c_str());
       return 2;

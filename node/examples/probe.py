@@ -30,11 +30,13 @@ def main():
     parser.add_argument("--curve-secret-key", metavar="FILE", help="CURVE: our own key (palpate keygen)")
     parser.add_argument("--curve-server-key", metavar="FILE", help="CURVE: the recognizer's public key")
     options = parser.parse_args()
+    if (options.curve_secret_key is None) != (options.curve_server_key is None):
+        parser.error("--curve-secret-key and --curve-server-key: give both or neither")
 
     socket = zmq.Context().socket(zmq.XPUB)
     socket.setsockopt(zmq.LINGER, 200)  # [ms] longest wait at exit if nobody listens
     socket.setsockopt(zmq.RECONNECT_IVL, 10)
-    if options.curve_secret_key:
+    if options.curve_secret_key is not None:
         socket.curve_publickey, socket.curve_secretkey = load_certificate(options.curve_secret_key)
         socket.curve_serverkey, _ = load_certificate(options.curve_server_key)
     socket.connect(options.endpoint)

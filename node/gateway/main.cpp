@@ -16,6 +16,7 @@
 #include "node/process/log_sink.h"
 #include "node/process/quiet_protobuf.h"
 #include "node/process/stop_signals.h"
+#include "node/wire/key_flags.h"
 
 namespace {
 
@@ -101,12 +102,9 @@ void add_options(CLI::App& app, CommandLine& line) {
       ->check(CLI::Range(std::uint64_t{1} << 16, std::uint64_t{1} << 50))
       ->capture_default_str()
       ->type_name("BYTES");
-  CLI::Option* own = app.add_option("--curve-secret-key", line.own_key,
-                                    "Up, CURVE: this gateway's secret key file (palpate keygen)")
-                         ->type_name("FILE");
-  app.add_option("--curve-server-key", line.node_key, "Up, CURVE: the node's public key file")
-      ->needs(own)
-      ->type_name("FILE");
+  add_key_flags(app, line.own_key, "Up, CURVE: this gateway's secret key file (palpate keygen)",
+                line.node_key, "Up, CURVE: the node's public key file")
+      .own->needs(from);
   CLI::Option* take =
       app.add_option(
              "--take", line.take,

@@ -74,18 +74,11 @@ CLI::Validator svg_file() {
   return CLI::Validator(check, "");
 }
 
-void add_connection_flags(CLI::App& command, const char* flag, const char* help,
-                          Connection& connection) {
+KeyFlags add_connection_flags(CLI::App& command, const char* flag, const char* help,
+                              Connection& connection) {
   command.add_option(flag, connection.endpoint, help)->capture_default_str()->type_name("ENDPOINT");
-  CLI::Option* own = command
-                         .add_option("--curve-secret-key", connection.own_key,
-                                     "CURVE: our secret key file (palpate keygen)")
-                         ->type_name("FILE");
-  command
-      .add_option("--curve-server-key", connection.recognizer_key,
-                  "CURVE: the recognizer's public key file")
-      ->needs(own)
-      ->type_name("FILE");
+  return add_key_flags(command, connection.own_key, "CURVE: our secret key file (palpate keygen)",
+                       connection.recognizer_key, "CURVE: the recognizer's public key file");
 }
 
 Result<std::optional<CurveClient>> curve_of(const Connection& connection) {

@@ -199,6 +199,12 @@ Result<CurveKeyPair> read_curve_keys(const std::string& secret_path) {
   if (::stat(secret_path.c_str(), &info) != 0) {
     return Keys::fail(secret_path + ": " + std::strerror(errno));
   }
+  // Looked at first: a public key file may well be read by others, and is none to keep from them.
+  Result<KeyLines> lines = read_key_lines(secret_path);
+  if (!lines) return Keys::fail(lines.error);
+  if (lines.value->secret_keys.empty()) {
+    return Keys::fail(secret_path + ": holds no secret key; give the secret key file");
+  }
   // systemd makes a credential readable to us by an access list, whose mask appears as the group's
   // rights.
   const char* credentials = std::getenv("CREDENTIALS_DIRECTORY");
@@ -207,8 +213,6 @@ Result<CurveKeyPair> read_curve_keys(const std::string& secret_path) {
   if ((info.st_mode & (granted ? S_IWGRP | S_IRWXO : S_IRWXG | S_IRWXO)) != 0) {
     return Keys::fail(secret_path + ": others may read it; chmod 600 it");
   }
-  Result<KeyLines> lines = read_key_lines(secret_path);
-  if (!lines) return Keys::fail(lines.error);
   if (lines.value->secret_keys.size() != 1 || lines.value->public_keys.size() > 1) {
     return Keys::fail(secret_path + ": expected one secret key");
   }

@@ -49,7 +49,8 @@ Result<CurveKeyPair> generate_curve_keys();
 std::string write_curve_keys(const CurveKeyPair& keys, const std::string& secret_path,
                              const std::string& public_path);
 
-/// Reads a secret key file. Fails if other users may read it, or if its keys do not match.
+/// Reads a secret key file. Fails if it holds none, if other users may read it, or if its keys do
+/// not match.
 Result<CurveKeyPair> read_curve_keys(const std::string& secret_path);
 
 /// Reads all public keys of a file, at least one: a public key file, or several together. Ignores

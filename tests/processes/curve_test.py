@@ -11,7 +11,7 @@ from zmq.auth import create_certificates, load_certificate
 
 from bus import Bus
 from palpate.v1 import contact_pb2, node_status_pb2
-from programs import SIM, SOURCE, TOOL, run
+from programs import BUILD, SIM, SOURCE, TOOL, run
 
 
 class Curve(unittest.TestCase):
@@ -158,6 +158,44 @@ class Curve(unittest.TestCase):
                     self.assertEqual(out, "", program)
                     self.assertIn(said, err, program)
                     self.assertLess(took, 15.0, program)  # half of what it would wait for somebody to listen
+
+    def test_a_key_that_could_not_be_used_is_refused(self):
+        # Else what is meant to be secret would go out in the clear, and nothing would say so.
+        with Bus("tcp") as bus:
+            for name in ("node", "us"):
+                self.assertEqual(run(TOOL, "keygen", bus.folder / name)[0], 0)
+            secret, public = bus.folder / "us.secret", bus.folder / "node.public"
+            points = bus.folder / "points.csv"
+            points.write_text("x_m,y_m\n" + "".join(f"{0.001 * i},0\n" for i in range(30)))
+            clients = [(SIM, SOURCE / "sim/scenes/circle.textproto", "--contacts", bus.contacts, "--wait", "0"),
+                       (TOOL, "replay", points, "--contacts", bus.contacts, "--wait", "0"),
+                       (TOOL, "watch", "--results", bus.results, "--timeout", "0.1"),
+                       (TOOL, "view", "--results", bus.results, "--listen", "127.0.0.1:0"),
+                       (TOOL, "hz", "--results", bus.results, "--seconds", "0.1"),
+                       (TOOL, "list", "--results", bus.results, "--seconds", "0.1"),
+                       (TOOL, "record", bus.folder / "new.recording", "--results", bus.results, "--seconds", "0.1")]
+            gateway = BUILD / "node/gateway/palpate-gateway"
+            if gateway.exists():
+                clients.append((gateway, "--from", bus.results, "--cell", "a", "--spool", bus.folder))
+            for program in clients:
+                for keys, missing in ((("--curve-secret-key", secret), "--curve-server-key"),
+                                      (("--curve-server-key", public), "--curve-secret-key"),
+                                      (("--curve-secret-key", "", "--curve-server-key", ""), "name of a key file is empty")):
+                    code, out, err = run(*program, *keys)
+                    self.assertEqual((code, out), (2, ""), (program, keys, err))
+                    self.assertIn(missing, err, program)
+                code, _, err = run(*program, "--curve-secret-key", bus.folder / "us.public", "--curve-server-key", public)
+                self.assertNotEqual(code, 0, program)
+                self.assertIn("us.public: holds no secret key", err, program)
+            in_its_place = (TOOL, "record", bus.folder / "new.recording", "--contacts", bus.contacts, "--seconds", "0.1")
+            for keys, missing in ((("--curve-secret-key", secret), "--allow-clients"),
+                                  (("--allow-clients", public), "--curve-secret-key")):
+                code, _, err = run(*in_its_place, *keys)
+                self.assertEqual(code, 2, (keys, err))
+                self.assertIn(f"requires {missing}", err)
+            code, _, err = run(*clients[6], "--curve-secret-key", secret, "--curve-server-key", public, "--allow-clients", public)
+            self.assertEqual(code, 2, err)
+            self.assertIn("requires --contacts", err)
 
     def test_sighup_rereads_who_may_connect(self):
         with Bus("tcp") as bus:

@@ -59,6 +59,14 @@ class Examples(unittest.TestCase):
         self.pair(self.python("probe"), self.cpp("planner"), curve=True)
         self.pair(self.cpp("probe"), self.python("planner"), curve=True)
 
+    def test_one_key_alone_is_refused(self):
+        with Bus() as bus:
+            self.assertEqual(run(TOOL, "keygen", bus.folder / "us")[0], 0)
+            for call in (self.python("probe"), self.python("planner"), self.cpp("probe"), self.cpp("planner")):
+                code, _, err = run(*call(bus.results, bus.folder / "us.secret"))
+                self.assertEqual(code, 2, err)
+                self.assertRegex(err, "give both or neither|the recognizer's public key file is not named")
+
     def test_who_waits_says_for_what(self):
         with Bus() as bus:
             for call in (self.python("probe"), self.python("planner"), self.cpp("probe"), self.cpp("planner")):

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "node/wire/key_flags.h"
 #include "node/wire/socket.h"
 
 namespace palpate {
@@ -48,8 +49,8 @@ struct Connection {
 };
 
 /// `flag`: "--results" or "--contacts"; connection.endpoint holds its default.
-void add_connection_flags(CLI::App& command, const char* flag, const char* help,
-                          Connection& connection);
+KeyFlags add_connection_flags(CLI::App& command, const char* flag, const char* help,
+                              Connection& connection);
 
 /// The keys that it names; nullopt within where CURVE is not asked for.
 Result<std::optional<CurveClient>> curve_of(const Connection& connection);

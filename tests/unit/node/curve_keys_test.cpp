@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "node/client/connection.h"
 #include "node/security/zap_handler.h"
 #include "node/wire/path_lock.h"
 
@@ -58,6 +59,22 @@ TEST_F(CurveKeysTest, NothingIsOverwrittenAndSecretsStaySecret) {
   EXPECT_THAT(read_public_keys(path("a.key")).error, HasSubstr("secret"));
   ::chmod(path("a.key").c_str(), 0644);
   EXPECT_THAT(read_curve_keys(path("a.key")).error, HasSubstr("chmod 600"));
+}
+
+TEST_F(CurveKeysTest, APublicKeyFileIsNoSecretKey) {
+  const CurveKeyPair keys = *generate_curve_keys().value;
+  ASSERT_EQ(write_curve_keys(keys, path("a.key"), path("a.pub")), "");
+  EXPECT_THAT(read_curve_keys(path("a.pub")).error, HasSubstr("holds no secret key"));
+}
+
+TEST_F(CurveKeysTest, AClientNeedsTwoKeyFiles) {
+  const CurveKeyPair keys = *generate_curve_keys().value;
+  ASSERT_EQ(write_curve_keys(keys, path("a.key"), path("a.pub")), "");
+  EXPECT_TRUE(client::read_curve_client(path("a.key"), path("a.pub")));
+  EXPECT_THAT(client::read_curve_client(path("a.key"), "").error,
+              HasSubstr("the recognizer's public key file is not named"));
+  EXPECT_THAT(client::read_curve_client("", path("a.pub")).error,
+              HasSubstr("our own secret key file is not named"));
 }
 
 TEST_F(CurveKeysTest, TheGroupsRightsOfACredentialAreAnAccessList) {

@@ -138,10 +138,10 @@ void add_check_command(CLI::App& app, int& exit_code) {
       ->type_name("ENDPOINT");
   CLI::Option* secret = command->add_option("--curve-secret-key", check->place.curve_secret_key,
                                             "CURVE: the recognizer's secret key file");
-  secret->type_name("FILE");
+  secret->check(key_file_name())->type_name("FILE");
   CLI::Option* allowed = command->add_option("--allow-clients", check->place.allow_clients,
                                              "CURVE: file of the public keys that may connect");
-  allowed->type_name("FILE");
+  allowed->check(key_file_name())->type_name("FILE");
   secret->needs(allowed);
   allowed->needs(secret);
   command->add_flag("--insecure", check->place.insecure,

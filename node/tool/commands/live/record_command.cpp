@@ -46,8 +46,14 @@ int open(const RecordCommand& command, ListeningPlace& place) {
           "--curve-secret-key and --allow-clients",
           kUsage);
     }
+    if (!command.connection.own_key.empty() && command.allow_clients.empty()) {
+      return complain("--curve-secret-key requires --allow-clients with --contacts", kUsage);
+    }
     return place.open_as_recognizer(
         {command.contacts, command.connection.own_key, command.allow_clients, command.insecure});
+  }
+  if (!command.connection.own_key.empty() && command.connection.recognizer_key.empty()) {
+    return complain("--curve-secret-key requires --curve-server-key", kUsage);
   }
   const auto curve = curve_of(command.connection);
   if (!curve) {
@@ -111,15 +117,20 @@ void add_record_command(CLI::App& app, int& exit_code) {
       "--contacts,\n"
       "in the recognizer's place, what the probes publish. Ends by SIGINT, --seconds or --count.");
   command->add_option("FILE", record->file, "File to make")->required()->type_name("");
-  add_connection_flags(*command, "--results", "The recognizer's results endpoint",
-                       record->connection);
-  command
-      ->add_option("--contacts", record->contacts,
-                   "Bind here, as the recognizer would, and record the probes instead")
-      ->type_name("ENDPOINT");
+  const KeyFlags keys = add_connection_flags(
+      *command, "--results", "The recognizer's results endpoint", record->connection);
+  // In the recognizer's place its secret key goes with --allow-clients: see open().
+  keys.own->remove_needs(keys.recognizer);
+  CLI::Option* contacts =
+      command->add_option("--contacts", record->contacts,
+                          "Bind here, as the recognizer would, and record the probes instead");
+  contacts->type_name("ENDPOINT");
   command
       ->add_option("--allow-clients", record->allow_clients,
                    "CURVE with --contacts: file of the public keys that may connect")
+      ->check(key_file_name())
+      ->needs(contacts)
+      ->needs(keys.own)
       ->type_name("FILE");
   command->add_flag("--insecure", record->insecure,
                     "With --contacts: permit a bind beyond this machine without CURVE");
