@@ -148,8 +148,18 @@ Estimate rate_of(std::size_t count, std::size_t of) {
   return {mean, std::sqrt(mean * (1.0 - mean) / (static_cast<double>(of) + 2.0))};
 }
 
+/// An artefact that is larger or smaller than stated moves the samples as an offset does.
+bool is_rather_another_size(const Qualification& result) {
+  // The usual tips differ by a fifth from one size to the next (diameters of 5 and 6 mm). Beyond
+  // half of that the samples are nearer to those of another tip than of the stated one.
+  constexpr double kMostOffTip = 0.1;
+  return !result.tip_is_estimated && result.probe.tip_radius_m > 0.0 &&
+         std::abs(result.probe.offset.coefficients_m[0]) > kMostOffTip * result.probe.tip_radius_m;
+}
+
 QualificationStatus verdict_of(const Qualification& result) {
-  if (!(result.worst_offset_deviation_m <= result.probe.sigma_m.value)) {
+  if (result.rather_another_size ||
+      !(result.worst_offset_deviation_m <= result.probe.sigma_m.value)) {
     return QualificationStatus::Insufficient;
   }
   return result.untouched.empty() ? QualificationStatus::Sufficient : QualificationStatus::Partial;
@@ -328,6 +338,7 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
     }
   }
   result.untouched = gaps_between(std::move(touched));
+  result.rather_another_size = is_rather_another_size(result);
   result.status = verdict_of(result);
   return result;
 }

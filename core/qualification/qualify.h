@@ -17,7 +17,7 @@ namespace palpate {
 enum class QualificationStatus {
   Sufficient,      ///< the offset is known to less than a sample's noise in every direction
   Partial,         ///< the same, but some directions were not touched
-  Insufficient,    ///< the offset is less well known than that
+  Insufficient,    ///< the offset is less well known than that, or rather_another_size
   NotFinite,       ///< a position or tip radius is not finite, or a radius is negative
   BadArtefact,     ///< a line: its offset cannot be distinguished from its place
   TooFewSamples,   ///< fewer than the unknowns need
@@ -52,6 +52,9 @@ struct Qualification {
   /// The samples state no tip radius, and that of `probe` is the constant of their distances
   /// (estimated_tip.h).
   bool tip_is_estimated = false;
+  /// The offset's constant is more than a tenth of the stated tip radius: it is rather that the
+  /// artefact or the tip has another size than stated. Samples do not tell these apart.
+  bool rather_another_size = false;
   std::vector<Pose2> poses;  ///< of the artefact, one per recording
   std::vector<QualifiedSample> samples;
   std::vector<double> order_probabilities;  ///< of no harmonics, of harmonics up to 2, up to 3, ...

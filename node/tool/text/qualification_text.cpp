@@ -66,11 +66,12 @@ std::string qualification_text(const Qualification& qualification,
                       : std::string(", a guess: several recordings tell it")));
   }
   if (probe.tip_radius_m > 0.0) {
-    add_line(
-        text, "tip radius",
-        length_text(probe.tip_radius_m + offset.coefficients_m[0], deviation(0)) +
-            (qualification.tip_is_estimated ? std::string(", estimated: the samples state none")
-                                            : ", nominal " + length_text(probe.tip_radius_m, 0.0)));
+    add_line(text, "tip radius",
+             length_text(probe.tip_radius_m + offset.coefficients_m[0], deviation(0)) +
+                 (qualification.tip_is_estimated
+                      ? std::string(", estimated: the samples state none; an error of the "
+                                    "artefact's size is in it")
+                      : ", nominal " + length_text(probe.tip_radius_m, 0.0)));
   }
   for (int order = 2; order <= offset.order; ++order) {
     const Eigen::Index i = 2 * order - 3;
@@ -106,7 +107,12 @@ std::string qualification_text(const Qualification& qualification,
   add_line(
       text, "not told",
       "one lobe, an offset as the cosine of the normal's direction: it is a shift of the frame");
-  if (qualification.status == QualificationStatus::Insufficient) {
+  if (qualification.rather_another_size) {
+    add_line(
+        text, "verdict",
+        "the offset is more than a tenth of the tip radius: rather the artefact or the tip has "
+        "another size than stated; usual tips differ by a fifth from size to size");
+  } else if (qualification.status == QualificationStatus::Insufficient) {
     add_line(text, "verdict",
              "the offset is open by " + length_text(qualification.worst_offset_deviation_m, 0.0) +
                  ", more than a sample's noise: touch more of the artefact, more often, or in "

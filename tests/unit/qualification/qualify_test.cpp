@@ -122,6 +122,20 @@ TEST(Qualify, SaysWhatWasNotTouched) {
   EXPECT_EQ(qualified(scene, rng).status, QualificationStatus::Insufficient);
 }
 
+TEST(Qualify, AnOffsetOfATenthOfTheTipIsRatherAnotherSize) {
+  auto rng = test::test_rng();
+  ProbeScene scene;
+  scene.probe = plain_probe(1e-6);
+  for (const double off : {-0.11, -0.09, 0.09, 0.11}) {
+    scene.probe.offset.coefficients_m[0] = off * scene.tip_radius_m;
+    const Qualification result = qualified(scene, rng);
+    EXPECT_EQ(result.rather_another_size, std::abs(off) > 0.1) << off;
+    EXPECT_EQ(result.status, std::abs(off) > 0.1 ? QualificationStatus::Insufficient
+                                                 : QualificationStatus::Sufficient)
+        << off;
+  }
+}
+
 TEST(Qualify, OneWayTellsNoLag) {
   auto rng = test::test_rng();
   ProbeScene scene;

@@ -136,6 +136,12 @@ int run(const CalibrateCommand& calibrate) {
       return code;
     }
   }
+  if (result.rather_another_size) {
+    return complain("the artefact or the tip has rather another size than " + origin.artefact +
+                        " and a tip radius of " + text_of_length(result.probe.tip_radius_m) +
+                        "; what the samples tell is said and written all the same",
+                    kFailed);
+  }
   if (result.status == QualificationStatus::Insufficient) {
     return complain("the samples do not suffice; what they tell is said and written all the same",
                     kFailed);
@@ -153,7 +159,8 @@ void add_calibrate_command(CLI::App& app, int& exit_code) {
       "of the surface's normal (lobes), noise, drift, spikes and lag, each with its deviation.\n"
       "Every object of every file is a recording of its own, in a pose of its own. A ring touched\n"
       "all around tells the most; with an ellipse lay it in several directions.\n"
-      "Exit code 1: the samples do not suffice, or are not of that artefact.");
+      "Exit code 1: the samples do not suffice, or are not of that artefact, or of rather another\n"
+      "size of it or of the tip: the offset is more than a tenth of the stated tip radius.");
   command->add_option("FILE", calibrate->files, "Files of points; - is standard input")
       ->required()
       ->type_name("");

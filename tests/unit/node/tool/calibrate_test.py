@@ -170,7 +170,7 @@ class Calibrate(unittest.TestCase):
             code, out, err = run(TOOL, "calibrate", ring, "--circle", "0.025", *["--bore"] * inside, "--output", path)
             self.assertEqual(code, 0, err)
             self.assertIn("tip radius   1.97", out)
-            self.assertIn("estimated: the samples state none", out)
+            self.assertIn("estimated: the samples state none; an error of the artefact's size is in it", out)
             side = ("--touched-from", "inside" if inside else "outside")
 
             def fit(*options):
@@ -271,6 +271,23 @@ class Calibrate(unittest.TestCase):
         self.assertIn("insufficient", out)
         self.assertIn("not touched", out)
         self.assertIn("do not suffice", err)
+
+    def test_an_artefact_of_another_size_is_not_taken_for_an_offset(self):
+        # A ring of 25 mm, typed as 26 mm.
+        path = self.folder / "p.probe"
+        code, out, err = run(TOOL, "calibrate", "--circle", "0.026", "--output", path, "-", text_in=ellipse(0.025, 0.025, 1))
+        self.assertEqual(code, 1, out)
+        self.assertIn("circle 0.026: insufficient", out)
+        self.assertRegex(out, "verdict .*the offset is more than a tenth of the tip radius")
+        self.assertIn("the artefact or the tip has rather another size than circle 0.026 and a tip radius of 2 mm", err)
+        self.assertIn("QUALIFICATION_VERDICT_INSUFFICIENT", path.read_text())
+        _, notes = self.fit("--probe", path, text=ellipse(0.03, 0.02, 2))
+        self.assertIn(f"WARNING: {path}: its qualification was insufficient", notes)
+        # Half of the step to the next tip, either way.
+        for off, code in ((-0.09, 0), (-0.11, 1), (0.09, 0), (0.11, 1)):
+            text = ellipse(0.025, 0.025, 1, more=3e-5 + off * TIP)
+            done = run(TOOL, "calibrate", "--circle", "0.025", "-", text_in=text)
+            self.assertEqual(done[0], code, (off, done))
 
     def test_what_is_no_qualification_is_refused(self):
         ring = ellipse(0.025, 0.025, 1)
