@@ -15,14 +15,6 @@
 
 namespace palpate {
 
-/// Smallest valid sigma, except 0 ("not known"): no real noise is smaller, and its square would
-/// underflow. [m]
-inline constexpr double kMinSigma = 1e-15;
-
-/// Smallest valid standard deviation of a normal's direction: ten times the rounding of a unit
-/// vector. [rad]
-inline constexpr double kMinNormalSigma = 1e-15;
-
 /// A message that has passed all checks. The views point into the decoder's memory.
 struct ContactMessage {
   std::string_view probe;

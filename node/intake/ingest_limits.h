@@ -1,9 +1,17 @@
-// What a contact message may have at most.
+// What a contact message may have at most, and at least.
 #pragma once
 
 #include <cstddef>
 
 namespace palpate {
+
+/// Smallest valid sigma, except 0 ("not known"): no real noise is smaller, and its square would
+/// underflow. [m]
+inline constexpr double kMinSigma = 1e-15;
+
+/// Smallest valid standard deviation of a normal's direction: ten times the rounding of a unit
+/// vector. [rad]
+inline constexpr double kMinNormalSigma = 1e-15;
 
 struct IngestLimits {
   /// Of the second frame. A sample takes at most 40 bytes, 27 more with a normal and 27 more with a

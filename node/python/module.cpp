@@ -18,6 +18,7 @@
 #include "node/python/names.h"
 #include "node/python/point_details.h"
 #include "node/python/pose_tuple.h"
+#include "node/python/sendable.h"
 
 namespace py = pybind11;
 
@@ -245,11 +246,8 @@ PYBIND11_MODULE(_core, module) {
       .def_property_readonly("hypotheses", &Answer::hypotheses)
       .def_property_readonly("contacts", &Answer::contacts);
   palpate::add_known_class(module);
-  // Throws if the details are invalid. Lets the caller check them before sending.
-  module.def("check_details", [](std::size_t points, const Array& normals,
-                                 const Array& normal_sigmas, const Array& covariances) {
-    PointDetails(normals, normal_sigmas, covariances, points);
-  });
+  module.def("check_sendable_lengths", &palpate::check_sendable_lengths);
+  module.def("check_sendable_points", &palpate::check_sendable_points);
   module.def("curve_classes", &palpate::curve_classes);
   module.def("degrees_of_freedom", [](const std::string& name) {
     return palpate::degrees_of_freedom(class_called(name));

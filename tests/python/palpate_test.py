@@ -583,6 +583,73 @@ with palpate.Planner(RESULTS) as planner, palpate.Probe("finger", CONTACTS, unit
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stdout.splitlines(), ["17.0 0 1.0", "normals: number 0 is neither of length 1 nor (0, 0)"])
 
+    def test_what_a_recognizer_would_reject_is_not_sent(self):
+        # The node of the default limits counts nothing rejected, and hears what lies within them.
+        script = f"""
+import palpate, numpy as np
+points = np.array([[1.0, 2.0]])
+up = np.array([[0.0, 1.0]])
+for wrong in (dict(sigma=1e-16), dict(sigma=1001.0), dict(tip_radius=1001.0), dict(sigma=1e6 + 1, unit="mm")):
+    try:
+        palpate.Probe("finger", CONTACTS, **wrong)
+        print("sent:", wrong)
+    except ValueError as error:
+        print(str(error).split(":")[0])
+with palpate.Planner(RESULTS) as planner, palpate.Probe("finger", CONTACTS, sigma=1e-15, tip_radius=1000.0) as probe:
+    for wrong in ((1e7 * points,), (points, up, 1e-16), (points, up, 3.2), (points, None, None, 1e-31 * np.eye(2)),
+                  (points, None, None, 2e6 * np.eye(2)), ([[np.nan, 0.0]],), ([[[1.0, 2.0]]],)):
+        try:
+            probe.send(*wrong)
+            print("sent:", wrong)
+        except ValueError as error:
+            print(str(error).split(":")[0])
+    probe.send([])
+    probe.send(np.empty((0, 2)))
+    for good in ((5e6 * points,), (points, up, 1e-15), (2 * points, up, np.pi), (3 * points, None, None, 1e-30 * np.eye(2)),
+                 (4 * points, None, None, 1e6 * np.eye(2))):
+        probe.send(*good)
+    while planner.receive(timeout=20).sample_count != 5:
+        pass
+"""
+        from bus import Bus
+        with Bus() as bus:
+            node = bus.start_node()
+            done = subprocess.run([sys.executable, "-c", f"RESULTS, CONTACTS = {bus.results!r}, {bus.contacts!r}\n" + script],
+                                  env=os.environ | {"PYTHONPATH": str(BUILD / "node/python")}, capture_output=True,
+                                  text=True, timeout=60)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertNotIn("rejected", node.log_path.read_text())
+        self.assertEqual(done.stdout.splitlines(),
+                         ["sigma", "sigma", "tip_radius", "sigma", "points", "normal_sigma", "normal_sigma", "covariances", "covariances",
+                          "points must be finite, of shape (n, 2)", "points must be finite, of shape (n, 2)"])
+
+    def test_a_connection_that_is_closed_says_so(self):
+        script = f"""
+import palpate
+with palpate.Planner(RESULTS) as planner, palpate.Probe("finger", CONTACTS) as probe:
+    for peer, use in ((probe, lambda: probe.send([[1.0, 2.0]])), (planner, planner.receive)):
+        peer.close()
+        peer.close()
+        try:
+            use()
+        except ValueError as error:
+            print(str(error).replace(peer.endpoint, "ENDPOINT"))
+for peer in (palpate.Planner, lambda endpoint: palpate.Probe("finger", endpoint)):
+    try:
+        peer("inproc://x")
+    except ValueError as error:
+        print(str(error).split(",")[0])
+"""
+        from bus import Bus
+        with Bus() as bus:
+            bus.start_node()
+            done = subprocess.run([sys.executable, "-c", f"RESULTS, CONTACTS = {bus.results!r}, {bus.contacts!r}\n" + script],
+                                  env=os.environ | {"PYTHONPATH": str(BUILD / "node/python")}, capture_output=True,
+                                  text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.splitlines(), 2 * ["the connection to ENDPOINT is closed"] +
+                         2 * ["'inproc://x': inproc:// reaches only within one process"])
+
     def test_curve_with_the_keys_of_palpate_keygen(self):
         from bus import Bus
         from programs import TOOL

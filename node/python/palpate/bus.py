@@ -46,6 +46,8 @@ def _name(what: str, name: str) -> str:
 
 class _Peer:
     def __init__(self, kind: int, endpoint: str, secret_key: str | None, server_key: str | None) -> None:
+        if endpoint.startswith("inproc://"):
+            raise ValueError(f"{endpoint!r}: inproc:// reaches only within one process, and no recognizer is in this one; use ipc://PATH")
         self._context = zmq.Context()
         self._socket = self._context.socket(kind)
         self._socket.setsockopt(zmq.LINGER, 200)  # [ms] longest wait at the end if nobody listens
@@ -89,10 +91,17 @@ class _Peer:
         raise ConnectionRefusedError(f"the recognizer at {self.endpoint} {why}")
 
     def close(self) -> None:
+        """Closes the connection. Closing it again does nothing."""
+        if self._socket.closed:
+            return
         self._socket.disable_monitor()
         self._refusals.close()
         self._socket.close()
         self._context.term()
+
+    def _check_open(self) -> None:
+        if self._socket.closed:
+            raise ValueError(f"the connection to {self.endpoint} is closed")
 
     def __enter__(self):
         return self
@@ -102,10 +111,9 @@ class _Peer:
 
 
 class _Details:
-    """Message fields of normals and covariances. Raises ValueError for values that a recognizer would reject."""
+    """Message fields of normals and covariances of so many points."""
 
     def __init__(self, count: int, normals: np.ndarray, normal_sigma: np.ndarray, covariances: np.ndarray) -> None:
-        _core.check_details(count, normals, normal_sigma, covariances)
         self._normals = normals
         self._sigmas = np.broadcast_to(normal_sigma, count) if normal_sigma.size else normal_sigma
         self._covariances = np.broadcast_to(covariances, (count, 2, 2)) if covariances.size else covariances
@@ -151,6 +159,7 @@ class Probe(_Peer):
         for what, value in (("sigma", sigma), ("tip_radius", tip_radius)):
             if not 0 <= value < float("inf"):
                 raise ValueError(f"{what}: must be finite and not below 0")
+        _core.check_sendable_lengths(self._scale * sigma, self._scale * tip_radius)
         super().__init__(zmq.XPUB, endpoint, secret_key, server_key)
         self._topic = f"contact/{name}/".encode()
         self._sigma = sigma
@@ -171,17 +180,23 @@ class Probe(_Peer):
 
     def send(self, points, normals=None, normal_sigma=None, covariances=None) -> None:
         """Publishes points (n, 2) of the present patch, in their order along the part. normals, normal_sigma and
-        covariances: see Recognizer.add. Raises ValueError for invalid arguments. Never blocks; messages that the
-        recognizer does not read in time are lost."""
-        points = np.atleast_2d(numbers(points))
-        if points.shape[1] != 2 or not np.isfinite(points).all():
+        covariances: see Recognizer.add. No points: nothing is sent. Never blocks; messages that the recognizer does not
+        read in time are lost. Raises ValueError, and sends nothing, for invalid arguments, for values that a recognizer
+        with its default limits would reject, and after close()."""
+        self._check_open()
+        points = numbers(points)
+        points = points.reshape(0, 2) if points.shape == (0,) else np.atleast_2d(points)
+        if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
             raise ValueError("points must be finite, of shape (n, 2)")
-        said = _Details(len(points), *details(normals, normal_sigma, covariances, self._scale))
+        points = self._scale * points
+        stated = details(normals, normal_sigma, covariances, self._scale)
+        _core.check_sendable_points(points, *stated)
+        said = _Details(len(points), *stated)
         most = min(_MOST_SAMPLES, _MOST_BYTES // said.most_bytes())  # samples of a message
         for start in range(0, len(points), most):
             del self._batch.samples[:]
             now = time.time_ns()
-            for i, (x, y) in enumerate(self._scale * points[start:start + most], start):
+            for i, (x, y) in enumerate(points[start:start + most], start):
                 self._batch.samples.add(stamp_ns=now, x_m=x, y_m=y, sigma_m=self._scale * self._sigma, **said.of(i))
             self._batch.header.stamp_ns = now
             self._socket.send_multipart([self._topic, self._batch.SerializeToString()])
@@ -216,7 +231,8 @@ class Planner(_Peer):
 
     def receive(self, timeout: float = 10.0) -> recognition_pb2.Recognition:
         """Returns the next new answer (SI units). Raises TimeoutError after `timeout` seconds and ConnectionRefusedError if
-        the recognizer refuses our keys."""
+        the recognizer refuses our keys. Raises ValueError after close()."""
+        self._check_open()
         deadline = time.monotonic() + timeout
         while True:
             left = deadline - time.monotonic()
