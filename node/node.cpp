@@ -180,7 +180,9 @@ bool Node::drain_contacts(SteadyTime deadline) {
   SteadyTime now = now_steady();
   bool more = true;
   while (now < deadline && (more = receive_now(contacts_, incoming_))) {
-    if (contact_peers_) contact_peers_->hear(descriptor_of(incoming_.topic));
+    if (contact_peers_) {
+      contact_peers_->hear(descriptor_of(incoming_.topic), key_of(incoming_.topic));
+    }
     const v1::RejectReason reason =
         intake_.take(incoming_.frame_count, view_of(incoming_.topic), view_of(incoming_.payload),
                      now, unix_time_ns(), zap_ ? zap_->sender_of(incoming_.topic) : Sender());
@@ -315,10 +317,8 @@ void Node::reload_clients() {
   const bool somebody_left = !clients.allows_all_of(zap_->clients());
   zap_->allow(std::move(clients));
   spdlog::info("{} allowed clients reread", keys.value->size());
-  // libzmq does not tell which connection belongs to which key, so all are cut; allowed clients are
-  // back within 50 ms.
   for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
-    if (somebody_left && peers != nullptr) peers->cut_all("keys have been taken off the list");
+    if (somebody_left && peers != nullptr) peers->cut_others_than(zap_->clients());
   }
 }
 

@@ -49,7 +49,8 @@ void ResultPublisher::serve_subscriptions(int max_messages, PeerGuard* peers,
     if (message.frame_count != 1 || (!begins && !ends)) continue;
     const std::string_view prefix = text.substr(1);
     if (peers != nullptr) {
-      peers->count_subscription(descriptor_of(message.topic), begins, prefix.size());
+      peers->count_subscription(descriptor_of(message.topic), key_of(message.topic), begins,
+                                prefix.size());
     }
     if (meets(prefix, topic_prefix(TopicKind::Estimate))) {
       // (A client that subscribes twice ends its subscription once; estimates then continue without

@@ -69,15 +69,23 @@ void PeerGuard::tend(Time now) {
   }
 }
 
-void PeerGuard::hear(int descriptor) {
-  const auto peer = peers_.find(descriptor);
-  if (peer != peers_.end()) peer->second.spoke = true;
+void PeerGuard::hear(Peer& peer, std::string_view key) {
+  peer.spoke = true;
+  if (peer.key == key) return;
+  peer.is_key_doubtful = peer.is_key_doubtful || !peer.key.empty();
+  peer.key = key;
 }
 
-void PeerGuard::count_subscription(int descriptor, bool begins, std::size_t bytes) {
+void PeerGuard::hear(int descriptor, std::string_view key) {
+  const auto peer = peers_.find(descriptor);
+  if (peer != peers_.end()) hear(peer->second, key);
+}
+
+void PeerGuard::count_subscription(int descriptor, std::string_view key, bool begins,
+                                   std::size_t bytes) {
   const auto peer = peers_.find(descriptor);
   if (peer == peers_.end()) return;  // has left or been cut
-  peer->second.spoke = true;
+  hear(peer->second, key);
   std::size_t& held = peer->second.subscription_bytes;
   if (!begins) {
     const std::size_t freed = std::min(held, bytes + kSubscriptionOverheadBytes);
@@ -98,8 +106,19 @@ void PeerGuard::count_subscription(int descriptor, bool begins, std::size_t byte
   }
 }
 
-void PeerGuard::cut_all(const std::string& why) {
-  while (!peers_.empty()) cut(peers_.begin(), why);
+void PeerGuard::cut_others_than(const ClientList& clients) {
+  const auto is_known = [](const Peer& peer) { return !peer.key.empty() && !peer.is_key_doubtful; };
+  for (auto next = peers_.begin(); next != peers_.end();) {
+    const auto peer = next++;
+    if (!is_known(peer->second)) {
+      cut(peer, "keys have been taken off the list, and which key it has is not known yet");
+    }
+  }
+  // After the others: the report names the last one.
+  for (auto next = peers_.begin(); next != peers_.end();) {
+    const auto peer = next++;
+    if (!clients.allows(peer->second.key)) cut(peer, "its key has been taken off the list");
+  }
 }
 
 // Shuts the connection's descriptor down, because libzmq has no call for it. To libzmq it looks as

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <zmq.hpp>
 
+#include "node/security/zap_handler.h"
 #include "node/wire/socket_monitor.h"
 
 namespace palpate {
@@ -42,14 +44,16 @@ class PeerGuard {
   /// To be polled for input; then call tend().
   zmq::socket_t& events() { return monitor_.events(); }
 
-  /// The peer with that descriptor (descriptor_of) has sent something.
-  void hear(int descriptor);
+  /// The peer with that descriptor (descriptor_of) has sent something; `key`: its own (key_of).
+  void hear(int descriptor, std::string_view key);
 
   /// The peer has begun or ended a subscription of so many bytes. Cuts peers beyond the limit.
-  void count_subscription(int descriptor, bool begins, std::size_t bytes);
+  void count_subscription(int descriptor, std::string_view key, bool begins, std::size_t bytes);
 
-  /// Cuts all connections. Clients that are allowed reconnect at once.
-  void cut_all(const std::string& why);
+  /// Cuts the connections whose key is not on the list, and those whose key is not known: libzmq
+  /// tells it with a message, so that of a peer that has sent none is not. Of these, clients that
+  /// are allowed are back at once.
+  void cut_others_than(const ClientList& clients);
 
   std::uint64_t cut_count() const { return cut_count_; }
 
@@ -61,9 +65,14 @@ class PeerGuard {
     Time since;
     bool spoke = false;
     std::size_t subscription_bytes = 0;
+    std::string key = {};  ///< empty = not known
+    /// A descriptor is used again, and what its last owner sent may be read after the new one has
+    /// come: where two keys have been heard of, neither is believed.
+    bool is_key_doubtful = false;
   };
   using Peers = std::map<int, Peer>;
 
+  static void hear(Peer& peer, std::string_view key);
   void cut(Peers::iterator peer, const std::string& why);
   void forget(Peers::iterator peer);
 

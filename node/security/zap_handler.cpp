@@ -85,9 +85,13 @@ void ZapHandler::serve() {
   }
 }
 
-Sender ZapHandler::sender_of(const zmq::message_t& frame) const {
+std::string_view key_of(const zmq::message_t& frame) {
   const char* key = zmq_msg_gets(frame.handle(), kUserId);
-  return clients_.sender(key == nullptr ? std::string_view() : std::string_view(key));
+  return key == nullptr ? std::string_view() : std::string_view(key);
+}
+
+Sender ZapHandler::sender_of(const zmq::message_t& frame) const {
+  return clients_.sender(key_of(frame));
 }
 
 }  // namespace palpate

@@ -45,6 +45,10 @@ class ClientList {
 std::array<std::string, 6> zap_reply(std::span<const std::string> frames,
                                      const ClientList& clients);
 
+/// The key by which the sender of this frame was let in, in Z85; empty without CURVE. Valid as long
+/// as the frame.
+std::string_view key_of(const zmq::message_t& frame);
+
 /// Serves libzmq's requests on its well-known address. Create it before the sockets that use it.
 class ZapHandler {
  public:

@@ -235,6 +235,75 @@ class Curve(unittest.TestCase):
             self.assertEqual(watch.wait(20), 1)
             self.assertIsNone(node.poll())
 
+    def test_who_stays_on_the_list_stays_connected(self):
+        with Bus("tcp") as bus:
+            names = ("finger", "idle", "planner", "gone")
+            for name in ("node", *names):
+                self.assertEqual(run(TOOL, "keygen", bus.folder / name)[0], 0)
+            allowed = bus.folder / "allowed"
+            allowed.write_text("".join((bus.folder / f"{name}.public").read_text() for name in names))
+            node = bus.start_node("--curve-secret-key", bus.folder / "node.secret", "--allow-clients", allowed,
+                                  "--status-period-s", "0.2")
+            server, _ = load_certificate(bus.folder / "node.public")
+
+            def connect(kind, key, endpoint):
+                socket = bus.context.socket(kind)
+                socket.linger = 0
+                socket.curve_publickey, socket.curve_secretkey = load_certificate(bus.folder / f"{key}.secret")
+                socket.curve_serverkey = server
+                if kind == zmq.SUB:
+                    socket.subscribe(b"status/")
+                cuts = socket.get_monitor_socket(zmq.EVENT_DISCONNECTED)
+                socket.connect(endpoint)
+                return socket, cuts
+
+            peers = {("finger", zmq.XPUB): None, ("idle", zmq.XPUB): None, ("gone", zmq.XPUB): None,
+                     ("planner", zmq.SUB): None, ("gone", zmq.SUB): None}
+            for key, kind in peers:
+                peers[key, kind] = connect(kind, key, bus.contacts if kind == zmq.XPUB else bus.results)
+            status, _ = peers["planner", zmq.SUB]
+
+            def wait_until(reached):
+                deadline = time.monotonic() + 10
+                while True:
+                    self.assertTrue(status.poll(5000))
+                    message = node_status_pb2.NodeStatus.FromString(status.recv_multipart()[1])
+                    if reached(message):
+                        return
+                    self.assertLess(time.monotonic(), deadline, (message, node.log_path.read_text()))
+
+            def send(probe, seq):
+                batch = contact_pb2.ContactBatch()
+                batch.header.source, batch.header.epoch, batch.header.seq = probe, 7, seq
+                batch.samples.add(stamp_ns=time.time_ns(), x_m=0.001 * seq, sigma_m=1e-5)
+                peers[probe, zmq.XPUB][0].send_multipart([f"contact/{probe}/".encode(), batch.SerializeToString()])
+
+            for (key, kind), (socket, _) in peers.items():
+                self.assertTrue(socket.poll(5000), key)  # of the node: what it subscribes to, or its status
+                if kind == zmq.XPUB:
+                    socket.recv()
+            send("finger", 0)
+            send("gone", 0)
+            wait_until(lambda message: {probe.probe for probe in message.probes} == {"finger", "gone"})
+            allowed.write_text("".join((bus.folder / f"{name}.public").read_text() for name in names[:3]))
+            node.send_signal(signal.SIGHUP)
+            wait_until(lambda message: message.connections_cut > 0)
+            send("finger", 1)
+            seq = iter(range(1000))
+
+            def all_are_heard(message):
+                # Of who had sent nothing the key was not known: cut too, and back.
+                send("idle", next(seq))
+                heard = {probe.probe: probe.messages for probe in message.probes}
+                return heard["finger"] == 2 and heard.get("idle", 0) > 0 and message.connections_cut == 3
+
+            wait_until(all_are_heard)
+            for (key, kind), (_, cuts) in peers.items():
+                self.assertEqual(cuts.poll(5000 if key in ("gone", "idle") else 0) != 0, key in ("gone", "idle"), (key, kind))
+            log = node.log_path.read_text()
+            self.assertRegex(log, "2 connections to contacts cut, the last of 127.0.0.1:[0-9]+: its key has been taken off the list")
+            self.assertRegex(log, "1 connections to results cut, the last of 127.0.0.1:[0-9]+: its key has been taken off the list")
+
     def test_check_takes_the_recognizers_place_with_its_keys(self):
         with Bus() as bus:
             for name in ("node", "friend", "stranger"):
