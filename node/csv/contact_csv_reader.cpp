@@ -246,13 +246,8 @@ class Reader {
       value = *whole;
       return true;
     }
-    const std::optional<double> number = csv::number_of(text, false);
-    const bool is_whole = number && std::trunc(*number) == *number;
     return fail(text.data(),
-                in_column(column, text) +
-                    (is_whole && (std::is_signed_v<Integer> || *number >= 0.0) ? "out of range"
-                     : std::is_signed_v<Integer> ? "not a whole number"
-                                                 : "not a whole number >= 0"));
+                in_column(column, text) + std::string(csv::why_no_whole<Integer>(text)));
   }
 
   /// from_chars knows no plus sign; people write it. A second sign is left for it to refuse.

@@ -22,6 +22,9 @@ namespace {
 // As node/intake/ingest.h has them too.
 constexpr double kMinSigmaM = 1e-15;
 constexpr double kMaxLengthM = 1e3;  // of sigma and of tip radii
+// The first number of nanoseconds that a stamp (int64, contact.proto) does not hold: 2^63, about
+// 292 years.
+constexpr double kBeyondStampNs = 0x1p63;
 
 class PointReader {
  public:
@@ -202,8 +205,8 @@ class PointReader {
     if (text.empty()) return true;
     const auto parsed = whole_of<Integer>(text);
     value = parsed.value_or(value);
-    return parsed.has_value() ||
-           fail(text.data(), std::string(what) + " " + shown(text) + ": not a whole number >= 0");
+    return parsed.has_value() || fail(text.data(), std::string(what) + " " + shown(text) + ": " +
+                                                       std::string(why_no_whole<Integer>(text)));
   }
 
   bool name(Column column, const char* what, std::size_t& index) {
@@ -230,9 +233,13 @@ class PointReader {
     const double unit = columns_.units[static_cast<std::size_t>(Column::Stamp)].value_or(1.0);
     if (unit == 1.0) return whole(Column::Stamp, "stamp_ns", row.sample.stamp_ns);
     const auto parsed = number_of(text, true);
-    constexpr double kMost = 9.2e18;  // that an int64 holds [ns]
-    if (!parsed || !(std::abs(*parsed * unit) < kMost)) {
-      return fail(text.data(), "time " + shown(text) + ": not a number");
+    const bool is_finite = parsed && std::isfinite(*parsed);
+    if (!is_finite || !(std::abs(*parsed * unit) < kBeyondStampNs)) {
+      return fail(text.data(), "time " + shown(text) +
+                                   (!parsed      ? ": not a number"
+                                    : !is_finite ? ": not a finite number"
+                                                 : ": out of range: a stamp lies within 292 years "
+                                                   "of 1970"));
     }
     row.sample.stamp_ns = std::llround(*parsed * unit);
     return true;

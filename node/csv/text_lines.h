@@ -119,4 +119,13 @@ std::optional<Integer> whole_of(std::string_view text) {
   return static_cast<Integer>(*number);
 }
 
+/// Why whole_of() returns none.
+template <typename Integer>
+std::string_view why_no_whole(std::string_view text) {
+  const std::optional<double> number = number_of(text, false);
+  const bool is_whole = number && std::trunc(*number) == *number && std::isfinite(*number);
+  if (is_whole && (std::is_signed_v<Integer> || *number >= 0.0)) return "out of range";
+  return std::is_signed_v<Integer> ? "not a whole number" : "not a whole number >= 0";
+}
+
 }  // namespace palpate::csv

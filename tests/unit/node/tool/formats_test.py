@@ -451,6 +451,14 @@ class Formats(unittest.TestCase):
                               ("x,force\n1,2\n", "FILE:1:1: no columns of two coordinates"),
                               ("x,y,x_pos\n1,2,3\n", "FILE:1:1: column x_pos comes twice"),
                               ("x,y,patch\n1,2,one\n", "FILE:2:5: patch 'one': not a whole number"),
+                              ("x,y,patch\n1,2,-1\n", "FILE:2:5: patch '-1': not a whole number >= 0"),
+                              ("x,y,patch\n1,2,4294967296\n", "FILE:2:5: patch '4294967296': out of range"),
+                              ("x,y,stamp_ns\n1,2,9223372036854775808\n", "stamp_ns '9223372036854775808': out of range"),
+                              ("x,y,stamp_ns\n1,2,0.5\n", "stamp_ns '0.5': not a whole number\n"),
+                              ("x,y,time_s\n1,2,1e300\n", "time '1e300': out of range: a stamp lies within 292 years of 1970"),
+                              ("x,y,time_s\n1,2,9223372037\n", "time '9223372037': out of range"),
+                              ("x,y,time_s\n1,2,inf\n", "time 'inf': not a finite number"),
+                              ("x,y,time_s\n1,2,noon\n", "time 'noon': not a number"),
                               ("x,y,tip_radius_mm,patch\n1,2,1,0\n1,3,2,0\n", "tip_radius changes within patch 0"),
                               ("x_m,y_m\n1,2e9\n", "FILE:2:3: y '2e9': must lie in")):
             self.assertIn(message, self.refused(text))
