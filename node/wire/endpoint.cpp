@@ -36,7 +36,12 @@ Result<Endpoint> parse_endpoint(std::string_view text, bool bind_by_default) {
     endpoint.bind = false;
     text.remove_prefix(kConnect.size());
   }
-  for (const std::string_view transport : {kTcp, kIpc, kInproc}) {
+  if (text.starts_with(kInproc)) {
+    return Result<Endpoint>::fail("\"" + original +
+                                  "\": inproc:// reaches only within one process, and nobody else "
+                                  "is in this one; use ipc://PATH");
+  }
+  for (const std::string_view transport : {kTcp, kIpc}) {
     if (text.starts_with(transport) && text.size() > transport.size()) {
       if (transport == kTcp && !has_port(text)) {
         return Result<Endpoint>::fail("\"" + original +
@@ -47,8 +52,8 @@ Result<Endpoint> parse_endpoint(std::string_view text, bool bind_by_default) {
     }
   }
   return Result<Endpoint>::fail("\"" + original +
-                                "\" is no endpoint: expected [bind:|connect:] and tcp://HOST:PORT, "
-                                "ipc://PATH or inproc://NAME");
+                                "\" is no endpoint: expected [bind:|connect:] and tcp://HOST:PORT "
+                                "or ipc://PATH");
 }
 
 std::string to_string(const Endpoint& endpoint) {

@@ -13,7 +13,7 @@ inline constexpr std::string_view kDefaultResultsEndpoint = "tcp://127.0.0.1:558
 
 struct Endpoint {
   bool bind = false;
-  std::string address;  ///< in ZeroMQ's form: tcp://, ipc:// or inproc://
+  std::string address;  ///< in ZeroMQ's form: tcp:// or ipc://
 };
 
 /// An address without prefix gets `bind_by_default`. Fails on any other transport and on an empty
@@ -23,8 +23,8 @@ Result<Endpoint> parse_endpoint(std::string_view text, bool bind_by_default);
 /// "bind:ADDRESS" or "connect:ADDRESS".
 std::string to_string(const Endpoint& endpoint);
 
-/// True if only this machine can reach the address: ipc, inproc, and tcp on a loopback address. A
-/// host name other than "localhost" counts as not local, because its meaning can change.
+/// True if only this machine can reach the address: ipc, and tcp on a loopback address. A host name
+/// other than "localhost" counts as not local, because its meaning can change.
 bool is_local(const Endpoint& endpoint);
 
 }  // namespace palpate

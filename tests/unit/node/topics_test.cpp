@@ -45,7 +45,7 @@ TEST(Endpoint, SideAndAddress) {
   EXPECT_EQ(to_string(*parse_endpoint("tcp://127.0.0.1:1", false).value),
             "connect:tcp://127.0.0.1:1");
   EXPECT_EQ(to_string(*parse_endpoint("connect:ipc:///tmp/x", true).value), "connect:ipc:///tmp/x");
-  EXPECT_EQ(to_string(*parse_endpoint("bind:inproc://x", false).value), "bind:inproc://x");
+  EXPECT_EQ(to_string(*parse_endpoint("bind:ipc:///x", false).value), "bind:ipc:///x");
   for (const char* text :
        {"", "bind:", "tcp://", "127.0.0.1:1", "udp://127.0.0.1:1", "bind:bind:"}) {
     EXPECT_FALSE(parse_endpoint(text, true)) << text;
@@ -54,7 +54,7 @@ TEST(Endpoint, SideAndAddress) {
 
 TEST(Endpoint, WhatOnlyThisMachineReaches) {
   for (const char* text : {"tcp://127.0.0.1:1", "tcp://127.1.2.3:*", "tcp://localhost:1",
-                           "tcp://[::1]:1", "tcp://lo:1", "ipc:///tmp/x", "inproc://x"}) {
+                           "tcp://[::1]:1", "tcp://lo:1", "ipc:///tmp/x"}) {
     EXPECT_TRUE(is_local(*parse_endpoint(text, true).value)) << text;
   }
   for (const char* text :
