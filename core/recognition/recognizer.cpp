@@ -145,6 +145,10 @@ class Recognizer::Impl {
     const std::size_t fewest =
         memory_.patches().size() < kFewestPatches ? kFewestPlaces : kFewestPatches;
     if (!have_places(data, fewest) || !have_extent(data)) {
+      // What is stated is known, and may be why: noise larger than the part leaves one place.
+      if (sigma_known && !data.points.empty()) {
+        answer.sigma_m = rms_sigma(data) * data.scale * noise_over_means(clean, options_.sigma_m);
+      }
       return answer;
     }
     auto joined = joined_touches(clean, options_.sigma_m, options_.classes, work);

@@ -413,6 +413,9 @@ TEST(RecognitionHardCases, TooLittleIsCollected) {
     few.push_back({{0.001 * i, 1e-6 * i * i}, 1e-6, 0});
   }
   EXPECT_EQ(recognise({few}).status, RecognitionStatus::Collecting);
+  EXPECT_NEAR(recognise({few}).sigma_m, 1e-6, 1e-12);  // stated, so known
+  for (ContactSample& sample : few) sample.sigma_m = 0.0;
+  EXPECT_EQ(recognise({few}).sigma_m, 0.0);
   const Patch dwelling(500, ContactSample{{0.1, 0.2}, 1e-5, 0});
   EXPECT_EQ(recognise({dwelling}).status, RecognitionStatus::Collecting);
 }

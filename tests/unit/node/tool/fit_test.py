@@ -304,6 +304,15 @@ class Fit(unittest.TestCase):
         answers, _ = self.answers("-", text_in="probe,patch,x_m,y_m\na,0,0,0\na,0,1,0\n")
         self.assertEqual(answers[0].status, recognition_pb2.RECOGNITION_STATUS_COLLECTING)
 
+    def test_noise_that_is_stated_is_known(self):
+        # Larger than the part: no two of its places can be told apart, and that is why there is no answer.
+        path = self.write("part.csv", "x_m,y_m\n" + "".join(f"{0.001 * i},{0.0001 * i * i}\n" for i in range(20)))
+        _, out, _ = run(TOOL, "fit", path, "--sigma", "0.1", "--format", "text")
+        self.assertRegex(out, "status +collecting")
+        self.assertRegex(out, "noise +sigma 100 mm\n")
+        path.write_text("x_m,y_m\n0,0\n0.001,0\n")
+        self.assertRegex(run(TOOL, "fit", path, "--format", "text")[1], "noise +not known yet\n")
+
 
 if __name__ == "__main__":
     unittest.main()
