@@ -74,8 +74,8 @@ TEST(OnePatch, CertaintyOfAParabolaGrowsWithPrecision) {
   }
 }
 
-// More samples than are kept one by one: neighbours' means lie inside the bend, all of them. Beside
-// what a mean of 20 is off by, 1.6e-6 of the radius, all together tell it to 7e-8.
+// More samples than are kept one by one: neighbours' means lie inside the bend, all of them. A mean
+// of 32 is off by 2.9e-6 of the radius, and all together tell it to 7e-8.
 TEST(OnePatch, MeansOfManySamplesTellNoSmallerCurve) {
   std::mt19937_64 rng = test::test_rng();
   constexpr int kStrokes = 20;
