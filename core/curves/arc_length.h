@@ -52,6 +52,12 @@ double adaptive(const Speed& speed, double t0, double t1, double whole, double t
 
 }  // namespace arc_length_detail
 
+/// The rounding of a polynomial whose terms have this sum of absolute values, up to the third
+/// power: of terms and sums, and three times that of t.
+inline double rounding_of_terms(double terms) {
+  return 4.0 * std::numeric_limits<double>::epsilon() * terms;
+}
+
 /// Integral of the speed (>= 0, smooth on the open interval) from t0 to t1, negative if t1 < t0. A
 /// piece is halved as long as halving changes it by more than 16 epsilon of the whole arc, which is
 /// the rounding of a sum of 12 terms. The rule is of order 24, so the halves are far more exact
@@ -65,12 +71,6 @@ double integrate_speed(const Speed& speed, double t0, double t1, double rounding
   // A piece and its halves are each off by so much, at most.
   const double tolerance = kRelative * std::abs(whole) + 2.0 * rounding * std::abs(t1 - t0);
   return arc_length_detail::adaptive(speed, t0, t1, whole, tolerance, 0);
-}
-
-/// The rounding of a polynomial whose terms have this sum of absolute values, up to the third
-/// power: of terms and sums, and three times that of t.
-inline double rounding_of_terms(double terms) {
-  return 4.0 * std::numeric_limits<double>::epsilon() * terms;
 }
 
 /// The same for a speed that is not smooth at t = 0, or nearly so: each side of it by itself.

@@ -17,13 +17,15 @@ constexpr double kDivisor = 42.0;
 Vec2 mean_on_path(const StoredPatch& patch, std::size_t i) {
   const StoredSample& sample = patch.samples[i];
   const double per_sample = patch.contacts_per_sample;
-  // The last may not be full yet, and lies closer to the one before.
-  const std::size_t count =
+  // The newest may not be full yet, and lies closer to the next: the last one, or the first of a
+  // pass that came back.
+  const std::size_t first = patch.samples.front().contacts < per_sample ? 1 : 0;
+  const std::size_t end =
       patch.samples.size() - (patch.samples.back().contacts < per_sample ? 1 : 0);
-  if (sample.contacts <= 1.0 || sample.contacts > per_sample || count < kSamples) {
+  if (sample.contacts <= 1.0 || sample.contacts > per_sample || end < first + kSamples) {
     return sample.position_m;
   }
-  const std::size_t begin = std::min(i - std::min(i, kSamples / 2), count - kSamples);
+  const std::size_t begin = std::clamp(i - std::min(i, kSamples / 2), first, end - kSamples);
   Vec2 second = Vec2::Zero();
   for (std::size_t j = 0; j < kSamples; ++j) {
     // From the sample's own place: far from the origin, coordinates have few digits for the rest.

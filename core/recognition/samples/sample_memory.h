@@ -16,8 +16,8 @@ namespace palpate {
 struct MemoryOptions {
   /// Most samples of a patch. When a patch is full, its dwells are merged (dwells.h). If that frees
   /// less than a quarter, neighbours are merged pairwise, and from then on the patch stores means
-  /// of twice as many contacts. The weight of a mean keeps the noise level known; what it
-  /// lies inside a bend is undone (mean_on_path.h).
+  /// of twice as many contacts. The weight of a mean keeps the noise level known, and
+  /// mean_on_path.h undoes that it lies inside a bend.
   std::size_t most_samples_per_patch = 1024;
   /// Most patches of two samples or more; beyond it the oldest is forgotten.
   std::size_t most_patches = 64;
