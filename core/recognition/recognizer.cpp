@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/numerics/negligible.h"
 #include "core/numerics/normal_law.h"
 #include "core/recognition/estimate_stream.h"
 #include "core/recognition/fewest_places.h"
@@ -204,7 +205,10 @@ class Recognizer::Impl {
     Weighed weighed = weigh_from_last_or_search(data, sigma_known, patches, sought, work);
     const std::size_t stored = clean_.moved_count();
     if (stored > data.points.size() && !work.was_cut()) {
-      weighed = with_explained(std::move(weighed), work);
+      weighed = with_ends(std::move(weighed), sigma_known, work);
+      if (!weighed.patches) {
+        weighed = with_explained(std::move(weighed), work);
+      }
     }
     if (work.was_cut()) {
       last_.reset();  // what was found by then may be far from what there is
@@ -364,6 +368,40 @@ class Recognizer::Impl {
     return options;
   }
 
+  /// Weighed again with these patches; nullopt where the class does not stand then.
+  std::optional<Weighed> again_with(std::vector<StoredPatch> more, CurveClass best,
+                                    WorkBudget& work) const {
+    if (auto joined = joined_touches(more, options_.sigma_m, options_.classes, work)) {
+      more = std::move(joined->patches);
+    }
+    bool sigma_known = false;
+    const FitData data = make_fit_data(more, options_.sigma_m, &sigma_known);
+    Weighed again =
+        weigh_without_outliers(data, sigma_known, more, last_->starts, Starts::OfLast, work);
+    if (work.was_cut() || again.w.best != best || !again.w.canonical[best]) {
+      return std::nullopt;
+    }
+    again.patches = std::move(more);
+    return again;
+  }
+
+  /// Weighed again with what was told for spikes at the ends of strokes, where the noise is stated
+  /// and the class that the rest is of leaves no more than noise of all.
+  Weighed with_ends(Weighed weighed, bool sigma_known, WorkBudget& work) const {
+    const CurveClass best = weighed.w.best;
+    auto more = sigma_known && best != CurveClass::Unclassified && work.allows()
+                    ? with_runs_at_ends(clean_.moved(), clean_.clean())
+                    : std::nullopt;
+    if (!more) {
+      return weighed;
+    }
+    auto again = again_with(*std::move(more), best, work);
+    const bool fits =
+        again && again->outliers.empty() &&
+        can_be_noise(again->w.counted_chi2, static_cast<double>(residual_count(again->w.data)));
+    return fits ? *std::move(again) : std::move(weighed);
+  }
+
   /// Weighed again with the spikes that the best class explains, where the class stands then.
   Weighed with_explained(Weighed weighed, WorkBudget& work) const {
     const Weighing& w = weighed.w;
@@ -381,21 +419,8 @@ class Recognizer::Impl {
     work.spend(WorkKind::PlacedRow, clean_.moved_count());
     auto more = with_explained_spikes(clean_.moved(), clean_.clean(), *curve, best->world_T_curve,
                                       noise_m, limit);
-    if (!more) {
-      return weighed;
-    }
-    if (auto joined = joined_touches(*more, options_.sigma_m, options_.classes, work)) {
-      more = std::move(joined->patches);
-    }
-    bool sigma_known = false;
-    const FitData data = make_fit_data(*more, options_.sigma_m, &sigma_known);
-    Weighed again =
-        weigh_without_outliers(data, sigma_known, *more, last_->starts, Starts::OfLast, work);
-    if (work.was_cut() || again.w.best != w.best || !again.w.canonical[again.w.best]) {
-      return weighed;
-    }
-    again.patches = std::move(more);
-    return again;
+    auto again = more ? again_with(*std::move(more), w.best, work) : std::nullopt;
+    return again ? *std::move(again) : std::move(weighed);
   }
 
   /// `deviation_m`: what residuals tell of a smooth deviation, if it is more than is stated.

@@ -61,7 +61,65 @@ bool passes(const Gap& gap, const Curve& curve, double t, double noise_m) {
          on_m <= std::max(0.0, gap.length_m) + noise_m;
 }
 
+/// Puts samples [begin, end) of `all` in the patch, before or after those that it has.
+void put(const StoredPatch& all, std::size_t begin, std::size_t end, bool before,
+         StoredPatch* patch) {
+  const auto part = [&](const auto& of_all, auto* of_patch) {
+    of_patch->insert(before ? of_patch->begin() : of_patch->end(),
+                     of_all.begin() + static_cast<std::ptrdiff_t>(begin),
+                     of_all.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  part(all.samples, &patch->samples);
+  if (!all.details.empty()) part(all.details, &patch->details);
+}
+
 }  // namespace
+
+std::optional<std::vector<StoredPatch>> with_runs_at_ends(std::span<const StoredPatch> all,
+                                                          std::span<const StoredPatch> clean) {
+  assert(all.size() == clean.size());
+  constexpr std::size_t kLeastRun = 2;
+  std::vector<StoredPatch> result(clean.begin(), clean.end());
+  bool any = false;
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    const std::vector<StoredSample>& samples = all[p].samples;
+    const std::vector<StoredSample>& kept = clean[p].samples;
+    if (kept.empty() || kept.size() == samples.size()) {
+      continue;
+    }
+    const auto step = [&](std::size_t i) {
+      return (samples[i + 1].position_m - samples[i].position_m).norm();
+    };
+    std::size_t begin = samples.size();  // of what is kept, among all
+    std::size_t end = 0;
+    double longest = 0.0;
+    for (std::size_t i = 0, k = 0; i < samples.size() && k < kept.size(); ++i) {
+      if (samples[i].position_m == kept[k].position_m) {
+        longest = end == i && end > begin ? std::max(longest, step(i - 1)) : longest;
+        begin = std::min(begin, i);
+        end = i + 1;
+        ++k;
+      }
+    }
+    const auto goes_on = [&](std::size_t from, std::size_t to) {
+      bool goes = true;
+      for (std::size_t i = from; i < to; ++i) {
+        goes = goes && step(i) <= longest;
+      }
+      return goes;
+    };
+    const bool at_begin = begin >= kLeastRun && goes_on(0, begin);
+    const bool at_end = samples.size() - end >= kLeastRun && goes_on(end - 1, samples.size() - 1);
+    if (at_begin) {
+      put(all[p], 0, begin, true, &result[p]);
+    }
+    if (at_end) {
+      put(all[p], end, samples.size(), false, &result[p]);
+    }
+    any = any || at_begin || at_end;
+  }
+  return any ? std::optional(std::move(result)) : std::nullopt;
+}
 
 std::optional<std::vector<StoredPatch>> with_explained_spikes(std::span<const StoredPatch> all,
                                                               std::span<const StoredPatch> clean,

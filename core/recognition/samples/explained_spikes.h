@@ -22,4 +22,11 @@ std::optional<std::vector<StoredPatch>> with_explained_spikes(std::span<const St
                                                               const Pose2& world_T_curve,
                                                               double noise_m, double limit);
 
+/// The patches of `clean`, with the runs of two samples and more added with which a patch of `all`
+/// begins or ends and of which none is left, if their steps are no longer than those between
+/// neighbours that are kept: an arm of a cusp by few samples leaves the path of the rest as spikes
+/// do, but spikes leap. nullopt if there are none.
+std::optional<std::vector<StoredPatch>> with_runs_at_ends(std::span<const StoredPatch> all,
+                                                          std::span<const StoredPatch> clean);
+
 }  // namespace palpate
