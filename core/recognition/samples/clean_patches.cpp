@@ -101,14 +101,15 @@ Turns turns_without(std::vector<bool> is_spike, std::span<const std::size_t> cus
 }
 
 /// Cuts a patch into passes, with and without spikes. Spikes also turn back, and the parts between
-/// the turns of many are too short to show them. So where other turns are left without what is
-/// found, the patch is searched as a whole, to find those that made or hid a turn.
+/// the turns of many are too short to show them, and no block judges the sample at a cusp, which a
+/// single spike looks like. So where other turns are left without these and what is found, the
+/// patch is searched as a whole, to find those that made or hid a turn.
 void clean_passes(const StoredPatch& patch, double default_sigma_m, double false_alarm,
                   std::vector<StoredPatch>* passes, std::vector<StoredPatch>* clean,
                   WorkBudget& work) {
   Turns turns = turns_of(patch.samples, default_sigma_m);
   std::vector<bool> is_spike = spikes_between(turns, patch.samples, false_alarm, work);
-  if (has_any(is_spike) &&
+  if ((has_any(is_spike) || !turns.cusps.empty()) &&
       turns_without(is_spike, turns.cusps, patch.samples, default_sigma_m) != turns) {
     if (turns != Turns{}) {
       is_spike = spikes_between({}, patch.samples, false_alarm, work);

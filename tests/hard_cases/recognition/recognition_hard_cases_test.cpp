@@ -171,6 +171,24 @@ TEST(RecognitionHardCases, SpikesCostNoMoreThanThemselves) {
   EXPECT_GE(set_aside, 8 * spikes / 10);  // those that are displaced along the arc do no harm
 }
 
+// A single spike across the way turns the path back, as a cusp does, and no block judges the sample
+// at a cusp: it stayed, and the answer was certain of no class.
+TEST(RecognitionHardCases, ASpikeAcrossTheWayIsNoCusp) {
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < test::stress_count(400); ++i) {
+    std::vector<Patch> patches = {elliptic_arc(0.3, rng), elliptic_arc(2.5, rng)};
+    Patch& patch = patches.front();
+    const Vec2 chord = patch.back().position_m - patch.front().position_m;
+    const auto at = static_cast<std::size_t>(
+        test::uniform(rng, 10.0, static_cast<double>(patch.size()) - 10.0));
+    patch[at].position_m += test::uniform(rng, 0.1, 0.3) * test::random_sign(rng) * left_of(chord);
+    const Recognition answer = recognise(patches);
+    EXPECT_EQ(answer.status, RecognitionStatus::Recognized) << name_of(answer.doubt);
+    EXPECT_EQ(answer.shape.curve_class, CurveClass::Ellipse);
+    EXPECT_GE(answer.outlier_count, 1U);
+  }
+}
+
 // Some spikes are near the curve but out of order along the stroke. When they were taken back, they
 // misled every class.
 TEST(RecognitionHardCases, SpikesAlongTheCurve) {
