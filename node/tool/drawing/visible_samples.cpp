@@ -10,9 +10,12 @@ namespace {
 /// A key of the square and colour. Keys of neighbouring squares differ; those of squares 2^28 apart
 /// in x or y may coincide, which is far beyond any picture.
 std::uint64_t key_of(const Vec2& position, double cell_m, std::size_t colour) {
+  // In floating point: positions may be beyond any integer.
+  constexpr double kPeriod = 1 << 28;
   const auto index = [cell_m](double value) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / cell_m))) &
-           ((std::uint64_t{1} << 28) - 1);
+    const double cells = std::fmod(std::floor(value / cell_m), kPeriod);
+    return std::isfinite(cells) ? static_cast<std::uint64_t>(cells < 0.0 ? cells + kPeriod : cells)
+                                : 0;
   };
   return (static_cast<std::uint64_t>(colour) << 56) | (index(position.x()) << 28) |
          index(position.y());
