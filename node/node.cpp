@@ -180,12 +180,11 @@ bool Node::drain_contacts(SteadyTime deadline) {
   SteadyTime now = now_steady();
   bool more = true;
   while (now < deadline && (more = receive_now(contacts_, incoming_))) {
-    if (contact_peers_) {
-      contact_peers_->hear(descriptor_of(incoming_.topic), key_of(incoming_.topic));
-    }
+    const std::string_view key = zap_ ? key_of(incoming_.topic) : std::string_view();
+    if (contact_peers_) contact_peers_->hear(descriptor_of(incoming_.topic), key);
     const v1::RejectReason reason =
         intake_.take(incoming_.frame_count, view_of(incoming_.topic), view_of(incoming_.payload),
-                     now, unix_time_ns(), zap_ ? zap_->sender_of(incoming_.topic) : Sender());
+                     now, unix_time_ns(), zap_ ? zap_->sender_of(key) : Sender());
     if (reason == v1::REJECT_REASON_UNSPECIFIED) publisher_.forward(incoming_);
     now = now_steady();
   }

@@ -104,12 +104,9 @@ std::optional<Localisation> localise(const Curve& curve, const LocalGeometry& lo
 Pose2 pose_from_contact(const Curve& curve, const Localisation& place, const Vec2& world_point,
                         double world_tangent_angle) {
   const double travel = place.along_increasing_t ? 0.0 : kPi;
-  Pose2 pose;
-  pose.theta = wrap_angle(world_tangent_angle - geometry(curve, place.t).tangent_angle - travel);
-  const Vec2 origin = world_point - pose.rotate(position(curve, place.t));
-  pose.x = origin.x();
-  pose.y = origin.y();
-  return pose;
+  const double theta =
+      wrap_angle(world_tangent_angle - geometry(curve, place.t).tangent_angle - travel);
+  return pose_carrying(theta, position(curve, place.t), world_point);
 }
 
 }  // namespace palpate

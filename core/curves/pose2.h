@@ -70,6 +70,15 @@ struct Pose2 {
   }
 };
 
+/// The pose of this turn that carries `from` to `to`.
+inline Pose2 pose_carrying(double theta, const Vec2& from, const Vec2& to) {
+  Pose2 pose{0.0, 0.0, theta};
+  const Vec2 shift = to - pose.rotate(from);
+  pose.x = shift.x();
+  pose.y = shift.y();
+  return pose;
+}
+
 /// The frame at an origin with this x axis, of any length.
 inline Pose2 pose_along(const Vec2& origin, const Vec2& x_axis) {
   return {origin.x(), origin.y(), std::atan2(x_axis.y(), x_axis.x())};

@@ -50,10 +50,7 @@ class RoundedCornerAxes {
     return cross(ahead_, point - centre_) < 0.0 ? -1.0 : 1.0;
   }
 
-  /// RoundedCorner::Distance::value.
-  double distance(const Vec2& point) const { return distance(point, side_of(point)); }
-
-  /// From the arc and the edge on that side alone.
+  /// RoundedCorner::Distance::value, from the arc and the edge on that side alone.
   double distance(const Vec2& point, double side) const {
     const Seen at = seen(point, side);
     return at.beyond > 0.0 ? cosine_ * at.u + sine_ * at.side * at.v - radius_

@@ -27,11 +27,7 @@ std::vector<Vec2> centres_at_nodes(const ScaledPart& part, double offset) {
 
 /// The pose that lays `from` on `part_from` and turns `part_to` into the direction of `to`.
 Pose2 laid(const Vec2& from, const Vec2& to, const Vec2& part_from, const Vec2& part_to) {
-  Pose2 pose{0.0, 0.0, turn_between(part_to - part_from, to - from)};
-  const Vec2 place = from - pose.rotate(part_from);
-  pose.x = place.x();
-  pose.y = place.y();
-  return pose;
+  return pose_carrying(turn_between(part_to - part_from, to - from), part_from, from);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// Poses data_T_part that lay `reference`, or its tip, on the part at one of twelve places a
+/// Poses data_T_part that lay `reference`, or its tip, on the part at one of 24 places a
 /// segment and the touch farthest from it on the part too, for every place and every such way.
 ///
 /// Two touches at a distance d lie on the places t and t' of the part if |C(t') - C(t)| = d. That

@@ -20,11 +20,7 @@ SlideScan::SlideScan(const ScaledPart& part, std::span<const FitPoint> points,
 
 PartSlide SlideScan::at(double t) const {
   const CurveDerivatives d = part_.spline().derivatives(t);
-  Pose2 start{0.0, 0.0, turn_between(d.first, tangent_)};
-  const Vec2 place = surface_ - start.rotate(d.position);
-  start.x = place.x();
-  start.y = place.y();
-  return from(t, start);
+  return from(t, pose_carrying(turn_between(d.first, tangent_), d.position, surface_));
 }
 
 PartSlide SlideScan::from(double t, const Pose2& start) const {

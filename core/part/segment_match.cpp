@@ -235,10 +235,11 @@ class Match {
   void judge_slide(const ScaledPart& part, const PartFit& fit, const Eigen::Matrix3d& covariance,
                    const FitPoint& reference, PartPlacement* placement) const {
     const Pose2& pose = fit.data_T_part;
-    const double foot = part.foot_of(pose.to_local(reference.position));
-    const Vec2 tangent = reference.tangent.isZero()
-                             ? pose.rotate(part.spline().derivatives(foot).first).normalized()
-                             : reference.tangent;
+    Vec2 tangent = reference.tangent;
+    if (tangent.isZero()) {
+      const double foot = part.foot_of(pose.to_local(reference.position));
+      tangent = pose.rotate(part.spline().derivatives(foot).first).normalized();
+    }
     const Eigen::Vector3d slide(tangent.x(), tangent.y(),
                                 tangent.dot(left_of(reference.position - pose.translation())));
     const double variance = slide.dot(covariance * slide);

@@ -97,12 +97,7 @@ class Valleys {
   /// The pose that turns the part so and lays its place t at this height over the reference.
   Pose2 pose_at(double t, double turn, double height) const {
     const SlideScan scan = scan_at(t, turn);
-    Pose2 pose{0.0, 0.0, turn};
-    const Vec2 place =
-        scan.surface() + height * scan.left() - pose.rotate(part_.spline().position(t));
-    pose.x = place.x();
-    pose.y = place.y();
-    return pose;
+    return pose_carrying(turn, part_.spline().position(t), scan.surface() + height * scan.left());
   }
 
   double height_of(double t, const Pose2& pose) const {

@@ -19,7 +19,7 @@
 namespace palpate::csv {
 namespace {
 
-// As node/intake/ingest.h has them too.
+// As node/intake/ingest_limits.h has them too.
 constexpr double kMinSigmaM = 1e-15;
 constexpr double kMaxLengthM = 1e3;  // of sigma and of tip radii
 // The first number of nanoseconds that a stamp (int64, contact.proto) does not hold: 2^63, about

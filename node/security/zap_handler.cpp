@@ -90,8 +90,4 @@ std::string_view key_of(const zmq::message_t& frame) {
   return key == nullptr ? std::string_view() : std::string_view(key);
 }
 
-Sender ZapHandler::sender_of(const zmq::message_t& frame) const {
-  return clients_.sender(key_of(frame));
-}
-
 }  // namespace palpate

@@ -62,9 +62,9 @@ class ZapHandler {
   void allow(ClientList clients) { clients_ = std::move(clients); }
   const ClientList& clients() const { return clients_; }
 
-  /// Sender of this frame, with the rights of the present list, not of the list at the time of
-  /// connecting.
-  Sender sender_of(const zmq::message_t& frame) const;
+  /// Sender with this key (key_of), with the rights of the present list, not of the list at the
+  /// time of connecting.
+  Sender sender_of(std::string_view key) const { return clients_.sender(key); }
 
   /// To be polled for input.
   zmq::socket_t& socket() { return socket_; }

@@ -14,6 +14,15 @@ from palpate.v1 import contact_pb2, node_status_pb2
 from programs import BUILD, SIM, SOURCE, TOOL, run
 
 
+def keyed_socket(bus, kind, name, server):
+    """A client's socket with its key of palpate keygen; not connected yet."""
+    socket = bus.context.socket(kind)
+    socket.linger = 0
+    socket.curve_publickey, socket.curve_secretkey = load_certificate(bus.folder / f"{name}.secret")
+    socket.curve_serverkey = server
+    return socket
+
+
 class Curve(unittest.TestCase):
     def test_right_key_wrong_key_and_none(self):
         with Bus("tcp") as bus:
@@ -60,10 +69,7 @@ class Curve(unittest.TestCase):
             server, _ = load_certificate(bus.folder / "node.public")
 
             def connect(kind, key, endpoint):
-                socket = bus.context.socket(kind)
-                socket.linger = 0
-                socket.curve_publickey, socket.curve_secretkey = load_certificate(bus.folder / f"{key}.secret")
-                socket.curve_serverkey = server
+                socket = keyed_socket(bus, kind, key, server)
                 socket.connect(endpoint)
                 return socket
 
@@ -247,10 +253,7 @@ class Curve(unittest.TestCase):
             server, _ = load_certificate(bus.folder / "node.public")
 
             def connect(kind, key, endpoint):
-                socket = bus.context.socket(kind)
-                socket.linger = 0
-                socket.curve_publickey, socket.curve_secretkey = load_certificate(bus.folder / f"{key}.secret")
-                socket.curve_serverkey = server
+                socket = keyed_socket(bus, kind, key, server)
                 if kind == zmq.SUB:
                     socket.subscribe(b"status/")
                 cuts = socket.get_monitor_socket(zmq.EVENT_DISCONNECTED)

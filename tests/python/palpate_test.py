@@ -502,8 +502,16 @@ class Fit(unittest.TestCase):
 
 
 class System(unittest.TestCase):
+    def lines_said(self, bus, script):
+        """What a script says that is run beside the node, with RESULTS and CONTACTS. In a process of its own: this one has
+        the messages from another folder."""
+        done = subprocess.run([sys.executable, "-c", f"RESULTS, CONTACTS = {bus.results!r}, {bus.contacts!r}\n" + script],
+                              env=os.environ | {"PYTHONPATH": str(BUILD / "node/python")}, capture_output=True,
+                              text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout.splitlines()
+
     def test_a_probe_and_a_planner(self):
-        # Its own process: this one has the messages from another folder.
         script = f"""
 import palpate, numpy as np
 from palpate.v1 import curve_pb2
@@ -534,11 +542,7 @@ for wrong in (dict(name="left finger"), dict(name="finger", group="a/b"), dict(n
         from bus import Bus
         with Bus() as bus:
             bus.start_node()
-            done = subprocess.run([sys.executable, "-c", f"RESULTS, CONTACTS = {bus.results!r}, {bus.contacts!r}\n" + script],
-                                  env=os.environ | {"PYTHONPATH": str(BUILD / "node/python")}, capture_output=True,
-                                  text=True, timeout=60)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        lines = done.stdout.splitlines()
+            lines = self.lines_said(bus, script)
         self.assertEqual(lines[0], "CURVE_CLASS_ELLIPSE 25")
         self.assertIn("no answer from", lines[1])
         self.assertIn("no recognizer listens at", lines[2])
@@ -577,11 +581,8 @@ with palpate.Planner(RESULTS) as planner, palpate.Probe("finger", CONTACTS, unit
         from bus import Bus
         with Bus() as bus:
             bus.start_node()
-            done = subprocess.run([sys.executable, "-c", f"RESULTS, CONTACTS = {bus.results!r}, {bus.contacts!r}\n" + script],
-                                  env=os.environ | {"PYTHONPATH": str(BUILD / "node/python")}, capture_output=True,
-                                  text=True, timeout=60)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stdout.splitlines(), ["17.0 0 1.0", "normals: number 0 is neither of length 1 nor (0, 0)"])
+            lines = self.lines_said(bus, script)
+        self.assertEqual(lines, ["17.0 0 1.0", "normals: number 0 is neither of length 1 nor (0, 0)"])
 
     def test_what_a_recognizer_would_reject_is_not_sent(self):
         # The node of the default limits counts nothing rejected, and hears what lies within them.
@@ -614,12 +615,9 @@ with palpate.Planner(RESULTS) as planner, palpate.Probe("finger", CONTACTS, sigm
         from bus import Bus
         with Bus() as bus:
             node = bus.start_node()
-            done = subprocess.run([sys.executable, "-c", f"RESULTS, CONTACTS = {bus.results!r}, {bus.contacts!r}\n" + script],
-                                  env=os.environ | {"PYTHONPATH": str(BUILD / "node/python")}, capture_output=True,
-                                  text=True, timeout=60)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            lines = self.lines_said(bus, script)
             self.assertNotIn("rejected", node.log_path.read_text())
-        self.assertEqual(done.stdout.splitlines(),
+        self.assertEqual(lines,
                          ["sigma", "sigma", "tip_radius", "sigma", "points", "normal_sigma", "normal_sigma", "covariances", "covariances",
                           "points must be finite, of shape (n, 2)", "points must be finite, of shape (n, 2)"])
 
@@ -643,11 +641,8 @@ for peer in (palpate.Planner, lambda endpoint: palpate.Probe("finger", endpoint)
         from bus import Bus
         with Bus() as bus:
             bus.start_node()
-            done = subprocess.run([sys.executable, "-c", f"RESULTS, CONTACTS = {bus.results!r}, {bus.contacts!r}\n" + script],
-                                  env=os.environ | {"PYTHONPATH": str(BUILD / "node/python")}, capture_output=True,
-                                  text=True, timeout=60)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stdout.splitlines(), 2 * ["the connection to ENDPOINT is closed"] +
+            lines = self.lines_said(bus, script)
+        self.assertEqual(lines, 2 * ["the connection to ENDPOINT is closed"] +
                          2 * ["'inproc://x': inproc:// reaches only within one process"])
 
     def test_curve_with_the_keys_of_palpate_keygen(self):

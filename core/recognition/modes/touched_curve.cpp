@@ -302,12 +302,8 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
 Pose2 pose_of(const Touch& touch, const TouchedVector& z, const Curve& curve, double t) {
   const int own = shape_coordinates(touch.curve_class);
   const CurveDerivatives at = derivatives(curve, t);
-  Pose2 pose;
-  pose.theta = std::atan2(cross(at.first, touch.tangent), at.first.dot(touch.tangent)) + z[own + 1];
-  const Vec2 shift = touch.place + z[own] * left_of(touch.tangent) - pose.rotate(at.position);
-  pose.x = shift.x();
-  pose.y = shift.y();
-  return pose;
+  return pose_carrying(turn_between(at.first, touch.tangent) + z[own + 1], at.position,
+                       touch.place + z[own] * left_of(touch.tangent));
 }
 
 std::optional<Touch> touch_of(const CanonicalFit& fit, const FitData& data) {

@@ -1,4 +1,5 @@
-// Takes back samples that were removed as spikes before the curve was known but lie on it.
+// Takes back samples that were removed as spikes before the curve was known: those that lie on it,
+// and the ends of strokes that may.
 #pragma once
 
 #include <optional>

@@ -41,7 +41,7 @@ class ListeningPlace {
 
   /// Who sent this frame; anybody, who may do anything, without CURVE.
   Sender sender_of(const zmq::message_t& frame) const {
-    return zap_ ? zap_->sender_of(frame) : Sender();
+    return zap_ ? zap_->sender_of(key_of(frame)) : Sender();
   }
 
   std::uint64_t denied_count() const { return zap_ ? zap_->denied_count() : 0; }
