@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/local/spikes/jumps.h"
 #include "core/local/spikes/least_median_parabola.h"
 #include "core/numerics/normal_law.h"
 
@@ -273,24 +274,6 @@ class Search {
 };
 
 }  // namespace
-
-std::vector<std::uint8_t> jumps_of(std::span<const Vec2> samples) {
-  constexpr double kShort = 0.2;  // of all steps; with a third of spikes, (2/3)^2 have none
-  constexpr double kJump = 4.0;   // short steps
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    steps.push_back((samples[i] - samples[i - 1]).norm());
-  }
-  std::vector<double> sorted = steps;
-  const auto place =
-      sorted.begin() + static_cast<std::ptrdiff_t>(kShort * static_cast<double>(sorted.size()));
-  std::nth_element(sorted.begin(), place, sorted.end());
-  std::vector<std::uint8_t> jumps(samples.size());
-  for (std::size_t i = 1; i < steps.size(); ++i) {
-    jumps[i] = std::min(steps[i - 1], steps[i]) > kJump * *place ? 1 : 0;
-  }
-  return jumps;
-}
 
 SpikeSearch search_spikes(std::span<const Vec2> samples, const BlockSurvey& survey, double sigma_m,
                           double threshold, const CuspEnds& cusps, WorkBudget& work) {

@@ -16,9 +16,6 @@ struct SpikeSearch {
   double sigma_m = 0.0;                ///< noise used [m]
 };
 
-/// Which samples are far from both neighbours, compared with the short steps of the stroke.
-std::vector<std::uint8_t> jumps_of(std::span<const Vec2> samples);
-
 /// Fits a quartic in each of the blocks, which overlap by three quarters (a cubic if more than a
 /// quarter of the block is removed). Samples within the threshold join the fit and others leave it
 /// until nothing changes. The fit starts from all samples; if more than an eighth would leave, it

@@ -6,6 +6,7 @@
 
 #include "core/local/reading_step.h"
 #include "core/local/spikes/block_survey.h"
+#include "core/local/spikes/jumps.h"
 #include "core/local/spikes/spike_search.h"
 #include "core/numerics/normal_law.h"
 

@@ -100,9 +100,9 @@ Turns turns_without(std::vector<bool> is_spike, std::span<const std::size_t> cus
   return {among_all(samples, is_spike, turns.returns), among_all(samples, is_spike, turns.cusps)};
 }
 
-/// Cuts a patch into passes, with and without spikes. Spikes also turn back, and the parts between
-/// the turns of many are too short to show them, and no block judges the sample at a cusp, which a
-/// single spike looks like. So where other turns are left without these and what is found, the
+/// Cuts a patch into passes, with and without spikes. Among many spikes some follow each other in
+/// runs that turn back: the parts between their turns are too short to show them, and no block
+/// judges the sample at a cusp. So where other turns are left without these and what is found, the
 /// patch is searched as a whole, to find those that made or hid a turn.
 void clean_passes(const StoredPatch& patch, double default_sigma_m, double false_alarm,
                   std::vector<StoredPatch>* passes, std::vector<StoredPatch>* clean,

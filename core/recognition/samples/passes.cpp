@@ -7,13 +7,29 @@
 #include <utility>
 
 #include "core/local/noise.h"
+#include "core/local/spikes/jumps.h"
 #include "core/numerics/median.h"
+#include "core/recognition/samples/stored_spikes.h"
 #include "core/recognition/samples/turning_points.h"
 
 namespace palpate {
 namespace {
 
 constexpr std::size_t kFewestOfPass = 6;
+
+/// The samples on the path of the stroke, by index: spikes turn it back too.
+std::vector<std::size_t> on_path(std::span<const StoredSample> samples) {
+  std::vector<Vec2> positions;
+  positions.reserve(samples.size());
+  for (const StoredSample& sample : samples) positions.push_back(sample.position_m);
+  const std::vector<std::uint8_t> is_off = detours_of(positions, kLongestRunOfSpikes);
+  std::vector<std::size_t> kept;
+  kept.reserve(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (is_off[i] == 0) kept.push_back(i);
+  }
+  return kept;
+}
 
 /// True if the stroke steps back anywhere, over a few samples: a quick test. Noise may do so too.
 bool steps_back(std::span<const StoredSample> samples) {
@@ -113,15 +129,11 @@ bool leads_back(std::span<const StoredSample> before, std::span<const StoredSamp
   return 2 * compared >= kPlaces && 4 * on >= 3 * compared;
 }
 
-}  // namespace
-
-Turns turns_of(std::span<const StoredSample> samples, double default_sigma_m) {
+/// turns_of, of samples without spikes.
+Turns turns_of_path(std::span<const StoredSample> samples, double default_sigma_m) {
   Turns turns;
-  if (samples.size() < 2 * kFewestOfPass || !steps_back(samples)) {
-    return turns;
-  }
   const auto lengths = lengths_of(samples, default_sigma_m);
-  if (!lengths) {
+  if (!lengths || samples.size() < 2 * kFewestOfPass) {
     return turns;
   }
   const std::vector<std::size_t> reversals =
@@ -151,6 +163,22 @@ Turns turns_of(std::span<const StoredSample> samples, double default_sigma_m) {
     }
     before = turn;
   }
+  return turns;
+}
+
+}  // namespace
+
+Turns turns_of(std::span<const StoredSample> samples, double default_sigma_m) {
+  if (samples.size() < 2 * kFewestOfPass || !steps_back(samples)) {
+    return {};
+  }
+  const std::vector<std::size_t> kept = on_path(samples);
+  std::vector<StoredSample> path;
+  path.reserve(kept.size());
+  for (const std::size_t i : kept) path.push_back(samples[i]);
+  Turns turns = turns_of_path(path, default_sigma_m);
+  for (std::size_t& turn : turns.returns) turn = kept[turn - 1] + 1;
+  for (std::size_t& turn : turns.cusps) turn = kept[turn - 1] + 1;
   return turns;
 }
 

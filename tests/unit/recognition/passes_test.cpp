@@ -102,6 +102,35 @@ TEST(Passes, ACuspIsWhereItIsAndBendsHaveNone) {
   }
 }
 
+/// Runs of one to three spikes, one in every twelve samples. They reach 20 mm or less.
+std::vector<StoredSample> with_runs_of_spikes(std::vector<StoredSample> samples,
+                                              std::mt19937_64& rng) {
+  std::uniform_real_distribution<double> reach(-0.02, 0.02);
+  for (std::size_t i = 6; i + 9 < samples.size(); i += 12) {
+    for (std::size_t k = i; k < i + 1 + i / 12 % 3; ++k) {
+      const double x = reach(rng);
+      samples[k].position_m += Vec2(x, reach(rng));
+    }
+  }
+  return samples;
+}
+
+// Also where the steps are no longer than the noise, so that what turns back does so within it.
+TEST(Passes, RunsOfSpikesTurnNothingBackAndHideNoTurn) {
+  std::mt19937_64 rng(9);
+  for (const double sigma_m : {1e-9, 1e-6, 1e-5, 1e-4}) {
+    for (int seed = 0; seed < 25; ++seed) {
+      const auto spiked = [&](const Way& way, int passes) {
+        return turns_of(with_runs_of_spikes(strokes(way, passes, 300, rng, sigma_m), rng), sigma_m);
+      };
+      EXPECT_EQ(spiked(ellipse, 1), Turns{}) << sigma_m;
+      EXPECT_EQ(spiked(circle, 1), Turns{}) << sigma_m;
+      EXPECT_EQ(spiked(ellipse, 3).returns.size(), 2U) << sigma_m;
+      EXPECT_EQ(spiked(over_a_cusp, 1).cusps.size(), 1U) << sigma_m;
+    }
+  }
+}
+
 TEST(Passes, AStrokeShorterThanItsNoiseIsOne) {
   std::mt19937_64 rng(5);
   const Way short_way = [](double u) { return Vec2(10.0 * kDeviation * u, 0.0); };
