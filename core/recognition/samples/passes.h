@@ -20,8 +20,8 @@ struct Turns {
   bool operator==(const Turns&) const = default;
 };
 
-/// A turn by no more than the samples' own noise is none, nor is one of spikes. `default_sigma_m`: noise of samples that
-/// state none; 0 = not known. O(samples).
+/// A turn by no more than the samples' own noise is none, nor is one of spikes. `default_sigma_m`:
+/// noise of samples that state none; 0 = not known. O(samples).
 Turns turns_of(std::span<const StoredSample> samples, double default_sigma_m);
 
 /// Cuts the patch before each of these samples. Every second pass is reversed, so that all passes
