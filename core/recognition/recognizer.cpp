@@ -8,24 +8,21 @@
 #include <vector>
 
 #include "core/numerics/negligible.h"
-#include "core/numerics/normal_law.h"
+#include "core/recognition/counted_samples.h"
 #include "core/recognition/estimate_stream.h"
 #include "core/recognition/fewest_places.h"
-#include "core/recognition/gross_touches.h"
 #include "core/recognition/likelihood_answer.h"
 #include "core/recognition/outliers.h"
 #include "core/recognition/patch_contacts.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/reported_tree_path.h"
 #include "core/recognition/samples/clean_patches.h"
-#include "core/recognition/samples/explained_spikes.h"
 #include "core/recognition/samples/stroke_order.h"
 #include "core/recognition/samples/tip_sides.h"
 #include "core/recognition/samples/work_limit.h"
 #include "core/recognition/touches/joined_touches.h"
 #include "core/recognition/tree_answer.h"
 #include "core/recognition/weigh/contenders.h"
-#include "core/recognition/weigh/weigh_in_full.h"
 
 namespace palpate {
 namespace {
@@ -188,15 +185,6 @@ class Recognizer::Impl {
     return answer;
   }
 
-  /// A weighing, and what it is of.
-  struct Weighed {
-    Weighing w;
-    std::vector<bool> outliers;  ///< one flag per sample of the patches; empty where there are none
-    /// Where these are others than were asked about.
-    std::optional<std::vector<StoredPatch>> patches;
-    bool leaves_class = false;  ///< FarSamples::are_form
-  };
-
   /// `patches`: those that the data are of; `sought`: what joining them has found.
   Recognition by_likelihood(const FitData& data, bool sigma_known,
                             std::span<const StoredPatch> patches,
@@ -205,9 +193,10 @@ class Recognizer::Impl {
     Weighed weighed = weigh_from_last_or_search(data, sigma_known, patches, sought, work);
     const std::size_t stored = clean_.moved_count();
     if (stored > data.points.size() && !work.was_cut()) {
-      weighed = with_ends(std::move(weighed), sigma_known, work);
+      const CountedSamples samples(options_, clean_);
+      weighed = samples.with_ends(std::move(weighed), sigma_known, work);
       if (!weighed.patches) {
-        weighed = with_explained(std::move(weighed), work);
+        weighed = samples.with_explained(std::move(weighed), work);
       }
     }
     if (work.was_cut()) {
@@ -280,12 +269,13 @@ class Recognizer::Impl {
     constexpr double kGrowth = 1.25;  // ten searches while a patch grows tenfold
     // Probability: of what had less, a search leaves the fit rough (weigh/contenders.cpp).
     const double out = std::exp(-log_odds(options_.recognized_probability) - 0.5 * kLeastError);
+    const CountedSamples counted(options_, clean_);
     const std::size_t samples = memory_.sample_count();
     const bool warm = last_ && last_->patches == data.patches.size() &&
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
     if (warm) {
-      Weighed weighed =
-          weigh_without_outliers(data, sigma_known, patches, last_->starts, Starts::OfLast, work);
+      Weighed weighed = counted.without_outliers(data, sigma_known, patches, last_->starts,
+                                                 StartsOf::LastWeighing, work);
       const Weighing& w = weighed.w;
       const bool holds = last_->probabilities[w.best] > out &&
                          !has_lost_one(w.probabilities, last_->probabilities,
@@ -297,130 +287,9 @@ class Recognizer::Impl {
       }
     }
     Weighed weighed =
-        weigh_without_outliers(data, sigma_known, patches, sought, Starts::OfSearch, work);
+        counted.without_outliers(data, sigma_known, patches, sought, StartsOf::Search, work);
     last_ = Last{weighed.w.starts, weighed.w.probabilities, samples, data.patches.size()};
     return weighed;
-  }
-
-  enum class Starts { OfLast, OfSearch };
-
-  Weighed weigh_without_outliers(const FitData& data, bool sigma_known,
-                                 std::span<const StoredPatch> patches,
-                                 std::span<const SidedStart> starts, Starts which,
-                                 WorkBudget& work) const {
-    Weighed weighed{
-        weigh_in_full(data, sigma_known, patches, work, weigh_options(data, sigma_known), starts),
-        {},
-        {},
-        false};
-    const Weighing& w = weighed.w;
-    const auto look_again = [&] {
-      std::vector<bool> aside =
-          weighed.outliers.empty() ? std::vector<bool>(data.points.size()) : weighed.outliers;
-      FarSamples far =
-          far_samples(w, data, std::move(aside), sigma_known, options_.false_outlier_probability);
-      weighed.leaves_class = far.are_form;
-      return std::move(far.aside);
-    };
-    std::vector<bool> aside = look_again();
-    if (aside.empty() && sigma_known && w.best == CurveClass::Unclassified && work.allows()) {
-      if (const auto kept = without_gross_touches(w, data, work)) {
-        weigh_again(left_out(data, *kept), data, sigma_known, patches, which, &weighed, work);
-      }
-      return weighed;
-    }
-    // Those that are farthest keep the curve off the others beside them, which are seen next.
-    while (!aside.empty() && work.allows()) {
-      weigh_again(std::move(aside), data, sigma_known, patches,
-                  weighed.outliers.empty() ? which : Starts::OfLast, &weighed, work);
-      const bool done = work.was_cut() || w.best == CurveClass::Unclassified;
-      aside = done ? std::vector<bool>{} : look_again();
-    }
-    return weighed;
-  }
-
-  /// Weighs without the samples that have a flag.
-  void weigh_again(std::vector<bool> aside, const FitData& data, bool sigma_known,
-                   std::span<const StoredPatch> patches, Starts which, Weighed* weighed,
-                   WorkBudget& work) const {
-    const FitData kept = without_points(data, aside);
-    // A search is not followed: the outliers may have led it astray.
-    const std::vector<SidedStart> nearer =
-        which == Starts::OfSearch ? std::vector<SidedStart>{} : std::move(weighed->w.starts);
-    WeighOptions options = weigh_options(kept, sigma_known);
-    options.log_odds_against_gross = log_odds_against_gross(data, kept);
-    Weighing again = weigh_in_full(kept, sigma_known, patches, work, options, nearer);
-    if (!work.was_cut()) {  // else the one before says more
-      weighed->w = std::move(again);
-      weighed->outliers = std::move(aside);
-    }
-  }
-
-  WeighOptions weigh_options(const FitData& data, bool sigma_known) const {
-    WeighOptions options;
-    options.classes = options_.classes;
-    options.recognized_probability = options_.recognized_probability;
-    options.form_deviation_m = options_.form_deviation_m;
-    options.unqualified_probe = options_.unqualified_probe.value_or(!sigma_known);
-    options.near_parts = !options.unqualified_probe && !options_.has_probe_file &&
-                         !may_have_missed_spikes(clean_.moved_count(), data.points.size());
-    options.touched_from = options_.touched_from;
-    return options;
-  }
-
-  /// Weighed again with these patches; nullopt where the class does not stand then.
-  std::optional<Weighed> again_with(std::vector<StoredPatch> more, CurveClass best,
-                                    WorkBudget& work) const {
-    if (auto joined = joined_touches(more, options_.sigma_m, options_.classes, work)) {
-      more = std::move(joined->patches);
-    }
-    bool sigma_known = false;
-    const FitData data = make_fit_data(more, options_.sigma_m, &sigma_known);
-    Weighed again =
-        weigh_without_outliers(data, sigma_known, more, last_->starts, Starts::OfLast, work);
-    if (work.was_cut() || again.w.best != best || !again.w.canonical[best]) {
-      return std::nullopt;
-    }
-    again.patches = std::move(more);
-    return again;
-  }
-
-  /// Weighed again with what was told for spikes at the ends of strokes, where the noise is stated
-  /// and the class that the rest is of leaves no more than noise of all.
-  Weighed with_ends(Weighed weighed, bool sigma_known, WorkBudget& work) const {
-    const CurveClass best = weighed.w.best;
-    auto more = sigma_known && best != CurveClass::Unclassified && work.allows()
-                    ? with_runs_at_ends(clean_.moved(), clean_.clean())
-                    : std::nullopt;
-    if (!more) {
-      return weighed;
-    }
-    auto again = again_with(*std::move(more), best, work);
-    const bool fits =
-        again && again->outliers.empty() &&
-        can_be_noise(again->w.counted_chi2, static_cast<double>(residual_count(again->w.data)));
-    return fits ? *std::move(again) : std::move(weighed);
-  }
-
-  /// Weighed again with the spikes that the best class explains, where the class stands then.
-  Weighed with_explained(Weighed weighed, WorkBudget& work) const {
-    const Weighing& w = weighed.w;
-    const auto& best = w.canonical[w.best];
-    const auto curve = best ? make_curve(w.best, best->shape.values) : std::nullopt;
-    if (!curve) {
-      return weighed;
-    }
-    const double noise_m = residual_noise_m(w);
-    const double limit = two_sided_normal_quantile(options_.false_outlier_probability /
-                                                   static_cast<double>(clean_.moved_count()));
-    if (!work.allows()) {
-      return weighed;
-    }
-    work.spend(WorkKind::PlacedRow, clean_.moved_count());
-    auto more = with_explained_spikes(clean_.moved(), clean_.clean(), *curve, best->world_T_curve,
-                                      noise_m, limit);
-    auto again = more ? again_with(*std::move(more), w.best, work) : std::nullopt;
-    return again ? *std::move(again) : std::move(weighed);
   }
 
   /// `deviation_m`: what residuals tell of a smooth deviation, if it is more than is stated.

@@ -1,0 +1,128 @@
+#include "core/recognition/counted_samples.h"
+
+#include <cstddef>
+#include <utility>
+
+#include "core/numerics/negligible.h"
+#include "core/numerics/normal_law.h"
+#include "core/recognition/gross_touches.h"
+#include "core/recognition/likelihood_answer.h"
+#include "core/recognition/outliers.h"
+#include "core/recognition/samples/explained_spikes.h"
+#include "core/recognition/touches/joined_touches.h"
+#include "core/recognition/weigh/weigh_in_full.h"
+
+namespace palpate {
+
+Weighed CountedSamples::without_outliers(const FitData& data, bool sigma_known,
+                                         std::span<const StoredPatch> patches,
+                                         std::span<const SidedStart> starts, StartsOf of,
+                                         WorkBudget& work) const {
+  Weighed weighed{
+      weigh_in_full(data, sigma_known, patches, work, weigh_options(data, sigma_known), starts),
+      {},
+      {},
+      false};
+  const Weighing& w = weighed.w;
+  const auto look_again = [&] {
+    std::vector<bool> aside =
+        weighed.outliers.empty() ? std::vector<bool>(data.points.size()) : weighed.outliers;
+    FarSamples far =
+        far_samples(w, data, std::move(aside), sigma_known, options_.false_outlier_probability);
+    weighed.leaves_class = far.are_form;
+    return std::move(far.aside);
+  };
+  std::vector<bool> aside = look_again();
+  if (aside.empty() && sigma_known && w.best == CurveClass::Unclassified && work.allows()) {
+    if (const auto kept = without_gross_touches(w, data, work)) {
+      weigh_again(left_out(data, *kept), data, sigma_known, patches, of, &weighed, work);
+    }
+    return weighed;
+  }
+  // Those that are farthest keep the curve off the others beside them, which are seen next.
+  while (!aside.empty() && work.allows()) {
+    weigh_again(std::move(aside), data, sigma_known, patches,
+                weighed.outliers.empty() ? of : StartsOf::LastWeighing, &weighed, work);
+    const bool done = work.was_cut() || w.best == CurveClass::Unclassified;
+    aside = done ? std::vector<bool>{} : look_again();
+  }
+  return weighed;
+}
+
+Weighed CountedSamples::with_ends(Weighed weighed, bool sigma_known, WorkBudget& work) const {
+  auto more = sigma_known && weighed.w.best != CurveClass::Unclassified && work.allows()
+                  ? with_runs_at_ends(samples_.moved(), samples_.clean())
+                  : std::nullopt;
+  if (!more) {
+    return weighed;
+  }
+  auto again = again_with(*std::move(more), weighed.w, work);
+  const bool fits =
+      again && again->outliers.empty() &&
+      can_be_noise(again->w.counted_chi2, static_cast<double>(residual_count(again->w.data)));
+  return fits ? *std::move(again) : std::move(weighed);
+}
+
+Weighed CountedSamples::with_explained(Weighed weighed, WorkBudget& work) const {
+  const Weighing& w = weighed.w;
+  const auto& best = w.canonical[w.best];
+  const auto curve = best ? make_curve(w.best, best->shape.values) : std::nullopt;
+  if (!curve || !work.allows()) {
+    return weighed;
+  }
+  const std::size_t count = samples_.moved_count();
+  const double limit =
+      two_sided_normal_quantile(options_.false_outlier_probability / static_cast<double>(count));
+  work.spend(WorkKind::PlacedRow, count);
+  auto more = with_explained_spikes(samples_.moved(), samples_.clean(), *curve, best->world_T_curve,
+                                    residual_noise_m(w), limit);
+  auto again = more ? again_with(*std::move(more), w, work) : std::nullopt;
+  return again ? *std::move(again) : std::move(weighed);
+}
+
+/// Weighs without the samples that have a flag.
+void CountedSamples::weigh_again(std::vector<bool> aside, const FitData& data, bool sigma_known,
+                                 std::span<const StoredPatch> patches, StartsOf of,
+                                 Weighed* weighed, WorkBudget& work) const {
+  const FitData kept = without_points(data, aside);
+  const std::vector<SidedStart> starts =
+      of == StartsOf::Search ? std::vector<SidedStart>{} : std::move(weighed->w.starts);
+  WeighOptions options = weigh_options(kept, sigma_known);
+  options.log_odds_against_gross = log_odds_against_gross(data, kept);
+  Weighing again = weigh_in_full(kept, sigma_known, patches, work, options, starts);
+  if (!work.was_cut()) {  // else the one before says more
+    weighed->w = std::move(again);
+    weighed->outliers = std::move(aside);
+  }
+}
+
+/// Weighed again with these patches; nullopt where the class does not stand then.
+std::optional<Weighed> CountedSamples::again_with(std::vector<StoredPatch> more,
+                                                  const Weighing& before, WorkBudget& work) const {
+  if (auto joined = joined_touches(more, options_.sigma_m, options_.classes, work)) {
+    more = std::move(joined->patches);
+  }
+  bool sigma_known = false;
+  const FitData data = make_fit_data(more, options_.sigma_m, &sigma_known);
+  Weighed again =
+      without_outliers(data, sigma_known, more, before.starts, StartsOf::LastWeighing, work);
+  if (work.was_cut() || again.w.best != before.best || !again.w.canonical[before.best]) {
+    return std::nullopt;
+  }
+  again.patches = std::move(more);
+  return again;
+}
+
+WeighOptions CountedSamples::weigh_options(const FitData& data, bool sigma_known) const {
+  WeighOptions options;
+  options.classes = options_.classes;
+  options.recognized_probability = options_.recognized_probability;
+  options.form_deviation_m = options_.form_deviation_m;
+  options.unqualified_probe = options_.unqualified_probe.value_or(!sigma_known);
+  options.near_parts = !options.unqualified_probe && !options_.has_probe_file &&
+                       !may_have_missed_spikes(samples_.moved_count(), data.points.size());
+  options.touched_from = options_.touched_from;
+  return options;
+}
+
+}  // namespace palpate

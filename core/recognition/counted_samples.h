@@ -1,0 +1,61 @@
+// Which samples count: weighs the classes, sets aside what none explains, and takes back what the
+// best one does.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/recognition/recognizer.h"
+#include "core/recognition/samples/clean_patches.h"
+#include "core/recognition/weigh/sided_start.h"
+#include "core/recognition/weigh/weigh.h"
+
+namespace palpate {
+
+/// A weighing, and what it is of.
+struct Weighed {
+  Weighing w;
+  std::vector<bool> outliers;  ///< one flag per sample of the patches; empty where there are none
+  /// Where these are others than were asked about.
+  std::optional<std::vector<StoredPatch>> patches;
+  bool leaves_class = false;  ///< FarSamples::are_form
+};
+
+/// What the starts of a weighing are from. Those of a search are not followed where samples are set
+/// aside: these may have led it astray.
+enum class StartsOf { LastWeighing, Search };
+
+/// Of the samples that one recognition is about. Refers to what it is made of.
+class CountedSamples {
+ public:
+  CountedSamples(const RecognizerOptions& options, const CleanPatches& samples)
+      : options_(options), samples_(samples) {}
+
+  /// Weighs `data`, again without the samples that the best class misses by far more than noise,
+  /// until there are none. `patches`: those that the data are of; `sigma_known`: as given by
+  /// make_fit_data.
+  Weighed without_outliers(const FitData& data, bool sigma_known,
+                           std::span<const StoredPatch> patches, std::span<const SidedStart> starts,
+                           StartsOf of, WorkBudget& work) const;
+
+  /// Weighed again with what was told for spikes at the ends of strokes, where the noise is stated
+  /// and the class that the rest is of leaves no more than noise of all.
+  Weighed with_ends(Weighed weighed, bool sigma_known, WorkBudget& work) const;
+
+  /// Weighed again with the spikes that the best class explains, where the class stands then.
+  Weighed with_explained(Weighed weighed, WorkBudget& work) const;
+
+ private:
+  void weigh_again(std::vector<bool> aside, const FitData& data, bool sigma_known,
+                   std::span<const StoredPatch> patches, StartsOf of, Weighed* weighed,
+                   WorkBudget& work) const;
+  std::optional<Weighed> again_with(std::vector<StoredPatch> more, const Weighing& before,
+                                    WorkBudget& work) const;
+  WeighOptions weigh_options(const FitData& data, bool sigma_known) const;
+
+  const RecognizerOptions& options_;
+  const CleanPatches& samples_;
+};
+
+}  // namespace palpate
