@@ -135,6 +135,9 @@ std::string resolve_given_class(NodeOptions& options) {
   if (!given || *given == CurveClass::Unclassified) {
     return "given_class: \"" + options.given_class + "\" is no curve class";
   }
+  if (!options.words.classes.empty() || options.words.method != RecognizerWords{}.method) {
+    return "given_class: no other is considered, so give neither classes nor a method beside it";
+  }
   options.intake.group.given_class = given;
   return {};
 }

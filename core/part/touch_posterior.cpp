@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/numerics/log_add.h"
+#include "core/numerics/negligible.h"
 #include "core/part/pair_starts.h"
 #include "core/part/part_slide.h"
 #include "core/recognition/samples/farthest_first.h"
@@ -69,10 +70,18 @@ class Valleys {
   }
 
   SlidePosterior posterior() {
+    // Of points that all miss by so many deviations, in the mean, chi-square varies from step to
+    // step by more than a valley is deep: what is the least bad placement its bottom tells.
+    const bool is_hopeless =
+        best_ > kNegligibleDeviations * kNegligibleDeviations * static_cast<double>(points_.size());
     for (std::size_t c = 0; c < candidates_.size(); ++c) {  // grows, where a barrier is crossed
       log_masses_.push_back(kLogOfZero);
       for (const double sign : {1.0, -1.0}) {
-        follow(c, sign);
+        if (is_hopeless) {
+          add_bottom(c);
+        } else {
+          follow(c, sign);
+        }
       }
     }
     SlidePosterior posterior;
@@ -180,10 +189,18 @@ class Valleys {
       step = std::min(std::abs(rise) < 0.25 * kTrapezoidStep ? 2.0 * step : step, kLongestStep);
       here = next;
     }
-    if (way == 0.0 && std::isfinite(here.chi2) && std::isfinite(pace.deviation)) {
-      // Where nothing fits, chi-square may vary more from step to step than any can resolve. The
-      // half valley then counts by its bottom, as if it were a normal law.
-      add_mass(number, here, here, std::sqrt(0.5 * kPi) * pace.deviation);
+    if (way == 0.0) {
+      add_bottom(number);  // chi-square varied more than any step can resolve
+    }
+  }
+
+  /// A half valley by its bottom, as if it were a normal law.
+  void add_bottom(std::size_t number) {
+    const PartCandidate candidate = candidates_[number];
+    const double deviation = pace_of(candidate).deviation;
+    const PartSlide bottom = slide_from(candidate.t, candidate.fit.data_T_part);
+    if (std::isfinite(bottom.chi2) && std::isfinite(deviation)) {
+      add_mass(number, bottom, bottom, std::sqrt(0.5 * kPi) * deviation);
     }
   }
 

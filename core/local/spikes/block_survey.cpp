@@ -90,7 +90,16 @@ struct Blocks {
   double largest = 0.0;  ///< residual, in units of the noise of its own block
   double backtrack_m = 0.0;
   double end_gap = 0.0;
+  /// By more than 45 degrees: so it does to a spike there, and the bend counts as form.
+  bool bends_to_end = false;
 };
+
+/// Whether a parabola through three of the four samples at an end of a stroke misses the fourth by
+/// more than noise, of which none exceeds `limit_m`.
+bool leaves_at_end(std::span<const Vec2, 4> end, double limit_m) {
+  constexpr double kNorm = 4.47213595499958;  // of the coefficients: sqrt(1 + 9 + 9 + 1)
+  return (end[3] - 3.0 * (end[2] - end[1]) - end[0]).norm() > kNorm * limit_m;
+}
 
 Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigma_m,
                   const CuspEnds& cusps, WorkBudget& work) {
@@ -111,14 +120,15 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigm
     }
     result.mean_extent_m += block.extent_m();
     result.backtrack_m = std::max(result.backtrack_m, block.backtrack_m());
-    if (start == 0) {
-      result.end_gap = block.first_gap();
-    }
-    if (start + length == samples.size()) {
-      result.end_gap = std::max(result.end_gap, block.last_gap());
-    }
+    const bool at_cusp = cusps.touched_by(start, start + length, samples.size());
+    const bool first = start == 0;
+    const bool last = start + length == samples.size();
+    result.end_gap =
+        std::max({result.end_gap, first ? block.first_gap() : 0.0, last ? block.last_gap() : 0.0});
+    result.bends_to_end = result.bends_to_end || ((first || last) && !at_cusp &&
+                                                  block.steepest() > ResidualBlock::kMaxSlope);
     largest.push_back(block.largest());
-    floors.push_back(noise_floor(block, cusps.touched_by(start, start + length, samples.size())));
+    floors.push_back(noise_floor(block, at_cusp));
   });
   if (result.status == LocalStatus::Ok) {
     result.mean_extent_m /= static_cast<double>(floors.size());
@@ -233,7 +243,10 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
   const bool is_out_of_order =
       blocks.end_gap > kLonelyGap ||
       blocks.backtrack_m > kBacktrackSigmas * std::sqrt(2.0) * survey.sigma_m;
-  survey.is_any_off = blocks.largest > threshold || (is_resolved() && is_out_of_order);
+  const double limit_m = threshold * survey.sigma_m;
+  const bool leaves = blocks.bends_to_end && (leaves_at_end(samples.first<4>(), limit_m) ||
+                                              leaves_at_end(samples.last<4>(), limit_m));
+  survey.is_any_off = blocks.largest > threshold || (is_resolved() && (is_out_of_order || leaves));
   if (!(sigma_m > 0.0)) {
     look_for_spiked_noise(samples, blocks.largest, threshold, &survey, work);
   }

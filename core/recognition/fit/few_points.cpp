@@ -50,7 +50,7 @@ FitData subset(const FitData& reduced, const std::vector<bool>& chosen) {
       }
     }
     if (few.points.size() > begin) {
-      few.patches.push_back({begin, few.points.size()});
+      few.patches.push_back({begin, few.points.size(), patch.is_joined});
     }
   }
   return few;

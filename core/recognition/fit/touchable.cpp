@@ -88,17 +88,51 @@ Vec2 place_at(const PolynomialFit& fit, double t) {
   return c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3)));
 }
 
-/// On which side of the travel a conic's polynomial grows, counted.
-struct Directions {
-  std::size_t left = 0;
-  std::size_t told = 0;  ///< points with a direction of travel
+/// On which side of the travel a conic's polynomial grows, counted. Where the probe has turned back
+/// along the curve, it is that of the way it came: for so many points, fewer go to and fro by noise
+/// or by chance. Joined touches do not turn back: where they go to and fro, their order is wrong.
+class Directions {
+ public:
+  explicit Directions(bool are_joined) : are_joined_(are_joined) {}
 
   void add(const Vec2& travel, const Vec2& gradient) {
-    if (!travel.isZero()) {
-      ++told;
-      left += cross(travel, gradient) >= 0.0 ? 1 : 0;
+    if (travel.isZero()) {
+      return;
     }
+    if (!are_joined_ && travel.dot(last_travel_) < 0.0 && gradient.dot(last_gradient_) > 0.0) {
+      end_way();
+    }
+    ++points_of_way_;
+    left_of_way_ += cross(travel, gradient) >= 0.0 ? 1 : 0;
+    last_travel_ = travel;
+    last_gradient_ = gradient;
   }
+
+  /// Whether too many go against the others.
+  bool disagree() {
+    end_way();
+    return turns(std::min(left_, points_ - left_), points_);
+  }
+
+ private:
+  void end_way() {
+    constexpr std::size_t kFewest = 3;
+    was_back_ = points_of_way_ >= kFewest ? is_back_ : was_back_;
+    points_ += points_of_way_;
+    left_ += was_back_ ? points_of_way_ - left_of_way_ : left_of_way_;
+    points_of_way_ = left_of_way_ = 0;
+    is_back_ = !is_back_;
+  }
+
+  bool are_joined_;
+  std::size_t left_ = 0;
+  std::size_t points_ = 0;         ///< with a direction of travel
+  std::size_t points_of_way_ = 0;  ///< since it last turned back
+  std::size_t left_of_way_ = 0;
+  bool is_back_ = false;
+  bool was_back_ = false;  ///< on the last way that counts
+  Vec2 last_travel_ = Vec2::Zero();
+  Vec2 last_gradient_ = Vec2::Zero();
 };
 
 }  // namespace
@@ -110,8 +144,8 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
   }
   for (std::size_t p = 0; p < data.patches.size(); ++p) {
     const std::span<const FitPoint> patch = data.patch(p);
-    Directions all;
-    Directions where_thick;
+    Directions all(data.patches[p].is_joined);
+    Directions where_thick(data.patches[p].is_joined);
     std::size_t thick = 0;
     for (std::size_t i = 0; i < patch.size(); ++i) {
       const Vec2& foot = fit.feet[data.patches[p].begin + i];
@@ -125,8 +159,7 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
       }
     }
     // The ends of a needle tell no side; where most points tell none, it has none.
-    const auto [left, told] = 2 * thick >= patch.size() ? where_thick : all;
-    if (turns(std::min(left, told - left), told)) {
+    if ((2 * thick >= patch.size() ? where_thick : all).disagree()) {
       return false;
     }
   }
@@ -153,7 +186,8 @@ bool is_touchable(const PolynomialFit& fit, const FitData& data) {
 
 bool leaps(const PolynomialFit& fit, const FitData& data) {
   return std::any_of(data.patches.begin(), data.patches.end(), [&](const PatchSpan& patch) {
-    if (patch.size() < 2 || data.points[patch.begin].offset > 0.0) {
+    // Two samples are a chord: any way between them along a curve is longer.
+    if (patch.size() < 3 || data.points[patch.begin].offset > 0.0) {
       return false;
     }
     double stroke = 0.0;
@@ -164,13 +198,18 @@ bool leaps(const PolynomialFit& fit, const FitData& data) {
     std::vector<double> feet(fit.t.begin() + static_cast<std::ptrdiff_t>(patch.begin),
                              fit.t.begin() + static_cast<std::ptrdiff_t>(patch.end));
     std::sort(feet.begin(), feet.end());
-    double way = 0.0;  // at least
+    // An arc of half a turn, by the chords of its halves.
+    constexpr double kHalfTurn = 1.4142135623730951;  // sqrt(2) of its own chord
     for (std::size_t i = 0; i + 1 < feet.size(); ++i) {
+      const Vec2 from = place_at(fit, feet[i]);
+      const Vec2 to = place_at(fit, feet[i + 1]);
       const Vec2 between = place_at(fit, 0.5 * (feet[i] + feet[i + 1]));
-      way = std::max(way, (between - place_at(fit, feet[i])).norm() +
-                              (place_at(fit, feet[i + 1]) - between).norm());
+      const double way = (between - from).norm() + (to - between).norm();  // at least
+      if (way > std::max(stroke, kHalfTurn * (to - from).norm())) {
+        return true;
+      }
     }
-    return way > stroke;
+    return false;
   });
 }
 

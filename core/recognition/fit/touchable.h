@@ -20,7 +20,8 @@ inline Vec2 centre_of(const ConicCoefficients& q) {
 /// True if a probe could have touched the conic at these points: one branch, with each patch on one
 /// side of it. A thin ellipse, or the two branches of a flat hyperbola, can "explain" straight
 /// noisy points if neighbours lie on opposite sides. Its direction of travel then flips from point
-/// to point against that of the patch. The fit must be one to these points.
+/// to point against that of the patch. (A probe may turn back along the curve.) The fit must be one
+/// to these points.
 bool is_touchable(const ImplicitFit& fit, const FitData& data);
 
 /// The same for a polynomial curve: its parameter must run one way along each patch. Compares
@@ -31,8 +32,9 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data);
 bool is_touchable(const PolynomialFit& fit, const FitData& data);
 
 /// Whether between two of its points a patch leaves out more of the curve than it is long itself: a
-/// cubic that crosses itself fits two edges, with a loop between them that no sample is on. Of
-/// tips' centres nothing is said: between two walls they go from one to the other.
+/// cubic that crosses itself fits two edges, with a loop between them that no sample is on. By less
+/// than half a turn it leaves out what a bend does. Nothing is said of two samples, and of tips'
+/// centres: between two walls they go from one to the other.
 bool leaps(const PolynomialFit& fit, const FitData& data);
 
 }  // namespace palpate

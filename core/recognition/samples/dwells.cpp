@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/numerics/median.h"
 #include "core/recognition/samples/merged_samples.h"
 #include "core/recognition/samples/step_ratio.h"
 
@@ -201,14 +202,52 @@ double effective_weight(std::span<const StoredSample> samples, const PatchSpan& 
   return std::clamp(stated / of_mean, most, of_all);
 }
 
+/// The places of a stroke that is held at each: long steps lead from one to the next. Empty where
+/// it is no such stroke: less than half of its samples are of such places, or one of these shows an
+/// order or is no farther from the one before than both scatter.
+std::vector<PatchSpan> held_places(std::span<const StoredSample> samples) {
+  // Of two samples of one place; noise makes a step so long once in exp(16 log 2), 65,000 times.
+  constexpr double kLong = 4.0;   // median steps
+  constexpr double kApart = 3.0;  // of the scatter: six deviations of a coordinate
+  std::vector<double> steps;
+  steps.reserve(samples.size());
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    steps.push_back((samples[i].position_m - samples[i - 1].position_m).norm());
+  }
+  std::vector<double> sorted = steps;
+  const double long_m = kLong * median_of(sorted);
+  std::vector<PatchSpan> places;
+  std::size_t held = 0;
+  Block before;
+  for (std::size_t begin = 0; begin < samples.size();) {
+    std::size_t end = begin + 1;
+    while (end < samples.size() && steps[end - 1] <= long_m) {
+      ++end;
+    }
+    if (end - begin >= kBlock) {
+      const Block here = block_of(samples, begin, end);
+      const bool is_apart = places.empty() || (here.mean - before.mean).squaredNorm() >
+                                                  kApart * kApart * (here.square + before.square);
+      if (!is_apart || !(ratio_of(samples, here) > kNoOrder)) {
+        return {};
+      }
+      places.push_back({begin, end});
+      held += end - begin;
+      before = here;
+    }
+    begin = end;
+  }
+  return places.size() > 1 && 2 * held >= samples.size() ? places : std::vector<PatchSpan>{};
+}
+
 }  // namespace
 
 std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples, double default_sigma_m) {
   // In units of a block's length at the mean speed. At that speed, without noise, a block scatters
   // by 0.29 of this length about its mean. Slower blocks are examined further.
   constexpr double kSlow = 0.25;
-  std::vector<PatchSpan> dwells;
   const std::size_t count = samples.size() / kBlock;
+  std::vector<PatchSpan> dwells;
   if (count < 2) {
     return dwells;
   }
@@ -314,6 +353,9 @@ StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwel
 }
 
 StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m) {
+  if (const auto held = held_places(patch.samples); !held.empty()) {
+    return with_means(patch, held, default_sigma_m);
+  }
   // The mean step grows as repeats are removed: if nine in ten are repeats, ten times. So it takes
   // several rounds.
   constexpr int kMostRounds = 4;

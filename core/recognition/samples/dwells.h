@@ -32,7 +32,8 @@ bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
 StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwells,
                        double default_sigma_m);
 
-/// Replaces the repeats, then the dwells, by their means.
+/// Replaces the repeats, then the dwells, by their means. Of a stroke that is held at each of its
+/// places, for at least 8 samples, with long steps between them: each place by its mean.
 StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m);
 std::vector<Vec2> without_dwells(std::span<const Vec2> positions_m);
 

@@ -151,7 +151,7 @@ FitData without_points(const FitData& data, const std::vector<bool>& is_out) {
         if (!data.details.empty()) kept.details.push_back(data.details[i]);
       }
     }
-    kept.patches.push_back({begin, kept.points.size()});
+    kept.patches.push_back({begin, kept.points.size(), patch.is_joined});
   }
   return kept;
 }
@@ -243,7 +243,7 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
       point.inverse_sigma = std::sqrt(sample.weight) / sigma;
       data.points.push_back(point);
     }
-    data.patches.push_back({begin, data.points.size()});
+    data.patches.push_back({begin, data.points.size(), patch.is_joined});
   }
   if (!*sigma_known) {
     data.reading_noise = reading_noise_m(patches) / data.scale;

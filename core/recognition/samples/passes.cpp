@@ -115,18 +115,26 @@ bool leads_back(std::span<const StoredSample> before, std::span<const StoredSamp
   constexpr double kBeside = 0.02;  // of the distance from the turn
   constexpr std::size_t kPlaces = 8;
   const Vec2 turn = before.back().position_m;
-  std::size_t on = 0;
-  std::size_t compared = 0;
-  for (std::size_t k = 1; k <= kPlaces; ++k) {
-    const Vec2& place = after[k * (after.size() - 1) / kPlaces].position_m;
-    const double off = (place - turn).norm();
-    const auto beside = distance_from(before, place);
-    if (beside && off > lengths.far_m) {
-      ++compared;
-      on += *beside <= std::max(lengths.noise_m, kBeside * off) ? 1 : 0;
+  while (after.size() >= kFewestOfPass) {
+    std::size_t on = 0;
+    std::size_t compared = 0;
+    std::size_t beyond = 0;  // where the pass before began
+    for (std::size_t k = 1; k <= kPlaces; ++k) {
+      const Vec2& place = after[k * (after.size() - 1) / kPlaces].position_m;
+      const double off = (place - turn).norm();
+      const auto beside = distance_from(before, place);
+      beyond += beside ? 0 : 1;
+      if (beside && off > lengths.far_m) {
+        ++compared;
+        on += *beside <= std::max(lengths.noise_m, kBeside * off) ? 1 : 0;
+      }
     }
+    if (2 * compared >= kPlaces || beyond == 0) {
+      return 2 * compared >= kPlaces && 4 * on >= 3 * compared;
+    }
+    after = after.first(after.size() / 2);
   }
-  return 2 * compared >= kPlaces && 4 * on >= 3 * compared;
+  return false;
 }
 
 /// turns_of, of samples without spikes.

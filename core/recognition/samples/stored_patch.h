@@ -72,6 +72,7 @@ inline Eigen::AlignedBox2d box_of(std::span<const StoredPatch> patches) {
 struct PatchSpan {
   std::size_t begin = 0;
   std::size_t end = 0;
+  bool is_joined = false;  ///< StoredPatch's
   std::size_t size() const { return end - begin; }
 };
 

@@ -266,7 +266,7 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated
       add_section(data, patch, *section, &model);
       model.sections.back().joined = section != first;
     }
-    model.reduced.patches.push_back({begin, model.reduced.points.size()});
+    model.reduced.patches.push_back({begin, model.reduced.points.size(), patch.is_joined});
   }
   return model;
 }

@@ -283,5 +283,21 @@ void expect_no_match(Given given) {
 TEST(TouchesOnPart, ThoseOfAnotherPartAreNoMatch) { expect_no_match(Given::AsTouches); }
 TEST(TouchesOnPart, SparseStrokesOfAnotherPartAreNoMatch) { expect_no_match(Given::AsStroke); }
 
+// As if its file, or the samples', were read in another unit. Neighbouring placements then end in
+// different valleys, however near they are, and each leads to a next one: it took a minute.
+TEST(TouchesOnPart, OfAPartFarLargerOrSmallerAreNoMatch) {
+  auto rng = test::test_rng();
+  for (const double factor : {25.4, 10.0, 0.1, 1.0 / 25.4}) {
+    for (int i = 0; i < test::stress_count(4); ++i) {
+      const ClosedSpline part(random_control(rng));
+      const Touches touches = touch_at_random(part, Pose2{0.1, -0.3, 0.7}, 60, 0.6, 1e-5,
+                                              i % 2 == 0 ? Given::AsTouches : Given::AsStroke, rng);
+      EXPECT_EQ(match_segment(part.scaled(1.0 / factor), touches.patches).status,
+                SegmentMatchStatus::NoMatch)
+          << factor;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -190,6 +190,13 @@ TEST(Config, AClassIsGivenByName) {
   const Result<NodeOptions> options = make_options(config);
   ASSERT_TRUE(options) << options.error;
   EXPECT_EQ(options.value->intake.group.given_class, CurveClass::Circle);
+  v1::NodeConfig with_classes = config;
+  with_classes.add_classes("ellipse");
+  v1::NodeConfig with_tree = config;
+  with_tree.set_method("tree");
+  for (const v1::NodeConfig& other : {with_classes, with_tree}) {
+    EXPECT_THAT(make_options(other).error, HasSubstr("given_class"));
+  }
   for (const char* none : {"square", "unclassified"}) {
     config.set_given_class(none);
     EXPECT_THAT(make_options(config).error, HasSubstr("given_class"));
