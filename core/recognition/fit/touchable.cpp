@@ -116,8 +116,8 @@ class Directions {
 
  private:
   void end_way() {
-    constexpr std::size_t kFewest = 3;
-    was_back_ = points_of_way_ >= kFewest ? is_back_ : was_back_;
+    constexpr std::size_t kFewestOfWay = 3;  // a point out of order turns its neighbours round too
+    was_back_ = points_of_way_ >= kFewestOfWay ? is_back_ : was_back_;
     points_ += points_of_way_;
     left_ += was_back_ ? points_of_way_ - left_of_way_ : left_of_way_;
     points_of_way_ = left_of_way_ = 0;

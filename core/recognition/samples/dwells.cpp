@@ -209,6 +209,9 @@ std::vector<PatchSpan> held_places(std::span<const StoredSample> samples) {
   // Of two samples of one place; noise makes a step so long once in exp(16 log 2), 65,000 times.
   constexpr double kLong = 4.0;   // median steps
   constexpr double kApart = 3.0;  // of the scatter: six deviations of a coordinate
+  if (samples.size() < 2 * kBlock) {
+    return {};
+  }
   std::vector<double> steps;
   steps.reserve(samples.size());
   for (std::size_t i = 1; i < samples.size(); ++i) {
