@@ -249,8 +249,8 @@ std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples, double d
   // In units of a block's length at the mean speed. At that speed, without noise, a block scatters
   // by 0.29 of this length about its mean. Slower blocks are examined further.
   constexpr double kSlow = 0.25;
-  const std::size_t count = samples.size() / kBlock;
   std::vector<PatchSpan> dwells;
+  const std::size_t count = samples.size() / kBlock;
   if (count < 2) {
     return dwells;
   }

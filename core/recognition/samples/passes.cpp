@@ -107,41 +107,55 @@ std::optional<double> distance_from(std::span<const StoredSample> way, const Vec
   return at_beginning ? std::nullopt : std::optional(least);
 }
 
+/// Of a pass after a reversal, so many places are compared with the pass before.
+constexpr std::size_t kPlaces = 8;
+
+struct Compared {
+  std::size_t places = 0;  ///< farther from the turn than noise reaches, as far as both passes do
+  std::size_t on = 0;      ///< of these, those on the pass before
+  std::size_t beyond = 0;  ///< beyond where that began
+};
+
+Compared compared(std::span<const StoredSample> before, std::span<const StoredSample> after,
+                  const Lengths& lengths) {
+  constexpr double kBeside = 0.02;  // of the distance from the turn
+  const Vec2 turn = before.back().position_m;
+  Compared result;
+  for (std::size_t k = 1; k <= kPlaces; ++k) {
+    const Vec2& place = after[k * (after.size() - 1) / kPlaces].position_m;
+    const double off = (place - turn).norm();
+    const auto beside = distance_from(before, place);
+    result.beyond += beside ? 0 : 1;
+    if (beside && off > lengths.far_m) {
+      ++result.places;
+      result.on += *beside <= std::max(lengths.noise_m, kBeside * off) ? 1 : 0;
+    }
+  }
+  return result;
+}
+
 /// True if the pass after a reversal leads back over the one before. As far as both reach, it must
 /// lie within the noise of it, or within the play and drag of a probe. One compared place in four
 /// may be a spike. At least half of the places must be farther from the turn than noise reaches.
 bool leads_back(std::span<const StoredSample> before, std::span<const StoredSample> after,
                 const Lengths& lengths) {
-  constexpr double kBeside = 0.02;  // of the distance from the turn
-  constexpr std::size_t kPlaces = 8;
-  const Vec2 turn = before.back().position_m;
-  while (after.size() >= kFewestOfPass) {
-    std::size_t on = 0;
-    std::size_t compared = 0;
-    std::size_t beyond = 0;  // where the pass before began
-    for (std::size_t k = 1; k <= kPlaces; ++k) {
-      const Vec2& place = after[k * (after.size() - 1) / kPlaces].position_m;
-      const double off = (place - turn).norm();
-      const auto beside = distance_from(before, place);
-      beyond += beside ? 0 : 1;
-      if (beside && off > lengths.far_m) {
-        ++compared;
-        on += *beside <= std::max(lengths.noise_m, kBeside * off) ? 1 : 0;
-      }
-    }
-    if (2 * compared >= kPlaces || beyond == 0) {
-      return 2 * compared >= kPlaces && 4 * on >= 3 * compared;
-    }
+  Compared at = compared(before, after, lengths);
+  // It goes on beyond where the other began: its first half, or that half's.
+  while (2 * at.places < kPlaces && at.beyond > 0 && after.size() >= 2 * kFewestOfPass) {
     after = after.first(after.size() / 2);
+    at = compared(before, after, lengths);
   }
-  return false;
+  return 2 * at.places >= kPlaces && 4 * at.on >= 3 * at.places;
 }
 
 /// turns_of, of samples without spikes.
 Turns turns_of_path(std::span<const StoredSample> samples, double default_sigma_m) {
   Turns turns;
+  if (samples.size() < 2 * kFewestOfPass) {
+    return turns;
+  }
   const auto lengths = lengths_of(samples, default_sigma_m);
-  if (!lengths || samples.size() < 2 * kFewestOfPass) {
+  if (!lengths) {
     return turns;
   }
   const std::vector<std::size_t> reversals =
