@@ -88,6 +88,20 @@ Vec2 place_at(const PolynomialFit& fit, double t) {
   return c.col(0) + t * (c.col(1) + t * (c.col(2) + t * c.col(3)));
 }
 
+/// Length of a polynomial curve between two parameters, at least: by chords. Of a curve that goes
+/// out and comes back on both sides of its middle, quarters see both.
+double way_between(const PolynomialFit& fit, double from, double to) {
+  constexpr int kParts = 4;
+  double way = 0.0;
+  Vec2 before = place_at(fit, from);
+  for (int k = 1; k <= kParts; ++k) {
+    const Vec2 place = place_at(fit, from + (to - from) * k / kParts);
+    way += (place - before).norm();
+    before = place;
+  }
+  return way;
+}
+
 /// On which side of the travel a conic's polynomial grows, counted. Where the probe has turned back
 /// along the curve, it is that of the way it came: for so many points, fewer go to and fro by noise
 /// or by chance. Joined touches do not turn back: where they go to and fro, their order is wrong.
@@ -99,11 +113,21 @@ class Directions {
     if (travel.isZero()) {
       return;
     }
-    if (!are_joined_ && travel.dot(last_travel_) < 0.0 && gradient.dot(last_gradient_) > 0.0) {
+    const bool is_left = cross(travel, gradient) >= 0.0;
+    if (may_have_turned_ && is_left == last_is_left_) {
+      // The point before was the first of the way back.
+      take_back_last();
       end_way();
+      count(is_left);
+      way_is_left_ = is_left;
     }
-    ++points_of_way_;
-    left_of_way_ += cross(travel, gradient) >= 0.0 ? 1 : 0;
+    // Round the end of a needle the travel turns as well, but the gradient with it: at most the
+    // chord of one point's neighbours goes another way.
+    may_have_turned_ = !are_joined_ && is_left != way_is_left_ && travel.dot(last_travel_) < 0.0 &&
+                       gradient.dot(last_gradient_) > 0.0;
+    way_is_left_ = may_have_turned_ ? way_is_left_ : is_left;
+    count(is_left);
+    last_is_left_ = is_left;
     last_travel_ = travel;
     last_gradient_ = gradient;
   }
@@ -115,6 +139,16 @@ class Directions {
   }
 
  private:
+  void count(bool is_left) {
+    ++points_of_way_;
+    left_of_way_ += is_left ? 1 : 0;
+  }
+
+  void take_back_last() {
+    --points_of_way_;
+    left_of_way_ -= last_is_left_ ? 1 : 0;
+  }
+
   void end_way() {
     constexpr std::size_t kFewestOfWay = 3;  // a point out of order turns its neighbours round too
     was_back_ = points_of_way_ >= kFewestOfWay ? is_back_ : was_back_;
@@ -131,6 +165,9 @@ class Directions {
   std::size_t left_of_way_ = 0;
   bool is_back_ = false;
   bool was_back_ = false;  ///< on the last way that counts
+  bool last_is_left_ = false;
+  bool way_is_left_ = false;      ///< at the last point that may not have turned
+  bool may_have_turned_ = false;  ///< at the last point; the next one tells
   Vec2 last_travel_ = Vec2::Zero();
   Vec2 last_gradient_ = Vec2::Zero();
 };
@@ -198,14 +235,12 @@ bool leaps(const PolynomialFit& fit, const FitData& data) {
     std::vector<double> feet(fit.t.begin() + static_cast<std::ptrdiff_t>(patch.begin),
                              fit.t.begin() + static_cast<std::ptrdiff_t>(patch.end));
     std::sort(feet.begin(), feet.end());
-    // An arc of half a turn, by the chords of its halves.
-    constexpr double kHalfTurn = 1.4142135623730951;  // sqrt(2) of its own chord
+    // An arc of half a turn, by the chords of its quarters: 4 sin(pi / 8) of its own chord.
+    constexpr double kHalfTurn = 1.5307337294603591;
     for (std::size_t i = 0; i + 1 < feet.size(); ++i) {
-      const Vec2 from = place_at(fit, feet[i]);
-      const Vec2 to = place_at(fit, feet[i + 1]);
-      const Vec2 between = place_at(fit, 0.5 * (feet[i] + feet[i + 1]));
-      const double way = (between - from).norm() + (to - between).norm();  // at least
-      if (way > std::max(stroke, kHalfTurn * (to - from).norm())) {
+      if (way_between(fit, feet[i], feet[i + 1]) >
+          std::max(stroke,
+                   kHalfTurn * (place_at(fit, feet[i + 1]) - place_at(fit, feet[i])).norm())) {
         return true;
       }
     }

@@ -1,5 +1,5 @@
-// Short ways: patches of two samples, strokes that turn back at an end, places that are held, and a
-// single bad sample where a stroke begins.
+// Short ways: patches of two samples, strokes that turn back at an end or go round the end of a
+// needle, places that are held, and a single bad sample where a stroke begins.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,6 +36,25 @@ void add_noise(double sigma_m, std::vector<Vec2>* stroke, std::mt19937_64& rng) 
     const double x = noise(rng);
     place += Vec2(x, noise(rng));
   }
+}
+
+/// Places of an ellipse at even distances along it.
+std::vector<Vec2> round_ellipse(double a, double b, std::size_t count, double from) {
+  constexpr int kSteps = 20000;
+  std::vector<Vec2> places;
+  std::vector<double> way;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double t = 2.0 * kPi * (from + static_cast<double>(i) / kSteps);
+    places.emplace_back(a * std::cos(t), b * std::sin(t));
+    way.push_back(i == 0 ? 0.0 : way.back() + (places.back() - places[places.size() - 2]).norm());
+  }
+  std::vector<Vec2> stroke;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double s = way.back() * static_cast<double>(k) / static_cast<double>(count - 1);
+    const auto next = std::lower_bound(way.begin(), way.end(), s) - way.begin();
+    stroke.push_back(places[static_cast<std::size_t>(next)]);
+  }
+  return stroke;
 }
 
 Recognition answer_to(const std::vector<std::vector<Vec2>>& strokes, double sigma_m) {
@@ -92,6 +111,24 @@ TEST(ShortWays, AStrokeThatTurnsBackAtAnEndIsOfItsEllipse) {
 
 // Held for a multiple of no block's length, with a noise that leads from one place to the next by
 // no sample.
+// Round the end of a needle, sharper than the samples lie apart, the chord of a sample's neighbours
+// may lead back: the stroke does not.
+TEST(ShortWays, RoundTheEndOfAThinEllipseNoStrokeTurnsBack) {
+  constexpr double kHalfLength = 0.050;
+  auto rng = test::test_rng();
+  for (const double ratio : {0.03, 0.04, 0.06, 0.1}) {
+    for (const double sigma_m : {5e-5, 2e-4}) {
+      for (int i = 0; i < test::stress_count(20); ++i) {
+        std::vector<Vec2> stroke =
+            round_ellipse(kHalfLength, ratio * kHalfLength, 120, test::uniform(rng, 0.0, 1.0));
+        add_noise(sigma_m, &stroke, rng);
+        EXPECT_LT(probability_of(answer_to({stroke}, sigma_m), CurveClass::Unclassified), 0.5)
+            << "ratio " << ratio << ", noise " << sigma_m << ", " << i;
+      }
+    }
+  }
+}
+
 TEST(ShortWays, ACircleThatIsHeldAtEachPlaceIsNoEllipse) {
   constexpr double kRadius = 0.03;
   auto rng = test::test_rng();
