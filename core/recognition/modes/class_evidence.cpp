@@ -254,13 +254,13 @@ ClassEvidence with_prior_mode(ClassEvidence evidence, const ClassEvidence& path,
 
 std::optional<ClassEvidence> from_prior(CurveClass curve_class, double fitted_chi2,
                                         const ClassEvidence& path, const FitData& data,
-                                        WorkBudget& work) {
+                                        double least, WorkBudget& work) {
   ClassEvidence evidence;
   evidence.touch = along_patch(path.touch, data);
   evidence.touch.curve_class = curve_class;
   evidence.fitted_chi2 = fitted_chi2;
   evidence.prior_mode_sought = true;
-  take_prior_modes(path, data, -std::numeric_limits<double>::infinity(), &evidence, work);
+  take_prior_modes(path, data, least, &evidence, work);
   return !evidence.nodes.empty() && is_of_optimum(evidence) ? std::optional(std::move(evidence))
                                                             : std::nullopt;
 }

@@ -60,11 +60,11 @@ ClassEvidence with_prior_mode(ClassEvidence evidence, const ClassEvidence& path,
                               const FitData& data, double least, WorkBudget& work);
 
 /// The evidence of a class at the best mode that the prior leads to along `path`, another class's.
-/// `fitted_chi2`: the chi-square that `log_occam` counts from. nullopt if no mode comes near the
-/// points.
+/// `fitted_chi2`: the chi-square that `log_occam` counts from; `least`: as with_prior_mode's.
+/// nullopt if no mode has as much.
 std::optional<ClassEvidence> from_prior(CurveClass curve_class, double fitted_chi2,
                                         const ClassEvidence& path, const FitData& data,
-                                        WorkBudget& work);
+                                        double least, WorkBudget& work);
 
 /// The spline's evidence at the mode that it has at c = 0, where the semi-cubical parabola has its
 /// own, if that holds more. Slices and searches may miss it: the valley between is long.

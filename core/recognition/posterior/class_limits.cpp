@@ -82,8 +82,11 @@ void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood&
         evidences->classes[beyond] = std::move(counted);
       }
     } else {
-      evidences->classes[beyond] =
-          from_prior(beyond, fitted_chi2, *path, points_of(*fits[*limit], reduced), work);
+      // Of its limit's determined coordinates: one more would cost it more.
+      const double seen_occam =
+          best - kUnseenLogOdds - likelihood.log_evidence(fit->chi2, 0.0, path->determined);
+      evidences->classes[beyond] = from_prior(beyond, fitted_chi2, *path,
+                                              points_of(*fits[*limit], reduced), seen_occam, work);
     }
     evidences->on_reduced_chi2[beyond] = fitted_chi2;
     if (evidences->classes[beyond]) {
