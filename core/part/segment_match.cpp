@@ -167,6 +167,8 @@ class Match {
       const double sigma = std::max(smooth_.noise_ratio(), rounding_level(data_));
       scale_noise(sigma, &data_, &smooth_);
     }
+    // Of samples that err together each counts as one in so many, of a noise as much larger.
+    scale_noise(std::sqrt(smooth_.noise_time), &data_, &smooth_);
   }
 
   /// A spike is told by the smooth path of its neighbours. Where no polynomial follows most samples
@@ -210,7 +212,9 @@ class Match {
     PartPlacement placement;
     placement.probability = candidate.probability;
     placement.chi2 = fit.chi2;
-    placement.dof = static_cast<int>(data_.points.size()) - kPoseDegrees;
+    placement.dof =
+        static_cast<int>(static_cast<double>(data_.points.size()) / smooth_.noise_time) -
+        kPoseDegrees;
     placement.misfit_chi2 = std::max(0.0, fit.chi2 - smooth_.chi2);
     placement.misfit_dof = smooth_.parameters - kPoseDegrees;
     const Pose2& pose = fit.data_T_part;
@@ -284,7 +288,7 @@ class Match {
         const ClosedSpline::Place at = part.spline().place_at(foot.t);
         sample.segment = at.segment;
         sample.u = at.u;
-        sample.residual = foot.residual;
+        sample.residual = foot.residual * std::sqrt(smooth_.noise_time);
         ++votes[at.segment];
         place.samples.push_back(sample);
       }

@@ -163,6 +163,7 @@ void add_contacts(const StoredPatch& patch, std::size_t least_windows, int side,
   if (!path.noise) {
     return;
   }
+  const double noise = *path.noise * std::sqrt(options.noise_time);
   const std::size_t fewest = std::max(options.window_samples, kFewestWindowNodes);
   const std::size_t windows = std::clamp<std::size_t>(n / fewest, 1, least_windows);
   const std::size_t longest = n / windows;
@@ -177,7 +178,7 @@ void add_contacts(const StoredPatch& patch, std::size_t least_windows, int side,
     for (bool shortest = false; !fit && !shortest;) {
       const auto shorter = static_cast<std::size_t>(kShrink * static_cast<double>(length));
       shortest = shorter < fewest;
-      fit = fit_window(reduced(std::span(path.nodes).subspan(first, length)), *path.noise,
+      fit = fit_window(reduced(std::span(path.nodes).subspan(first, length)), noise,
                        options.form_deviation_m, shortest && !path.stated);
       if (!fit && !shortest) {
         length = shorter;

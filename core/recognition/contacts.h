@@ -24,6 +24,8 @@ struct ContactOptions {
   std::size_t window_samples = 20;
   /// Noise of samples that state none; 0 = estimate it for each patch. [m]
   double sigma_m = 0.0;
+  /// Of so many samples, which err together, each counts as one (SmoothModel::noise_time).
+  double noise_time = 1.0;
   /// Standard deviation of the part's smooth form error. [m]
   double form_deviation_m = 0.0;
   /// If set: windows of fixed length, side by side, with this estimator of core/local/estimator.h.

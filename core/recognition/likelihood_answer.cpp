@@ -105,7 +105,8 @@ Recognition answer_by_likelihood(const Weighing& w, const BestMoments& moments,
   answer.world_T_curve = best.world_T_curve;
   answer.covariance = best.covariance;
   answer.sigma_m = residual_noise_m(w);
-  answer.noise_correlation_m = w.seen.correlation_length * w.data.scale;
+  answer.noise_correlation_m =
+      std::max(w.seen.correlation_length, noise_length(w.smooth, w.data)) * w.data.scale;
   answer.covariance_inflation = w.inflation;
   answer.unqualified_probe = w.unqualified_probe;
   answer.doubt = doubt_about(w, best, options, stored);

@@ -11,7 +11,7 @@ namespace palpate {
 bool PatchContacts::Known::same_as(const Known& other) const {
   return version == other.version && touches == other.touches && windows == other.windows &&
          side == other.side && form_deviation_m == other.form_deviation_m &&
-         outliers == other.outliers;
+         noise_time == other.noise_time && outliers == other.outliers;
 }
 
 std::vector<LocalizedContact> PatchContacts::of(std::span<const StoredPatch> patches,
@@ -29,6 +29,7 @@ std::vector<LocalizedContact> PatchContacts::of(std::span<const StoredPatch> pat
     now.version = version_of(patch);
     now.windows = windows;
     now.form_deviation_m = options.form_deviation_m;
+    now.noise_time = options.noise_time;
     if (!sides.empty() && !patch.samples.empty()) {
       assert(sided < sides.size());
       now.side = sides[sided++];

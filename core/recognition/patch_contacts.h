@@ -30,6 +30,7 @@ class PatchContacts {
     std::size_t windows = 0;
     int side = 0;
     double form_deviation_m = 0.0;
+    double noise_time = 1.0;
     std::vector<bool> outliers;
     std::vector<LocalizedContact> contacts;
 

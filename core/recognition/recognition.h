@@ -87,7 +87,7 @@ struct Recognition {
   std::size_t simplified_count = 0;
   /// Noise of a sample, stated or estimated; of one with a covariance, across the curve. [m]
   double sigma_m = 0.0;
-  double noise_correlation_m = 0.0;  ///< correlation length of the residuals; 0 = white [m]
+  double noise_correlation_m = 0.0;  ///< over which neighbours err together; 0 = white noise [m]
   /// Of the most probable hypothesis: its covariance if all noise is white and of the stated size.
   ShapePoseCovariance white_covariance;
   /// Factor on white_covariance if larger noise, correlated residuals and stated form error are all

@@ -223,9 +223,9 @@ class Recognizer::Impl {
     if (sigma_known) {
       unused_ = contacts_with_details(w.data);
     }
-    answer.contacts =
-        contacts_.of(weighed.patches ? *weighed.patches : patches, w.sides, weighed.outliers,
-                     contact_options(told_deviation_m(moments, w.data.scale)));
+    answer.contacts = contacts_.of(
+        weighed.patches ? *weighed.patches : patches, w.sides, weighed.outliers,
+        contact_options(told_deviation_m(moments, w.data.scale), in_steps(w.smooth.noise_time)));
     add_path(reported_tree_path(w, answer.contacts, options_.tree), &answer);
     const double p_value = answer.tree_p_values[answer.shape.curve_class];
     if (p_value < options_.tree.significance) {
@@ -292,9 +292,11 @@ class Recognizer::Impl {
     return weighed;
   }
 
-  /// `deviation_m`: what residuals tell of a smooth deviation, if it is more than is stated.
-  ContactOptions contact_options(double deviation_m = 0.0) const {
+  /// `deviation_m`: what residuals tell of a smooth deviation, if it is more than is stated;
+  /// `noise_time`: of how many neighbours each sample counts as one.
+  ContactOptions contact_options(double deviation_m = 0.0, double noise_time = 1.0) const {
     ContactOptions options = options_.contacts;
+    options.noise_time = noise_time;
     options.sigma_m = options_.sigma_m;
     options.form_deviation_m = std::max(options_.form_deviation_m, deviation_m);
     return options;

@@ -126,8 +126,9 @@ PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
   }
 }
 
-/// What neighbours' residuals have in common where the noise is not stated: n of them are worth so
-/// many fewer independent ones. Part and probe are not asked which of them it is.
+/// What neighbours' residuals have in common: n of them are worth so many fewer independent ones.
+/// Part and probe are not asked which of them it is. Of a stated noise only what the residuals show
+/// is known to be shared.
 ResidualCorrelation correlation_of(std::span<const ContactRun> runs,
                                    std::span<const GivenPoint> points, const GivenFit& fit) {
   FitData data;
@@ -143,7 +144,11 @@ ResidualCorrelation correlation_of(std::span<const ContactRun> runs,
     }
     data.patches.push_back({begin, data.points.size()});
   }
-  return correlation_of(data, residuals);
+  ResidualCorrelation correlation = correlation_of(data, residuals);
+  if (fit.sigma_stated && fit.dof > 0) {
+    correlation.time = 1.0 + std::min(1.0, fit.chi2 / fit.dof) * (correlation.time - 1.0);
+  }
+  return correlation;
 }
 
 double half_extent_m(std::span<const GivenPoint> points) {
@@ -189,11 +194,9 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
     answer.set_doubt(v1::RECOGNITION_DOUBT_UNDETERMINED);
     return given;
   }
-  if (!fit.sigma_stated) {
-    const ResidualCorrelation correlation = correlation_of(runs, points, fit);
-    fit.covariance *= correlation.time;
-    answer.set_noise_correlation_m(correlation.length);
-  }
+  const ResidualCorrelation correlation = correlation_of(runs, points, fit);
+  fit.covariance *= correlation.time;
+  answer.set_noise_correlation_m(correlation.length);
   // Deviations are those of the noise and of the probes: of residuals that these cannot have left
   // they say nothing.
   const bool by_noise = !fit.sigma_stated || fit.dof <= 0 || fit.chi2 <= most_chi2;

@@ -30,10 +30,11 @@ struct TouchedPart {
 };
 
 /// Samples at equal arc lengths along the part at that pose, with isotropic Gaussian noise of
-/// `noise_m`; the samples state `sigma_m`. Tips (radius 0 = none) are outside.
+/// `noise_m`, of which neighbours correlate by `correlation`; the samples state `sigma_m`. Tips
+/// (radius 0 = none) are outside.
 TouchedPart touch(const ClosedSpline& part, const Pose2& world_T_part,
                   const std::vector<PartStroke>& strokes, double noise_m, double sigma_m,
-                  std::mt19937_64& rng, double tip_radius_m = 0.0);
+                  std::mt19937_64& rng, double tip_radius_m = 0.0, double correlation = 0.0);
 
 /// Uniform in translation (within 1 m) and rotation.
 Pose2 random_pose(std::mt19937_64& rng);

@@ -41,7 +41,8 @@ std::optional<Left> left_by(const std::vector<CoherentStep>& steps, const Drift&
 
 std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassEvidence& evidence,
                                         const FitData& reduced, const Likelihood& likelihood,
-                                        double sigma, double scatter, WorkBudget& work) {
+                                        double sigma, double scatter, double most,
+                                        WorkBudget& work) {
   const CurveClass curve_class = placed.shape.curve_class;
   const int coordinates = shape_coordinates(curve_class) + 2;
   const NoiseLaw noise(likelihood, coordinates);
@@ -50,6 +51,7 @@ std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassE
     return std::nullopt;
   }
   const std::vector<CoherentStep>& steps = *by_coordinates;
+  scatter /= likelihood.tempering;
   work.spend(WorkKind::DriftRow, steps.size());
   const auto none = left_by(steps, {});
   if (!none) {
@@ -57,10 +59,11 @@ std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassE
   }
   const double log_none = noise.log_evidence(scatter + none->chi2) - 0.5 * none->log_determinant;
   const double longest = longest_run(steps);
-  const double most = std::sqrt(likelihood.samples);
+  const double least = 1.0 / std::sqrt(likelihood.samples);
+  const double largest = std::min(most, 1.0 / least);
   LogSum sum{log_none};
   double prior = 0.0;
-  for (double deviation = 1.0 / most; deviation <= most; deviation *= kSizeFactor) {
+  for (double deviation = least; deviation <= largest; deviation *= kSizeFactor) {
     for (int halvings = 1; halvings <= kMostHalvings; halvings += kPowerStep) {
       if (!work.allows()) {
         return std::nullopt;
@@ -69,23 +72,29 @@ std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassE
       const Drift drift{deviation, std::ldexp(longest, -halvings)};
       const auto left = left_by(steps, drift);
       // The largest offsets leave the smallest chi-square.
-      double least = scatter;
+      double least_chi2 = scatter;
       for (int power = kLargestOffset; power >= kLeastOffset; --power) {
         const OffsetSize size = offset_size(drift, power);
+        if (size.deviations.maxCoeff() > most) {
+          continue;
+        }
         prior += kHighestOfClasses * std::exp(size.log_prior);
-        if (!left ||
-            !sum.counts(size.log_prior + noise.log_evidence(least) - 0.5 * left->log_determinant)) {
+        if (!left || !sum.counts(size.log_prior + noise.log_evidence(least_chi2) -
+                                 0.5 * left->log_determinant)) {
           continue;
         }
         work.spend(WorkKind::OffsetCell, 1);
         if (const auto cells = offset_cells(*left, size, noise, scatter)) {
-          least = std::max(least, cells->chi2.back());
+          least_chi2 = std::max(least_chi2, cells->chi2.back());
           for (const double log_weight : cells->log_weight) {
             sum.add(log_weight);
           }
         }
       }
     }
+  }
+  if (!(prior > 0.0)) {
+    return std::nullopt;
   }
   return std::log(0.5 * (std::exp(log_none - sum.top) + sum.total / prior)) + sum.top - log_none;
 }

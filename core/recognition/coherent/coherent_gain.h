@@ -14,10 +14,11 @@ namespace palpate {
 /// log of (evidence if such deviations are as probable a priori as none) / (evidence with noise
 /// alone). Arguments as coherent_moment(), with two differences: shape and pose have the prior of
 /// their class, linear about `evidence`, and the drift's deviation is uniform in its logarithm from
-/// sigma / sqrt(n) to sigma sqrt(n), n samples, the same for all classes. nullopt if
-/// coherent_moment() has none.
+/// sigma / sqrt(n) to sigma sqrt(n), n samples, the same for all classes; neither it nor the
+/// offset's is more than `most` sigma. nullopt if coherent_moment() has none.
 std::optional<double> log_coherent_gain(const CanonicalFit& placed, const ClassEvidence& evidence,
                                         const FitData& reduced, const Likelihood& likelihood,
-                                        double sigma, double scatter, WorkBudget& work);
+                                        double sigma, double scatter, double most,
+                                        WorkBudget& work);
 
 }  // namespace palpate

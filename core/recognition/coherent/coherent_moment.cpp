@@ -153,7 +153,11 @@ std::optional<CoherentMoment> coherent_moment(const CanonicalFit& placed, const 
   if (!curve || !can_tell_deviations(reduced, noise, rank)) {
     return std::nullopt;
   }
-  const std::vector<CoherentStep> steps = coherent_steps(placed, reduced, *curve, sigma);
+  std::vector<CoherentStep> steps = coherent_steps(placed, reduced, *curve, sigma);
+  for (CoherentStep& step : steps) {
+    step.at.variance *= likelihood.tempering;
+  }
+  scatter /= likelihood.tempering;
   const Eigen::Index unknowns = placed.covariance.rows();
   const auto [mixture, log_prior] =
       over_all_sizes(steps, placed, noise, scatter, likelihood.samples, work);

@@ -79,6 +79,7 @@ std::optional<double> log_gain_near_class(const CanonicalFit& placed, const Clas
   if (!(longest > 0.0) || !can_tell_deviations(reduced, noise, coordinates)) {
     return std::nullopt;
   }
+  scatter /= likelihood.tempering;
   work.spend(WorkKind::DriftRow, steps->size());
   const auto none = left_by_smooth(*steps, {});
   if (!none) {

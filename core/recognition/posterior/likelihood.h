@@ -9,9 +9,10 @@ struct Likelihood {
   double tempering = 1.0;   ///< correlation time and misfit: chi-square is divided by it
   double chi2_floor = 0.0;  ///< chi-square from rounding alone, if the noise is not known
   /// Upper bound on the variance that stated form error adds to any combination of residuals, in
-  /// units of the noise's. The difference of a chi-square from `noise_chi2`, the smooth model's, is
-  /// divided by 1 + coherent_variance. This stands for the integral over all correlations of the
-  /// form error, bounded by the worst of them (core/README.md, "Stated form error").
+  /// units of the tempered noise's. The difference of a chi-square from `noise_chi2`, the smooth
+  /// model's, is divided by 1 + coherent_variance. This stands for the integral over all
+  /// correlations of the form error, bounded by the worst of them (core/README.md, "Stated form
+  /// error").
   double coherent_variance = 0.0;
   double noise_chi2 = 0.0;
 
@@ -21,6 +22,9 @@ struct Likelihood {
 
   /// Factor on the variances of residuals.
   double inflation() const { return tempering * (1.0 + coherent_variance); }
+
+  /// The part of it for stated form error.
+  double form_inflation() const { return tempering * coherent_variance; }
 
   /// Chi-square after tempering and form error.
   double counted(double chi2) const;

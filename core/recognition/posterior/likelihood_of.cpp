@@ -36,6 +36,15 @@ ResidualCorrelation correlation_along(const CanonicalFit& placed, const FitData&
   return correlation_of(in_order, residuals);
 }
 
+/// Whether a stated noise covers residuals of that variance of which the sections show only a part:
+/// the rest is what neighbours share, so that sections follow it. White noise leaves sections so
+/// little once in a thousand times.
+bool is_stated(const Arcs& arcs, double variance) {
+  constexpr double kOneInThousand = 1e-3;
+  return arcs.sigma_known && variance <= 1.0 && arcs.smooth.dof() > 0 &&
+         chi_square_survival(arcs.smooth.chi2, arcs.smooth.dof()) > 1.0 - kOneInThousand;
+}
+
 }  // namespace
 
 // Touches that lie too far apart to show their noise leave the class alone to tell it.
@@ -47,11 +56,14 @@ Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m) {
   const double n = static_cast<double>(arcs.data.points.size());
   Likelihood likelihood;
   likelihood.sigma_known = arcs.sigma_known;
-  likelihood.samples = n;
+  // Of neighbours that err together each tells so much less of what the path does slowly.
+  likelihood.tempering = arcs.smooth.noise_time;
+  likelihood.samples = n / likelihood.tempering;
   // Residuals below the rounding of the coordinates say nothing.
   const double rounding = rounding_level(arcs.data) / arcs.sigma;
-  likelihood.chi2_floor = arcs.sigma_known ? 0.0 : n * rounding * rounding;
-  likelihood.coherent_variance = coherent_variance(arcs.data, form_deviation_m / arcs.data.scale);
+  likelihood.chi2_floor = arcs.sigma_known ? 0.0 : likelihood.samples * rounding * rounding;
+  likelihood.coherent_variance =
+      coherent_variance(arcs.data, form_deviation_m / arcs.data.scale) / likelihood.tempering;
   likelihood.noise_chi2 = arcs.smooth.chi2;
   return likelihood;
 }
@@ -66,6 +78,11 @@ ResidualExcess residual_excess(const Arcs& arcs, const Likelihood& likelihood, d
   const double noise = smooth.dof() > 0 ? smooth.chi2 / smooth.dof() : 1.0;
   const double excess = arcs.sigma * std::sqrt(std::max(0.0, variance - noise));
   const ResidualCorrelation correlation = correlation_along(placed, arcs.data);
+  // Where the noise itself is shared by neighbours, residuals of the class that are so show nothing
+  // more.
+  const bool shared_noise = smooth.noise_time > 1.0;
+  const bool by_neighbours = correlation.time > 1.0 && !shared_noise;
+  const double time = std::max(correlation.time, smooth.noise_time);
   // Whether a class that tells the noise misfits only neighbours on it show, which err together. It
   // does where sections leave more than the class: what they do not follow is no noise.
   const bool noise_is_told = noise_is_known_without_class(arcs, likelihood) &&
@@ -78,7 +95,7 @@ ResidualExcess residual_excess(const Arcs& arcs, const Likelihood& likelihood, d
           ? chi_square_survival((chi2 - smooth.chi2) / likelihood.inflation(), more)
           : 1.0;
   const bool misfits =
-      noise_is_told ? unclassified || chance < kNegligibleProbability : correlation.time > 1.0;
+      noise_is_told ? unclassified || chance < kNegligibleProbability : by_neighbours;
   // White residuals larger than the smooth model's can be are noise that it took for bends
   // (outliers, samples out of order); correlated ones are form error up to its limit, neighbours
   // erring together, so that only one in `time` counts.
@@ -87,27 +104,29 @@ ResidualExcess residual_excess(const Arcs& arcs, const Likelihood& likelihood, d
   const bool tells_more = smooth.dof() > 0 || dof >= kFewestDegreesOfNoise;
   const bool noisy = likelihood.sigma_known && correlation.time == 1.0 && tells_more &&
                      !can_be_noise(chi2 / noise, dof) && excess <= kLargestNoise;
-  const bool form_error = correlation.time > 1.0 && (excess <= kLargestFormError || !noise_is_told);
+  const bool form_error = correlation.time > 1.0 && (excess <= kLargestFormError ||
+                                                     !noise_is_told || is_stated(arcs, variance));
   ResidualExcess seen;
+  seen.noise_inflation = likelihood.tempering;
   // White noise looks so once in a thousand times by its neighbours, and hardly ever by the smooth
   // model.
   seen.correlated = correlation.time > 1.0 || chance < kNegligibleProbability;
   if (misfits && (noisy || form_error)) {
-    seen.noise_inflation = variance * correlation.time;
+    seen.noise_inflation = variance * time;
     seen.told_by_class_alone =
         noisy && likelihood.sigma_known && can_be_noise(smooth.chi2, smooth.dof());
     seen.correlation_length = correlation.length;
     seen.white_variance = noise_is_told && form_error ? 1.0 : variance;
     seen.likelihood = likelihood;
     seen.likelihood->sigma_known = true;
-    seen.likelihood->samples = std::max(n / correlation.time, 1.0);
-    seen.likelihood->tempering = seen.noise_inflation + likelihood.coherent_variance;
+    seen.likelihood->samples = std::max(n / time, 1.0);
+    seen.likelihood->tempering = seen.noise_inflation + likelihood.form_inflation();
     seen.likelihood->coherent_variance = 0.0;
     seen.likelihood->coherent_or_other = form_error;
   } else if (!likelihood.sigma_known) {
-    seen.noise_inflation = misfit_of(chi2, likelihood) / dof;
-    seen.white_variance = seen.noise_inflation;
-    seen.student_inflation = variance_of_student(dof);
+    seen.white_variance = misfit_of(chi2, likelihood) / dof;
+    seen.noise_inflation = seen.white_variance * likelihood.tempering;
+    seen.student_inflation = variance_of_student(dof / likelihood.tempering);
   }
   return seen;
 }

@@ -25,7 +25,8 @@ Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m);
 struct ResidualExcess {
   /// The likelihood with this deviation, if it is noise or form error rather than another class.
   std::optional<Likelihood> likelihood;
-  double noise_inflation = 1.0;  ///< factor on the variances of residuals
+  /// Factor on the variances of residuals: neighbours that err together, and larger noise.
+  double noise_inflation = 1.0;
   /// It is larger than stated by the residuals of the class alone: the smooth model, if there is
   /// one, finds the noise that is stated. The class may be wrong as well.
   bool told_by_class_alone = false;
@@ -33,7 +34,7 @@ struct ResidualExcess {
   double white_variance = 1.0;
   /// Additional factor on covariances: a noise estimated from few residuals may be larger.
   double student_inflation = 1.0;
-  /// True if neighbours may be correlated; the evidence must decide.
+  /// True if neighbours may err together by more than noise does; the evidence must decide.
   bool correlated = false;
   double correlation_length = 0.0;  ///< correlation length of the residuals, normalised; 0 = white
 };

@@ -186,6 +186,18 @@ double noise_over_means(std::span<const StoredPatch> patches, double default_sig
   return of_means > 0.0 ? std::sqrt(of_contacts / of_means) : 1.0;
 }
 
+double mean_step(const FitData& data) {
+  double path = 0.0;
+  std::size_t steps = 0;
+  for (const PatchSpan& patch : data.patches) {
+    for (std::size_t i = patch.begin + 1; i < patch.end; ++i) {
+      path += (data.points[i].position - data.points[i - 1].position).norm();
+      ++steps;
+    }
+  }
+  return steps > 0 ? path / static_cast<double>(steps) : 0.0;
+}
+
 double least_sigma(std::span<const FitPoint> points) {
   double sharpest = 0.0;
   for (const FitPoint& point : points) {
@@ -246,7 +258,7 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
     data.patches.push_back({begin, data.points.size(), patch.is_joined});
   }
   if (!*sigma_known) {
-    data.reading_noise = reading_noise_m(patches) / data.scale;
+    data.reading_noise = std::max(reading_noise_m(patches) / data.scale, kFinest);
     // Stated and unstated noise do not mix: if one is not stated, the noise of all is estimated.
     std::size_t i = 0;
     for (const StoredPatch& patch : patches) {

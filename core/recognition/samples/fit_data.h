@@ -17,6 +17,14 @@ namespace palpate {
 /// third power: one in a million.
 inline constexpr double kLargestNoise = 0.01;
 
+/// Least noise, as a fraction of the half extent, where nobody states it: a tenth of an atom on a
+/// part 200 mm across. Points of a formula have less. Told of curves to their last digit, they
+/// would take all work to tell of these what no probe can.
+inline constexpr double kFinest = 1e-9;
+
+/// Of the half extent: points that fit to this are taken as exact where nobody states their noise.
+inline constexpr double kExact = 1e-6;
+
 /// One contact point in normalised coordinates (world = frame * (scale * normalised)).
 struct FitPoint {
   Vec2 position = Vec2::Zero();  ///< normalised
@@ -55,7 +63,8 @@ struct FitData {
   std::vector<PatchSpan> patches;
   Pose2 frame;         ///< centre of the points' box, x along the longer principal axis
   double scale = 1.0;  ///< half the longer side of that box [m]
-  /// Least noise, normalised, that the rounding of the readings leaves (local/reading_step.h).
+  /// Least noise, normalised, where nobody states it: what the rounding of the readings leaves
+  /// (local/reading_step.h), or kFinest.
   double reading_noise = 0.0;
   std::vector<PointDetail> details = {};  ///< one per point; empty if no point has any
   /// True if the normals of points in strokes are among the residuals.
@@ -95,6 +104,9 @@ std::size_t contacts_with_details(const FitData& data);
 
 /// Root mean square of the points' noise, normalised. Needs at least one point.
 double rms_sigma(const FitData& data);
+
+/// Mean distance of points next to one another in a patch, normalised; 0 if there are none.
+double mean_step(const FitData& data);
 
 /// The smallest noise of any point, normalised; infinite without points.
 double least_sigma(std::span<const FitPoint> points);

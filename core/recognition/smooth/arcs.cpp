@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/recognition/smooth/across_noise.h"
+#include "core/recognition/smooth/stroke_noise.h"
 
 namespace palpate {
 namespace {
@@ -13,7 +14,7 @@ bool shows_noise(const SmoothModel& smooth) { return smooth.dof() >= kFewestDegr
 
 /// Sets the noise of all points from the smooth model's residuals. Returns true if it is no larger
 /// than rounding: then it counts as known.
-bool estimate_noise(FitData* data, SmoothModel* smooth) {
+bool set_noise(FitData* data, SmoothModel* smooth) {
   // With too few degrees of freedom there is no estimate.
   const double rounding = rounding_level(*data);
   const double estimate = shows_noise(*smooth) ? smooth->noise_ratio() : kExact;
@@ -54,11 +55,14 @@ Arcs arcs_of_noise(Arcs arcs, double times) {
 
 Arcs smooth_arcs(FitData data, bool sigma_known) {
   Arcs arcs;
+  if (!sigma_known) {
+    weigh_strokes(&data);
+  }
   arcs.smooth = fit_smooth_model(&data, sigma_known);
   if (!data.details.empty() && weigh_across_path(arcs.smooth, &data)) {
     arcs.smooth = fit_smooth_model(&data, sigma_known);
   }
-  arcs.sigma_known = sigma_known || estimate_noise(&data, &arcs.smooth);
+  arcs.sigma_known = sigma_known || set_noise(&data, &arcs.smooth);
   arcs.may_not_follow = sigma_known || !arcs.sigma_known;
   if (!sigma_known && rms_sigma(data) < data.reading_noise) {
     arcs.may_be_rounding = !shows_noise(arcs.smooth);

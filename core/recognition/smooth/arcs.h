@@ -10,9 +10,6 @@ namespace palpate {
 /// relative standard deviation of 1 / sqrt(2 * 4), 35 %.
 inline constexpr int kFewestDegreesOfNoise = 4;
 
-/// Of the half extent: points that fit to this are taken as exact where nobody states their noise.
-inline constexpr double kExact = 1e-6;
-
 struct Arcs {
   FitData data;  ///< all points, with noise and tangents set
   SmoothModel smooth;

@@ -2,75 +2,90 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "core/numerics/normal_law.h"
 
 namespace palpate {
 namespace {
 
-/// Correlation of residuals `lag` samples apart in the same patch, and the number of pairs.
-struct LagCorrelation {
-  double value = 0.0;
-  std::size_t pairs = 0;
-};
-
-LagCorrelation at_lag(const FitData& data, std::span<const double> r, std::size_t lag,
-                      double variance) {
-  LagCorrelation correlation;
-  double sum = 0.0;
-  for (const PatchSpan& patch : data.patches) {
-    for (std::size_t i = patch.begin; i + lag < patch.end; ++i) {
-      sum += r[i] * r[i + lag];
-      ++correlation.pairs;
+NeighbourSums sums_of(std::span<const RunOfResiduals> runs) {
+  NeighbourSums sums;
+  for (const auto& [r, parameters] : runs) {
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      sums.squares += r[i] * r[i];
+      sums.products += i > 0 ? r[i] * r[i - 1] : 0.0;
     }
+    sums.samples += r.size();
+    sums.pairs += r.empty() ? 0 : r.size() - 1;
+    sums.parameters += parameters;
   }
-  if (correlation.pairs > 0) {
-    correlation.value = sum / (static_cast<double>(correlation.pairs) * variance);
+  return sums;
+}
+
+/// Mean products of residuals by the number of samples between them, while they are positive:
+/// beyond that there is only noise.
+std::vector<double> mean_products(std::span<const RunOfResiduals> runs, double most_lags) {
+  std::vector<double> means;
+  while (static_cast<double>(means.size()) <= most_lags) {
+    const std::size_t lag = means.size();
+    double sum = 0.0;
+    std::size_t pairs = 0;
+    for (const auto& [r, parameters] : runs) {
+      for (std::size_t i = 0; i + lag < r.size(); ++i) {
+        sum += r[i] * r[i + lag];
+        ++pairs;
+      }
+    }
+    if (!(sum > 0.0)) {
+      break;
+    }
+    means.push_back(sum / static_cast<double>(pairs));
   }
-  return correlation;
+  return means;
 }
 
 }  // namespace
 
-ResidualCorrelation correlation_of(const FitData& data, std::span<const double> residuals) {
-  ResidualCorrelation result;
-  double variance = 0.0;
-  for (const double r : residuals) {
-    variance += r * r;
-  }
-  variance /= std::max<double>(1.0, static_cast<double>(residuals.size()));
-  if (!(variance > 0.0)) {
-    return result;
-  }
-  // White residuals look correlated once in a thousand times: their sum is about normal.
+bool NeighbourSums::look_alike() const {
   static const double kOneInThousand = two_sided_normal_quantile(2.0 / 1000.0);
-  const LagCorrelation first = at_lag(data, residuals, 1, variance);
-  if (first.pairs == 0 ||
-      first.value * std::sqrt(static_cast<double>(first.pairs)) < kOneInThousand) {
-    return result;
+  if (pairs == 0 || samples <= parameters) {
+    return false;
   }
-  // Sums while positive (the initial positive sequence); beyond that there is only noise.
-  std::size_t longest = 0;
-  double arc = 0.0;
-  std::size_t steps = 0;
+  const auto left = static_cast<double>(samples - parameters);
+  const double variance = squares / left;
+  const double of_noise = products + static_cast<double>(parameters) * variance;
+  // The sum of as many products of independent residuals is about normal.
+  return of_noise >
+         kOneInThousand * std::sqrt(std::min(left, static_cast<double>(pairs))) * variance;
+}
+
+double correlation_time(std::span<const RunOfResiduals> runs) {
+  const NeighbourSums sums = sums_of(runs);
+  if (!sums.look_alike()) {
+    return 1.0;
+  }
+  // Of the noise's variance v, `taken` time v has gone from the mean square and from each product:
+  //   time v = v + 2 sum (product + taken time v),   mean square = v - taken time v.
+  const double taken = static_cast<double>(sums.parameters) / static_cast<double>(sums.samples);
+  const double longest =
+      taken > 0.0 ? std::max(0.5 / taken, 1.0) : std::numeric_limits<double>::infinity();
+  const std::vector<double> shown = mean_products(runs, longest);
+  const double lags = static_cast<double>(shown.size()) - 1.0;
+  const double sum = std::accumulate(shown.begin() + 1, shown.end(), 0.0) / shown.front();
+  const double left = 1.0 - 2.0 * taken * (lags - sum);
+  return left > 0.0 ? std::min((1.0 + 2.0 * sum) / left, longest) : longest;
+}
+
+ResidualCorrelation correlation_of(const FitData& data, std::span<const double> residuals) {
+  std::vector<RunOfResiduals> runs;
   for (const PatchSpan& patch : data.patches) {
-    longest = std::max(longest, patch.size());
-    for (std::size_t i = patch.begin + 1; i < patch.end; ++i) {
-      arc += (data.points[i].position - data.points[i - 1].position).norm();
-      ++steps;
-    }
+    const auto of_patch = residuals.subspan(patch.begin, patch.size());
+    runs.push_back({{of_patch.begin(), of_patch.end()}, 0});
   }
-  double sum = first.value;
-  for (std::size_t lag = 2; lag < longest; ++lag) {
-    const LagCorrelation correlation = at_lag(data, residuals, lag, variance);
-    if (correlation.pairs == 0 || correlation.value <= 0.0) {
-      break;
-    }
-    sum += correlation.value;
-  }
-  result.time = 1.0 + 2.0 * sum;
-  result.length = steps > 0 ? result.time * arc / static_cast<double>(steps) : 0.0;
-  return result;
+  const double time = correlation_time(runs);
+  return time > 1.0 ? ResidualCorrelation{time, time * mean_step(data)} : ResidualCorrelation{};
 }
 
 }  // namespace palpate

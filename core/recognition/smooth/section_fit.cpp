@@ -75,15 +75,16 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
     w[i] /= 1.0 + slope * slope;
   }
   SectionFit fit{section, frame, OrthogonalPolynomials(x, w, y, highest), 1};
-  const double count = static_cast<double>(n);
+  const double count = static_cast<double>(n) / noise.time;
   const auto choose = [&](bool noise_known) {
     int degree = 1;
     double best = std::numeric_limits<double>::infinity();
     for (int d = 1; d <= highest; ++d) {
       const double chi2 =
           std::max(fit.polynomials.residual_sum(d), std::numeric_limits<double>::min());
-      const double criterion = (noise_known ? chi2 / noise.variance : count * std::log(chi2)) +
-                               (d + 1) * std::log(count);
+      const double criterion =
+          (noise_known ? chi2 / (noise.variance * noise.time) : count * std::log(chi2)) +
+          (d + 1) * std::log(count);
       if (criterion < best) {
         best = criterion;
         degree = d;
@@ -95,6 +96,17 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
   fit.degree = noise.known ? choose(true) : by_residuals;
   fit.shows_noise = by_residuals + 2 <= highest && !is_no_graph(points);
   return fit;
+}
+
+std::vector<double> residuals_of(const FitData& data, const SectionFit& fit, int degree) {
+  std::vector<double> residuals;
+  residuals.reserve(fit.section.size());
+  for (std::size_t i = fit.section.begin; i < fit.section.end; ++i) {
+    const FitPoint& point = data.points[i];
+    const auto path = fit.polynomials.evaluate(fit.frame.along(point.position), degree);
+    residuals.push_back(fit.distance(point, path) * point.inverse_sigma);
+  }
+  return residuals;
 }
 
 }  // namespace palpate

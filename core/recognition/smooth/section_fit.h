@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "core/curves/plane_curve.h"
 #include "core/numerics/orthogonal_polynomials.h"
@@ -42,17 +44,28 @@ struct SectionFit {
   /// distinguish classes when there are several patches.
   int reduced_degree() const { return std::min(degree + 2, polynomials.degree()); }
   bool lacks_degrees() const { return degree + 2 > polynomials.degree(); }
+
+  /// Distance of a point from the path, whose value there is `path`.
+  double distance(const FitPoint& point, const OrthogonalPolynomials::Value& path) const {
+    const double slope = path.derivative / frame.half_length;
+    return (frame.across(point.position) - path.value) / std::sqrt(1.0 + slope * slope);
+  }
 };
 
 /// The noise used to choose a section's degree.
 struct SectionNoise {
   bool known = true;      ///< otherwise the criterion profiles it
   double variance = 1.0;  ///< in units of the stated variance
+  double time = 1.0;      ///< so many neighbours err together (residual_correlation.h)
 };
 
 /// The polynomial through the samples of `section`, its degree by the criterion of Schwarz (BIC).
 /// nullopt for fewer than kFewestOfSection, and where both ends lie at one place.
 std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& section,
                                       const SectionNoise& noise);
+
+/// What the samples leave across the polynomial of one degree, as distances in units of their
+/// noise.
+std::vector<double> residuals_of(const FitData& data, const SectionFit& fit, int degree);
 
 }  // namespace palpate

@@ -5,8 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "core/numerics/chi_square.h"
 #include "core/numerics/negligible.h"
 #include "core/numerics/orthogonal_polynomials.h"
+#include "core/recognition/smooth/residual_correlation.h"
 #include "core/recognition/smooth/section_fit.h"
 #include "core/recognition/smooth/turning_sections.h"
 
@@ -43,11 +45,14 @@ void keep_points(FitData* data, const PatchSpan& patch, const PatchSpan& section
   }
 }
 
-void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model) {
+/// `neighbours`: of the residuals of the chosen degree.
+void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model,
+                  NeighbourSums* neighbours) {
   const OrthogonalPolynomials& polynomials = fit.polynomials;
   const int degree = fit.reduced_degree();
   model->chi2 += polynomials.residual_sum(degree);
   model->parameters += degree + 1;
+  model->coefficients += degree + 1;
   const auto rule = polynomials.gauss_rule(degree);
   const std::size_t begin = model->reduced.points.size();
   const double offset = data->points[fit.section.begin].offset;
@@ -74,21 +79,32 @@ void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model) {
           std::sqrt(polynomials.slope_variance(node.x, degree)) / fit.frame.half_length;
     }
   }
+  double before = 0.0;
   for (std::size_t i = fit.section.begin; i < fit.section.end; ++i) {
-    const double x = fit.frame.along(data->points[i].position);
-    data->points[i].tangent = fit.frame.tangent(polynomials.evaluate(x, fit.degree).derivative);
+    FitPoint& point = data->points[i];
+    const double x = fit.frame.along(point.position);
+    const auto path = polynomials.evaluate(x, fit.degree);
+    point.tangent = fit.frame.tangent(path.derivative);
+    const double residual = fit.distance(point, path) * point.inverse_sigma;
+    neighbours->squares += residual * residual;
+    neighbours->products += before * residual;
+    before = residual;
     std::size_t nearest = 0;
     for (std::size_t k = 1; k < rule.size(); ++k) {
       nearest = std::abs(rule[k].x - x) < std::abs(rule[nearest].x - x) ? k : nearest;
     }
     model->nearest_reduced[i] = static_cast<std::uint32_t>(begin + nearest);
   }
+  neighbours->samples += fit.section.size();
+  neighbours->pairs += fit.section.size() - 1;
+  neighbours->parameters += static_cast<std::size_t>(fit.degree) + 1;
 }
 
 /// A section with its polynomial, or without one if its samples stand for themselves.
 struct Section {
   PatchSpan points;
   std::optional<SectionFit> fit;
+  bool is_part = false;  ///< of a section that no polynomial follows
 
   double chi2() const { return fit->polynomials.residual_sum(fit->reduced_degree()); }
   int dof() const { return fit ? static_cast<int>(points.size()) - fit->reduced_degree() - 1 : 0; }
@@ -96,24 +112,24 @@ struct Section {
 
 /// Fits a section, or its two halves if even a high degree does not follow it (a sharp bend).
 void smooth_section(const FitData& data, const PatchSpan& points, const SectionNoise& noise,
-                    std::vector<Section>* sections) {
+                    std::vector<Section>* sections, bool is_part = false) {
   auto whole = fit_section(data, points, noise);
   constexpr int kHighDegree = OrthogonalPolynomials::kMaxDegree - 2;
   if (whole && whole->degree >= kHighDegree && points.size() >= 4 * kFewestOfSection) {
     const std::size_t middle = points.begin + points.size() / 2;
-    smooth_section(data, {points.begin, middle}, noise, sections);
-    smooth_section(data, {middle, points.end}, noise, sections);
+    smooth_section(data, {points.begin, middle}, noise, sections, true);
+    smooth_section(data, {middle, points.end}, noise, sections, true);
     return;
   }
-  sections->push_back({points, std::move(whole)});
+  sections->push_back({points, std::move(whole), is_part});
 }
 
 /// True if chi2 is larger than noise of this variance can make it. For white noise chi-square
 /// exceeds dof + 2 sqrt(dof x) + 2 x with probability exp(-x) at most (B. Laurent and P. Massart,
-/// 2000, lemma 1).
-bool is_no_noise(double chi2, int dof, double variance) {
-  return dof > 0 && chi2 > variance * (dof + 2.0 * std::sqrt(dof * kNegligibleLogOdds) +
-                                       2.0 * kNegligibleLogOdds);
+/// 2000, lemma 1). Where neighbours err together, chi2 / time is that of dof / time samples.
+bool is_no_noise(double chi2, int dof, const SectionNoise& noise) {
+  const double x = noise.time * kNegligibleLogOdds;
+  return dof > 0 && chi2 > noise.variance * (dof + 2.0 * std::sqrt(dof * x) + 2.0 * x);
 }
 
 /// The quietest sections: those of lowest variance that have a quarter of all degrees of freedom,
@@ -149,7 +165,7 @@ QuietSections quiet_of(const std::vector<Section>& sections, bool sigma_known) {
 
 /// What a section is held against.
 struct Yardstick {
-  double variance = 1.0;  ///< of the noise, in units of the stated one
+  SectionNoise noise;
   /// The noise is stated, or sections with degrees to spare show it: the others may do without a
   /// polynomial.
   bool shown_elsewhere = true;
@@ -159,10 +175,10 @@ struct Yardstick {
 /// of its samples lie in a bend (by chance this happens to fewer than one section in a million, and
 /// then costs only time), or its samples are too few for the two degrees more that reduced points
 /// need, so that it may swing between them (next to a cusp).
-bool is_not_followed(const Section& section, const Yardstick& noise) {
+bool is_not_followed(const Section& section, const Yardstick& yardstick) {
   const int dof = section.dof();
-  return dof > 0 && (is_no_noise(section.chi2(), dof, noise.variance) ||
-                     (noise.shown_elsewhere && section.fit->lacks_degrees()));
+  return dof > 0 && (is_no_noise(section.chi2(), dof, yardstick.noise) ||
+                     (yardstick.shown_elsewhere && section.fit->lacks_degrees()));
 }
 
 /// True if most degrees of freedom are those of sections that have degrees to spare.
@@ -185,12 +201,13 @@ void cut_until_followed(const FitData& data, Section section, const SectionNoise
     return;
   }
   if (points.size() < 2 * kFewestOfSection) {
-    sections->push_back({points, std::nullopt});
+    sections->push_back({points, std::nullopt, true});
     return;
   }
   const std::size_t middle = points.begin + points.size() / 2;
   for (const PatchSpan& half : {PatchSpan{points.begin, middle}, PatchSpan{middle, points.end}}) {
-    cut_until_followed(data, {half, fit_section(data, half, noise)}, noise, yardstick, sections);
+    cut_until_followed(data, {half, fit_section(data, half, noise), true}, noise, yardstick,
+                       sections);
   }
 }
 
@@ -222,53 +239,141 @@ std::vector<Section> smoothed(const FitData& data, const SectionNoise& noise) {
   return sections;
 }
 
-void add_section(FitData* data, const PatchSpan& patch, const Section& section,
-                 SmoothModel* model) {
+void add_section(FitData* data, const PatchSpan& patch, const Section& section, SmoothModel* model,
+                 NeighbourSums* neighbours) {
   if (section.fit) {
-    add_smoothed(data, *section.fit, model);
+    add_smoothed(data, *section.fit, model, neighbours);
   } else {
     keep_points(data, patch, section.points, model);
   }
 }
 
-}  // namespace
-
-double SmoothModel::noise_ratio() const {
-  return dof() > 0 ? std::sqrt(chi2 / static_cast<double>(dof())) : 0.0;
+/// What the sections tell of neighbours that err together. Of a stated noise they may show only a
+/// part, of which alone it is known that neighbours share it.
+double noise_time_of(const FitData& data, const std::vector<Section>& sections, bool sigma_known) {
+  // Noise of which neighbours correlate by 0.9 leaves a cubic over 111 samples a third of its
+  // variance, and in one of a hundred patches a tenth.
+  constexpr double kLeastShown = 0.1;
+  std::vector<RunOfResiduals> left;
+  double chi2 = 0.0;
+  double samples = 0.0;
+  for (const Section& section : sections) {
+    if (section.fit) {
+      const int degree = section.fit->reduced_degree();
+      left.push_back(
+          {residuals_of(data, *section.fit, degree), static_cast<std::size_t>(degree) + 1});
+      chi2 += section.chi2();
+      samples += static_cast<double>(section.points.size());
+    }
+  }
+  const double time = correlation_time(left);
+  const double share = sigma_known ? std::min(1.0, chi2 / (kLeastShown * samples)) : 1.0;
+  constexpr double kNothing = 0.01;  // less changes no answer
+  const double more = share * (time - 1.0);
+  return more > kNothing ? 1.0 + more : 1.0;
 }
 
-SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated) {
+/// The smooth model of noise of which so many neighbours err together.
+SmoothModel smooth_model_of(FitData* data, SectionNoise noise, StatedNoise stated) {
   SmoothModel model;
   model.points = static_cast<int>(data->points.size());
   model.nearest_reduced.resize(data->points.size());
   model.reduced.frame = data->frame;
   model.reduced.scale = data->scale;
-  SectionNoise noise{sigma_known, 1.0};
   std::vector<Section> sections = smoothed(*data, noise);
-  QuietSections quiet = quiet_of(sections, sigma_known);
-  if (sigma_known && stated == StatedNoise::Holds) {
+  QuietSections quiet = quiet_of(sections, noise.known);
+  if (noise.known && stated == StatedNoise::Holds) {
     quiet.highest = 1.0;
-  } else if (sigma_known && is_no_noise(quiet.chi2, quiet.dof, 1.0)) {
+  } else if (noise.known && is_no_noise(quiet.chi2, quiet.dof, noise)) {
     // The stated noise is too low everywhere: with it, the fits would follow the noise itself.
     noise.variance = quiet.chi2 / quiet.dof;
     sections = smoothed(*data, noise);
-    quiet = quiet_of(sections, sigma_known);
+    quiet = quiet_of(sections, noise.known);
   }
-  const Yardstick yardstick{sigma_known ? std::max(quiet.highest, 1.0) : quiet.highest,
-                            sigma_known || mostly_with_degrees(sections)};
+  const double variance = noise.known ? std::max(quiet.highest, 1.0) : quiet.highest;
+  const Yardstick yardstick{{noise.known, variance, noise.time},
+                            noise.known || mostly_with_degrees(sections)};
   sections = followed(*data, std::move(sections), noise, yardstick);
 
+  NeighbourSums neighbours;
   auto section = sections.begin();
   for (const PatchSpan& patch : data->patches) {
     const std::size_t begin = model.reduced.points.size();
     const auto first = section;
     for (; section != sections.end() && section->points.begin < patch.end; ++section) {
-      add_section(data, patch, *section, &model);
+      add_section(data, patch, *section, &model, &neighbours);
       model.sections.back().joined = section != first;
     }
     model.reduced.patches.push_back({begin, model.reduced.points.size(), patch.is_joined});
   }
+  model.is_halved =
+      std::any_of(sections.begin(), sections.end(), [](const Section& s) { return s.is_part; });
+  if (neighbours.look_alike()) {
+    model.noise_time = noise_time_of(*data, sections, noise.known);
+  }
   return model;
+}
+
+/// Whether the sections may have followed what neighbours share. Of a stated noise they leave less
+/// then than it does once in a thousand times. Where nobody states it, polynomials do not follow it
+/// for long.
+bool may_follow_noise(const SmoothModel& model, bool sigma_known) {
+  constexpr double kOneInThousand = 1e-3;
+  const int dof = static_cast<int>(model.noise_dof() / model.noise_time);
+  return sigma_known ? dof > 0 && chi_square_survival(model.chi2 / model.noise_time, dof) >
+                                      1.0 - kOneInThousand
+                     : model.is_halved;
+}
+
+/// The slowest noise that is told from paths: half of it would be taken by a cubic in each patch.
+double slowest_noise(const FitData& data) {
+  constexpr double kCoefficients = 4.0;
+  return std::max(1.0, 0.5 * static_cast<double>(data.points.size()) /
+                           (kCoefficients * static_cast<double>(data.patches.size())));
+}
+
+}  // namespace
+
+double SmoothModel::noise_dof() const { return dof() - (noise_time - 1.0) * coefficients; }
+
+double SmoothModel::noise_ratio() const {
+  return noise_dof() > 0.0 ? std::sqrt(chi2 / noise_dof()) : 0.0;
+}
+
+SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated) {
+  constexpr double kSame = 1.25;  // times that smooth alike
+  constexpr int kMostTimes = 3;
+  int times = 0;
+  // From the noise of that time to the one that its sections show.
+  const auto settled = [&](double time, FitData* smoothed) {
+    SmoothModel model;
+    for (int i = 0; i < kMostTimes; ++i) {
+      model = smooth_model_of(smoothed, {sigma_known, 1.0, time}, stated);
+      ++times;
+      if (std::max(model.noise_time / time, time / model.noise_time) <= kSame) {
+        break;
+      }
+      time = model.noise_time;
+    }
+    return model;
+  };
+  SmoothModel model = settled(1.0, data);
+  // Sections that follow what neighbours share leave little of it, and that is white.
+  const double slowest = slowest_noise(*data);
+  if (slowest > kSame && may_follow_noise(model, sigma_known)) {
+    FitData again = *data;
+    SmoothModel slow = settled(slowest, &again);
+    if (slow.noise_time > kSame * model.noise_time) {
+      model = std::move(slow);
+      *data = std::move(again);
+    }
+  }
+  model.times = times;
+  return model;
+}
+
+double noise_length(const SmoothModel& smooth, const FitData& data) {
+  return smooth.noise_time > 1.0 ? smooth.noise_time * mean_step(data) : 0.0;
 }
 
 void scale_noise(double factor, FitData* data, SmoothModel* smooth) {

@@ -24,7 +24,7 @@ struct ReducedSection {
 /// with much larger residuals does not fit, and none can have smaller ones.
 struct SmoothModel {
   double chi2 = 0.0;   ///< sum of squared normalised residuals
-  int parameters = 0;  ///< polynomial coefficients of all sections
+  int parameters = 0;  ///< coefficients of all polynomials, and points without one
   int points = 0;      ///< points plus measured normals
   /// The nodes of each section's discrete Gauss quadrature, on the fitted polynomial, with the
   /// weights as inverse variances. For any curve that the section's polynomials can follow, up to
@@ -35,10 +35,18 @@ struct SmoothModel {
   std::vector<ReducedSection> sections;  ///< covers all reduced points, in order
   /// For every point, the index of the nearest reduced point along its section.
   std::vector<std::uint32_t> nearest_reduced;
+  /// Of so many samples of a stroke, which err together, each counts as one; 1 = white noise.
+  double noise_time = 1.0;
+  int coefficients = 0;    ///< of the polynomials alone
+  bool is_halved = false;  ///< some sections are halves of one that no polynomial followed
+  int times = 1;           ///< that all samples were smoothed
 
   int dof() const { return points - parameters; }
-  /// Square root of chi-square per degree of freedom: the noise in units of the points' sigma. 0
-  /// without degrees of freedom.
+  /// Degrees of freedom that are left to estimate the noise from: of noise that neighbours share, a
+  /// coefficient takes `noise_time` of them.
+  double noise_dof() const;
+  /// Square root of chi-square over noise_dof(): the noise in units of the points' sigma; 0 without
+  /// any.
   double noise_ratio() const;
 };
 
@@ -53,9 +61,14 @@ enum class StatedNoise { MayBeTooLow, Holds };
 
 /// Cuts each patch into sections that turn by less than about a radian and fits each by a
 /// polynomial. The Bayesian information criterion chooses its degree. `sigma_known`: the points'
-/// noise is known; otherwise the criterion profiles it. Sets the tangents of `data`. O(points).
+/// noise is known; otherwise the criterion profiles it. Where neighbours err together, as the
+/// sections show, BIC counts so many fewer samples. Sets the tangents of `data`. O(points).
 SmoothModel fit_smooth_model(FitData* data, bool sigma_known,
                              StatedNoise stated = StatedNoise::MayBeTooLow);
+
+/// Length of path over which neighbours err together, in units of the points: that of `noise_time`
+/// samples at their mean distance; 0 = white noise.
+double noise_length(const SmoothModel& smooth, const FitData& data);
 
 /// Multiplies the noise of all points and reduced points by `factor`, and divides chi2 by its
 /// square.

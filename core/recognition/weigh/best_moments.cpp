@@ -74,18 +74,23 @@ BestMoments moments_of_best(const Weighing& w, WorkBudget& work) {
     if (coherent) {
       result.coherent_deviation = std::sqrt(coherent->probability) * coherent->deviation;
       result.moment = with_coherence(*coherent, result.moment, best->covariance, w.inflation,
-                                     w.stated.coherent_variance);
+                                     w.stated.form_inflation());
     }
+  }
+  if (result.moment && !(result.moment->diagonal().array() > 0.0).all()) {
+    // Its parts lie more than a double's digits apart, and rounding leaves less than nothing.
+    result.moment = untold_covariance(result.moment->rows());
   }
   return result;
 }
 
-double told_deviation_m(const BestMoments& moments, double scale_m) {
+double in_steps(double told) {
   constexpr double kSteps = 2.0;  // to a factor of two
-  return moments.coherent_deviation > 0.0
-             ? scale_m *
-                   std::exp2(std::ceil(kSteps * std::log2(moments.coherent_deviation)) / kSteps)
-             : 0.0;
+  return std::exp2(std::ceil(kSteps * std::log2(told)) / kSteps);
+}
+
+double told_deviation_m(const BestMoments& moments, double scale_m) {
+  return moments.coherent_deviation > 0.0 ? scale_m * in_steps(moments.coherent_deviation) : 0.0;
 }
 
 }  // namespace palpate

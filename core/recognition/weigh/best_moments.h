@@ -22,8 +22,11 @@ struct BestMoments {
 /// Once for an answer: of several weighings only that which it is told from needs them.
 BestMoments moments_of_best(const Weighing& weighing, WorkBudget& work);
 
-/// What residuals tell of a smooth deviation, to a factor of the root of two and no less, so that
-/// windows are not made anew wherever a sample changes it a little. [m]
+/// The next larger power of the root of two, of what windows are made by: so that they are not made
+/// anew wherever a sample changes it a little.
+double in_steps(double told);
+
+/// What residuals tell of a smooth deviation, in such steps. [m]
 double told_deviation_m(const BestMoments& moments, double scale_m);
 
 }  // namespace palpate

@@ -23,8 +23,10 @@ double log_evidence_near_best(CurveClass best, double least_size, double least,
   if (!evidence || !placed) {
     return kNoEvidence;
   }
+  // Of the class with noise alone: what neighbours share is a deviation already.
   const double of_class = log_evidence(context.likelihood, contenders.evidences, best,
-                                       chi2_without_deviation(contenders, context, best));
+                                       chi2_without_deviation(contenders, context, best)) -
+                          contenders.evidences.log_shared[best];
   const auto gain = log_gain_near_class(
       *placed, *evidence, points_of(*contenders.coarse[best], context.reduced), context.likelihood,
       arcs.sigma, arcs.smooth.chi2, least_size, least - of_class - kLogOfParts, context.work);

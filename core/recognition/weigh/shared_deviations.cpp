@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -89,6 +90,8 @@ Contenders with_shared_deviations(Contenders contenders, const EvidenceContext& 
   if (classes.size() < 2 && !may_be_other) {
     return contenders;
   }
+  // A stated noise is all by which a probe errs.
+  const double most = of_any_size ? std::numeric_limits<double>::infinity() : 1.0;
   ByClass<double> gain{};
   for (const CurveClass curve_class : classes) {
     if (!context.work.allows()) {
@@ -100,7 +103,7 @@ Contenders with_shared_deviations(Contenders contenders, const EvidenceContext& 
                    ? log_coherent_gain(*placed, *evidence,
                                        points_of(*contenders.coarse[curve_class], context.reduced),
                                        context.likelihood, context.arcs.sigma,
-                                       context.arcs.smooth.chi2, context.work)
+                                       context.arcs.smooth.chi2, most, context.work)
                    : std::nullopt;
     if (own) {
       own = over_all_points(*own, curve_class, contenders, context);

@@ -135,7 +135,7 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   w.margin_of_unclassified = margin_of_unclassified(contenders.fits, arcs.smooth.chi2,
                                                     context.likelihood, contenders.evidences);
   w.rival_share = rival_share(contenders.fits, context.likelihood, contenders.evidences);
-  w.inflation = seen.noise_inflation * seen.student_inflation + stated.coherent_variance;
+  w.inflation = seen.noise_inflation * seen.student_inflation + stated.form_inflation();
   const auto& best = contenders.fits[w.best];
   w.counted_chi2 = misfit_of(best ? best->chi2 : arcs.smooth.chi2, context.likelihood);
   w.canonical = placed_canonically(contenders, w.probabilities, context, std::move(best_placed));
@@ -281,8 +281,10 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
 
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
                WorkBudget& work, const WeighOptions& options, std::span<const SidedStart> starts) {
-  work.spend(WorkKind::Sample, data.points.size());
-  return weigh_arcs(smooth_arcs(std::move(data), sigma_known), patches, work, options, starts);
+  const std::size_t samples = data.points.size();
+  Arcs arcs = smooth_arcs(std::move(data), sigma_known);
+  work.spend(WorkKind::Sample, samples * static_cast<std::size_t>(arcs.smooth.times));
+  return weigh_arcs(std::move(arcs), patches, work, options, starts);
 }
 
 }  // namespace palpate

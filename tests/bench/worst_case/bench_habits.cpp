@@ -1,7 +1,7 @@
 // The effect of a probe's habits on answers, over random scenes that are otherwise the same: noise
-// that is not stated or stated wrongly, a probe that stands still, spikes, strokes that do not
-// meet, a wavy part. Prints which answers are right, which are sure and wrong, and which scenes
-// lose samples.
+// that is not stated or stated wrongly or shared by neighbours, a probe that stands still, spikes,
+// strokes that do not meet, a wavy part. Prints which answers are right, which are sure and wrong,
+// and which scenes lose samples.
 //   bench_habits [--scenes N] [--seed S]
 #include <cstdio>
 #include <random>
@@ -96,6 +96,13 @@ constexpr Habit kHabits[] = {
     {"noise not stated", [](InputRecipe* r) { r->stated_over_true = 0.0; }},
     {"noise stated three times too high", [](InputRecipe* r) { r->stated_over_true = 3.0; }},
     {"noise stated three times too low", [](InputRecipe* r) { r->stated_over_true = 1.0 / 3.0; }},
+    {"neighbours' noise correlates by 0.5", [](InputRecipe* r) { r->shared_noise = 0.5; }},
+    {"by 0.8", [](InputRecipe* r) { r->shared_noise = 0.8; }},
+    {"by 0.8, noise not stated",
+     [](InputRecipe* r) {
+       r->shared_noise = 0.8;
+       r->stated_over_true = 0.0;
+     }},
     {"30 % of the samples stand still", [](InputRecipe* r) { r->dwelling = 0.3; }},
     {"80 % of the samples stand still", [](InputRecipe* r) { r->dwelling = 0.8; }},
     {"30 % stand still, noise not stated",

@@ -50,7 +50,8 @@ struct InputRecipe {
   double size_m = 0.025;
   double arc = 0.5;               ///< of each patch
   double coverage = 1.0;          ///< patches begin within this share of the curve
-  double sigma = 1e-3;            ///< white noise of the samples
+  double sigma = 1e-3;            ///< noise of the samples
+  double shared_noise = 0.0;      ///< correlation of neighbours' noise, 0 to 1; 0 = white
   double stated_over_true = 1.0;  ///< stated sigma divided by the true one; 0 = not stated
   double spikes = 0.0;            ///< share of samples, 0 to 0.3
   double spike_size = 0.1;

@@ -11,6 +11,7 @@
 #include "core/part/segment_belonging.h"
 #include "core/part/segment_match.h"
 #include "tests/support/closed_spline_part.h"
+#include "tests/support/most_of_poisson.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
@@ -138,7 +139,8 @@ struct Trials {
 };
 
 /// Strokes of one length, anywhere on the part.
-Trials run_trials(double sigma_m, double arc_m, int count, int patches, std::mt19937_64& rng) {
+Trials run_trials(double sigma_m, double arc_m, int count, int patches, std::mt19937_64& rng,
+                  double correlation = 0.0) {
   const ClosedSpline part = test::paper_part();
   const double limit_95 = chi_square_threshold(0.05, 3);
   Trials trials;
@@ -149,7 +151,8 @@ Trials run_trials(double sigma_m, double arc_m, int count, int patches, std::mt1
     for (int p = 0; p < patches; ++p) {
       strokes.push_back(random_stroke(part, arc_m, rng));
     }
-    const test::TouchedPart touched = test::touch(part, truth, strokes, sigma_m, sigma_m, rng);
+    const test::TouchedPart touched =
+        test::touch(part, truth, strokes, sigma_m, sigma_m, rng, 0.0, correlation);
     const SegmentMatch match = match_segment(part, touched.patches);
     trials.no_match += match.status == SegmentMatchStatus::NoMatch;
     const std::vector<double>& t = touched.t[match.longest_patch];
@@ -214,6 +217,27 @@ TEST(SegmentMatchStatistics, NoisyData) { expect_calibrated("noisy", 5e-5, 0.028
 TEST(SegmentMatchStatistics, ShortPatches) { expect_calibrated("short", 2e-5, 0.015, 1); }
 TEST(SegmentMatchStatistics, TwoPatches) { expect_calibrated("two patches", 5e-5, 0.02, 2); }
 TEST(SegmentMatchStatistics, MuchNoise) { expect_calibrated("much noise", 2e-4, 0.028, 1); }
+
+TEST(SegmentMatchStatistics, NoiseThatNeighboursShare) {
+  auto rng = test::test_rng();
+  for (const double correlation : {0.5, 0.8}) {
+    const Trials t = run_trials(2e-5, 0.028, test::stress_count(150), 2, rng, correlation);
+    const int right = t.determined - t.determined_wrong;
+    const double square = t.squares / std::max(right, 1);
+    std::printf(
+        "correlation %g: %d trials, determined %d, wrong %d, no match %d; mean squared "
+        "error %.2f (law 3)\n",
+        correlation, t.count, t.determined, t.determined_wrong, t.no_match, square);
+    if (test::counts_tell()) {
+      // A part that is the right one is no match for one in a thousand; twice that, for it is only
+      // estimated how many neighbours err together, from some 25 independent ones: to a third or
+      // so.
+      EXPECT_LE(t.no_match, test::most_of_poisson(2e-3 * t.count));
+      EXPECT_LE(square, 3.0 * 4.0 / 3.0 + 4.0 * std::sqrt(6.0 / std::max(right, 1)));
+      EXPECT_LE(t.determined_wrong, t.expected_wrong + 4.0 * std::sqrt(t.expected_wrong) + 1.0);
+    }
+  }
+}
 
 TEST(LongestSegmentStatistics, FalseJointsAreNoMoreThanTheSignificance) {
   const ClosedSpline part = test::paper_part();

@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "core/numerics/orthogonal_polynomials.h"
+#include "tests/support/most_of_poisson.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
@@ -52,6 +54,61 @@ TEST(ResidualCorrelation, FirstOrderProcessHasItsIntegratedTime) {
   // The estimate's own spread, about time * sqrt(2 (2 lags + 1) / n) with some 40 lags: 0.8.
   EXPECT_NEAR(correlation.time, 9.0, 2.5);
   EXPECT_NEAR(correlation.length, correlation.time * 0.01, 1e-3);
+}
+
+/// What the polynomial of that degree leaves of noise of which neighbours correlate so much.
+RunOfResiduals left_by_polynomial(double correlation, std::size_t n, int degree,
+                                  std::mt19937_64& rng) {
+  std::normal_distribution<double> normal;
+  std::vector<double> x(n), r(n);
+  const std::vector<double> w(n, 1.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    x[i] = 2.0 * static_cast<double>(i) / static_cast<double>(n - 1) - 1.0;
+    const double rest = i == 0 ? 1.0 : std::sqrt(1.0 - correlation * correlation);
+    r[i] = rest * normal(rng) + (i == 0 ? 0.0 : correlation * r[i - 1]);
+  }
+  const OrthogonalPolynomials fit(x, w, r, degree);
+  for (std::size_t i = 0; i < n; ++i) {
+    r[i] -= fit.evaluate(x[i], degree).value;
+  }
+  return {r, static_cast<std::size_t>(degree) + 1};
+}
+
+TEST(ResidualCorrelation, WhatPolynomialsTookIsPutBack) {
+  std::mt19937_64 rng = test::test_rng();
+  constexpr double kCorrelation = 0.6;
+  std::vector<RunOfResiduals> runs;
+  for (int i = 0; i < 200; ++i) {
+    runs.push_back(left_by_polynomial(kCorrelation, 111, 6, rng));
+  }
+  // Of a time of 4 and 7 coefficients, 7 / 111 * 4 = 0.25 of the variance is taken. The
+  // correlations 0.6 and 0.36 are above it; 0.216 and what follows are not seen, and are left out.
+  constexpr double kSeen = 1.0 + 2.0 * (0.6 + 0.36);
+  // Of 22,200 samples, over so few lags: 2.9 sqrt(2 * 5 / 22200) = 0.06. A coefficient takes a
+  // little less than that many variances, for it is no constant.
+  EXPECT_NEAR(correlation_time(runs), kSeen, 4 * 0.06);
+  for (RunOfResiduals& run : runs) {
+    run.parameters = 0;
+  }
+  EXPECT_LT(correlation_time(runs), kSeen - 0.5);
+}
+
+TEST(ResidualCorrelation, WhatPolynomialsLeaveOfWhiteNoiseIsWhite) {
+  std::mt19937_64 rng = test::test_rng();
+  constexpr int kTrials = 2000;
+  int coloured = 0;
+  int told = 0;  // where neighbours correlate by a half, as the two sections of 55 show
+  for (int trial = 0; trial < kTrials; ++trial) {
+    for (const double correlation : {0.0, 0.5}) {
+      const std::vector<RunOfResiduals> runs = {left_by_polynomial(correlation, 55, 5, rng),
+                                                left_by_polynomial(correlation, 55, 5, rng)};
+      (correlation > 0.0 ? told : coloured) += correlation_time(runs) > 1.0 ? 1 : 0;
+    }
+  }
+  EXPECT_LE(coloured, test::most_of_poisson(1e-3 * kTrials));
+  // Their sum is then (0.5 - 3 x 6 / 55) / (1 - 3 x 6 / 55) + 6 / 55 of a variance, 3.4 of its
+  // deviations 1 / sqrt(98), above the 3.1 that one in a thousand exceeds.
+  EXPECT_GT(told, kTrials / 2);
 }
 
 TEST(ResidualCorrelation, NothingAndZerosAreWhite) {

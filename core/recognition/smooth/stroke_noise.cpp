@@ -1,0 +1,80 @@
+#include "core/recognition/smooth/stroke_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "core/local/noise.h"
+#include "core/numerics/negligible.h"
+
+namespace palpate {
+namespace {
+
+/// The variance of a sample of weight 1 in a stroke, in the units of the points.
+struct StrokeVariance {
+  double value = 0.0;
+  double dof = 0.0;  ///< 0: the stroke does not show it
+};
+
+StrokeVariance variance_of(std::span<const FitPoint> stroke, double least) {
+  std::vector<Vec2> positions;
+  double weights = 0.0;
+  for (const FitPoint& point : stroke) {
+    positions.push_back(point.position);
+    weights += point.inverse_sigma * point.inverse_sigma;
+  }
+  const NoiseEstimate noise = estimate_noise(positions);
+  if (noise.status != LocalStatus::Ok) {
+    return {};
+  }
+  const double sigma = std::max(noise.sigma_m, least);
+  return {sigma * sigma * weights / static_cast<double>(stroke.size()),
+          static_cast<double>(noise.dof)};
+}
+
+StrokeVariance pooled(const std::vector<StrokeVariance>& strokes, const StrokeVariance* without) {
+  StrokeVariance all;
+  for (const StrokeVariance& stroke : strokes) {
+    if (&stroke != without) {
+      all.value += stroke.dof * stroke.value;
+      all.dof += stroke.dof;
+    }
+  }
+  all.value /= std::max(all.dof, 1.0);
+  return all;
+}
+
+/// The logarithm of a variance has the variance 2 / dof.
+bool differs(const StrokeVariance& stroke, const StrokeVariance& others) {
+  return stroke.dof > 0.0 && others.dof > 0.0 &&
+         std::abs(std::log(stroke.value / others.value)) >
+             kNegligibleDeviations * std::sqrt(2.0 / stroke.dof + 2.0 / others.dof);
+}
+
+}  // namespace
+
+void weigh_strokes(FitData* data) {
+  if (data->patches.size() < 2) {
+    return;
+  }
+  const double least = std::max({rounding_level(*data), data->reading_noise, kExact});
+  std::vector<StrokeVariance> strokes;
+  for (std::size_t p = 0; p < data->patches.size(); ++p) {
+    strokes.push_back(variance_of(data->patch(p), least));
+  }
+  if (std::none_of(strokes.begin(), strokes.end(), [&](const StrokeVariance& stroke) {
+        return differs(stroke, pooled(strokes, &stroke));
+      })) {
+    return;
+  }
+  const double of_all = pooled(strokes, nullptr).value;
+  for (std::size_t p = 0; p < strokes.size(); ++p) {
+    const double ratio = strokes[p].dof > 0.0 ? std::sqrt(of_all / strokes[p].value) : 1.0;
+    for (std::size_t i = data->patches[p].begin; i < data->patches[p].end; ++i) {
+      data->points[i].inverse_sigma *= ratio;
+    }
+  }
+}
+
+}  // namespace palpate
