@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "core/numerics/negligible.h"
 #include "core/numerics/normal_law.h"
 
 namespace palpate {
@@ -24,26 +24,17 @@ NeighbourSums sums_of(std::span<const RunOfResiduals> runs) {
   return sums;
 }
 
-/// Mean products of residuals by the number of samples between them, while they are positive:
-/// beyond that there is only noise.
-std::vector<double> mean_products(std::span<const RunOfResiduals> runs, double most_lags) {
-  std::vector<double> means;
-  while (static_cast<double>(means.size()) <= most_lags) {
-    const std::size_t lag = means.size();
-    double sum = 0.0;
-    std::size_t pairs = 0;
-    for (const auto& [r, parameters] : runs) {
-      for (std::size_t i = 0; i + lag < r.size(); ++i) {
-        sum += r[i] * r[i + lag];
-        ++pairs;
-      }
+/// Mean product of residuals so many samples apart; 0 if there are none.
+double mean_product(std::span<const RunOfResiduals> runs, std::size_t lag) {
+  double sum = 0.0;
+  std::size_t pairs = 0;
+  for (const auto& [r, parameters] : runs) {
+    for (std::size_t i = 0; i + lag < r.size(); ++i) {
+      sum += r[i] * r[i + lag];
+      ++pairs;
     }
-    if (!(sum > 0.0)) {
-      break;
-    }
-    means.push_back(sum / static_cast<double>(pairs));
   }
-  return means;
+  return pairs > 0 ? sum / static_cast<double>(pairs) : 0.0;
 }
 
 }  // namespace
@@ -66,16 +57,42 @@ double correlation_time(std::span<const RunOfResiduals> runs) {
   if (!sums.look_alike()) {
     return 1.0;
   }
-  // Of the noise's variance v, `taken` time v has gone from the mean square and from each product:
-  //   time v = v + 2 sum (product + taken time v),   mean square = v - taken time v.
   const double taken = static_cast<double>(sums.parameters) / static_cast<double>(sums.samples);
   const double longest =
       taken > 0.0 ? std::max(0.5 / taken, 1.0) : std::numeric_limits<double>::infinity();
-  const std::vector<double> shown = mean_products(runs, longest);
-  const double lags = static_cast<double>(shown.size()) - 1.0;
-  const double sum = std::accumulate(shown.begin() + 1, shown.end(), 0.0) / shown.front();
+  const double square = mean_product(runs, 0);
+  // While they are positive: beyond that there is only noise.
+  std::size_t lag = 1;
+  double sum = 0.0;
+  double sum_of_squares = 0.0;
+  for (double shown = 0.0; static_cast<double>(lag) <= longest; ++lag) {
+    shown = mean_product(runs, lag) / square;
+    if (!(shown > 0.0)) {
+      break;
+    }
+    sum += shown;
+    sum_of_squares += shown * shown;
+  }
+  // Of the noise's variance v, `taken` time v has gone from the mean square and from each product:
+  //   time v = v + 2 sum (product + taken time v),   mean square = v - taken time v.
+  const double lags = static_cast<double>(lag) - 1.0;
   const double left = 1.0 - 2.0 * taken * (lags - sum);
-  return left > 0.0 ? std::min((1.0 + 2.0 * sum) / left, longest) : longest;
+  const double time = left > 0.0 ? std::min((1.0 + 2.0 * sum) / left, longest) : longest;
+  // Noise that swings, as of a probe that shakes, averages out sooner: with its first way back, if
+  // that is more than chance (M. S. Bartlett's variance of a correlation, 1946).
+  const double back = std::min(taken * time, 0.5);
+  double swing = 0.0;
+  double deepest = 0.0;
+  for (; static_cast<double>(lag) <= 2.0 * longest; ++lag) {
+    const double shown = (1.0 - back) * mean_product(runs, lag) / square + back;
+    if (!(shown < 0.0)) {
+      break;
+    }
+    swing += shown;
+    deepest = std::min(deepest, shown);
+  }
+  const double chance = std::sqrt((1.0 + 2.0 * sum_of_squares) / static_cast<double>(sums.samples));
+  return deepest < -kNegligibleDeviations * chance ? std::max(1.0, time + 2.0 * swing) : time;
 }
 
 ResidualCorrelation correlation_of(const FitData& data, std::span<const double> residuals) {

@@ -46,16 +46,39 @@ double scatter_of(const FitData& data, const Block& block) {
   return std::max(least, 0.0) / std::max(static_cast<double>(block.points.size()) - 2.0, 1.0);
 }
 
+/// Variance of the noise of samples in the direction in which it is largest, by how neighbours go
+/// to and fro: second differences, which a path leaves only where it bends within a few samples.
+double to_and_fro_of(const FitData& data, const Block& block) {
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  double count = 0.0;
+  for (std::size_t i = block.points.begin + 1; i + 1 < block.points.end; ++i) {
+    const Vec2 second =
+        data.points[i - 1].position - 2.0 * data.points[i].position + data.points[i + 1].position;
+    squares += second * second.transpose();
+    count += 1.0;
+  }
+  constexpr double kOfNoise = 6.0;  // 1 + 4 + 1 variances
+  const double most =
+      0.5 * squares.trace() + std::hypot(0.5 * (squares(0, 0) - squares(1, 1)), squares(0, 1));
+  return count > 0.0 ? most / (kOfNoise * count) : 0.0;
+}
+
 /// Noise variance of the samples: that of the median block, which a few bends do not change, or the
-/// stated one if that is larger. (Samples that stay at one place show no noise.)
+/// stated one if that is larger. (Samples that stay at one place show no noise.) Noise across the
+/// path alone, larger than the samples' distances, is along the blocks' lines and not across them:
+/// where neighbours go to and fro by much more, that is the noise.
 double typical_variance(const FitData& data, const PatchSpan& patch,
                         const std::vector<Block>& blocks, bool sigma_known) {
   std::vector<double> scatters;
-  scatters.reserve(blocks.size());
+  std::vector<double> to_and_fro;
   for (const Block& block : blocks) {
     scatters.push_back(scatter_of(data, block));
+    to_and_fro.push_back(to_and_fro_of(data, block));
   }
-  const double typical = median_of(scatters);
+  constexpr double kMuchMore = 4.0;  // noise alike in all directions seldom shows so much more
+  const double across = median_of(scatters);
+  const double most = median_of(to_and_fro);
+  const double typical = most > kMuchMore * across ? most : across;
   double least_stated = std::numeric_limits<double>::infinity();
   for (std::size_t i = patch.begin; sigma_known && i < patch.end; ++i) {
     const double inverse = data.points[i].inverse_sigma;

@@ -77,7 +77,7 @@ BestMoments moments_of_best(const Weighing& w, WorkBudget& work) {
                                      w.stated.form_inflation());
     }
   }
-  if (result.moment && !(result.moment->diagonal().array() > 0.0).all()) {
+  if (result.moment && !(result.moment->diagonal().array() >= 0.0).all()) {
     // Its parts lie more than a double's digits apart, and rounding leaves less than nothing.
     result.moment = untold_covariance(result.moment->rows());
   }

@@ -1,9 +1,12 @@
-// Strokes of unequal noise that nobody states: two fingers, or one that was moved faster.
+// Unequal noise: of strokes, where nobody states it (two fingers, or one that was moved faster),
+// and across the path alone (a probe that is read at the steps of an exact axis).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <random>
+#include <vector>
 
 #include "tests/support/most_of_poisson.h"
 #include "tests/support/scene_data.h"
@@ -63,6 +66,57 @@ TEST(UnequalNoise, OfStrokesIsToldByEach) {
       // next, but for parts that only both together tell: a tenth.
       EXPECT_GE(10 * tally.right, 9 * alike.right);
     }
+  }
+}
+
+/// The touches of a scene with noise of five mean steps, across the path alone or in any direction.
+test::Scene with_dense_noise(const test::PriorScene& drawn, bool across, std::mt19937_64& rng) {
+  constexpr double kSteps = 5.0;
+  double way = 0.0;
+  double steps = 0.0;
+  for (const auto& patch : drawn.exact_patches) {
+    for (std::size_t i = 1; i < patch.size(); ++i) {
+      way += (patch[i] - patch[i - 1]).norm();
+      steps += 1.0;
+    }
+  }
+  std::normal_distribution<double> normal;
+  test::Scene scene = drawn.scene;
+  scene.sigma_m = kSteps * way / steps;
+  for (std::size_t p = 0; p < scene.patches.size(); ++p) {
+    const std::vector<Vec2>& exact = drawn.exact_patches[p];
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      const Vec2 along = exact[std::min(i + 1, exact.size() - 1)] - exact[i > 0 ? i - 1 : 0];
+      const double dx = normal(rng);
+      const Vec2 any(dx, normal(rng));
+      scene.patches[p][i] =
+          exact[i] + scene.sigma_m * (across ? Vec2(dx * left_of(along.normalized())) : any);
+    }
+  }
+  return scene;
+}
+
+TEST(UnequalNoise, AcrossThePathAloneIsNoTurning) {
+  const int scenes = test::stress_count(300);
+  Tally any;
+  Tally across;
+  for (int i = 0; i < scenes; ++i) {
+    const auto number = static_cast<std::uint32_t>(i);
+    const test::PriorScene drawn =
+        test::scene_from(test::classes_only(test::even_prior()), test::test_seed(), number);
+    for (Tally* tally : {&any, &across}) {
+      std::mt19937_64 rng = test::test_rng(number);
+      const test::Scene scene = with_dense_noise(drawn, tally == &across, rng);
+      tally->count(test::recognise(scene, scene.sigma_m), scene.curve_class);
+    }
+  }
+  std::cout << "  noise of five steps, across the path alone: RECOGNIZED " << across.right << " of "
+            << scenes << ", wrong " << across.wrong << "; in any direction " << any.right << ", "
+            << any.wrong << "\n";
+  if (test::counts_tell()) {
+    EXPECT_LE(across.wrong, test::most_of_poisson(0.05 * (across.right + across.wrong)));
+    // A distance from a curve is across it: noise along the path changes little.
+    EXPECT_GE(4 * across.right, 3 * any.right);
   }
 }
 

@@ -111,6 +111,17 @@ TEST(ResidualCorrelation, WhatPolynomialsLeaveOfWhiteNoiseIsWhite) {
   EXPECT_GT(told, kTrials / 2);
 }
 
+TEST(ResidualCorrelation, WhatSwingsAveragesOut) {
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> normal;
+  // A swing of 15 samples beside white noise of a third of it. Over whole swings its mean is 0.
+  std::vector<double> r(300);
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    r[i] = std::sin(2.0 * kPi * static_cast<double>(i) / 15.0) + 0.3 * normal(rng);
+  }
+  EXPECT_EQ(correlation_of(straight_data(r.size()), r).time, 1.0);
+}
+
 TEST(ResidualCorrelation, NothingAndZerosAreWhite) {
   EXPECT_EQ(correlation_of(FitData{}, {}).time, 1.0);
   const std::vector<double> zeros(10, 0.0);
