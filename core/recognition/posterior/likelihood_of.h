@@ -34,7 +34,7 @@ struct ResidualExcess {
   double white_variance = 1.0;
   /// Additional factor on covariances: a noise estimated from few residuals may be larger.
   double student_inflation = 1.0;
-  /// True if neighbours may err together by more than noise does; the evidence must decide.
+  /// True if neighbours may err together; the evidence must decide.
   bool correlated = false;
   double correlation_length = 0.0;  ///< correlation length of the residuals, normalised; 0 = white
 };

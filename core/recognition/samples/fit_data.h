@@ -17,9 +17,9 @@ namespace palpate {
 /// third power: one in a million.
 inline constexpr double kLargestNoise = 0.01;
 
-/// Least noise, as a fraction of the half extent, where nobody states it: a tenth of an atom on a
-/// part 200 mm across. Points of a formula have less. Told of curves to their last digit, they
-/// would take all work to tell of these what no probe can.
+/// Least noise, as a fraction of the half extent, where nobody states it: an atom's width on a part
+/// 200 mm across. Points of a formula have less, but no probe does; taken to their last digit they
+/// would cost all the work that an answer may take.
 inline constexpr double kFinest = 1e-9;
 
 /// Of the half extent: points that fit to this are taken as exact where nobody states their noise.

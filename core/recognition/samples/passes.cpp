@@ -45,10 +45,14 @@ bool steps_back(std::span<const StoredSample> samples) {
 }
 
 struct Lengths {
-  double noise_m = 0.0;  ///< noise does not move a sample so far off its path
+  /// Noise does not move a sample so far off its path, nor does the path bend so far away from the
+  /// way between two samples.
+  double beside_m = 0.0;
   /// Noise does not put two samples so far apart. At least four median steps, because where the
   /// noise is as large as a patch, its estimate means nothing.
   double far_m = 0.0;
+  /// Nor does it reach so far from a turn: one step where it is stated.
+  double clear_m = 0.0;
 };
 
 /// Root mean square noise of the samples, as it is stated; 0 unless it is of all of them. [m]
@@ -62,6 +66,16 @@ double stated_noise_m(std::span<const StoredSample> samples, double default_sigm
     sum += sigma_m * sigma_m / sample.weight;
   }
   return std::sqrt(sum / static_cast<double>(samples.size()));
+}
+
+/// The median second difference of the path, which places where it turns back, and single spikes,
+/// do not change: of noise, of the bend of the way, or of both. [m]
+double second_difference_m(std::span<const Vec2> positions) {
+  std::vector<double> sizes;
+  for (std::size_t i = 1; i + 1 < positions.size(); ++i) {
+    sizes.push_back((positions[i - 1] - 2.0 * positions[i] + positions[i + 1]).norm());
+  }
+  return sizes.empty() ? 0.0 : median_of(sizes);
 }
 
 /// From the samples themselves and from their stated noise, whichever is more: where nothing but
@@ -80,12 +94,23 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples, double 
   }
   const NoiseEstimate noise = estimate_noise(positions);
   // 0 where either is not known.
-  const double sigma_m = std::max(noise.sigma_m, stated_noise_m(samples, default_sigma_m));
+  const double stated_m = stated_noise_m(samples, default_sigma_m);
+  // Passes of few samples, shorter than the blocks by which noise is estimated, are no noise: it
+  // makes second differences of 1 + 4 + 1 variances, the median of whose root is kMedian.
+  constexpr double kMedian = 1.1774100225154747;
+  const double second_m = second_difference_m(positions);
+  const double shown_m = stated_m > 0.0
+                             ? std::min(noise.sigma_m, second_m / (kMedian * std::sqrt(6.0)))
+                             : noise.sigma_m;
+  const double sigma_m = std::max(shown_m, stated_m);
   if (noise.status != LocalStatus::Ok && sigma_m == 0.0) {
     return std::nullopt;
   }
   const double noise_m = kFarDeviations * sigma_m;
-  return Lengths{noise_m, std::max(noise_m, kFarSteps * median_of(steps))};
+  const double step_m = median_of(steps);
+  const double bend_m = second_m / 4.0;  // a chord's height is an eighth of it: twice that
+  return Lengths{std::max(noise_m, bend_m), std::max(noise_m, kFarSteps * step_m),
+                 std::max(noise_m, (stated_m > 0.0 ? 1.0 : kFarSteps) * step_m)};
 }
 
 /// Distance from a place to the nearest step of a path through samples; nullopt if the nearest
@@ -126,9 +151,9 @@ Compared compared(std::span<const StoredSample> before, std::span<const StoredSa
     const double off = (place - turn).norm();
     const auto beside = distance_from(before, place);
     result.beyond += beside ? 0 : 1;
-    if (beside && off > lengths.far_m) {
+    if (beside && off > lengths.clear_m) {
       ++result.places;
-      result.on += *beside <= std::max(lengths.noise_m, kBeside * off) ? 1 : 0;
+      result.on += *beside <= std::max(lengths.beside_m, kBeside * off) ? 1 : 0;
     }
   }
   return result;

@@ -251,8 +251,8 @@ void add_section(FitData* data, const PatchSpan& patch, const Section& section, 
 /// What the sections tell of neighbours that err together. Of a stated noise they may show only a
 /// part, of which alone it is known that neighbours share it.
 double noise_time_of(const FitData& data, const std::vector<Section>& sections, bool sigma_known) {
-  // Noise of which neighbours correlate by 0.9 leaves a cubic over 111 samples a third of its
-  // variance, and in one of a hundred patches a tenth.
+  // Slower noise is hardly told from a path: of noise of which neighbours correlate by 0.95 a cubic
+  // over 111 samples leaves a third, and seldom less than this (residual_correlation_test).
   constexpr double kLeastShown = 0.1;
   std::vector<RunOfResiduals> left;
   double chi2 = 0.0;
@@ -343,13 +343,13 @@ double SmoothModel::noise_ratio() const {
 SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated) {
   constexpr double kSame = 1.25;  // times that smooth alike
   constexpr int kMostTimes = 3;
-  int times = 0;
+  int smoothings = 0;
   // From the noise of that time to the one that its sections show.
   const auto settled = [&](double time, FitData* smoothed) {
     SmoothModel model;
     for (int i = 0; i < kMostTimes; ++i) {
       model = smooth_model_of(smoothed, {sigma_known, 1.0, time}, stated);
-      ++times;
+      ++smoothings;
       if (std::max(model.noise_time / time, time / model.noise_time) <= kSame) {
         break;
       }
@@ -368,7 +368,7 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated
       *data = std::move(again);
     }
   }
-  model.times = times;
+  model.smoothings = smoothings;
   return model;
 }
 

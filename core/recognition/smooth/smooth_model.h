@@ -39,7 +39,7 @@ struct SmoothModel {
   double noise_time = 1.0;
   int coefficients = 0;    ///< of the polynomials alone
   bool is_halved = false;  ///< some sections are halves of one that no polynomial followed
-  int times = 1;           ///< that all samples were smoothed
+  int smoothings = 1;      ///< of all samples, until this
 
   int dof() const { return points - parameters; }
   /// Degrees of freedom that are left to estimate the noise from: of noise that neighbours share, a

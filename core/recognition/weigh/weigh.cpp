@@ -283,7 +283,7 @@ Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patc
                WorkBudget& work, const WeighOptions& options, std::span<const SidedStart> starts) {
   const std::size_t samples = data.points.size();
   Arcs arcs = smooth_arcs(std::move(data), sigma_known);
-  work.spend(WorkKind::Sample, samples * static_cast<std::size_t>(arcs.smooth.times));
+  work.spend(WorkKind::Sample, samples * static_cast<std::size_t>(arcs.smooth.smoothings));
   return weigh_arcs(std::move(arcs), patches, work, options, starts);
 }
 

@@ -71,6 +71,22 @@ TEST(Passes, AreCutWhereAStrokeTurnsBackOverItself) {
   }
 }
 
+// Shorter than the blocks by which noise is estimated, with chords that the way bends away from.
+// Each pass begins at the farthest place, which is the turn.
+TEST(Passes, OfTenSamplesAreCutWhereTheNoiseIsStated) {
+  std::mt19937_64 rng(21);
+  const auto arc = [](const Way& way) { return Way([way](double u) { return way(0.5 * u); }); };
+  for (const Way& way : {arc(circle), arc(ellipse)}) {
+    for (const double sigma_m : {1e-6, 1e-5, 5e-5}) {
+      for (int seed = 0; seed < 20; ++seed) {
+        const auto samples = strokes(way, 4, 10, rng, sigma_m);
+        EXPECT_EQ(turns_of(samples, sigma_m).returns, (std::vector<std::size_t>{11, 21, 31}))
+            << sigma_m;
+      }
+    }
+  }
+}
+
 TEST(Passes, AStrokeThatOnlyBendsIsOne) {
   std::mt19937_64 rng(4);
   for (const Way& way : {Way(circle), Way(over_a_cusp), Way(round_a_needle)}) {

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <random>
 #include <vector>
 
@@ -109,6 +111,23 @@ TEST(ResidualCorrelation, WhatPolynomialsLeaveOfWhiteNoiseIsWhite) {
   // Their sum is then (0.5 - 3 x 6 / 55) / (1 - 3 x 6 / 55) + 6 / 55 of a variance, 3.4 of its
   // deviations 1 / sqrt(98), above the 3.1 that one in a thousand exceeds.
   EXPECT_GT(told, kTrials / 2);
+}
+
+TEST(ResidualCorrelation, SlowNoiseLeavesASectionATenthAtLeast) {
+  std::mt19937_64 rng = test::test_rng();
+  constexpr int kTrials = 2000;
+  std::vector<double> shown;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    double sum = 0.0;
+    for (const double r : left_by_polynomial(0.95, 111, 3, rng).residuals) {
+      sum += r * r;
+    }
+    shown.push_back(sum / 111.0);
+  }
+  std::sort(shown.begin(), shown.end());
+  std::cout << "  of the variance: median " << shown[kTrials / 2] << ", one in a hundred "
+            << shown[kTrials / 100] << "\n";
+  EXPECT_GT(shown[kTrials / 100], 0.1);
 }
 
 TEST(ResidualCorrelation, WhatSwingsAveragesOut) {
