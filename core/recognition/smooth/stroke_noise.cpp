@@ -33,16 +33,22 @@ StrokeVariance variance_of(std::span<const FitPoint> stroke, double least) {
           static_cast<double>(noise.dof)};
 }
 
-StrokeVariance pooled(const std::vector<StrokeVariance>& strokes, const StrokeVariance* without) {
+/// Of all strokes together.
+StrokeVariance pooled(const std::vector<StrokeVariance>& strokes) {
   StrokeVariance all;
   for (const StrokeVariance& stroke : strokes) {
-    if (&stroke != without) {
-      all.value += stroke.dof * stroke.value;
-      all.dof += stroke.dof;
-    }
+    all.value += stroke.dof * stroke.value;
+    all.dof += stroke.dof;
   }
   all.value /= std::max(all.dof, 1.0);
   return all;
+}
+
+/// Of all but one.
+StrokeVariance without(const StrokeVariance& stroke, const StrokeVariance& all) {
+  const double dof = all.dof - stroke.dof;
+  const double sum = all.dof * all.value - stroke.dof * stroke.value;
+  return {std::max(sum, 0.0) / std::max(dof, 1.0), dof};
 }
 
 /// The logarithm of a variance has the variance 2 / dof.
@@ -63,14 +69,14 @@ void weigh_strokes(FitData* data) {
   for (std::size_t p = 0; p < data->patches.size(); ++p) {
     strokes.push_back(variance_of(data->patch(p), least));
   }
+  const StrokeVariance all = pooled(strokes);
   if (std::none_of(strokes.begin(), strokes.end(), [&](const StrokeVariance& stroke) {
-        return differs(stroke, pooled(strokes, &stroke));
+        return differs(stroke, without(stroke, all));
       })) {
     return;
   }
-  const double of_all = pooled(strokes, nullptr).value;
   for (std::size_t p = 0; p < strokes.size(); ++p) {
-    const double ratio = strokes[p].dof > 0.0 ? std::sqrt(of_all / strokes[p].value) : 1.0;
+    const double ratio = strokes[p].dof > 0.0 ? std::sqrt(all.value / strokes[p].value) : 1.0;
     for (std::size_t i = data->patches[p].begin; i < data->patches[p].end; ++i) {
       data->points[i].inverse_sigma *= ratio;
     }
