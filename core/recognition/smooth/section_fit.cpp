@@ -76,6 +76,9 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
   }
   SectionFit fit{section, frame, OrthogonalPolynomials(x, w, y, highest), 1};
   const double count = static_cast<double>(n) / noise.time;
+  // Where neighbours err together a section may be worth few samples, or less than one: there a
+  // coefficient costs what it does by H. Akaike's criterion (1974).
+  const double cost = noise.time > 1.0 ? std::max(std::log(count), 2.0) : std::log(count);
   const auto choose = [&](bool noise_known) {
     int degree = 1;
     double best = std::numeric_limits<double>::infinity();
@@ -84,7 +87,7 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
           std::max(fit.polynomials.residual_sum(d), std::numeric_limits<double>::min());
       const double criterion =
           (noise_known ? chi2 / (noise.variance * noise.time) : count * std::log(chi2)) +
-          (d + 1) * std::log(count);
+          (d + 1) * cost;
       if (criterion < best) {
         best = criterion;
         degree = d;
