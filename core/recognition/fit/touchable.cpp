@@ -114,9 +114,10 @@ class Directions {
       return;
     }
     const bool is_left = cross(travel, gradient) >= 0.0;
-    if (may_have_turned_ && is_left == last_is_left_) {
+    if (may_have_turned_ && is_left != way_is_left_) {
       // The point before was the first of the way back.
-      take_back_last();
+      --points_of_way_;
+      left_of_way_ -= is_left ? 1 : 0;
       end_way();
       count(is_left);
       way_is_left_ = is_left;
@@ -127,7 +128,6 @@ class Directions {
                        gradient.dot(last_gradient_) > 0.0;
     way_is_left_ = may_have_turned_ ? way_is_left_ : is_left;
     count(is_left);
-    last_is_left_ = is_left;
     last_travel_ = travel;
     last_gradient_ = gradient;
   }
@@ -142,11 +142,6 @@ class Directions {
   void count(bool is_left) {
     ++points_of_way_;
     left_of_way_ += is_left ? 1 : 0;
-  }
-
-  void take_back_last() {
-    --points_of_way_;
-    left_of_way_ -= last_is_left_ ? 1 : 0;
   }
 
   void end_way() {
@@ -164,8 +159,7 @@ class Directions {
   std::size_t points_of_way_ = 0;  ///< since it last turned back
   std::size_t left_of_way_ = 0;
   bool is_back_ = false;
-  bool was_back_ = false;  ///< on the last way that counts
-  bool last_is_left_ = false;
+  bool was_back_ = false;         ///< on the last way that counts
   bool way_is_left_ = false;      ///< at the last point that may not have turned
   bool may_have_turned_ = false;  ///< at the last point; the next one tells
   Vec2 last_travel_ = Vec2::Zero();
