@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/curves/algebraic/canonical_conic.h"
 #include "core/curves/algebraic/canonical_cubic.h"
@@ -55,8 +56,9 @@ std::optional<Placement> place_line(const ConicCoefficients& q, const FitData& d
       {data.scale * origin.x(), data.scale * origin.y(), std::atan2(direction.y(), direction.x())}};
 }
 
-std::optional<Placement> place_conic(CurveClass curve_class, const ConicCoefficients& q,
+std::optional<Placement> place_conic(CurveClass curve_class, const ImplicitFit& fit,
                                      const FitData& data) {
+  const ConicCoefficients& q = fit.coefficients;
   if (curve_class == CurveClass::Circle) {
     // A radius beyond this many half extents cannot be told from a line in double precision.
     constexpr double kLargestRadius = 1e8;
@@ -72,10 +74,15 @@ std::optional<Placement> place_conic(CurveClass curve_class, const ConicCoeffici
   placement.shape = {curve_class, data.scale * canonical->values};
   placement.frame_T_curve = canonical->world_T_curve;
   Pose2& pose = placement.frame_T_curve;
-  const Vec2 axis(std::cos(pose.theta), std::sin(pose.theta));
-  if (curve_class == CurveClass::Hyperbola &&
-      (mean_position(data) - pose.translation()).dot(axis) < 0.0) {
-    pose.theta += kPi;  // the branch x > 0 is the one touched
+  if (curve_class == CurveClass::Hyperbola) {
+    // The branch x > 0 is the one touched: by the feet, for the centre of a tip whose radius is
+    // larger than a may lie beyond the other branch.
+    const Vec2 mean_foot = std::accumulate(fit.feet.begin(), fit.feet.end(), Vec2(0.0, 0.0)) /
+                           static_cast<double>(fit.feet.size());
+    if ((mean_foot - pose.translation()).dot(Vec2(std::cos(pose.theta), std::sin(pose.theta))) <
+        0.0) {
+      pose.theta += kPi;
+    }
   }
   if (curve_class == CurveClass::Circle) {
     pose.theta = -data.frame.theta;  // 0 in the world
@@ -105,9 +112,8 @@ std::optional<Placement> place_of(const ClassFit& fit, const FitData& data) {
   if (fit.polynomial) {
     return place_polynomial(fit.curve_class, data.scale * fit.polynomial->coefficients);
   }
-  const ConicCoefficients& q = fit.implicit->coefficients;
-  return fit.curve_class == CurveClass::Line ? place_line(q, data)
-                                             : place_conic(fit.curve_class, q, data);
+  return fit.curve_class == CurveClass::Line ? place_line(fit.implicit->coefficients, data)
+                                             : place_conic(fit.curve_class, *fit.implicit, data);
 }
 
 /// Placed in the world too.

@@ -241,22 +241,20 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
   return {residuals.coefficients(step), summary.chi2, side, residuals.feet(step)};
 }
 
-/// The distance with the foot sought from `near`.
-double distance_followed(const Vec2& near, const ConicCoefficients& q, const Vec2& point,
-                         Vec2* foot) {
+/// Seeks the foot of a point from `foot` by so many steps at most. Returns whether it is found.
+bool follow_foot(const ConicCoefficients& q, const Vec2& point, int iterations, Vec2* foot) {
   // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}.
-  constexpr int kMoreIterations = 5;
   // After a last step s the foot point is off by about s^2 in normalised extents: by so much at
   // most, absolute and of the distance.
   constexpr double kAbsoluteError = 1e-12;
   constexpr double kRelativeError = 1e-8;
-  Vec2 f = near;
-  for (int iteration = 0; iteration < kMoreIterations; ++iteration) {
+  Vec2& f = *foot;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
     const double v = value(q, f);
     const Vec2 g = conic_gradient(q, f);
     const double g2 = g.squaredNorm();
     if (g2 <= 0.0) {
-      break;
+      return false;
     }
     const Vec2 away = point - f;
     const double c = away.x() * g.y() - away.y() * g.x();
@@ -272,12 +270,22 @@ double distance_followed(const Vec2& near, const ConicCoefficients& q, const Vec
     }
     f += step;
     if (step.squaredNorm() < std::min(kAbsoluteError, kRelativeError * away.norm())) {
-      break;
+      return true;
     }
   }
-  *foot = f;
-  return signed_distance_from(f, q, point);
+  return false;
 }
+
+/// Newton's first step from the point itself: its first-order (Sampson) foot.
+Vec2 first_order_foot(const ConicCoefficients& q, const Vec2& point) {
+  const Vec2 g = conic_gradient(q, point);
+  const double g2 = g.squaredNorm();
+  // At the centre of a conic there is no direction to go.
+  return g2 > 0.0 ? Vec2(point - value(q, point) / g2 * g) : point;
+}
+
+/// Steps from the first-order foot: of a point that is near the curve.
+constexpr int kStepsFromNear = 5;
 
 /// Whether two points of a conic lie on two branches of a hyperbola: halfway between them is then
 /// where the centre is, between the branches, and else within one.
@@ -298,20 +306,22 @@ double normal_residual(const ConicCoefficients& q, const Vec2& foot, const FitPo
 }
 
 double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot) {
-  // Newton's first step from the point itself: the first-order (Sampson) foot point.
-  Vec2 f = point;
-  const Vec2 g = conic_gradient(q, f);
-  const double g2 = g.squaredNorm();
-  if (g2 > 0.0) {  // otherwise the centre of a conic: no direction to go
-    f -= value(q, f) / g2 * g;
-  }
-  return distance_followed(f, q, point, foot);
+  *foot = first_order_foot(q, point);
+  follow_foot(q, point, kStepsFromNear, foot);
+  return signed_distance_from(*foot, q, point);
 }
 
 double signed_distance_of_tip(const Vec2& near, const ConicCoefficients& q, const Vec2& point,
                               Vec2* foot) {
-  const double distance = signed_distance(q, point, foot);
-  return are_on_two_branches(q, *foot, near) ? distance_followed(near, q, point, foot) : distance;
+  constexpr int kStepsOfTip = 20;
+  *foot = first_order_foot(q, point);
+  // About the centre of a hyperbola, where a tip as large as its a may be, the polynomial is flat,
+  // and the first-order foot anywhere.
+  if (!follow_foot(q, point, kStepsFromNear, foot) || are_on_two_branches(q, *foot, near)) {
+    *foot = near;
+    follow_foot(q, point, kStepsOfTip, foot);
+  }
+  return signed_distance_from(*foot, q, point);
 }
 
 double signed_distance_from(const Vec2& foot, const ConicCoefficients& q, const Vec2& point) {

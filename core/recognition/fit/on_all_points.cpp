@@ -106,14 +106,12 @@ void carry_to_all(const SmoothModel& smooth, PolynomialFit* curve) {
   curve->t = std::move(t);
 }
 
-/// The same of an implicit curve: each foot moved as its point lies from the reduced one.
-void carry_to_all(const SmoothModel& smooth, std::span<const FitPoint> points, ImplicitFit* curve) {
+/// The same of an implicit curve: the feet themselves.
+void carry_to_all(const SmoothModel& smooth, ImplicitFit* curve) {
   std::vector<Vec2> feet;
-  feet.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t nearest = smooth.nearest_reduced[i];
-    feet.push_back(curve->feet[nearest] +
-                   (points[i].position - smooth.reduced.points[nearest].position));
+  feet.reserve(smooth.nearest_reduced.size());
+  for (const std::uint32_t nearest : smooth.nearest_reduced) {
+    feet.push_back(curve->feet[nearest]);
   }
   curve->feet = std::move(feet);
 }
@@ -151,7 +149,7 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
     start.rival.reset();
   }
   if (start.implicit && tips) {
-    carry_to_all(smooth, points, &*start.implicit);
+    carry_to_all(smooth, &*start.implicit);
     start.implicit->side = side_of_tips(distances_from(*start.implicit, points), points);
   }
   for (auto* curve : {&start.polynomial, &start.rival}) {
@@ -241,7 +239,7 @@ double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData
   } else {
     ImplicitFit curve = *fit.implicit;
     if (has_tips(points)) {
-      carry_to_all(smooth, points, &curve);
+      carry_to_all(smooth, &curve);
     }
     distances = distances_from(curve, points);
   }

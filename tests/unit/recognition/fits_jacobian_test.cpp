@@ -23,6 +23,29 @@ TEST(ImplicitFit, SignedDistanceToACircle) {
   EXPECT_NEAR((foot - Vec2(0.0, 2.0)).norm(), 0.0, 1e-12);
 }
 
+TEST(ImplicitFit, ATipAboutTheCentreOfAHyperbolaKeepsItsBranch) {
+  // About the centre the polynomial is flat: its first-order foot may be anywhere.
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < test::stress_count(20000); ++i) {
+    const double a = test::log_uniform(rng, 0.06, 1.0);
+    const double b = test::log_uniform(rng, 0.06, 1.0);
+    const double t = test::uniform(rng, -1.7, 1.7);
+    const double radius = a * test::uniform(rng, 0.1, 3.0);
+    ConicCoefficients q;
+    q << 1.0 / (a * a), 0.0, -1.0 / (b * b), 0.0, 0.0, -1.0;
+    q.normalize();
+    const Vec2 touched(a * std::cosh(t), b * std::sinh(t));
+    const Vec2 centre = touched - radius * conic_gradient(q, touched).normalized();
+    const double nearby = t + test::uniform(rng, -0.1, 0.1);
+    Vec2 foot;
+    const double distance =
+        signed_distance_of_tip({a * std::cosh(nearby), b * std::sinh(nearby)}, q, centre, &foot);
+    // Newton's method ends where a step is less than 1e-12 or 1e-4 of the root of the distance.
+    EXPECT_NEAR(distance, -radius, 1e-7 * radius) << a << ' ' << b << ' ' << t;
+    EXPECT_LT((foot - touched).norm(), 1e-4 * radius) << a << ' ' << b << ' ' << t;
+  }
+}
+
 TEST(ImplicitFit, ExactPointsAreFittedExactly) {
   std::mt19937_64 rng = test::test_rng();
   test::SceneOptions options;
