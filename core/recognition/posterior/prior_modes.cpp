@@ -29,7 +29,7 @@ void add_prior_mode(CurveClass i, const ClassFits& fits, const FitData& reduced,
                     const Likelihood& likelihood, double best, Evidences* evidences,
                     WorkBudget& work) {
   constexpr double kWorthOthers = 4.0;  // log odds: a fiftieth
-  constexpr double kLeftToPrior = 0.1;  // of a coordinate: a deviation of a third of the prior's
+  constexpr double kLeftToPrior = 0.1;  // of one coordinate: a deviation of a third of the prior's
   auto& found = evidences->classes[i];
   if (!found || found->prior_mode_sought) {
     return;
@@ -38,11 +38,14 @@ void add_prior_mode(CurveClass i, const ClassFits& fits, const FitData& reduced,
   const double gain = -found->log_prior;
   const double told = log_evidence(likelihood, *evidences, *fits[i]);
   const double seen_from = best - kUnseenLogOdds;
-  // Data that leave a cubic's shape open are such as its other arms have.
+  // Data that leave a cubic's shape open are such as its other arms have. A conic has none: where
+  // all of it is told, nothing of its valley is left to walk along.
   const int all = shape_coordinates(found->touch.curve_class) + 2;
-  const bool other_arms = (kCubics & class_bit(found->touch.curve_class)) != 0 &&
-                          found->determined < all - kLeftToPrior && told > best - kWorthOthers;
-  if ((gain > kWorthAMode || other_arms) && told + gain > seen_from && work.allows()) {
+  const bool is_open = found->determined < all - kLeftToPrior;
+  const bool has_arms = (kCubics & class_bit(found->touch.curve_class)) != 0;
+  const bool other_arms = has_arms && is_open && told > best - kWorthOthers;
+  const bool better = (has_arms || is_open) && gain > kWorthAMode;
+  if ((better || other_arms) && told + gain > seen_from && work.allows()) {
     const double seen_occam = found->log_occam + seen_from - told;
     const ClassEvidence& path =
         *evidences->classes[path_for(i, fits, likelihood, best, *evidences)];
