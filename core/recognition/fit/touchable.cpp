@@ -197,8 +197,33 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
   return true;
 }
 
+namespace {
+
+/// An arc of half a turn, by the chords of its quarters: 4 sin(pi / 8) of its own chord.
+constexpr double kHalfTurn = 1.5307337294603591;
+
+/// Whether a patch goes to and fro along the curve: from one sample to the next by more than half a
+/// turn's way, time and again. About a bend a few may, which would be many of a few samples.
+/// Nothing is said of tips' centres.
+bool goes_to_and_fro(const PolynomialFit& fit, const FitData& data, const PatchSpan& patch) {
+  if (patch.size() < 2 * kOneIn || data.points[patch.begin].offset > 0.0) {
+    return false;
+  }
+  std::size_t astray = 0;
+  for (std::size_t i = patch.begin; i + 1 < patch.end; ++i) {
+    const double chord = (data.points[i + 1].position - data.points[i].position).norm();
+    astray += way_between(fit, fit.t[i], fit.t[i + 1]) > kHalfTurn * chord ? 1 : 0;
+  }
+  return turns(astray, patch.size());
+}
+
+}  // namespace
+
 bool is_touchable(const PolynomialFit& fit, const FitData& data) {
   for (const PatchSpan& patch : data.patches) {
+    if (goes_to_and_fro(fit, data, patch)) {
+      return false;
+    }
     const std::size_t lag = patch.size() / 2;
     std::size_t forward = 0;
     std::size_t told = 0;
@@ -229,8 +254,6 @@ bool leaps(const PolynomialFit& fit, const FitData& data) {
     std::vector<double> feet(fit.t.begin() + static_cast<std::ptrdiff_t>(patch.begin),
                              fit.t.begin() + static_cast<std::ptrdiff_t>(patch.end));
     std::sort(feet.begin(), feet.end());
-    // An arc of half a turn, by the chords of its quarters: 4 sin(pi / 8) of its own chord.
-    constexpr double kHalfTurn = 1.5307337294603591;
     for (std::size_t i = 0; i + 1 < feet.size(); ++i) {
       if (way_between(fit, feet[i], feet[i + 1]) >
           std::max(stroke,

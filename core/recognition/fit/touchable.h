@@ -25,10 +25,10 @@ inline Vec2 centre_of(const ConicCoefficients& q) {
 bool is_touchable(const ImplicitFit& fit, const FitData& data);
 
 /// The same for a polynomial curve: its parameter must run one way along each patch. Compares
-/// samples half a patch apart, whose order noise does not reverse. The fit of a
+/// samples half a patch apart, whose order noise does not reverse. Where a patch is too short for
+/// its noise to tell, neighbours must not go to and fro between strands of the curve. The fit of a
 /// given class (given/stroke_feet.h) puts every sample of a stroke on a branch, by the way that the
-/// probe went; here a fitted curve is only kept or excluded, for which directions over long ways
-/// are enough.
+/// probe went; here a fitted curve is only kept or excluded, for which that is enough.
 bool is_touchable(const PolynomialFit& fit, const FitData& data);
 
 /// Whether between two of its points a patch leaves out more of the curve than it is long itself: a

@@ -187,6 +187,16 @@ class TriedWays {
     return palpate::may_bend_to_one_side(seen_.touches, seen_.bends);
   }
 
+  /// Whether any stroke bends beyond doubt.
+  bool any_bends() const {
+    for (std::size_t p = 0; p < seen_.touches.patches.size(); ++p) {
+      if (certain_turn(seen_.touches.patch(p))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   /// The ways that are possible where strokes travel as the curve of the centres tells.
   void try_along_centres() {
     if (const auto& curve = centres_.get()) {
@@ -347,11 +357,14 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
     tried.try_possible();
   }
   // A line or a conic that all points have tells how they lie; a cubic, which turns to either side
-  // and goes far away, may go through any two strokes.
-  const auto is_no_cubic = [](const SideChoice& choice) {
-    return (class_bit(choice.candidate) & kCubics) == 0;
+  // and goes far away, may go through any two strokes, and an ellipse that is as thin as the tip is
+  // thick has it on both sides of a line.
+  const bool conics_tell = tried.any_bends();
+  const auto tells_sides = [&](const SideChoice& choice) {
+    return choice.candidate == CurveClass::Line ||
+           (conics_tell && (class_bit(choice.candidate) & kCubics) == 0);
   };
-  if (may_turn && !turn_first && by.work.allows() && !any_that(is_no_cubic)) {
+  if (may_turn && !turn_first && by.work.allows() && !any_that(tells_sides)) {
     tried.try_along_centres();
   }
   sided.choices = std::move(tried).take();

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <vector>
+
+#include "core/recognition/fit/polynomial_foot.h"
+#include "tests/support/test_rng.h"
 
 namespace palpate {
 namespace {
@@ -47,6 +51,42 @@ TEST(Touchable, IsNoNeedleThatExplainsTheNoiseOfALine) {
   for (const double sigma : {0.001, 0.003, 0.01}) {
     EXPECT_FALSE(touchable(conic(1.0, 0.01, 1.0), places, sigma)) << sigma;
   }
+}
+
+/// The samples' nearest feet on a curve, in their order.
+bool touchable(const PolynomialCoefficients& c, const std::vector<Vec2>& places, double sigma) {
+  FitData data;
+  PolynomialFit fit;
+  fit.coefficients = c;
+  for (const Vec2& place : places) {
+    FitPoint point;
+    point.position = place;
+    point.inverse_sigma = 1.0 / sigma;
+    data.points.push_back(point);
+    fit.t.push_back(nearest_parameter(c, place));
+  }
+  data.patches = {{0, data.points.size()}};
+  return is_touchable(fit, data);
+}
+
+/// Three strands side by side leave less of a cloud than the one along it. But a probe that goes up
+/// once does not go from strand to strand and back at every other sample, though the stroke is too
+/// short for its noise to show a direction.
+TEST(Touchable, IsNoCubicThatThreadsACloud) {
+  constexpr double kSigma = 0.05;
+  PolynomialCoefficients s_curve;  // (0.05 t, t^3 - t)
+  s_curve << 0.0, 0.05, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0;
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> normal(0.0, kSigma);
+  std::vector<Vec2> cloud;
+  std::vector<Vec2> in_order;
+  for (int i = 0; i <= 200; ++i) {
+    const double s = i / 100.0 - 1.0;
+    cloud.emplace_back(normal(rng), 0.17 * s + normal(rng));
+    in_order.push_back(position_at(s_curve, 1.2 * s));
+  }
+  EXPECT_FALSE(touchable(s_curve, cloud, kSigma));
+  EXPECT_TRUE(touchable(s_curve, in_order, kSigma));
 }
 
 TEST(Touchable, IsOneBranchOfAHyperbola) {
