@@ -9,6 +9,7 @@
 #include "core/part/part_slides.h"
 #include "core/part/touch_posterior.h"
 #include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/smooth/residual_correlation.h"
 #include "core/recognition/smooth/smooth_model.h"
 
 namespace palpate {
@@ -106,7 +107,37 @@ class Match {
     }
   }
 
-  SegmentMatch answer() const {
+  /// The answer, by noise of which so many neighbours err together as residuals about the best
+  /// placement show, where the sections show that they do. Polynomials take the slowest of it.
+  SegmentMatch answer() {
+    constexpr double kSame = 1.25;  // times that count alike
+    SegmentMatch match = answer_by_noise();
+    if (smooth_.noise_time > 1.0 && !match.placements.empty()) {
+      const double time = time_about(match.placements.front());
+      if (time > kSame * smooth_.noise_time) {
+        scale_noise(std::sqrt(time / smooth_.noise_time), &data_, &smooth_);
+        smooth_.noise_time = time;
+        match = answer_by_noise();
+      }
+    }
+    return match;
+  }
+
+ private:
+  static double time_about(const PartPlacement& placement) {
+    std::vector<RunOfResiduals> runs;
+    for (const PatchOnPart& patch : placement.patches) {
+      RunOfResiduals& run = runs.emplace_back();
+      for (const SamplePlace& sample : patch.samples) {
+        if (!sample.is_outlier) {
+          run.residuals.push_back(sample.residual);
+        }
+      }
+    }
+    return correlation_time(runs);
+  }
+
+  SegmentMatch answer_by_noise() const {
     SegmentMatch match;
     const int n = static_cast<int>(data_.points.size());
     if (n <= kPoseDegrees || !noise_known_) {
@@ -145,7 +176,6 @@ class Match {
     return match;
   }
 
- private:
   static double spike_probability(std::span<const StoredPatch> patches,
                                   const SegmentMatchOptions& options) {
     return options.false_outlier_probability /

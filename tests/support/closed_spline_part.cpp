@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "tests/support/shared_errors.h"
+
 namespace palpate::test {
 
 ClosedSpline paper_part() {
@@ -21,7 +23,7 @@ ClosedSpline symmetric_part(int points) {
 TouchedPart touch(const ClosedSpline& part, const Pose2& world_T_part,
                   const std::vector<PartStroke>& strokes, double noise_m, double sigma_m,
                   std::mt19937_64& rng, double tip_radius_m, double correlation) {
-  std::normal_distribution<double> noise(0.0, 1.0);
+  std::normal_distribution<double> normal;
   const double outside = part.signed_area() > 0.0 ? -1.0 : 1.0;
   TouchedPart touched;
   for (const PartStroke& stroke : strokes) {
@@ -29,16 +31,14 @@ TouchedPart touch(const ClosedSpline& part, const Pose2& world_T_part,
     patch.context.patch = static_cast<std::uint32_t>(touched.patches.size());
     patch.context.tip_radius_m = tip_radius_m;
     std::vector<double> places;
-    Vec2 error = Vec2::Zero();
+    SharedErrors errors(correlation);
     for (int i = 0; i < stroke.count; ++i) {
       const double t =
           part.parameter_at_arc_length(stroke.t0, stroke.arc_m * i / (stroke.count - 1));
       const CurveDerivatives d = part.derivatives(t);
       const Vec2 surface = d.position + outside * tip_radius_m * left_of(d.first.normalized());
-      const Vec2 own(noise(rng), noise(rng));
-      error = i == 0 ? own
-                     : Vec2(correlation * error + std::sqrt(1.0 - correlation * correlation) * own);
-      patch.samples.push_back({world_T_part * surface + noise_m * error, sigma_m, 1.0});
+      const Vec2 place = world_T_part * surface + noise_m * errors.next(normal, rng);
+      patch.samples.push_back({place, sigma_m, 1.0});
       places.push_back(t);
     }
     touched.patches.push_back(std::move(patch));

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "tests/support/scene_prior.h"
+#include "tests/support/shared_errors.h"
 
 namespace palpate::test {
 
@@ -12,17 +13,11 @@ namespace palpate::test {
 /// `correlation`, in [0, 1).
 inline Scene with_shared_noise(const PriorScene& drawn, double correlation, std::mt19937_64& rng) {
   std::normal_distribution<double> normal;
-  const auto any = [&] {
-    const double x = normal(rng);
-    return Vec2(x, normal(rng));
-  };
-  const double rest = std::sqrt(1.0 - correlation * correlation);
   Scene scene = drawn.scene;
   for (std::size_t p = 0; p < scene.patches.size(); ++p) {
-    Vec2 error = any();
+    SharedErrors errors(correlation);
     for (std::size_t i = 0; i < scene.patches[p].size(); ++i) {
-      error = i == 0 ? error : Vec2(correlation * error + rest * any());
-      scene.patches[p][i] = drawn.exact_patches[p][i] + scene.sigma_m * error;
+      scene.patches[p][i] = drawn.exact_patches[p][i] + scene.sigma_m * errors.next(normal, rng);
     }
   }
   return scene;

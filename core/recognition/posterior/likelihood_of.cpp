@@ -37,12 +37,10 @@ ResidualCorrelation correlation_along(const CanonicalFit& placed, const FitData&
 }
 
 /// Whether a stated noise covers residuals of that variance of which the sections show only a part:
-/// the rest is what neighbours share, so that sections follow it. White noise leaves sections so
-/// little once in a thousand times.
+/// the rest is what neighbours share, so that sections follow it.
 bool is_stated(const Arcs& arcs, double variance) {
-  constexpr double kOneInThousand = 1e-3;
-  return arcs.sigma_known && variance <= 1.0 && arcs.smooth.dof() > 0 &&
-         chi_square_survival(arcs.smooth.chi2, arcs.smooth.dof()) > 1.0 - kOneInThousand;
+  return arcs.sigma_known && variance <= 1.0 &&
+         leaves_less_than_noise(arcs.smooth.chi2, arcs.smooth.dof());
 }
 
 }  // namespace

@@ -14,12 +14,8 @@ NeighbourSums sums_of(std::span<const RunOfResiduals> runs) {
   NeighbourSums sums;
   for (const auto& [r, parameters] : runs) {
     for (std::size_t i = 0; i < r.size(); ++i) {
-      sums.squares += r[i] * r[i];
-      sums.products += i > 0 ? r[i] * r[i - 1] : 0.0;
+      i == 0 ? sums.add_first(r[i], parameters) : sums.add_next(r[i]);
     }
-    sums.samples += r.size();
-    sums.pairs += r.empty() ? 0 : r.size() - 1;
-    sums.parameters += parameters;
   }
   return sums;
 }
@@ -38,6 +34,19 @@ double mean_product(std::span<const RunOfResiduals> runs, std::size_t lag) {
 }
 
 }  // namespace
+
+void NeighbourSums::add_first(double residual, std::size_t coefficients) {
+  squares += residual * residual;
+  ++samples;
+  parameters += coefficients;
+  last = residual;
+}
+
+void NeighbourSums::add_next(double residual) {
+  products += last * residual;
+  ++pairs;
+  add_first(residual, 0);
+}
 
 bool NeighbourSums::look_alike() const {
   static const double kOneInThousand = two_sided_normal_quantile(2.0 / 1000.0);

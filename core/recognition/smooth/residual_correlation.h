@@ -16,6 +16,13 @@ struct NeighbourSums {
   std::size_t samples = 0;
   std::size_t pairs = 0;
   std::size_t parameters = 0;  ///< coefficients fitted to them
+  double last = 0.0;           ///< residual of the run that is being added
+
+  /// Begins a run of neighbours, to which so many coefficients were fitted, with its first
+  /// residual.
+  void add_first(double residual, std::size_t coefficients);
+  /// The next of them.
+  void add_next(double residual);
 
   /// Whether neighbours are more alike than those of white noise are once in a thousand times. Each
   /// coefficient takes a variance of the noise from the products, as it does from the squares.

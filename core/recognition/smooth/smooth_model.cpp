@@ -79,25 +79,23 @@ void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model,
           std::sqrt(polynomials.slope_variance(node.x, degree)) / fit.frame.half_length;
     }
   }
-  double before = 0.0;
   for (std::size_t i = fit.section.begin; i < fit.section.end; ++i) {
     FitPoint& point = data->points[i];
     const double x = fit.frame.along(point.position);
     const auto path = polynomials.evaluate(x, fit.degree);
     point.tangent = fit.frame.tangent(path.derivative);
     const double residual = fit.distance(point, path) * point.inverse_sigma;
-    neighbours->squares += residual * residual;
-    neighbours->products += before * residual;
-    before = residual;
+    if (i == fit.section.begin) {
+      neighbours->add_first(residual, static_cast<std::size_t>(fit.degree) + 1);
+    } else {
+      neighbours->add_next(residual);
+    }
     std::size_t nearest = 0;
     for (std::size_t k = 1; k < rule.size(); ++k) {
       nearest = std::abs(rule[k].x - x) < std::abs(rule[nearest].x - x) ? k : nearest;
     }
     model->nearest_reduced[i] = static_cast<std::uint32_t>(begin + nearest);
   }
-  neighbours->samples += fit.section.size();
-  neighbours->pairs += fit.section.size() - 1;
-  neighbours->parameters += static_cast<std::size_t>(fit.degree) + 1;
 }
 
 /// A section with its polynomial, or without one if its samples stand for themselves.
@@ -318,10 +316,8 @@ SmoothModel smooth_model_of(FitData* data, SectionNoise noise, StatedNoise state
 /// then than it does once in a thousand times. Where nobody states it, polynomials do not follow it
 /// for long.
 bool may_follow_noise(const SmoothModel& model, bool sigma_known) {
-  constexpr double kOneInThousand = 1e-3;
-  const int dof = static_cast<int>(model.noise_dof() / model.noise_time);
-  return sigma_known ? dof > 0 && chi_square_survival(model.chi2 / model.noise_time, dof) >
-                                      1.0 - kOneInThousand
+  return sigma_known ? leaves_less_than_noise(model.chi2 / model.noise_time,
+                                              model.noise_dof() / model.noise_time)
                      : model.is_halved;
 }
 
@@ -333,6 +329,11 @@ double slowest_noise(const FitData& data) {
 }
 
 }  // namespace
+
+bool leaves_less_than_noise(double chi2, double dof) {
+  constexpr double kOneInThousand = 1e-3;
+  return dof >= 1.0 && chi_square_survival(chi2, static_cast<int>(dof)) > 1.0 - kOneInThousand;
+}
 
 double SmoothModel::noise_dof() const { return dof() - (noise_time - 1.0) * coefficients; }
 

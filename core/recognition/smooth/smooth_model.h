@@ -66,6 +66,9 @@ enum class StatedNoise { MayBeTooLow, Holds };
 SmoothModel fit_smooth_model(FitData* data, bool sigma_known,
                              StatedNoise stated = StatedNoise::MayBeTooLow);
 
+/// Whether residuals leave so little as white noise does once in a thousand times.
+bool leaves_less_than_noise(double chi2, double dof);
+
 /// Length of path over which neighbours err together, in units of the points: that of `noise_time`
 /// samples at their mean distance; 0 = white noise.
 double noise_length(const SmoothModel& smooth, const FitData& data);

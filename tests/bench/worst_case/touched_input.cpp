@@ -7,6 +7,7 @@
 #include <functional>
 #include <utility>
 
+#include "tests/support/shared_errors.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate::bench {
@@ -374,7 +375,7 @@ TouchedInput input_of(const InputRecipe& r) {
     const double shift_x = r.misplacement * normal(rng);
     const Vec2 shift(shift_x, r.misplacement * normal(rng));
     Vec2 before = Vec2::Zero();
-    Vec2 error = Vec2::Zero();  // in units of sigma
+    test::SharedErrors errors(r.shared_noise);
     for (int i = 0; i < r.samples; ++i) {
       const double share = share_at(r, i);
       const double place = start + arc * (forward ? share : 1.0 - share);
@@ -383,10 +384,7 @@ TouchedInput input_of(const InputRecipe& r) {
       const Vec2 ahead = path(std::min(u + kStep, 1.0)) - path(std::max(u - kStep, 0.0));
       const Vec2 right = ahead.norm() > 0.0 ? Vec2(-left_of(ahead).normalized()) : Vec2(0.0, -1.0);
       Vec2 point = path(u) + shift + (r.tip + r.wave * std::sin(12.0 * place + phase)) * right;
-      const double dx = normal(rng);
-      const Vec2 own(dx, normal(rng));
-      const double rest = i > 0 ? std::sqrt(1.0 - r.shared_noise * r.shared_noise) : 1.0;
-      error = r.shared_noise * error + rest * own;
+      const Vec2 error = errors.next(normal, rng);
       point += r.sigma * error;
       if (uniform(rng, 0.0, 1.0) < r.spikes) {
         const double angle = uniform(rng, 0.0, 2.0 * kPi);
@@ -394,7 +392,7 @@ TouchedInput input_of(const InputRecipe& r) {
       }
       if (i > 0 && uniform(rng, 0.0, 1.0) < r.dwelling) {
         // Not exactly, because exact repetitions are not accepted.
-        point = before + 1e-3 * r.sigma * Vec2(dx, -dx);
+        point = before + 1e-3 * r.sigma * Vec2(error.x(), -error.x());
       }
       before = point;
       patch.samples.push_back(
