@@ -59,6 +59,15 @@ std::optional<CurveClass> limit_of(CurveClass curve_class, const ClassFits& fits
   return parabola ? std::optional(CurveClass::Parabola) : std::nullopt;
 }
 
+unsigned with_limits(unsigned classes) {
+  unsigned all = classes | class_bit(CurveClass::Line);
+  for (const CurveClass curve_class : kClassesWithLimit) {
+    all |= (classes & class_bit(curve_class)) != 0 ? class_bit(CurveClass::Parabola) : 0U;
+  }
+  const bool spline = (classes & class_bit(CurveClass::CubicSpline)) != 0;
+  return all | (spline ? class_bit(CurveClass::SemiCubicalParabola) : 0U);
+}
+
 void add_limits(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
                 double best, const Evidences& before, Evidences* evidences, WorkBudget& work) {
   for (const CurveClass beyond : kClassesWithLimit) {

@@ -24,6 +24,9 @@ inline constexpr double kWorseThanLimit = 2.0;
 /// nullopt where neither is fitted.
 std::optional<CurveClass> limit_of(CurveClass curve_class, const ClassFits& fits);
 
+/// These classes with those that tell what they have at their limits, and in straight paths.
+unsigned with_limits(unsigned classes);
+
 /// Adds the evidence of classes at their limit, and of those whose fit double precision cannot
 /// hold, where that might be seen beside `best`: at the modes that their priors lead to along the
 /// limit's curve. None for a conic that the other side of the parabola tells enough of

@@ -7,6 +7,7 @@
 
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/canonical_fit.h"
+#include "core/recognition/fit/class_fits.h"
 #include "core/recognition/modes/class_evidence.h"
 #include "core/recognition/posterior/free_form.h"
 #include "core/recognition/posterior/likelihood.h"
@@ -26,6 +27,9 @@ inline constexpr ByClass<double> kNoEvidences = [] {
 /// Evidence of every model. A class without one has no share in the posterior.
 struct Evidences {
   ByClass<std::optional<ClassEvidence>> classes;
+  /// Classes that nobody wants, by bit: they tell what others have at their limits, and have no
+  /// share themselves.
+  unsigned limits_only = 0;
   /// Modes that the prior has led to, of classes that have no evidence now; one of a class.
   std::vector<ClassEvidence> earlier_modes;
   /// Of the spline's other optimum, on the other side of c = 0 or of other arms, if that is a
@@ -70,6 +74,11 @@ double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidence
 /// formula, if it has any.
 void add_laplace_evidence(const ClassFit& on_reduced, const FitData& shared, Evidences* evidences,
                           WorkBudget& work);
+
+/// Whether a class may be an answer.
+inline bool is_wanted(const Evidences& evidences, CurveClass curve_class) {
+  return (evidences.limits_only & class_bit(curve_class)) == 0;
+}
 
 /// The class's evidence, or else what is known of its modes; nullptr if nothing is.
 const ClassEvidence* known_of(const Evidences& evidences, CurveClass curve_class);

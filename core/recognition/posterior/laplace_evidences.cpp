@@ -59,6 +59,7 @@ Evidences started_from(const Evidences& before, const SmoothModel& smooth,
   } else {
     evidences = evidences_of_paths(smooth, likelihood, work);
   }
+  evidences.limits_only = before.limits_only;
   evidences.log_shared = before.log_shared;
   evidences.shared_or_other = before.shared_or_other;
   return evidences;

@@ -124,7 +124,7 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
   log_of[0] = log_evidence_of_unclassified(likelihood, evidences, smooth_chi2);
   for (const CurveClass curve_class : kCurveClasses) {
     const auto& evidence = evidences.classes[curve_class];
-    if (fits[curve_class] &&
+    if (fits[curve_class] && is_wanted(evidences, curve_class) &&
         (has_straight_paths(evidences, curve_class) ||
          (evidence && fits[curve_class]->at_limit == evidence->counted_from_limit))) {
       log_of[curve_class] = log_evidence(likelihood, evidences, *fits[curve_class]);
@@ -170,7 +170,8 @@ double margin_of_unclassified(const ClassFits& fits, double smooth_chi2,
   double highest = kNoEvidence;
   for (const CurveClass curve_class : kCurveClasses) {
     const auto& evidence = evidences.classes[curve_class];
-    if (evidence && fits[curve_class] && std::isfinite(fits[curve_class]->chi2)) {
+    if (evidence && fits[curve_class] && is_wanted(evidences, curve_class) &&
+        std::isfinite(fits[curve_class]->chi2)) {
       highest = std::max(
           highest, likelihood.log_evidence(fits[curve_class]->chi2, evidence->log_occam_of_touch,
                                            evidence->determined));

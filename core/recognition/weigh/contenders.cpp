@@ -140,7 +140,7 @@ CurveClass best_class(const ClassFits& fits, const Likelihood& likelihood,
   double lowest_chi2 = std::numeric_limits<double>::infinity();
   for (const CurveClass curve_class : kCurveClasses) {
     const auto& fit = fits[curve_class];
-    if (!fit || fit->at_limit) {
+    if (!fit || fit->at_limit || !is_wanted(evidences, curve_class)) {
       continue;
     }
     const double evidence = log_evidence(likelihood, evidences, *fit);

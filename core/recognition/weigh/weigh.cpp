@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/numerics/negligible.h"
+#include "core/recognition/posterior/class_limits.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/out_of_reach.h"
 #include "core/recognition/samples/work_limit.h"
@@ -59,7 +60,7 @@ Contenders contending(ClassFits coarse, const SidedStart* start, const EvidenceC
                       const WeighOptions& options, const Evidences& of_paths = {}) {
   const Arcs& arcs = context.arcs;
   Contenders contenders;
-  contenders.coarse = testable(std::move(coarse), options.classes, arcs);
+  contenders.coarse = testable(std::move(coarse), with_limits(options.classes), arcs);
   contenders.fits = with_inferred_chi2(contenders.coarse, arcs.smooth);
   contenders.evidences = of_paths;
   if (start != nullptr) {
@@ -157,6 +158,12 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
       }
     }
   }
+  for (const CurveClass curve_class : kCurveClasses) {
+    if (!is_wanted(contenders.evidences, curve_class)) {
+      contenders.fits[curve_class].reset();
+      w.canonical[curve_class].reset();
+    }
+  }
   w.fits = std::move(contenders.fits);
   w.coarse = std::move(contenders.coarse);
   w.sides = std::move(sided.choices[sided.taken].sides);
@@ -215,6 +222,7 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
   const auto paths_under = [&](const Likelihood& likelihood) {
     Evidences of_paths = evidences_of_paths(arcs.smooth, likelihood, work);
     of_paths.free_form.log_occam += options.log_odds_against_gross;
+    of_paths.limits_only = with_limits(options.classes) & ~options.classes;
     return of_paths;
   };
   const Evidences of_paths = paths_under(stated);
@@ -223,8 +231,8 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
   const std::optional<Edges> edges = edges_of(arcs, reach_of_edges(arcs, stated, of_paths), work);
   std::optional<WorkBudget::Reserve> for_verdict(std::in_place, work, kShareOfVerdict);
   SidedFits sided = fit_over_sides(patches,
-                                   {arcs, stated, work, of_paths, options.classes, hopeless,
-                                    options.touched_from, edges ? &*edges : nullptr},
+                                   {arcs, stated, work, of_paths, with_limits(options.classes),
+                                    hopeless, options.touched_from, edges ? &*edges : nullptr},
                                    starts);
   for_verdict.reset();
   const auto contenders_of_choice = [&](const EvidenceContext& context, const Evidences& paths) {
@@ -252,10 +260,10 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
   seen.correlated = seen.correlated || options.unqualified_probe;
   const Likelihood likelihood = seen.likelihood.value_or(stated);
   const Evidences of_seen_paths = seen.likelihood ? paths_under(likelihood) : Evidences{};
-  const bool otherwise =
-      seen.likelihood && rejudge_sides({arcs, likelihood, work, of_seen_paths, options.classes,
-                                        hopeless, options.touched_from},
-                                       &sided);
+  const bool otherwise = seen.likelihood && rejudge_sides({arcs, likelihood, work, of_seen_paths,
+                                                           with_limits(options.classes), hopeless,
+                                                           options.touched_from},
+                                                          &sided);
   const EvidenceContext context{arcs, sided.choice().reduced, work, likelihood, hopeless};
   if (otherwise) {
     contenders = contenders_of_choice(context, of_seen_paths);
