@@ -26,8 +26,22 @@ std::vector<Vec2> line(double step_m, std::mt19937_64& rng) {
 
 TEST(ReadingStep, IsFoundInMillimetresAndInches) {
   auto rng = test::test_rng();
-  for (const double step_m : {1e-4, 5e-5, 2.54e-5, 1e-5, 2.54e-6, 2e-6, 1e-6, 5e-8, 1e-9}) {
+  for (const double step_m :
+       {1e-4, 5e-5, 2.54e-5, 2.5e-4, 1.25e-4, 1e-5, 2.54e-6, 2e-6, 1e-6, 5e-8, 1e-9}) {
     EXPECT_NEAR(reading_step_m(line(step_m, rng)) / step_m, 1.0, 1e-12) << step_m;
+  }
+}
+
+// Of a tool, or of another origin, after the rounding.
+TEST(ReadingStep, IsFoundBesideAnOffsetAndInSinglePrecision) {
+  auto rng = test::test_rng();
+  for (const double step_m : {1e-4, 1.25e-4, 1e-5}) {
+    std::vector<Vec2> moved = line(step_m, rng);
+    std::vector<Vec2> single = line(step_m, rng);
+    for (Vec2& sample : moved) sample += Vec2(0.0123456789, -0.0987654321);
+    for (Vec2& sample : single) sample = sample.cast<float>().cast<double>();
+    EXPECT_NEAR(reading_step_m(moved) / step_m, 1.0, 1e-12) << step_m;
+    EXPECT_NEAR(reading_step_m(single) / step_m, 1.0, 1e-12) << step_m;
   }
 }
 
