@@ -112,7 +112,9 @@ class Match {
   SegmentMatch answer() {
     constexpr double kSame = 1.25;  // times that count alike
     SegmentMatch match = answer_by_noise();
-    if (smooth_.noise_time > 1.0 && !match.placements.empty()) {
+    const bool is_shown = smooth_.noise_time * smooth_.chi2 >
+                          kLeastNoiseShown * static_cast<double>(data_.points.size());
+    if (smooth_.noise_time > 1.0 && is_shown && !match.placements.empty()) {
       const double time = time_about(match.placements.front());
       if (time > kSame * smooth_.noise_time) {
         scale_noise(std::sqrt(time / smooth_.noise_time), &data_, &smooth_);

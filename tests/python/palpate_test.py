@@ -54,6 +54,7 @@ class Fit(unittest.TestCase):
             self.check(result, scale)
             self.assertEqual(result.sample_count, 222)
             self.assertAlmostEqual(sum(result.probabilities.values()), 1.0)
+            self.assertEqual(len(result.probabilities), 9)
             self.assertAlmostEqual(result.sigma / scale, SIGMA)
 
     def test_the_noise_is_estimated_where_it_is_not_told(self):

@@ -66,13 +66,16 @@ class ArmSearch {
     std::sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
       return patches[a].size() != patches[b].size() ? patches[a].size() > patches[b].size() : a < b;
     });
-    const auto lone = std::find_if(order_.begin(), order_.end(),
-                                   [&](std::size_t p) { return patches[p].size() == 1; });
-    const auto end =
-        std::find_if(lone, order_.end(), [&](std::size_t p) { return patches[p].size() != 1; });
-    any_lone_ = lone != end;
+    any_lone_ = std::any_of(patches.begin(), patches.end(),
+                            [](const PatchSpan& patch) { return patch.size() == 1; });
     settles_arms_ = are_few_touches(points, patches);
-    spread_first(std::span(lone, end));
+    for (auto begin = order_.begin(); begin != order_.end();) {
+      const auto end = std::find_if(begin, order_.end(), [&](std::size_t p) {
+        return patches[p].size() != patches[*begin].size();
+      });
+      spread_first(std::span(begin, end));
+      begin = end;
+    }
   }
 
   /// Costs with the best arms for one direction and each vertex of kVertexDistances.
@@ -132,15 +135,18 @@ class ArmSearch {
   /// A spline is a semi-cubical parabola and a linear term.
   static constexpr std::array<std::size_t, 4> kPowersOfT = {0, 2, 3, 1};
 
-  /// Touches of their own say most of the curve, in fours, where they lie far apart.
-  void spread_first(std::span<std::size_t> lone) const {
-    std::vector<Vec2> places;
-    for (const std::size_t p : lone) {
-      places.push_back(points_[patches_[p].begin].position);
+  /// Patches as long as one another say most of the curve, in fours, where they lie far apart.
+  void spread_first(std::span<std::size_t> alike) const {
+    const std::vector<std::size_t> patches(alike.begin(), alike.end());
+    if (patches.size() <= kMostEnumerated || patches_[patches.front()].size() == 0) {
+      return;
     }
-    const std::vector<std::size_t> patches(lone.begin(), lone.end());
-    std::vector<bool> first(lone.size(), false);
-    auto next = lone.begin();
+    std::vector<Vec2> places;
+    for (const std::size_t p : patches) {
+      places.push_back(points_[patches_[p].begin + patches_[p].size() / 2].position);
+    }
+    std::vector<bool> first(patches.size(), false);
+    auto next = alike.begin();
     for (const std::size_t k : farthest_first(places, kMostEnumerated)) {
       first[k] = true;
       *next++ = patches[k];

@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
+
+#include "core/recognition/fit/polynomial_foot.h"
 
 namespace palpate {
 namespace {
@@ -217,24 +222,91 @@ bool goes_to_and_fro(const PolynomialFit& fit, const FitData& data, const PatchS
   return turns(astray, patch.size());
 }
 
+/// The parameters of a patch's feet.
+std::vector<double> feet_of(const PolynomialFit& fit, const PatchSpan& patch) {
+  return {fit.t.begin() + static_cast<std::ptrdiff_t>(patch.begin),
+          fit.t.begin() + static_cast<std::ptrdiff_t>(patch.end)};
+}
+
+/// The middle of the widest gap between feet.
+double widest_gap(std::vector<double> feet) {
+  std::sort(feet.begin(), feet.end());
+  std::size_t widest = 0;
+  for (std::size_t i = 0; i + 1 < feet.size(); ++i) {
+    widest = feet[i + 1] - feet[i] > feet[widest + 1] - feet[widest] ? i : widest;
+  }
+  return 0.5 * (feet[widest] + feet[widest + 1]);
+}
+
+/// The feet of a patch on one side of their widest gap: of the fewer, which may as well be on the
+/// strand of the others, there. Where a curve crosses itself, noise puts feet on either strand.
+/// nullopt if they may not. At least two points.
+std::optional<std::vector<double>> feet_on_one_strand(const PolynomialFit& fit, const FitData& data,
+                                                      const PatchSpan& patch) {
+  std::vector<double> feet = feet_of(fit, patch);
+  const double gap = widest_gap(feet);
+  const auto is_beyond = [&](double t) { return t > gap; };
+  const auto beyond = static_cast<std::size_t>(std::count_if(feet.begin(), feet.end(), is_beyond));
+  const bool fewer_are_beyond = 2 * beyond <= feet.size();
+  const auto is_of_fewer = [&](double t) { return is_beyond(t) == fewer_are_beyond; };
+  const auto first = std::find_if_not(feet.begin(), feet.end(), is_of_fewer);
+  double beside = *first;  // the last foot on the strand of the others
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    if (is_of_fewer(feet[i])) {
+      const FitPoint& point = data.points[patch.begin + i];
+      const PlacedPoint there = follow_foot_point(fit.coefficients, point.position, beside);
+      if (is_of_fewer(there.t) ||
+          std::abs(there.signed_distance) * point.inverse_sigma > kDeviations) {
+        return std::nullopt;
+      }
+      feet[i] = there.t;
+    }
+    beside = feet[i];
+  }
+  return feet;
+}
+
+/// Whether a parameter runs to and fro along a patch, as samples half of it apart show, whose order
+/// noise does not reverse. nullopt if there are none.
+std::optional<bool> runs_to_and_fro(std::span<const double> feet,
+                                    std::span<const FitPoint> points) {
+  const std::size_t lag = points.size() / 2;
+  std::size_t forward = 0;
+  std::size_t told = 0;
+  for (std::size_t i = 0; i + lag < points.size(); ++i) {
+    if (tells_direction(points[i], points[i + lag])) {
+      ++told;
+      forward += feet[i + lag] >= feet[i] ? 1 : 0;
+    }
+  }
+  return told > 0 ? std::optional(turns(std::min(forward, told - forward), told)) : std::nullopt;
+}
+
+/// Whether between two feet more of the curve is left out than the stroke is long, and more than
+/// half a turn.
+bool leaves_out_more(const PolynomialFit& fit, std::vector<double> feet, double stroke) {
+  std::sort(feet.begin(), feet.end());  // where its arms are within noise, feet may be on either
+  for (std::size_t i = 0; i + 1 < feet.size(); ++i) {
+    const double chord = (place_at(fit, feet[i + 1]) - place_at(fit, feet[i])).norm();
+    if (way_between(fit, feet[i], feet[i + 1]) > std::max(stroke, kHalfTurn * chord)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 bool is_touchable(const PolynomialFit& fit, const FitData& data) {
   for (const PatchSpan& patch : data.patches) {
-    if (goes_to_and_fro(fit, data, patch)) {
-      return false;
-    }
-    const std::size_t lag = patch.size() / 2;
-    std::size_t forward = 0;
-    std::size_t told = 0;
-    for (std::size_t i = patch.begin; i + lag < patch.end; ++i) {
-      if (tells_direction(data.points[i], data.points[i + lag])) {
-        ++told;
-        forward += fit.t[i + lag] >= fit.t[i];
+    const std::span<const FitPoint> points(data.points.data() + patch.begin, patch.size());
+    const std::span<const double> feet(fit.t.data() + patch.begin, patch.size());
+    const std::optional<bool> to_and_fro = runs_to_and_fro(feet, points);
+    if (!to_and_fro ? goes_to_and_fro(fit, data, patch) : *to_and_fro) {
+      const auto on_one = to_and_fro ? feet_on_one_strand(fit, data, patch) : std::nullopt;
+      if (!on_one || *runs_to_and_fro(*on_one, points)) {
+        return false;
       }
-    }
-    if (turns(std::min(forward, told - forward), told)) {
-      return false;
     }
   }
   return true;
@@ -250,18 +322,11 @@ bool leaps(const PolynomialFit& fit, const FitData& data) {
     for (std::size_t i = patch.begin; i + 1 < patch.end; ++i) {
       stroke += (data.points[i + 1].position - data.points[i].position).norm();
     }
-    // In the order of the curve: where its arms are within noise, feet may be on either.
-    std::vector<double> feet(fit.t.begin() + static_cast<std::ptrdiff_t>(patch.begin),
-                             fit.t.begin() + static_cast<std::ptrdiff_t>(patch.end));
-    std::sort(feet.begin(), feet.end());
-    for (std::size_t i = 0; i + 1 < feet.size(); ++i) {
-      if (way_between(fit, feet[i], feet[i + 1]) >
-          std::max(stroke,
-                   kHalfTurn * (place_at(fit, feet[i + 1]) - place_at(fit, feet[i])).norm())) {
-        return true;
-      }
+    if (!leaves_out_more(fit, feet_of(fit, patch), stroke)) {
+      return false;
     }
-    return false;
+    const auto on_one = feet_on_one_strand(fit, data, patch);
+    return !on_one || leaves_out_more(fit, *on_one, stroke);
   });
 }
 

@@ -26,9 +26,11 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data);
 
 /// The same for a polynomial curve: its parameter must run one way along each patch. Compares
 /// samples half a patch apart, whose order noise does not reverse. Where a patch is too short for
-/// its noise to tell, neighbours must not go to and fro between strands of the curve. The fit of a
-/// given class (given/stroke_feet.h) puts every sample of a stroke on a branch, by the way that the
-/// probe went; here a fitted curve is only kept or excluded, for which that is enough.
+/// its noise to tell, neighbours must not go to and fro between strands of the curve. Where a curve
+/// crosses itself, and beside a cusp, noise puts feet on either strand: those that may as well be
+/// on that of most of their patch count as there, for this test and the next. The fit of a given
+/// class (given/stroke_feet.h) puts every sample of a stroke on a branch, by the way that the probe
+/// went; here a fitted curve is only kept or excluded, for which that is enough.
 bool is_touchable(const PolynomialFit& fit, const FitData& data);
 
 /// Whether between two of its points a patch leaves out more of the curve than it is long itself: a

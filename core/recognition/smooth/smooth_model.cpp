@@ -249,9 +249,6 @@ void add_section(FitData* data, const PatchSpan& patch, const Section& section, 
 /// What the sections tell of neighbours that err together. Of a stated noise they may show only a
 /// part, of which alone it is known that neighbours share it.
 double noise_time_of(const FitData& data, const std::vector<Section>& sections, bool sigma_known) {
-  // Slower noise is hardly told from a path: of noise of which neighbours correlate by 0.95 a cubic
-  // over 111 samples leaves a third, and seldom less than this (residual_correlation_test).
-  constexpr double kLeastShown = 0.1;
   std::vector<RunOfResiduals> left;
   double chi2 = 0.0;
   double samples = 0.0;
@@ -265,7 +262,7 @@ double noise_time_of(const FitData& data, const std::vector<Section>& sections, 
     }
   }
   const double time = correlation_time(left);
-  const double share = sigma_known ? std::min(1.0, chi2 / (kLeastShown * samples)) : 1.0;
+  const double share = sigma_known ? std::min(1.0, chi2 / (kLeastNoiseShown * samples)) : 1.0;
   constexpr double kNothing = 0.01;  // less changes no answer
   const double more = share * (time - 1.0);
   return more > kNothing ? 1.0 + more : 1.0;

@@ -66,6 +66,11 @@ enum class StatedNoise { MayBeTooLow, Holds };
 SmoothModel fit_smooth_model(FitData* data, bool sigma_known,
                              StatedNoise stated = StatedNoise::MayBeTooLow);
 
+/// Of the variance of a stated noise, what sections leave of it at least where neighbours share it.
+/// Slower noise is hardly told from a path: of noise of which neighbours correlate by 0.95 a cubic
+/// over 111 samples leaves a third, and seldom less than this (residual_correlation_test).
+inline constexpr double kLeastNoiseShown = 0.1;
+
 /// Whether residuals leave so little as white noise does once in a thousand times.
 bool leaves_less_than_noise(double chi2, double dof);
 

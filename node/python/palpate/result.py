@@ -33,7 +33,7 @@ class Result:
     params: shape parameters, {"a": ...}. pose: (x, y, theta). covariance: of [params; x; y; theta]. If there is no
     curve (unclassified, collecting, or a best fit at the limit of the class), params and covariance are empty and the
     pose is NaN.
-    probabilities: {class: posterior probability}.
+    probabilities: {class: posterior probability}, the most probable first; empty while collecting.
     contacts: local geometry of the touched places, in metres.
     sigma: standard deviation of a point, stated or estimated.
     sample_count: points that the answer is based on. outlier_count: points set aside as spikes. forgotten_count: points
@@ -85,7 +85,8 @@ class Result:
 
     @cached_property
     def probabilities(self) -> dict[str, float]:
-        return {h["curve_class"]: h["probability"] for h in self._core.hypotheses}
+        told = {h["curve_class"]: h["probability"] for h in self._core.hypotheses}
+        return told | {name: 0.0 for name in _core.curve_classes() if told and name not in told}
 
     @cached_property
     def contacts(self) -> list[dict[str, Any]]:
