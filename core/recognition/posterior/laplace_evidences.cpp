@@ -111,7 +111,9 @@ class LaplaceEvidences {
         evidence = at_better_mode(*std::move(evidence), *earlier);
       }
     }
-    best = std::max(best, log_evidence(likelihood_, found, curve_class, chi2(curve_class)));
+    if (is_wanted(found, curve_class)) {
+      best = std::max(best, log_evidence(likelihood_, found, curve_class, chi2(curve_class)));
+    }
   }
 
   /// Whether the class stood in the same fit before.
@@ -141,7 +143,7 @@ class LaplaceEvidences {
   double chi2(CurveClass curve_class) const { return fits_[curve_class]->chi2; }
 
   Evidences found;
-  double best;  ///< log of the highest
+  double best;  ///< log of the highest of those that are wanted
 
  private:
   const ClassFits& fits_;

@@ -69,7 +69,7 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   ByClass<double> log_of = kNoEvidences;
   log_of[0] = log_evidence_of_unclassified(likelihood, evidences, smooth_chi2);
   for (const CurveClass curve_class : kCurveClasses) {
-    if (fits[curve_class]) {
+    if (fits[curve_class] && is_wanted(evidences, curve_class)) {
       log_of[curve_class] = log_evidence(likelihood, evidences, *fits[curve_class]);
     }
   }

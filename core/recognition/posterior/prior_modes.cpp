@@ -1,7 +1,6 @@
 #include "core/recognition/posterior/prior_modes.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "core/numerics/negligible.h"
@@ -77,8 +76,8 @@ void add_mode_at_cusp(const ClassFits& fits, const FitData& reduced, const Likel
 void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
                      double log_of_free_form, Evidences* evidences, WorkBudget& work) {
   const auto told = [&](CurveClass i) {
-    return fits[i] ? log_evidence(likelihood, *evidences, *fits[i])
-                   : -std::numeric_limits<double>::infinity();
+    return fits[i] && is_wanted(*evidences, i) ? log_evidence(likelihood, *evidences, *fits[i])
+                                               : kNoEvidence;
   };
   CurveClass best = kCurveClasses.front();
   for (const CurveClass i : kCurveClasses) {
