@@ -1,6 +1,7 @@
 #include "core/local/reading_step.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -11,15 +12,15 @@ namespace {
 constexpr double kShare = 0.9;
 
 /// Whether a coordinate, counted from another, is a multiple of the step, but for the rounding of
-/// all, which single precision may have held. (Nine tenths of coordinates that are none come as
-/// near to one once in 500^n.)
+/// all, which single precision may have held.
 bool is_multiple(double coordinate_m, double from_m, double step_m) {
-  constexpr double kOfStep = 1e-3;
-  constexpr double kRoundings = 4.0;
+  constexpr double kOfStep = 1e-6;
+  constexpr double kOfSingle = 0.5 * std::numeric_limits<float>::epsilon();
+  // Of the step: nine tenths of n coordinates that are no multiples come as near once in 50^n.
+  constexpr double kMostOfStep = 1e-2;
   const double steps = (coordinate_m - from_m) / step_m;
-  const double rounding =
-      std::numeric_limits<double>::epsilon() * (std::abs(coordinate_m) + std::abs(from_m)) / step_m;
-  return std::abs(steps - std::round(steps)) <= kOfStep + kRoundings * rounding;
+  const double rounding = kOfSingle * (std::abs(coordinate_m) + std::abs(from_m)) / step_m;
+  return std::abs(steps - std::round(steps)) <= kOfStep + std::min(rounding, kMostOfStep);
 }
 
 bool are_multiples(std::span<const Vec2> samples, const Vec2& from, double step_m) {
