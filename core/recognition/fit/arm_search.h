@@ -142,6 +142,7 @@ class ArmSearch {
       return;
     }
     std::vector<Vec2> places;
+    places.reserve(patches.size());
     for (const std::size_t p : patches) {
       places.push_back(points_[patches_[p].begin + patches_[p].size() / 2].position);
     }

@@ -7,6 +7,7 @@
 
 #include "core/numerics/least_squares.h"
 #include "core/recognition/fit/measured_normal.h"
+#include "core/recognition/fit/touchable.h"
 
 namespace palpate {
 namespace {
