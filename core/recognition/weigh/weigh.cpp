@@ -219,10 +219,11 @@ bool are_rounded(const Arcs& arcs, const std::optional<Placed>& best) {
 Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget& work,
                     const WeighOptions& options, std::span<const SidedStart> starts) {
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
+  const unsigned sought = with_limits(options.classes);
   const auto paths_under = [&](const Likelihood& likelihood) {
     Evidences of_paths = evidences_of_paths(arcs.smooth, likelihood, work);
     of_paths.free_form.log_occam += options.log_odds_against_gross;
-    of_paths.limits_only = with_limits(options.classes) & ~options.classes;
+    of_paths.limits_only = sought & ~options.classes;
     return of_paths;
   };
   const Evidences of_paths = paths_under(stated);
@@ -231,8 +232,8 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
   const std::optional<Edges> edges = edges_of(arcs, reach_of_edges(arcs, stated, of_paths), work);
   std::optional<WorkBudget::Reserve> for_verdict(std::in_place, work, kShareOfVerdict);
   SidedFits sided = fit_over_sides(patches,
-                                   {arcs, stated, work, of_paths, with_limits(options.classes),
-                                    hopeless, options.touched_from, edges ? &*edges : nullptr},
+                                   {arcs, stated, work, of_paths, sought, hopeless,
+                                    options.touched_from, edges ? &*edges : nullptr},
                                    starts);
   for_verdict.reset();
   const auto contenders_of_choice = [&](const EvidenceContext& context, const Evidences& paths) {
@@ -261,8 +262,7 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
   const Likelihood likelihood = seen.likelihood.value_or(stated);
   const Evidences of_seen_paths = seen.likelihood ? paths_under(likelihood) : Evidences{};
   const bool otherwise = seen.likelihood && rejudge_sides({arcs, likelihood, work, of_seen_paths,
-                                                           with_limits(options.classes), hopeless,
-                                                           options.touched_from},
+                                                           sought, hopeless, options.touched_from},
                                                           &sided);
   const EvidenceContext context{arcs, sided.choice().reduced, work, likelihood, hopeless};
   if (otherwise) {

@@ -3,30 +3,15 @@
 
 #include <cstdint>
 #include <iostream>
-#include <vector>
 
 #include "core/recognition/recognizer.h"
 #include "tests/support/most_of_poisson.h"
+#include "tests/support/scene_data.h"
 #include "tests/support/scene_prior.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
 namespace {
-
-Recognition recognised(const test::Scene& scene, CurveClass wanted) {
-  RecognizerOptions options;
-  options.classes = 1U << static_cast<unsigned>(wanted);
-  Recognizer recognizer(options);
-  std::uint32_t number = 0;
-  for (const auto& patch : scene.patches) {
-    std::vector<ContactSample> samples;
-    for (const Vec2& place : patch) {
-      samples.push_back({place, scene.sigma_m, 0});
-    }
-    recognizer.add({0, number++, 0.0}, samples);
-  }
-  return recognizer.recognize();
-}
 
 /// Arcs that are hardly told from those of a class's limit, a parabola's or a line's, are of the
 /// class all the same where that is the only one asked for.
@@ -39,7 +24,9 @@ TEST(WantedClasses, AreToldAtTheirLimitsToo) {
     const test::Scene scene = test::scene_from(test::classes_only(test::even_prior()),
                                                test::test_seed(), static_cast<std::uint32_t>(i))
                                   .scene;
-    const Recognition answer = recognised(scene, scene.curve_class);
+    RecognizerOptions options;
+    options.classes = 1U << static_cast<unsigned>(scene.curve_class);
+    const Recognition answer = test::recognise(scene, scene.sigma_m, options);
     for (const Hypothesis& hypothesis : answer.hypotheses) {
       const CurveClass curve_class = hypothesis.shape.curve_class;
       EXPECT_TRUE(curve_class == scene.curve_class || curve_class == CurveClass::Unclassified) << i;
