@@ -242,15 +242,33 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
   return {residuals.coefficients(step), summary.chi2, side, residuals.feet(step)};
 }
 
-/// Seeks the foot of a point from `foot` by so many steps at most. Returns whether it is found.
-bool follow_foot(const ConicCoefficients& q, const Vec2& point, int iterations, Vec2* foot) {
+/// How a foot is sought.
+struct FootSteps {
+  int most = 0;
+  double least_slope = kLeastFootSlope;  ///< for a step by Newton's method
+  /// Where there is less, Gauss-Newton's step along the curve; otherwise none, for it may lead
+  /// anywhere.
+  bool goes_on = false;
+};
+
+/// From the first-order foot, of a point that is near the curve.
+constexpr FootSteps kFromNear{5};
+
+/// From the foot of a neighbour, of a tip's centre. A ball that leaves a twentieth of its bore's
+/// radius free has a twentieth of the slope: Gauss-Newton's steps take as much of the way each,
+/// Newton's all.
+constexpr FootSteps kOfTip{20, 0.01, true};
+
+/// Seeks the foot of a point from `foot`. Returns whether it is found.
+bool follow_foot(const ConicCoefficients& q, const Vec2& point, const FootSteps& steps,
+                 Vec2* foot) {
   // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}.
   // After a last step s the foot point is off by about s^2 in normalised extents: by so much at
   // most, absolute and of the distance.
   constexpr double kAbsoluteError = 1e-12;
   constexpr double kRelativeError = 1e-8;
   Vec2& f = *foot;
-  for (int iteration = 0; iteration < iterations; ++iteration) {
+  for (int iteration = 0; iteration < steps.most; ++iteration) {
     const double v = value(q, f);
     const Vec2 g = conic_gradient(q, f);
     const double g2 = g.squaredNorm();
@@ -264,10 +282,13 @@ bool follow_foot(const ConicCoefficients& q, const Vec2& point, int iterations, 
     const double cy = g.x() + away.x() * 2.0 * q[2] - away.y() * q[1];
     const double determinant = g.x() * cy - g.y() * cx;
     Vec2 step;
-    if (determinant > kLeastFootSlope * g2) {
+    if (determinant > steps.least_slope * g2) {
       step = {(-v * cy + c * g.y()) / determinant, (-g.x() * c + v * cx) / determinant};
     } else {
-      step = -v / g2 * g;  // beyond the centre of curvature: stay with the first-order foot point
+      step = -v / g2 * g;  // beyond the centre of curvature
+      if (steps.goes_on) {
+        step -= c / g2 * left_of(g);
+      }
     }
     f += step;
     if (step.squaredNorm() < std::min(kAbsoluteError, kRelativeError * away.norm())) {
@@ -284,9 +305,6 @@ Vec2 first_order_foot(const ConicCoefficients& q, const Vec2& point) {
   // At the centre of a conic there is no direction to go.
   return g2 > 0.0 ? Vec2(point - value(q, point) / g2 * g) : point;
 }
-
-/// Steps from the first-order foot: of a point that is near the curve.
-constexpr int kStepsFromNear = 5;
 
 /// Whether two points of a conic lie on two branches of a hyperbola: halfway between them is then
 /// where the centre is, between the branches, and else within one.
@@ -308,19 +326,23 @@ double normal_residual(const ConicCoefficients& q, const Vec2& foot, const FitPo
 
 double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot) {
   *foot = first_order_foot(q, point);
-  follow_foot(q, point, kStepsFromNear, foot);
+  follow_foot(q, point, kFromNear, foot);
   return signed_distance_from(*foot, q, point);
 }
 
 double signed_distance_of_tip(const Vec2& near, const ConicCoefficients& q, const Vec2& point,
                               Vec2* foot) {
-  constexpr int kStepsOfTip = 20;
-  *foot = first_order_foot(q, point);
-  // About the centre of a hyperbola, where a tip as large as its a may be, the polynomial is flat,
-  // and the first-order foot anywhere.
-  if (!follow_foot(q, point, kStepsFromNear, foot) || are_on_two_branches(q, *foot, near)) {
-    *foot = near;
-    follow_foot(q, point, kStepsOfTip, foot);
+  // About the centre of a conic, where a tip may be that is as large as a bore's b or a hyperbola's
+  // a, the polynomial is flat, the first-order foot anywhere, and the foot that it leads to any of
+  // four.
+  *foot = near;
+  const bool found = follow_foot(q, point, kOfTip, foot);
+  if (!found || are_on_two_branches(q, *foot, near)) {
+    Vec2 other = first_order_foot(q, point);
+    const bool leads = follow_foot(q, point, kFromNear, &other);
+    if (leads && (other - near).squaredNorm() < (*foot - near).squaredNorm()) {
+      *foot = other;
+    }
   }
   return signed_distance_from(*foot, q, point);
 }

@@ -42,8 +42,8 @@ ImplicitFit placed_on(std::span<const FitPoint> points, ImplicitFit fit);
 /// distance is small compared with the radius of curvature.
 double signed_distance(const ConicCoefficients& coefficients, const Vec2& point, Vec2* foot);
 
-/// The same of a tip's centre, with the foot on the branch of a hyperbola on which `near` lies. (On
-/// the side of a needle on which the centre is, whatever the side of `near`.)
+/// The same of a tip's centre, which may be far from the conic: with the foot that is reached from
+/// `near`, that of a neighbour. It is on the same branch of a hyperbola.
 double signed_distance_of_tip(const Vec2& near, const ConicCoefficients& coefficients,
                               const Vec2& point, Vec2* foot);
 

@@ -46,6 +46,29 @@ TEST(ImplicitFit, ATipAboutTheCentreOfAHyperbolaKeepsItsBranch) {
   }
 }
 
+TEST(ImplicitFit, ATipInABoreTouchesTheWallBesideItsNeighbour) {
+  // Its centre has up to four feet, and about the bore's centre the first-order foot may be any.
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < test::stress_count(20000); ++i) {
+    const double a = test::log_uniform(rng, 0.1, 1.0);
+    const double b = a * test::uniform(rng, 0.3, 1.0);
+    const double t = test::uniform(rng, -kPi, kPi);
+    const Vec2 touched(a * std::cos(t), b * std::sin(t));
+    const double speed = std::hypot(a * std::sin(t), b * std::cos(t));
+    const double radius = test::uniform(rng, 0.1, 0.97) * std::pow(speed, 3) / (a * b);
+    ConicCoefficients q;
+    q << 1.0 / (a * a), 0.0, 1.0 / (b * b), 0.0, 0.0, -1.0;
+    q.normalize();
+    const Vec2 centre = touched - radius * conic_gradient(q, touched).normalized();
+    const double nearby = t + test::uniform(rng, -0.01, 0.01);
+    Vec2 foot;
+    const double distance =
+        signed_distance_of_tip({a * std::cos(nearby), b * std::sin(nearby)}, q, centre, &foot);
+    EXPECT_NEAR(distance, -radius, 1e-7 * radius) << a << ' ' << b << ' ' << t;
+    EXPECT_LT((foot - touched).norm(), 1e-4 * radius) << a << ' ' << b << ' ' << t;
+  }
+}
+
 TEST(ImplicitFit, ExactPointsAreFittedExactly) {
   std::mt19937_64 rng = test::test_rng();
   test::SceneOptions options;
