@@ -108,6 +108,15 @@ void add_relatives(const FitData& reduced, PolynomialSeeds* seeds, WorkBudget& w
   }
 }
 
+/// Walks the valleys of the splines that the search has left. Those that are lower than `chi2`, of
+/// the best that it has found, come right after the first, which is refined.
+void walk_more(const FitData& reduced, double chi2, PolynomialSeeds* seeds, WorkBudget& work) {
+  std::vector<AxisFit> more = walk(seeds->more_splines, reduced, work);
+  seeds->more_splines.clear();
+  std::erase_if(more, [&](const AxisFit& fit) { return !(fit.chi2 < chi2); });
+  seeds->cubic_spline.insert(seeds->cubic_spline.begin() + 1, more.begin(), more.end());
+}
+
 /// The best spline and another optimum: on the other side of c = 0, or of another valley.
 struct SplinePair {
   std::optional<PolynomialFit> best;
@@ -355,6 +364,11 @@ void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFi
   improve(&fits->cubical_parabola, fits->seeds.cubical_parabola);
   improve(&fits->semi_cubical_parabola, fits->seeds.semi_cubical_parabola);
   start_from_limits(reduced, kInfinity, out_of_reach, fits, work);
+  const bool nothing_fits =
+      !conic_fits && fits->cubic_spline && !fits_well(fits->cubic_spline->chi2, residuals);
+  if (nothing_fits && !fits->seeds.cubic_spline.empty()) {
+    walk_more(reduced, fits->cubic_spline->chi2, &fits->seeds, work);
+  }
   improve(&fits->cubic_spline, fits->seeds.cubic_spline);
   start_from_spline(reduced, out_of_reach, fits, work);
 }

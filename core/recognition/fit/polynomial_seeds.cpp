@@ -137,9 +137,13 @@ void add_arm_seeds(std::span<const FitPoint> points, std::span<const PatchSpan> 
   }
   take_minima(semi_cubicals, kVertices, search.most_seeds(), PolynomialModel::SemiCubicalParabola,
               &seeds->semi_cubical_parabola);
-  take_minima(splines, kVertices, search.most_seeds(), PolynomialModel::CubicSpline,
-              &seeds->cubic_spline);
-  for (auto* found : {&seeds->semi_cubical_parabola, &seeds->cubic_spline}) {
+  take_minima(splines, kVertices, search.most_seeds() + PolynomialSeeds::kMoreSplines,
+              PolynomialModel::CubicSpline, &seeds->cubic_spline);
+  const std::size_t first = std::min(search.most_seeds(), seeds->cubic_spline.size());
+  const auto more = seeds->cubic_spline.begin() + static_cast<std::ptrdiff_t>(first);
+  seeds->more_splines.assign(more, seeds->cubic_spline.end());
+  seeds->cubic_spline.erase(more, seeds->cubic_spline.end());
+  for (auto* found : {&seeds->semi_cubical_parabola, &seeds->cubic_spline, &seeds->more_splines}) {
     for (AxisFit& seed : *found) {
       seed.arms = search.best_arms(seed, work);
     }

@@ -21,10 +21,14 @@ struct PolynomialSeeds {
   static constexpr std::size_t kLoneArmSeeds = 10;
   /// The same of few touches, which leave more valleys still.
   static constexpr std::size_t kFewTouchesSeeds = 20;
+  /// Splines more, for where nothing fits. Two or three strokes on the flanks of a loop leave 10 to
+  /// 18 minima, and the true one is among the first eleven (spline_flanks_test).
+  static constexpr std::size_t kMoreSplines = 6;
   std::vector<AxisFit> parabola;
   std::vector<AxisFit> cubical_parabola;
   std::vector<AxisFit> semi_cubical_parabola;
   std::vector<AxisFit> cubic_spline;
+  std::vector<AxisFit> more_splines;  ///< the next minima
 };
 
 /// Five for each unknown of a spline. The more touches there are, the farther above the right arms'
