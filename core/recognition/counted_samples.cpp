@@ -13,6 +13,25 @@
 #include "core/recognition/weigh/weigh_in_full.h"
 
 namespace palpate {
+namespace {
+
+/// The best class's; nullopt where there is none, or double precision cannot hold it.
+std::optional<ExplainingCurve> curve_of(const Weighing& w) {
+  const auto& best = w.canonical[w.best];
+  return best && make_curve(w.best, best->shape.values)
+             ? std::optional(ExplainingCurve{best->shape, best->world_T_curve, residual_noise_m(w)})
+             : std::nullopt;
+}
+
+std::size_t count_samples(std::span<const StoredPatch> patches) {
+  std::size_t count = 0;
+  for (const StoredPatch& patch : patches) {
+    count += patch.samples.size();
+  }
+  return count;
+}
+
+}  // namespace
 
 Weighed CountedSamples::without_outliers(const FitData& data, bool sigma_known,
                                          std::span<const StoredPatch> patches,
@@ -56,7 +75,7 @@ Weighed CountedSamples::with_ends(Weighed weighed, bool sigma_known, WorkBudget&
   if (!more) {
     return weighed;
   }
-  auto again = again_with(*std::move(more), weighed.w, work);
+  auto again = again_with(*std::move(more), weighed.w.starts, weighed.w.best, work);
   const bool fits =
       again && again->outliers.empty() &&
       can_be_noise(again->w.counted_chi2, static_cast<double>(residual_count(again->w.data)));
@@ -64,20 +83,46 @@ Weighed CountedSamples::with_ends(Weighed weighed, bool sigma_known, WorkBudget&
 }
 
 Weighed CountedSamples::with_explained(Weighed weighed, WorkBudget& work) const {
-  const Weighing& w = weighed.w;
-  const auto& best = w.canonical[w.best];
-  const auto curve = best ? make_curve(w.best, best->shape.values) : std::nullopt;
-  if (!curve || !work.allows()) {
+  const auto curve = work.allows() ? curve_of(weighed.w) : std::nullopt;
+  auto more = curve ? with_spikes_on(*curve, work) : std::nullopt;
+  auto again =
+      more ? again_with(*std::move(more), weighed.w.starts, weighed.w.best, work) : std::nullopt;
+  if (!again) {
     return weighed;
   }
+  again->explains = curve_of(again->w);
+  return *std::move(again);
+}
+
+Weighed CountedSamples::followed(const FitData& data, bool sigma_known,
+                                 std::span<const StoredPatch> patches,
+                                 std::span<const SidedStart> starts,
+                                 const std::optional<ExplainingCurve>& explains,
+                                 WorkBudget& work) const {
+  auto more = explains ? with_spikes_on(*explains, work) : std::nullopt;
+  if (more) {
+    const std::size_t count = count_samples(*more);
+    auto again = again_with(*std::move(more), starts, explains->shape.curve_class, work);
+    const auto now = again ? curve_of(again->w) : std::nullopt;
+    const auto same = now ? with_spikes_on(*now, work) : std::nullopt;
+    if (same && count_samples(*same) == count) {
+      again->explains = now;
+      return *std::move(again);
+    }
+  }
+  return without_outliers(data, sigma_known, patches, starts, StartsOf::LastWeighing, work);
+}
+
+/// All patches with the spikes that lie on the curve; nullopt where none do.
+std::optional<std::vector<StoredPatch>> CountedSamples::with_spikes_on(const ExplainingCurve& on,
+                                                                       WorkBudget& work) const {
   const std::size_t count = samples_.moved_count();
   const double limit =
       two_sided_normal_quantile(options_.false_outlier_probability / static_cast<double>(count));
-  work.spend(WorkKind::PlacedRow, count);
-  auto more = with_explained_spikes(samples_.moved(), samples_.clean(), *curve, best->world_T_curve,
-                                    residual_noise_m(w), limit);
-  auto again = more ? again_with(*std::move(more), w, work) : std::nullopt;
-  return again ? *std::move(again) : std::move(weighed);
+  work.spend(kind_of_foot(on.shape.curve_class), count - count_samples(samples_.clean()));
+  return with_explained_spikes(samples_.moved(), samples_.clean(),
+                               *make_curve(on.shape.curve_class, on.shape.values), on.world_T_curve,
+                               on.noise_m, limit);
 }
 
 /// Weighs without the samples that have a flag.
@@ -98,15 +143,15 @@ void CountedSamples::weigh_again(std::vector<bool> aside, const FitData& data, b
 
 /// Weighed again with these patches; nullopt where the class does not stand then.
 std::optional<Weighed> CountedSamples::again_with(std::vector<StoredPatch> more,
-                                                  const Weighing& before, WorkBudget& work) const {
+                                                  std::span<const SidedStart> starts,
+                                                  CurveClass best, WorkBudget& work) const {
   if (auto joined = joined_touches(more, options_.sigma_m, options_.classes, work)) {
     more = std::move(joined->patches);
   }
   bool sigma_known = false;
   const FitData data = make_fit_data(more, options_.sigma_m, &sigma_known);
-  Weighed again =
-      without_outliers(data, sigma_known, more, before.starts, StartsOf::LastWeighing, work);
-  if (work.was_cut() || again.w.best != before.best || !again.w.canonical[before.best]) {
+  Weighed again = without_outliers(data, sigma_known, more, starts, StartsOf::LastWeighing, work);
+  if (work.was_cut() || again.w.best != best || !again.w.canonical[best]) {
     return std::nullopt;
   }
   again.patches = std::move(more);

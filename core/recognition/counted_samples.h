@@ -6,12 +6,20 @@
 #include <span>
 #include <vector>
 
+#include "core/curves/pose2.h"
 #include "core/recognition/recognizer.h"
 #include "core/recognition/samples/clean_patches.h"
 #include "core/recognition/weigh/sided_start.h"
 #include "core/recognition/weigh/weigh.h"
 
 namespace palpate {
+
+/// A curve, and the noise about it that leaves a sample on it.
+struct ExplainingCurve {
+  ShapeParameters shape;
+  Pose2 world_T_curve;
+  double noise_m = 0.0;
+};
 
 /// A weighing, and what it is of.
 struct Weighed {
@@ -20,6 +28,8 @@ struct Weighed {
   /// Where these are others than were asked about.
   std::optional<std::vector<StoredPatch>> patches;
   bool leaves_class = false;  ///< FarSamples::are_form
+  /// Of the best class, where `patches` have spikes that it explains.
+  std::optional<ExplainingCurve> explains = {};
 };
 
 /// What the starts of a weighing are from. Those of a search are not followed where samples are set
@@ -39,6 +49,13 @@ class CountedSamples {
                            std::span<const StoredPatch> patches, std::span<const SidedStart> starts,
                            StartsOf of, WorkBudget& work) const;
 
+  /// The same from the last weighing, at once with the spikes that its curve `explains`, if the
+  /// class stands so and explains no others: so a patch whose samples look like spikes is not
+  /// weighed twice with each of the next ones.
+  Weighed followed(const FitData& data, bool sigma_known, std::span<const StoredPatch> patches,
+                   std::span<const SidedStart> starts,
+                   const std::optional<ExplainingCurve>& explains, WorkBudget& work) const;
+
   /// Weighed again with what was told for spikes at the ends of strokes, where the noise is stated
   /// and the class that the rest is of leaves no more than noise of all.
   Weighed with_ends(Weighed weighed, bool sigma_known, WorkBudget& work) const;
@@ -50,7 +67,10 @@ class CountedSamples {
   void weigh_again(std::vector<bool> aside, const FitData& data, bool sigma_known,
                    std::span<const StoredPatch> patches, StartsOf of, Weighed* weighed,
                    WorkBudget& work) const;
-  std::optional<Weighed> again_with(std::vector<StoredPatch> more, const Weighing& before,
+  std::optional<std::vector<StoredPatch>> with_spikes_on(const ExplainingCurve& curve,
+                                                         WorkBudget& work) const;
+  std::optional<Weighed> again_with(std::vector<StoredPatch> more,
+                                    std::span<const SidedStart> starts, CurveClass best,
                                     WorkBudget& work) const;
   WeighOptions weigh_options(const FitData& data, bool sigma_known) const;
 

@@ -198,6 +198,7 @@ class Recognizer::Impl {
       if (!weighed.patches) {
         weighed = samples.with_explained(std::move(weighed), work);
       }
+      last_->explains = weighed.explains;
     }
     if (work.was_cut()) {
       last_.reset();  // what was found by then may be far from what there is
@@ -256,6 +257,7 @@ class Recognizer::Impl {
     ClassProbabilities probabilities{};
     std::size_t samples = 0;  ///< at the last search
     std::size_t patches = 0;
+    std::optional<ExplainingCurve> explains = {};  ///< spikes, of the best class then
   };
 
   /// From the last weighing while the object is touched on in the same patches; from a new search
@@ -274,8 +276,8 @@ class Recognizer::Impl {
     const bool warm = last_ && last_->patches == data.patches.size() &&
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
     if (warm) {
-      Weighed weighed = counted.without_outliers(data, sigma_known, patches, last_->starts,
-                                                 StartsOf::LastWeighing, work);
+      Weighed weighed =
+          counted.followed(data, sigma_known, patches, last_->starts, last_->explains, work);
       const Weighing& w = weighed.w;
       const bool holds = last_->probabilities[w.best] > out &&
                          !has_lost_one(w.probabilities, last_->probabilities,
@@ -283,6 +285,7 @@ class Recognizer::Impl {
       if (holds || !work.allows()) {
         last_->starts = w.starts;
         last_->probabilities = w.probabilities;
+        last_->explains.reset();
         return weighed;
       }
     }
