@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "node/files/recording.h"
+
 namespace palpate::csv {
 namespace {
 
@@ -54,6 +56,10 @@ std::optional<std::string> no_text_because(std::string_view bytes) {
     return "is a zip archive, as spreadsheets (.xlsx, .ods) are: save the sheet as CSV";
   }
   if (bytes.starts_with("\xD0\xCF\x11\xE0")) return "is an old Excel file: save the sheet as CSV";
+  if (bytes.starts_with(kRecordingMagic) || bytes.starts_with(kFormerRecordingMagic)) {
+    return "is a recording of palpate, no table of points: palpate replay FILE publishes it to a "
+           "running palpate-node";
+  }
   if (bytes.starts_with("%PDF-")) return "is a PDF: export the points as text";
   return std::nullopt;
 }

@@ -1,11 +1,17 @@
 // Example of a planner: prints each recognised curve and where it lies.
 #include <chrono>
 #include <cstdio>
+#include <exception>
+#include <string_view>
 
 #include "node/client/connection.h"
 #include "node/client/result_subscriber.h"
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
+  if (argc > 1 && std::string_view(argv[1]) == "--help") {
+    std::printf("usage: %s [ENDPOINT [SECRET_KEY_FILE RECOGNIZER_PUBLIC_KEY_FILE]]\n", argv[0]);
+    return 0;
+  }
   palpate::client::ResultSubscriberOptions options;
   if (argc > 1) options.endpoint = argv[1];
   if (argc > 2) {  // CURVE: our secret key file, the recognizer's public key file
@@ -30,4 +36,7 @@ int main(int argc, char** argv) {
       std::fflush(stdout);
     }
   }
+} catch (const std::exception& error) {  // e.g. an endpoint that is none
+  std::fprintf(stderr, "%s\n", error.what());
+  return 2;
 }

@@ -2,13 +2,19 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "node/client/connection.h"
 #include "node/client/contact_publisher.h"
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
+  if (argc > 1 && std::string_view(argv[1]) == "--help") {
+    std::printf("usage: %s [ENDPOINT [SECRET_KEY_FILE RECOGNIZER_PUBLIC_KEY_FILE]]\n", argv[0]);
+    return 0;
+  }
   palpate::client::ContactPublisherOptions options;
   if (argc > 1) options.endpoint = argv[1];
   if (argc > 2) {  // CURVE: our secret key file, the recognizer's public key file
@@ -41,4 +47,7 @@ int main(int argc, char** argv) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
+} catch (const std::exception& error) {  // e.g. an endpoint that is none
+  std::fprintf(stderr, "%s\n", error.what());
+  return 2;
 }

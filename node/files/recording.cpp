@@ -16,8 +16,6 @@
 namespace palpate {
 namespace {
 
-constexpr std::string_view kMagic = "palpate2";
-constexpr std::string_view kFormerMagic = "palpate1";
 constexpr std::string_view kMark = "\xA7rec";
 // Layout of a record: mark, received_ns, frame_count, topic size, payload size, checksum.
 constexpr std::size_t kTimeAt = kMark.size();
@@ -62,7 +60,7 @@ std::string RecordingWriter::open(const std::string& path) {
     return path + ": exists already";
   }
   file_.open(path, std::ios::binary | std::ios::trunc);
-  if (!file_ || !(file_ << kMagic << std::flush)) {
+  if (!file_ || !(file_ << kRecordingMagic << std::flush)) {
     return path + ": " + std::strerror(errno);
   }
   return {};
@@ -83,20 +81,21 @@ bool RecordingWriter::write(const RecordedMessage& message) {
 
 bool is_recording(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  std::array<char, kMagic.size()> start{};
+  std::array<char, kRecordingMagic.size()> start{};
   file.read(start.data(), start.size());
   const std::string_view magic(start.data(), start.size());
-  return file && (magic == kMagic || magic == kFormerMagic);
+  return file && (magic == kRecordingMagic || magic == kFormerRecordingMagic);
 }
 
 std::string RecordingReader::open(const std::string& path) {
   file_.open(path, std::ios::binary);
   if (!file_) return path + ": " + std::strerror(errno);
-  if (!fill(kMagic.size()) || (!rest().starts_with(kMagic) && !rest().starts_with(kFormerMagic))) {
+  if (!fill(kRecordingMagic.size()) ||
+      (!rest().starts_with(kRecordingMagic) && !rest().starts_with(kFormerRecordingMagic))) {
     return path + ": no recording: it does not begin with \"palpate2\" or \"palpate1\"";
   }
-  former_ = rest().starts_with(kFormerMagic);
-  consume(kMagic.size());
+  former_ = rest().starts_with(kFormerRecordingMagic);
+  consume(kRecordingMagic.size());
   return {};
 }
 

@@ -12,10 +12,15 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 #include "node/files/result.h"
 
 namespace palpate {
+
+/// What a recording begins with, in this format and in the former one.
+inline constexpr std::string_view kRecordingMagic = "palpate2";
+inline constexpr std::string_view kFormerRecordingMagic = "palpate1";
 
 /// A message as it came; it may be malformed.
 struct RecordedMessage {

@@ -18,7 +18,7 @@ struct OptionInfo {
   const char* help;
   double lowest = 0.0;  ///< for numbers only
   double highest = std::numeric_limits<double>::max();
-  const char* also = "";  ///< a second, shorter flag
+  const char* also = "";  ///< a second, shorter flag; it has an environment variable too
 };
 
 /// Whether an option is a flag that --no-... takes back. One that is optional has a default that

@@ -67,6 +67,18 @@ class Examples(unittest.TestCase):
                 self.assertEqual(code, 2, err)
                 self.assertRegex(err, "give both or neither|the recognizer's public key file is not named")
 
+    def test_wrong_usage_ends_in_a_line_that_says_so(self):
+        for name in ("probe", "planner"):
+            call = self.cpp(name)
+            for wrong in ("tcp:/127.0.0.1:5581", "--nonsense"):
+                code, out, err = run(*call(wrong))
+                self.assertEqual((code, out), (2, ""), err)
+                self.assertEqual(err.count("\n"), 1, err)
+                self.assertIn(f'"{wrong}" is no endpoint', err)
+            code, out, err = run(*call("--help"))
+            self.assertEqual((code, err), (0, ""))
+            self.assertIn("[ENDPOINT ", out)
+
     def test_who_waits_says_for_what(self):
         with Bus() as bus:
             for call in (self.python("probe"), self.python("planner"), self.cpp("probe"), self.cpp("planner")):

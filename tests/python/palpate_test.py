@@ -75,6 +75,10 @@ class Fit(unittest.TestCase):
                          [False, True, True, False])
         np.testing.assert_allclose(untold.noise_covariance, noise_alone.covariance, rtol=1e-6)
         self.assertEqual(pickle.loads(pickle.dumps(untold)).noise_covariance.shape, (5, 5))
+        self.assertTrue(palpate.fit(PATCHES, unit="mm", unqualified_probe=np.True_).unqualified_probe)
+        for wrong in ("no", 0, np.array([True, False])):
+            with self.assertRaisesRegex(ValueError, "unqualified_probe: .* is none of True, False and None"):
+                palpate.fit(PATCHES, unit="mm", unqualified_probe=wrong)
 
     def test_other_powers_of_length(self):
         t = np.linspace(-30, 30, 120)
@@ -425,6 +429,13 @@ class Fit(unittest.TestCase):
         for wrong in ([points, np.zeros(3)], [points, np.zeros((2, 3))], [points, np.zeros((1, 1, 2))]):
             with self.assertRaisesRegex(ValueError, r"shape \(n, 2\)"):
                 Ellipse().estimate(wrong)
+        for wrong in (dict(data=[]), dict(data=points, sigma=-1.0), dict(data=points, normals=outward)):
+            with self.assertRaises(ValueError):
+                together.estimate(**wrong)
+            self.assertEqual(vars(together).keys(), vars(Ellipse()).keys())
+            for name, value in vars(Ellipse()).items():  # nothing of the fit before
+                np.testing.assert_array_equal(getattr(together, name), value, name)
+            self.assertTrue(together.estimate(points, SIGMA))
         with self.assertRaisesRegex(ValueError, r"shape \(n, 2\)"):
             Ellipse().estimate([])
         for nothing in ([np.empty((0, 2))], np.empty((0, 2))):
@@ -548,6 +559,59 @@ for wrong in (dict(name="left finger"), dict(name="finger", group="a/b"), dict(n
         self.assertIn("no answer from", lines[1])
         self.assertIn("no recognizer listens at", lines[2])
         self.assertEqual([line.partition("wrong: ")[2].split(":")[0] for line in lines[3:]], ["name", "group", "tip_radius"])
+
+    def test_probes_of_one_group_touch_one_object(self):
+        # Each touches one side of an ellipse: one stroke alone would not show it.
+        script = f"""
+import palpate, numpy as np
+with palpate.Planner(RESULTS, group="hand") as planner, \\
+     palpate.Probe("left", CONTACTS, group="hand", sigma=0.02, unit="mm", object=7) as left, \\
+     palpate.Probe("right", CONTACTS, group="hand", sigma=0.02, unit="mm", object=np.uint64(7)) as right:
+    for number, a in ((7, 25), (8, 30), (20, 40)):
+        for k, (probe, start, end) in enumerate([(left, 0.3, 1.5), (right, 2.3, 3.6)]):
+            if number == 8:
+                probe.new_object()
+            elif number == 20:
+                probe.new_object(20)
+            t = np.linspace(start, end, 111)
+            probe.send(np.column_stack([a * np.cos(t), 17.5 * np.sin(t)]) + np.random.default_rng(k).normal(0, 0.02, (111, 2)))
+        while True:
+            answer = planner.receive(timeout=20)
+            if answer.object == number and answer.sample_count == 222:
+                break
+        print(left.object, right.object, round(1e3 * answer.parameters.a))
+    for wrong in (20, 19, -1, 1 << 64, "21", 21.0):
+        try:
+            left.new_object(wrong)
+        except ValueError as error:
+            print(error)
+    print(left.object)
+with palpate.Probe("finger", CONTACTS, object=(1 << 64) - 1) as last:
+    try:
+        last.new_object()
+    except ValueError as error:
+        print(error)
+with palpate.Probe("finger", CONTACTS, group="finger") as alone:
+    before = alone.object
+    alone.new_object()
+    print(before > 1_600_000_000_000, alone.object - before)
+for wrong in (dict(group="hand"), dict(object=-1), dict(object=1 << 64), dict(object=1.5), dict(object="1")):
+    try:
+        palpate.Probe("finger", CONTACTS, **wrong)
+    except ValueError as error:
+        print(str(error).split(";")[0])
+"""
+        none = "object: {} is no whole number from 0 to 18446744073709551615".format
+        from bus import Bus
+        with Bus() as bus:
+            node = bus.start_node()
+            lines = self.lines_said(bus, script)
+            self.assertNotIn("rejected", node.log_path.read_text())
+        self.assertEqual(lines, ["7 7 25", "8 8 30", "20 20 40",
+                                 "object: 20 is not greater than the present one, 20", "object: 19 is not greater than the present one, 20",
+                                 none(-1), none(1 << 64), none("'21'"), none(21.0), "20", none(1 << 64), "True 1",
+                                 "group: 'hand': give object=NUMBER too, the same to all probes of the group",
+                                 none(-1), none(1 << 64), none(1.5), none("'1'")])
 
     def test_a_probe_sends_normals_and_covariances(self):
         # A bore: without its normals the touches of a round tip would be those of a boss.

@@ -50,6 +50,8 @@ class Recognizer:
                  unqualified_probe: bool | None = None, touched_from: str = "unknown") -> None:
         self._unit = unit
         self._scale = units(unit)
+        if unqualified_probe is not None and not isinstance(unqualified_probe, (bool, np.bool_)):
+            raise ValueError(f"unqualified_probe: {unqualified_probe!r} is none of True, False and None")
         self._core = _core.Recognizer(self._scale * (0.0 if sigma is None else float(sigma)),
                                       [classes] if isinstance(classes, str) else list(classes),
                                       self._scale * form_deviation, unqualified_probe,

@@ -1,6 +1,7 @@
 """Clients of a running palpate-node: probes and planners. Needs pyzmq and protobuf."""
 from __future__ import annotations
 
+import operator
 import random
 import re
 import time
@@ -22,6 +23,7 @@ RESULTS = "tcp://127.0.0.1:5582"
 # Of a message: a node accepts 1024 samples and 65,536 bytes by default; what is not samples takes less than 500 bytes.
 _MOST_SAMPLES = 1000
 _MOST_BYTES = 65_000
+_MOST_OBJECT = (1 << 64) - 1  # greatest number of an object, as on the wire
 
 
 def _secure(socket: zmq.Socket, secret_key: str | None, server_key: str | None) -> None:
@@ -42,6 +44,17 @@ def _name(what: str, name: str) -> str:
     if not re.fullmatch(r"[A-Za-z0-9_.-]{1,64}", name):
         raise ValueError(f"{what}: {name!r}: a name is 1 to 64 of A-Z a-z 0-9 _ . -")
     return name
+
+
+def _object_number(value: int) -> int:
+    """Raises ValueError for what is no number of an object."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = -1
+    if not 0 <= number <= _MOST_OBJECT:
+        raise ValueError(f"object: {value!r} is no whole number from 0 to {_MOST_OBJECT}")
+    return number
 
 
 class _Peer:
@@ -138,24 +151,39 @@ class Probe(_Peer):
         with palpate.Probe("finger", sigma=0.02, unit="mm") as probe:
             probe.send(points)
             probe.lift_off()
+
+    Several probes of one object need the same group and the same number of the object:
+
+        with palpate.Probe("left", group="hand", object=7) as left, palpate.Probe("right", group="hand", object=7) as right:
+            ...
+            left.new_object()
+            right.new_object()
     """
 
     def __init__(self, name: str, endpoint: str = CONTACTS, group: str = "", sigma: float = 0.0, unit: str = "m",
                  tip_radius: float = 0.0, timeout: float = 10.0, secret_key: str | None = None,
-                 server_key: str | None = None) -> None:
-        """Connects and waits until a recognizer listens. Raises TimeoutError after `timeout` seconds and
-        ConnectionRefusedError if the recognizer refuses our keys.
+                 server_key: str | None = None, *, object: int | None = None) -> None:
+        """Connects and waits until a recognizer listens. Raises TimeoutError after `timeout` seconds,
+        ConnectionRefusedError if the recognizer refuses our keys, and ValueError for invalid arguments.
 
         name: of the probe, 1 to 64 of A-Z a-z 0-9 _ . -
-        group: probes of one group touch the same object; empty = the probe's own name.
+        group: probes of one group touch the same object; empty = the probe's own name. Another name needs `object`.
         sigma: standard deviation of a point, in `unit`; 0 = not known.
         unit: "m", "mm", "cm", "um", "nm" or "in"; of points, sigma and tip_radius.
         tip_radius: radius of a round tip whose centres the points are; 0 = points of the surface.
-        secret_key, server_key: for CURVE, our secret key file and the recognizer's public one; both or neither."""
+        secret_key, server_key: for CURVE, our secret key file and the recognizer's public one; both or neither.
+        object: number of the object, 0 to 2^64 - 1. Probes of one group must be given the same one: the recognizer drops
+        the samples of a probe that begins with another number while the others send. When a probe goes on to another
+        number, a new object begins and the recognizer forgets the old one. None: the time in milliseconds, which suits
+        a probe alone."""
         self._scale = units(unit)
         _name("name", name)
         if group:
             _name("group", group)
+        if group not in ("", name) and object is None:
+            raise ValueError(f"group: {group!r}: give object=NUMBER too, the same to all probes of the group; the recognizer "
+                             "drops the samples of those whose number is another one")
+        number = time.time_ns() // 1_000_000 if object is None else _object_number(object)
         for what, value in (("sigma", sigma), ("tip_radius", tip_radius)):
             if not 0 <= value < float("inf"):
                 raise ValueError(f"{what}: must be finite and not below 0")
@@ -167,7 +195,7 @@ class Probe(_Peer):
         batch.header.source = name
         batch.header.epoch = random.getrandbits(64)
         batch.group = group
-        batch.object = time.time_ns() // 1_000_000
+        batch.object = number
         batch.tip_radius_m = self._scale * tip_radius
         self._socket.connect(endpoint)
         try:
@@ -206,9 +234,21 @@ class Probe(_Peer):
         """Begins a new patch: call it at each lift-off."""
         self._batch.patch += 1
 
-    def new_object(self) -> None:
-        """Begins a new object; the recognizer forgets the old one."""
-        self._batch.object += 1
+    @property
+    def object(self) -> int:
+        """Number of the present object."""
+        return self._batch.object
+
+    def new_object(self, number: int | None = None) -> None:
+        """Begins a new object; the recognizer forgets the old one. Call it for every probe of a group: what the others
+        still send of the old object is dropped.
+
+        number: of the new object; None = the present one plus 1. Raises ValueError if it is not greater than the present
+        one, or above 2^64 - 1."""
+        number = _object_number(self.object + 1 if number is None else number)
+        if number <= self.object:
+            raise ValueError(f"object: {number} is not greater than the present one, {self.object}")
+        self._batch.object = number
         self._batch.patch = 0
 
 

@@ -22,7 +22,8 @@ from .patches import is_one_array, patches_of
 class CurveModel:
     """A curve of one class. model() makes its subclasses.
 
-    params: the shape parameters, then x, y and theta (radians) of the pose; None until estimate() has succeeded.
+    params: the shape parameters, then x, y and theta (radians) of the pose; None until estimate() has succeeded. Where
+    estimate() raises, all are as before any fit.
     covariance: of params; empty until then.
     rms: root mean square distance of the points. peak_to_valley: largest less smallest signed distance.
     sigma: standard deviation of a point, stated or estimated.
@@ -35,6 +36,10 @@ class CurveModel:
     min_samples: ClassVar[int]
 
     def __init__(self) -> None:
+        self._forget()
+
+    def _forget(self) -> None:
+        """Sets what a fit has found to what it is before any fit."""
         self.params: np.ndarray | None = None
         self.status = ""
         """Outcome of estimate(): "fitted", or why it has not succeeded."""
@@ -53,7 +58,9 @@ class CurveModel:
         sigma: standard deviation of a point, one number or one per point; None or 0 = estimated. normals, normal_sigma, covariances: see Recognizer.add.
         Of several patches, normals are in arrays like the points, None in place of an array where a patch has none; all else that is
         told per point is one array for the points of all patches, one patch after the other.
-        Normals are used only if the noise of every point is known."""
+        Normals are used only if the noise of every point is known.
+        Raises ValueError if an argument is invalid; the fit before is then forgotten too."""
+        self._forget()
         points, normals, lengths = _joined(data, normals)
         fit = _core.fit_given(self.curve_class, points, np.atleast_1d(numbers(0.0 if sigma is None else sigma, "sigma")),
                               *details(normals, normal_sigma, covariances, 1.0), lengths)

@@ -111,6 +111,50 @@ TEST(Config, FlagBeforeEnvironmentBeforeFile) {
   EXPECT_EQ(options.value->results, (std::vector<std::string>{"ipc:///r1", "ipc:///r2"}));
 }
 
+TEST(Config, EverySpellingOfAFlagIsAVariable) {
+  const Environment sigma("PALPATE_SIGMA", "2e-5");
+  const Environment tolerance("PALPATE_RELATIVE_TOLERANCE", "0.1");
+  const Environment qualified("PALPATE_NO_UNQUALIFIED_PROBE", "1");
+  const Environment classes("PALPATE_CLASSES", "circle, ellipse");
+  const Result<v1::NodeConfig> config = config_from_environment();
+  ASSERT_TRUE(config) << config.error;
+  const Result<NodeOptions> options = make_options(*config.value);
+  ASSERT_TRUE(options) << options.error;
+  EXPECT_EQ(options.value->intake.recognizer.sigma_m, 2e-5);
+  EXPECT_EQ(options.value->intake.recognizer.tree.relative_tolerance, 0.1);
+  EXPECT_EQ(options.value->intake.recognizer.unqualified_probe, false);
+  EXPECT_EQ(options.value->words.classes, (std::vector<std::string>{"circle", "ellipse"}));
+}
+
+TEST(Config, VariablesOfOneOptionMustAgree) {
+  const Environment sigma("PALPATE_SIGMA", "2e-5");
+  {
+    const Environment same("PALPATE_SIGMA_M", "0.00002");
+    EXPECT_TRUE(config_from_environment());
+  }
+  const auto both_are_named = [](const std::string& one, const std::string& other) {
+    const std::string error = config_from_environment().error;
+    EXPECT_THAT(error, HasSubstr(one + " "));
+    EXPECT_THAT(error, HasSubstr(other + " "));
+  };
+  {
+    const Environment another("PALPATE_SIGMA_M", "3e-5");
+    both_are_named("PALPATE_SIGMA", "PALPATE_SIGMA_M");
+  }
+  const Environment insecure("PALPATE_INSECURE", "true");
+  {
+    const Environment none("PALPATE_NO_INSECURE", "false");
+    EXPECT_TRUE(config_from_environment().value->insecure());
+  }
+  {
+    const Environment secure("PALPATE_NO_INSECURE", "true");
+    both_are_named("PALPATE_INSECURE", "PALPATE_NO_INSECURE");
+  }
+  const Environment neither("PALPATE_NO_INSECURE", "perhaps");
+  EXPECT_THAT(config_from_environment().error,
+              HasSubstr("PALPATE_NO_INSECURE: insecure: \"perhaps\""));
+}
+
 TEST(Config, ProbePrefixesAreBeginningsOfNames) {
   v1::NodeConfig config;
   ASSERT_EQ(set_option(config, "probe_prefixes", "left"), "");

@@ -51,6 +51,9 @@ struct FitCommand {
   RecognizerOptions recognizer;
 };
 
+/// For lists with commas: "circle, ellipse" is "circle,ellipse".
+std::string without_blanks_around(const std::string& word) { return CLI::detail::trim_copy(word); }
+
 /// Flags for the recogniser's options, out of their one table.
 void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
   for_each_recognizer_option(fit.words, fit.recognizer, [&](const OptionInfo& info, auto& field) {
@@ -65,7 +68,10 @@ void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
     CLI::Option* option =
         command.add_option(flags_of(info), field, info.help)->group("Recognition");
     if constexpr (std::is_same_v<Field, std::vector<std::string>>) {
-      option->delimiter(',')->type_name("CLASS,...")->check(curve_class_name());
+      option->delimiter(',')
+          ->type_name("CLASS,...")
+          ->transform(without_blanks_around)
+          ->check(curve_class_name());
     } else if constexpr (std::is_same_v<Field, std::string>) {
       option->capture_default_str()->type_name("NAME");
     } else {
@@ -316,6 +322,7 @@ void add_fit_command(CLI::App& app, int& exit_code) {
                        "Samples that are not to count, numbered from 1 in the file's order; 1-5 "
                        "are five of them")
           ->delimiter(',')
+          ->transform(without_blanks_around)
           ->type_name("NUMBER,...");
   command
       ->add_option(

@@ -280,6 +280,19 @@ class Fit(unittest.TestCase):
                           "cubical_parabola, semi_cubical_parabola, cubic_spline", err)
         self.assertEqual(run(TOOL, "fit", path, "--classes", "Semi-cubical Parabola,circle")[0], 0)
 
+    def test_lists_may_have_blanks_after_their_commas(self):
+        path = self.write("part.csv", HEADER + ellipse())
+        for option, close, wide in (("--classes", "circle,ellipse", " circle, ellipse "), ("--leave-out", "3,17-19", "3, 17-19")):
+            answers = []
+            for words in (close, wide):
+                code, out, err = run(TOOL, "fit", path, "--format", "json", option, words)
+                self.assertEqual((code, err), (0, ""))
+                answers.append(json.loads(out) | {"compute_ns": 0})
+            self.assertEqual(*answers)
+        code, _, err = run(TOOL, "fit", path, "--classes", "circle, ")
+        self.assertEqual(code, 2)
+        self.assertIn('"" is no curve class', err)
+
     def test_a_plot_that_is_no_svg_is_refused_before_the_work(self):
         for command in (["fit", "absent.csv", "--plot"], ["fit", "absent.csv", "--plot-invariants"],
                         ["calibrate", "absent.csv", "--circle", "0.025", "--plot"]):

@@ -148,12 +148,16 @@ class Formats(unittest.TestCase):
 
     def test_files_that_are_no_text(self):
         for start, told in ((b"\x1f\x8b\x08", "gunzip -c"), (b"PK\x03\x04", "save the sheet as CSV"),
-                            (b"\xd0\xcf\x11\xe0", "save the sheet as CSV"), (b"%PDF-1.7", "export the points")):
+                            (b"\xd0\xcf\x11\xe0", "save the sheet as CSV"), (b"%PDF-1.7", "export the points"),
+                            (b"palpate2\xa7rec", "is a recording of palpate, no table of points: palpate replay"),
+                            (b"palpate1", "is a recording of palpate, no table of points: palpate replay")):
             path = self.folder / "points.bin"
             path.write_bytes(start + bytes(100))
             code, out, err = run(TOOL, "fit", path)
             self.assertEqual((code, out), (2, ""))
             self.assertIn(told, err)
+            self.assertIn(str(path), err)
+            self.assertEqual(err.count("\n"), 1, err)
 
     def test_titles_above_the_names_and_units_below_them(self):
         self.check("Part: bracket 12\nDate: 2026-11-22, 10:15\n\nx_mm,y_mm\n" + self.rows(1e3))
