@@ -193,6 +193,9 @@ class ArmSearch {
       arms_[p] = patch_arms(p, x0);
     }
     const std::size_t enumerated = std::min(kMostEnumerated, arms_.size());
+    if (enumerated == 0) {
+      return;
+    }
     signs_.assign(arms_.size(), 1.0);
     // The first patch's arm is a matter of convention (t -> -t).
     for (unsigned pattern = 0; pattern < (1U << (enumerated - 1)); ++pattern) {
