@@ -256,7 +256,8 @@ constexpr FootSteps kFromNear{5};
 
 /// From the foot of a neighbour, of a tip's centre. A ball that leaves a twentieth of its bore's
 /// radius free has a twentieth of the slope: Gauss-Newton's steps take as much of the way each,
-/// Newton's all.
+/// Newton's all. Where it leaves less than a hundredth, a foot may stay where it is: the distance
+/// is as flat.
 constexpr FootSteps kOfTip{20, 0.01, true};
 
 /// Seeks the foot of a point from `foot`. Returns whether it is found.
