@@ -22,13 +22,19 @@ CurveClass path_for(CurveClass i, const ClassFits& fits, const Likelihood& likel
   return of_parabola > std::max(own + kNegligibleLogOdds, best - kUnseenLogOdds) ? kParabola : i;
 }
 
+/// Whether the data leave some of the class to the prior.
+bool is_open(const ClassEvidence& evidence) {
+  constexpr double kLeftToPrior = 0.1;  // of one coordinate: a deviation of a third of the prior's
+  const int all = shape_coordinates(evidence.touch.curve_class) + 2;
+  return evidence.determined < all - kLeftToPrior;
+}
+
 /// The class's mode that the prior leads to, where it might have more there than about its fit, and
 /// so much that it is seen beside `best`.
 void add_prior_mode(CurveClass i, const ClassFits& fits, const FitData& reduced,
                     const Likelihood& likelihood, double best, Evidences* evidences,
                     WorkBudget& work) {
   constexpr double kWorthOthers = 4.0;  // log odds: a fiftieth
-  constexpr double kLeftToPrior = 0.1;  // of one coordinate: a deviation of a third of the prior's
   auto& found = evidences->classes[i];
   if (!found || found->prior_mode_sought) {
     return;
@@ -39,11 +45,10 @@ void add_prior_mode(CurveClass i, const ClassFits& fits, const FitData& reduced,
   const double seen_from = best - kUnseenLogOdds;
   // Data that leave a cubic's shape open are such as its other arms have. A conic has none: where
   // all of it is told, nothing of its valley is left to walk along.
-  const int all = shape_coordinates(found->touch.curve_class) + 2;
-  const bool is_open = found->determined < all - kLeftToPrior;
+  const bool open = is_open(*found);
   const bool has_arms = (kCubics & class_bit(found->touch.curve_class)) != 0;
-  const bool other_arms = has_arms && is_open && told > best - kWorthOthers;
-  const bool better = (has_arms || is_open) && gain > kWorthAMode;
+  const bool other_arms = has_arms && open && told > best - kWorthOthers;
+  const bool better = (has_arms || open) && gain > kWorthAMode;
   if ((better || other_arms) && told + gain > seen_from && work.allows()) {
     const double seen_occam = found->log_occam + seen_from - told;
     const ClassEvidence& path =
@@ -85,14 +90,19 @@ void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likeli
   }
   const double log_of_best = told(best);
   const double highest = std::max(log_of_best, log_of_free_form);
-  bool alone = log_of_free_form < log_of_best - kUnseenLogOdds;
+  // Beside classes that nobody asked for it may be one of many.
+  bool alone = log_of_free_form < log_of_best - kUnseenLogOdds &&
+               std::all_of(kCurveClasses.begin(), kCurveClasses.end(),
+                           [&](CurveClass i) { return fits[i] && is_wanted(*evidences, i); });
   for (const CurveClass i : kCurveClasses) {
     if (i != best) {
       add_prior_mode(i, fits, reduced, likelihood, highest, evidences, work);
       alone = alone && told(i) < log_of_best - kUnseenLogOdds;
     }
   }
-  if (!alone) {
+  // Alone it has all of the probability, but what is told of its shape is where most of that is.
+  const auto& found = evidences->classes[best];
+  if (!alone || (found && is_open(*found))) {
     add_prior_mode(best, fits, reduced, likelihood, highest, evidences, work);
   }
   add_mode_at_cusp(fits, reduced, likelihood, highest, evidences, work);
