@@ -23,14 +23,6 @@ std::optional<ExplainingCurve> curve_of(const Weighing& w) {
              : std::nullopt;
 }
 
-std::size_t count_samples(std::span<const StoredPatch> patches) {
-  std::size_t count = 0;
-  for (const StoredPatch& patch : patches) {
-    count += patch.samples.size();
-  }
-  return count;
-}
-
 }  // namespace
 
 Weighed CountedSamples::without_outliers(const FitData& data, bool sigma_known,

@@ -198,8 +198,8 @@ class Recognizer::Impl {
       if (!weighed.patches) {
         weighed = samples.with_explained(std::move(weighed), work);
       }
-      last_->explains = weighed.explains;
     }
+    last_->explains = weighed.explains;
     if (work.was_cut()) {
       last_.reset();  // what was found by then may be far from what there is
     }
@@ -285,7 +285,6 @@ class Recognizer::Impl {
       if (holds || !work.allows()) {
         last_->starts = w.starts;
         last_->probabilities = w.probabilities;
-        last_->explains.reset();
         return weighed;
       }
     }

@@ -167,13 +167,7 @@ std::size_t CleanPatches::dwelling_count() const {
   return static_cast<std::size_t>(count);
 }
 
-std::size_t CleanPatches::moved_count() const {
-  std::size_t count = 0;
-  for (const StoredPatch& patch : moved_) {
-    count += patch.samples.size();
-  }
-  return count;
-}
+std::size_t CleanPatches::moved_count() const { return count_samples(moved_); }
 
 void CleanPatches::clear() {
   moved_.clear();

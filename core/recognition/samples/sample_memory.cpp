@@ -182,13 +182,7 @@ std::size_t SampleMemory::sample_count() const {
   return count;
 }
 
-std::size_t SampleMemory::stored_count() const {
-  std::size_t count = 0;
-  for (const StoredPatch& patch : patches_) {
-    count += patch.samples.size();
-  }
-  return count;
-}
+std::size_t SampleMemory::stored_count() const { return count_samples(patches_); }
 
 ContactRun as_contacts(const StoredPatch& patch) {
   ContactRun run;

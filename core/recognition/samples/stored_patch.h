@@ -57,6 +57,15 @@ inline bool are_mostly_touches(std::span<const StoredPatch> patches) {
   return 2 * lone > static_cast<std::ptrdiff_t>(patches.size());
 }
 
+/// Number of their samples, a mean of several counted once.
+inline std::size_t count_samples(std::span<const StoredPatch> patches) {
+  std::size_t count = 0;
+  for (const StoredPatch& patch : patches) {
+    count += patch.samples.size();
+  }
+  return count;
+}
+
 /// The box that holds all samples. [m]
 inline Eigen::AlignedBox2d box_of(std::span<const StoredPatch> patches) {
   Eigen::AlignedBox2d box;

@@ -32,10 +32,7 @@ double work_of_clean_ellipse(std::size_t samples, std::size_t patches) {
 }
 
 WorkBudget work_limit(std::span<const StoredPatch> patches) {
-  std::size_t samples = 0;
-  for (const StoredPatch& patch : patches) {
-    samples += patch.samples.size();
-  }
+  const std::size_t samples = count_samples(patches);
   const double by_strokes = work_of_clean_ellipse(samples, patches.size());
   const double clean = are_mostly_touches(patches) ? kOfTouches * by_strokes : by_strokes;
   WorkBudget work(kMostWork * clean, kAlways * clean);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "node/csv/text_lines.h"
 #include "node/files/counted.h"
 #include "node/files/overwritten_input.h"
 #include "node/files/printable.h"
@@ -52,7 +53,7 @@ struct FitCommand {
 };
 
 /// For lists with commas: "circle, ellipse" is "circle,ellipse".
-std::string without_blanks_around(const std::string& word) { return CLI::detail::trim_copy(word); }
+std::string without_blanks_around(const std::string& word) { return std::string(csv::trim(word)); }
 
 /// Flags for the recogniser's options, out of their one table.
 void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
