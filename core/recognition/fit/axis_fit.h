@@ -31,6 +31,10 @@ struct AxisFit {
 AxisFit refine_axis(std::span<const FitPoint> points, AxisFit start, int max_iterations,
                     WorkBudget& work);
 
+/// Iterations of a walk in a valley. It need only tell which is the deepest: refine_polynomial goes
+/// on from there.
+inline constexpr int kMostWalked = 15;
+
 /// Assigns to every point of each patch the arm that suits the fit. It tries one arm for the whole
 /// patch and a change of arm at each point. Returns whether any arm changed. Arm models only.
 bool reassign_arms(std::span<const FitPoint> points, std::span<const PatchSpan> patches,

@@ -215,6 +215,23 @@ bool is_what_it_says(const ClassFit& fit, const FitData& data) {
          is_touchable(*fit.implicit, data);
 }
 
+/// Of a fit and its rival what may be touched so; nullopt if neither.
+std::optional<ClassFit> of_what_it_says(ClassFit fit, const FitData& data) {
+  if (fit.rival && !(is_touchable(*fit.rival, data) && !leaps(*fit.rival, data))) {
+    fit.rival.reset();
+  }
+  if (is_what_it_says(fit, data)) {
+    return fit;
+  }
+  if (!fit.rival) {
+    return std::nullopt;
+  }
+  fit.polynomial = std::move(fit.rival);
+  fit.rival.reset();
+  fit.chi2 = fit.polynomial->chi2;
+  return fit;
+}
+
 ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival, WorkBudget& work) {
   const RefineEffort& effort = rival == RivalOf::Best ? kBestOnReducedEffort : kOnReducedEffort;
   return refine_parts(fit, reduced.points, effort, rival, work);
@@ -293,7 +310,7 @@ std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& sm
       refined = std::move(again);
     }
   }
-  return is_what_it_says(refined, data) ? std::optional(refined) : std::nullopt;
+  return of_what_it_says(std::move(refined), data);
 }
 
 std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data, WorkBudget& work) {
@@ -302,9 +319,8 @@ std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data, WorkBud
   if (start.rival && is_same_curve(*start.polynomial, *start.rival)) {
     start.rival.reset();  // one optimum: it need not be walked to twice
   }
-  const ClassFit polished =
-      refine_parts(std::move(start), data.points, kPolishEffort, RivalOf::Best, work);
-  return is_what_it_says(polished, data) ? std::optional(polished) : std::nullopt;
+  return of_what_it_says(
+      refine_parts(std::move(start), data.points, kPolishEffort, RivalOf::Best, work), data);
 }
 
 }  // namespace palpate

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "core/numerics/levenberg_marquardt.h"
 #include "core/recognition/fit/polynomial_problem.h"
@@ -92,6 +94,12 @@ PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint>
       return refine<PolynomialModel::CubicSpline>(points, start, side, effort, work);
   }
   return start;
+}
+
+void keep_better(std::optional<PolynomialFit>* best, PolynomialFit fit) {
+  if (std::isfinite(fit.chi2) && (!*best || fit.chi2 < (*best)->chi2)) {
+    *best = std::move(fit);
+  }
 }
 
 bool is_same_curve(const PolynomialFit& a, const PolynomialFit& b) {

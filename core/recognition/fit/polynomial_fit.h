@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct PolynomialFit {
 PolynomialFit refine_polynomial(PolynomialModel model, std::span<const FitPoint> points,
                                 const PolynomialFit& start, int side, const RefineEffort& effort,
                                 WorkBudget& work);
+
+/// Takes a fit for the best of a class if it is.
+void keep_better(std::optional<PolynomialFit>* best, PolynomialFit fit);
 
 /// True if two fits to the same points ended in the same optimum: chi-square and the direction of
 /// the cubic axis agree within the optimiser's tolerance.

@@ -5,11 +5,10 @@
 #include <limits>
 #include <utility>
 
-#include "core/curves/algebraic/polynomial_curve.h"
 #include "core/numerics/negligible.h"
-#include "core/numerics/real_roots.h"
 #include "core/recognition/fit/axis_fit.h"
 #include "core/recognition/fit/class_fits.h"
+#include "core/recognition/fit/spline_limits.h"
 #include "core/recognition/fit/touchable.h"
 
 namespace palpate {
@@ -17,12 +16,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kSurfacePoints = 0;  // side: reduced points bear no tip radius
-
-RefineEffort coarse(double out_of_reach) {
-  RefineEffort effort = kCoarseEffort;
-  effort.out_of_reach = out_of_reach;
-  return effort;
-}
 
 /// refine_axis, the arms reassigned until they stay. Each lowers chi-square, so that none comes
 /// back; what still changes after so many lies where the arms cross, as near to one as to another.
@@ -49,9 +42,6 @@ bool is_same_valley(const AxisFit& a, const AxisFit& b) {
          std::abs(std::remainder(a.theta - b.theta, 2.0 * kPi)) <= kSameAngle;
 }
 
-/// Of a walk in a valley. It need only tell which is the deepest: `refined` goes on from there.
-constexpr int kMostIterations = 15;
-
 /// Walks the valleys of all seeds on the reduced points; best first.
 std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& reduced,
                           WorkBudget& work) {
@@ -60,8 +50,7 @@ std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& redu
     if (!work.allows()) {
       break;
     }
-    AxisFit fit =
-        refine_axis_and_arms(reduced.points, reduced.patches, seed, kMostIterations, work);
+    AxisFit fit = refine_axis_and_arms(reduced.points, reduced.patches, seed, kMostWalked, work);
     if (std::isfinite(fit.chi2)) {
       walked.push_back(std::move(fit));
     }
@@ -78,19 +67,42 @@ PolynomialFit refined(const AxisFit& walked, const FitData& reduced, double out_
                            kSurfacePoints, coarse(out_of_reach), work);
 }
 
-/// Walks the seeds; the best of them, refined on the reduced points.
-std::optional<PolynomialFit> best_of(std::vector<AxisFit>* seeds, const FitData& reduced,
-                                     double out_of_reach, WorkBudget& work) {
+/// How many walked valleys of the arm models are refined. Where walks end tells the deepest, if
+/// strokes lead along the arms. Single touches may each lie on either arm: a walk, by distances
+/// across the axis, then ends at several times the chi-square of what it leads to, and between two
+/// valleys the data may leave the choice to the prior.
+std::size_t most_refined(const FitData& reduced, std::size_t walked) {
+  const bool are_touches =
+      std::all_of(reduced.patches.begin(), reduced.patches.end(),
+                  [](const PatchSpan& patch) { return patch.size() == 1 || patch.is_joined; });
+  return are_touches ? walked : std::min<std::size_t>(walked, 1);
+}
+
+/// Walks the seeds of a graph model; the best, refined on the reduced points.
+std::optional<PolynomialFit> best_graph(std::vector<AxisFit>* seeds, const FitData& reduced,
+                                        double out_of_reach, WorkBudget& work) {
   *seeds = walk(*seeds, reduced, work);
   return seeds->empty() ? std::nullopt
                         : std::optional(refined(seeds->front(), reduced, out_of_reach, work));
+}
+
+/// The same of semi-cubical parabolas.
+std::optional<PolynomialFit> best_cusp(std::vector<AxisFit>* seeds, const FitData& reduced,
+                                       double out_of_reach, WorkBudget& work) {
+  *seeds = walk(*seeds, reduced, work);
+  std::optional<PolynomialFit> best;
+  const std::size_t most = most_refined(reduced, seeds->size());
+  for (std::size_t i = 0; i < most && (i == 0 || work.allows()); ++i) {
+    keep_better(&best, refined((*seeds)[i], reduced, out_of_reach, work));
+  }
+  return best;
 }
 
 /// The spline on the other side of c = 0.
 PolynomialFit refined_twin(const AxisFit& walked, const FitData& reduced, double out_of_reach,
                            WorkBudget& work) {
   return refined(refine_axis_and_arms(reduced.points, reduced.patches,
-                                      twin_of(walked, reduced.points), kMostIterations, work),
+                                      twin_of(walked, reduced.points), kMostWalked, work),
                  reduced, out_of_reach, work);
 }
 
@@ -157,87 +169,20 @@ void take(PolynomialFit fit, SplinePair* pair) {
   }
 }
 
-/// Through touches that are fewer than two for each unknown go splines of several valleys, none of
-/// which need be the deepest where the walks end.
-bool several_may_fit(const FitData& reduced) {
-  return reduced.points.size() < std::size_t{2} * degrees_of_freedom(CurveClass::CubicSpline) &&
-         reduced.patches.size() == reduced.points.size();
-}
-
 SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced,
                       double out_of_reach, WorkBudget& work) {
   SplinePair pair;
-  const std::size_t most = several_may_fit(reduced) ? walked.size() : 1;
-  for (std::size_t i = 0; i < std::min(most, walked.size()) && (i == 0 || work.allows()); ++i) {
-    take(refined(walked[i], reduced, out_of_reach, work), &pair);
-    take(refined_twin(walked[i], reduced, out_of_reach, work), &pair);
+  const std::size_t most = most_refined(reduced, walked.size());
+  const AxisFit* best = nullptr;
+  for (std::size_t i = 0; i < most && (i == 0 || work.allows()); ++i) {
+    PolynomialFit fit = refined(walked[i], reduced, out_of_reach, work);
+    best = best == nullptr || fit.chi2 < pair.best->chi2 ? &walked[i] : best;
+    take(std::move(fit), &pair);
+  }
+  if (best != nullptr && work.allows()) {
+    take(refined_twin(*best, reduced, out_of_reach, work), &pair);
   }
   return pair;
-}
-
-void keep_better(std::optional<PolynomialFit>* best, PolynomialFit fit) {
-  if (std::isfinite(fit.chi2) && (!*best || fit.chi2 < (*best)->chi2)) {
-    *best = std::move(fit);
-  }
-}
-
-/// A class can be no worse than its limits: starts from them too where it is. Limits above
-/// `highest_chi2` do not matter.
-void start_from_limits(const FitData& reduced, double highest_chi2, double out_of_reach,
-                       PolynomialFits* fits, WorkBudget& work) {
-  for (const auto* limit :
-       {&fits->parabola, &fits->cubical_parabola, &fits->semi_cubical_parabola}) {
-    if (*limit && (*limit)->chi2 <= highest_chi2 &&
-        (!fits->cubic_spline || (*limit)->chi2 < fits->cubic_spline->chi2) && work.allows()) {
-      PolynomialFit start = **limit;
-      normalise_parameter(PolynomialModel::CubicSpline, &start);
-      keep_better(&fits->cubic_spline,
-                  refine_polynomial(PolynomialModel::CubicSpline, reduced.points, start,
-                                    kSurfacePoints, coarse(out_of_reach), work));
-    }
-  }
-}
-
-/// The semi-cubical parabola that a spline nearly is: its cusp where the spline is slowest.
-PolynomialFit semi_cubical_at(const PolynomialFit& spline, std::span<const FitPoint> points) {
-  const PolynomialCoefficients& c = spline.coefficients;
-  // Half of the squared speed's derivative.
-  const Eigen::Vector4d slope(2.0 * c.col(1).dot(c.col(2)),
-                              4.0 * c.col(2).squaredNorm() + 6.0 * c.col(1).dot(c.col(3)),
-                              18.0 * c.col(2).dot(c.col(3)), 18.0 * c.col(3).squaredNorm());
-  double slowest = 0.0;
-  double least = kInfinity;
-  visit_real_roots<3>(slope, [&](double t) {
-    if (const double speed2 = first_derivative(c, t).squaredNorm(); speed2 < least) {
-      least = speed2;
-      slowest = t;
-    }
-  });
-  PolynomialFit fit = spline;
-  fit.coefficients = PolynomialCurve2{c}.shifted(slowest).coefficients;
-  fit.coefficients.col(1).setZero();
-  for (double& t : fit.t) {
-    t -= slowest;
-  }
-  return placed_on(points, std::move(fit));
-}
-
-/// Nor need a limit be worse than what the class has come to: the valleys of a cusp are narrow, and
-/// the spline, which has one coefficient more, may be through where its limit is not.
-void start_from_spline(const FitData& reduced, double out_of_reach, PolynomialFits* fits,
-                       WorkBudget& work) {
-  std::optional<PolynomialFit>& limit = fits->semi_cubical_parabola;
-  if (!limit || !fits->cubic_spline || limit->chi2 <= fits->cubic_spline->chi2 || !work.allows()) {
-    return;
-  }
-  const PolynomialFit start = semi_cubical_at(*fits->cubic_spline, reduced.points);
-  const std::size_t residuals = residual_count(reduced);
-  const bool is_missed =
-      fits_well(fits->cubic_spline->chi2, residuals) && !fits_well(limit->chi2, residuals);
-  if (start.chi2 < limit->chi2 || is_missed) {
-    keep_better(&limit, refine_polynomial(PolynomialModel::SemiCubicalParabola, reduced.points,
-                                          start, kSurfacePoints, coarse(out_of_reach), work));
-  }
 }
 
 }  // namespace
@@ -256,15 +201,16 @@ PolynomialFits search_polynomials(const FitData& reduced, bool line_fits, double
   }
   add_relatives(reduced, &fits.seeds, work);
   // Conics start from it too.
-  fits.parabola = best_of(&fits.seeds.parabola, reduced, kInfinity, work);
-  fits.cubical_parabola = best_of(&fits.seeds.cubical_parabola, reduced, out_of_reach, work);
+  fits.parabola = best_graph(&fits.seeds.parabola, reduced, kInfinity, work);
+  fits.cubical_parabola = best_graph(&fits.seeds.cubical_parabola, reduced, out_of_reach, work);
   fits.semi_cubical_parabola =
-      best_of(&fits.seeds.semi_cubical_parabola, reduced, out_of_reach, work);
+      best_cusp(&fits.seeds.semi_cubical_parabola, reduced, out_of_reach, work);
   SplinePair pair = fit_spline(fits.seeds.cubic_spline, reduced, out_of_reach, work);
   fits.cubic_spline = std::move(pair.best);
   fits.rival = std::move(pair.rival);
-  start_from_limits(reduced, kInfinity, out_of_reach, &fits, work);
-  start_from_spline(reduced, out_of_reach, &fits, work);
+  start_spline_from_limits(reduced, kInfinity, out_of_reach, &fits, work);
+  start_semi_cubical_from_spline(reduced, out_of_reach, &fits, work);
+  start_cubical_from_spline(reduced, out_of_reach, &fits, work);
   return fits;
 }
 
@@ -274,7 +220,7 @@ PolynomialFits search_parabola(const FitData& reduced, WorkBudget& work) {
     return fits;
   }
   add_graph_seeds(reduced.points, &fits.seeds, work);
-  fits.parabola = best_of(&fits.seeds.parabola, reduced, kInfinity, work);
+  fits.parabola = best_graph(&fits.seeds.parabola, reduced, kInfinity, work);
   return fits;
 }
 
@@ -313,9 +259,9 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
       std::swap(fits.rival, fits.cubic_spline);
     }
   }
-  start_from_limits(reduced, highest_chi2, out_of_reach, &fits, work);
+  start_spline_from_limits(reduced, highest_chi2, out_of_reach, &fits, work);
   if (fits.cubic_spline && fits.cubic_spline->chi2 <= highest_chi2) {
-    start_from_spline(reduced, out_of_reach, &fits, work);
+    start_semi_cubical_from_spline(reduced, out_of_reach, &fits, work);
   }
   return fits;
 }
@@ -363,14 +309,14 @@ void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFi
   improve(&fits->parabola, fits->seeds.parabola);
   improve(&fits->cubical_parabola, fits->seeds.cubical_parabola);
   improve(&fits->semi_cubical_parabola, fits->seeds.semi_cubical_parabola);
-  start_from_limits(reduced, kInfinity, out_of_reach, fits, work);
+  start_spline_from_limits(reduced, kInfinity, out_of_reach, fits, work);
   const bool nothing_fits =
       !conic_fits && fits->cubic_spline && !fits_well(fits->cubic_spline->chi2, residuals);
   if (nothing_fits && !fits->seeds.cubic_spline.empty()) {
     walk_more(reduced, fits->cubic_spline->chi2, &fits->seeds, work);
   }
   improve(&fits->cubic_spline, fits->seeds.cubic_spline);
-  start_from_spline(reduced, out_of_reach, fits, work);
+  start_semi_cubical_from_spline(reduced, out_of_reach, fits, work);
 }
 
 }  // namespace palpate

@@ -1,32 +1,11 @@
 // The polynomial classes on the reduced points: found by a search, or followed from earlier fits.
 #pragma once
 
-#include <limits>
-#include <optional>
-
-#include "core/curves/algebraic/canonical_conic.h"
-#include "core/recognition/fit/polynomial_fit.h"
-#include "core/recognition/fit/polynomial_seeds.h"
+#include "core/numerics/work_budget.h"
+#include "core/recognition/fit/polynomial_fits.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {
-
-struct PolynomialFits {
-  std::optional<PolynomialFit> parabola;
-  std::optional<PolynomialFit> cubical_parabola;
-  std::optional<PolynomialFit> semi_cubical_parabola;
-  std::optional<PolynomialFit> cubic_spline;
-  /// The spline's optimum on the other side of c = 0, if there is one; of few touches, the second
-  /// best of all.
-  std::optional<PolynomialFit> rival;
-  /// For a few of the points: the nearest conic, the only start.
-  std::optional<ConicCoefficients> conic;
-  PolynomialSeeds seeds;    ///< starts of the search
-  bool every_seed = false;  ///< every seed was refined, because nothing fitted
-  /// Lowest chi-square of all classes, conics included, on the points of these fits: fits far above
-  /// it are not followed.
-  double lowest_chi2 = std::numeric_limits<double>::infinity();
-};
 
 /// Exhaustive coarse search; then walks the valleys and refines the best of each class with coarse
 /// effort. The cubics are left out if they are `out_of_reach` (as fit_classes). `line_fits`: that

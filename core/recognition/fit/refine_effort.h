@@ -35,6 +35,11 @@ struct RefineEffort {
 
 /// Separates impossible classes from possible ones.
 inline constexpr RefineEffort kCoarseEffort{20, 1, 1e-3};
+inline RefineEffort coarse(double out_of_reach) {
+  RefineEffort effort = kCoarseEffort;
+  effort.out_of_reach = out_of_reach;
+  return effort;
+}
 
 /// For the plausible classes on the reduced points, and on all points if these disagree: to a tenth
 /// of a standard deviation of the optimum.

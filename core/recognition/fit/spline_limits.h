@@ -1,0 +1,24 @@
+// A cubic spline and what it is at its limits: each may start from the others.
+#pragma once
+
+#include "core/numerics/work_budget.h"
+#include "core/recognition/fit/polynomial_fits.h"
+#include "core/recognition/samples/fit_data.h"
+
+namespace palpate {
+
+/// A class can be no worse than its limits: the spline starts from them too where it is. Limits
+/// above `highest_chi2` do not matter. `out_of_reach`: as fit_classes.
+void start_spline_from_limits(const FitData& reduced, double highest_chi2, double out_of_reach,
+                              PolynomialFits* fits, WorkBudget& work);
+
+/// Nor need a limit be worse than what the class has come to: the valleys of a cusp are narrow, and
+/// the spline, which has one coefficient more, may be through where its limit is not.
+void start_semi_cubical_from_spline(const FitData& reduced, double out_of_reach,
+                                    PolynomialFits* fits, WorkBudget& work);
+
+/// The same of the cubical parabola, of a spline whose vertex is far away: along its axis.
+void start_cubical_from_spline(const FitData& reduced, double out_of_reach, PolynomialFits* fits,
+                               WorkBudget& work);
+
+}  // namespace palpate
