@@ -5,11 +5,13 @@
 
 #include "core/numerics/negligible.h"
 #include "core/numerics/normal_law.h"
+#include "core/recognition/fewest_places.h"
 #include "core/recognition/gross_touches.h"
 #include "core/recognition/likelihood_answer.h"
 #include "core/recognition/outliers.h"
 #include "core/recognition/samples/explained_spikes.h"
 #include "core/recognition/touches/joined_touches.h"
+#include "core/recognition/unfollowed_samples.h"
 #include "core/recognition/weigh/weigh_in_full.h"
 
 namespace palpate {
@@ -60,6 +62,35 @@ Weighed CountedSamples::without_outliers(const FitData& data, bool sigma_known,
   return weighed;
 }
 
+Weighed CountedSamples::without_spikes_in_bends(Weighed weighed,
+                                                std::span<const StoredPatch> patches,
+                                                WorkBudget& work) const {
+  const bool are_strokes = patches.data() == samples_.clean().data();  // no joined touches
+  auto fewer = are_strokes && weighed.w.best == CurveClass::Unclassified && work.allows()
+                   ? without_unfollowed(weighed.w, weighed.outliers, patches)
+                   : std::nullopt;
+  if (!fewer) {
+    return weighed;
+  }
+  bool sigma_known = false;
+  const FitData data = make_fit_data(*fewer, options_.sigma_m, &sigma_known);
+  if (!have_places(data, kFewestPlaces)) {
+    return weighed;
+  }
+  const Weighed without = without_outliers(data, sigma_known, *fewer, {}, StartsOf::Search, work);
+  const auto curve = curve_of(without.w);
+  if (!curve || !work.allows()) {
+    return weighed;
+  }
+  if (auto more = with_spikes_on(*curve, *fewer, work)) {
+    fewer = std::move(more);
+  }
+  auto again = may_lack_spikes(patches, *fewer)
+                   ? again_with(*std::move(fewer), without.w.starts, without.w.best, work)
+                   : std::nullopt;
+  return again ? *std::move(again) : std::move(weighed);
+}
+
 Weighed CountedSamples::with_ends(Weighed weighed, bool sigma_known, WorkBudget& work) const {
   auto more = sigma_known && weighed.w.best != CurveClass::Unclassified && work.allows()
                   ? with_runs_at_ends(samples_.moved(), samples_.clean())
@@ -76,7 +107,7 @@ Weighed CountedSamples::with_ends(Weighed weighed, bool sigma_known, WorkBudget&
 
 Weighed CountedSamples::with_explained(Weighed weighed, WorkBudget& work) const {
   const auto curve = work.allows() ? curve_of(weighed.w) : std::nullopt;
-  auto more = curve ? with_spikes_on(*curve, work) : std::nullopt;
+  auto more = curve ? with_spikes_on(*curve, samples_.clean(), work) : std::nullopt;
   auto again =
       more ? again_with(*std::move(more), weighed.w.starts, weighed.w.best, work) : std::nullopt;
   if (!again) {
@@ -91,12 +122,12 @@ Weighed CountedSamples::followed(const FitData& data, bool sigma_known,
                                  std::span<const SidedStart> starts,
                                  const std::optional<ExplainingCurve>& explains,
                                  WorkBudget& work) const {
-  auto more = explains ? with_spikes_on(*explains, work) : std::nullopt;
+  auto more = explains ? with_spikes_on(*explains, samples_.clean(), work) : std::nullopt;
   if (more) {
     const std::size_t count = count_samples(*more);
     auto again = again_with(*std::move(more), starts, explains->shape.curve_class, work);
     const auto now = again ? curve_of(again->w) : std::nullopt;
-    const auto same = now ? with_spikes_on(*now, work) : std::nullopt;
+    const auto same = now ? with_spikes_on(*now, samples_.clean(), work) : std::nullopt;
     if (same && count_samples(*same) == count) {
       again->explains = now;
       return *std::move(again);
@@ -105,14 +136,14 @@ Weighed CountedSamples::followed(const FitData& data, bool sigma_known,
   return without_outliers(data, sigma_known, patches, starts, StartsOf::LastWeighing, work);
 }
 
-/// All patches with the spikes that lie on the curve; nullopt where none do.
-std::optional<std::vector<StoredPatch>> CountedSamples::with_spikes_on(const ExplainingCurve& on,
-                                                                       WorkBudget& work) const {
+/// These patches with the samples that they lack and that lie on the curve; nullopt where none do.
+std::optional<std::vector<StoredPatch>> CountedSamples::with_spikes_on(
+    const ExplainingCurve& on, std::span<const StoredPatch> counted, WorkBudget& work) const {
   const std::size_t count = samples_.moved_count();
   const double limit =
       two_sided_normal_quantile(options_.false_outlier_probability / static_cast<double>(count));
-  work.spend(kind_of_foot(on.shape.curve_class), count - count_samples(samples_.clean()));
-  return with_explained_spikes(samples_.moved(), samples_.clean(),
+  work.spend(kind_of_foot(on.shape.curve_class), count - count_samples(counted));
+  return with_explained_spikes(samples_.moved(), counted,
                                *make_curve(on.shape.curve_class, on.shape.values), on.world_T_curve,
                                on.noise_m, limit);
 }

@@ -56,6 +56,13 @@ class CountedSamples {
                    std::span<const SidedStart> starts,
                    const std::optional<ExplainingCurve>& explains, WorkBudget& work) const;
 
+  /// Where no class fits: weighed again without the samples in sharp bends that no polynomial
+  /// follows, for a spike among them bends every class towards itself. If a class is found so,
+  /// those that it explains are taken back, and if what is left out may be spikes, that is the
+  /// answer. `patches`: those that `weighed` is of.
+  Weighed without_spikes_in_bends(Weighed weighed, std::span<const StoredPatch> patches,
+                                  WorkBudget& work) const;
+
   /// Weighed again with what was told for spikes at the ends of strokes, where the noise is stated
   /// and the class that the rest is of leaves no more than noise of all.
   Weighed with_ends(Weighed weighed, bool sigma_known, WorkBudget& work) const;
@@ -68,6 +75,7 @@ class CountedSamples {
                    std::span<const StoredPatch> patches, StartsOf of, Weighed* weighed,
                    WorkBudget& work) const;
   std::optional<std::vector<StoredPatch>> with_spikes_on(const ExplainingCurve& curve,
+                                                         std::span<const StoredPatch> counted,
                                                          WorkBudget& work) const;
   std::optional<Weighed> again_with(std::vector<StoredPatch> more,
                                     std::span<const SidedStart> starts, CurveClass best,

@@ -1,0 +1,94 @@
+#include "core/recognition/unfollowed_samples.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <utility>
+
+#include "core/local/spikes/block_survey.h"
+#include "core/recognition/samples/stored_spikes.h"
+
+namespace palpate {
+namespace {
+
+/// By reduced point, the number of its section.
+std::vector<std::size_t> section_numbers(const SmoothModel& smooth) {
+  std::vector<std::size_t> numbers(smooth.reduced.points.size());
+  for (std::size_t s = 0; s < smooth.sections.size(); ++s) {
+    std::fill(numbers.begin() + static_cast<std::ptrdiff_t>(smooth.sections[s].begin),
+              numbers.begin() + static_cast<std::ptrdiff_t>(smooth.sections[s].end), s);
+  }
+  return numbers;
+}
+
+/// One flag per point: no polynomial follows it, or it is the lonely end of its section, to which
+/// the polynomial bends wherever it is (block_survey.h).
+std::vector<bool> unfollowed_points(const SmoothModel& smooth, const FitData& data) {
+  const std::vector<std::size_t> numbers = section_numbers(smooth);
+  std::vector<bool> flags(data.points.size(), false);
+  for (const PatchSpan& patch : data.patches) {
+    const auto section_of = [&](std::size_t i) { return numbers[smooth.nearest_reduced[i]]; };
+    const auto is_far = [&](std::size_t i, std::size_t k, double extent) {
+      return (data.points[i].position - data.points[k].position).norm() > kLonelyGap * extent;
+    };
+    for (std::size_t i = patch.begin; i < patch.end && patch.size() > 1; ++i) {
+      const ReducedSection& section = smooth.sections[section_of(i)];
+      const double extent = 2.0 * section.half_length;
+      const bool first = i == patch.begin || section_of(i - 1) != section_of(i);
+      const bool last = i + 1 == patch.end || section_of(i + 1) != section_of(i);
+      flags[i] = section.kept || (first && !last && is_far(i, i + 1, extent)) ||
+                 (last && !first && is_far(i, i - 1, extent));
+    }
+  }
+  return flags;
+}
+
+}  // namespace
+
+std::optional<std::vector<StoredPatch>> without_unfollowed(const Weighing& weighing,
+                                                           const std::vector<bool>& flagged,
+                                                           std::span<const StoredPatch> patches) {
+  const std::vector<bool> unfollowed = unfollowed_points(weighing.smooth, weighing.data);
+  std::vector<StoredPatch> fewer;
+  std::size_t number = 0;  // among the samples of all patches
+  std::size_t weighed = 0;
+  std::size_t out = 0;
+  for (const StoredPatch& patch : patches) {
+    std::vector<bool> is_out(patch.samples.size(), false);
+    for (std::size_t i = 0; i < is_out.size(); ++i, ++number) {
+      if (number < flagged.size() && flagged[number]) {
+        continue;
+      }
+      is_out[i] = unfollowed[weighed];
+      out += is_out[i] ? 1 : 0;
+      ++weighed;
+    }
+    fewer.push_back(without_spikes(patch, is_out));
+  }
+  const bool holds = out > 0 && 2 * out <= number;
+  return holds ? std::optional(std::move(fewer)) : std::nullopt;
+}
+
+bool may_lack_spikes(std::span<const StoredPatch> all, std::span<const StoredPatch> left) {
+  assert(all.size() == left.size());
+  std::size_t lacking = 0;
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    auto next = left[p].samples.begin();
+    std::size_t run = 0;
+    for (const StoredSample& sample : all[p].samples) {
+      const auto found = std::find_if(
+          next, left[p].samples.end(),
+          [&](const StoredSample& candidate) { return candidate.position_m == sample.position_m; });
+      const bool lacks = found == left[p].samples.end();
+      run = lacks ? run + 1 : 0;
+      lacking += lacks ? 1 : 0;
+      next = lacks ? next : found + 1;
+      if (run > kLongestRunOfSpikes) {
+        return false;
+      }
+    }
+  }
+  return lacking <= most_set_aside(count_samples(all));
+}
+
+}  // namespace palpate

@@ -1,0 +1,26 @@
+// Spikes in sharp bends, where nothing but a class tells them from the bend.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/recognition/samples/stored_patch.h"
+#include "core/recognition/weigh/weigh.h"
+
+namespace palpate {
+
+/// The patches without the samples of strokes that no polynomial follows, or only because it bends
+/// to them: those in a bend sharper than they are apart, or a spike there, which no block of the
+/// spikes' search judges.
+/// `weighing`: of the patches' samples without the flagged ones. nullopt if there are none, or if
+/// they are more than half of all.
+std::optional<std::vector<StoredPatch>> without_unfollowed(const Weighing& weighing,
+                                                           const std::vector<bool>& flagged,
+                                                           std::span<const StoredPatch> patches);
+
+/// Whether what `left` lacks of the samples of `all` may be spikes: no more than a class may set
+/// aside, and no longer runs (stored_spikes.h). Patches correspond; their order is the same.
+bool may_lack_spikes(std::span<const StoredPatch> all, std::span<const StoredPatch> left);
+
+}  // namespace palpate
