@@ -79,7 +79,7 @@ void for_each_recognizer_option(Words& words, Recognizer& recognizer, Visit&& vi
         words.touched_from);
   visit({"false_outlier_probability", "Chance that a clean scene loses a sample as a spike", 0, 1},
         recognizer.false_outlier_probability);
-  visit({"most_samples_per_patch", "Samples of a patch before neighbours are merged", 8,
+  visit({"most_samples_per_patch", "Samples of a patch before neighbours are merged", kFewestMeans,
          kMostSamples},
         recognizer.memory.most_samples_per_patch);
   visit({"most_patches", "Patches of an object before the oldest is forgotten", 1, 1024},

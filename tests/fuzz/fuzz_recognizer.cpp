@@ -41,7 +41,7 @@ RecognizerOptions options_from(ByteReader& bytes) {
     options.recognized_probability = 0.75 + 0.249 * bytes.unit();
   }
   if ((choices & 16) != 0) {
-    options.memory.most_samples_per_patch = 8 + static_cast<std::size_t>(bytes.byte());
+    options.memory.most_samples_per_patch = kFewestMeans + static_cast<std::size_t>(bytes.byte());
     options.memory.most_patches = 1 + static_cast<std::size_t>(bytes.below(kMostPatches));
   }
   if ((choices & 32) != 0) {

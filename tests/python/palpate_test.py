@@ -168,7 +168,7 @@ class Fit(unittest.TestCase):
                 ("is no curve class: line, circle", PATCHES, dict(classes=["elipse"])),
                 ("is no curve class", PATCHES, dict(classes="unclassified")),
                 ("material_side: .*None", PATCHES, dict(material_side=None)),
-                ("most_samples_per_patch: 0 is no whole number from 8", PATCHES, dict(most_samples_per_patch=0)),
+                ("most_samples_per_patch: 0 is no whole number from 64", PATCHES, dict(most_samples_per_patch=0)),
                 ("most_samples_per_patch: '1e3'", PATCHES, dict(most_samples_per_patch="1e3"))):
             with self.assertRaisesRegex(ValueError, named, msg=(named, arguments)):
                 palpate.fit(points, **arguments)

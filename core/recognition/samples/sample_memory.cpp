@@ -62,9 +62,7 @@ std::size_t contacts_of(const StoredPatch& patch) {
 }
 
 MemoryOptions at_least_usable(MemoryOptions options) {
-  // Fewer samples than these determine no class: a spline takes six, and two speak against it.
-  constexpr std::size_t kFewestSamples = 8;
-  options.most_samples_per_patch = std::max(options.most_samples_per_patch, kFewestSamples);
+  options.most_samples_per_patch = std::max(options.most_samples_per_patch, kFewestMeans);
   options.most_patches = std::max<std::size_t>(options.most_patches, 1);
   options.most_lone_touches = std::max<std::size_t>(options.most_lone_touches, 1);
   return options;

@@ -12,7 +12,13 @@
 
 namespace palpate {
 
-/// Bounds of the memory. Fewer samples than 8, and no patch or touch at all, count as 8 and 1.
+/// Least bound of a patch's samples. Means of neighbours lie inside a bend; mean_on_path.h undoes
+/// that but for 0.035 theta^4 of its radius, 0.37 theta^4 next to an end, theta the turn from
+/// one mean to the next: 3e-6 and 3e-5 where so many go all the way round. Of eight it is 0.013.
+inline constexpr std::size_t kFewestMeans = 64;
+
+/// Bounds of the memory. Fewer samples than kFewestMeans, and no patch or touch at all, count as so
+/// many, and as 1.
 struct MemoryOptions {
   /// Most samples of a patch. When a patch is full, its dwells are merged (dwells.h). If that frees
   /// less than a quarter, neighbours are merged pairwise, and from then on the patch stores means

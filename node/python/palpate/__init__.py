@@ -29,7 +29,7 @@ __all__ = ["Planner", "Probe", "Recognizer", "Result", "fit", "models"]
 _NONE = np.empty(0)
 _MOST_DRAWN = 1 << 16  # points kept for Result.plot and sample; beyond it every second one is dropped
 _MOST_NUMBER = (1 << 32) - 1  # of a patch or probe, as on the wire
-_LEAST_SAMPLES = 8  # of a patch, as for palpate-node: fewer give no answer
+_LEAST_SAMPLES = 64  # of a patch, as for palpate-node: means of more neighbours lie off a bend
 
 
 class Recognizer:
@@ -41,7 +41,7 @@ class Recognizer:
     classes: names of the classes to consider, e.g. ["circle", "ellipse"], or one name; empty = all.
     form_deviation: standard deviation of the part's surface from its ideal curve; 0 = exactly of its class.
     most_patches: patches kept (not counting patches of one point); beyond it the oldest is forgotten.
-    most_samples_per_patch: points kept of a patch, at least 8; beyond it neighbours are merged.
+    most_samples_per_patch: points kept of a patch, at least 64; beyond it neighbours are merged.
     unqualified_probe, touched_from: see fit().
     """
 

@@ -204,11 +204,11 @@ TEST(SampleMemory, RefusesDetailsThatCannotBe) {
 
 TEST(SampleMemory, MeansOfNeighboursHaveTheMeanOfWhatIsKnownOfThem) {
   MemoryOptions options;
-  options.most_samples_per_patch = 8;
+  options.most_samples_per_patch = 64;
   SampleMemory memory(options);
   std::vector<ContactSample> samples;
   std::vector<SampleDetail> details;
-  for (int i = 0; i < 32; ++i) {
+  for (int i = 0; i < 256; ++i) {
     samples.push_back(at(i));
     SampleDetail detail = normal_to(i % 2 == 0 ? 0.1 : 0.3, 0.02);
     detail.covariance_m2 = i % 2 == 0 ? Eigen::Vector3d(3.0, 0.5, 1.0) : Eigen::Vector3d(1, 0.1, 2);
@@ -233,16 +233,16 @@ TEST(SampleMemory, MeansOfNeighboursHaveTheMeanOfWhatIsKnownOfThem) {
               1e-12);
     EXPECT_NEAR(run.samples[i].sigma_m, std::sqrt(1.75 / weight), 1e-12);
   }
-  EXPECT_EQ(contacts, 32.0);
+  EXPECT_EQ(contacts, 256.0);
 }
 
 TEST(SampleMemory, ANormalOfOneOfTwoIsNoneOfTheirMean) {
   MemoryOptions options;
-  options.most_samples_per_patch = 8;
+  options.most_samples_per_patch = 64;
   SampleMemory memory(options);
   std::vector<ContactSample> samples;
   std::vector<SampleDetail> details;
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < 128; ++i) {
     samples.push_back(at(i));
     details.push_back(i % 2 == 0 ? normal_to(0.1, 0.02) : SampleDetail{});
   }
