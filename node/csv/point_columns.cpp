@@ -63,6 +63,9 @@ constexpr std::array kAliases = {
     Alias{"tip_radius", Column::TipRadius},
     Alias{"ball_radius", Column::TipRadius},
     Alias{"stylus_radius", Column::TipRadius},
+    Alias{"tip_diameter", Column::TipRadius},
+    Alias{"ball_diameter", Column::TipRadius},
+    Alias{"stylus_diameter", Column::TipRadius},
     Alias{"stamp", Column::Stamp},
     Alias{"timestamp", Column::Stamp},
     Alias{"time", Column::Stamp},
@@ -275,6 +278,9 @@ PointColumns columns_of(const std::vector<std::string_view>& names) {
     if (place && columns.twice.empty()) columns.twice = printable(names[i], 40);
     place = i;
     columns.units[static_cast<std::size_t>(named->column)] = named->unit;
+    if (named->column == Column::TipRadius) {
+      columns.tips_by_diameter = plain(names[i]).find("diameter") != std::string::npos;
+    }
   }
   keep_whole_details(columns);
   return columns;

@@ -40,6 +40,7 @@ struct PointColumns {
   std::array<std::optional<double>, kPointColumnCount> units;
   std::vector<std::string> ignored;  ///< columns that are none of these
   std::vector<std::size_t> unnamed;  ///< places of columns whose name is empty
+  bool tips_by_diameter = false;     ///< what stands in the place of the tip radius
   std::string twice;                 ///< name of a column that comes a second time; else empty
   /// Why columns of normals or covariances are not used, a sentence each.
   std::vector<std::string> unused_details;

@@ -329,9 +329,13 @@ class PointReader {
       return;
     }
     row.context.tip_radius_m = options_.tip_radius_m;
-    if (!field(Column::TipRadius).empty() &&
-        !length(Column::TipRadius, "tip_radius", 0.0, kMaxLengthM, row.context.tip_radius_m)) {
-      return;
+    if (!field(Column::TipRadius).empty()) {
+      const bool by_diameter = columns_.tips_by_diameter;
+      if (!length(Column::TipRadius, by_diameter ? "tip_diameter" : "tip_radius", 0.0, kMaxLengthM,
+                  row.context.tip_radius_m)) {
+        return;
+      }
+      row.context.tip_radius_m *= by_diameter ? 0.5 : 1.0;
     }
     const bool has_patches = columns_.place(Column::Patch).has_value();
     // As gnuplot has it, an empty line begins another stroke.

@@ -296,6 +296,12 @@ class Formats(unittest.TestCase):
         answer = self.fit(text, "--tip-radius", "0.002", "--sigma", "1e-6")
         self.assertAlmostEqual(answer["parameters"]["a"], 0.015, places=5)
 
+    def test_a_tip_may_be_told_by_its_diameter(self):
+        outside = [(0.02 + 0.017 * math.cos(t), 0.017 * math.sin(t)) for t in (2 * math.pi * i / 40 for i in range(40))]
+        text = "x_m,y_m,material_side,Ball diameter [mm]\n" + "".join(f"{x},{y},left,4\n" for x, y in outside)
+        answer = self.fit(text, "--sigma", "1e-6")
+        self.assertAlmostEqual(answer["parameters"]["a"], 0.015, places=5)
+
     def test_millimetres_under_metres_are_told_and_never_changed(self):
         answer = self.fit("x_m,y_m\n" + self.rows(1e3), "--sigma", "0.02")
         self.assertLess(abs(answer["parameters"]["a"] / 25 - 1), 0.01)
@@ -463,6 +469,7 @@ class Formats(unittest.TestCase):
                               ("x,y,time_s\n1,2,9223372037\n", "time '9223372037': out of range"),
                               ("x,y,time_s\n1,2,inf\n", "time 'inf': not a finite number"),
                               ("x,y,time_s\n1,2,noon\n", "time 'noon': not a number"),
+                              ("x,y,tip_radius_mm,tip_diameter_mm\n1,2,1,2\n", "tip_diameter_mm comes twice"),
                               ("x,y,tip_radius_mm,patch\n1,2,1,0\n1,3,2,0\n", "tip_radius changes within patch 0"),
                               ("x_m,y_m\n1,2e9\n", "FILE:2:3: y '2e9': must lie in")):
             self.assertIn(message, self.refused(text))
