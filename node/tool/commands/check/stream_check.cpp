@@ -197,11 +197,16 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
     std::vector<double> sorted = steps;
     const double typical = median_of(sorted);
     unordered += leads_to_and_fro(moved, extent_of_all) ? 1 : 0;
-    // A lift-off is many spacings and of the size of the part; a spike comes back at once.
+    // A lift-off is many spacings and of the size of the part; a spike comes back at once, and the
+    // way back is no lift-off either.
     constexpr double kJumpSpacings = 20.0;
     for (std::size_t i = 0; i + 1 < moved.size(); ++i) {
       const double step = (moved[i + 1] - moved[i]).norm();
-      const bool stays = i + 2 >= moved.size() || (moved[i + 2] - moved[i]).norm() > 0.5 * step;
+      const auto is_away = [&](std::size_t from, std::size_t to) {
+        return (moved[to] - moved[from]).norm() > 0.5 * step;
+      };
+      const bool stays =
+          (i + 2 >= moved.size() || is_away(i, i + 2)) && (i == 0 || is_away(i - 1, i + 1));
       jumps += step > kJumpSpacings * typical && stays ? 1 : 0;
     }
     // Noise alone widens a spacing too: by three standard deviations of a difference at most.

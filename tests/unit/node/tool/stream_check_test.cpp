@@ -161,6 +161,15 @@ TEST(StreamCheck, AMissingLiftOffIsAJump) {
   EXPECT_TRUE(has(findings, Severity::Error, "1 jump"));
 }
 
+TEST(StreamCheck, ASpikeIsNoJump) {
+  const auto findings = findings_of([](std::size_t number, v1::ContactBatch& batch) {
+    if (number != 10) return;
+    v1::ContactSample& sample = *batch.mutable_samples(4);
+    sample.set_x_m(sample.x_m() + 0.05);
+  });
+  EXPECT_FALSE(has(findings, Severity::Error, "jump"));
+}
+
 TEST(StreamCheck, AProbeThatStandsStillDoesNotJumpAfterwards) {
   // Sixteen batches of twenty at one place; the stroke goes on from there.
   std::mt19937_64 rng = test::test_rng();
