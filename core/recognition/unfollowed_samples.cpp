@@ -6,10 +6,16 @@
 #include <utility>
 
 #include "core/local/spikes/block_survey.h"
+#include "core/numerics/negligible.h"
+#include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/samples/stored_spikes.h"
 
 namespace palpate {
 namespace {
+
+/// Of all samples, those that may be left out: seven must speak for a class for each that is not
+/// asked. A spike in a bend spoils one section, of fewer than sixteen.
+constexpr std::size_t kOneIn = 8;
 
 /// By reduced point, the number of its section.
 std::vector<std::size_t> section_numbers(const SmoothModel& smooth) {
@@ -43,11 +49,57 @@ std::vector<bool> unfollowed_points(const SmoothModel& smooth, const FitData& da
   return flags;
 }
 
+/// The reduced points that no such sample has a part in, and a fit's feet on them.
+ClassFit without_points(ClassFit fit, const std::vector<bool>& is_out, FitData* points) {
+  std::vector<FitPoint> left;
+  std::vector<double> feet;
+  std::vector<PatchSpan> patches;
+  for (const PatchSpan& patch : points->patches) {
+    const std::size_t begin = left.size();
+    for (std::size_t k = patch.begin; k < patch.end; ++k) {
+      if (!is_out[k]) {
+        left.push_back(points->points[k]);
+        if (fit.polynomial) feet.push_back(fit.polynomial->t[k]);
+      }
+    }
+    patches.push_back({begin, left.size(), patch.is_joined});
+  }
+  points->points = std::move(left);
+  points->patches = std::move(patches);
+  fit.rival.reset();
+  if (fit.polynomial) fit.polynomial->t = std::move(feet);
+  return fit;
+}
+
+/// Whether a class leaves no more than noise of the others, from where the weighing has left it. A
+/// search costs ten times as much, and a part of no class has bends too.
+bool may_fit_others(const Weighing& weighing, const std::vector<bool>& unfollowed,
+                    WorkBudget& work) {
+  const SmoothModel& smooth = weighing.smooth;
+  const std::vector<std::size_t> numbers = section_numbers(smooth);
+  std::vector<bool> sections(smooth.sections.size(), false);
+  for (std::size_t i = 0; i < unfollowed.size(); ++i) {
+    if (unfollowed[i]) sections[numbers[smooth.nearest_reduced[i]]] = true;
+  }
+  std::vector<bool> is_out(numbers.size());
+  std::transform(numbers.begin(), numbers.end(), is_out.begin(),
+                 [&](std::size_t number) { return sections[number]; });
+  return std::any_of(weighing.coarse.begin(), weighing.coarse.end(), [&](const auto& fit) {
+    if (!fit || fit->at_limit || !work.allows()) {
+      return false;
+    }
+    FitData points = points_of(*fit, weighing.reduced);
+    const ClassFit start = without_points(*fit, is_out, &points);
+    return fits_well(settled(start, points, RivalOf::Other, work).chi2, residual_count(points));
+  });
+}
+
 }  // namespace
 
 std::optional<std::vector<StoredPatch>> without_unfollowed(const Weighing& weighing,
                                                            const std::vector<bool>& flagged,
-                                                           std::span<const StoredPatch> patches) {
+                                                           std::span<const StoredPatch> patches,
+                                                           WorkBudget& work) {
   const std::vector<bool> unfollowed = unfollowed_points(weighing.smooth, weighing.data);
   std::vector<StoredPatch> fewer;
   std::size_t number = 0;  // among the samples of all patches
@@ -65,7 +117,8 @@ std::optional<std::vector<StoredPatch>> without_unfollowed(const Weighing& weigh
     }
     fewer.push_back(without_spikes(patch, is_out));
   }
-  const bool holds = out > 0 && 2 * out <= number;
+  const bool holds =
+      out > 0 && kOneIn * out <= number && may_fit_others(weighing, unfollowed, work);
   return holds ? std::optional(std::move(fewer)) : std::nullopt;
 }
 

@@ -13,11 +13,12 @@ namespace palpate {
 /// The patches without the samples of strokes that no polynomial follows, or only because it bends
 /// to them: those in a bend sharper than they are apart, or a spike there, which no block of the
 /// spikes' search judges.
-/// `weighing`: of the patches' samples without the flagged ones. nullopt if there are none, or if
-/// they are more than half of all.
+/// `weighing`: of the patches' samples without the flagged ones. nullopt if there are none, if
+/// they are more than an eighth of all, or if no class fits the others.
 std::optional<std::vector<StoredPatch>> without_unfollowed(const Weighing& weighing,
                                                            const std::vector<bool>& flagged,
-                                                           std::span<const StoredPatch> patches);
+                                                           std::span<const StoredPatch> patches,
+                                                           WorkBudget& work);
 
 /// Whether what `left` lacks of the samples of `all` may be spikes: no more than a class may set
 /// aside, and no longer runs (stored_spikes.h). Patches correspond; their order is the same.

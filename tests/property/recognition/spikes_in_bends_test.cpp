@@ -103,13 +103,13 @@ Answers answered(CurveClass truth, const std::function<Part(std::mt19937_64&)>& 
   return answers;
 }
 
-/// The spike that shows is no part of the curve: such a part is of no class no more often than one
-/// without a spike, once in a hundred certain answers at most.
+/// Of certain answers, one in fifty at most says that such a part is of no class: where the fit
+/// that the spike has bent is so far off that a class is not found from there.
 void expect_few_of_none(const Answers& answers, int scenes) {
   if (test::counts_tell()) {
-    constexpr double kWrong = 0.01;
+    constexpr double kMissed = 0.02;
     EXPECT_GT(2 * answers.recognized, scenes);
-    EXPECT_LE(answers.of_none, test::most_of_poisson(kWrong * answers.recognized));
+    EXPECT_LE(answers.of_none, test::most_of_poisson(kMissed * answers.recognized));
   }
 }
 
