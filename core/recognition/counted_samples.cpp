@@ -66,9 +66,10 @@ Weighed CountedSamples::without_spikes_in_bends(Weighed weighed,
                                                 std::span<const StoredPatch> patches,
                                                 WorkBudget& work) const {
   const bool are_strokes = patches.data() == samples_.clean().data();  // no joined touches
-  auto fewer = are_strokes && weighed.w.best == CurveClass::Unclassified && work.allows()
-                   ? without_unfollowed(weighed.w, weighed.outliers, patches, work)
-                   : std::nullopt;
+  auto fewer =
+      are_strokes && !weighed.patches && weighed.w.best == CurveClass::Unclassified && work.allows()
+          ? without_unfollowed(weighed.w, weighed.outliers, patches, work)
+          : std::nullopt;
   if (!fewer) {
     return weighed;
   }

@@ -111,11 +111,12 @@ std::optional<std::vector<StoredPatch>> without_unfollowed(const Weighing& weigh
       if (number < flagged.size() && flagged[number]) {
         continue;
       }
-      is_out[i] = unfollowed[weighed];
-      out += is_out[i] ? 1 : 0;
-      ++weighed;
+      is_out[i] = unfollowed[weighed++];
     }
-    fewer.push_back(without_spikes(patch, is_out));
+    const auto lost = static_cast<std::size_t>(std::count(is_out.begin(), is_out.end(), true));
+    const bool is_whole = lost == is_out.size();  // a stroke in the bend alone: nothing judges it
+    out += is_whole ? 0 : lost;
+    fewer.push_back(is_whole ? patch : without_spikes(patch, is_out));
   }
   const bool holds =
       out > 0 && kOneIn * out <= number && may_fit_others(weighing, unfollowed, work);

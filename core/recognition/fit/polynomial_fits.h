@@ -15,8 +15,8 @@ struct PolynomialFits {
   std::optional<PolynomialFit> cubical_parabola;
   std::optional<PolynomialFit> semi_cubical_parabola;
   std::optional<PolynomialFit> cubic_spline;
-  /// The spline's optimum on the other side of c = 0, if there is one; of few touches, the second
-  /// best of all.
+  /// The spline's optimum on the other side of c = 0, if there is one; of single touches, the
+  /// second best of all.
   std::optional<PolynomialFit> rival;
   /// For a few of the points: the nearest conic, the only start.
   std::optional<ConicCoefficients> conic;

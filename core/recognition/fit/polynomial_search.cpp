@@ -176,7 +176,7 @@ SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced
   const AxisFit* best = nullptr;
   for (std::size_t i = 0; i < most && (i == 0 || work.allows()); ++i) {
     PolynomialFit fit = refined(walked[i], reduced, out_of_reach, work);
-    best = best == nullptr || fit.chi2 < pair.best->chi2 ? &walked[i] : best;
+    best = !pair.best || fit.chi2 < pair.best->chi2 ? &walked[i] : best;
     take(std::move(fit), &pair);
   }
   if (best != nullptr && work.allows()) {
