@@ -193,10 +193,10 @@ class Recognizer::Impl {
     Weighed weighed = weigh_from_last_or_search(data, sigma_known, patches, sought, work);
     const std::size_t stored = clean_.moved_count();
     const CountedSamples samples(options_, clean_);
-    if (!work.was_cut()) {
+    const bool is_none = weighed.w.best == CurveClass::Unclassified;
+    if (is_none && !work.was_cut()) {
       weighed = samples.without_spikes_in_bends(std::move(weighed), patches, work);
-    }
-    if (stored > data.points.size() && !weighed.patches && !work.was_cut()) {
+    } else if (stored > data.points.size() && !work.was_cut()) {
       weighed = samples.with_ends(std::move(weighed), sigma_known, work);
       if (!weighed.patches) {
         weighed = samples.with_explained(std::move(weighed), work);

@@ -89,6 +89,7 @@ bool may_fit_others(const Weighing& weighing, const std::vector<bool>& unfollowe
       return false;
     }
     FitData points = points_of(*fit, weighing.reduced);
+    assert(points.points.size() == is_out.size());
     const ClassFit start = without_points(*fit, is_out, &points);
     return fits_well(settled(start, points, RivalOf::Other, work).chi2, residual_count(points));
   });
