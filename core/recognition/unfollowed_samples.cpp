@@ -15,7 +15,7 @@ namespace {
 
 /// Of all samples, those that may be left out: seven must speak for a class for each that is not
 /// asked. A spike in a bend spoils one section, of fewer than sixteen.
-constexpr std::size_t kOneIn = 8;
+constexpr std::size_t kLeftOutOneIn = 8;
 
 /// By reduced point, the number of its section.
 std::vector<std::size_t> section_numbers(const SmoothModel& smooth) {
@@ -120,7 +120,7 @@ std::optional<std::vector<StoredPatch>> without_unfollowed(const Weighing& weigh
     fewer.push_back(is_whole ? patch : without_spikes(patch, is_out));
   }
   const bool holds =
-      out > 0 && kOneIn * out <= number && may_fit_others(weighing, unfollowed, work);
+      out > 0 && kLeftOutOneIn * out <= number && may_fit_others(weighing, unfollowed, work);
   return holds ? std::optional(std::move(fewer)) : std::nullopt;
 }
 

@@ -42,7 +42,6 @@ void put_in_order(PolynomialModel model, const FitData& reduced, const RefineEff
       !work.allows()) {
     return;
   }
-  constexpr int kSurfacePoints = 0;
   RefineEffort follow = effort;
   follow.seek_feet = false;
   PolynomialFit ordered =

@@ -21,6 +21,9 @@ struct PolynomialFit {
   int side = 0;  ///< where tip centres lie: +1 left of increasing t, -1 right
 };
 
+/// The side of points that bear no tip radius: reduced points lie on the surface.
+inline constexpr int kSurfacePoints = 0;
+
 /// Refines the coefficients, with the foot points eliminated: each evaluation follows them from
 /// where they were, and the Jacobian is that of the envelope theorem. Affine changes of t do not
 /// change the curve; the damping handles these free directions. `start.t` must hold a parameter

@@ -15,7 +15,6 @@ namespace palpate {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kSurfacePoints = 0;  // side: reduced points bear no tip radius
 
 /// refine_axis, the arms reassigned until they stay. Each lowers chi-square, so that none comes
 /// back; what still changes after so many lies where the arms cross, as near to one as to another.

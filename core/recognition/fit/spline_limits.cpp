@@ -14,8 +14,6 @@
 namespace palpate {
 namespace {
 
-constexpr int kSurfacePoints = 0;  // side: reduced points bear no tip radius
-
 void start_from(const PolynomialFit& start, PolynomialModel model, const FitData& reduced,
                 double out_of_reach, std::optional<PolynomialFit>* best, WorkBudget& work) {
   keep_better(best, refine_polynomial(model, reduced.points, start, kSurfacePoints,

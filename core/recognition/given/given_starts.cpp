@@ -158,7 +158,6 @@ void add_polynomials(CurveClass curve_class, const FitData& data, std::vector<Gi
       add(fits.rival);
       break;
   }
-  constexpr int kSurfacePoints = 0;
   for (const AxisFit& seed : seeds_of(curve_class, fits.seeds)) {
     const PolynomialFit fit =
         refine_polynomial(seed.model, data.points, to_polynomial(seed, data.points), kSurfacePoints,
@@ -170,7 +169,6 @@ void add_polynomials(CurveClass curve_class, const FitData& data, std::vector<Gi
 }  // namespace
 
 std::vector<GivenStart> given_starts(CurveClass curve_class, std::span<const Vec2> points) {
-  constexpr int kSurfacePoints = 0;
   const FitData data = seed_data(points, Order::None);
   WorkBudget unbounded;
   std::vector<GivenStart> starts;
