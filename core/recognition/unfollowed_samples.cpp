@@ -49,25 +49,16 @@ std::vector<bool> unfollowed_points(const SmoothModel& smooth, const FitData& da
   return flags;
 }
 
-/// The reduced points that no such sample has a part in, and a fit's feet on them.
-ClassFit without_points(ClassFit fit, const std::vector<bool>& is_out, FitData* points) {
-  std::vector<FitPoint> left;
-  std::vector<double> feet;
-  std::vector<PatchSpan> patches;
-  for (const PatchSpan& patch : points->patches) {
-    const std::size_t begin = left.size();
-    for (std::size_t k = patch.begin; k < patch.end; ++k) {
-      if (!is_out[k]) {
-        left.push_back(points->points[k]);
-        if (fit.polynomial) feet.push_back(fit.polynomial->t[k]);
-      }
-    }
-    patches.push_back({begin, left.size(), patch.is_joined});
-  }
-  points->points = std::move(left);
-  points->patches = std::move(patches);
+/// A fit's feet on the points that are left.
+ClassFit without_feet(ClassFit fit, const std::vector<bool>& is_out) {
   fit.rival.reset();
-  if (fit.polynomial) fit.polynomial->t = std::move(feet);
+  if (fit.polynomial) {
+    std::vector<double> feet;
+    for (std::size_t k = 0; k < is_out.size(); ++k) {
+      if (!is_out[k]) feet.push_back(fit.polynomial->t[k]);
+    }
+    fit.polynomial->t = std::move(feet);
+  }
   return fit;
 }
 
@@ -88,9 +79,10 @@ bool may_fit_others(const Weighing& weighing, const std::vector<bool>& unfollowe
     if (!fit || fit->at_limit || !work.allows()) {
       return false;
     }
-    FitData points = points_of(*fit, weighing.reduced);
-    assert(points.points.size() == is_out.size());
-    const ClassFit start = without_points(*fit, is_out, &points);
+    const FitData& all = points_of(*fit, weighing.reduced);
+    assert(all.points.size() == is_out.size());
+    const FitData points = without_points(all, is_out);
+    const ClassFit start = without_feet(*fit, is_out);
     return fits_well(settled(start, points, RivalOf::Other, work).chi2, residual_count(points));
   });
 }

@@ -201,23 +201,14 @@ ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const Refi
   return fit;
 }
 
-}  // namespace
-
-bool is_what_it_says(const ClassFit& fit, const FitData& data) {
-  if (fit.polynomial) {
-    return is_touchable(*fit.polynomial, data) && !leaps(*fit.polynomial, data);
-  }
-  const bool ellipse = fit.curve_class == CurveClass::Ellipse;
-  if (!ellipse && fit.curve_class != CurveClass::Hyperbola) {
-    return true;
-  }
-  return (discriminant(fit.implicit->coefficients) > 0.0) == ellipse &&
-         is_touchable(*fit.implicit, data);
+/// Whether strokes can have run along a polynomial curve as the data do.
+bool may_be_stroked(const PolynomialFit& fit, const FitData& data) {
+  return is_touchable(fit, data) && !leaps(fit, data);
 }
 
 /// Of a fit and its rival what may be touched so; nullopt if neither.
 std::optional<ClassFit> of_what_it_says(ClassFit fit, const FitData& data) {
-  if (fit.rival && !(is_touchable(*fit.rival, data) && !leaps(*fit.rival, data))) {
+  if (fit.rival && !may_be_stroked(*fit.rival, data)) {
     fit.rival.reset();
   }
   if (is_what_it_says(fit, data)) {
@@ -230,6 +221,20 @@ std::optional<ClassFit> of_what_it_says(ClassFit fit, const FitData& data) {
   fit.rival.reset();
   fit.chi2 = fit.polynomial->chi2;
   return fit;
+}
+
+}  // namespace
+
+bool is_what_it_says(const ClassFit& fit, const FitData& data) {
+  if (fit.polynomial) {
+    return may_be_stroked(*fit.polynomial, data);
+  }
+  const bool ellipse = fit.curve_class == CurveClass::Ellipse;
+  if (!ellipse && fit.curve_class != CurveClass::Hyperbola) {
+    return true;
+  }
+  return (discriminant(fit.implicit->coefficients) > 0.0) == ellipse &&
+         is_touchable(*fit.implicit, data);
 }
 
 ClassFit settled(const ClassFit& fit, const FitData& reduced, RivalOf rival, WorkBudget& work) {

@@ -66,33 +66,29 @@ PolynomialFit refined(const AxisFit& walked, const FitData& reduced, double out_
                            kSurfacePoints, coarse(out_of_reach), work);
 }
 
-/// How many walked valleys of the arm models are refined. Where walks end tells the deepest, if
+/// How many walked valleys are refined. Where walks end tells the deepest of a graph model, and if
 /// strokes lead along the arms. Single touches may each lie on either arm: a walk, by distances
 /// across the axis, then ends at several times the chi-square of what it leads to, and between two
 /// valleys the data may leave the choice to the prior.
-std::size_t most_refined(const FitData& reduced, std::size_t walked) {
+std::size_t most_refined(const std::vector<AxisFit>& walked, const FitData& reduced) {
   const bool are_touches =
       std::all_of(reduced.patches.begin(), reduced.patches.end(),
                   [](const PatchSpan& patch) { return patch.size() == 1 || patch.is_joined; });
-  return are_touches ? walked : std::min<std::size_t>(walked, 1);
+  const bool have_arms = !walked.empty() && !walked.front().arms.empty();
+  return are_touches && have_arms ? walked.size() : std::min<std::size_t>(walked.size(), 1);
 }
 
-/// Walks the seeds of a graph model; the best, refined on the reduced points.
-std::optional<PolynomialFit> best_graph(std::vector<AxisFit>* seeds, const FitData& reduced,
-                                        double out_of_reach, WorkBudget& work) {
-  *seeds = walk(*seeds, reduced, work);
-  return seeds->empty() ? std::nullopt
-                        : std::optional(refined(seeds->front(), reduced, out_of_reach, work));
-}
-
-/// The same of semi-cubical parabolas.
-std::optional<PolynomialFit> best_cusp(std::vector<AxisFit>* seeds, const FitData& reduced,
-                                       double out_of_reach, WorkBudget& work) {
+/// Walks the seeds; the best of them, refined on the reduced points.
+std::optional<PolynomialFit> best_of(std::vector<AxisFit>* seeds, const FitData& reduced,
+                                     double out_of_reach, WorkBudget& work) {
   *seeds = walk(*seeds, reduced, work);
   std::optional<PolynomialFit> best;
-  const std::size_t most = most_refined(reduced, seeds->size());
+  const std::size_t most = most_refined(*seeds, reduced);
   for (std::size_t i = 0; i < most && (i == 0 || work.allows()); ++i) {
-    keep_better(&best, refined((*seeds)[i], reduced, out_of_reach, work));
+    PolynomialFit fit = refined((*seeds)[i], reduced, out_of_reach, work);
+    if (!best || fit.chi2 < best->chi2) {
+      best = std::move(fit);
+    }
   }
   return best;
 }
@@ -171,7 +167,7 @@ void take(PolynomialFit fit, SplinePair* pair) {
 SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced,
                       double out_of_reach, WorkBudget& work) {
   SplinePair pair;
-  const std::size_t most = most_refined(reduced, walked.size());
+  const std::size_t most = most_refined(walked, reduced);
   const AxisFit* best = nullptr;
   for (std::size_t i = 0; i < most && (i == 0 || work.allows()); ++i) {
     PolynomialFit fit = refined(walked[i], reduced, out_of_reach, work);
@@ -200,10 +196,10 @@ PolynomialFits search_polynomials(const FitData& reduced, bool line_fits, double
   }
   add_relatives(reduced, &fits.seeds, work);
   // Conics start from it too.
-  fits.parabola = best_graph(&fits.seeds.parabola, reduced, kInfinity, work);
-  fits.cubical_parabola = best_graph(&fits.seeds.cubical_parabola, reduced, out_of_reach, work);
+  fits.parabola = best_of(&fits.seeds.parabola, reduced, kInfinity, work);
+  fits.cubical_parabola = best_of(&fits.seeds.cubical_parabola, reduced, out_of_reach, work);
   fits.semi_cubical_parabola =
-      best_cusp(&fits.seeds.semi_cubical_parabola, reduced, out_of_reach, work);
+      best_of(&fits.seeds.semi_cubical_parabola, reduced, out_of_reach, work);
   SplinePair pair = fit_spline(fits.seeds.cubic_spline, reduced, out_of_reach, work);
   fits.cubic_spline = std::move(pair.best);
   fits.rival = std::move(pair.rival);
@@ -219,7 +215,7 @@ PolynomialFits search_parabola(const FitData& reduced, WorkBudget& work) {
     return fits;
   }
   add_graph_seeds(reduced.points, &fits.seeds, work);
-  fits.parabola = best_graph(&fits.seeds.parabola, reduced, kInfinity, work);
+  fits.parabola = best_of(&fits.seeds.parabola, reduced, kInfinity, work);
   return fits;
 }
 
