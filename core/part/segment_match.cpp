@@ -59,10 +59,7 @@ std::size_t middle_of(const FitData& data, std::size_t patch) {
 /// Whether a polynomial follows the samples around a point, so that its tangent is known. Of single
 /// touches, and of touches too few for the bends between them, none does.
 bool is_followed(const SmoothModel& smooth, std::size_t point) {
-  const std::size_t reduced = smooth.nearest_reduced[point];
-  const auto section = std::find_if(smooth.sections.begin(), smooth.sections.end(),
-                                    [&](const ReducedSection& each) { return reduced < each.end; });
-  return section != smooth.sections.end() && !section->kept;
+  return !section_of(smooth, point).kept;
 }
 
 bool lie_at_one_place(std::span<const FitPoint> points) {

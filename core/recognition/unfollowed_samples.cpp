@@ -17,31 +17,19 @@ namespace {
 /// asked. A spike in a bend spoils one section, of fewer than sixteen.
 constexpr std::size_t kLeftOutOneIn = 8;
 
-/// By reduced point, the number of its section.
-std::vector<std::size_t> section_numbers(const SmoothModel& smooth) {
-  std::vector<std::size_t> numbers(smooth.reduced.points.size());
-  for (std::size_t s = 0; s < smooth.sections.size(); ++s) {
-    std::fill(numbers.begin() + static_cast<std::ptrdiff_t>(smooth.sections[s].begin),
-              numbers.begin() + static_cast<std::ptrdiff_t>(smooth.sections[s].end), s);
-  }
-  return numbers;
-}
-
 /// One flag per point: no polynomial follows it, or it is the lonely end of its section, to which
 /// the polynomial bends wherever it is (block_survey.h).
 std::vector<bool> unfollowed_points(const SmoothModel& smooth, const FitData& data) {
-  const std::vector<std::size_t> numbers = section_numbers(smooth);
   std::vector<bool> flags(data.points.size(), false);
   for (const PatchSpan& patch : data.patches) {
-    const auto section_of = [&](std::size_t i) { return numbers[smooth.nearest_reduced[i]]; };
     const auto is_far = [&](std::size_t i, std::size_t k, double extent) {
       return (data.points[i].position - data.points[k].position).norm() > kLonelyGap * extent;
     };
     for (std::size_t i = patch.begin; i < patch.end && patch.size() > 1; ++i) {
-      const ReducedSection& section = smooth.sections[section_of(i)];
+      const ReducedSection& section = section_of(smooth, i);
       const double extent = 2.0 * section.half_length;
-      const bool first = i == patch.begin || section_of(i - 1) != section_of(i);
-      const bool last = i + 1 == patch.end || section_of(i + 1) != section_of(i);
+      const bool first = i == patch.begin || &section_of(smooth, i - 1) != &section;
+      const bool last = i + 1 == patch.end || &section_of(smooth, i + 1) != &section;
       flags[i] = section.kept || (first && !last && is_far(i, i + 1, extent)) ||
                  (last && !first && is_far(i, i - 1, extent));
     }
@@ -66,15 +54,14 @@ ClassFit without_feet(ClassFit fit, const std::vector<bool>& is_out) {
 /// search costs ten times as much, and a part of no class has bends too.
 bool may_fit_others(const Weighing& weighing, const std::vector<bool>& unfollowed,
                     WorkBudget& work) {
-  const SmoothModel& smooth = weighing.smooth;
-  const std::vector<std::size_t> numbers = section_numbers(smooth);
-  std::vector<bool> sections(smooth.sections.size(), false);
+  std::vector<bool> is_out(weighing.smooth.reduced.points.size(), false);
   for (std::size_t i = 0; i < unfollowed.size(); ++i) {
-    if (unfollowed[i]) sections[numbers[smooth.nearest_reduced[i]]] = true;
+    if (unfollowed[i]) {
+      const ReducedSection& section = section_of(weighing.smooth, i);
+      std::fill(is_out.begin() + static_cast<std::ptrdiff_t>(section.begin),
+                is_out.begin() + static_cast<std::ptrdiff_t>(section.end), true);
+    }
   }
-  std::vector<bool> is_out(numbers.size());
-  std::transform(numbers.begin(), numbers.end(), is_out.begin(),
-                 [&](std::size_t number) { return sections[number]; });
   return std::any_of(weighing.coarse.begin(), weighing.coarse.end(), [&](const auto& fit) {
     if (!fit || fit->at_limit || !work.allows()) {
       return false;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <iterator>
 #include <limits>
 
 #include "core/numerics/negligible.h"
@@ -52,11 +50,7 @@ double most_of_spikes(const Arcs& arcs) {
   for (std::size_t p = 0; p < arcs.data.patches.size(); ++p) {
     const auto patch = arcs.data.patch(p);
     for (std::size_t i = 0; i < patch.size(); ++i) {
-      const std::uint32_t nearest = smooth.nearest_reduced[arcs.data.patches[p].begin + i];
-      const auto section = std::prev(
-          std::upper_bound(smooth.sections.begin(), smooth.sections.end(), nearest,
-                           [](std::uint32_t k, const ReducedSection& s) { return k < s.begin; }));
-      if (section->kept) {
+      if (section_of(smooth, arcs.data.patches[p].begin + i).kept) {
         chi2 += chi2_of_distance(farthest_spike(patch, i), patch[i]);
       }
     }

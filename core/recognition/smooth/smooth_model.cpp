@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -326,6 +328,12 @@ double slowest_noise(const FitData& data) {
 }
 
 }  // namespace
+
+const ReducedSection& section_of(const SmoothModel& smooth, std::size_t point) {
+  return *std::prev(std::upper_bound(
+      smooth.sections.begin(), smooth.sections.end(), smooth.nearest_reduced[point],
+      [](std::uint32_t k, const ReducedSection& section) { return k < section.begin; }));
+}
 
 bool leaves_less_than_noise(double chi2, double dof) {
   constexpr double kOneInThousand = 1e-3;

@@ -71,6 +71,9 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known,
 /// over 111 samples leaves a third, and seldom less than this (residual_correlation_test).
 inline constexpr double kLeastNoiseShown = 0.1;
 
+/// The section of a point, by its index among all. O(log(sections)).
+const ReducedSection& section_of(const SmoothModel& smooth, std::size_t point);
+
 /// Whether residuals leave so little as white noise does once in a thousand times.
 bool leaves_less_than_noise(double chi2, double dof);
 
