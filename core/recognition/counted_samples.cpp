@@ -7,26 +7,14 @@
 #include "core/numerics/normal_law.h"
 #include "core/recognition/fewest_places.h"
 #include "core/recognition/gross_touches.h"
-#include "core/recognition/likelihood_answer.h"
 #include "core/recognition/outliers.h"
 #include "core/recognition/samples/explained_spikes.h"
 #include "core/recognition/touches/joined_touches.h"
+#include "core/recognition/two_readings.h"
 #include "core/recognition/unfollowed_samples.h"
 #include "core/recognition/weigh/weigh_in_full.h"
 
 namespace palpate {
-namespace {
-
-/// The best class's; nullopt where there is none, or double precision cannot hold it.
-std::optional<ExplainingCurve> curve_of(const Weighing& w) {
-  const auto& best = w.canonical[w.best];
-  return best && make_curve(w.best, best->shape.values)
-             ? std::optional(ExplainingCurve{best->shape, best->world_T_curve, residual_noise_m(w)})
-             : std::nullopt;
-}
-
-}  // namespace
-
 Weighed CountedSamples::without_outliers(const FitData& data, bool sigma_known,
                                          std::span<const StoredPatch> patches,
                                          std::span<const SidedStart> starts, StartsOf of,
@@ -65,11 +53,22 @@ Weighed CountedSamples::without_outliers(const FitData& data, bool sigma_known,
 Weighed CountedSamples::without_spikes_in_bends(Weighed weighed,
                                                 std::span<const StoredPatch> patches,
                                                 WorkBudget& work) const {
+  // Of all classes a spline alone bends as sharply as it takes to run through a spike.
+  const bool is_none = weighed.w.best == CurveClass::Unclassified;
+  const bool may_run_through =
+      weighed.w.best == CurveClass::CubicSpline && weighed.w.stated.sigma_known;
   const bool are_strokes = patches.data() == samples_.clean().data();  // no joined touches
-  auto fewer =
-      are_strokes && !weighed.patches && weighed.w.best == CurveClass::Unclassified && work.allows()
-          ? without_unfollowed(weighed.w, weighed.outliers, patches, work)
-          : std::nullopt;
+  if (!are_strokes || !(is_none || may_run_through) || !work.allows()) {
+    return weighed;
+  }
+  const std::size_t counted = weighed.w.data.points.size();
+  const auto misses_some = [&](const ExplainingCurve& curve, std::span<const StoredPatch> others) {
+    const auto explained = with_spikes_on(curve, others, work);
+    return !explained || count_samples(*explained) != counted;
+  };
+  const std::span<const StoredPatch> weighed_patches = weighed.patches ? *weighed.patches : patches;
+  auto fewer = without_unfollowed(weighed.w, weighed.outliers, weighed_patches,
+                                  is_none ? CurveOfOthers() : misses_some, work);
   if (!fewer) {
     return weighed;
   }
@@ -86,10 +85,14 @@ Weighed CountedSamples::without_spikes_in_bends(Weighed weighed,
   if (auto more = with_spikes_on(*curve, *fewer, work)) {
     fewer = std::move(more);
   }
-  auto again = may_lack_spikes(patches, *fewer)
+  auto again = may_lack_spikes(weighed_patches, *fewer)
                    ? again_with(*std::move(fewer), without.w.starts, without.w.best, work)
                    : std::nullopt;
-  return again ? *std::move(again) : std::move(weighed);
+  if (!again) {
+    return weighed;
+  }
+  return is_none ? *std::move(again)
+                 : more_probable(std::move(weighed), *std::move(again), patches, samples_.moved());
 }
 
 Weighed CountedSamples::with_ends(Weighed weighed, bool sigma_known, WorkBudget& work) const {

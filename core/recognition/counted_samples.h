@@ -11,26 +11,9 @@
 #include "core/recognition/samples/clean_patches.h"
 #include "core/recognition/weigh/sided_start.h"
 #include "core/recognition/weigh/weigh.h"
+#include "core/recognition/weighed.h"
 
 namespace palpate {
-
-/// A curve, and the noise about it that leaves a sample on it.
-struct ExplainingCurve {
-  ShapeParameters shape;
-  Pose2 world_T_curve;
-  double noise_m = 0.0;
-};
-
-/// A weighing, and what it is of.
-struct Weighed {
-  Weighing w;
-  std::vector<bool> outliers;  ///< one flag per sample of the patches; empty where there are none
-  /// Where these are others than were asked about.
-  std::optional<std::vector<StoredPatch>> patches;
-  bool leaves_class = false;  ///< FarSamples::are_form
-  /// Of the best class, where `patches` have spikes that it explains.
-  std::optional<ExplainingCurve> explains = {};
-};
 
 /// What the starts of a weighing are from. Those of a search are not followed where samples are set
 /// aside: these may have led it astray.
@@ -56,10 +39,12 @@ class CountedSamples {
                    std::span<const SidedStart> starts,
                    const std::optional<ExplainingCurve>& explains, WorkBudget& work) const;
 
-  /// Where no class fits: weighed again without the samples in sharp bends that no polynomial
-  /// follows, for a spike among them bends every class towards itself. If a class is found so,
-  /// those that it explains are taken back, and if what is left out may be spikes, that is the
-  /// answer. `patches`: those that `weighed` is of.
+  /// Where no class fits, or a spline of which a spike may make the bend: weighed again without the
+  /// samples in sharp bends that no polynomial follows, for a spike among them bends every class
+  /// towards itself. If a class is found so, those that it explains are taken back. What is left
+  /// out may be spikes then: that is the answer where no class fits, and another reading of the
+  /// samples where the spline does (two_readings.h). `patches`: those that `weighed` is of,
+  /// unless it has its own.
   Weighed without_spikes_in_bends(Weighed weighed, std::span<const StoredPatch> patches,
                                   WorkBudget& work) const;
 

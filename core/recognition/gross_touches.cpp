@@ -128,9 +128,6 @@ std::optional<FitData> without_gross_touches(const Weighing& weighing, const Fit
 }
 
 double log_odds_against_gross(const FitData& data, const FitData& kept) {
-  // Beforehand one touch in a hundred errs by far more than its noise: the probe slips, or touches
-  // something else.
-  constexpr double kGross = 0.01;
   std::size_t gross = 0;
   for (std::size_t p = 0; p < data.patches.size(); ++p) {
     gross += data.patches[p].size() == 1 && kept.patches[p].size() == 0 ? 1 : 0;

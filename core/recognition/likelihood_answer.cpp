@@ -6,6 +6,7 @@
 #include "core/numerics/negligible.h"
 #include "core/recognition/outliers.h"
 #include "core/recognition/verdict/determined.h"
+#include "core/recognition/weighed.h"
 
 namespace palpate {
 namespace {
@@ -77,10 +78,6 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
 }
 
 }  // namespace
-
-double residual_noise_m(const Weighing& w) {
-  return w.sigma * w.data.scale * std::sqrt(w.seen.white_variance);
-}
 
 Recognition answer_by_likelihood(const Weighing& w, const BestMoments& moments,
                                  const VerdictOptions& options, std::size_t stored) {

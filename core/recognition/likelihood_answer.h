@@ -12,9 +12,6 @@ struct VerdictOptions {
   double determined_fraction;     ///< as RecognizerOptions
 };
 
-/// White noise of a typical sample; if estimated, from the best class's residuals. [m]
-double residual_noise_m(const Weighing& weighing);
-
 /// The answer without contacts, tree and counts of samples. `stored`: number of samples, including
 /// those set aside as spikes.
 Recognition answer_by_likelihood(const Weighing& weighing, const BestMoments& moments,

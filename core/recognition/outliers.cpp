@@ -115,9 +115,9 @@ FarSamples far_samples(const Weighing& weighing, const FitData& data, std::vecto
   return {std::move(aside), false};
 }
 
-std::vector<Vec2> places_set_aside(std::span<const StoredPatch> all,
-                                   std::span<const StoredPatch> used,
-                                   const std::vector<bool>& flagged) {
+std::vector<SetAside> samples_set_aside(std::span<const StoredPatch> all,
+                                        std::span<const StoredPatch> used,
+                                        const std::vector<bool>& flagged) {
   // Joined touches are the same samples in another order: they are known by their places.
   using Place = std::pair<double, double>;
   std::multiset<Place> kept;
@@ -129,18 +129,18 @@ std::vector<Vec2> places_set_aside(std::span<const StoredPatch> all,
       if (!is_out) kept.insert({sample.position_m.x(), sample.position_m.y()});
     }
   }
-  std::vector<Vec2> places;
+  std::vector<SetAside> aside;
   for (const StoredPatch& patch : all) {
     for (const StoredSample& sample : patch.samples) {
       const auto found = kept.find({sample.position_m.x(), sample.position_m.y()});
       if (found == kept.end()) {
-        places.push_back(sample.position_m);
+        aside.push_back({sample, patch.context.tip_radius_m});
       } else {
         kept.erase(found);
       }
     }
   }
-  return places;
+  return aside;
 }
 
 bool may_have_missed_spikes(std::size_t stored, std::size_t used) {

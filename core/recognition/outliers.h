@@ -25,11 +25,16 @@ struct FarSamples {
 FarSamples far_samples(const Weighing& weighing, const FitData& data, std::vector<bool> aside,
                        bool sigma_known, double false_outlier_probability);
 
-/// Positions of the samples of `all` that are not in `used`, or flagged there: one flag per sample,
-/// or none at all.
-std::vector<Vec2> places_set_aside(std::span<const StoredPatch> all,
-                                   std::span<const StoredPatch> used,
-                                   const std::vector<bool>& flagged);
+struct SetAside {
+  StoredSample sample;
+  double tip_radius_m = 0.0;
+};
+
+/// The samples of `all` that are not in `used`, or flagged there: one flag per sample, or none at
+/// all.
+std::vector<SetAside> samples_set_aside(std::span<const StoredPatch> all,
+                                        std::span<const StoredPatch> used,
+                                        const std::vector<bool>& flagged);
 
 /// True if so many of the `stored` samples are set aside that spikes among the `used` ones may have
 /// been missed.

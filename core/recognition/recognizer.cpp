@@ -193,14 +193,15 @@ class Recognizer::Impl {
     Weighed weighed = weigh_from_last_or_search(data, sigma_known, patches, sought, work);
     const std::size_t stored = clean_.moved_count();
     const CountedSamples samples(options_, clean_);
-    const bool is_none = weighed.w.best == CurveClass::Unclassified;
-    if (is_none && !work.was_cut()) {
-      weighed = samples.without_spikes_in_bends(std::move(weighed), patches, work);
-    } else if (stored > data.points.size() && !work.was_cut()) {
+    const bool is_class = weighed.w.best != CurveClass::Unclassified;
+    if (is_class && stored > data.points.size() && !work.was_cut()) {
       weighed = samples.with_ends(std::move(weighed), sigma_known, work);
       if (!weighed.patches) {
         weighed = samples.with_explained(std::move(weighed), work);
       }
+    }
+    if (!work.was_cut()) {
+      weighed = samples.without_spikes_in_bends(std::move(weighed), patches, work);
     }
     last_->explains = weighed.explains;
     if (work.was_cut()) {
@@ -221,8 +222,8 @@ class Recognizer::Impl {
     }
     answer.outlier_count = stored - w.data.points.size();
     if (answer.outlier_count > 0) {
-      answer.outliers_m = places_set_aside(
-          clean_.moved(), weighed.patches ? *weighed.patches : patches, weighed.outliers);
+      answer.outliers_m =
+          places_set_aside(weighed.patches ? *weighed.patches : patches, weighed.outliers);
     }
     if (sigma_known) {
       unused_ = contacts_with_details(w.data);
@@ -250,8 +251,17 @@ class Recognizer::Impl {
         answer_by_tree(possible_sides(patches, reduced, turns_of(reduced), {}, work).ways,
                        contacts_of, options_.tree, data.scale, options_.determined_fraction);
     answer.outlier_count = outliers;
-    if (outliers > 0) answer.outliers_m = places_set_aside(clean_.moved(), patches, {});
+    if (outliers > 0) answer.outliers_m = places_set_aside(patches, {});
     return answer;
+  }
+
+  std::vector<Vec2> places_set_aside(std::span<const StoredPatch> used,
+                                     const std::vector<bool>& flagged) const {
+    std::vector<Vec2> places_m;
+    for (const SetAside& aside : samples_set_aside(clean_.moved(), used, flagged)) {
+      places_m.push_back(aside.sample.position_m);
+    }
+    return places_m;
   }
 
   /// What the last weighing left.

@@ -50,9 +50,10 @@ ClassFit without_feet(ClassFit fit, const std::vector<bool>& is_out) {
   return fit;
 }
 
-/// Whether a class leaves no more than noise of the others, from where the weighing has left it. A
-/// search costs ten times as much, and a part of no class has bends too.
+/// Whether a class that matters leaves no more than noise of the others, from where the weighing
+/// has left it. A search costs ten times as much, and a part of no class has bends too.
 bool may_fit_others(const Weighing& weighing, const std::vector<bool>& unfollowed,
+                    std::span<const StoredPatch> others, const CurveOfOthers& matters,
                     WorkBudget& work) {
   std::vector<bool> is_out(weighing.smooth.reduced.points.size(), false);
   for (std::size_t i = 0; i < unfollowed.size(); ++i) {
@@ -70,7 +71,13 @@ bool may_fit_others(const Weighing& weighing, const std::vector<bool>& unfollowe
     assert(all.points.size() == is_out.size());
     const FitData points = without_points(all, is_out);
     const ClassFit start = without_feet(*fit, is_out);
-    return fits_well(settled(start, points, RivalOf::Other, work).chi2, residual_count(points));
+    const ClassFit left = settled(start, points, RivalOf::Other, work);
+    if (!fits_well(left.chi2, residual_count(points))) {
+      return false;
+    }
+    const auto canonical = matters ? to_canonical(left, points) : std::nullopt;
+    const auto curve = canonical ? curve_of(*canonical, residual_noise_m(weighing)) : std::nullopt;
+    return !curve || matters(*curve, others);
   });
 }
 
@@ -79,6 +86,7 @@ bool may_fit_others(const Weighing& weighing, const std::vector<bool>& unfollowe
 std::optional<std::vector<StoredPatch>> without_unfollowed(const Weighing& weighing,
                                                            const std::vector<bool>& flagged,
                                                            std::span<const StoredPatch> patches,
+                                                           const CurveOfOthers& matters,
                                                            WorkBudget& work) {
   const std::vector<bool> unfollowed = unfollowed_points(weighing.smooth, weighing.data);
   std::vector<StoredPatch> fewer;
@@ -98,8 +106,8 @@ std::optional<std::vector<StoredPatch>> without_unfollowed(const Weighing& weigh
     out += is_whole ? 0 : lost;
     fewer.push_back(is_whole ? patch : without_spikes(patch, is_out));
   }
-  const bool holds =
-      out > 0 && kLeftOutOneIn * out <= number && may_fit_others(weighing, unfollowed, work);
+  const bool holds = out > 0 && kLeftOutOneIn * out <= number &&
+                     may_fit_others(weighing, unfollowed, fewer, matters, work);
   return holds ? std::optional(std::move(fewer)) : std::nullopt;
 }
 

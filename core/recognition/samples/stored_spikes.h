@@ -11,6 +11,10 @@
 
 namespace palpate {
 
+/// Beforehand one sample in a hundred errs by far more than its noise: the probe slips, or touches
+/// something else.
+inline constexpr double kGross = 0.01;
+
 /// Longest run of samples that may all be spikes; four in a row off a curve are a bend. If one
 /// sample in 20 is a spike, chance makes four in a row once in 20^4 samples, more than the memory
 /// holds.

@@ -125,6 +125,17 @@ std::vector<SidedStart> starts_of(const SidedFits& sided, const Contenders& cont
   return starts;
 }
 
+/// log of the evidence of all models, by that of one and the share that it has.
+double log_evidence_of_all(CurveClass model, double share, const Contenders& contenders,
+                           const EvidenceContext& context) {
+  const auto& fit = contenders.fits[model];
+  const double log_of_model =
+      fit ? log_evidence(context.likelihood, contenders.evidences, *fit)
+          : log_evidence_of_unclassified(context.likelihood, contenders.evidences,
+                                         context.arcs.smooth.chi2);
+  return log_of_model - std::log(share);
+}
+
 /// What the stages say, gathered. `arcs` and `sided` are those that `context` is of. `best_placed`:
 /// the best class, if it is placed on all points already; `stated`: the law before any was seen.
 Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders,
@@ -133,6 +144,7 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   Weighing w;
   w.probabilities = probabilities_of(contenders, context);
   w.best = most_probable(w.probabilities);
+  w.log_evidence = log_evidence_of_all(w.best, w.probabilities[w.best], contenders, context);
   w.margin_of_unclassified = margin_of_unclassified(contenders.fits, arcs.smooth.chi2,
                                                     context.likelihood, contenders.evidences);
   w.rival_share = rival_share(contenders.fits, context.likelihood, contenders.evidences);

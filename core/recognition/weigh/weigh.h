@@ -42,6 +42,8 @@ struct Weighing {
   /// `data` if fits[i]->on_all, else the reduced points.
   ByClass<std::optional<CanonicalFit>> canonical;
   ClassProbabilities probabilities{};
+  /// log of the evidence of all models together, up to a constant of the points and their noise.
+  double log_evidence = kNoEvidence;
   /// log odds of "unclassified" over all classes, whatever their priors of shapes (posterior.h).
   double margin_of_unclassified = 0.0;
   /// Share of the spline's posterior in its mode on the other side of c = 0.

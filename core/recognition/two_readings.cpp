@@ -1,0 +1,114 @@
+#include "core/recognition/two_readings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "core/curves/curve.h"
+#include "core/numerics/chi_square.h"
+#include "core/numerics/mahalanobis.h"
+#include "core/recognition/outliers.h"
+#include "core/recognition/samples/stored_spikes.h"
+
+namespace palpate {
+namespace {
+
+/// log of the factor by which the variances that the evidence was computed with exceed those of the
+/// points, times half their number.
+double log_of_wider_noise(const Weighing& w) {
+  const Likelihood& law = w.seen.likelihood ? *w.seen.likelihood : w.stated;
+  const double residuals = static_cast<double>(residual_count(w.data));
+  return 0.5 * law.samples * std::log(law.tempering * law.samples / residuals);
+}
+
+/// log of the density of samples that are spikes, over the odds against them. Nothing is known of
+/// how high one is, between its noise and the size of the part: not even the order of magnitude.
+double log_density_of(std::span<const SetAside> spikes, const ExplainingCurve& of, double size_m) {
+  const Curve curve = *make_curve(of.shape.curve_class, of.shape.values);
+  double log_density = 0.0;
+  for (const auto& [sample, tip_radius_m] : spikes) {
+    const double sigma_m = sigma_m_of(sample, of.noise_m) / std::sqrt(sample.weight);
+    const FootPoint foot = foot_point(curve, of.world_T_curve.to_local(sample.position_m));
+    const double height_m = std::max(std::abs(std::abs(foot.distance) - tip_radius_m), sigma_m);
+    const double orders = std::max(std::log(size_m / sigma_m), 1.0);
+    log_density -= std::log(2.0 * height_m * orders) + log_odds(1.0 - kGross);
+  }
+  return log_density;
+}
+
+/// log of the density of all samples by one reading, [1/m] each.
+double log_density_of(const Weighed& reading, const ExplainingCurve& curve,
+                      std::span<const SetAside> spikes) {
+  const Weighing& w = reading.w;
+  double log_density = w.log_evidence - log_of_wider_noise(w);
+  for (const FitPoint& point : w.data.points) {
+    log_density += std::log(point.inverse_sigma / w.data.scale / std::sqrt(2.0 * std::numbers::pi));
+  }
+  return log_density + log_density_of(spikes, curve, 2.0 * w.data.scale);
+}
+
+/// Whether a fit lies outside of what another one of its class publishes as its 95 % ellipsoid.
+/// (One sample more or less seldom leads so far, unless the shape rests on it.)
+bool is_another(const CanonicalFit& fit, const CanonicalFit& told) {
+  constexpr double kBeyond = 0.05;
+  const Eigen::Index n = told.covariance.rows() - 3;  // parameters of the shape
+  const Pose2& from = told.world_T_curve;
+  const Pose2& to = fit.world_T_curve;
+  Eigen::VectorXd step(n + 3);
+  step << (fit.shape.values - told.shape.values).head(n), to.x - from.x, to.y - from.y,
+      wrap_angle(to.theta - from.theta);
+  const double square = mahalanobis_square(step, told.covariance);
+  return !(chi_square_survival(square, static_cast<int>(n + 3)) > kBeyond);
+}
+
+/// What is told, with the classes' probabilities by the rest too, which has the `share` left. No
+/// class gets more than the best of what is told, which both would make AMBIGUOUS.
+Weighed with_share_of(Weighed rest, double share, Weighed told) {
+  Weighing& w = told.w;
+  double sum = 0.0;
+  ByClass<double> by_both{};
+  for (std::size_t i = 0; i < by_both.size(); ++i) {
+    const double by_told = (1.0 - share) * w.probabilities[i];
+    const double by_rest = share * rest.w.probabilities[i];
+    by_both[i] = by_told + by_rest;
+    if (i != static_cast<std::size_t>(w.best) && by_rest > by_told && rest.w.fits[i]) {
+      w.fits[i] = std::move(rest.w.fits[i]);
+      w.canonical[i] = std::move(rest.w.canonical[i]);
+    }
+  }
+  for (double& probability : by_both) {
+    probability = std::min(probability, by_both[w.best]);
+    sum += probability;
+  }
+  for (double& probability : by_both) {
+    probability /= sum;
+  }
+  w.probabilities = by_both;
+  if (rest.w.best == w.best && is_another(*rest.w.canonical[w.best], *w.canonical[w.best])) {
+    w.rival_share = std::max(w.rival_share, share);
+  }
+  return told;
+}
+
+}  // namespace
+
+Weighed more_probable(Weighed one, Weighed other, std::span<const StoredPatch> patches,
+                      std::span<const StoredPatch> all) {
+  const auto curve_of_one = curve_of(one.w);
+  const auto curve_of_other = curve_of(other.w);
+  if (!curve_of_one || !curve_of_other) {
+    return one;
+  }
+  const double log_of_one =
+      log_density_of(one, *curve_of_one,
+                     samples_set_aside(all, one.patches ? *one.patches : patches, one.outliers));
+  const double log_of_other = log_density_of(
+      other, *curve_of_other, samples_set_aside(all, *other.patches, other.outliers));
+  const double share = 1.0 / (1.0 + std::exp(std::abs(log_of_one - log_of_other)));
+  return log_of_other > log_of_one ? with_share_of(std::move(one), share, std::move(other))
+                                   : with_share_of(std::move(other), share, std::move(one));
+}
+
+}  // namespace palpate

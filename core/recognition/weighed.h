@@ -1,0 +1,40 @@
+// A weighing, and which samples it is of.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/curves/pose2.h"
+#include "core/curves/shape_parameters.h"
+#include "core/recognition/samples/stored_patch.h"
+#include "core/recognition/weigh/weigh.h"
+
+namespace palpate {
+
+/// A curve, and the noise about it that leaves a sample on it.
+struct ExplainingCurve {
+  ShapeParameters shape;
+  Pose2 world_T_curve;
+  double noise_m = 0.0;
+};
+
+struct Weighed {
+  Weighing w;
+  std::vector<bool> outliers;  ///< one flag per sample of the patches; empty where there are none
+  /// Where these are others than were asked about.
+  std::optional<std::vector<StoredPatch>> patches;
+  bool leaves_class = false;  ///< FarSamples::are_form
+  /// Of the best class, where `patches` have spikes that it explains.
+  std::optional<ExplainingCurve> explains = {};
+};
+
+/// White noise of a typical sample; if estimated, from the best class's residuals. [m]
+double residual_noise_m(const Weighing& weighing);
+
+/// nullopt where double precision cannot hold it.
+std::optional<ExplainingCurve> curve_of(const CanonicalFit& fit, double noise_m);
+
+/// The best class's; nullopt where there is none, or as above.
+std::optional<ExplainingCurve> curve_of(const Weighing& weighing);
+
+}  // namespace palpate
