@@ -45,6 +45,14 @@ OrthogonalPolynomials::OrthogonalPolynomials(std::span<const double> x, std::spa
   }
 }
 
+void OrthogonalPolynomials::rescale(double of_y, double of_w) {
+  weight_sum_ *= of_w;
+  for (std::size_t k = 0; k < kSize; ++k) {
+    coefficient_[k] *= of_y;
+    residual_sum_[k] *= of_w * of_y * of_y;
+  }
+}
+
 template <typename Visit>
 void OrthogonalPolynomials::for_each_polynomial(double x, int d, const Visit& visit) const {
   double before = 0.0;

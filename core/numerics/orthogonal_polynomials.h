@@ -29,6 +29,9 @@ class OrthogonalPolynomials {
   OrthogonalPolynomials(std::span<const double> x, std::span<const double> w,
                         std::span<const double> y, int degree);
 
+  /// As of y times this, and of weights times that.
+  void rescale(double of_y, double of_w);
+
   int degree() const { return degree_; }
 
   /// Weighted sum of squared residuals of the fit of degree d.

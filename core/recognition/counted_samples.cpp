@@ -194,6 +194,7 @@ WeighOptions CountedSamples::weigh_options(const FitData& data, bool sigma_known
   options.near_parts = !options.unqualified_probe && !options_.has_probe_file &&
                        !may_have_missed_spikes(samples_.moved_count(), data.points.size());
   options.touched_from = options_.touched_from;
+  options.kept_sections = kept_;
   return options;
 }
 

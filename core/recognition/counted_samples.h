@@ -22,8 +22,9 @@ enum class StartsOf { LastWeighing, Search };
 /// Of the samples that one recognition is about. Refers to what it is made of.
 class CountedSamples {
  public:
-  CountedSamples(const RecognizerOptions& options, const CleanPatches& samples)
-      : options_(options), samples_(samples) {}
+  /// `kept`: of the recognitions before.
+  CountedSamples(const RecognizerOptions& options, const CleanPatches& samples, KeptSections* kept)
+      : options_(options), samples_(samples), kept_(kept) {}
 
   /// Weighs `data`, again without the samples that the best class misses by far more than noise,
   /// until there are none. `patches`: those that the data are of; `sigma_known`: as given by
@@ -69,6 +70,7 @@ class CountedSamples {
 
   const RecognizerOptions& options_;
   const CleanPatches& samples_;
+  KeptSections* kept_;
 };
 
 }  // namespace palpate

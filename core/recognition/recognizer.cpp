@@ -108,6 +108,7 @@ class Recognizer::Impl {
     clean_.clear();
     contacts_.clear();
     last_.reset();
+    kept_ = {};
     if (stream_) {
       stream_->clear();
     }
@@ -192,7 +193,7 @@ class Recognizer::Impl {
     std::optional<WorkBudget::Reserve> for_moments(std::in_place, work, kShareOfMoments);
     Weighed weighed = weigh_from_last_or_search(data, sigma_known, patches, sought, work);
     const std::size_t stored = clean_.moved_count();
-    const CountedSamples samples(options_, clean_);
+    const CountedSamples samples(options_, clean_, &kept_);
     const bool is_class = weighed.w.best != CurveClass::Unclassified;
     if (is_class && stored > data.points.size() && !work.was_cut()) {
       weighed = samples.with_ends(std::move(weighed), sigma_known, work);
@@ -284,7 +285,7 @@ class Recognizer::Impl {
     constexpr double kGrowth = 1.25;  // ten searches while a patch grows tenfold
     // Probability: of what had less, a search leaves the fit rough (weigh/contenders.cpp).
     const double out = std::exp(-log_odds(options_.recognized_probability) - 0.5 * kLeastError);
-    const CountedSamples counted(options_, clean_);
+    const CountedSamples counted(options_, clean_, &kept_);
     const std::size_t samples = memory_.sample_count();
     const bool warm = last_ && last_->patches == data.patches.size() &&
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
@@ -325,6 +326,7 @@ class Recognizer::Impl {
   CleanPatches clean_;
   PatchContacts contacts_;
   std::optional<Last> last_;
+  KeptSections kept_;
   std::optional<EstimateStream> stream_;
 };
 

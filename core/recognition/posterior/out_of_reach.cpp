@@ -47,10 +47,14 @@ double most_of_touches(const Arcs& arcs, const FitData& touches) {
 double most_of_spikes(const Arcs& arcs) {
   const SmoothModel& smooth = arcs.smooth;
   double chi2 = 0.0;
+  auto section = smooth.sections.begin();
   for (std::size_t p = 0; p < arcs.data.patches.size(); ++p) {
     const auto patch = arcs.data.patch(p);
     for (std::size_t i = 0; i < patch.size(); ++i) {
-      if (section_of(smooth, arcs.data.patches[p].begin + i).kept) {
+      while (smooth.nearest_reduced[arcs.data.patches[p].begin + i] >= section->end) {
+        ++section;
+      }
+      if (section->kept) {
         chi2 += chi2_of_distance(farthest_spike(patch, i), patch[i]);
       }
     }

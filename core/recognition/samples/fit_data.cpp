@@ -238,18 +238,21 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
   data.scale = extents->half_extent > 0.0 ? extents->half_extent : 1.0;
   const double least_sigma = rounding_level(data);
   const ToLocal to_frame(data.frame);
+  data.points.reserve(count_samples(patches));
+  data.patches.reserve(patches.size());
   for (const StoredPatch& patch : patches) {
     if (patch.samples.empty()) {
       continue;
     }
     const std::size_t begin = data.points.size();
+    const Vec2 direction = data.frame.rotate_back(patch.direction);
     for (std::size_t i = 0; i < patch.samples.size(); ++i) {
       const StoredSample& sample = patch.samples[i];
       const double sigma_m = sigma_m_of(sample, default_sigma_m);
       *sigma_known = *sigma_known && sigma_m > 0.0;
       FitPoint point;
       point.position = to_frame(mean_on_path(patch, i)) / data.scale;
-      point.tangent = data.frame.rotate_back(patch.direction);
+      point.tangent = direction;
       point.offset = patch.context.tip_radius_m / data.scale;
       const double sigma = sigma_m > 0.0 ? std::max(sigma_m / data.scale, least_sigma) : 1.0;
       point.inverse_sigma = std::sqrt(sample.weight) / sigma;

@@ -53,12 +53,12 @@ Arcs arcs_of_noise(Arcs arcs, double times) {
   return arcs;
 }
 
-Arcs smooth_arcs(FitData data, bool sigma_known) {
+Arcs smooth_arcs(FitData data, bool sigma_known, const SectionSource& source) {
   Arcs arcs;
   if (!sigma_known) {
     weigh_strokes(&data);
   }
-  arcs.smooth = fit_smooth_model(&data, sigma_known);
+  arcs.smooth = fit_smooth_model(&data, sigma_known, StatedNoise::MayBeTooLow, source);
   if (!data.details.empty() && weigh_across_path(arcs.smooth, &data)) {
     arcs.smooth = fit_smooth_model(&data, sigma_known);
   }

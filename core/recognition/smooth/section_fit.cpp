@@ -50,13 +50,10 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
   if (n < kFewestOfSection) {
     return std::nullopt;
   }
-  const Vec2 chord = points.back().position - points.front().position;
-  const double length = chord.norm();
-  if (!(length > 0.0)) {
+  if (points.front().position == points.back().position) {
     return std::nullopt;
   }
-  const ChordFrame frame{0.5 * (points.front().position + points.back().position), chord / length,
-                         0.5 * length};
+  const ChordFrame frame = chord_frame(points.front().position, points.back().position);
   std::vector<double> x(n);
   std::vector<double> y(n);
   std::vector<double> w(n);

@@ -27,6 +27,13 @@ struct ChordFrame {
   }
 };
 
+/// From the first point of a section to its last, which must differ.
+inline ChordFrame chord_frame(const Vec2& first, const Vec2& last) {
+  const Vec2 chord = last - first;
+  const double length = chord.norm();
+  return {0.5 * (first + last), chord / length, 0.5 * length};
+}
+
 /// The polynomial of one section.
 struct SectionFit {
   PatchSpan section;

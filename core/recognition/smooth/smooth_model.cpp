@@ -10,8 +10,8 @@
 #include "core/numerics/chi_square.h"
 #include "core/numerics/negligible.h"
 #include "core/numerics/orthogonal_polynomials.h"
+#include "core/recognition/smooth/patch_sections.h"
 #include "core/recognition/smooth/residual_correlation.h"
-#include "core/recognition/smooth/section_fit.h"
 #include "core/recognition/smooth/turning_sections.h"
 
 namespace palpate {
@@ -98,30 +98,6 @@ void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model,
     }
     model->nearest_reduced[i] = static_cast<std::uint32_t>(begin + nearest);
   }
-}
-
-/// A section with its polynomial, or without one if its samples stand for themselves.
-struct Section {
-  PatchSpan points;
-  std::optional<SectionFit> fit;
-  bool is_part = false;  ///< of a section that no polynomial follows
-
-  double chi2() const { return fit->polynomials.residual_sum(fit->reduced_degree()); }
-  int dof() const { return fit ? static_cast<int>(points.size()) - fit->reduced_degree() - 1 : 0; }
-};
-
-/// Fits a section, or its two halves if even a high degree does not follow it (a sharp bend).
-void smooth_section(const FitData& data, const PatchSpan& points, const SectionNoise& noise,
-                    std::vector<Section>* sections, bool is_part = false) {
-  auto whole = fit_section(data, points, noise);
-  constexpr int kHighDegree = OrthogonalPolynomials::kMaxDegree - 2;
-  if (whole && whole->degree >= kHighDegree && points.size() >= 4 * kFewestOfSection) {
-    const std::size_t middle = points.begin + points.size() / 2;
-    smooth_section(data, {points.begin, middle}, noise, sections, true);
-    smooth_section(data, {middle, points.end}, noise, sections, true);
-    return;
-  }
-  sections->push_back({points, std::move(whole), is_part});
 }
 
 /// True if chi2 is larger than noise of this variance can make it. For white noise chi-square
@@ -225,20 +201,6 @@ std::vector<Section> followed(const FitData& data, std::vector<Section> sections
   return result;
 }
 
-/// All patches, cut where they turn and where a high degree does not follow them.
-std::vector<Section> smoothed(const FitData& data, const SectionNoise& noise) {
-  std::vector<Section> sections;
-  for (const PatchSpan& patch : data.patches) {
-    if (patch.size() == 0) {
-      continue;  // every sample was set aside
-    }
-    for (const PatchSpan& points : sections_of(data, patch, noise.known)) {
-      smooth_section(data, points, noise, &sections);
-    }
-  }
-  return sections;
-}
-
 void add_section(FitData* data, const PatchSpan& patch, const Section& section, SmoothModel* model,
                  NeighbourSums* neighbours) {
   if (section.fit) {
@@ -271,20 +233,21 @@ double noise_time_of(const FitData& data, const std::vector<Section>& sections, 
 }
 
 /// The smooth model of noise of which so many neighbours err together.
-SmoothModel smooth_model_of(FitData* data, SectionNoise noise, StatedNoise stated) {
+SmoothModel smooth_model_of(FitData* data, SectionNoise noise, StatedNoise stated,
+                            const SectionSource& source) {
   SmoothModel model;
   model.points = static_cast<int>(data->points.size());
   model.nearest_reduced.resize(data->points.size());
   model.reduced.frame = data->frame;
   model.reduced.scale = data->scale;
-  std::vector<Section> sections = smoothed(*data, noise);
+  std::vector<Section> sections = sections_of_patches(*data, noise, source);
   QuietSections quiet = quiet_of(sections, noise.known);
   if (noise.known && stated == StatedNoise::Holds) {
     quiet.highest = 1.0;
   } else if (noise.known && is_no_noise(quiet.chi2, quiet.dof, noise)) {
     // The stated noise is too low everywhere: with it, the fits would follow the noise itself.
     noise.variance = quiet.chi2 / quiet.dof;
-    sections = smoothed(*data, noise);
+    sections = sections_of_patches(*data, noise);
     quiet = quiet_of(sections, noise.known);
   }
   const double variance = noise.known ? std::max(quiet.highest, 1.0) : quiet.highest;
@@ -346,7 +309,8 @@ double SmoothModel::noise_ratio() const {
   return noise_dof() > 0.0 ? std::sqrt(chi2 / noise_dof()) : 0.0;
 }
 
-SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated) {
+SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated,
+                             const SectionSource& source) {
   constexpr double kSame = 1.25;  // times that smooth alike
   constexpr int kMostTimes = 3;
   int smoothings = 0;
@@ -354,7 +318,7 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated
   const auto settled = [&](double time, FitData* smoothed) {
     SmoothModel model;
     for (int i = 0; i < kMostTimes; ++i) {
-      model = smooth_model_of(smoothed, {sigma_known, 1.0, time}, stated);
+      model = smooth_model_of(smoothed, {sigma_known, 1.0, time}, stated, source);
       ++smoothings;
       if (std::max(model.noise_time / time, time / model.noise_time) <= kSame) {
         break;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/recognition/samples/fit_data.h"
+#include "core/recognition/smooth/patch_sections.h"
 
 namespace palpate {
 
@@ -62,9 +63,11 @@ enum class StatedNoise { MayBeTooLow, Holds };
 /// Cuts each patch into sections that turn by less than about a radian and fits each by a
 /// polynomial. The Bayesian information criterion chooses its degree. `sigma_known`: the points'
 /// noise is known; otherwise the criterion profiles it. Where neighbours err together, as the
-/// sections show, BIC counts so many fewer samples. Sets the tangents of `data`. O(points).
+/// sections show, BIC counts so many fewer samples. Sets the tangents of `data`. `source`: where
+/// these come from, if sections are kept from one smoothing to the next. O(points).
 SmoothModel fit_smooth_model(FitData* data, bool sigma_known,
-                             StatedNoise stated = StatedNoise::MayBeTooLow);
+                             StatedNoise stated = StatedNoise::MayBeTooLow,
+                             const SectionSource& source = {});
 
 /// Of the variance of a stated noise, what sections leave of it at least where neighbours share it.
 /// Slower noise is hardly told from a path: of noise of which neighbours correlate by 0.95 a cubic

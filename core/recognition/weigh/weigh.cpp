@@ -302,7 +302,7 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
 Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
                WorkBudget& work, const WeighOptions& options, std::span<const SidedStart> starts) {
   const std::size_t samples = data.points.size();
-  Arcs arcs = smooth_arcs(std::move(data), sigma_known);
+  Arcs arcs = smooth_arcs(std::move(data), sigma_known, {patches, options.kept_sections});
   work.spend(WorkKind::Sample, samples * static_cast<std::size_t>(arcs.smooth.smoothings));
   return weigh_arcs(std::move(arcs), patches, work, options, starts);
 }

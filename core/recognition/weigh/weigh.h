@@ -30,6 +30,8 @@ struct WeighOptions {
   /// log odds against the gross errors of the touches that were set aside for the classes: those
   /// of "unclassified", which needs none, are higher by them.
   double log_odds_against_gross = 0.0;
+  /// Of the weighings before; of this one afterwards. nullptr = nothing is kept.
+  KeptSections* kept_sections = nullptr;
 };
 
 struct Weighing {

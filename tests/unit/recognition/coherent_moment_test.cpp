@@ -17,7 +17,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kSigma = 1e-4;  // normalised: a metre is a half extent here
+constexpr double kSigmaNormalised = 1e-4;  // normalised: a metre is a half extent here
 constexpr int kPerPatch = 24;
 constexpr int kSamples = 600;  // that the points stand for
 
@@ -45,7 +45,7 @@ Touched touched(double arc) {
       FitPoint point;
       point.position = result.ellipse.position(t);
       // Reduced points: each stands for its share of the samples.
-      point.inverse_sigma = std::sqrt(kSamples / (2.0 * kPerPatch)) / kSigma;
+      point.inverse_sigma = std::sqrt(kSamples / (2.0 * kPerPatch)) / kSigmaNormalised;
       result.data.points.push_back(point);
       result.placed.points.push_back(fitted);
       result.normal_angle.push_back(std::atan2(outward.y(), outward.x()));
@@ -84,7 +84,7 @@ Eigen::VectorXd noise(const Touched& touched, std::mt19937_64& rng) {
 /// are expected (core/README.md, "Deviations that neighbours share").
 Eigen::VectorXd shared(const Touched& touched, std::mt19937_64& rng) {
   std::normal_distribution<double> normal;
-  const double deviation = kSigma * test::log_uniform(rng, 0.05, 5.0);
+  const double deviation = kSigmaNormalised * test::log_uniform(rng, 0.05, 5.0);
   double longest = 0.0;
   for (std::size_t i = 1; i < kPerPatch; ++i) {
     longest += (touched.data.points[i].position - touched.data.points[i - 1].position).norm();
@@ -142,8 +142,8 @@ TEST(CoherentMoment, IsThatOfErrorsDrawnFromItsLaw) {
       const int runs = test::stress_count(200);
       for (int run = 0; run < runs; ++run) {
         const Eigen::VectorXd off = fit(shared(scene, rng) + noise(scene, rng), &scene);
-        const auto told = coherent_moment(scene.placed, scene.data, likelihood, kSigma, kScatter,
-                                          test::unbounded_work());
+        const auto told = coherent_moment(scene.placed, scene.data, likelihood, kSigmaNormalised,
+                                          kScatter, test::unbounded_work());
         ASSERT_TRUE(told);
         const Eigen::MatrixXd moment = told->moment;
         const double square = off.dot(moment.ldlt().solve(off));
@@ -176,8 +176,8 @@ TEST(CoherentMoment, WhiteNoiseIsSeldomTakenForMore) {
   constexpr double kOdds = 10.0;
   for (int run = 0; run < runs; ++run) {
     fit(noise(scene, rng), &scene);
-    const auto told =
-        coherent_moment(scene.placed, scene.data, law(), kSigma, kScatter, test::unbounded_work());
+    const auto told = coherent_moment(scene.placed, scene.data, law(), kSigmaNormalised, kScatter,
+                                      test::unbounded_work());
     ASSERT_TRUE(told);
     taken += told->probability > kOdds / (1.0 + kOdds) ? 1 : 0;
   }
@@ -189,8 +189,8 @@ TEST(CoherentMoment, WithoutWhatIsSharedIsNoMoreThanTheBound) {
   std::mt19937_64 rng = test::test_rng();
   Touched scene = touched(2.0 * kPi);
   fit(noise(scene, rng), &scene);
-  const auto told =
-      coherent_moment(scene.placed, scene.data, law(), kSigma, kScatter, test::unbounded_work());
+  const auto told = coherent_moment(scene.placed, scene.data, law(), kSigmaNormalised, kScatter,
+                                    test::unbounded_work());
   ASSERT_TRUE(told);
   EXPECT_LT(told->probability, 0.5);
   // Whatever is shared adds to it.

@@ -12,16 +12,16 @@
 namespace palpate {
 namespace {
 
-constexpr double kSigma = 1e-4;
+constexpr double kNoiseOfPatch = 1e-4;
 
 std::vector<StoredSample> arc(std::size_t n, double radius, std::mt19937_64& rng) {
-  std::normal_distribution<double> noise(0.0, kSigma);
+  std::normal_distribution<double> noise(0.0, kNoiseOfPatch);
   std::vector<StoredSample> samples;
   for (std::size_t i = 0; i < n; ++i) {
     const double angle = 2e-3 / radius * static_cast<double>(i);
     samples.push_back(
         {{radius * std::cos(angle) + noise(rng), radius * std::sin(angle) + noise(rng)},
-         kSigma,
+         kNoiseOfPatch,
          1.0});
   }
   return samples;
@@ -51,13 +51,13 @@ TEST(Spikes, NineInTenAreFoundEvenWhereAThirdOfSamplesAreSpikes) {
         ++spiked;
         const double angle = 2.0 * kPi * uniform(rng);
         sample.position_m +=
-            (50.0 + 100.0 * uniform(rng)) * kSigma * Vec2(std::cos(angle), std::sin(angle));
+            (50.0 + 100.0 * uniform(rng)) * kNoiseOfPatch * Vec2(std::cos(angle), std::sin(angle));
       }
     }
     samples = without_spikes(samples, spikes_of(samples, 0.01, test::unbounded_work()));
     std::size_t left = 0;
     for (const StoredSample& sample : samples) {
-      left += std::abs(sample.position_m.norm() - 0.1) > 8.0 * kSigma ? 1 : 0;
+      left += std::abs(sample.position_m.norm() - 0.1) > 8.0 * kNoiseOfPatch ? 1 : 0;
     }
     // Spikes that cluster, or stand at the very end of an arc, may hide: nine in ten are found, the
     // fit's own outlier test is for the rest.

@@ -17,7 +17,7 @@
 namespace palpate {
 namespace {
 
-constexpr double kSigma = 1e-3;  // over the spacing of samples
+constexpr double kSigmaOverSpacing = 1e-3;  // over the spacing of samples
 constexpr double kAnyChi2 = 1e300;
 
 /// Centres of a tip that rolls about a corner, an arc of this radius, from one edge to the other.
@@ -32,7 +32,7 @@ StoredPatch rolled(const RoundedCorner& corner, bool turned, std::mt19937_64& rn
     const Vec2 normal(std::cos(direction), std::sin(direction));
     const Vec2 place =
         corner.centre + corner.radius * normal + (s - corner.radius * angle) * left_of(normal);
-    patch.samples.push_back({place + test::normal_pair(rng, kSigma), kSigma});
+    patch.samples.push_back({place + test::normal_pair(rng, kSigmaOverSpacing), kSigmaOverSpacing});
   }
   if (turned) {
     std::reverse(patch.samples.begin(), patch.samples.end());
