@@ -1,5 +1,6 @@
 #include "core/recognition/counted_samples.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -7,7 +8,6 @@
 #include "core/numerics/normal_law.h"
 #include "core/recognition/fewest_places.h"
 #include "core/recognition/gross_touches.h"
-#include "core/recognition/outliers.h"
 #include "core/recognition/samples/explained_spikes.h"
 #include "core/recognition/touches/joined_touches.h"
 #include "core/recognition/two_readings.h"
@@ -15,15 +15,40 @@
 #include "core/recognition/weigh/weigh_in_full.h"
 
 namespace palpate {
+namespace {
+
+/// One flag per sample: it lies at one of these places. Empty if none does.
+std::vector<bool> samples_at(std::span<const Vec2> places_m, std::span<const StoredPatch> patches) {
+  std::vector<bool> flags;
+  if (places_m.empty()) {
+    return flags;
+  }
+  for (const StoredPatch& patch : patches) {
+    for (const StoredSample& sample : patch.samples) {
+      flags.push_back(std::find(places_m.begin(), places_m.end(), sample.position_m) !=
+                      places_m.end());
+    }
+  }
+  return std::find(flags.begin(), flags.end(), true) == flags.end() ? std::vector<bool>{} : flags;
+}
+
+}  // namespace
+
 Weighed CountedSamples::without_outliers(const FitData& data, bool sigma_known,
                                          std::span<const StoredPatch> patches,
                                          std::span<const SidedStart> starts, StartsOf of,
-                                         WorkBudget& work) const {
-  Weighed weighed{
-      weigh_in_full(data, sigma_known, patches, work, weigh_options(data, sigma_known), starts),
-      {},
-      {},
-      false};
+                                         std::span<const Vec2> off_m, WorkBudget& work) const {
+  Weighed weighed;
+  weighed.w.starts.assign(starts.begin(), starts.end());
+  if (std::vector<bool> off = samples_at(off_m, patches); !off.empty()) {
+    weigh_again(std::move(off), data, sigma_known, patches, StartsOf::LastWeighing, &weighed, work);
+  }
+  const auto curve = weighed.outliers.empty() ? std::nullopt : curve_of(weighed.w);
+  if (!curve || !misses_all(*curve, flagged_samples(patches, weighed.outliers))) {
+    weighed = {};
+    weighed.w =
+        weigh_in_full(data, sigma_known, patches, work, weigh_options(data, sigma_known), starts);
+  }
   const Weighing& w = weighed.w;
   const auto look_again = [&] {
     std::vector<bool> aside =
@@ -77,7 +102,8 @@ Weighed CountedSamples::without_spikes_in_bends(Weighed weighed,
   if (!have_places(data, kFewestPlaces)) {
     return weighed;
   }
-  const Weighed without = without_outliers(data, sigma_known, *fewer, {}, StartsOf::Search, work);
+  const Weighed without =
+      without_outliers(data, sigma_known, *fewer, {}, StartsOf::Search, {}, work);
   const auto curve = curve_of(without.w);
   if (!curve || !work.allows()) {
     return weighed;
@@ -86,7 +112,7 @@ Weighed CountedSamples::without_spikes_in_bends(Weighed weighed,
     fewer = std::move(more);
   }
   auto again = may_lack_spikes(weighed_patches, *fewer)
-                   ? again_with(*std::move(fewer), without.w.starts, without.w.best, work)
+                   ? again_with(*std::move(fewer), without.w.starts, without.w.best, {}, work)
                    : std::nullopt;
   if (!again) {
     return weighed;
@@ -102,7 +128,7 @@ Weighed CountedSamples::with_ends(Weighed weighed, bool sigma_known, WorkBudget&
   if (!more) {
     return weighed;
   }
-  auto again = again_with(*std::move(more), weighed.w.starts, weighed.w.best, work);
+  auto again = again_with(*std::move(more), weighed.w.starts, weighed.w.best, {}, work);
   const bool fits =
       again && again->outliers.empty() &&
       can_be_noise(again->w.counted_chi2, static_cast<double>(residual_count(again->w.data)));
@@ -112,8 +138,8 @@ Weighed CountedSamples::with_ends(Weighed weighed, bool sigma_known, WorkBudget&
 Weighed CountedSamples::with_explained(Weighed weighed, WorkBudget& work) const {
   const auto curve = work.allows() ? curve_of(weighed.w) : std::nullopt;
   auto more = curve ? with_spikes_on(*curve, samples_.clean(), work) : std::nullopt;
-  auto again =
-      more ? again_with(*std::move(more), weighed.w.starts, weighed.w.best, work) : std::nullopt;
+  auto again = more ? again_with(*std::move(more), weighed.w.starts, weighed.w.best, {}, work)
+                    : std::nullopt;
   if (!again) {
     return weighed;
   }
@@ -125,11 +151,11 @@ Weighed CountedSamples::followed(const FitData& data, bool sigma_known,
                                  std::span<const StoredPatch> patches,
                                  std::span<const SidedStart> starts,
                                  const std::optional<ExplainingCurve>& explains,
-                                 WorkBudget& work) const {
+                                 std::span<const Vec2> off_m, WorkBudget& work) const {
   auto more = explains ? with_spikes_on(*explains, samples_.clean(), work) : std::nullopt;
   if (more) {
     const std::size_t count = count_samples(*more);
-    auto again = again_with(*std::move(more), starts, explains->shape.curve_class, work);
+    auto again = again_with(*std::move(more), starts, explains->shape.curve_class, off_m, work);
     const auto now = again ? curve_of(again->w) : std::nullopt;
     const auto same = now ? with_spikes_on(*now, samples_.clean(), work) : std::nullopt;
     if (same && count_samples(*same) == count) {
@@ -137,19 +163,32 @@ Weighed CountedSamples::followed(const FitData& data, bool sigma_known,
       return *std::move(again);
     }
   }
-  return without_outliers(data, sigma_known, patches, starts, StartsOf::LastWeighing, work);
+  return without_outliers(data, sigma_known, patches, starts, StartsOf::LastWeighing, off_m, work);
+}
+
+/// Whether the curve misses each by more than noise lets it.
+bool CountedSamples::misses_all(const ExplainingCurve& curve,
+                                std::span<const SetAside> samples) const {
+  return std::all_of(samples.begin(), samples.end(), [&](const SetAside& off) {
+    return distance_m(curve, off.sample, off.tip_radius_m) >
+           farthest_by_noise() * noise_m(curve, off.sample);
+  });
+}
+
+/// Noise puts a sample so many deviations off anywhere in the scene with the probability of a false
+/// outlier.
+double CountedSamples::farthest_by_noise() const {
+  return two_sided_normal_quantile(options_.false_outlier_probability /
+                                   static_cast<double>(samples_.moved_count()));
 }
 
 /// These patches with the samples that they lack and that lie on the curve; nullopt where none do.
 std::optional<std::vector<StoredPatch>> CountedSamples::with_spikes_on(
     const ExplainingCurve& on, std::span<const StoredPatch> counted, WorkBudget& work) const {
-  const std::size_t count = samples_.moved_count();
-  const double limit =
-      two_sided_normal_quantile(options_.false_outlier_probability / static_cast<double>(count));
-  work.spend(kind_of_foot(on.shape.curve_class), count - count_samples(counted));
+  work.spend(kind_of_foot(on.shape.curve_class), samples_.moved_count() - count_samples(counted));
   return with_explained_spikes(samples_.moved(), counted,
                                *make_curve(on.shape.curve_class, on.shape.values), on.world_T_curve,
-                               on.noise_m, limit);
+                               on.noise_m, farthest_by_noise());
 }
 
 /// Weighs without the samples that have a flag.
@@ -171,13 +210,15 @@ void CountedSamples::weigh_again(std::vector<bool> aside, const FitData& data, b
 /// Weighed again with these patches; nullopt where the class does not stand then.
 std::optional<Weighed> CountedSamples::again_with(std::vector<StoredPatch> more,
                                                   std::span<const SidedStart> starts,
-                                                  CurveClass best, WorkBudget& work) const {
+                                                  CurveClass best, std::span<const Vec2> off_m,
+                                                  WorkBudget& work) const {
   if (auto joined = joined_touches(more, options_.sigma_m, options_.classes, work)) {
     more = std::move(joined->patches);
   }
   bool sigma_known = false;
   const FitData data = make_fit_data(more, options_.sigma_m, &sigma_known);
-  Weighed again = without_outliers(data, sigma_known, more, starts, StartsOf::LastWeighing, work);
+  Weighed again =
+      without_outliers(data, sigma_known, more, starts, StartsOf::LastWeighing, off_m, work);
   if (work.was_cut() || again.w.best != best || !again.w.canonical[best]) {
     return std::nullopt;
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/curves/pose2.h"
+#include "core/recognition/outliers.h"
 #include "core/recognition/recognizer.h"
 #include "core/recognition/samples/clean_patches.h"
 #include "core/recognition/weigh/sided_start.h"
@@ -28,17 +29,19 @@ class CountedSamples {
 
   /// Weighs `data`, again without the samples that the best class misses by far more than noise,
   /// until there are none. `patches`: those that the data are of; `sigma_known`: as given by
-  /// make_fit_data.
+  /// make_fit_data. `off_m`: places of samples that are likely outliers.
   Weighed without_outliers(const FitData& data, bool sigma_known,
                            std::span<const StoredPatch> patches, std::span<const SidedStart> starts,
-                           StartsOf of, WorkBudget& work) const;
+                           StartsOf of, std::span<const Vec2> off_m, WorkBudget& work) const;
 
   /// The same from the last weighing, at once with the spikes that its curve `explains`, if the
-  /// class stands so and explains no others: so a patch whose samples look like spikes is not
-  /// weighed twice with each of the next ones.
+  /// class stands so and explains no others, and without the samples that it had `off`, if the
+  /// curve found then still misses them: so a sample is not weighed twice with each of the next
+  /// ones.
   Weighed followed(const FitData& data, bool sigma_known, std::span<const StoredPatch> patches,
                    std::span<const SidedStart> starts,
-                   const std::optional<ExplainingCurve>& explains, WorkBudget& work) const;
+                   const std::optional<ExplainingCurve>& explains, std::span<const Vec2> off_m,
+                   WorkBudget& work) const;
 
   /// Where no class fits, or a spline of which a spike may make the bend: weighed again without the
   /// samples in sharp bends that no polynomial follows, for a spike among them bends every class
@@ -65,7 +68,9 @@ class CountedSamples {
                                                          WorkBudget& work) const;
   std::optional<Weighed> again_with(std::vector<StoredPatch> more,
                                     std::span<const SidedStart> starts, CurveClass best,
-                                    WorkBudget& work) const;
+                                    std::span<const Vec2> off_m, WorkBudget& work) const;
+  bool misses_all(const ExplainingCurve& curve, std::span<const SetAside> samples) const;
+  double farthest_by_noise() const;
   WeighOptions weigh_options(const FitData& data, bool sigma_known) const;
 
   const RecognizerOptions& options_;

@@ -115,6 +115,20 @@ FarSamples far_samples(const Weighing& weighing, const FitData& data, std::vecto
   return {std::move(aside), false};
 }
 
+std::vector<SetAside> flagged_samples(std::span<const StoredPatch> patches,
+                                      const std::vector<bool>& flagged) {
+  std::vector<SetAside> samples;
+  std::size_t number = 0;
+  for (const StoredPatch& patch : patches) {
+    for (const StoredSample& sample : patch.samples) {
+      if (number < flagged.size() && flagged[number++]) {
+        samples.push_back({sample, patch.context.tip_radius_m});
+      }
+    }
+  }
+  return samples;
+}
+
 std::vector<SetAside> samples_set_aside(std::span<const StoredPatch> all,
                                         std::span<const StoredPatch> used,
                                         const std::vector<bool>& flagged) {

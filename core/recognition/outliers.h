@@ -30,6 +30,10 @@ struct SetAside {
   double tip_radius_m = 0.0;
 };
 
+/// The samples with a flag: one flag per sample, or none at all.
+std::vector<SetAside> flagged_samples(std::span<const StoredPatch> patches,
+                                      const std::vector<bool>& flagged);
+
 /// The samples of `all` that are not in `used`, or flagged there: one flag per sample, or none at
 /// all.
 std::vector<SetAside> samples_set_aside(std::span<const StoredPatch> all,

@@ -53,6 +53,14 @@ void doubt(Recognition* answer, Doubt doubt) {
   }
 }
 
+std::vector<Vec2> places_of(std::span<const SetAside> samples) {
+  std::vector<Vec2> places_m;
+  for (const SetAside& aside : samples) {
+    places_m.push_back(aside.sample.position_m);
+  }
+  return places_m;
+}
+
 /// Whether a class that had more than `most` has less than a fiftieth of it left: a few samples
 /// seldom speak so strongly.
 bool has_lost_one(const ClassProbabilities& now, const ClassProbabilities& before, double most) {
@@ -205,6 +213,8 @@ class Recognizer::Impl {
       weighed = samples.without_spikes_in_bends(std::move(weighed), patches, work);
     }
     last_->explains = weighed.explains;
+    const std::span<const StoredPatch> used = weighed.patches ? *weighed.patches : patches;
+    last_->off_m = places_of(flagged_samples(used, weighed.outliers));
     if (work.was_cut()) {
       last_.reset();  // what was found by then may be far from what there is
     }
@@ -223,14 +233,13 @@ class Recognizer::Impl {
     }
     answer.outlier_count = stored - w.data.points.size();
     if (answer.outlier_count > 0) {
-      answer.outliers_m =
-          places_set_aside(weighed.patches ? *weighed.patches : patches, weighed.outliers);
+      answer.outliers_m = places_of(samples_set_aside(clean_.moved(), used, weighed.outliers));
     }
     if (sigma_known) {
       unused_ = contacts_with_details(w.data);
     }
     answer.contacts = contacts_.of(
-        weighed.patches ? *weighed.patches : patches, w.sides, weighed.outliers,
+        used, w.sides, weighed.outliers,
         contact_options(told_deviation_m(moments, w.data.scale), in_steps(w.smooth.noise_time)));
     add_path(reported_tree_path(w, answer.contacts, options_.tree), &answer);
     const double p_value = answer.tree_p_values[answer.shape.curve_class];
@@ -252,17 +261,8 @@ class Recognizer::Impl {
         answer_by_tree(possible_sides(patches, reduced, turns_of(reduced), {}, work).ways,
                        contacts_of, options_.tree, data.scale, options_.determined_fraction);
     answer.outlier_count = outliers;
-    if (outliers > 0) answer.outliers_m = places_set_aside(patches, {});
+    if (outliers > 0) answer.outliers_m = places_of(samples_set_aside(clean_.moved(), patches, {}));
     return answer;
-  }
-
-  std::vector<Vec2> places_set_aside(std::span<const StoredPatch> used,
-                                     const std::vector<bool>& flagged) const {
-    std::vector<Vec2> places_m;
-    for (const SetAside& aside : samples_set_aside(clean_.moved(), used, flagged)) {
-      places_m.push_back(aside.sample.position_m);
-    }
-    return places_m;
   }
 
   /// What the last weighing left.
@@ -272,6 +272,7 @@ class Recognizer::Impl {
     std::size_t samples = 0;  ///< at the last search
     std::size_t patches = 0;
     std::optional<ExplainingCurve> explains = {};  ///< spikes, of the best class then
+    std::vector<Vec2> off_m = {};                  ///< places of the samples that it misses
   };
 
   /// From the last weighing while the object is touched on in the same patches; from a new search
@@ -290,8 +291,8 @@ class Recognizer::Impl {
     const bool warm = last_ && last_->patches == data.patches.size() &&
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
     if (warm) {
-      Weighed weighed =
-          counted.followed(data, sigma_known, patches, last_->starts, last_->explains, work);
+      Weighed weighed = counted.followed(data, sigma_known, patches, last_->starts, last_->explains,
+                                         last_->off_m, work);
       const Weighing& w = weighed.w;
       const bool holds = last_->probabilities[w.best] > out &&
                          !has_lost_one(w.probabilities, last_->probabilities,
@@ -303,7 +304,7 @@ class Recognizer::Impl {
       }
     }
     Weighed weighed =
-        counted.without_outliers(data, sigma_known, patches, sought, StartsOf::Search, work);
+        counted.without_outliers(data, sigma_known, patches, sought, StartsOf::Search, {}, work);
     last_ = Last{weighed.w.starts, weighed.w.probabilities, samples, data.patches.size()};
     return weighed;
   }

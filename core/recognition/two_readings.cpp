@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/curves/curve.h"
 #include "core/numerics/chi_square.h"
 #include "core/numerics/mahalanobis.h"
 #include "core/recognition/outliers.h"
@@ -26,12 +25,10 @@ double log_of_wider_noise(const Weighing& w) {
 /// log of the density of samples that are spikes, over the odds against them. Nothing is known of
 /// how high one is, between its noise and the size of the part: not even the order of magnitude.
 double log_density_of(std::span<const SetAside> spikes, const ExplainingCurve& of, double size_m) {
-  const Curve curve = *make_curve(of.shape.curve_class, of.shape.values);
   double log_density = 0.0;
   for (const auto& [sample, tip_radius_m] : spikes) {
-    const double sigma_m = sigma_m_of(sample, of.noise_m) / std::sqrt(sample.weight);
-    const FootPoint foot = foot_point(curve, of.world_T_curve.to_local(sample.position_m));
-    const double height_m = std::max(std::abs(std::abs(foot.distance) - tip_radius_m), sigma_m);
+    const double sigma_m = noise_m(of, sample);
+    const double height_m = std::max(distance_m(of, sample, tip_radius_m), sigma_m);
     const double orders = std::max(std::log(size_m / sigma_m), 1.0);
     log_density -= std::log(2.0 * height_m * orders) + log_odds(1.0 - kGross);
   }

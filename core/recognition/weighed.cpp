@@ -6,6 +6,16 @@
 
 namespace palpate {
 
+double distance_m(const ExplainingCurve& from, const StoredSample& sample, double tip_radius_m) {
+  const Curve curve = *make_curve(from.shape.curve_class, from.shape.values);
+  const FootPoint foot = foot_point(curve, from.world_T_curve.to_local(sample.position_m));
+  return std::abs(std::abs(foot.distance) - tip_radius_m);
+}
+
+double noise_m(const ExplainingCurve& about, const StoredSample& sample) {
+  return sigma_m_of(sample, about.noise_m) / std::sqrt(sample.weight);
+}
+
 double residual_noise_m(const Weighing& w) {
   return w.sigma * w.data.scale * std::sqrt(w.seen.white_variance);
 }

@@ -28,6 +28,12 @@ struct Weighed {
   std::optional<ExplainingCurve> explains = {};
 };
 
+/// Of a sample from the curve, or of a tip's centre from where it would touch it. [m]
+double distance_m(const ExplainingCurve& from, const StoredSample& sample, double tip_radius_m);
+
+/// Noise of a sample: as stated, or else the curve's. [m]
+double noise_m(const ExplainingCurve& about, const StoredSample& sample);
+
 /// White noise of a typical sample; if estimated, from the best class's residuals. [m]
 double residual_noise_m(const Weighing& weighing);
 

@@ -131,6 +131,21 @@ TEST(BoundedWork, AStreamWeighsASampleThatIsTakenBackOnce) {
   EXPECT_LT(with.work.spent(), 1.2 * without.work.spent());
 }
 
+/// A single touch that errs grossly is set aside once the ellipse is known: once, not with each
+/// update.
+TEST(BoundedWork, AStreamWeighsASampleThatIsSetAsideOnce) {
+  TouchedInput like(8, {{}, std::vector<ContactSample>(111)});
+  like.insert(like.begin(), {{}, std::vector<ContactSample>(1)});
+  TouchedInput input = bench::clean_ellipse_like(like);
+  const Recognition without = last_update(input);
+  ContactSample& off = input.front().samples.front();
+  off.position_m *= 1.0 + 100.0 * off.sigma_m / off.position_m.norm();
+  const Recognition with = last_update(input);
+  EXPECT_EQ(with.status, RecognitionStatus::Recognized);
+  EXPECT_EQ(with.outlier_count, 1U);
+  EXPECT_LT(with.work.spent(), 1.2 * without.work.spent());
+}
+
 /// With nothing to spend, what is cheap is there all the same.
 TEST(BoundedWork, SpentBeforeItBeginsLeavesLineAndCircle) {
   std::mt19937_64 rng(7);
