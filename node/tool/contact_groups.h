@@ -1,24 +1,14 @@
 // Sorts the samples of sample files into objects to be recognised.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "core/recognition/recognizer.h"
-#include "core/recognition/samples/contact_run.h"
+#include "node/check/contact_group.h"
 #include "node/csv/contact_table.h"
 
 namespace palpate {
-
-/// The samples that are recognised together: those of one object of one group of one file.
-struct ContactGroup {
-  std::string file;
-  std::string name;
-  std::uint64_t object = 0;
-  std::vector<std::string> probes;  ///< names, indexed by context.probe of the runs
-  std::vector<ContactRun> runs;     ///< in the order of the file
-};
 
 /// Groups in the order of their first sample in the file.
 std::vector<ContactGroup> contact_groups(const std::string& file, const ContactTable& table);

@@ -248,7 +248,7 @@ class Fit(unittest.TestCase):
     def test_what_the_package_names(self):
         self.assertRegex(palpate.__version__, r"^\d+\.\d+\.\d+")
         self.assertEqual([name for name in dir(palpate) if not name.startswith("_")],
-                         ["Planner", "Probe", "Recognizer", "Result", "fit", "models"])
+                         ["DataWarning", "Planner", "Probe", "Recognizer", "Result", "fit", "models"])
 
     def test_a_stream(self):
         recognizer = palpate.Recognizer(sigma=SIGMA, unit="mm")

@@ -16,7 +16,8 @@ CORE = [
     "core/recognition/verdict", "core/recognition/tree", "core/recognition", "core/part", "core/qualification",
 ]
 NODE = CORE + [
-    "node/files", "node/process", "node/wire", "node/csv", "node/intake", "node/python", "node/client", "node/security",
+    "node/files", "node/process", "node/wire", "node/csv", "node/check", "node/intake", "node/python", "node/client",
+    "node/security",
     "node/groups", "node/publish", "node", "node/gateway", "node/tool", "node/tool/text", "node/tool/drawing", "node/tool/view",
     "node/tool/commands", "node/tool/commands/check", "node/tool/commands/offline", "node/tool/commands/live",
     "node/tool/main",

@@ -11,6 +11,7 @@ patch is one unbroken touch; its points are in their order along the part.
 from __future__ import annotations
 
 import operator
+import warnings
 from typing import TYPE_CHECKING, Iterable, Sequence
 
 import numpy as np
@@ -24,12 +25,17 @@ if TYPE_CHECKING:
     from .bus import Planner, Probe
 
 __version__ = "@PROJECT_VERSION@"
-__all__ = ["Planner", "Probe", "Recognizer", "Result", "fit", "models"]
+__all__ = ["DataWarning", "Planner", "Probe", "Recognizer", "Result", "fit", "models"]
 
 _NONE = np.empty(0)
 _MOST_DRAWN = 1 << 16  # points kept for Result.plot and sample; beyond it every second one is dropped
 _MOST_NUMBER = (1 << 32) - 1  # of a patch or probe, as on the wire
 _LEAST_SAMPLES = 64  # of a patch, as for palpate-node: means of more neighbours lie off a bend
+
+
+class DataWarning(UserWarning):
+    """What is wrong with the points, where an answer from them may be wrong: fit() warns of it in the words of `palpate fit`.
+    warnings.filterwarnings("error", category=palpate.DataWarning) makes it an exception, "ignore" in its place drops it."""
 
 
 class Recognizer:
@@ -58,6 +64,7 @@ class Recognizer:
                                       _whole("most_patches", most_patches, 1),
                                       _whole("most_samples_per_patch", most_samples_per_patch, _LEAST_SAMPLES),
                                       str(touched_from))
+        self._check: _core.ArrayCheck | None = None
         self._points: list[np.ndarray] = []
         self._drawn = 0
         self._tip_radius = 0.0
@@ -81,9 +88,11 @@ class Recognizer:
         points = numbers(points)
         in_metres = points if self._scale == 1.0 else self._scale * points
         sigmas = _NONE if sigma is None else self._scale * np.atleast_1d(numbers(sigma, "sigma"))
-        accepted, repeated = self._core.add(in_metres, sigmas, _whole("probe", probe), _whole("patch", patch),
-                                            self._scale * tip_radius, str(material_side),
-                                            *details(normals, normal_sigma, covariances, self._scale))
+        patch_arrays = (in_metres, sigmas, _whole("probe", probe), _whole("patch", patch), self._scale * tip_radius,
+                        str(material_side), *details(normals, normal_sigma, covariances, self._scale))
+        accepted, repeated = self._core.add(*patch_arrays)
+        if self._check is not None:
+            self._check.add(*patch_arrays)
         self.dropped += repeated
         self._tip_radius = max(self._tip_radius, tip_radius)
         self._points.append(points.copy())
@@ -110,7 +119,9 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
         classes: str | Iterable[str] = (), form_deviation: float = 0.0, touches: bool = False,
         most_samples_per_patch: int = 1024, normals=None, normal_sigma: float | None = None,
         unqualified_probe: bool | None = None, touched_from: str = "unknown") -> Result:
-    """Recognises one object and returns the Result. Raises ValueError if an argument is invalid.
+    """Recognises one object and returns the Result. Raises ValueError if an argument is invalid. Warns (DataWarning) of
+    points from which the answer may be wrong: several strokes in one patch, lost samples, a unit that cannot be, strokes
+    that were saved twice, and, where no class is recognised, ends that may be the approach to the part or the retract.
 
     points: an array (n, 2) of one patch, or a list of such arrays.
     sigma: standard deviation of a point, one number or (for one patch) one per point; None = estimated.
@@ -140,11 +151,18 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
     # The whole list is known, so no patch needs to be forgotten.
     recognizer = Recognizer(None, unit, classes, form_deviation, max(64, len(patches)), most_samples_per_patch,
                             unqualified_probe, touched_from)
+    recognizer._check = check = _core.ArrayCheck()
     for number, patch in enumerate(patches):
         its_normals = of_patches[number]
         recognizer.add(patch, number, 0, sigma, tip_radius, material_side, its_normals,
                        normal_sigma if normals is None or its_normals is not None else None)
-    return recognizer.recognize()
+    result = recognizer.recognize()
+    doubts = check.warnings()
+    if result.status != "recognized" or result.curve_class == "unclassified":
+        doubts += filter(None, [check.approaches()])
+    for doubt in doubts:
+        warnings.warn(doubt, DataWarning, stacklevel=2)
+    return result
 
 
 def _whole(what: str, value: int, least: int = 0) -> int:

@@ -5,11 +5,11 @@
 #include <iterator>
 #include <vector>
 
+#include "node/files/quantity.h"
 #include "node/tool/drawing/colours.h"
 #include "node/tool/drawing/invariant_points.h"
 #include "node/tool/drawing/svg_table.h"
 #include "node/tool/drawing/ticks.h"
-#include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
 #include "node/wire/convert.h"
 

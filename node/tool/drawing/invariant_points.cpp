@@ -16,7 +16,7 @@
 #include "core/invariants/signature_fit/semi_signature_fit.h"
 #include "core/invariants/signature_fit/spline_least_squares.h"
 #include "core/recognition/tree_answer.h"
-#include "node/tool/text/quantity.h"
+#include "node/files/quantity.h"
 #include "node/tool/text/recognition_text.h"
 #include "node/wire/convert.h"
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "node/files/quantity.h"
 #include "node/tool/drawing/colours.h"
 #include "node/tool/drawing/svg_table.h"
 #include "node/tool/drawing/ticks.h"
-#include "node/tool/text/quantity.h"
 
 namespace palpate {
 namespace {

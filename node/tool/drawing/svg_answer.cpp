@@ -1,6 +1,6 @@
 #include "node/tool/drawing/svg_answer.h"
 
-#include "node/tool/text/quantity.h"
+#include "node/files/quantity.h"
 #include "node/tool/text/recognition_text.h"
 
 namespace palpate {

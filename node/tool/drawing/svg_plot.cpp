@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "node/files/quantity.h"
 #include "node/tool/drawing/band_area.h"
 #include "node/tool/drawing/colours.h"
 #include "node/tool/drawing/drawing.h"
@@ -17,7 +18,6 @@
 #include "node/tool/drawing/svg_table.h"
 #include "node/tool/drawing/ticks.h"
 #include "node/tool/drawing/visible_samples.h"
-#include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
 
 namespace palpate {

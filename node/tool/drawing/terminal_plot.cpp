@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "node/files/printable.h"
+#include "node/files/quantity.h"
 #include "node/tool/drawing/braille_canvas.h"
 #include "node/tool/drawing/shown_extent.h"
-#include "node/tool/text/quantity.h"
 
 namespace palpate {
 namespace {

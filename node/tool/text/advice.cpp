@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "node/tool/text/quantity.h"
+#include "node/files/quantity.h"
 #include "node/tool/text/recognition_text.h"
 #include "node/wire/convert.h"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/curves/pose2.h"
-#include "node/tool/text/quantity.h"
+#include "node/files/quantity.h"
 #include "node/tool/text/recognition_text.h"
 
 namespace palpate {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "node/files/quantity.h"
 #include "node/tool/part_match.h"
-#include "node/tool/text/quantity.h"
 
 namespace palpate {
 namespace {

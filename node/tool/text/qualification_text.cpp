@@ -3,8 +3,8 @@
 #include <string>
 
 #include "node/files/counted.h"
+#include "node/files/quantity.h"
 #include "node/tool/qualification_answer.h"
-#include "node/tool/text/quantity.h"
 
 namespace palpate {
 namespace {

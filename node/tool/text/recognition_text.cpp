@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "node/files/printable.h"
-#include "node/tool/text/quantity.h"
+#include "node/files/quantity.h"
 #include "node/tool/text/report.h"
 
 namespace palpate {

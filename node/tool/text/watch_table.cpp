@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "node/files/printable.h"
+#include "node/files/quantity.h"
 #include "node/tool/text/advice.h"
-#include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
 
 namespace palpate {

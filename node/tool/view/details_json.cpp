@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "node/files/quantity.h"
 #include "node/tool/drawing/enlarged_residuals.h"
 #include "node/tool/text/advice.h"
-#include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
 #include "node/tool/view/picture_json.h"
 

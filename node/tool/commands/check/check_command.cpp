@@ -9,15 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "node/check/approach_check.h"
+#include "node/check/group_check.h"
 #include "node/files/counted.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
-#include "node/tool/commands/check/approach_check.h"
-#include "node/tool/commands/check/file_check.h"
 #include "node/tool/commands/check/stream_check.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/commands/listening_place.h"
+#include "node/tool/contact_groups.h"
 
 namespace palpate {
 namespace {

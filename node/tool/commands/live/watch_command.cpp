@@ -13,12 +13,12 @@
 
 #include "node/client/result_subscriber.h"
 #include "node/files/printable.h"
+#include "node/files/quantity.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/drawing/terminal_plot.h"
 #include "node/tool/text/message_json.h"
-#include "node/tool/text/quantity.h"
 #include "node/tool/text/recognition_text.h"
 #include "node/tool/text/watch_table.h"
 #include "node/tool/view/live_state.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "node/tool/text/quantity.h"
+#include "node/files/quantity.h"
 
 namespace palpate {
 namespace {

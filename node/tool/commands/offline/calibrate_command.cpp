@@ -9,6 +9,7 @@
 #include "node/files/overwritten_input.h"
 #include "node/files/printable.h"
 #include "node/files/probe_file.h"
+#include "node/files/quantity.h"
 #include "node/files/written_file.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
@@ -16,7 +17,6 @@
 #include "node/tool/drawing/lobes_plot.h"
 #include "node/tool/qualification_answer.h"
 #include "node/tool/text/message_json.h"
-#include "node/tool/text/quantity.h"
 
 namespace palpate {
 namespace {

@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "node/check/approach_check.h"
+#include "node/check/group_check.h"
 #include "node/csv/text_lines.h"
 #include "node/files/counted.h"
 #include "node/files/overwritten_input.h"
 #include "node/files/printable.h"
 #include "node/files/probe_file.h"
 #include "node/files/written_file.h"
-#include "node/tool/commands/check/approach_check.h"
-#include "node/tool/commands/check/file_check.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/commands/offline/answer_notes.h"

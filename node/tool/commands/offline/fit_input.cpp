@@ -4,9 +4,9 @@
 #include <map>
 #include <utility>
 
+#include "node/check/group_check.h"
 #include "node/files/counted.h"
 #include "node/files/printable.h"
-#include "node/tool/commands/check/file_check.h"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/qualification/probe_correction.h"
 #include "node/files/printable.h"
-#include "node/tool/text/quantity.h"
+#include "node/files/quantity.h"
 #include "node/wire/convert.h"
 
 namespace palpate {

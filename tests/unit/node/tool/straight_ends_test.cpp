@@ -1,5 +1,5 @@
 // Which ends of strokes are told as an approach: those that are one, and none of a clean stroke.
-#include "node/tool/commands/check/straight_ends.h"
+#include "node/check/straight_ends.h"
 
 #include <gtest/gtest.h>
 

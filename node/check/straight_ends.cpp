@@ -1,4 +1,4 @@
-#include "node/tool/commands/check/straight_ends.h"
+#include "node/check/straight_ends.h"
 
 #include <algorithm>
 #include <cmath>

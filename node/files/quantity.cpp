@@ -1,4 +1,4 @@
-#include "node/tool/text/quantity.h"
+#include "node/files/quantity.h"
 
 #include <algorithm>
 #include <cmath>

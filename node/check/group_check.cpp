@@ -1,4 +1,4 @@
-#include "node/tool/commands/check/file_check.h"
+#include "node/check/group_check.h"
 
 #include <algorithm>
 #include <map>
@@ -7,7 +7,7 @@
 
 #include "core/recognition/fewest_places.h"
 #include "node/files/counted.h"
-#include "node/tool/text/quantity.h"
+#include "node/files/quantity.h"
 
 namespace palpate {
 namespace {
@@ -40,7 +40,8 @@ std::map<std::string, std::vector<CheckedPatch>> checked_patches(const ContactGr
 }
 
 /// Of all samples together: single touches have no extent of their own. Returns it. [m]
-double judge_extent(const ContactGroup& group, std::vector<Finding>* findings) {
+double judge_extent(const ContactGroup& group, CheckedSource source,
+                    std::vector<Finding>* findings) {
   Vec2 low = group.runs.front().samples.front().position_m;
   Vec2 high = low;
   for (const ContactRun& run : group.runs) {
@@ -52,11 +53,18 @@ double judge_extent(const ContactGroup& group, std::vector<Finding>* findings) {
   const double extent = (high - low).norm();
   const std::string what = "the samples extend over " + text_of_length(extent);
   if (extent > kLargestObjectM) {
-    findings->push_back({Severity::Warning, "", what,
-                         "were these millimetres? Then say --unit mm (or um, in)", true});
+    findings->push_back(
+        {Severity::Warning, "", what,
+         cure_of(source, "were these millimetres?",
+                 "were these millimetres? Then say --unit mm (or um, in)",
+                 "were these millimetres? Then say unit=\"mm\" (or \"um\", \"in\")"),
+         true});
   } else if (extent > 0.0 && extent < kSmallestObjectM) {
     findings->push_back(
-        {Severity::Warning, "", what, "is the unit right? --unit names another", true});
+        {Severity::Warning, "", what,
+         cure_of(source, "is the unit right?", "is the unit right? --unit names another",
+                 "is the unit right? unit= names another"),
+         true});
   }
   return extent;
 }
@@ -82,7 +90,8 @@ void judge_stamps(const ContactGroup& group, std::vector<Finding>* findings) {
 }
 
 /// A radius in millimetres where metres are asked.
-void judge_tips(const ContactGroup& group, double extent, std::vector<Finding>* findings) {
+void judge_tips(const ContactGroup& group, double extent, CheckedSource source,
+                std::vector<Finding>* findings) {
   // Styli end in balls of up to 30 mm across. A tip may be larger than a bore is wider than it.
   constexpr double kLargestTipM = 0.015;
   double radius = 0.0;
@@ -91,7 +100,10 @@ void judge_tips(const ContactGroup& group, double extent, std::vector<Finding>* 
     findings->push_back({Severity::Warning, "",
                          "a tip radius of " + text_of_length(radius) +
                              " is larger than all that is touched, " + text_of_length(extent),
-                         "was it in millimetres? --tip-radius is metres whatever the unit", true});
+                         cure_of(source, "was it in millimetres?",
+                                 "was it in millimetres? --tip-radius is metres whatever the unit",
+                                 "is tip_radius in the unit of the points?"),
+                         true});
   }
 }
 
@@ -141,15 +153,15 @@ std::optional<Finding> too_few_places(const ContactGroup& group, std::size_t pat
                  true};
 }
 
-std::vector<Finding> check_group(const ContactGroup& group, double sigma_m) {
+std::vector<Finding> check_group(const ContactGroup& group, double sigma_m, CheckedSource source) {
   std::vector<Finding> findings;
-  const double extent = judge_extent(group, &findings);
+  const double extent = judge_extent(group, source, &findings);
   const bool extent_is_told = !findings.empty();
-  judge_tips(group, extent, &findings);
+  judge_tips(group, extent, source, &findings);
   judge_stamps(group, &findings);
   for (const auto& [probe, patches] : checked_patches(group, sigma_m)) {
     std::vector<Finding> of_probe;
-    judge_patches(probe, patches, CheckedSource::File, &of_probe);
+    judge_patches(probe, patches, source, &of_probe);
     judge_copies(probe, patches, &of_probe);
     for (Finding& finding : of_probe) {
       // Said once: of all samples, not of each probe again.

@@ -1,4 +1,4 @@
-#include "node/tool/commands/check/normal_check.h"
+#include "node/check/normal_check.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "node/tool/commands/check/stream_check.h"
+#include "node/check/patch_check.h"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "node/tool/commands/check/approach_check.h"
+#include "node/check/approach_check.h"
 
 #include <cmath>
 #include <map>
@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "node/check/straight_ends.h"
 #include "node/files/counted.h"
-#include "node/tool/commands/check/straight_ends.h"
-#include "node/tool/text/quantity.h"
+#include "node/files/quantity.h"
 
 namespace palpate {
 namespace {
@@ -57,16 +57,19 @@ std::string ranges_of(Numbers numbers) {
 
 std::string whole_degrees(double rad) { return number(std::round(rad * kDegrees)) + " degrees"; }
 
-/// "the first 8 samples (1-8) at 88 degrees"
-std::string text_of_end(const char* which, const StraightEnd& end, Numbers numbers) {
-  return std::string("the ") + which + " " + counted(end.samples, "sample") + " (" +
-         ranges_of(numbers) + ") at " + whole_degrees(end.corner_rad);
+/// "the first 8 samples (1-8) at 88 degrees"; only files number their samples.
+std::string text_of_end(const char* which, const StraightEnd& end, Numbers numbers,
+                        CheckedSource source) {
+  const std::string range =
+      source == CheckedSource::File ? " (" + ranges_of(numbers) + ")" : std::string();
+  return std::string("the ") + which + " " + counted(end.samples, "sample") + range + " at " +
+         whole_degrees(end.corner_rad);
 }
 
 }  // namespace
 
-std::optional<Finding> judge_approaches(const ContactGroup& group, bool is_alone,
-                                        Numbers left_out) {
+std::optional<Finding> judge_approaches(const ContactGroup& group, bool is_alone, Numbers left_out,
+                                        CheckedSource source) {
   constexpr std::size_t kMostNamed = 3;
   std::size_t count = 0;
   std::string named;
@@ -82,23 +85,23 @@ std::optional<Finding> judge_approaches(const ContactGroup& group, bool is_alone
     named += count > 1 ? "; " : "";
     if (group.probes.size() > 1) named += "probe " + group.probes[key.first] + ", ";
     named += "patch " + std::to_string(key.second) + ": ";
-    if (!first.empty()) named += text_of_end("first", ends.first, first);
+    if (!first.empty()) named += text_of_end("first", ends.first, first, source);
     if (!first.empty() && !last.empty()) named += ", ";
-    if (!last.empty()) named += text_of_end("last", ends.last, last);
+    if (!last.empty()) named += text_of_end("last", ends.last, last, source);
   }
   if (count == 0) return std::nullopt;
   if (count > kMostNamed) named += "; and so on";
   all.insert(left_out.begin(), left_out.end());
   const std::vector<std::size_t> numbers(all.begin(), all.end());
-  return Finding{
-      Severity::Warning, "",
-      counted(count, "stroke runs", "strokes run") + " straight at an end and meet" +
-          (count == 1 ? "s" : "") + " the rest at a corner (" + named + ")",
-      "if that is the approach to the part or the retract from it, " +
-          (is_alone ? "leave it out: fit --leave-out " + ranges_of(numbers)
-                    : std::string("take its rows out of the file (samples are numbered within "
-                                  "their group and object)")),
-      true};
+  const std::string cure =
+      source != CheckedSource::File ? "leave these samples out"
+      : is_alone                    ? "leave it out: fit --leave-out " + ranges_of(numbers)
+                 : "take its rows out of the file (samples are numbered within their group and "
+                   "object)";
+  return Finding{Severity::Warning, "",
+                 counted(count, "stroke runs", "strokes run") + " straight at an end and meet" +
+                     (count == 1 ? "s" : "") + " the rest at a corner (" + named + ")",
+                 "if that is the approach to the part or the retract from it, " + cure, true};
 }
 
 }  // namespace palpate

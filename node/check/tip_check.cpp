@@ -1,10 +1,10 @@
-#include "node/tool/commands/check/tip_check.h"
+#include "node/check/tip_check.h"
 
 #include <algorithm>
 #include <limits>
 #include <map>
 
-#include "node/tool/text/quantity.h"
+#include "node/files/quantity.h"
 
 namespace palpate {
 namespace {
@@ -46,10 +46,10 @@ void judge_tips(const std::string& probe, const std::vector<CheckedPatch>& patch
       findings->push_back({Severity::Warning, probe,
                            "centres of a tip of radius " + metres_text(touched.radius_m) +
                                " extend over " + metres_text(extent_m),
-                           source == CheckedSource::File
-                               ? "was the radius in millimetres? --tip-radius and tip_radius_m "
-                                 "are metres whatever the unit"
-                               : "tip_radius_m is metres: was it millimetres?",
+                           cure_of(source, "tip_radius_m is metres: was it millimetres?",
+                                   "was the radius in millimetres? --tip-radius and tip_radius_m "
+                                   "are metres whatever the unit",
+                                   "is tip_radius in the unit of the points?"),
                            true});
       return;  // said once
     }

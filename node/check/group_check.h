@@ -1,4 +1,4 @@
-// What is wrong with a file of contacts, told to whoever made it.
+// What is wrong with the samples of one object that are there at once: a file's, or arrays.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "node/tool/commands/check/stream_check.h"
-#include "node/tool/contact_groups.h"
+#include "node/check/contact_group.h"
+#include "node/check/patch_check.h"
 
 namespace palpate {
 
@@ -17,7 +17,8 @@ std::optional<Finding> too_few_places(const ContactGroup& group, std::size_t pat
 
 /// Units, order, jumps, spacing, noise and stamps of one object's samples, those without a sigma
 /// taken to have this one (0 = unknown). Worst first.
-std::vector<Finding> check_group(const ContactGroup& group, double sigma_m = 0.0);
+std::vector<Finding> check_group(const ContactGroup& group, double sigma_m = 0.0,
+                                 CheckedSource source = CheckedSource::File);
 
 /// A finding as a sentence: what, and the cure.
 std::string sentence_of(const Finding& finding);

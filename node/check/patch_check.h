@@ -1,0 +1,61 @@
+// What is wrong with patches of samples, told to whoever took them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/recognition/samples/contact_sample.h"
+#include "core/recognition/samples/sample_detail.h"
+
+namespace palpate {
+
+enum class Severity { Note, Warning, Error };
+
+struct Finding {
+  Severity severity = Severity::Note;
+  std::string probe;  ///< empty = no probe's in particular
+  std::string what;   ///< what was seen, with its numbers
+  std::string cure;   ///< what to do about it
+  /// An answer from these samples would be wrong or worth less, whatever the recogniser makes of
+  /// it.
+  bool spoils_answer = false;
+  bool has_no_order = false;  ///< rows of a stroke lead to and fro instead of along the part
+};
+
+/// What is kept of a patch for judgement.
+struct CheckedPatch {
+  std::uint32_t number = 0;
+  std::uint64_t object = 0;
+  double tip_radius_m = 0.0;
+  MaterialSide material_side = MaterialSide::Unspecified;
+  std::vector<Vec2> positions = {};
+  std::vector<Vec2> normals = {};  ///< by position, zero where none; empty where there are none
+  double sigma_squares = 0.0;
+  std::size_t with_sigma = 0;
+
+  /// `detail`: nullptr where the sample says no more.
+  void take(const Vec2& position_m, double sigma_m, const SampleDetail* detail);
+};
+
+/// Where patches came from, or rather who is told: the cures differ.
+enum class CheckedSource { Stream, File, Arrays };
+
+/// The one of three cures that is of this source.
+inline const char* cure_of(CheckedSource source, const char* stream, const char* file,
+                           const char* arrays) {
+  return source == CheckedSource::Stream ? stream : source == CheckedSource::File ? file : arrays;
+}
+
+/// Units, spacing, noise, jumps and repeats of a probe's patches.
+void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& patches,
+                   CheckedSource source, std::vector<Finding>* findings);
+
+/// Worst first, else in their order.
+void sort_findings(std::vector<Finding>* findings);
+
+/// "ERROR  ", "WARNING" or "note   ".
+const char* name_of(Severity severity);
+
+}  // namespace palpate
