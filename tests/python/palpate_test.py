@@ -165,6 +165,15 @@ class Fit(unittest.TestCase):
                 # As many as the points of each patch: of which patch is not said.
                 ("sigma: one number", PATCHES, dict(sigma=np.full(111, SIGMA))),
                 ("sigma: one number", PATCHES[0], dict(sigma=np.full(111, SIGMA), touches=True)),
+                ("points: there are none", np.empty((0, 2)), {}), ("points: there are none", [np.empty((0, 2))] * 2, {}),
+                ("sigma: 0: must be .*above 0; None", PATCHES, dict(sigma=0)), ("sigma: 0.0: must be", PATCHES, dict(sigma=0.0)),
+                ("sigma: -0.02: must be finite", PATCHES, dict(sigma=-0.02)), ("sigma: 'thin'", PATCHES, dict(sigma="thin")),
+                ("sigma: nan: must be finite", PATCHES, dict(sigma=math.nan)), ("points: could not", [["a", "b"]], {}),
+                ("tip_radius: '2': must be", PATCHES, dict(tip_radius="2")), ("tip_radius: None", PATCHES, dict(tip_radius=None)),
+                ("form_deviation: None: must be", PATCHES, dict(form_deviation=None)),
+                ("touched_from: .*tip_radius is 0", PATCHES, dict(touched_from="inside")),
+                ("material_side: .*tip_radius is 0", PATCHES, dict(material_side="left")),
+                ("material_side: single touches", PATCHES, dict(material_side="left", tip_radius=1, touches=True)),
                 ("is no curve class: line, circle", PATCHES, dict(classes=["elipse"])),
                 ("is no curve class", PATCHES, dict(classes="unclassified")),
                 ("material_side: .*None", PATCHES, dict(material_side=None)),
@@ -172,9 +181,17 @@ class Fit(unittest.TestCase):
                 ("most_samples_per_patch: '1e3'", PATCHES, dict(most_samples_per_patch="1e3"))):
             with self.assertRaisesRegex(ValueError, named, msg=(named, arguments)):
                 palpate.fit(points, **arguments)
+        for wrong in ("no", 0, 1, None, np.array([True, False])):  # a word would count as true
+            with self.assertRaisesRegex(TypeError, "touches: .* is neither True nor False"):
+                palpate.fit(PATCHES, touches=wrong)
+        self.assertEqual(palpate.fit(PATCHES, sigma=SIGMA, unit="mm", touches=np.False_).curve_class, "ellipse")
         with self.assertRaisesRegex(ValueError, "most_patches: 0"):
             palpate.Recognizer(most_patches=0)
+        with self.assertRaisesRegex(ValueError, "sigma: 0: must be .*above 0; None"):
+            palpate.Recognizer(sigma=0)
         recognizer = palpate.Recognizer()
+        with self.assertRaisesRegex(ValueError, "sigma: 0: must be .*above 0; None"):
+            recognizer.add(PATCHES[0], sigma=0)
         for wrong in (dict(patch=-1), dict(patch=1 << 32), dict(patch=1.0), dict(probe="left")):
             with self.assertRaisesRegex(ValueError, f"{next(iter(wrong))}: .* is no whole number from 0", msg=wrong):
                 recognizer.add(PATCHES[0], **wrong)

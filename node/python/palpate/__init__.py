@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Iterable, Sequence
 import numpy as np
 
 from . import _core, models
-from .details import details, numbers
+from .details import details, length, numbers
 from .patches import patches_of
 from .result import Result, units
 
@@ -58,9 +58,9 @@ class Recognizer:
         self._scale = units(unit)
         if unqualified_probe is not None and not isinstance(unqualified_probe, (bool, np.bool_)):
             raise ValueError(f"unqualified_probe: {unqualified_probe!r} is none of True, False and None")
-        self._core = _core.Recognizer(self._scale * (0.0 if sigma is None else float(sigma)),
+        self._core = _core.Recognizer(self._scale * (0.0 if sigma is None else length("sigma", sigma, zero_too=False)),
                                       [classes] if isinstance(classes, str) else list(classes),
-                                      self._scale * form_deviation, unqualified_probe,
+                                      self._scale * length("form_deviation", form_deviation), unqualified_probe,
                                       _whole("most_patches", most_patches, 1),
                                       _whole("most_samples_per_patch", most_samples_per_patch, _LEAST_SAMPLES),
                                       str(touched_from))
@@ -77,7 +77,8 @@ class Recognizer:
         ValueError if a point is not finite or another argument is invalid; then no point is added.
 
         patch, probe: numbers of the patch and of the probe. A new patch number begins a new patch.
-        sigma: standard deviation of a point, one number or one per point; None = that of the constructor.
+        sigma: standard deviation of a point, one number or one per point; None, or 0 of one point among others, = that of the
+        constructor.
         tip_radius: radius of a round tip whose centres the points are; 0 = points of the surface.
         material_side: "left", "right" or "unspecified", seen along the direction of travel.
         normals: (n, 2), unit normals of the surface, out of the material; (0, 0) where none was measured.
@@ -86,6 +87,9 @@ class Recognizer:
         A search over the classes uses normals and covariances only in part; Result.simplified_count says for how many
         points."""
         points = numbers(points)
+        tip_radius = length("tip_radius", tip_radius)
+        if sigma is not None and np.ndim(sigma) == 0:
+            sigma = length("sigma", sigma, zero_too=False)
         in_metres = points if self._scale == 1.0 else self._scale * points
         sigmas = _NONE if sigma is None else self._scale * np.atleast_1d(numbers(sigma, "sigma"))
         patch_arrays = (in_metres, sigmas, _whole("probe", probe), _whole("patch", patch), self._scale * tip_radius,
@@ -119,9 +123,10 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
         classes: str | Iterable[str] = (), form_deviation: float = 0.0, touches: bool = False,
         most_samples_per_patch: int = 1024, normals=None, normal_sigma: float | None = None,
         unqualified_probe: bool | None = None, touched_from: str = "unknown") -> Result:
-    """Recognises one object and returns the Result. Raises ValueError if an argument is invalid. Warns (DataWarning) of
-    points from which the answer may be wrong: several strokes in one patch, lost samples, a unit that cannot be, strokes
-    that were saved twice, and, where no class is recognised, ends that may be the approach to the part or the retract.
+    """Recognises one object and returns the Result. Raises ValueError if an argument is invalid, TypeError if `touches` is
+    neither True nor False. Warns (DataWarning) of points from which the answer may be wrong: several strokes in one patch,
+    lost samples, a unit that cannot be, strokes that were saved twice, and, where no class is recognised, ends that may be
+    the approach to the part or the retract.
 
     points: an array (n, 2) of one patch, or a list of such arrays.
     sigma: standard deviation of a point, one number or (for one patch) one per point; None = estimated.
@@ -139,10 +144,10 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
     of a list: that patch has none.
     normal_sigma: standard deviation of their directions in radians, one number or (for one patch) one per normal.
     """
+    if not isinstance(touches, (bool, np.bool_)):
+        raise TypeError(f"touches: {touches!r} is neither True nor False")
     patches = patches_of(points, touches)
     of_patches: Sequence = [None] * len(patches) if normals is None else patches_of(normals, touches)
-    if len(patches) == 0:
-        raise ValueError("points: there are none")
     for what, deviation in (("sigma", sigma), ("normal_sigma", normal_sigma)):
         if (touches or len(patches) > 1) and np.size(deviation) > 1:
             raise ValueError(f"{what}: one number for several patches or touches; Recognizer.add takes one per patch or point")
@@ -152,10 +157,14 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
     recognizer = Recognizer(None, unit, classes, form_deviation, max(64, len(patches)), most_samples_per_patch,
                             unqualified_probe, touched_from)
     recognizer._check = check = _core.ArrayCheck()
+    accepted = 0
     for number, patch in enumerate(patches):
         its_normals = of_patches[number]
-        recognizer.add(patch, number, 0, sigma, tip_radius, material_side, its_normals,
-                       normal_sigma if normals is None or its_normals is not None else None)
+        accepted += recognizer.add(patch, number, 0, sigma, tip_radius, material_side, its_normals,
+                                   normal_sigma if normals is None or its_normals is not None else None)
+    if accepted == 0:
+        raise ValueError("points: there are none")
+    _check_sides(tip_radius, material_side, touched_from, touches, normals is not None)
     result = recognizer.recognize()
     doubts = check.warnings()
     if result.status != "recognized" or result.curve_class == "unclassified":
@@ -163,6 +172,16 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
     for doubt in doubts:
         warnings.warn(doubt, DataWarning, stacklevel=2)
     return result
+
+
+def _check_sides(tip_radius: float, material_side: str, touched_from: str, touches: bool, has_normals: bool) -> None:
+    """Raises ValueError for a side that would tell nothing. Beside normals the material's side is a check of them."""
+    has_side = material_side != "unspecified"
+    if touches and has_side:
+        raise ValueError("material_side: single touches have no direction of travel; say touched_from, or give normals")
+    for what, is_said in (("touched_from", touched_from != "unknown"), ("material_side", has_side and not has_normals)):
+        if is_said and tip_radius == 0:
+            raise ValueError(f"{what}: tells the side of a round tip, and tip_radius is 0")
 
 
 def _whole(what: str, value: int, least: int = 0) -> int:
