@@ -73,9 +73,18 @@ void judge_stamps(const ContactGroup& group, std::vector<Finding>* findings) {
   // Strokes may each have a clock of their own.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::int64_t> newest;
   std::map<std::uint32_t, std::size_t> backwards;
+  struct Stamps {
+    std::int64_t first_ns = 0;
+    std::size_t count = 0;
+    bool are_one = true;
+  };
+  std::map<std::uint32_t, Stamps> of_probe;
   for (const ContactRun& run : group.runs) {
     for (const ContactSample& sample : run.samples) {
       if (sample.stamp_ns == 0) continue;
+      Stamps& stamps = of_probe[run.context.probe];
+      if (stamps.count++ == 0) stamps.first_ns = sample.stamp_ns;
+      stamps.are_one &= sample.stamp_ns == stamps.first_ns;
       const auto [last, is_first] =
           newest.try_emplace({run.context.probe, run.context.patch}, sample.stamp_ns);
       if (sample.stamp_ns < last->second) ++backwards[run.context.probe];
@@ -86,6 +95,11 @@ void judge_stamps(const ContactGroup& group, std::vector<Finding>* findings) {
     findings->push_back({Severity::Error, group.probes[probe],
                          counted(count, "stamp") + " earlier than the one before in its patch",
                          "sort the rows of a patch in the order in which they were taken", true});
+  }
+  for (const auto& [probe, stamps] : of_probe) {
+    if (stamps.count < 2 || !stamps.are_one) continue;
+    findings->push_back({Severity::Warning, group.probes[probe], one_stamp_text(stamps.count),
+                         "give each sample the time when it was taken, or none"});
   }
 }
 

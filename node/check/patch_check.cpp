@@ -231,6 +231,10 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
   }
 }
 
+std::string one_stamp_text(std::size_t samples) {
+  return "all " + std::to_string(samples) + " stamps are equal: they tell no time";
+}
+
 void sort_findings(std::vector<Finding>* findings) {
   std::stable_sort(findings->begin(), findings->end(), [](const Finding& a, const Finding& b) {
     return static_cast<int>(a.severity) > static_cast<int>(b.severity);

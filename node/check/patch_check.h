@@ -52,6 +52,9 @@ inline const char* cure_of(CheckedSource source, const char* stream, const char*
 void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& patches,
                    CheckedSource source, std::vector<Finding>* findings);
 
+/// What is said of so many samples with one stamp between them.
+std::string one_stamp_text(std::size_t samples);
+
 /// Worst first, else in their order.
 void sort_findings(std::vector<Finding>* findings);
 

@@ -103,6 +103,7 @@ void StreamCheck::take(std::size_t frame_count, std::string_view topic, std::str
       continue;
     }
     constexpr std::int64_t kClockTolerance = 50'000'000;  // between two clocks [ns]
+    probe.stamps_differ |= probe.stamps++ > 0 && sample.stamp_ns != probe.last_stamp_ns;
     probe.stamps_backwards += sample.stamp_ns < probe.last_stamp_ns ? 1 : 0;
     probe.stamps_in_future += sample.stamp_ns > now_unix_ns + kClockTolerance ? 1 : 0;
     probe.last_stamp_ns = sample.stamp_ns;
@@ -147,6 +148,11 @@ std::vector<Finding> StreamCheck::findings() const {
       add(Severity::Error,
           counted(probe.stamps_backwards, "stamp") + " earlier than the one before",
           "send samples in the order in which they were taken");
+    }
+    // The samples of one message may well have been taken at a time.
+    if (probe.messages > 1 && probe.stamps > 1 && !probe.stamps_differ) {
+      add(Severity::Warning, one_stamp_text(probe.stamps),
+          "stamp each sample with Unix time in nanoseconds, when it was taken");
     }
     if (probe.stamps_in_future > 0) {
       add(Severity::Error, counted(probe.stamps_in_future, "stamp") + " in the future",

@@ -35,6 +35,8 @@ class StreamCheck {
     std::uint64_t stamps_backwards = 0;
     std::uint64_t stamps_missing = 0;
     std::uint64_t stamps_in_future = 0;
+    std::uint64_t stamps = 0;
+    bool stamps_differ = false;
     std::int64_t last_stamp_ns = 0;
     std::int64_t largest_delay_ns = 0;
     std::vector<CheckedPatch> patches;

@@ -400,6 +400,15 @@ class Formats(unittest.TestCase):
         self.fit(stamped(0))
         self.assertIn("1 stamp earlier than the one before in its patch", self.err)
 
+    def test_stamps_that_tell_no_time_are_told(self):
+        path = self.folder / "points.csv"
+        for last, told in ((7, True), (8, False)):
+            rows = [f"{x!r},{y!r},{k},7\n" for k, stroke in enumerate(ellipse()) for x, y in stroke]
+            path.write_text("x_m,y_m,patch,stamp_ns\n" + "".join(rows[:-1]) + rows[-1].replace(",7\n", f",{last}\n"))
+            code, out, _ = run(TOOL, "check", path)
+            self.assertEqual(code, 0, out)
+            self.assertEqual("WARNING  probe: all 222 stamps are equal: they tell no time\n" in out, told, out)
+
     def test_the_noise_of_many_samples_is_that_of_one(self):
         # More than 1024 of a patch are used as means: what is said of the noise is of the samples.
         rng = random.Random(4)

@@ -221,6 +221,15 @@ TEST(StreamCheck, BadStampsAreErrors) {
                     }
                   }),
                   Severity::Error, "stamps in the future"));
+  const auto stamped = [](std::size_t number_of_another) {
+    return findings_of([=](std::size_t number, v1::ContactBatch& batch) {
+      for (v1::ContactSample& sample : *batch.mutable_samples()) {
+        sample.set_stamp_ns(number == number_of_another ? kNow + 1 : kNow);
+      }
+    });
+  };
+  EXPECT_TRUE(has(stamped(20), Severity::Warning, "all 200 stamps are equal: they tell no time"));
+  EXPECT_FALSE(has(stamped(19), Severity::Warning, "stamps are equal"));
 }
 
 TEST(StreamCheck, WhatTheRecognizerWouldRejectIsNamedWithItsCure) {
