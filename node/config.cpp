@@ -4,11 +4,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cctype>
 #include <charconv>
 #include <chrono>
-#include <cstdlib>
-#include <cstring>
 #include <sstream>
 #include <type_traits>
 
@@ -36,43 +33,6 @@ bool parse_bool(const std::string& text, bool& value) {
 
 const FieldDescriptor* field_of(const std::string& name) {
   return v1::NodeConfig::descriptor()->FindFieldByName(name);
-}
-
-// "--max-groups" is set by PALPATE_MAX_GROUPS.
-std::string variable_of(const std::string& flag) {
-  std::string name = flag.substr(std::strlen("--"));
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
-    return c == '-' ? '_' : static_cast<char>(std::toupper(c));
-  });
-  return "PALPATE_" + name;
-}
-
-std::string opposite(const std::string& text) {
-  bool value = false;
-  if (!parse_bool(text, value)) return text;  // set_option() says what is wrong with it
-  return value ? "false" : "true";
-}
-
-std::string without_blanks_around(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-// Sets an option to what a variable says; a list is separated by commas. Returns an empty string or
-// an error.
-std::string set_as_said(v1::NodeConfig& config, const std::string& option,
-                        const std::string& said) {
-  std::istringstream parts(said);
-  std::string part;
-  if (!field_of(option)->is_repeated() || !std::getline(parts, part, ',')) {
-    return set_option(config, option, said);
-  }
-  std::string error;
-  do {
-    if (error.empty()) error = set_option(config, option, without_blanks_around(part));
-  } while (std::getline(parts, part, ','));
-  return error;
 }
 
 std::string number_text(double value) {
@@ -157,50 +117,6 @@ class Writer {
 
  private:
   v1::NodeConfig& config_;
-};
-
-// Sets options as the environment says. Every spelling of an option's flag is a variable too:
-// nobody is to believe that an option is set by one that is not read.
-class EnvironmentReader {
- public:
-  explicit EnvironmentReader(v1::NodeConfig& config) : config_(config) {}
-
-  template <typename Field>
-  void operator()(const OptionInfo& info, const Field&) {
-    const std::string flag = flag_of(info.name);
-    const std::string also = info.also;
-    read_by_.clear();
-    read(info.name, variable_of(flag), /*takes_back=*/false);
-    if (!also.empty()) read(info.name, variable_of(also), /*takes_back=*/false);
-    if constexpr (is_switch<Field>) {
-      read(info.name, variable_of("--no-" + flag.substr(std::strlen("--"))), /*takes_back=*/true);
-    }
-  }
-
-  const std::string& error() const { return error_; }
-
- private:
-  void read(const std::string& option, const std::string& variable, bool takes_back) {
-    const char* text = std::getenv(variable.c_str());
-    if (text == nullptr || !error_.empty()) return;
-    v1::NodeConfig said;
-    if (const std::string why = set_as_said(said, option, takes_back ? opposite(text) : text);
-        !why.empty()) {
-      error_ = "environment variable " + variable + ": " + why;
-    } else if (read_by_.empty()) {
-      config_.MergeFrom(said);
-      read_by_ = variable;
-      said_ = std::move(said);
-    } else if (said.SerializeAsString() != said_.SerializeAsString()) {
-      error_ = "environment variables " + read_by_ + " and " + variable +
-               " set one option to different values";
-    }
-  }
-
-  v1::NodeConfig& config_;
-  std::string read_by_;  // the variable that has set the present option; empty = none
-  v1::NodeConfig said_;  // what it said
-  std::string error_;
 };
 
 std::string resolve_given_class(NodeOptions& options) {
@@ -291,15 +207,6 @@ Result<v1::NodeConfig> read_config_file(const std::string& path) {
   if (std::string error = parse_text(*text.value, path, config); !error.empty()) {
     return Result<v1::NodeConfig>::fail(std::move(error));
   }
-  return Result<v1::NodeConfig>::ok(std::move(config));
-}
-
-Result<v1::NodeConfig> config_from_environment() {
-  v1::NodeConfig config;
-  EnvironmentReader reader(config);
-  const NodeOptions options;
-  for_each_option(options, reader);
-  if (!reader.error().empty()) return Result<v1::NodeConfig>::fail(reader.error());
   return Result<v1::NodeConfig>::ok(std::move(config));
 }
 

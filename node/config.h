@@ -1,5 +1,5 @@
-// Reads the node's options. A flag overrides the environment, which overrides the file, which
-// overrides the default.
+// Reads the node's options. A flag overrides the environment (environment.h), which overrides the
+// file, which overrides the default.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,6 @@ std::string set_option(v1::NodeConfig& config, const std::string& name, const st
 
 /// Reads a configuration file in protobuf text format. An unknown field is an error.
 Result<v1::NodeConfig> read_config_file(const std::string& path);
-
-/// Reads the options set in the environment: PALPATE_<NAME IN CAPITALS>, where the name is any
-/// spelling of the option's flag (PALPATE_SIGMA, PALPATE_SIGMA_M, PALPATE_NO_INSECURE). Lists are
-/// separated by commas. Fails if a value is none of the option's type, and if two spellings of one
-/// option say different things.
-Result<v1::NodeConfig> config_from_environment();
 
 /// Returns `over`, completed by `under` where `over` sets nothing. A list in `over` replaces the
 /// one in `under`.

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "node/config.h"
+#include "node/environment.h"
 #include "node/files/printable.h"
 #include "node/files/probe_files.h"
 #include "node/node.h"
@@ -84,8 +85,11 @@ void add_flags(CLI::App& app, NodeConfig& flags) {
 Result<NodeOptions> all_options(const CommandLine& command_line) {
   using Options = Result<NodeOptions>;
   NodeConfig config;
-  if (!command_line.config_file.empty()) {
-    const Result<NodeConfig> file = palpate::read_config_file(command_line.config_file);
+  const std::string config_file = command_line.config_file.empty()
+                                      ? palpate::config_file_from_environment()
+                                      : command_line.config_file;
+  if (!config_file.empty()) {
+    const Result<NodeConfig> file = palpate::read_config_file(config_file);
     if (!file) return Options::fail(file.error);
     config = *file.value;
   }
@@ -143,7 +147,9 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Recognises and locates curved parts: contacts in, recognitions out.\n"
       "Each option may also be set by PALPATE_<NAME> in the environment and by <name> in the\n"
-      "configuration file. Flag before environment before file before default.\n"
+      "configuration file, which PALPATE_CONFIG may name. Flag before environment before file "
+      "before\n"
+      "default.\n"
       "Exit codes: 0 stopped as asked, 1 failed at run time, 2 usage, 6 configuration.",
       "palpate-node");
   CommandLine command_line;
@@ -166,6 +172,7 @@ int main(int argc, char** argv) {
     return kBadConfiguration;
   }
   spdlog::set_level(spdlog::level::from_str(options.value->log_level));
+  for (const std::string& sentence : palpate::unread_variables()) spdlog::warn("{}", sentence);
   const Result<palpate::NodeKeys> keys =
       palpate::read_node_keys(options.value->curve_secret_key, options.value->allow_clients);
   if (!keys) {

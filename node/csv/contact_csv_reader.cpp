@@ -22,7 +22,6 @@ using csv::kColumnCount;
 using csv::kColumnNames;
 using csv::kRequiredColumns;
 using csv::shown;
-using csv::trim;
 
 // The bounds of node/intake/ingest.h: what the node would refuse is not used offline either.
 constexpr double kMaxCoordinateM = 1e7;
@@ -42,11 +41,11 @@ class Reader {
     }
     bool has_header = false;
     while (error_.empty() && next_line()) {
-      if (trim(line_).empty()) continue;
+      if (trimmed(line_).empty()) continue;
       if (!has_header) {
-        header_ = trim(line_);
+        header_ = trimmed(line_);
         has_header = read_header();
-      } else if (trim(line_) == header_) {
+      } else if (trimmed(line_) == header_) {
         fail(line_begin_, csv::kNamesAgain);
       } else {
         read_row();
@@ -85,7 +84,7 @@ class Reader {
     std::size_t count = 0;
     for (std::size_t from = 0; count < fields_.size();) {
       const std::size_t comma = line_.find(',', from);
-      fields_[count++] = trim(line_.substr(from, comma - from));
+      fields_[count++] = trimmed(line_.substr(from, comma - from));
       if (comma == std::string_view::npos) break;
       from = comma + 1;
     }

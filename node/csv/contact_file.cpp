@@ -25,13 +25,13 @@ using Read = Result<ContactFile>;
 bool is_own_format(std::string_view text) {
   csv::TextLines lines(text, "");
   while (lines.next()) {
-    const std::string_view line = csv::trim(lines.line().substr(0, lines.line().find('#')));
+    const std::string_view line = trimmed(lines.line().substr(0, lines.line().find('#')));
     if (line.empty()) continue;
     std::size_t required = 0;
     for (std::size_t from = 0; from <= line.size();) {
       const std::size_t end = std::min(line.find(',', from), line.size());
       const auto* const found = std::find(csv::kColumnNames.begin(), csv::kColumnNames.end(),
-                                          csv::trim(line.substr(from, end - from)));
+                                          trimmed(line.substr(from, end - from)));
       if (found == csv::kColumnNames.end()) return false;
       required +=
           found - csv::kColumnNames.begin() < static_cast<std::ptrdiff_t>(csv::kRequiredColumns)

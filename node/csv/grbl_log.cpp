@@ -27,7 +27,7 @@ Result<PointTable> read_grbl_log(std::string_view text, std::string_view name,
   while (lines.next()) {
     const std::size_t found = lines.line().find(kGrblProbe);
     if (found == std::string_view::npos) {
-      other_lines += trim(lines.line()).empty() ? 0 : 1;
+      other_lines += trimmed(lines.line()).empty() ? 0 : 1;
       continue;
     }
     std::string_view rest = lines.line().substr(found + kGrblProbe.size());

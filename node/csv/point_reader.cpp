@@ -38,7 +38,7 @@ class PointReader {
       const std::string_view comment =
           mark == std::string_view::npos ? std::string_view() : line.substr(mark + 1);
       line = line.substr(0, mark);
-      if (trim(line).empty()) {
+      if (trimmed(line).empty()) {
         if (!comment.empty() && !is_known_) comment_ = comment;
         if (mark == std::string_view::npos) gap_ = true;
         if (is_known_ && is_names(comment)) begin_again();
@@ -56,7 +56,7 @@ class PointReader {
       if (first == First::Neither) {
         // A title, a date: the names of the columns may follow.
         if (seen_.preface.empty()) {
-          seen_.preface = trim(line);
+          seen_.preface = trimmed(line);
           without_names_ =
               lines_.error(line.data(), "no columns of two coordinates: " + shown(seen_.preface) +
                                             "; known are " + known_columns());
@@ -67,7 +67,7 @@ class PointReader {
       gap_ = false;
       is_known_ = true;
       units_may_follow_ = first == First::Names;
-      if (first == First::Names) names_ = trim(line);
+      if (first == First::Names) names_ = trimmed(line);
       if (first == First::Numbers) read_row(line);
     }
     if (error_.empty() && !is_known_) error_ = without_names_;
@@ -123,7 +123,7 @@ class PointReader {
     if (!clash.empty()) fail(line.data(), clash);
   }
 
-  bool is_names(std::string_view line) const { return !names_.empty() && trim(line) == names_; }
+  bool is_names(std::string_view line) const { return !names_.empty() && trimmed(line) == names_; }
 
   /// The line of names again, as when files are joined: another stroke begins.
   void begin_again() {
@@ -141,9 +141,9 @@ class PointReader {
       const PointColumns named = columns_of(fields_);
       if (fields_.size() == width_ && named.is_enough() && named.twice.empty()) {
         columns_ = named;
-        names_ = trim(comment_);
+        names_ = trimmed(comment_);
         result_.notes.push_back("the last comment before the data names the columns: " +
-                                shown(trim(comment_)));
+                                shown(trimmed(comment_)));
         separator_ = data_separator;
         agree_on_unit(comment_);
         return true;

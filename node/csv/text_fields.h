@@ -54,7 +54,7 @@ inline void split_fields(std::string_view line, char separator,
   }
   for (std::size_t from = 0;;) {
     const std::size_t end = field_end(line, separator, from);
-    std::string_view field = trim(line.substr(from, end - from));
+    std::string_view field = trimmed(line.substr(from, end - from));
     if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
       field = field.substr(1, field.size() - 2);
     }
@@ -85,7 +85,7 @@ inline std::size_t comment_mark(std::string_view line) {
 /// The separator of a spreadsheet's first line "sep=;"; 0 where the line is none.
 inline char told_separator(std::string_view line) {
   constexpr std::string_view kMark = "sep=";
-  const std::string_view told = trim(line);
+  const std::string_view told = trimmed(line);
   if (told.size() != kMark.size() + 1) return '\0';
   for (std::size_t i = 0; i < kMark.size(); ++i) {
     if (told[i] != kMark[i] && told[i] != kMark[i] - 'a' + 'A') return '\0';

@@ -12,16 +12,11 @@
 #include <type_traits>
 
 #include "node/files/printable.h"
+#include "node/files/trimmed.h"
 
 namespace palpate::csv {
 
 inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
-inline std::string_view trim(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// As it may be shown in an error: short and printable.
 inline std::string shown(std::string_view text) {

@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "node/files/bounded_file.h"
+#include "node/files/trimmed.h"
 #include "node/wire/topics.h"
 
 namespace palpate {
@@ -41,11 +42,7 @@ struct KeyLines {
   std::vector<std::string> secret_keys;
 };
 
-std::string_view trimmed(std::string_view text, std::string_view of = kBlanks) {
-  const std::size_t first = text.find_first_not_of(of);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(of) - first + 1);
-}
+std::string_view without_blanks(std::string_view text) { return trimmed(text, kBlanks); }
 
 std::string at_line(const std::string& path, std::size_t number, std::string_view what) {
   return (path + ":" + std::to_string(number) + ": ").append(what);
@@ -68,16 +65,16 @@ struct Setting {
 Setting setting_of(std::string_view line) {
   const std::size_t end = line.find_first_of(" \t=");
   if (end == std::string_view::npos) return {line, {}, {}};
-  std::string_view value = trimmed(line.substr(end));
+  std::string_view value = without_blanks(line.substr(end));
   // A key may itself begin with '='.
   const bool is_assigned = value.starts_with('=') && (line[end] == '=' || !is_bare_key(value));
-  if (is_assigned) value = trimmed(value.substr(1));
+  if (is_assigned) value = without_blanks(value.substr(1));
   const bool is_quoted = value.starts_with('"') || value.starts_with('\'');
   const std::size_t closing =
       is_quoted ? value.find(value.front(), 1) : value.find_first_of(kBlanks);
   if (closing == std::string_view::npos) return {line.substr(0, end), value, {}};
   return {line.substr(0, end), value.substr(is_quoted ? 1 : 0, closing - (is_quoted ? 1 : 0)),
-          trimmed(value.substr(closing + (is_quoted ? 1 : 0)))};
+          without_blanks(value.substr(closing + (is_quoted ? 1 : 0)))};
 }
 
 // Parses "probes=a,b". Returns an empty string or an error.
@@ -113,15 +110,15 @@ Result<KeyLines> read_key_lines(const std::string& path) {
   std::string line;
   bool in_metadata = false;  // its content is not checked
   for (std::size_t number = 1; std::getline(file, line); ++number) {
-    const std::string_view said = trimmed(line);
+    const std::string_view said = without_blanks(line);
     if (said.empty() || said.front() == '#') continue;
     const bool is_bare = is_bare_key(said);
     const bool is_section = line.front() != ' ' && line.front() != '\t';
     if (is_section) in_metadata = said == "metadata";
     if (in_metadata || (is_section && said == "curve")) continue;
-    const Setting setting =
-        is_bare ? Setting{kPublicKey, said.substr(0, kZ85Length), trimmed(said.substr(kZ85Length))}
-                : setting_of(said);
+    const Setting setting = is_bare ? Setting{kPublicKey, said.substr(0, kZ85Length),
+                                              without_blanks(said.substr(kZ85Length))}
+                                    : setting_of(said);
     const bool is_public = setting.name == kPublicKey;
     std::string key(setting.value);
     if ((!is_public && (setting.name != kSecretKey || !setting.rest.empty())) || !is_z85_key(key) ||

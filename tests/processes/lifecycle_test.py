@@ -1,4 +1,5 @@
 """Start, stop, exit codes, and nothing lost that was received."""
+import os
 import signal
 import unittest
 
@@ -68,6 +69,25 @@ class Lifecycle(unittest.TestCase):
             code, _, err = run(NODE, "--config", config, "--check-config")
             self.assertEqual(code, 6)
             self.assertIn(f"{config}:2:", err)
+
+    def test_the_environment_names_the_file_and_what_it_misspells_is_told(self):
+        with Bus() as bus:
+            config = bus.folder / "node.textproto"
+            config.write_text('name: "cell"\n')
+            os.environ |= {"PALPATE_CONFIG": str(config), "PALPATE_WORKER": "2"}
+            self.addCleanup(lambda: [os.environ.pop(name) for name in ("PALPATE_CONFIG", "PALPATE_WORKER")])
+            code, out, err = run(NODE, "--print-config")
+            self.assertEqual(code, 0)
+            self.assertIn('name: "cell"', out)
+            self.assertIn("PALPATE_WORKER is not read: no option has that name, did you mean PALPATE_WORKERS?", err)
+            self.assertNotIn("PALPATE_CONFIG is not read", err)
+            other = bus.folder / "other.textproto"
+            other.write_text('name: "other"\n')
+            self.assertIn('name: "other"', run(NODE, "--config", other, "--print-config")[1])
+            config.unlink()
+            code, _, err = run(NODE, "--check-config")
+            self.assertEqual(code, 6)
+            self.assertIn(str(config), err)
 
 
 if __name__ == "__main__":

@@ -9,12 +9,14 @@
 #include <set>
 #include <string>
 
+#include "node/environment.h"
 #include "node/options.h"
 
 namespace palpate {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class Environment {
  public:
@@ -153,6 +155,27 @@ TEST(Config, VariablesOfOneOptionMustAgree) {
   const Environment neither("PALPATE_NO_INSECURE", "perhaps");
   EXPECT_THAT(config_from_environment().error,
               HasSubstr("PALPATE_NO_INSECURE: insecure: \"perhaps\""));
+}
+
+TEST(Config, AVariableThatIsNotReadIsTold) {
+  const auto are_told = [] {
+    std::string told;
+    for (const std::string& sentence : unread_variables()) told += sentence + "\n";
+    return told;
+  };
+  const Environment groups("PALPATE_MAX_GROUPS", "2");
+  const Environment file("PALPATE_CONFIG", "node.textproto");
+  EXPECT_EQ(config_file_from_environment(), "node.textproto");
+  const std::string before = are_told();  // of the tests' own
+  EXPECT_THAT(before, Not(HasSubstr("PALPATE_MAX_GROUPS")));
+  EXPECT_THAT(before, Not(HasSubstr("PALPATE_CONFIG")));
+  const Environment workers("PALPATE_WORKER", "2");
+  const Environment other("PALPATE_SOMETHING_ELSE", "2");
+  EXPECT_THAT(are_told(),
+              HasSubstr("environment variable PALPATE_WORKER is not read: no option has "
+                        "that name, did you mean PALPATE_WORKERS?\n"));
+  EXPECT_THAT(are_told(),
+              HasSubstr("PALPATE_SOMETHING_ELSE is not read: no option has that name\n"));
 }
 
 TEST(Config, ProbePrefixesAreBeginningsOfNames) {

@@ -9,11 +9,11 @@
 
 #include "node/check/approach_check.h"
 #include "node/check/group_check.h"
-#include "node/csv/text_lines.h"
 #include "node/files/counted.h"
 #include "node/files/overwritten_input.h"
 #include "node/files/printable.h"
 #include "node/files/probe_file.h"
+#include "node/files/trimmed.h"
 #include "node/files/written_file.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
@@ -53,7 +53,7 @@ struct FitCommand {
 };
 
 /// For lists with commas: "circle, ellipse" is "circle,ellipse".
-std::string without_blanks_around(const std::string& word) { return std::string(csv::trim(word)); }
+std::string without_blanks_around(const std::string& word) { return std::string(trimmed(word)); }
 
 /// Flags for the recogniser's options, out of their one table.
 void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
