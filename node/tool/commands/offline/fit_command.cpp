@@ -47,7 +47,7 @@ struct FitCommand {
   std::vector<std::string> probe_files;
   std::vector<std::string> left_out;  ///< numbers, and ranges of them
   FileFlags file;
-  bool patches_are_bounded = false;  ///< --most-patches was said
+  std::vector<std::string> said;  ///< names of the recogniser's options that were given
   RecognizerWords words;
   RecognizerOptions recognizer;
 };
@@ -112,7 +112,28 @@ std::string wrong_with_outputs(const FitCommand& fit, std::size_t groups) {
   return "";
 }
 
+bool is_among(const std::string& name, const std::vector<std::string>& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// What is wrong if a recogniser's option is given that does nothing for what is asked, or nothing.
+std::string wrong_with_options(const FitCommand& fit) {
+  const std::vector<std::string> of_class{"sigma_m", "recognized_probability",
+                                          "determined_fraction", "touched_from"};
+  const std::vector<std::string> of_part{"sigma_m", "recognized_probability",
+                                         "false_outlier_probability"};
+  if (fit.part.empty() && fit.given_class.empty()) return "";
+  for (const std::string& name : fit.said) {
+    if (!is_among(name, fit.part.empty() ? of_class : of_part)) {
+      return flag_of(name) + ": not with " + (fit.part.empty() ? "--class" : "--part") +
+             ", to which it makes no difference";
+    }
+  }
+  return "";
+}
+
 int run(FitCommand& fit) {
+  if (const std::string why = wrong_with_options(fit); !why.empty()) return complain(why, kUsage);
   if (const std::string why = resolve(fit.words, fit.recognizer); !why.empty()) {
     // It begins with the option's name in the table, which is the node's too.
     const std::size_t name = why.find(':');
@@ -190,7 +211,7 @@ int run(FitCommand& fit) {
     std::vector<Vec2> spikes;
     if (fit.given_class.empty()) {
       RecognizerOptions options = fit.recognizer;
-      options.memory = memory_for(group, options.memory, fit.patches_are_bounded);
+      options.memory = memory_for(group, options.memory, is_among("most_patches", fit.said));
       Answered answered = recognise(input, options, probes, notes);
       if (!fit.invariants_plot.empty()) {
         const std::string picture =
@@ -278,17 +299,18 @@ void add_fit_command(CLI::App& app, int& exit_code) {
           "wire contract a line, with \"notes\" about the file where there are any")
       ->check(CLI::IsMember({"text", "json"}))
       ->type_name("FORMAT");
-  command
-      ->add_option(
-          "--export", fit->curve_file,
-          "Write the recognised curve, by the name's ending: .csv (points along it), .json "
-          "(class, parameters, pose and points) or .dxf (for CAD, in millimetres); further "
-          "groups go to FILE-2.csv, ...")
-      ->check([](const std::string& path) {
-        return export_kind(path) ? std::string()
-                                 : "\"" + path + "\" ends in none of .csv, .json, .dxf";
-      })
-      ->type_name("FILE");
+  CLI::Option* curve_file =
+      command
+          ->add_option(
+              "--export", fit->curve_file,
+              "Write the recognised curve, by the name's ending: .csv (points along it), .json "
+              "(class, parameters, pose and points) or .dxf (for CAD, in millimetres); further "
+              "groups go to FILE-2.csv, ...")
+          ->check([](const std::string& path) {
+            return export_kind(path) ? std::string()
+                                     : "\"" + path + "\" ends in none of .csv, .json, .dxf";
+          })
+          ->type_name("FILE");
   CLI::Option* plot =
       command
           ->add_option(
@@ -312,8 +334,9 @@ void add_fit_command(CLI::App& app, int& exit_code) {
               "--class", fit->given_class,
               "Fit this class to all samples, whatever they look like and in whatever order: the "
               "least squares of the orthogonal distances, with form (rms, peak to valley) and "
-              "residuals. Of the options below --sigma and --determined-fraction count; json is "
-              "one GivenClassAnswer (palpate/v1/given_class.proto) a line")
+              "residuals. Of the options under Recognition it takes --sigma, --touched-from, "
+              "--determined-fraction and --recognized-probability; json is one GivenClassAnswer "
+              "(palpate/v1/given_class.proto) a line")
           ->excludes(invariants_plot)
           ->check(curve_class_name())
           ->type_name("CLASS");
@@ -330,9 +353,11 @@ void add_fit_command(CLI::App& app, int& exit_code) {
           "--part", fit->part,
           "Place the closed spline of this scene file (*.textproto) instead of recognising a "
           "curve: its pose, the segment of every patch, the samples beyond a joint. Single touches "
-          "may be in any order, if their noise is stated. Uses --sigma, --recognized-probability "
-          "and --false-outlier-probability; json is one "
+          "may be in any order, if their noise is stated. Of the options under Recognition it "
+          "takes "
+          "--sigma, --recognized-probability and --false-outlier-probability; json is one "
           "PartMatch (palpate/v1/part_match.proto) a line")
+      ->excludes(curve_file)
       ->excludes(plot)
       ->excludes(invariants_plot)
       ->excludes(given)
@@ -350,7 +375,9 @@ void add_fit_command(CLI::App& app, int& exit_code) {
   add_file_flags(*command, fit->file);
   add_recognizer_flags(*command, *fit);
   command->callback([fit, command, &exit_code] {
-    fit->patches_are_bounded = command->count("--most-patches") > 0;
+    for_each_recognizer_option(fit->words, fit->recognizer, [&](const OptionInfo& info, auto&) {
+      if (command->count(flag_of(info.name)) > 0) fit->said.emplace_back(info.name);
+    });
     exit_code = run(*fit);
   });
 }

@@ -197,6 +197,17 @@ class GivenClass(unittest.TestCase):
             self.assertEqual(answer.recognition.curve_class, curve_pb2.CURVE_CLASS_CIRCLE)
             self.assertFalse(answer.recognition.HasField("parameters"))
 
+    def test_options_that_make_no_difference_are_refused(self):
+        for option in (("--classes", "ellipse"), ("--form-deviation-m", "1e-5"), ("--unqualified-probe",), ("--method", "tree"),
+                       ("--no-unqualified-probe",), ("--most-samples-per-patch", "64"), ("--relative-tolerance", "0.1")):
+            code, answers, err = fit(touches(SQUARE), "--class", "circle", *option)
+            self.assertEqual((code, answers), (2, []), option)
+            told = {"--no-unqualified-probe": "--unqualified-probe", "--relative-tolerance": "--tree-relative-tolerance"}
+            self.assertIn(f"palpate: {told.get(option[0], option[0])}: not with --class", err)
+        code, answers, err = fit(touches(SQUARE), "--class", "circle", "--sigma", "1e-5", "--touched-from", "outside",
+                                 "--determined-fraction", "0.2", "--recognized-probability", "0.9")
+        self.assertEqual(code, 0, err)
+
     def test_wrong_words_are_refused(self):
         for arguments, word in ((("--class", "potato"), "potato"), (("--class", "circle", "--leave-out", "9"), "'9'"),
                                 (("--class", "circle", "--leave-out", "3-9"), "'3-9'"),

@@ -129,6 +129,20 @@ class Part(unittest.TestCase):
                        for i in range(111))
         self.assertEqual(self.match(rows).status, part_match_pb2.PART_MATCH_STATUS_NO_MATCH)
 
+    def test_options_that_make_no_difference_are_refused(self):
+        samples = self.write("part.csv", HEADER + stroke(0, 1.1, 1.9))
+        for option, told in ((("--classes", "ellipse"), "--classes: not with --part"),
+                             (("--touched-from", "inside"), "--touched-from: not with --part"),
+                             (("--determined-fraction", "0.1"), "--determined-fraction: not with --part"),
+                             (("--export", self.folder / "curve.csv"), "--export")):
+            code, out, err = run(TOOL, "fit", "--part", self.model, samples, *option)
+            self.assertEqual((code, out), (2, ""), option)
+            self.assertIn(told, err)
+        self.assertFalse((self.folder / "curve.csv").exists())
+        code, _, err = run(TOOL, "fit", "--part", self.model, samples, "--recognized-probability", "0.9",
+                           "--false-outlier-probability", "0.02")
+        self.assertEqual((code, err), (0, ""))
+
     def test_bad_models_are_named(self):
         samples = self.write("part.csv", HEADER + stroke(0, 1.1, 1.9))
         few = MODEL.replace("  control_points { x_m: 0.03 y_m: 0.0 }\n", "").replace(
