@@ -9,6 +9,7 @@
 #include "core/recognition/samples/side_words.h"
 #include "node/csv/contact_csv.h"
 #include "node/csv/csv_columns.h"
+#include "node/csv/decimal_marks.h"
 #include "node/csv/row_detail.h"
 #include "node/csv/text_lines.h"
 #include "node/files/counted.h"
@@ -126,7 +127,8 @@ class Reader {
     const std::size_t count = split();
     if (count != width_) {
       fail(count > width_ ? fields_[width_].data() : line_.data() + line_.size(),
-           count > width_ ? "more than " + counted(width_, "field")
+           count > width_ ? "more than " + counted(width_, "field") +
+                                std::string(csv::hint_of_commas(line_, ','))
                           : counted(count, "field") + " instead of " + std::to_string(width_));
       return;
     }

@@ -26,4 +26,12 @@ class DecimalMarks {
   bool point_ = false;
 };
 
+/// What is to be said beside of a line of more fields than there are columns: commas that part
+/// fields and decimal commas are not told apart.
+inline std::string_view hint_of_commas(std::string_view line, char separator) {
+  return separator == ',' && line.find('.') == std::string_view::npos
+             ? "; are these decimal commas? Then part the columns by semicolons or tabs"
+             : "";
+}
+
 }  // namespace palpate::csv

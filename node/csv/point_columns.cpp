@@ -156,6 +156,8 @@ std::string plain(std::string_view name) {
   return result;
 }
 
+bool is_mil(std::string_view unit) { return unit == "mil" || unit == "mils"; }
+
 std::optional<double> unit_for(Column column, std::string_view name) {
   if (column == Column::Stamp) return time_unit_ns(name);
   if (column == Column::NormalSigma) return angle_unit_rad(name);
@@ -197,6 +199,9 @@ std::optional<NamedColumn> column_of(std::string_view name) {
   const auto column = alias(std::move(before_unit));
   const auto unit =
       column ? unit_for(*column, std::string_view(words).substr(last + 1)) : std::nullopt;
+  if (column && is_length(*column) && is_mil(std::string_view(words).substr(last + 1))) {
+    return NamedColumn{*column, std::nullopt, true};
+  }
   return unit ? std::optional(NamedColumn{*column, unit}) : std::nullopt;
 }
 
@@ -276,6 +281,7 @@ PointColumns columns_of(const std::vector<std::string_view>& names) {
     }
     auto& place = columns.places[static_cast<std::size_t>(named->column)];
     if (place && columns.twice.empty()) columns.twice = printable(names[i], 40);
+    if (named->is_in_mil && columns.in_mil.empty()) columns.in_mil = printable(names[i], 40);
     place = i;
     columns.units[static_cast<std::size_t>(named->column)] = named->unit;
     if (named->column == Column::TipRadius) {

@@ -22,6 +22,7 @@ struct NamedColumn {
   Column column = Column::X;
   /// SI units in one of the file's; nullopt where the name tells none.
   std::optional<double> unit;
+  bool is_in_mil = false;  ///< a thousandth of an inch, and to some a millimetre: no unit is told
 };
 
 /// The column of that name: case, quotes, blanks and hyphens do not matter, a unit may follow after
@@ -42,6 +43,7 @@ struct PointColumns {
   std::vector<std::size_t> unnamed;  ///< places of columns whose name is empty
   bool tips_by_diameter = false;     ///< what stands in the place of the tip radius
   std::string twice;                 ///< name of a column that comes a second time; else empty
+  std::string in_mil;                ///< name of a column of such lengths; else empty
   /// Why columns of normals or covariances are not used, a sentence each.
   std::vector<std::string> unused_details;
 

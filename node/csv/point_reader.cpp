@@ -157,7 +157,7 @@ class PointReader {
     std::string note;
     const auto columns = columns_by_number(width_, note);
     if (!columns) {
-      fail(line.data(), note);
+      fail(line.data(), note + std::string(hint_of_commas(line, separator_)));
       return;
     }
     columns_ = *columns;
@@ -287,8 +287,10 @@ class PointReader {
     // Spreadsheets end lines in a separator.
     if (fields_.size() == width_ + 1 && fields_.back().empty()) fields_.pop_back();
     if (fields_.size() != width_) {
-      fail(fields_.size() > width_ ? fields_[width_].data() : line.data() + line.size(),
-           counted(fields_.size(), "field") + " instead of " + std::to_string(width_));
+      const bool is_more = fields_.size() > width_;
+      fail(is_more ? fields_[width_].data() : line.data() + line.size(),
+           counted(fields_.size(), "field") + " instead of " + std::to_string(width_) +
+               std::string(is_more ? hint_of_commas(line, separator_) : ""));
       return;
     }
     // Spreadsheets write empty rows as separators alone.

@@ -83,6 +83,11 @@ std::optional<PointColumns> with_row_of_units(const PointColumns& columns,
 }
 
 std::string clash_of_units(const PointColumns& columns) {
+  if (!columns.in_mil.empty()) {
+    return "column " + columns.in_mil +
+           ": a mil is a thousandth of an inch, but to some a millimetre; convert to mm or in, or "
+           "say --unit mm if it is one";
+  }
   std::optional<double> first;
   for (const Column column : kCoordinates) {
     const auto unit = named_unit(columns, column);

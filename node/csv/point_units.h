@@ -18,8 +18,8 @@ double unit_of(const PointColumns& columns, Column column, const ContactFileOpti
 std::optional<PointColumns> with_row_of_units(const PointColumns& columns,
                                               const std::vector<std::string_view>& fields);
 
-/// What is wrong if two coordinates have different units, or nothing: one of them is a mistake, and
-/// which one nobody knows.
+/// What is wrong if two coordinates have different units (one of them is a mistake, and which one
+/// nobody knows), or if a length is in mil; or nothing.
 std::string clash_of_units(const PointColumns& columns);
 
 /// What is assumed or overruled, or nothing.

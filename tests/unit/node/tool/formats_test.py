@@ -249,6 +249,13 @@ class Formats(unittest.TestCase):
         self.check("x,y_mm,sigma\n" + rows.replace("\n", ",0.02\n"))
         self.assertIn("columns x, sigma name no unit: taken as mm, as y is (else --unit", self.notes)
 
+    def test_a_mil_is_not_guessed(self):
+        rows = "".join(f"{1e3 * x!r},{1e3 * y!r},0.02\n" for x, y in WHOLE)
+        for names, told in (("x_mil,y_mil,sigma", "x_mil"), ("x_mm,y [mils],sigma", "y [mils]"), ("x_mm,y_mm,sigma_mil", "sigma_mil")):
+            self.assertIn(f"FILE:1:1: column {told}: a mil is a thousandth of an inch, but to some a millimetre",
+                          self.refused(f"{names}\n{rows}"))
+            self.check(f"{names}\n{rows}", "--unit", "mm")
+
     def test_points_of_space_are_brought_into_their_plane(self):
         def cloud(place):
             return "".join("%.9g,%.9g,%.9g\n" % place(x, y) for x, y in WHOLE)
@@ -467,6 +474,10 @@ class Formats(unittest.TestCase):
                               ("1 2\n3 4 5\n", "FILE:2:5: 3 fields instead of 2"),
                               ("1 2 3 4\n", "FILE:1:1: 4 columns without a line of names"),
                               ("1\n2\n", "FILE:1:1: 1 column without a line of names"),
+                              ("x_mm,y_mm\n1,5,2,5\n", "FILE:2:5: 4 fields instead of 2; are these decimal commas?"),
+                              ("1,5,2,5\n", "cov_yy_mm2); are these decimal commas? Then part the columns by semicolons or tabs\n"),
+                              ("x_mm,y_mm\n1.5,2.5,3\n", "FILE:2:9: 3 fields instead of 2\n"),
+                              ("probe,patch,x_m,y_m\np,0,1,5,2,5\n", "more than 4 fields; are these decimal commas?"),
                               ("x,force\n1,2\n", "FILE:1:1: no columns of two coordinates"),
                               ("x,y,x_pos\n1,2,3\n", "FILE:1:1: column x_pos comes twice"),
                               ("x,y,patch\n1,2,one\n", "FILE:2:5: patch 'one': not a whole number"),
