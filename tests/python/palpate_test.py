@@ -577,6 +577,37 @@ for wrong in (dict(name="left finger"), dict(name="finger", group="a/b"), dict(n
         self.assertIn("no recognizer listens at", lines[2])
         self.assertEqual([line.partition("wrong: ")[2].split(":")[0] for line in lines[3:]], ["name", "group", "tip_radius"])
 
+    def test_a_probe_may_bind_and_recognizers_come(self):
+        script = """
+import palpate, numpy as np
+t = np.linspace(0.3, 1.5, 111)
+with palpate.Planner("connect:" + RESULTS) as planner, palpate.Probe("finger", "bind:" + CONTACTS, unit="mm") as probe:
+    probe.send(np.column_stack([25 * np.cos(t), 17.5 * np.sin(t)]))
+    while (count := planner.receive(timeout=20).sample_count) != 111:
+        pass
+    print(count)
+    try:
+        palpate.Probe("other", "bind:" + CONTACTS)
+    except OSError as error:
+        print(error)
+again = palpate.Probe("finger", "bind:" + CONTACTS, timeout=20)  # the path is free again, and the recognizer comes back
+again.close()
+try:
+    palpate.Probe("finger", "bind:" + CONTACTS + "-nobody", timeout=0.2)
+except TimeoutError as error:
+    print(error)
+"""
+        from bus import Bus
+        with Bus() as bus:
+            address = f"ipc://{bus.folder}/bound"
+            bus.contacts = "connect:" + address
+            bus.start_node()
+            bus.contacts = address
+            lines = self.lines_said(bus, script)
+        self.assertEqual(lines[0], "111")
+        self.assertEqual(lines[1], f"cannot bind to {address}: another process has bound it")
+        self.assertEqual(lines[2], f"no recognizer has come to {address}-nobody (palpate-node --contacts connect:{address}-nobody)")
+
     def test_probes_of_one_group_touch_one_object(self):
         # Each touches one side of an ellipse: one stroke alone would not show it.
         script = f"""

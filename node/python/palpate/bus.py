@@ -1,7 +1,9 @@
 """Clients of a running palpate-node: probes and planners. Needs pyzmq and protobuf."""
 from __future__ import annotations
 
+import fcntl
 import operator
+import os
 import random
 import re
 import time
@@ -57,9 +59,34 @@ def _object_number(value: int) -> int:
     return number
 
 
+def _address_of(endpoint: str) -> tuple[bool, str]:
+    """Whether "bind:ADDRESS" or "connect:ADDRESS" binds, and the address. An address alone is connected to."""
+    for word, binds in (("bind:", True), ("connect:", False)):
+        if endpoint.startswith(word):
+            return binds, endpoint[len(word):]
+    return False, endpoint
+
+
+def _path_lock(address: str) -> int | None:
+    """Locks the file beside an ipc:// path until it is closed, as all of palpate's programs do: libzmq would take a bound path
+    from its owner without a word."""
+    path = address.removeprefix("ipc://")
+    if path == address or path == "*" or path.startswith("@"):
+        return None
+    lock = os.open(path + ".lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(lock)
+        raise OSError(f"cannot bind to {address}: another process has bound it") from None
+    return lock
+
+
 class _Peer:
     def __init__(self, kind: int, endpoint: str, secret_key: str | None, server_key: str | None) -> None:
-        if endpoint.startswith("inproc://"):
+        self._binds, self._address = _address_of(endpoint)
+        self._lock: int | None = None
+        if self._address.startswith("inproc://"):
             raise ValueError(f"{endpoint!r}: inproc:// reaches only within one process, and no recognizer is in this one; use ipc://PATH")
         self._context = zmq.Context()
         self._socket = self._context.socket(kind)
@@ -75,6 +102,18 @@ class _Peer:
                                                          zmq.EVENT_HANDSHAKE_SUCCEEDED)
         self._closed_in_a_row = 0
         self.endpoint = endpoint
+
+    def _attach(self) -> None:
+        """Binds or connects. Closes everything if that fails."""
+        try:
+            if self._binds:
+                self._lock = _path_lock(self._address)
+                self._socket.bind(self._address)
+            else:
+                self._socket.connect(self._address)
+        except (OSError, zmq.ZMQError):
+            self.close()
+            raise
 
     def _wait(self, timeout: float) -> bool:
         """Waits for a message. False after timeout; raises ConnectionRefusedError if the recognizer refuses us."""
@@ -111,6 +150,8 @@ class _Peer:
         self._refusals.close()
         self._socket.close()
         self._context.term()
+        if self._lock is not None:
+            os.close(self._lock)
 
     def _check_open(self) -> None:
         if self._socket.closed:
@@ -164,9 +205,12 @@ class Probe(_Peer):
                  tip_radius: float = 0.0, timeout: float = 10.0, secret_key: str | None = None,
                  server_key: str | None = None, *, object: int | None = None) -> None:
         """Connects and waits until a recognizer listens. Raises TimeoutError after `timeout` seconds,
-        ConnectionRefusedError if the recognizer refuses our keys, and ValueError for invalid arguments.
+        ConnectionRefusedError if the recognizer refuses our keys, OSError or zmq.ZMQError if an address cannot be bound or
+        connected to, and ValueError for invalid arguments.
 
         name: of the probe, 1 to 64 of A-Z a-z 0-9 _ . -
+        endpoint: an address, tcp://HOST:PORT or ipc://PATH. "bind:ADDRESS" binds it, and recognizers come
+        (palpate-node --contacts connect:ADDRESS): then several may share this probe. The first one is waited for.
         group: probes of one group touch the same object; empty = the probe's own name. Another name needs `object`.
         sigma: standard deviation of a point, in `unit`; 0 = not known.
         unit: "m", "mm", "cm", "um", "nm" or "in"; of points, sigma and tip_radius.
@@ -197,10 +241,11 @@ class Probe(_Peer):
         batch.group = group
         batch.object = number
         batch.tip_radius_m = self._scale * tip_radius
-        self._socket.connect(endpoint)
+        self._attach()
         try:
             if not self._wait(timeout):
-                raise TimeoutError(f"no recognizer listens at {endpoint} (palpate-node)")
+                raise TimeoutError(f"no recognizer has come to {self._address} (palpate-node --contacts connect:{self._address})"
+                                   if self._binds else f"no recognizer listens at {self._address} (palpate-node)")
         except OSError:
             self.close()
             raise
@@ -261,13 +306,13 @@ class Planner(_Peer):
 
     def __init__(self, endpoint: str = RESULTS, group: str | None = None, secret_key: str | None = None,
                  server_key: str | None = None) -> None:
-        """Connects. group: the group whose answers are received; None = all. secret_key, server_key: see Probe."""
+        """Connects, or binds "bind:ADDRESS". group: the group whose answers are received; None = all. secret_key, server_key: see Probe."""
         if group is not None:
             _name("group", group)
         super().__init__(zmq.SUB, endpoint, secret_key, server_key)
         self._newest: dict[str, tuple[int, int]] = {}
         self._socket.setsockopt(zmq.SUBSCRIBE, b"recognition/" + (f"{group}/".encode() if group is not None else b""))
-        self._socket.connect(endpoint)
+        self._attach()
 
     def receive(self, timeout: float = 10.0) -> recognition_pb2.Recognition:
         """Returns the next new answer (SI units). Raises TimeoutError after `timeout` seconds and ConnectionRefusedError if
