@@ -158,7 +158,8 @@ void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& pa
         cure_of(source, "count patch up by one at each lift-off",
                 "give each stroke a patch number of its own (column patch, or an empty line "
                 "between strokes); rows in no order along the part are --touches",
-                "give each stroke an array of its own in the list of points; points in no order "
+                "give each stroke an array of its own (in the list of points) or a patch number of "
+                "its own (Recognizer.add); points in no order "
                 "along the part are touches=True"));
   }
   if (unordered > 0) {

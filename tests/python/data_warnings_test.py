@@ -1,4 +1,4 @@
-"""palpate.fit warns of what palpate check and fit find wrong with a file."""
+"""palpate.fit and Recognizer warn of what palpate check and fit find wrong with a file."""
 import math
 import sys
 import unittest
@@ -32,15 +32,18 @@ STROKES = [stroke(0.3, 1.5), stroke(2.3, 3.6, seed=2)]
 
 
 class DataWarnings(unittest.TestCase):
-    def warned(self, points, **arguments):
-        """The result, and what fit says of the points."""
+    def said_by(self, call):
+        """The result of a call, and the warnings."""
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            result = palpate.fit(points, **{"sigma": SIGMA, "unit": "mm"} | arguments)
+            result = call()
         for warning in caught:
             self.assertIs(warning.category, palpate.DataWarning)
-            self.assertEqual(warning.filename, __file__)  # where fit was called
+            self.assertEqual(warning.filename, __file__)  # where it was called
         return result, "\n".join(str(warning.message) for warning in caught)
+
+    def warned(self, points, **arguments):
+        return self.said_by(lambda: palpate.fit(points, **{"sigma": SIGMA, "unit": "mm"} | arguments))
 
     def test_nothing_is_said_of_sound_points(self):
         t = np.random.default_rng(3).permutation(np.linspace(0, 2 * math.pi, 13)[:-1])
@@ -75,6 +78,30 @@ class DataWarnings(unittest.TestCase):
         self.assertIn("leave these samples out", said)
         result, said = self.warned([with_approach(STROKES[0], n=5, angle=math.radians(90)), STROKES[1]])
         self.assertEqual((result.curve_class, said), ("ellipse", ""))
+
+    def test_strokes_without_patch_numbers_are_told_as_they_come(self):
+        for numbers, jumps in (((0, 0), True), ((0, 1), False)):
+            recognizer = palpate.Recognizer(sigma=SIGMA, unit="mm")
+            said = []
+            for number, points in zip(numbers, STROKES):
+                for start in range(0, 100, 7):
+                    recognizer.add(points[start:start + 7], patch=number)
+                    said.append(self.said_by(recognizer.recognize)[1])
+            self.assertEqual(set(said[:15]), {""})
+            self.assertEqual(any("1 jump" in sentence and "patch number of its own" in sentence for sentence in said), jumps)
+            self.assertEqual(self.said_by(recognizer.recognize)[1], "")  # nothing has come since
+        recognizer.reset()
+        recognizer.add(STROKES[0])
+        self.assertEqual(self.said_by(recognizer.recognize)[1], "")
+
+    def test_the_probe_is_named_and_a_long_stream_is_judged_by_its_newest(self):
+        recognizer = palpate.Recognizer(sigma=SIGMA, unit="mm")
+        recognizer.add(np.concatenate(STROKES), patch=0, probe=7)
+        recognizer.add(STROKES[0], patch=1, probe=8)
+        self.assertRegex(self.said_by(recognizer.recognize)[1], "^probe 7: 1 jump")
+        for patch in range(2, 12):
+            recognizer.add(stroke(0.3, 1.5, n=10_000, seed=patch), patch=patch, probe=8)
+        self.assertEqual(self.said_by(recognizer.recognize)[1], "")
 
     def test_a_warning_may_be_made_an_error(self):
         with warnings.catch_warnings():

@@ -34,8 +34,8 @@ _LEAST_SAMPLES = 64  # of a patch, as for palpate-node: means of more neighbours
 
 
 class DataWarning(UserWarning):
-    """What is wrong with the points, where an answer from them may be wrong: fit() warns of it in the words of `palpate fit`.
-    warnings.filterwarnings("error", category=palpate.DataWarning) makes it an exception, "ignore" in its place drops it."""
+    """What is wrong with the points, where an answer from them may be wrong: fit() and Recognizer.recognize() warn of it in the words of
+    `palpate fit`. warnings.filterwarnings("error", category=palpate.DataWarning) makes it an exception, "ignore" in its place drops it."""
 
 
 class Recognizer:
@@ -64,7 +64,9 @@ class Recognizer:
                                       _whole("most_patches", most_patches, 1),
                                       _whole("most_samples_per_patch", most_samples_per_patch, _LEAST_SAMPLES),
                                       str(touched_from))
-        self._check: _core.ArrayCheck | None = None
+        self._check = _core.ArrayCheck()
+        self._added = 0
+        self._checked = 0  # of those added
         self._points: list[np.ndarray] = []
         self._drawn = 0
         self._tip_radius = 0.0
@@ -95,8 +97,8 @@ class Recognizer:
         patch_arrays = (in_metres, sigmas, _whole("probe", probe), _whole("patch", patch), self._scale * tip_radius,
                         str(material_side), *details(normals, normal_sigma, covariances, self._scale))
         accepted, repeated = self._core.add(*patch_arrays)
-        if self._check is not None:
-            self._check.add(*patch_arrays)
+        self._check.add(*patch_arrays)
+        self._added += accepted
         self.dropped += repeated
         self._tip_radius = max(self._tip_radius, tip_radius)
         self._points.append(points.copy())
@@ -107,13 +109,27 @@ class Recognizer:
         return accepted
 
     def recognize(self) -> Result:
-        """Returns the answer for all points so far."""
+        """Returns the answer for all points so far. Warns as fit() does, once a quarter more points have come than at the last
+        time. Of a long stream the newest points are judged, 32,768 at least."""
+        return self._recognize(stacklevel=3)
+
+    def _recognize(self, stacklevel: int) -> Result:
         touched = np.concatenate(self._points) if self._points else np.empty((0, 2))
-        return Result(self._core.recognize(), self._unit, touched, self._tip_radius)
+        result = Result(self._core.recognize(), self._unit, touched, self._tip_radius)
+        if self._added >= 1.25 * self._checked:
+            self._checked = self._added
+            doubts = self._check.warnings()
+            if result.status != "recognized" or result.curve_class == "unclassified":
+                doubts += filter(None, [self._check.approaches()])
+            for doubt in doubts:
+                warnings.warn(doubt, DataWarning, stacklevel)
+        return result
 
     def reset(self) -> None:
         """Forgets all points: a new object begins."""
         self._core.reset()
+        self._check = _core.ArrayCheck()
+        self._added = self._checked = 0
         self._points.clear()
         self._drawn = 0
         self.dropped = 0
@@ -156,7 +172,6 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
     # The whole list is known, so no patch needs to be forgotten.
     recognizer = Recognizer(None, unit, classes, form_deviation, max(64, len(patches)), most_samples_per_patch,
                             unqualified_probe, touched_from)
-    recognizer._check = check = _core.ArrayCheck()
     accepted = 0
     for number, patch in enumerate(patches):
         its_normals = of_patches[number]
@@ -165,13 +180,7 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
     if accepted == 0:
         raise ValueError("points: there are none")
     _check_sides(tip_radius, material_side, touched_from, touches, normals is not None)
-    result = recognizer.recognize()
-    doubts = check.warnings()
-    if result.status != "recognized" or result.curve_class == "unclassified":
-        doubts += filter(None, [check.approaches()])
-    for doubt in doubts:
-        warnings.warn(doubt, DataWarning, stacklevel=2)
-    return result
+    return recognizer._recognize(stacklevel=3)
 
 
 def _check_sides(tip_radius: float, material_side: str, touched_from: str, touches: bool, has_normals: bool) -> None:
