@@ -58,6 +58,16 @@ std::string note_of_tip_side(const ContactGroup& group, const v1::Recognition& a
          "; a column material_side of strokes tells it too, and so do measured normals";
 }
 
+std::string note_of_unused_side(const ContactGroup& group, TouchedFrom touched_from) {
+  const bool has_tip = std::any_of(group.runs.begin(), group.runs.end(), [](const ContactRun& run) {
+    return run.context.tip_radius_m > 0.0;
+  });
+  return touched_from == TouchedFrom::Unknown || has_tip
+             ? std::string()
+             : "WARNING: --touched-from is not used: no sample is the centre of a round tip "
+               "(--tip-radius, column tip_radius)";
+}
+
 std::string note_of_misfit(const v1::GivenClassAnswer& answer) {
   const v1::Recognition& fit = answer.recognition();
   if (fit.doubt() != v1::RECOGNITION_DOUBT_MISFIT || answer.residual_m().empty()) return {};

@@ -20,6 +20,10 @@ Stated stated_of(const ContactGroup& group, const RecognizerOptions& options, bo
 std::string note_of_tip_side(const ContactGroup& group, const v1::Recognition& answer,
                              TouchedFrom touched_from);
 
+/// That --touched-from tells nothing, for no sample is the centre of a round tip; empty where one
+/// is or nothing was said.
+std::string note_of_unused_side(const ContactGroup& group, TouchedFrom touched_from);
+
 /// That a given class leaves residuals which the stated noise cannot be, and the sample that lies
 /// furthest off; empty where it can.
 std::string note_of_misfit(const v1::GivenClassAnswer& answer);

@@ -242,6 +242,12 @@ int run(FitCommand& fit) {
       complain(group.file + ": " + note, kDone);
       notes.push_back(std::move(note));
     }
+    // A probe file may know the tip.
+    if (std::string note = note_of_unused_side(group, fit.recognizer.touched_from);
+        probes.empty() && !note.empty()) {
+      complain(group.file + ": " + note, kDone);
+      notes.push_back(std::move(note));
+    }
     // A class that is given is fitted to all samples: none is set aside as a spike.
     const bool is_found = answer.status() == v1::RECOGNITION_STATUS_RECOGNIZED &&
                           answer.curve_class() != v1::CURVE_CLASS_UNCLASSIFIED;

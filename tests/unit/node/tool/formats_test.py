@@ -303,6 +303,15 @@ class Formats(unittest.TestCase):
         answer = self.fit(text, "--tip-radius", "0.002", "--sigma", "1e-6")
         self.assertAlmostEqual(answer["parameters"]["a"], 0.015, places=5)
 
+    def test_a_side_of_tips_that_are_none_is_told(self):
+        for more, told in (((), True), (("--class", "ellipse"), True), (("--tip-radius", "0.001"), False)):
+            path = self.folder / "points.csv"
+            path.write_text("x_m,y_m\n" + self.rows())
+            code, out, err = run(TOOL, "fit", path, "--format", "text", "--touched-from", "inside", *more)
+            self.assertEqual(code, 0, err)
+            self.assertEqual("note         WARNING: --touched-from is not used: no sample is the centre" in out, told, more)
+            self.assertEqual("WARNING: --touched-from" in err, told, more)
+
     def test_a_tip_may_be_told_by_its_diameter(self):
         outside = [(0.02 + 0.017 * math.cos(t), 0.017 * math.sin(t)) for t in (2 * math.pi * i / 40 for i in range(40))]
         text = "x_m,y_m,material_side,Ball diameter [mm]\n" + "".join(f"{x},{y},left,4\n" for x, y in outside)
