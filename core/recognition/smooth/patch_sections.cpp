@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <utility>
 
 #include "core/recognition/smooth/turning_sections.h"
@@ -114,25 +115,26 @@ std::vector<Section> sections_of_patches(const FitData& data, const SectionNoise
                         (!noise.known || rms_sigma(data) < kLargestNoise);
   const std::vector<const StoredPatch*> stored =
       may_keep ? stored_patches_of(data, source.patches) : std::vector<const StoredPatch*>{};
+  KeptSections* const kept = stored.empty() ? nullptr : source.kept;
   std::vector<Section> sections;
   for (std::size_t p = 0; p < data.patches.size(); ++p) {
     const PatchSpan& patch = data.patches[p];
     if (patch.size() == 0) {
       continue;  // every sample was set aside
     }
-    const bool is_whole = !stored.empty() && patch.size() >= kFewestOfSection &&
-                          stored[p]->samples.size() == patch.size();
-    auto kept = is_whole ? source.kept->of(p, *stored[p], data, noise.known) : std::nullopt;
-    if (kept) {
-      std::move(kept->begin(), kept->end(), std::back_inserter(sections));
+    const bool may_be_kept = kept != nullptr && patch.size() >= kFewestOfSection &&
+                             stored[p]->samples.size() == patch.size();
+    auto before = may_be_kept ? kept->of(p, *stored[p], data, noise.known) : std::nullopt;
+    if (before) {
+      std::move(before->begin(), before->end(), std::back_inserter(sections));
       continue;
     }
     const std::size_t first = sections.size();
     for (const PatchSpan& points : sections_of(data, patch, noise.known)) {
       fit_or_halve(data, points, noise, &sections);
     }
-    if (is_whole) {
-      source.kept->keep(p, *stored[p], data, noise.known, std::span(sections).subspan(first));
+    if (may_be_kept) {
+      kept->keep(p, *stored[p], data, noise.known, std::span(sections).subspan(first));
     }
   }
   return sections;
