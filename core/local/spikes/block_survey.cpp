@@ -4,6 +4,7 @@
 
 #include "core/local/noise.h"
 #include "core/local/spikes/least_median_parabola.h"
+#include "core/numerics/median.h"
 #include "core/numerics/normal_law.h"
 
 namespace palpate {
@@ -86,8 +87,8 @@ std::size_t block_length(std::span<const Vec2> samples, double sigma_m) {
 struct Blocks {
   LocalStatus status = LocalStatus::TooFewSamples;
   double sigma_m = 0.0;
-  double mean_extent_m = 0.0;
-  double largest = 0.0;  ///< residual, in units of the noise of its own block
+  double extent_m = 0.0;  ///< of the median block: a spike lengthens its own
+  double largest = 0.0;   ///< residual, in units of the noise of its own block
   double backtrack_m = 0.0;
   double end_gap = 0.0;
   /// By more than 45 degrees: so it does to a spike there, and the bend counts as form.
@@ -106,7 +107,7 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigm
   work.spend(WorkKind::SpikeRow, kBlocksOfSample * samples.size());
   Blocks result;
   ResidualBlock block;
-  std::vector<double> sizes, largest, floors;
+  std::vector<double> sizes, largest, floors, extents;
   sizes.reserve(2 * samples.size());
   for_each_block(samples.size(), length, length / 2, [&](std::size_t start) {
     const LocalStatus status = block.fit(samples.subspan(start, length));
@@ -118,7 +119,7 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigm
     for (std::size_t i = 0; i < length; ++i) {
       sizes.push_back(std::abs(block.studentised(i)));
     }
-    result.mean_extent_m += block.extent_m();
+    extents.push_back(block.extent_m());
     result.backtrack_m = std::max(result.backtrack_m, block.backtrack_m());
     const bool at_cusp = cusps.touched_by(start, start + length, samples.size());
     const bool first = start == 0;
@@ -131,7 +132,7 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigm
     floors.push_back(noise_floor(block, at_cusp));
   });
   if (result.status == LocalStatus::Ok) {
-    result.mean_extent_m /= static_cast<double>(floors.size());
+    result.extent_m = median_of(extents);
     result.sigma_m = sigma_m > 0.0 ? sigma_m : robust_sigma(sizes);
     for (std::size_t b = 0; b < floors.size(); ++b) {
       result.largest = std::max(result.largest, largest[b] / std::max(result.sigma_m, floors[b]));
@@ -216,7 +217,7 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
   Blocks blocks = fit_blocks(samples, survey.length, sigma_m, cusps, work);
   const auto is_resolved = [&] {
     return blocks.status == LocalStatus::Ok &&
-           blocks.mean_extent_m > ResidualBlock::kMinExtentSigmas * blocks.sigma_m;
+           blocks.extent_m > ResidualBlock::kMinExtentSigmas * blocks.sigma_m;
   };
   while (!is_resolved() && survey.length < samples.size()) {
     survey.length = std::min(2 * survey.length, samples.size());
