@@ -303,8 +303,9 @@ class Fit(unittest.TestCase):
         self.assertLess(len(done), most)
 
     def test_what_a_call_costs_beside_the_recognition(self):
-        # 40 us at most are meant, the check of the points among them; overhead.py measures them. A test counts what the time is spent on and no other
-        # work of the machine changes: calls of functions, of which each takes 0.1 to 0.3 us.
+        # 40 us at most are meant, the check of the points among them; overhead.py measures them. A test counts what the
+        # time is spent on and no other work of the machine changes: calls of functions, of which each takes 0.1 to 0.3
+        # us.
         import overhead
         counts = {name: overhead.calls(call) for name, call in overhead.what_is_called().items()}
         print(counts)
