@@ -17,7 +17,6 @@
 #include "node/python/array_check.h"
 #include "node/python/known_class.h"
 #include "node/python/names.h"
-#include "node/python/patch_arrays.h"
 #include "node/python/point_details.h"
 #include "node/python/pose_tuple.h"
 #include "node/python/sendable.h"
@@ -28,6 +27,7 @@ namespace {
 
 using palpate::Array;
 using palpate::class_called;
+using palpate::PointDetails;
 using palpate::pose_of;
 
 const char* name_of(palpate::RecognitionStatus status) {
@@ -114,20 +114,48 @@ class Recognizer {
       : recognizer_(options_of(sigma_m, classes, form_deviation_m, unqualified_probe, most_patches,
                                most_samples_per_patch, touched_from)) {}
 
+  /// `points`: n x 2, in metres. `sigma_m`: length n, 1 or 0. The others as in PointDetails.
   /// Returns how many points were accepted, and how many only repeat the place of the one before.
   py::tuple add(const Array& points, const Array& sigma_m, std::uint32_t probe, std::uint32_t patch,
                 double tip_radius_m, const std::string& side, const Array& normals,
                 const Array& normal_sigmas, const Array& covariances_m2) {
+    const std::size_t count = palpate::count_of_points(points);
+    const auto sigmas = static_cast<std::size_t>(sigma_m.size());
+    palpate::check_sigmas(sigma_m, count);
+    const palpate::PatchContext context{probe, patch, tip_radius_m, palpate::side_called(side)};
+    const double* xy = points.data();
+    const double* sigma = sigma_m.data();
     // If any point of a patch is invalid, none of the patch is added.
-    const palpate::PatchArrays arrays(points, sigma_m, probe, patch, tip_radius_m, side, normals,
-                                      normal_sigmas, covariances_m2);
+    std::size_t not_finite = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      not_finite += std::isfinite(xy[2 * i]) && std::isfinite(xy[2 * i + 1]) ? 0 : 1;
+    }
+    if (not_finite > 0) {
+      throw std::invalid_argument("points: " + std::to_string(not_finite) + " are not finite");
+    }
+    if (!(std::isfinite(tip_radius_m) && tip_radius_m >= 0.0)) {
+      throw std::invalid_argument("tip_radius: must be finite and not below 0");
+    }
+    const PointDetails details(normals, normal_sigmas, covariances_m2, count);
     palpate::AddResult added;
     {
       const py::gil_scoped_release release;
       const std::lock_guard lock(mutex_);
       const ComputeTime time(compute_s_);
-      arrays.copy_to(samples_, details_);
-      added = recognizer_.add(arrays.context(), samples_, details_);
+      samples_.resize(count);
+      for (std::size_t i = 0; i < count; ++i) {
+        samples_[i].position_m = palpate::Vec2(xy[2 * i], xy[2 * i + 1]);
+        samples_[i].sigma_m = sigmas == 0 ? 0.0 : sigma[sigmas == 1 ? 0 : i];
+      }
+      details_.resize(details.say_anything() ? count : 0);
+      for (std::size_t i = 0; i < details_.size(); ++i) {
+        details_[i] = details.of(i);
+        if (details_[i].covariance_m2.x() > 0.0) {
+          samples_[i].sigma_m = palpate::mean_sigma_m(details_[i].covariance_m2);
+        }
+      }
+      added = recognizer_.add(context, samples_, details_);
+      check_.add(context, samples_, details_);
     }
     return py::make_tuple(added.accepted, added.repeated);
   }
@@ -144,10 +172,23 @@ class Recognizer {
     return answer;
   }
 
+  std::vector<std::string> warnings() {
+    const py::gil_scoped_release release;
+    const std::lock_guard lock(mutex_);
+    return check_.warnings();
+  }
+
+  std::optional<std::string> approaches() {
+    const py::gil_scoped_release release;
+    const std::lock_guard lock(mutex_);
+    return check_.approaches();
+  }
+
   void reset() {
     const py::gil_scoped_release release;
     const std::lock_guard lock(mutex_);
     recognizer_.reset();
+    check_ = {};
   }
 
  private:
@@ -180,6 +221,7 @@ class Recognizer {
   // otherwise be in the recognizer at the same time.
   std::mutex mutex_;
   palpate::Recognizer recognizer_;
+  palpate::ArrayCheck check_;
   std::vector<palpate::ContactSample> samples_;
   std::vector<palpate::SampleDetail> details_;
   double compute_s_ = 0.0;  // since the last answer
@@ -193,6 +235,8 @@ PYBIND11_MODULE(_core, module) {
                     std::size_t, std::size_t, const std::string&>())
       .def("add", &Recognizer::add)
       .def("recognize", &Recognizer::recognize)
+      .def("warnings", &Recognizer::warnings)
+      .def("approaches", &Recognizer::approaches)
       .def("reset", &Recognizer::reset);
   py::class_<Answer> answer(module, "Answer");
   add_property(answer, "status", [](const auto& r) { return name_of(r.status); });
@@ -219,7 +263,6 @@ PYBIND11_MODULE(_core, module) {
   answer.def_readonly("compute_s", &Answer::compute_s)
       .def_property_readonly("hypotheses", &Answer::hypotheses)
       .def_property_readonly("contacts", &Answer::contacts);
-  palpate::add_array_check(module);
   palpate::add_known_class(module);
   module.def("check_sendable_lengths", &palpate::check_sendable_lengths);
   module.def("check_sendable_points", &palpate::check_sendable_points);

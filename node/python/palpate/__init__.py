@@ -64,7 +64,6 @@ class Recognizer:
                                       _whole("most_patches", most_patches, 1),
                                       _whole("most_samples_per_patch", most_samples_per_patch, _LEAST_SAMPLES),
                                       str(touched_from))
-        self._check = _core.ArrayCheck()
         self._added = 0
         self._checked = 0  # of those added
         self._points: list[np.ndarray] = []
@@ -94,10 +93,9 @@ class Recognizer:
             sigma = length("sigma", sigma, zero_too=False)
         in_metres = points if self._scale == 1.0 else self._scale * points
         sigmas = _NONE if sigma is None else self._scale * np.atleast_1d(numbers(sigma, "sigma"))
-        patch_arrays = (in_metres, sigmas, _whole("probe", probe), _whole("patch", patch), self._scale * tip_radius,
-                        str(material_side), *details(normals, normal_sigma, covariances, self._scale))
-        accepted, repeated = self._core.add(*patch_arrays)
-        self._check.add(*patch_arrays)
+        accepted, repeated = self._core.add(in_metres, sigmas, _whole("probe", probe), _whole("patch", patch),
+                                            self._scale * tip_radius, str(material_side),
+                                            *details(normals, normal_sigma, covariances, self._scale))
         self._added += accepted
         self.dropped += repeated
         self._tip_radius = max(self._tip_radius, tip_radius)
@@ -118,9 +116,9 @@ class Recognizer:
         result = Result(self._core.recognize(), self._unit, touched, self._tip_radius)
         if self._added >= 1.25 * self._checked:
             self._checked = self._added
-            doubts = self._check.warnings()
+            doubts = self._core.warnings()
             if result.status != "recognized" or result.curve_class == "unclassified":
-                doubts += filter(None, [self._check.approaches()])
+                doubts += filter(None, [self._core.approaches()])
             for doubt in doubts:
                 warnings.warn(doubt, DataWarning, stacklevel)
         return result
@@ -128,7 +126,6 @@ class Recognizer:
     def reset(self) -> None:
         """Forgets all points: a new object begins."""
         self._core.reset()
-        self._check = _core.ArrayCheck()
         self._added = self._checked = 0
         self._points.clear()
         self._drawn = 0
