@@ -87,13 +87,13 @@ Weighed CountedSamples::without_spikes_in_bends(Weighed weighed,
     return weighed;
   }
   const std::size_t counted = weighed.w.data.points.size();
-  const auto misses_some = [&](const ExplainingCurve& curve, std::span<const StoredPatch> others) {
-    const auto explained = with_spikes_on(curve, others, work);
+  // Where a class fits all samples without spikes, only a curve that misses some tells any.
+  const auto tells_spikes = [&](const ExplainingCurve& curve, std::span<const StoredPatch> others) {
+    const auto explained = is_none ? std::nullopt : with_spikes_on(curve, others, work);
     return !explained || count_samples(*explained) != counted;
   };
   const std::span<const StoredPatch> weighed_patches = weighed.patches ? *weighed.patches : patches;
-  auto fewer = without_unfollowed(weighed.w, weighed.outliers, weighed_patches,
-                                  is_none ? CurveOfOthers() : misses_some, work);
+  auto fewer = without_unfollowed(weighed.w, weighed.outliers, weighed_patches, tells_spikes, work);
   if (!fewer) {
     return weighed;
   }

@@ -75,7 +75,7 @@ bool may_fit_others(const Weighing& weighing, const std::vector<bool>& unfollowe
     if (!fits_well(left.chi2, residual_count(points))) {
       return false;
     }
-    const auto canonical = matters ? to_canonical(left, points) : std::nullopt;
+    const auto canonical = to_canonical(left, points);
     const auto curve = canonical ? curve_of(*canonical, residual_noise_m(weighing)) : std::nullopt;
     return !curve || matters(*curve, others);
   });

@@ -20,7 +20,7 @@ using CurveOfOthers =
 /// spikes' search judges.
 /// `weighing`: of the patches' samples without the flagged ones. nullopt if there are none, if
 /// they are more than an eighth of all, or if no class fits the others, or none whose curve
-/// `matters`; if that is empty, every curve does.
+/// `matters`.
 std::optional<std::vector<StoredPatch>> without_unfollowed(const Weighing& weighing,
                                                            const std::vector<bool>& flagged,
                                                            std::span<const StoredPatch> patches,

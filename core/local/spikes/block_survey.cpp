@@ -4,7 +4,6 @@
 
 #include "core/local/noise.h"
 #include "core/local/spikes/least_median_parabola.h"
-#include "core/numerics/median.h"
 #include "core/numerics/normal_law.h"
 
 namespace palpate {
@@ -132,7 +131,7 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigm
     floors.push_back(noise_floor(block, at_cusp));
   });
   if (result.status == LocalStatus::Ok) {
-    result.extent_m = median_of(extents);
+    result.extent_m = quantile(extents, 0.5);
     result.sigma_m = sigma_m > 0.0 ? sigma_m : robust_sigma(sizes);
     for (std::size_t b = 0; b < floors.size(); ++b) {
       result.largest = std::max(result.largest, largest[b] / std::max(result.sigma_m, floors[b]));
