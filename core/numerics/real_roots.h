@@ -35,26 +35,36 @@ double value(const Polynomial<kDegree>& c, double x) {
   return sum;
 }
 
-/// Newton's method inside a bracket, with bisection where Newton's method would be slow, until the
-/// value is one that rounding leaves. `at_low` is the value at `low`; the value at `high` has the
-/// other sign.
+/// sum |c_k| distance^k, which the rounding of the value at +-distance is a part of.
 template <int kDegree>
-double bracketed_root(const Polynomial<kDegree>& c, double low, double high, double at_low) {
+double terms(const Polynomial<kDegree>& c, double distance) {
+  return value<kDegree>(c.cwiseAbs(), distance);
+}
+
+/// Newton's method inside a bracket, with bisection where Newton's method would be slow, until the
+/// value is one that rounding leaves. The values at both ends have different signs.
+template <int kDegree>
+double bracketed_root(const Polynomial<kDegree>& c, double low, double high, double at_low,
+                      double at_high) {
   constexpr double kRounding = std::numeric_limits<double>::epsilon();
-  double x = 0.5 * (low + high);
+  // Where the chord is 0; not too near an end, where the slope may be 0.
+  constexpr double kNearestToEnd = 0.1;
+  double x = low + (high - low) *
+                       std::clamp(at_low / (at_low - at_high), kNearestToEnd, 1.0 - kNearestToEnd);
   double last_step = high - low;
+  // Nowhere in the bracket is rounding more than its part of these.
+  const double most_terms = terms<kDegree>(c, std::max(std::abs(low), std::abs(high)));
   // Newton's steps converge quadratically; 120 bisections would reach 2^-120.
   constexpr int kMostIterations = 120;
   for (int i = 0; i < kMostIterations; ++i) {
     double f = c[kDegree];
     double slope = 0.0;
-    double terms = std::abs(f);  // sum of |c_k x^k|, which the rounding of f is a part of
     for (int k = kDegree - 1; k >= 0; --k) {
       slope = slope * x + f;
       f = f * x + c[k];
-      terms = terms * std::abs(x) + std::abs(c[k]);
     }
-    if (std::abs(f) <= kRounding * terms) {
+    if (std::abs(f) <= kRounding * most_terms &&
+        std::abs(f) <= kRounding * terms<kDegree>(c, std::abs(x))) {
       return x;
     }
     ((f < 0.0) == (at_low < 0.0) ? low : high) = x;
@@ -77,6 +87,19 @@ Roots<kDegree> roots_within(const Polynomial<kDegree>& c, double bound) {
   Roots<kDegree> roots;
   if constexpr (kDegree == 1) {
     roots.push(-c[0] / c[1]);
+  } else if constexpr (kDegree == 2) {
+    const double discriminant = c[1] * c[1] - 4.0 * c[2] * c[0];
+    if (discriminant < 0.0) {
+      return roots;
+    }
+    // The root of larger size, of which no digits cancel; the other by their product c_0 / c_2.
+    const double q = -0.5 * (c[1] + std::copysign(std::sqrt(discriminant), c[1]));
+    const double larger = q / c[2];
+    const double other = q == 0.0 ? 0.0 : c[0] / q;
+    roots.push(std::min(larger, other));
+    if (discriminant > 0.0) {
+      roots.push(std::max(larger, other));
+    }
   } else {
     Polynomial<kDegree - 1> derivative;
     for (int k = 1; k <= kDegree; ++k) {
@@ -95,7 +118,7 @@ Roots<kDegree> roots_within(const Polynomial<kDegree>& c, double bound) {
         }
       } else if (at_low != 0.0 && (at_low < 0.0) != (at_high < 0.0)) {
         if (roots.count < roots.x.size()) {
-          roots.push(bracketed_root<kDegree>(c, low, high, at_low));
+          roots.push(bracketed_root<kDegree>(c, low, high, at_low, at_high));
         }
       }
       low = high;

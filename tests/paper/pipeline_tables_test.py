@@ -10,12 +10,14 @@ from google.protobuf import json_format
 
 import pipeline_tables as tables
 from palpate.v1 import curve_pb2, recognition_pb2
-from programs import SIM, SOURCE, TOOL, run
+from programs import COUNTS_TELL, SIM, SOURCE, TOOL, run
 
 
 class Table3(unittest.TestCase):
     def are_of_the_printed_size(self, found):
         self.assertEqual(list(found), list(tables.TABLE3))
+        if not COUNTS_TELL:
+            return
         for name, (curves, errors) in found.items():
             _, _, mean = tables.TABLE3[name]
             self.assertEqual(curves, 25 if name == "cubic_spline" else 100)
@@ -34,6 +36,8 @@ class Table3(unittest.TestCase):
 class Sensor(unittest.TestCase):
     def test_the_elliptic_part(self):
         columns, _ = tables.table4()
+        if not COUNTS_TELL:
+            return
         for name, values in columns.items():
             real, least, most, _ = tables.TABLE4[name]
             self.assertGreaterEqual(len(values), 72, name)
@@ -44,6 +48,8 @@ class Sensor(unittest.TestCase):
     def test_the_splines_segment(self):
         for touched, names in ((tables.FINE, "ab"), (tables.EXACT_SHORT, "abc")):
             columns, _ = tables.table5(touched)
+            if not COUNTS_TELL:
+                continue
             for name in names:
                 real, *printed = tables.TABLE5[name]
                 self.assertGreaterEqual(len(columns[name]), 72, name)
