@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/local/spikes/jumps.h"
 #include "core/numerics/normal_law.h"
 #include "core/numerics/student_quantile.h"
 #include "core/recognition/samples/stored_spikes.h"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/local/spikes/block_survey.h"
+#include "core/local/spikes/jumps.h"
 #include "core/numerics/negligible.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/samples/stored_spikes.h"

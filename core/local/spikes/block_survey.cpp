@@ -86,8 +86,9 @@ std::size_t block_length(std::span<const Vec2> samples, double sigma_m) {
 struct Blocks {
   LocalStatus status = LocalStatus::TooFewSamples;
   double sigma_m = 0.0;
-  double extent_m = 0.0;  ///< of the median block: a spike lengthens its own
-  double largest = 0.0;   ///< residual, in units of the noise of its own block
+  double extent_m = 0.0;         ///< of the median block: a spike lengthens its own
+  double largest = 0.0;          ///< residual, in units of the noise of its own block
+  double largest_on_path = 0.0;  ///< likewise, of the samples in the fits
   double backtrack_m = 0.0;
   double end_gap = 0.0;
   /// By more than 45 degrees: so it does to a spike there, and the bend counts as form.
@@ -101,23 +102,29 @@ bool leaves_at_end(std::span<const Vec2, 4> end, double limit_m) {
   return (end[3] - 3.0 * (end[2] - end[1]) - end[0]).norm() > kNorm * limit_m;
 }
 
-Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigma_m,
-                  const CuspEnds& cusps, WorkBudget& work) {
+Blocks fit_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
+                  std::size_t length, double sigma_m, const CuspEnds& cusps, WorkBudget& work) {
   work.spend(WorkKind::SpikeRow, kBlocksOfSample * samples.size());
   Blocks result;
   ResidualBlock block;
-  std::vector<double> sizes, largest, floors, extents;
+  std::vector<double> sizes, largest, largest_on_path, floors, extents;
   sizes.reserve(2 * samples.size());
   for_each_block(samples.size(), length, length / 2, [&](std::size_t start) {
-    const LocalStatus status = block.fit(samples.subspan(start, length));
+    const std::span<const std::uint8_t> use = flags_of(on_path, start, length);
+    const LocalStatus status = block.fit(samples.subspan(start, length), use);
     if (status != LocalStatus::Ok) {
       result.status = result.status == LocalStatus::Ok ? LocalStatus::Ok : status;
       return;
     }
     result.status = LocalStatus::Ok;
+    double of_used = 0.0;
     for (std::size_t i = 0; i < length; ++i) {
-      sizes.push_back(std::abs(block.studentised(i)));
+      if (use.empty() || use[i] != 0) {
+        sizes.push_back(std::abs(block.studentised(i)));
+        of_used = std::max(of_used, sizes.back());
+      }
     }
+    largest_on_path.push_back(of_used);
     extents.push_back(block.extent_m());
     result.backtrack_m = std::max(result.backtrack_m, block.backtrack_m());
     const bool at_cusp = cusps.touched_by(start, start + length, samples.size());
@@ -134,10 +141,23 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::size_t length, double sigm
     result.extent_m = quantile(extents, 0.5);
     result.sigma_m = sigma_m > 0.0 ? sigma_m : robust_sigma(sizes);
     for (std::size_t b = 0; b < floors.size(); ++b) {
-      result.largest = std::max(result.largest, largest[b] / std::max(result.sigma_m, floors[b]));
+      const double unit_m = std::max(result.sigma_m, floors[b]);
+      result.largest = std::max(result.largest, largest[b] / unit_m);
+      result.largest_on_path = std::max(result.largest_on_path, largest_on_path[b] / unit_m);
     }
   }
   return result;
+}
+
+std::vector<Vec2> flagged(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path) {
+  std::vector<Vec2> path;
+  path.reserve(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (on_path.empty() || on_path[i] != 0) {
+      path.push_back(samples[i]);
+    }
+  }
+  return path;
 }
 
 /// How far the nearer halves of the blocks lie from a parabola, as a standard deviation: the median
@@ -178,11 +198,12 @@ void look_for_spiked_noise(std::span<const Vec2> samples, double largest, double
   }
   // Spikes lengthen the chords and what is taken for noise: the shortest blocks that resolve their
   // own scale.
+  const std::size_t longest = std::min(survey->length, samples.size());
   double scale_m = 0.0;
-  for (std::size_t length = std::min(kBlock, survey->length);; length *= 2) {
-    length = std::min(length, survey->length);
+  for (std::size_t length = std::min(kBlock, longest);; length *= 2) {
+    length = std::min(length, longest);
     scale_m = parabola_scale_m(samples, length, sizes, work);
-    if (length == survey->length || (scale_m > 0.0 && block_length(samples, scale_m) <= length)) {
+    if (length == longest || (scale_m > 0.0 && block_length(samples, scale_m) <= length)) {
       break;
     }
   }
@@ -209,18 +230,19 @@ bool turns_back(const ResidualBlock& block, double sigma_m) {
   return block.backtrack_m() > kBacktrackSigmas * std::sqrt(2.0) * sigma_m;
 }
 
-BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold,
-                          const CuspEnds& cusps, WorkBudget& work) {
+BlockSurvey survey_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
+                          double sigma_m, double threshold, const CuspEnds& cusps,
+                          WorkBudget& work) {
   BlockSurvey survey;
   survey.length = std::min(kBlock, samples.size());
-  Blocks blocks = fit_blocks(samples, survey.length, sigma_m, cusps, work);
+  Blocks blocks = fit_blocks(samples, on_path, survey.length, sigma_m, cusps, work);
   const auto is_resolved = [&] {
     return blocks.status == LocalStatus::Ok &&
            blocks.extent_m > ResidualBlock::kMinExtentSigmas * blocks.sigma_m;
   };
   while (!is_resolved() && survey.length < samples.size()) {
     survey.length = std::min(2 * survey.length, samples.size());
-    blocks = fit_blocks(samples, survey.length, sigma_m, cusps, work);
+    blocks = fit_blocks(samples, on_path, survey.length, sigma_m, cusps, work);
   }
   survey.status = blocks.status;
   survey.sigma_m = blocks.sigma_m;
@@ -231,8 +253,9 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
     // The noise is as large as the patch, or spikes pass for noise. Then the third differences
     // determine how long blocks must be, and half of each block lies near a parabola.
     std::vector<double> sizes;
-    survey.length = block_length(samples, low_noise_of(samples, sizes));
-    look_for_spiked_noise(samples, blocks.largest, threshold, &survey, work);
+    const std::vector<Vec2> path = flagged(samples, on_path);
+    survey.length = block_length(path, low_noise_of(path, sizes));
+    look_for_spiked_noise(path, blocks.largest_on_path, threshold, &survey, work);
     survey.is_any_off = survey.is_noise_spiked;
     if (!survey.is_noise_spiked) {
       survey.status = LocalStatus::Unresolved;
@@ -248,7 +271,8 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double 
                                               leaves_at_end(samples.last<4>(), limit_m));
   survey.is_any_off = blocks.largest > threshold || (is_resolved() && (is_out_of_order || leaves));
   if (!(sigma_m > 0.0)) {
-    look_for_spiked_noise(samples, blocks.largest, threshold, &survey, work);
+    look_for_spiked_noise(flagged(samples, on_path), blocks.largest_on_path, threshold, &survey,
+                          work);
   }
   return survey;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -34,9 +35,17 @@ struct BlockSurvey {
 };
 
 /// Fits blocks of 16 samples, or of 32, 64 ... if those span less than 20 sigma. `sigma_m`: 0 =
-/// unknown. A sample whose residual exceeds `threshold` standard deviations is off.
-BlockSurvey survey_blocks(std::span<const Vec2> samples, double sigma_m, double threshold,
-                          const CuspEnds& cusps, WorkBudget& work);
+/// unknown. A sample whose residual exceeds `threshold` standard deviations is off. Through the
+/// samples whose `on_path` is set (empty: all); the others are only compared with the fits.
+BlockSurvey survey_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
+                          double sigma_m, double threshold, const CuspEnds& cusps,
+                          WorkBudget& work);
+
+/// The part of flags for `count` samples from `start` on; of no flags, none.
+inline std::span<const std::uint8_t> flags_of(std::span<const std::uint8_t> flags,
+                                              std::size_t start, std::size_t count) {
+  return flags.empty() ? flags : flags.subspan(start, count);
+}
 
 /// The residual beyond which a sample is off its block's quartic. It allows for noise, and for form
 /// that no quartic can follow. [m]

@@ -40,7 +40,7 @@ std::vector<std::uint8_t> jumps_of(std::span<const Vec2> samples) {
   return jumps;
 }
 
-std::vector<std::uint8_t> detours_of(std::span<const Vec2> samples, std::size_t longest) {
+std::vector<std::uint8_t> detours_of(std::span<const Vec2> samples) {
   std::vector<std::uint8_t> is_off(samples.size());
   if (samples.size() < 3) {
     return is_off;
@@ -51,7 +51,7 @@ std::vector<std::uint8_t> detours_of(std::span<const Vec2> samples, std::size_t 
     if (!(steps[i] > long_m)) {
       continue;
     }
-    const std::size_t most = std::min(longest, steps.size() - i - 1);
+    const std::size_t most = std::min(kLongestRunOfSpikes, steps.size() - i - 1);
     for (std::size_t run = 1; run <= most; ++run) {
       const double on = (samples[i + run + 1] - samples[i]).norm();
       if (std::min(steps[i], steps[i + run]) > std::max(long_m, on)) {

@@ -75,9 +75,10 @@ std::size_t beyond_form(Flag use, const Flag end, Flag jump) {
 
 class Search {
  public:
-  Search(std::span<const Vec2> samples, const BlockSurvey& survey, double threshold,
-         const CuspEnds& cusps, WorkBudget& work)
+  Search(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
+         const BlockSurvey& survey, double threshold, const CuspEnds& cusps, WorkBudget& work)
       : samples_(samples),
+        on_path_(on_path),
         jumps_(jumps_of(samples)),
         threshold_(threshold),
         length_(survey.length),
@@ -148,11 +149,13 @@ class Search {
     return residuals_.fit(part(block), block.use, degree);
   }
 
-  /// Starts from all samples; if too many would leave, from the half that lies nearest to a
-  /// parabola.
+  /// Starts from the samples on the path; if too many would leave, from the half that lies nearest
+  /// to a parabola.
   void settle_blocks() {
     for (Block& block : blocks_) {
-      block.use.assign(length_, 1);
+      const std::span<const std::uint8_t> on_path = flags_of(on_path_, block.start, length_);
+      block.use.assign(on_path.begin(), on_path.end());
+      block.use.resize(length_, 1);
       block.is_settled = false;
       if (!work_.allows()) {
         continue;
@@ -262,6 +265,7 @@ class Search {
   }
 
   std::span<const Vec2> samples_;
+  std::span<const std::uint8_t> on_path_;
   std::vector<std::uint8_t> jumps_;
   double threshold_;
   std::size_t length_;
@@ -275,9 +279,10 @@ class Search {
 
 }  // namespace
 
-SpikeSearch search_spikes(std::span<const Vec2> samples, const BlockSurvey& survey, double sigma_m,
-                          double threshold, const CuspEnds& cusps, WorkBudget& work) {
-  Search search(samples, survey, threshold, cusps, work);
+SpikeSearch search_spikes(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
+                          const BlockSurvey& survey, double sigma_m, double threshold,
+                          const CuspEnds& cusps, WorkBudget& work) {
+  Search search(samples, on_path, survey, threshold, cusps, work);
   if (!(sigma_m > 0.0)) {
     search.refine_noise();
   }

@@ -18,14 +18,15 @@ struct SpikeSearch {
 
 /// Fits a quartic in each of the blocks, which overlap by three quarters (a cubic if more than a
 /// quarter of the block is removed). Samples within the threshold join the fit and others leave it
-/// until nothing changes. The fit starts from all samples; if more than an eighth would leave, it
-/// starts from the half that lies nearest to a common parabola.
+/// until nothing changes. The fit starts from the samples whose `on_path` is set (empty: all); if
+/// more than an eighth would leave, it starts from the half that lies nearest to a common parabola.
 ///
 /// A block makes no decision if at most half of its samples join or if it turns by more than 45
 /// degrees. A block does not decide on samples beyond the ends of its fit: these may be a bend or a
 /// step. Each sample is judged by the block that removes fewest samples. `sigma_m`: 0 = estimate it
 /// from the residuals of the samples that joined.
-SpikeSearch search_spikes(std::span<const Vec2> samples, const BlockSurvey& survey, double sigma_m,
-                          double threshold, const CuspEnds& cusps, WorkBudget& work);
+SpikeSearch search_spikes(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
+                          const BlockSurvey& survey, double sigma_m, double threshold,
+                          const CuspEnds& cusps, WorkBudget& work);
 
 }  // namespace palpate

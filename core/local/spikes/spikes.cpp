@@ -88,6 +88,17 @@ void spare_ways(std::span<const Vec2> samples, std::vector<std::size_t>* indices
   std::erase_if(*indices, [&](std::size_t i) { return is_left_out[i] == 0; });
 }
 
+/// Which samples the steps of the stroke do not tell to be off its path; empty: all of them, or so
+/// few that they are no path.
+std::vector<std::uint8_t> on_path_of(std::span<const Vec2> samples) {
+  std::vector<std::uint8_t> flags = detours_of(samples);
+  for (std::uint8_t& flag : flags) {
+    flag = flag == 0 ? 1 : 0;
+  }
+  const auto count = static_cast<std::size_t>(std::ranges::count(flags, 1));
+  return count < samples.size() && count >= kFewestSamples ? flags : std::vector<std::uint8_t>{};
+}
+
 }  // namespace
 
 Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
@@ -117,17 +128,20 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
   int doublings = 0;
   double sigma_m = options.sigma_m;
   BlockSurvey survey;
+  std::vector<std::uint8_t> on_path;
   WorkBudget unbounded;
   WorkBudget& work = options.work != nullptr ? *options.work : unbounded;
   for (int pass = 0; pass < kMostPasses && kept.samples.size() >= kFewestSamples; ++pass) {
     if (doublings == 0) {
-      survey = survey_blocks(kept.samples, sigma_m, result.threshold, options.cusps, work);
+      on_path = on_path_of(kept.samples);
+      survey = survey_blocks(kept.samples, on_path, sigma_m, result.threshold, options.cusps, work);
       if (pass == 0 && !(sigma_m > 0.0)) {
         // Rounded readings may agree to the last digit: their noise is no less than the rounding's.
         const double rounding_m = noise_of_rounding_m(reading_step_m(kept.samples, survey.sigma_m));
         if (survey.sigma_m < rounding_m) {
           sigma_m = rounding_m;
-          survey = survey_blocks(kept.samples, sigma_m, result.threshold, options.cusps, work);
+          survey =
+              survey_blocks(kept.samples, on_path, sigma_m, result.threshold, options.cusps, work);
         }
       }
     }
@@ -143,8 +157,8 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
     }
     BlockSurvey longer = survey;
     longer.length = std::min(survey.length << doublings, kept.samples.size());
-    SpikeSearch found =
-        search_spikes(kept.samples, longer, sigma_m, result.threshold, options.cusps, work);
+    SpikeSearch found = search_spikes(kept.samples, on_path, longer, sigma_m, result.threshold,
+                                      options.cusps, work);
     if (doublings > 0) {
       spare_runs(static_cast<std::ptrdiff_t>(survey.length / 2), &found.is_spike);
     }

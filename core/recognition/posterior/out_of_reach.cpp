@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/local/spikes/jumps.h"
 #include "core/numerics/negligible.h"
 #include "core/recognition/posterior/likelihood_of.h"
-#include "core/recognition/samples/stored_spikes.h"
 #include "core/recognition/samples/tip_sides.h"
 
 namespace palpate {

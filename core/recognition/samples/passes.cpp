@@ -22,7 +22,7 @@ std::vector<std::size_t> on_path(std::span<const StoredSample> samples) {
   std::vector<Vec2> positions;
   positions.reserve(samples.size());
   for (const StoredSample& sample : samples) positions.push_back(sample.position_m);
-  const std::vector<std::uint8_t> is_off = detours_of(positions, kLongestRunOfSpikes);
+  const std::vector<std::uint8_t> is_off = detours_of(positions);
   std::vector<std::size_t> kept;
   kept.reserve(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {

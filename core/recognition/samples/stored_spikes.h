@@ -15,11 +15,6 @@ namespace palpate {
 /// something else.
 inline constexpr double kGross = 0.01;
 
-/// Longest run of samples that may all be spikes; four in a row off a curve are a bend. If one
-/// sample in 20 is a spike, chance makes four in a row once in 20^4 samples, more than the memory
-/// holds.
-inline constexpr std::size_t kLongestRunOfSpikes = 3;
-
 /// How many of `count` measurements a class may set aside. If there are more, the curve is wrong:
 /// more frequent spikes were found before any class was known (clean_patches.h). Two may be set
 /// aside however few there are: of the fewest places for RECOGNIZED, eight, as many remain as a

@@ -10,10 +10,8 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kLongest = 3;
-
 std::vector<std::size_t> flagged(const std::vector<Vec2>& samples) {
-  const std::vector<std::uint8_t> flags = detours_of(samples, kLongest);
+  const std::vector<std::uint8_t> flags = detours_of(samples);
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < flags.size(); ++i) {
     if (flags[i] != 0) indices.push_back(i);
@@ -56,7 +54,7 @@ TEST(Detours, GapsUnevenSpeedTurnsAndNoiseAreNone) {
     const double x = noise(rng);
     dwelling.emplace_back(x, noise(rng));
   }
-  EXPECT_LT(flagged(dwelling).size(), 2000 * 28 / 1000 * kLongest);
+  EXPECT_LT(flagged(dwelling).size(), 2000 * 28 / 1000 * kLongestRunOfSpikes);
 }
 
 TEST(Detours, OfFewerSamplesThanARunAreNone) {
