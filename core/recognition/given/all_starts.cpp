@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/curves/cubic_spline.h"
-#include "core/recognition/given/axis_scan.h"
+#include "core/recognition/given/starts/axis_scan.h"
 
 namespace palpate {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "core/recognition/given/given_starts.h"
 #include "core/recognition/given/local_points.h"
+#include "core/recognition/given/starts/given_starts.h"
 
 namespace palpate {
 

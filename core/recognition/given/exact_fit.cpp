@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "core/recognition/given/foot_parameter.h"
 #include "core/recognition/given/foot_weights.h"
-#include "core/recognition/given/stroke_feet.h"
+#include "core/recognition/given/placed/foot_parameter.h"
+#include "core/recognition/given/placed/stroke_feet.h"
 
 namespace palpate {
 

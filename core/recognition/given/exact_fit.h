@@ -1,8 +1,8 @@
 // The last steps of the fit of a given class, in twice the precision of a double.
 #pragma once
 
-#include "core/recognition/given/descent.h"
 #include "core/recognition/given/given_search.h"
+#include "core/recognition/given/placed/descent.h"
 
 namespace palpate {
 

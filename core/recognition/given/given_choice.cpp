@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/curves/curve.h"
-#include "core/recognition/given/foot_parameter.h"
+#include "core/recognition/given/placed/foot_parameter.h"
 
 namespace palpate {
 namespace {

@@ -13,8 +13,6 @@
 #include "core/numerics/mahalanobis.h"
 #include "core/numerics/negligible.h"
 #include "core/numerics/student_quantile.h"
-#include "core/recognition/given/curve_moves.h"
-#include "core/recognition/given/descent.h"
 #include "core/recognition/given/exact_fit.h"
 #include "core/recognition/given/given_choice.h"
 #include "core/recognition/given/given_limit.h"
@@ -22,7 +20,9 @@
 #include "core/recognition/given/given_report.h"
 #include "core/recognition/given/given_search.h"
 #include "core/recognition/given/local_points.h"
-#include "core/recognition/given/stroke_feet.h"
+#include "core/recognition/given/placed/curve_moves.h"
+#include "core/recognition/given/placed/descent.h"
+#include "core/recognition/given/placed/stroke_feet.h"
 
 namespace palpate {
 namespace {

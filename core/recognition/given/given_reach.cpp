@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "core/recognition/given/curve_moves.h"
-#include "core/recognition/given/foot_parameter.h"
-#include "core/recognition/given/orthogonal_squares.h"
+#include "core/recognition/given/placed/curve_moves.h"
+#include "core/recognition/given/placed/foot_parameter.h"
+#include "core/recognition/given/placed/orthogonal_squares.h"
 
 namespace palpate {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "core/curves/length_powers.h"
-#include "core/recognition/given/descent.h"
-#include "core/recognition/given/foot_parameter.h"
+#include "core/recognition/given/placed/descent.h"
+#include "core/recognition/given/placed/foot_parameter.h"
 
 namespace palpate {
 namespace {

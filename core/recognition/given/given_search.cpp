@@ -8,11 +8,11 @@
 #include "core/numerics/negligible.h"
 #include "core/recognition/fit/few_points.h"
 #include "core/recognition/given/all_starts.h"
-#include "core/recognition/given/curve_moves.h"
 #include "core/recognition/given/foot_weights.h"
-#include "core/recognition/given/seated_feet.h"
-#include "core/recognition/given/stroke_feet.h"
-#include "core/recognition/given/thinned.h"
+#include "core/recognition/given/placed/curve_moves.h"
+#include "core/recognition/given/placed/seated_feet.h"
+#include "core/recognition/given/placed/stroke_feet.h"
+#include "core/recognition/given/starts/thinned.h"
 
 namespace palpate {
 namespace {

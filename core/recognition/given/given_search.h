@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/recognition/given/descent.h"
 #include "core/recognition/given/local_points.h"
+#include "core/recognition/given/placed/descent.h"
 
 namespace palpate {
 

@@ -8,7 +8,7 @@
 
 #include "core/curves/pose2.h"
 #include "core/recognition/given/given_point.h"
-#include "core/recognition/given/orthogonal_squares.h"
+#include "core/recognition/given/placed/orthogonal_squares.h"
 
 namespace palpate {
 

@@ -11,7 +11,7 @@
 #include "core/curves/curve.h"
 #include "core/numerics/chi_square.h"
 #include "core/recognition/given/given_class.h"
-#include "core/recognition/given/orthogonal_squares.h"
+#include "core/recognition/given/placed/orthogonal_squares.h"
 #include "tests/support/calibration.h"
 #include "tests/support/test_rng.h"
 

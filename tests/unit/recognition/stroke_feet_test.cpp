@@ -1,5 +1,5 @@
 // The feet of a stroke over a cubic of a given class go along it as the probe went.
-#include "core/recognition/given/stroke_feet.h"
+#include "core/recognition/given/placed/stroke_feet.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "core/curves/curve.h"
 #include "core/recognition/given/given_class.h"
-#include "core/recognition/given/seated_feet.h"
+#include "core/recognition/given/placed/seated_feet.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/test_rng.h"
 

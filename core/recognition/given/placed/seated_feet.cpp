@@ -1,12 +1,12 @@
-#include "core/recognition/given/seated_feet.h"
+#include "core/recognition/given/placed/seated_feet.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "core/recognition/given/foot_parameter.h"
-#include "core/recognition/given/stroke_feet.h"
+#include "core/recognition/given/placed/foot_parameter.h"
+#include "core/recognition/given/placed/stroke_feet.h"
 
 namespace palpate {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/curves/curve_class.h"
-#include "core/recognition/given/curve_point.h"
+#include "core/recognition/given/placed/curve_point.h"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "core/recognition/given/axis_directions.h"
+#include "core/recognition/given/starts/axis_directions.h"
 
 #include <algorithm>
 #include <cmath>

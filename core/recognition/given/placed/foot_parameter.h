@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/curves/curve.h"
-#include "core/recognition/given/placed_curve.h"
+#include "core/recognition/given/placed/placed_curve.h"
 
 namespace palpate {
 

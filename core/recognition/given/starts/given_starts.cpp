@@ -1,4 +1,4 @@
-#include "core/recognition/given/given_starts.h"
+#include "core/recognition/given/starts/given_starts.h"
 
 #include <limits>
 
@@ -13,7 +13,7 @@
 #include "core/recognition/fit/implicit_fit.h"
 #include "core/recognition/fit/polynomial_search.h"
 #include "core/recognition/fit/refine_effort.h"
-#include "core/recognition/given/thinned.h"
+#include "core/recognition/given/starts/thinned.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {

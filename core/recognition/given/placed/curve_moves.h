@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/recognition/given/placed_curve.h"
+#include "core/recognition/given/placed/placed_curve.h"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "core/recognition/given/stroke_feet.h"
+#include "core/recognition/given/placed/stroke_feet.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include "core/curves/all_feet.h"
 #include "core/numerics/negligible.h"
-#include "core/recognition/given/foot_parameter.h"
+#include "core/recognition/given/placed/foot_parameter.h"
 
 namespace palpate {
 namespace {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/recognition/given/orthogonal_squares.h"
+#include "core/recognition/given/placed/orthogonal_squares.h"
 
 namespace palpate {
 

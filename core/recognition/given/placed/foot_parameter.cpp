@@ -1,4 +1,4 @@
-#include "core/recognition/given/foot_parameter.h"
+#include "core/recognition/given/placed/foot_parameter.h"
 
 #include <cmath>
 

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "core/recognition/given/orthogonal_squares.h"
-#include "core/recognition/given/placed_curve.h"
+#include "core/recognition/given/placed/orthogonal_squares.h"
+#include "core/recognition/given/placed/placed_curve.h"
 
 namespace palpate {
 

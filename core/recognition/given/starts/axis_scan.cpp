@@ -1,4 +1,4 @@
-#include "core/recognition/given/axis_scan.h"
+#include "core/recognition/given/starts/axis_scan.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/recognition/given/axis_directions.h"
-#include "core/recognition/given/thinned.h"
+#include "core/recognition/given/starts/axis_directions.h"
+#include "core/recognition/given/starts/thinned.h"
 
 namespace palpate {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 #include <type_traits>
 
-#include "core/recognition/given/placed_curve.h"
+#include "core/recognition/given/placed/placed_curve.h"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "core/recognition/given/curve_moves.h"
+#include "core/recognition/given/placed/curve_moves.h"
 
 #include <cmath>
 

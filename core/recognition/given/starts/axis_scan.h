@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/recognition/given/given_starts.h"
+#include "core/recognition/given/starts/given_starts.h"
 
 namespace palpate {
 
