@@ -7,8 +7,8 @@
 
 #include "core/curves/algebraic/polynomial_curve.h"
 #include "core/numerics/least_squares.h"
-#include "core/recognition/fit/axis_fit.h"
 #include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/fit/starts/axis_fit.h"
 #include "core/recognition/smooth/smooth_model.h"
 
 namespace palpate {

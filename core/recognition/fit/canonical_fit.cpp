@@ -11,7 +11,7 @@
 #include "core/curves/algebraic/canonical_cubic.h"
 #include "core/curves/curve.h"
 #include "core/numerics/symmetric_eigen.h"
-#include "core/recognition/fit/measured_normal.h"
+#include "core/recognition/fit/orthogonal/measured_normal.h"
 
 namespace palpate {
 namespace {

@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/recognition/fit/algebraic_fit.h"
-#include "core/recognition/fit/feet_in_order.h"
-#include "core/recognition/fit/few_points.h"
 #include "core/recognition/fit/on_all_points.h"
-#include "core/recognition/fit/touchable.h"
+#include "core/recognition/fit/orthogonal/feet_in_order.h"
+#include "core/recognition/fit/orthogonal/touchable.h"
+#include "core/recognition/fit/starts/algebraic_fit.h"
+#include "core/recognition/fit/starts/few_points.h"
 #include "core/recognition/fit/warm_start.h"
 
 namespace palpate {

@@ -4,7 +4,7 @@
 
 #include "core/curves/algebraic/polynomial_curve.h"
 #include "core/recognition/fit/on_all_points.h"
-#include "core/recognition/fit/polynomial_foot.h"
+#include "core/recognition/fit/orthogonal/polynomial_foot.h"
 
 namespace palpate {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/numerics/negligible.h"
-#include "core/recognition/fit/measured_normal.h"
-#include "core/recognition/fit/touchable.h"
+#include "core/recognition/fit/orthogonal/measured_normal.h"
+#include "core/recognition/fit/orthogonal/touchable.h"
 
 namespace palpate {
 namespace {

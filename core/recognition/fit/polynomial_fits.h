@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "core/curves/algebraic/canonical_conic.h"
-#include "core/recognition/fit/polynomial_fit.h"
-#include "core/recognition/fit/polynomial_seeds.h"
+#include "core/recognition/fit/orthogonal/polynomial_fit.h"
+#include "core/recognition/fit/starts/polynomial_seeds.h"
 
 namespace palpate {
 

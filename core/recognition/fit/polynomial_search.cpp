@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "core/numerics/negligible.h"
-#include "core/recognition/fit/axis_fit.h"
 #include "core/recognition/fit/class_fits.h"
+#include "core/recognition/fit/orthogonal/touchable.h"
 #include "core/recognition/fit/spline_limits.h"
-#include "core/recognition/fit/touchable.h"
+#include "core/recognition/fit/starts/axis_fit.h"
 
 namespace palpate {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/curves/algebraic/polynomial_curve.h"
 #include "core/numerics/negligible.h"
 #include "core/numerics/real_roots.h"
-#include "core/recognition/fit/axis_fit.h"
+#include "core/recognition/fit/starts/axis_fit.h"
 
 namespace palpate {
 namespace {

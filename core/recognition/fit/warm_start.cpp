@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "core/recognition/fit/polynomial_problem.h"
+#include "core/recognition/fit/orthogonal/polynomial_problem.h"
 
 namespace palpate {
 namespace {

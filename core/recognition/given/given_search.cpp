@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/numerics/negligible.h"
-#include "core/recognition/fit/few_points.h"
+#include "core/recognition/fit/starts/few_points.h"
 #include "core/recognition/given/all_starts.h"
 #include "core/recognition/given/foot_weights.h"
 #include "core/recognition/given/placed/curve_moves.h"

@@ -9,7 +9,7 @@
 
 #include "core/curves/curve.h"
 #include "core/numerics/triangular_root.h"
-#include "core/recognition/fit/measured_normal.h"
+#include "core/recognition/fit/orthogonal/measured_normal.h"
 #include "core/recognition/modes/trial_foot.h"
 #include "core/recognition/prior/touched_prior.h"
 

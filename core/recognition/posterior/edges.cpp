@@ -10,8 +10,8 @@
 
 #include "core/numerics/levenberg_marquardt.h"
 #include "core/numerics/small_cholesky.h"
-#include "core/recognition/fit/algebraic_fit.h"
 #include "core/recognition/fit/class_fits.h"
+#include "core/recognition/fit/starts/algebraic_fit.h"
 
 namespace palpate {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/curves/curve.h"
 #include "core/numerics/negligible.h"
 #include "core/recognition/fit/class_fits.h"
-#include "core/recognition/fit/polynomial_seeds.h"
+#include "core/recognition/fit/starts/polynomial_seeds.h"
 #include "core/recognition/samples/farthest_first.h"
 #include "core/recognition/smooth/smooth_model.h"
 #include "core/recognition/touches/ordering_curves.h"

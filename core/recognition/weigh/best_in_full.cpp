@@ -10,8 +10,8 @@
 
 #include "core/numerics/negligible.h"
 #include "core/numerics/normal_law.h"
-#include "core/recognition/fit/measured_normal.h"
 #include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/fit/orthogonal/measured_normal.h"
 #include "core/recognition/samples/stored_spikes.h"
 #include "core/recognition/smooth/across_noise.h"
 

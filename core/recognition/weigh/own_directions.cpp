@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/recognition/fit/on_all_points.h"
-#include "core/recognition/fit/touchable.h"
+#include "core/recognition/fit/orthogonal/touchable.h"
 #include "core/recognition/weigh/tip_directions.h"
 
 namespace palpate {

@@ -13,7 +13,7 @@
 
 #include "core/curves/curve.h"
 #include "core/recognition/fit/canonical_fit.h"
-#include "core/recognition/fit/implicit_fit.h"
+#include "core/recognition/fit/orthogonal/implicit_fit.h"
 #include "tests/bench/options/bench_options.h"
 #include "tests/support/placed_fit.h"
 #include "tests/support/random_scene.h"

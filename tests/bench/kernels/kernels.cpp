@@ -31,7 +31,7 @@
 #include "core/local/noise.h"
 #include "core/local/spikes/spikes.h"
 #include "core/local/tip_radius.h"
-#include "core/recognition/fit/implicit_fit.h"
+#include "core/recognition/fit/orthogonal/implicit_fit.h"
 #include "core/recognition/reported_tree_path.h"
 #include "tests/support/answered_scene.h"
 #include "tests/support/canonical_points.h"

@@ -1,4 +1,4 @@
-#include "core/recognition/fit/few_points.h"
+#include "core/recognition/fit/starts/few_points.h"
 
 #include <gtest/gtest.h>
 

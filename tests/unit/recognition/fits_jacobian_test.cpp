@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "core/recognition/fit/algebraic_fit.h"
-#include "core/recognition/fit/implicit_fit.h"
 #include "core/recognition/fit/on_all_points.h"
-#include "core/recognition/fit/polynomial_fit.h"
+#include "core/recognition/fit/orthogonal/implicit_fit.h"
+#include "core/recognition/fit/orthogonal/polynomial_fit.h"
+#include "core/recognition/fit/starts/algebraic_fit.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/unbounded_work.h"

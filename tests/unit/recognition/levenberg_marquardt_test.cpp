@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "core/recognition/fit/polynomial_problem.h"
+#include "core/recognition/fit/orthogonal/polynomial_problem.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {

@@ -1,5 +1,5 @@
 // Foot points as good as the noise asks for.
-#include "core/recognition/fit/polynomial_foot.h"
+#include "core/recognition/fit/orthogonal/polynomial_foot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "core/recognition/fit/touchable.h"
+#include "core/recognition/fit/orthogonal/touchable.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <vector>
 
-#include "core/recognition/fit/polynomial_foot.h"
+#include "core/recognition/fit/orthogonal/polynomial_foot.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "core/recognition/fit/polynomial_fit.h"
+#include "core/recognition/fit/orthogonal/polynomial_fit.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/unbounded_work.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/numerics/work_budget.h"
-#include "core/recognition/fit/polynomial_fit.h"
+#include "core/recognition/fit/orthogonal/polynomial_fit.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {

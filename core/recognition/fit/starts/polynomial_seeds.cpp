@@ -1,12 +1,12 @@
-#include "core/recognition/fit/polynomial_seeds.h"
+#include "core/recognition/fit/starts/polynomial_seeds.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/curves/curve_class.h"
-#include "core/recognition/fit/algebraic_fit.h"
-#include "core/recognition/fit/arm_search.h"
-#include "core/recognition/fit/seed_moments.h"
+#include "core/recognition/fit/starts/algebraic_fit.h"
+#include "core/recognition/fit/starts/arm_search.h"
+#include "core/recognition/fit/starts/seed_moments.h"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/recognition/fit/touchable.h"
+#include "core/recognition/fit/orthogonal/touchable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/recognition/fit/polynomial_foot.h"
+#include "core/recognition/fit/orthogonal/polynomial_foot.h"
 
 namespace palpate {
 namespace {

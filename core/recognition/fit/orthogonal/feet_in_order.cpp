@@ -1,4 +1,4 @@
-#include "core/recognition/fit/feet_in_order.h"
+#include "core/recognition/fit/orthogonal/feet_in_order.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/recognition/fit/touchable.h"
+#include "core/recognition/fit/orthogonal/touchable.h"
 
 namespace palpate {
 namespace {

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "core/recognition/fit/axis_fit.h"
+#include "core/recognition/fit/starts/axis_fit.h"
 
 namespace palpate {
 

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "core/recognition/fit/implicit_fit.h"
-#include "core/recognition/fit/polynomial_fit.h"
+#include "core/recognition/fit/orthogonal/implicit_fit.h"
+#include "core/recognition/fit/orthogonal/polynomial_fit.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/numerics/work_budget.h"
-#include "core/recognition/fit/axis_fit.h"
+#include "core/recognition/fit/starts/axis_fit.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {

@@ -7,7 +7,7 @@
 
 #include "core/curves/algebraic/canonical_conic.h"
 #include "core/numerics/work_budget.h"
-#include "core/recognition/fit/refine_effort.h"
+#include "core/recognition/fit/orthogonal/refine_effort.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {

@@ -1,4 +1,4 @@
-#include "core/recognition/fit/algebraic_fit.h"
+#include "core/recognition/fit/starts/algebraic_fit.h"
 
 #include <Eigen/Core>
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "core/recognition/fit/measured_normal.h"
-#include "core/recognition/fit/polynomial_foot.h"
+#include "core/recognition/fit/orthogonal/measured_normal.h"
+#include "core/recognition/fit/orthogonal/polynomial_foot.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {

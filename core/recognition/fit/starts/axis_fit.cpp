@@ -1,4 +1,4 @@
-#include "core/recognition/fit/axis_fit.h"
+#include "core/recognition/fit/starts/axis_fit.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 #include "core/curves/algebraic/polynomial_curve.h"
 #include "core/numerics/least_squares.h"
-#include "core/recognition/fit/axis_residuals.h"
+#include "core/recognition/fit/starts/axis_residuals.h"
 
 namespace palpate {
 namespace {

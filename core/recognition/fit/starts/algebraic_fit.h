@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "core/recognition/fit/implicit_fit.h"
+#include "core/recognition/fit/orthogonal/implicit_fit.h"
 
 namespace palpate {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/numerics/work_budget.h"
-#include "core/recognition/fit/polynomial_problem.h"
-#include "core/recognition/fit/refine_effort.h"
+#include "core/recognition/fit/orthogonal/polynomial_problem.h"
+#include "core/recognition/fit/orthogonal/refine_effort.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {

@@ -1,4 +1,4 @@
-#include "core/recognition/fit/polynomial_fit.h"
+#include "core/recognition/fit/orthogonal/polynomial_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/numerics/levenberg_marquardt.h"
-#include "core/recognition/fit/polynomial_problem.h"
+#include "core/recognition/fit/orthogonal/polynomial_problem.h"
 
 namespace palpate {
 namespace {

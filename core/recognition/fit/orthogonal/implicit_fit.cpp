@@ -1,4 +1,4 @@
-#include "core/recognition/fit/implicit_fit.h"
+#include "core/recognition/fit/orthogonal/implicit_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/numerics/least_squares.h"
-#include "core/recognition/fit/measured_normal.h"
-#include "core/recognition/fit/touchable.h"
+#include "core/recognition/fit/orthogonal/measured_normal.h"
+#include "core/recognition/fit/orthogonal/touchable.h"
 
 namespace palpate {
 namespace {
