@@ -7,7 +7,7 @@
 
 #include "core/numerics/chi_square.h"
 #include "core/part/knotted_cubic.h"
-#include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/samples/cleaned/stored_spikes.h"
 #include "core/recognition/smooth/smooth_model.h"
 
 namespace palpate {

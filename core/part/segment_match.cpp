@@ -8,7 +8,7 @@
 #include "core/numerics/chi_square.h"
 #include "core/part/part_slides.h"
 #include "core/part/touch_posterior.h"
-#include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/samples/cleaned/stored_spikes.h"
 #include "core/recognition/smooth/residual_correlation.h"
 #include "core/recognition/smooth/smooth_model.h"
 

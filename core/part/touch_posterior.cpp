@@ -9,7 +9,7 @@
 #include "core/numerics/negligible.h"
 #include "core/part/pair_starts.h"
 #include "core/part/part_slide.h"
-#include "core/recognition/samples/farthest_first.h"
+#include "core/recognition/fit/starts/farthest_first.h"
 
 namespace palpate {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/numerics/normal_law.h"
 #include "core/recognition/fewest_places.h"
 #include "core/recognition/gross_touches.h"
-#include "core/recognition/samples/explained_spikes.h"
+#include "core/recognition/samples/cleaned/explained_spikes.h"
 #include "core/recognition/touches/joined_touches.h"
 #include "core/recognition/two_readings.h"
 #include "core/recognition/unfollowed_samples.h"

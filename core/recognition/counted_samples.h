@@ -9,7 +9,7 @@
 #include "core/curves/pose2.h"
 #include "core/recognition/outliers.h"
 #include "core/recognition/recognizer.h"
-#include "core/recognition/samples/clean_patches.h"
+#include "core/recognition/samples/cleaned/clean_patches.h"
 #include "core/recognition/weigh/sided_start.h"
 #include "core/recognition/weigh/weigh.h"
 #include "core/recognition/weighed.h"

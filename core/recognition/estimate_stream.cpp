@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/local/tip_radius.h"
-#include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/samples/tips/tip_sides.h"
 
 namespace palpate {
 void EstimateStream::add(const PatchContext& context, std::span<const ContactSample> samples) {

@@ -10,7 +10,7 @@
 
 #include "core/recognition/fewest_places.h"
 #include "core/recognition/fit/on_all_points.h"
-#include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/samples/cleaned/stored_spikes.h"
 
 namespace palpate {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/local/spikes/jumps.h"
 #include "core/numerics/normal_law.h"
 #include "core/numerics/student_quantile.h"
-#include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/samples/cleaned/stored_spikes.h"
 
 namespace palpate {
 namespace {

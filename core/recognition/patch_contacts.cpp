@@ -4,7 +4,7 @@
 #include <cassert>
 #include <utility>
 
-#include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/samples/cleaned/stored_spikes.h"
 
 namespace palpate {
 

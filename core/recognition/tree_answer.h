@@ -18,10 +18,10 @@ std::vector<TreePoint> tree_points(std::span<const LocalizedContact> contacts);
 void add_path(TreeResult tree, Recognition* answer);
 
 /// The answer by the tree alone. `ways`: possible sides of round tips, one side per patch each
-/// (samples/tip_sides.h); if more than one leads to a class, the answer is in doubt (TwoShapes).
-/// `contacts_of`: computes the contacts for given sides; its last call is that for the answer.
-/// `extent_m`: half extent of the samples. `determined_fraction`: as RecognizerOptions. The caller
-/// sets the counts of samples.
+/// (samples/tips/tip_sides.h); if more than one leads to a class, the answer is in doubt
+/// (TwoShapes). `contacts_of`: computes the contacts for given sides; its last call is that for the
+/// answer. `extent_m`: half extent of the samples. `determined_fraction`: as RecognizerOptions. The
+/// caller sets the counts of samples.
 Recognition answer_by_tree(
     const std::vector<std::vector<int>>& ways,
     const std::function<std::vector<LocalizedContact>(const std::vector<int>&)>& contacts_of,

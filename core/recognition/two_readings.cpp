@@ -9,7 +9,7 @@
 #include "core/numerics/chi_square.h"
 #include "core/numerics/mahalanobis.h"
 #include "core/recognition/outliers.h"
-#include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/samples/cleaned/stored_spikes.h"
 
 namespace palpate {
 namespace {

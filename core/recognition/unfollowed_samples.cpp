@@ -9,7 +9,7 @@
 #include "core/local/spikes/jumps.h"
 #include "core/numerics/negligible.h"
 #include "core/recognition/fit/on_all_points.h"
-#include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/samples/cleaned/stored_spikes.h"
 
 namespace palpate {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/orthogonal/touchable.h"
-#include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/samples/tips/tip_sides.h"
 #include "core/recognition/smooth/smooth_model.h"
 #include "tests/support/placed_fit.h"
 #include "tests/support/test_rng.h"

@@ -11,7 +11,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 CORE = [
     "core/numerics", "core/curves", "core/curves/algebraic", "core/local", "core/local/spikes", "core/local/stream",
     "core/invariants",
-    "core/invariants/signature_fit", "core/recognition/samples", "core/recognition/smooth", "core/recognition/fit/orthogonal",
+    "core/invariants/signature_fit", "core/recognition/samples", "core/recognition/samples/cleaned",
+    "core/recognition/samples/tips", "core/recognition/smooth", "core/recognition/fit/orthogonal",
     "core/recognition/fit/starts", "core/recognition/fit", "core/recognition/touches",
     "core/recognition/given/placed", "core/recognition/given/starts",
     "core/recognition/given", "core/recognition/prior", "core/recognition/modes", "core/recognition/posterior", "core/recognition/coherent", "core/recognition/weigh",

@@ -7,7 +7,7 @@
 #include "core/local/spikes/jumps.h"
 #include "core/numerics/negligible.h"
 #include "core/recognition/posterior/likelihood_of.h"
-#include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/samples/tips/tip_sides.h"
 
 namespace palpate {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/numerics/median.h"
-#include "core/recognition/samples/turning_points.h"
+#include "core/recognition/samples/cleaned/turning_points.h"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/recognition/samples/farthest_first.h"
+#include "core/recognition/fit/starts/farthest_first.h"
 
 namespace palpate {
 namespace {

@@ -12,7 +12,7 @@
 #include "core/numerics/normal_law.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/orthogonal/measured_normal.h"
-#include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/samples/cleaned/stored_spikes.h"
 #include "core/recognition/smooth/across_noise.h"
 
 namespace palpate {

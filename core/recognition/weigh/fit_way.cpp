@@ -10,7 +10,7 @@
 #include "core/numerics/negligible.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/posterior/likelihood_of.h"
-#include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/samples/tips/tip_sides.h"
 #include "core/recognition/weigh/own_directions.h"
 #include "core/recognition/weigh/tip_directions.h"
 

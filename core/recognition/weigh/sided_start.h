@@ -11,7 +11,7 @@
 namespace palpate {
 
 struct SidedStart {
-  std::vector<int> sides;  ///< one per patch (samples/tip_sides.h)
+  std::vector<int> sides;  ///< one per patch (samples/tips/tip_sides.h)
   WarmStart start;
   KeptModes modes = {};
 };

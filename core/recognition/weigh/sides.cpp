@@ -10,7 +10,7 @@
 #include "core/numerics/negligible.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/out_of_reach.h"
-#include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/samples/tips/tip_sides.h"
 #include "core/recognition/weigh/curve_of_centres.h"
 #include "core/recognition/weigh/fit_way.h"
 #include "core/recognition/weigh/tip_directions.h"

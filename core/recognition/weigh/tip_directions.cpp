@@ -5,7 +5,7 @@
 
 #include "core/curves/curve.h"
 #include "core/numerics/negligible.h"
-#include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/samples/tips/tip_sides.h"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/recognition/samples/passes.h"
+#include "core/recognition/samples/cleaned/passes.h"
 
 #include <gtest/gtest.h>
 

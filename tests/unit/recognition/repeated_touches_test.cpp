@@ -1,5 +1,5 @@
 // Which single touches are of one place, and what stands for them.
-#include "core/recognition/samples/repeated_touches.h"
+#include "core/recognition/samples/cleaned/repeated_touches.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/recognition/samples/clean_patches.h"
+#include "core/recognition/samples/cleaned/clean_patches.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/unbounded_work.h"
 

@@ -1,4 +1,4 @@
-#include "core/recognition/samples/strokes_together.h"
+#include "core/recognition/samples/tips/strokes_together.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/samples/tips/tip_sides.h"
 
 namespace palpate {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/starts/axis_fit.h"
+#include "core/recognition/fit/starts/farthest_first.h"
 #include "core/recognition/fit/starts/polynomial_seeds.h"
 #include "core/recognition/fit/starts/seed_moments.h"
-#include "core/recognition/samples/farthest_first.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {

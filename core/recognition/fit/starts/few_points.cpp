@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/recognition/samples/farthest_first.h"
+#include "core/recognition/fit/starts/farthest_first.h"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/recognition/samples/stored_spikes.h"
+#include "core/recognition/samples/cleaned/stored_spikes.h"
 
 #include "core/local/spikes/spikes.h"
 

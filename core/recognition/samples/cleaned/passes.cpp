@@ -1,4 +1,4 @@
-#include "core/recognition/samples/passes.h"
+#include "core/recognition/samples/cleaned/passes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include "core/local/noise.h"
 #include "core/local/spikes/jumps.h"
 #include "core/numerics/median.h"
-#include "core/recognition/samples/stored_spikes.h"
-#include "core/recognition/samples/turning_points.h"
+#include "core/recognition/samples/cleaned/stored_spikes.h"
+#include "core/recognition/samples/cleaned/turning_points.h"
 
 namespace palpate {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/recognition/samples/strokes_together.h"
+#include "core/recognition/samples/tips/strokes_together.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "core/recognition/samples/explained_spikes.h"
+#include "core/recognition/samples/cleaned/explained_spikes.h"
 
 #include <algorithm>
 #include <cassert>

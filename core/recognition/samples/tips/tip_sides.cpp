@@ -1,11 +1,11 @@
-#include "core/recognition/samples/tip_sides.h"
+#include "core/recognition/samples/tips/tip_sides.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/numerics/negligible.h"
-#include "core/recognition/samples/strokes_together.h"
+#include "core/recognition/samples/tips/strokes_together.h"
 
 namespace palpate {
 

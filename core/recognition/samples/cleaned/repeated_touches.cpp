@@ -1,4 +1,4 @@
-#include "core/recognition/samples/repeated_touches.h"
+#include "core/recognition/samples/cleaned/repeated_touches.h"
 
 #include <algorithm>
 #include <cmath>

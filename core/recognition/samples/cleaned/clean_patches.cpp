@@ -1,13 +1,13 @@
-#include "core/recognition/samples/clean_patches.h"
+#include "core/recognition/samples/cleaned/clean_patches.h"
 
 #include <algorithm>
 #include <span>
 #include <utility>
 
+#include "core/recognition/samples/cleaned/passes.h"
+#include "core/recognition/samples/cleaned/repeated_touches.h"
+#include "core/recognition/samples/cleaned/stored_spikes.h"
 #include "core/recognition/samples/dwells.h"
-#include "core/recognition/samples/passes.h"
-#include "core/recognition/samples/repeated_touches.h"
-#include "core/recognition/samples/stored_spikes.h"
 
 namespace palpate {
 namespace {

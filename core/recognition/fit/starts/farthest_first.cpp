@@ -1,4 +1,4 @@
-#include "core/recognition/samples/farthest_first.h"
+#include "core/recognition/fit/starts/farthest_first.h"
 
 #include <algorithm>
 #include <cmath>
