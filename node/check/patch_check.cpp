@@ -6,7 +6,7 @@
 
 #include "core/local/noise.h"
 #include "core/numerics/median.h"
-#include "core/recognition/samples/dwells.h"
+#include "core/recognition/samples/dwell_means.h"
 #include "core/recognition/samples/stroke_order.h"
 #include "node/check/normal_check.h"
 #include "node/check/tip_check.h"

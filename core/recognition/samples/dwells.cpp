@@ -5,44 +5,15 @@
 #include <optional>
 
 #include "core/numerics/median.h"
-#include "core/recognition/samples/merged_samples.h"
+#include "core/recognition/samples/sample_block.h"
 #include "core/recognition/samples/step_ratio.h"
 
 namespace palpate {
 namespace {
 
-/// Consecutive samples.
-struct Block {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-  Vec2 mean = Vec2::Zero();
-  double square = 0.0;  ///< mean square distance from the mean
-};
-
-Vec2 place_of(const StoredSample& sample) { return sample.position_m; }
-Vec2 place_of(const Block& block) { return block.mean; }
-
-/// Mean, and mean square distance from it. Two passes: far from the origin, squares of coordinates
-/// have no digits left for the scatter.
-template <typename Places>
-Block block_of(const Places& places, std::size_t begin, std::size_t end) {
-  Block block{begin, end};
-  const Vec2 any = place_of(places[begin]);
-  for (std::size_t i = begin; i < end; ++i) {
-    block.mean += place_of(places[i]) - any;
-  }
-  const double n = static_cast<double>(end - begin);
-  block.mean = any + block.mean / n;
-  for (std::size_t i = begin; i < end; ++i) {
-    block.square += (place_of(places[i]) - block.mean).squaredNorm();
-  }
-  block.square /= n;
-  return block;
-}
-
 /// The median of each coordinate: a spike, which moves the mean by an eighth of its height, would
 /// make the stroke look fast and the rest of it slow.
-Vec2 median_place(std::span<const StoredSample> samples, const Block& block) {
+Vec2 median_place(std::span<const StoredSample> samples, const SampleBlock& block) {
   std::vector<double> x;
   std::vector<double> y;
   for (std::size_t i = block.begin; i < block.end; ++i) {
@@ -52,16 +23,10 @@ Vec2 median_place(std::span<const StoredSample> samples, const Block& block) {
   return {median_of(x), median_of(y)};
 }
 
-template <typename Places>
-double ratio_of(const Places& places, const Block& of) {
-  return step_ratio([&](std::size_t i) { return place_of(places[i]); }, of.begin, of.end,
-                    of.square);
-}
-
 /// True if a step tends to go back on the step before it. Of places in random order the mean
 /// product of successive steps is -1/2 of their mean square; on a way there and back, as over a
-/// cusp, it is at least 1/2, though the ratio above may be 1: half way is the limit.
-bool goes_back_and_forth(std::span<const Block> blocks) {
+/// cusp, it is at least 1/2, though ratio_of() may be 1: half way is the limit.
+bool goes_back_and_forth(std::span<const SampleBlock> blocks) {
   double products = 0.0;
   for (std::size_t b = 2; b < blocks.size(); ++b) {
     products += (blocks[b].mean - blocks[b - 1].mean).dot(blocks[b - 1].mean - blocks[b - 2].mean);
@@ -94,7 +59,7 @@ std::optional<double> most_square_of_noise(std::span<const StoredSample> samples
 /// Consecutive blocks of a stroke in which it moves slowly.
 class SlowStretch {
  public:
-  SlowStretch(std::span<const StoredSample> samples, std::span<const Block> blocks,
+  SlowStretch(std::span<const StoredSample> samples, std::span<const SampleBlock> blocks,
               double default_sigma_m)
       : samples_(samples), blocks_(blocks), default_sigma_m_(default_sigma_m) {}
 
@@ -126,11 +91,13 @@ class SlowStretch {
   }
 
  private:
-  Block whole() const { return block_of(samples_, blocks_.front().begin, blocks_.back().end); }
+  SampleBlock whole() const {
+    return block_of(samples_, blocks_.front().begin, blocks_.back().end);
+  }
 
   /// A jitter that neighbouring samples share shows no order from block to block.
   bool is_still() const {
-    const Block all = whole();
+    const SampleBlock all = whole();
     return ratio_of(samples_, all) > kNoOrder ||
            (blocks_.size() >= kFewestMeans && may_be_jitter(all) && goes_back_and_forth(blocks_) &&
             ratio_of(blocks_, block_of(blocks_, 0, blocks_.size())) > kNoOrder);
@@ -138,7 +105,7 @@ class SlowStretch {
 
   /// Whether the stated noise, which contains a jitter, is as large. A few means on the way over a
   /// cusp, slow on one arm, show as little order.
-  bool may_be_jitter(const Block& all) const {
+  bool may_be_jitter(const SampleBlock& all) const {
     const auto most =
         most_square_of_noise(samples_.subspan(all.begin, all.end - all.begin), default_sigma_m_);
     return !most || all.square <= *most;
@@ -151,7 +118,7 @@ class SlowStretch {
     const auto lies_by = [&](std::size_t i, std::size_t begin, std::size_t end) {
       // Times the root mean square: noise exceeds it once in 8,000 times.
       constexpr double kFarthest = 3.0;
-      const Block others = block_of(samples_, begin, end);
+      const SampleBlock others = block_of(samples_, begin, end);
       return (samples_[i].position_m - others.mean).squaredNorm() <=
              kFarthest * kFarthest * others.square;
     };
@@ -173,87 +140,9 @@ class SlowStretch {
   }
 
   std::span<const StoredSample> samples_;
-  std::span<const Block> blocks_;
+  std::span<const SampleBlock> blocks_;
   double default_sigma_m_;
 };
-
-/// The number of independent contacts that the mean of `dwell` is worth. `of_all`: their total
-/// weight.
-double effective_weight(std::span<const StoredSample> samples, const PatchSpan& dwell,
-                        double of_all, double default_sigma_m) {
-  const Block block = block_of(samples, dwell.begin, dwell.end);
-  double stated = 0.0;   // variance of one contact, as stated
-  double scatter = 0.0;  // variance of one contact, as the samples show it
-  double most = 0.0;
-  for (std::size_t i = dwell.begin; i < dwell.end; ++i) {
-    const StoredSample& sample = samples[i];
-    const double sigma_m = sigma_m_of(sample, default_sigma_m);
-    if (!(sigma_m > 0.0)) {
-      stated = 0.0;
-      break;
-    }
-    stated += sigma_m * sigma_m;
-    scatter += 0.5 * sample.weight * (sample.position_m - block.mean).squaredNorm();
-  }
-  for (std::size_t i = dwell.begin; i < dwell.end; ++i) {
-    most = std::max(most, samples[i].weight);
-  }
-  if (!(stated > 0.0)) {
-    return most;
-  }
-  const double n = static_cast<double>(dwell.size());
-  stated /= n;
-  scatter /= n - 1.0;
-  // The part of the stated variance that the samples do not show is a common error of them all. The
-  // scatter itself is known to 1 in sqrt(n).
-  constexpr double kDeviations = 3.0;
-  const double same = std::max(stated - scatter * (1.0 + kDeviations / std::sqrt(n)), 0.0);
-  // If neighbours share a part 1 - r of their error, n of them are worth n r / (2 - r).
-  const double ratio = std::min(ratio_of(samples, block), 1.0);
-  const double of_mean = same + stated / of_all * (2.0 - ratio) / ratio;
-  return std::clamp(stated / of_mean, most, of_all);
-}
-
-/// The places of a stroke that is held at each: long steps lead from one to the next. Empty where
-/// it is no such stroke: less than half of its samples are of such places, or one of these shows an
-/// order or is no farther from the one before than both scatter.
-std::vector<PatchSpan> held_places(std::span<const StoredSample> samples) {
-  // Of two samples of one place; noise makes a step so long once in exp(16 log 2), 65,000 times.
-  constexpr double kLong = 4.0;   // median steps
-  constexpr double kApart = 3.0;  // of the scatter: six deviations of a coordinate
-  if (samples.size() < 2 * kBlock) {
-    return {};
-  }
-  std::vector<double> steps;
-  steps.reserve(samples.size());
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    steps.push_back((samples[i].position_m - samples[i - 1].position_m).norm());
-  }
-  std::vector<double> sorted = steps;
-  const double long_m = kLong * median_of(sorted);
-  std::vector<PatchSpan> places;
-  std::size_t held = 0;
-  Block before;
-  for (std::size_t begin = 0; begin < samples.size();) {
-    std::size_t end = begin + 1;
-    while (end < samples.size() && steps[end - 1] <= long_m) {
-      ++end;
-    }
-    if (end - begin >= kBlock) {
-      const Block here = block_of(samples, begin, end);
-      const bool is_apart = places.empty() || (here.mean - before.mean).squaredNorm() >
-                                                  kApart * kApart * (here.square + before.square);
-      if (!is_apart || !(ratio_of(samples, here) > kNoOrder)) {
-        return {};
-      }
-      places.push_back({begin, end});
-      held += end - begin;
-      before = here;
-    }
-    begin = end;
-  }
-  return places.size() > 1 && 2 * held >= samples.size() ? places : std::vector<PatchSpan>{};
-}
 
 }  // namespace
 
@@ -266,7 +155,7 @@ std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples, double d
   if (count < 2) {
     return dwells;
   }
-  std::vector<Block> blocks;
+  std::vector<SampleBlock> blocks;
   blocks.reserve(count);
   double way = 0.0;
   Vec2 before = Vec2::Zero();
@@ -316,6 +205,44 @@ std::vector<PatchSpan> repeats_of(std::span<const StoredSample> samples) {
   return repeats;
 }
 
+std::vector<PatchSpan> held_places(std::span<const StoredSample> samples) {
+  // Of two samples of one place; noise makes a step so long once in exp(16 log 2), 65,000 times.
+  constexpr double kLong = 4.0;   // median steps
+  constexpr double kApart = 3.0;  // of the scatter: six deviations of a coordinate
+  if (samples.size() < 2 * kBlock) {
+    return {};
+  }
+  std::vector<double> steps;
+  steps.reserve(samples.size());
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    steps.push_back((samples[i].position_m - samples[i - 1].position_m).norm());
+  }
+  std::vector<double> sorted = steps;
+  const double long_m = kLong * median_of(sorted);
+  std::vector<PatchSpan> places;
+  std::size_t held = 0;
+  SampleBlock before;
+  for (std::size_t begin = 0; begin < samples.size();) {
+    std::size_t end = begin + 1;
+    while (end < samples.size() && steps[end - 1] <= long_m) {
+      ++end;
+    }
+    if (end - begin >= kBlock) {
+      const SampleBlock here = block_of(samples, begin, end);
+      const bool is_apart = places.empty() || (here.mean - before.mean).squaredNorm() >
+                                                  kApart * kApart * (here.square + before.square);
+      if (!is_apart || !(ratio_of(samples, here) > kNoOrder)) {
+        return {};
+      }
+      places.push_back({begin, end});
+      held += end - begin;
+      before = here;
+    }
+    begin = end;
+  }
+  return places.size() > 1 && 2 * held >= samples.size() ? places : std::vector<PatchSpan>{};
+}
+
 bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
                   double half_extent_m) {
   constexpr double kSmall = 1e-2;
@@ -331,74 +258,9 @@ bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
   if (across.squaredNorm() > 2.0 * n * std::max(of_noise, small)) {
     return false;
   }
-  const Block all = block_of(samples, 0, samples.size());
+  const SampleBlock all = block_of(samples, 0, samples.size());
   return (most && all.square <= of_noise) ||
          (all.square <= small && ratio_of(samples, all) > kNoOrder);
-}
-
-StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwells,
-                       double default_sigma_m) {
-  StoredPatch result = patch;
-  result.samples.clear();
-  result.details.clear();
-  const auto copy = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      result.samples.push_back(patch.samples[i]);
-      if (!patch.details.empty()) result.details.push_back(patch.details[i]);
-    }
-  };
-  std::size_t from = 0;
-  for (const PatchSpan& dwell : dwells) {
-    copy(from, dwell.begin);
-    from = dwell.end;
-    StoredSample mean = patch.samples[dwell.begin];
-    SampleDetail detail;
-    if (!patch.details.empty()) detail = patch.details[dwell.begin];
-    for (std::size_t i = dwell.begin + 1; i < dwell.end; ++i) {
-      if (!patch.details.empty()) {
-        detail = merged(mean, detail, patch.samples[i], patch.details[i]);
-      }
-      mean = merged(mean, patch.samples[i]);
-    }
-    const double of_all = mean.weight;
-    mean.weight = effective_weight(patch.samples, dwell, of_all, default_sigma_m);
-    detail.normal_sigma_rad *= std::sqrt(of_all / mean.weight);
-    result.samples.push_back(mean);
-    if (!patch.details.empty()) result.details.push_back(detail);
-  }
-  copy(from, patch.samples.size());
-  return result;
-}
-
-StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m) {
-  if (const auto held = held_places(patch.samples); !held.empty()) {
-    return with_means(patch, held, default_sigma_m);
-  }
-  // The mean step grows as repeats are removed: if nine in ten are repeats, ten times. So it takes
-  // several rounds.
-  constexpr int kMostRounds = 4;
-  StoredPatch result = patch;
-  for (int round = 0; round < kMostRounds; ++round) {
-    const std::vector<PatchSpan> repeats = repeats_of(result.samples);
-    if (repeats.empty()) {
-      break;
-    }
-    result = with_means(result, repeats, default_sigma_m);
-  }
-  const std::vector<PatchSpan> dwells = dwells_of(result.samples, default_sigma_m);
-  return dwells.empty() ? result : with_means(result, dwells, default_sigma_m);
-}
-
-std::vector<Vec2> without_dwells(std::span<const Vec2> positions_m) {
-  StoredPatch patch;
-  for (const Vec2& position_m : positions_m) {
-    patch.samples.push_back({position_m});
-  }
-  std::vector<Vec2> moved;
-  for (const StoredSample& sample : without_dwells(patch, 0.0).samples) {
-    moved.push_back(sample.position_m);
-  }
-  return moved;
 }
 
 }  // namespace palpate

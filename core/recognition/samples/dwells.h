@@ -1,4 +1,5 @@
-// Dwells: the probe stands still, and its samples repeat one place.
+// Dwells: the probe stands still, and its samples repeat one place (dwell_means.h: what stands for
+// them).
 #pragma once
 
 #include <span>
@@ -26,15 +27,9 @@ std::vector<PatchSpan> repeats_of(std::span<const StoredSample> samples);
 bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
                   double half_extent_m);
 
-/// Replaces each dwell by one sample, the mean. Its weight depends on the noise. If the samples
-/// scatter as the stated noise and independently, it weighs as all of them. If they repeat the same
-/// error, or the noise is not stated, it weighs as one.
-StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwells,
-                       double default_sigma_m);
-
-/// Replaces the repeats, then the dwells, by their means. Of a stroke that is held at each of its
-/// places, for at least 8 samples, with long steps between them: each place by its mean.
-StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m);
-std::vector<Vec2> without_dwells(std::span<const Vec2> positions_m);
+/// The places of a stroke that is held at each: long steps lead from one to the next. Empty where
+/// it is no such stroke: less than half of its samples are of such places, or one of these shows an
+/// order or is no farther from the one before than both scatter.
+std::vector<PatchSpan> held_places(std::span<const StoredSample> samples);
 
 }  // namespace palpate

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/recognition/samples/dwells.h"
+#include "core/recognition/samples/dwell_means.h"
 #include "core/recognition/samples/mean_on_path.h"
 #include "core/recognition/samples/merged_samples.h"
 

@@ -1,4 +1,5 @@
 #include "core/recognition/samples/dwells.h"
+#include "core/recognition/samples/dwell_means.h"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include "core/recognition/samples/cleaned/passes.h"
 #include "core/recognition/samples/cleaned/repeated_touches.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"
+#include "core/recognition/samples/dwell_means.h"
 #include "core/recognition/samples/dwells.h"
 
 namespace palpate {

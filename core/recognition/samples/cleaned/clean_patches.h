@@ -17,7 +17,7 @@ class CleanPatches {
   void update(const std::vector<StoredPatch>& patches, double default_sigma_m, double false_alarm,
               WorkBudget& work);
 
-  /// The patches with each dwell replaced by its mean (dwells.h), and so single touches of one
+  /// The patches with each dwell replaced by its mean (dwell_means.h), and so single touches of one
   /// place (repeated_touches.h), cut where they turn back over themselves (passes.h). Spikes are
   /// still in them.
   const std::vector<StoredPatch>& moved() const { return moved_; }
