@@ -1,11 +1,10 @@
 #include "core/part/segment_match.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/numerics/chi_square.h"
+#include "core/part/part_placement.h"
 #include "core/part/part_slides.h"
 #include "core/part/touch_posterior.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"
@@ -15,7 +14,6 @@
 namespace palpate {
 namespace {
 
-constexpr int kPoseDegrees = 3;
 /// Fewest degrees of freedom for an estimate of the noise: its relative standard deviation is then
 /// about 1/3.
 constexpr int kFewestNoiseDegrees = 4;
@@ -75,19 +73,6 @@ TravelDirections directions_of(MaterialSide side, const ScaledPart& part) {
   }
   const bool along = (side == MaterialSide::Left) == (part.outside() < 0.0);
   return {along, !along};
-}
-
-/// Whether t increases over the samples of a patch, across joints and the seam.
-bool runs_up(std::span<const SamplePlace> places, std::size_t segments) {
-  const auto period = static_cast<double>(segments);
-  double run = 0.0;
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    const auto t = [&](std::size_t k) {
-      return static_cast<double>(places[k].segment) + places[k].u;
-    };
-    run += std::remainder(t(i) - t(i - 1), period);
-  }
-  return run >= 0.0;
 }
 
 class Match {
@@ -165,7 +150,8 @@ class Match {
       if (candidate.probability < options_.least_probability) {
         break;
       }
-      PartPlacement placement = place(part, candidate, reference);
+      PartPlacement placement =
+          placement_of({given_, clean_.is_spike, data_, smooth_}, part, candidate, reference);
       if (agrees_with_material(placement, part)) {
         match.placements.push_back(std::move(placement));
       }
@@ -231,105 +217,6 @@ class Match {
       if (!clean_.patches[number].samples.empty() && left-- == 0) {
         return number;
       }
-    }
-  }
-
-  /// The placement refined on all points, with the places of all samples.
-  PartPlacement place(const ScaledPart& part, const PartCandidate& candidate,
-                      const FitPoint& reference) const {
-    const PartFit fit = fit_part(part, data_.points, candidate.fit.data_T_part);
-    PartPlacement placement;
-    placement.probability = candidate.probability;
-    placement.chi2 = fit.chi2;
-    placement.dof =
-        static_cast<int>(static_cast<double>(data_.points.size()) / smooth_.noise_time) -
-        kPoseDegrees;
-    placement.misfit_chi2 = std::max(0.0, fit.chi2 - smooth_.chi2);
-    placement.misfit_dof = smooth_.parameters - kPoseDegrees;
-    const Pose2& pose = fit.data_T_part;
-    placement.world_T_part =
-        data_.frame * Pose2{data_.scale * pose.x, data_.scale * pose.y, pose.theta};
-    // The motions turn about the origin of the data, the pose about that of the part.
-    Eigen::Matrix3d by_motion = Eigen::Matrix3d::Identity();
-    by_motion.col(2).head<2>() = left_of(pose.translation());
-    const Eigen::Matrix3d covariance =
-        by_motion * Eigen::Matrix3d(fit.information).inverse() * by_motion.transpose();
-    Eigen::Matrix3d to_world = Eigen::Matrix3d::Identity();
-    to_world.col(0).head<2>() = data_.scale * data_.frame.rotate(Vec2(1.0, 0.0));
-    to_world.col(1).head<2>() = data_.scale * data_.frame.rotate(Vec2(0.0, 1.0));
-    placement.covariance = to_world * covariance * to_world.transpose();
-    judge_slide(part, fit, covariance, reference, &placement);
-    place_samples(part, pose, &placement);
-    return placement;
-  }
-
-  /// How far the reference can slide along the part, and whether chi-square rises there as the
-  /// covariance of the pose (in the frame of the data) predicts.
-  void judge_slide(const ScaledPart& part, const PartFit& fit, const Eigen::Matrix3d& covariance,
-                   const FitPoint& reference, PartPlacement* placement) const {
-    const Pose2& pose = fit.data_T_part;
-    Vec2 tangent = reference.tangent;
-    if (tangent.isZero()) {
-      const double foot = part.foot_of(pose.to_local(reference.position));
-      tangent = pose.rotate(part.spline().derivatives(foot).first).normalized();
-    }
-    const Eigen::Vector3d slide(tangent.x(), tangent.y(),
-                                tangent.dot(left_of(reference.position - pose.translation())));
-    const double variance = slide.dot(covariance * slide);
-    if (!(variance > 0.0)) {
-      placement->slide_sd_m = placement->nonlinearity = std::numeric_limits<double>::infinity();
-      return;
-    }
-    placement->slide_sd_m = data_.scale * std::sqrt(variance);
-    constexpr double kDeviations = 2.0;  // about 95 % of placements lie within
-    const Eigen::Vector3d step = kDeviations / std::sqrt(variance) * (covariance * slide);
-    for (const double sign : {1.0, -1.0}) {
-      const Eigen::Vector3d moved = Eigen::Vector3d(pose.x, pose.y, pose.theta) + sign * step;
-      double chi2 = 0.0;
-      for (const FitPoint& point : data_.points) {
-        const double residual =
-            place_on_part(part, {moved.x(), moved.y(), moved.z()}, point).residual;
-        chi2 += residual * residual;
-      }
-      const double rise = (chi2 - fit.chi2) / (kDeviations * kDeviations);
-      placement->nonlinearity = std::max(placement->nonlinearity, std::abs(rise - 1.0));
-    }
-  }
-
-  void place_samples(const ScaledPart& part, const Pose2& pose, PartPlacement* placement) const {
-    std::size_t next = 0;  // index of the next point of data_
-    for (std::size_t p = 0; p < given_.size(); ++p) {
-      const StoredPatch& patch = given_[p];
-      PatchOnPart place;
-      std::vector<std::size_t> votes(part_.size(), 0);
-      for (std::size_t i = 0; i < patch.samples.size(); ++i) {
-        SamplePlace sample;
-        sample.is_outlier = clean_.is_spike[p][i];
-        FitPoint point;
-        if (sample.is_outlier) {
-          point.position = data_.frame.to_local(patch.samples[i].position_m) / data_.scale;
-          point.offset = patch.context.tip_radius_m / data_.scale;
-          point.inverse_sigma = 1.0 / rms_sigma(data_);
-        } else {
-          point = data_.points[next++];
-        }
-        const PartFoot foot = place_on_part(part, pose, point);
-        const ClosedSpline::Place at = part.spline().place_at(foot.t);
-        sample.segment = at.segment;
-        sample.u = at.u;
-        sample.residual = foot.residual * std::sqrt(smooth_.noise_time);
-        ++votes[at.segment];
-        place.samples.push_back(sample);
-      }
-      place.segment =
-          static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
-      place.along_increasing_t = runs_up(place.samples, part_.size());
-      for (std::size_t i = 0; i < place.samples.size(); ++i) {
-        if (place.samples[i].segment != place.segment) {
-          place.beyond.push_back(i);
-        }
-      }
-      placement->patches.push_back(std::move(place));
     }
   }
 
