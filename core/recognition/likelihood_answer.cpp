@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/numerics/negligible.h"
-#include "core/recognition/outliers.h"
+#include "core/recognition/counted/outliers.h"
+#include "core/recognition/counted/weighed.h"
 #include "core/recognition/verdict/determined.h"
-#include "core/recognition/weighed.h"
 
 namespace palpate {
 namespace {

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "core/numerics/negligible.h"
-#include "core/recognition/counted_samples.h"
+#include "core/recognition/counted/counted_samples.h"
+#include "core/recognition/counted/fewest_places.h"
+#include "core/recognition/counted/outliers.h"
 #include "core/recognition/estimate_stream.h"
-#include "core/recognition/fewest_places.h"
 #include "core/recognition/likelihood_answer.h"
-#include "core/recognition/outliers.h"
 #include "core/recognition/patch_contacts.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/reported_tree_path.h"
@@ -51,6 +51,16 @@ void doubt(Recognition* answer, Doubt doubt) {
     answer->status = RecognitionStatus::Ambiguous;
     answer->doubt = doubt;
   }
+}
+
+/// At how many places an answer's class can be RECOGNIZED, by evidence and of stated noise. A
+/// sample that is set aside is an unknown more.
+std::size_t fewest_places_for(const Recognition& answer) {
+  const CurveClass curve_class = answer.shape.curve_class;
+  if (curve_class == CurveClass::Unclassified) {
+    return kFewestPlaces;
+  }
+  return fewest_places(curve_class) + answer.outlier_count;
 }
 
 std::vector<Vec2> places_of(std::span<const SetAside> samples) {
@@ -183,7 +193,7 @@ class Recognizer::Impl {
     }
     const bool by_evidence = options_.method == RecognitionMethod::MaximumLikelihood && sigma_known;
     const double touch_sigma = sigma_known ? 0.0 : answer.sigma_m / data.scale;
-    if (!have_places(data, by_evidence ? fewest_places(answer) : kFewestPlaces, touch_sigma)) {
+    if (!have_places(data, by_evidence ? fewest_places_for(answer) : kFewestPlaces, touch_sigma)) {
       doubt(&answer, Doubt::FewPlaces);
     }
     if (!sigma_known) {  // rounding is the least that it can be
@@ -201,7 +211,7 @@ class Recognizer::Impl {
     std::optional<WorkBudget::Reserve> for_moments(std::in_place, work, kShareOfMoments);
     Weighed weighed = weigh_from_last_or_search(data, sigma_known, patches, sought, work);
     const std::size_t stored = clean_.moved_count();
-    const CountedSamples samples(options_, clean_, &kept_);
+    const CountedSamples samples(counting_options(), clean_);
     const bool is_class = weighed.w.best != CurveClass::Unclassified;
     if (is_class && stored > data.points.size() && !work.was_cut()) {
       weighed = samples.with_ends(std::move(weighed), sigma_known, work);
@@ -286,7 +296,7 @@ class Recognizer::Impl {
     constexpr double kGrowth = 1.25;  // ten searches while a patch grows tenfold
     // Probability: of what had less, a search leaves the fit rough (weigh/contenders.cpp).
     const double out = std::exp(-log_odds(options_.recognized_probability) - 0.5 * kLeastError);
-    const CountedSamples counted(options_, clean_, &kept_);
+    const CountedSamples counted(counting_options(), clean_);
     const std::size_t samples = memory_.sample_count();
     const bool warm = last_ && last_->patches == data.patches.size() &&
                       static_cast<double>(samples) <= kGrowth * static_cast<double>(last_->samples);
@@ -316,6 +326,20 @@ class Recognizer::Impl {
     options.noise_time = noise_time;
     options.sigma_m = options_.sigma_m;
     options.form_deviation_m = std::max(options_.form_deviation_m, deviation_m);
+    return options;
+  }
+
+  CountingOptions counting_options() {
+    CountingOptions options;
+    options.weigh.classes = options_.classes;
+    options.weigh.recognized_probability = options_.recognized_probability;
+    options.weigh.form_deviation_m = options_.form_deviation_m;
+    options.weigh.touched_from = options_.touched_from;
+    options.weigh.kept_sections = &kept_;
+    options.sigma_m = options_.sigma_m;
+    options.unqualified_probe = options_.unqualified_probe;
+    options.has_probe_file = options_.has_probe_file;
+    options.false_outlier_probability = options_.false_outlier_probability;
     return options;
   }
 

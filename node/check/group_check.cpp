@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "core/recognition/fewest_places.h"
+#include "core/recognition/counted/fewest_places.h"
 #include "node/files/counted.h"
 #include "node/files/quantity.h"
 

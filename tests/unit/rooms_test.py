@@ -16,7 +16,8 @@ CORE = [
     "core/recognition/fit/starts", "core/recognition/fit", "core/recognition/touches",
     "core/recognition/given/placed", "core/recognition/given/starts",
     "core/recognition/given", "core/recognition/prior", "core/recognition/modes", "core/recognition/posterior", "core/recognition/coherent", "core/recognition/weigh",
-    "core/recognition/verdict", "core/recognition/tree", "core/recognition", "core/part", "core/qualification",
+    "core/recognition/verdict", "core/recognition/tree", "core/recognition/counted",
+    "core/recognition", "core/part", "core/qualification",
 ]
 NODE = CORE + [
     "node/files", "node/process", "node/wire", "node/csv", "node/check", "node/intake", "node/python", "node/client",

@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <vector>
 
-#include "core/recognition/gross_touches.h"
+#include "core/recognition/counted/gross_touches.h"
 #include "core/recognition/samples/fit_data.h"
 #include "tests/support/scene_data.h"
 

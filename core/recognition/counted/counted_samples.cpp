@@ -1,4 +1,4 @@
-#include "core/recognition/counted_samples.h"
+#include "core/recognition/counted/counted_samples.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,12 +6,12 @@
 
 #include "core/numerics/negligible.h"
 #include "core/numerics/normal_law.h"
-#include "core/recognition/fewest_places.h"
-#include "core/recognition/gross_touches.h"
+#include "core/recognition/counted/fewest_places.h"
+#include "core/recognition/counted/gross_touches.h"
+#include "core/recognition/counted/two_readings.h"
+#include "core/recognition/counted/unfollowed_samples.h"
 #include "core/recognition/samples/cleaned/explained_spikes.h"
 #include "core/recognition/touches/joined_touches.h"
-#include "core/recognition/two_readings.h"
-#include "core/recognition/unfollowed_samples.h"
 #include "core/recognition/weigh/weigh_in_full.h"
 
 namespace palpate {
@@ -212,7 +212,7 @@ std::optional<Weighed> CountedSamples::again_with(std::vector<StoredPatch> more,
                                                   std::span<const SidedStart> starts,
                                                   CurveClass best, std::span<const Vec2> off_m,
                                                   WorkBudget& work) const {
-  if (auto joined = joined_touches(more, options_.sigma_m, options_.classes, work)) {
+  if (auto joined = joined_touches(more, options_.sigma_m, options_.weigh.classes, work)) {
     more = std::move(joined->patches);
   }
   bool sigma_known = false;
@@ -227,15 +227,10 @@ std::optional<Weighed> CountedSamples::again_with(std::vector<StoredPatch> more,
 }
 
 WeighOptions CountedSamples::weigh_options(const FitData& data, bool sigma_known) const {
-  WeighOptions options;
-  options.classes = options_.classes;
-  options.recognized_probability = options_.recognized_probability;
-  options.form_deviation_m = options_.form_deviation_m;
+  WeighOptions options = options_.weigh;
   options.unqualified_probe = options_.unqualified_probe.value_or(!sigma_known);
   options.near_parts = !options.unqualified_probe && !options_.has_probe_file &&
                        !may_have_missed_spikes(samples_.moved_count(), data.points.size());
-  options.touched_from = options_.touched_from;
-  options.kept_sections = kept_;
   return options;
 }
 

@@ -1,4 +1,4 @@
-#include "core/recognition/two_readings.h"
+#include "core/recognition/counted/two_readings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "core/numerics/chi_square.h"
 #include "core/numerics/mahalanobis.h"
-#include "core/recognition/outliers.h"
+#include "core/recognition/counted/outliers.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"
 
 namespace palpate {

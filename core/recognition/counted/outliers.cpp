@@ -1,4 +1,4 @@
-#include "core/recognition/outliers.h"
+#include "core/recognition/counted/outliers.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include <span>
 
+#include "core/recognition/counted/weighed.h"
 #include "core/recognition/samples/stored_patch.h"
-#include "core/recognition/weighed.h"
 
 namespace palpate {
 

@@ -1,4 +1,4 @@
-#include "core/recognition/weighed.h"
+#include "core/recognition/counted/weighed.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "core/recognition/fewest_places.h"
+#include "core/recognition/counted/fewest_places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,14 +31,6 @@ bool have_places(const FitData& data, std::size_t count, double touch_sigma) {
 std::size_t fewest_places(CurveClass curve_class) {
   const auto parameters = static_cast<std::size_t>(degrees_of_freedom(curve_class));
   return std::max(kFewestCompared, parameters + kFewestLeftOver);
-}
-
-std::size_t fewest_places(const Recognition& answer) {
-  const CurveClass curve_class = answer.shape.curve_class;
-  if (curve_class == CurveClass::Unclassified) {
-    return kFewestPlaces;
-  }
-  return fewest_places(curve_class) + answer.outlier_count;
 }
 
 }  // namespace palpate

@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "core/curves/pose2.h"
-#include "core/recognition/outliers.h"
-#include "core/recognition/recognizer.h"
+#include "core/recognition/counted/outliers.h"
+#include "core/recognition/counted/weighed.h"
 #include "core/recognition/samples/cleaned/clean_patches.h"
 #include "core/recognition/weigh/sided_start.h"
 #include "core/recognition/weigh/weigh.h"
-#include "core/recognition/weighed.h"
 
 namespace palpate {
 
@@ -20,12 +19,20 @@ namespace palpate {
 /// aside: these may have led it astray.
 enum class StartsOf { LastWeighing, Search };
 
+/// As RecognizerOptions.
+struct CountingOptions {
+  WeighOptions weigh;  ///< but for what the samples decide: unqualified_probe and near_parts
+  double sigma_m = 0.0;
+  std::optional<bool> unqualified_probe;
+  bool has_probe_file = false;
+  double false_outlier_probability = 0.01;
+};
+
 /// Of the samples that one recognition is about. Refers to what it is made of.
 class CountedSamples {
  public:
-  /// `kept`: of the recognitions before.
-  CountedSamples(const RecognizerOptions& options, const CleanPatches& samples, KeptSections* kept)
-      : options_(options), samples_(samples), kept_(kept) {}
+  CountedSamples(const CountingOptions& options, const CleanPatches& samples)
+      : options_(options), samples_(samples) {}
 
   /// Weighs `data`, again without the samples that the best class misses by far more than noise,
   /// until there are none. `patches`: those that the data are of; `sigma_known`: as given by
@@ -73,9 +80,8 @@ class CountedSamples {
   double farthest_by_noise() const;
   WeighOptions weigh_options(const FitData& data, bool sigma_known) const;
 
-  const RecognizerOptions& options_;
+  CountingOptions options_;
   const CleanPatches& samples_;
-  KeptSections* kept_;
 };
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-#include "core/recognition/unfollowed_samples.h"
+#include "core/recognition/counted/unfollowed_samples.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "core/recognition/gross_touches.h"
+#include "core/recognition/counted/gross_touches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/recognition/fewest_places.h"
+#include "core/recognition/counted/fewest_places.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"
 

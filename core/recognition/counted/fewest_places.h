@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "core/recognition/recognition.h"
+#include "core/curves/curve_class.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {
@@ -31,8 +31,5 @@ bool have_places(const FitData& data, std::size_t count, double touch_sigma = 0.
 
 /// At how many a class can be RECOGNIZED, by evidence and of stated noise.
 std::size_t fewest_places(CurveClass curve_class);
-
-/// The same of an answer's class. A sample that is set aside is an unknown more.
-std::size_t fewest_places(const Recognition& answer);
 
 }  // namespace palpate

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/recognition/counted/weighed.h"
 #include "core/recognition/samples/stored_patch.h"
-#include "core/recognition/weighed.h"
 
 namespace palpate {
 
