@@ -6,7 +6,7 @@
 #include "core/curves/arc_length.h"
 #include "core/curves/foot_point.h"
 #include "core/curves/place_refinement.h"
-#include "core/numerics/real_roots.h"
+#include "core/numerics/polynomials/real_roots.h"
 
 namespace palpate {
 

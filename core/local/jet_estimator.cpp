@@ -7,7 +7,7 @@
 #include "core/local/aligned_frame.h"
 #include "core/local/graph_geometry.h"
 #include "core/local/legendre_curve.h"
-#include "core/numerics/legendre_fit.h"
+#include "core/numerics/polynomials/legendre_fit.h"
 
 namespace palpate {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/numerics/legendre_fit.h"
+#include "core/numerics/polynomials/legendre_fit.h"
 
 namespace palpate {
 

@@ -6,7 +6,7 @@
 
 #include "core/local/residual_block.h"
 #include "core/numerics/median.h"
-#include "core/numerics/normal_law.h"
+#include "core/numerics/probability/normal_law.h"
 
 namespace palpate {
 namespace {

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
 #include "core/numerics/work_budget.h"
 
 namespace palpate {

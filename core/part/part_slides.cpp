@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/numerics/log_add.h"
+#include "core/numerics/probability/log_add.h"
 #include "core/part/part_slide.h"
 
 namespace palpate {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/part/knotted_cubic.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"
 #include "core/recognition/smooth/smooth_model.h"

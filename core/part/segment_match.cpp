@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/part/part_placement.h"
 #include "core/part/part_slides.h"
 #include "core/part/touch_posterior.h"

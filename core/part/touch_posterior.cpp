@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numerics/log_add.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/log_add.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/part/pair_starts.h"
 #include "core/part/part_slide.h"
 #include "core/recognition/fit/starts/farthest_first.h"

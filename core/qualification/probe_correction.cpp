@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/numerics/symmetric_eigen.h"
+#include "core/numerics/matrices/symmetric_eigen.h"
 #include "core/recognition/verdict/determined.h"
 
 namespace palpate {

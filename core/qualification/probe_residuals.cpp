@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 
 namespace palpate {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/numerics/median.h"
-#include "core/numerics/normal_law.h"
+#include "core/numerics/probability/normal_law.h"
 #include "core/qualification/artefact_guess.h"
 #include "core/qualification/estimated_tip.h"
 #include "core/qualification/offset_evidence.h"

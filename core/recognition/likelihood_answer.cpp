@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/counted/outliers.h"
 #include "core/recognition/counted/weighed.h"
 #include "core/recognition/verdict/determined.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/counted/counted_samples.h"
 #include "core/recognition/counted/fewest_places.h"
 #include "core/recognition/counted/outliers.h"

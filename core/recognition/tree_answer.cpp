@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/recognition/contacts.h"
 #include "core/recognition/tree/tree_covariance.h"
 #include "core/recognition/verdict/determined.h"

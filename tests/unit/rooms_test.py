@@ -9,14 +9,14 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # Each room may include itself, the rooms before it in its list, and those of the lists named in brackets.
 CORE = [
-    "core/numerics", "core/curves", "core/curves/algebraic", "core/local", "core/local/spikes", "core/local/stream",
-    "core/invariants",
+    "core/numerics/matrices", "core/numerics/polynomials", "core/numerics/probability", "core/numerics",
+    "core/curves", "core/curves/algebraic", "core/local", "core/local/spikes", "core/local/stream", "core/invariants",
     "core/invariants/signature_fit", "core/recognition/samples", "core/recognition/samples/cleaned",
     "core/recognition/samples/tips", "core/recognition/smooth", "core/recognition/fit/orthogonal",
     "core/recognition/fit/starts", "core/recognition/fit", "core/recognition/touches",
-    "core/recognition/given/placed", "core/recognition/given/starts",
-    "core/recognition/given", "core/recognition/prior", "core/recognition/modes", "core/recognition/posterior", "core/recognition/coherent", "core/recognition/weigh",
-    "core/recognition/verdict", "core/recognition/tree", "core/recognition/counted",
+    "core/recognition/given/placed", "core/recognition/given/starts", "core/recognition/given",
+    "core/recognition/prior", "core/recognition/modes", "core/recognition/posterior", "core/recognition/coherent",
+    "core/recognition/weigh", "core/recognition/verdict", "core/recognition/tree", "core/recognition/counted",
     "core/recognition", "core/part", "core/qualification",
 ]
 NODE = CORE + [

@@ -9,7 +9,7 @@
 #include "core/curves/pose2.h"
 #include "core/invariants/signature_fit/canonical_models.h"
 #include "core/invariants/signature_fit/semi_signature_fitter.h"
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
 
 namespace palpate {
 namespace {

@@ -21,7 +21,7 @@
 #include "core/invariants/signature_fit/canonical_models.h"
 #include "core/invariants/signature_fit/local_parameter.h"
 #include "core/invariants/signature_fit/semi_signature_fit.h"
-#include "core/numerics/small_ldlt.h"
+#include "core/numerics/matrices/small_ldlt.h"
 
 namespace palpate::detail {
 

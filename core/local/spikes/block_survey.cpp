@@ -4,7 +4,7 @@
 
 #include "core/local/noise.h"
 #include "core/local/spikes/least_median_parabola.h"
-#include "core/numerics/normal_law.h"
+#include "core/numerics/probability/normal_law.h"
 
 namespace palpate {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numerics/normal_law.h"
+#include "core/numerics/probability/normal_law.h"
 
 namespace palpate {
 namespace {

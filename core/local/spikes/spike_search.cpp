@@ -6,7 +6,7 @@
 
 #include "core/local/spikes/jumps.h"
 #include "core/local/spikes/least_median_parabola.h"
-#include "core/numerics/normal_law.h"
+#include "core/numerics/probability/normal_law.h"
 
 namespace palpate {
 namespace {

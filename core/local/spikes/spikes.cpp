@@ -8,7 +8,7 @@
 #include "core/local/spikes/block_survey.h"
 #include "core/local/spikes/jumps.h"
 #include "core/local/spikes/spike_search.h"
-#include "core/numerics/normal_law.h"
+#include "core/numerics/probability/normal_law.h"
 
 namespace palpate {
 namespace {

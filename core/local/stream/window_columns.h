@@ -8,7 +8,7 @@
 
 #include "core/curves/pose2.h"
 #include "core/local/stream/node_pyramid.h"
-#include "core/numerics/legendre_sums.h"
+#include "core/numerics/polynomials/legendre_sums.h"
 
 namespace palpate {
 

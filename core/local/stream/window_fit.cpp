@@ -10,8 +10,8 @@
 #include "core/local/stream/higher_terms.h"
 #include "core/local/stream/straightening.h"
 #include "core/local/stream/window_columns.h"
-#include "core/numerics/legendre_fit.h"
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
+#include "core/numerics/polynomials/legendre_fit.h"
 
 namespace palpate {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
 
 namespace palpate {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
 #include "core/recognition/coherent/coherent_cells.h"
 
 namespace palpate {

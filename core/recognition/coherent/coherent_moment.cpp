@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/curves/curve.h"
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
 #include "core/recognition/coherent/coherent_cells.h"
 
 namespace palpate {

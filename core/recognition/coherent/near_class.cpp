@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/numerics/log_add.h"
-#include "core/numerics/negligible.h"
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
+#include "core/numerics/probability/log_add.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/coherent/coherent_cells.h"
 #include "core/recognition/coherent/smooth_drift.h"
 #include "core/recognition/posterior/evidences.h"

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <utility>
 
-#include "core/numerics/negligible.h"
-#include "core/numerics/normal_law.h"
+#include "core/numerics/probability/negligible.h"
+#include "core/numerics/probability/normal_law.h"
 #include "core/recognition/counted/fewest_places.h"
 #include "core/recognition/counted/gross_touches.h"
 #include "core/recognition/counted/two_readings.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/local/spikes/jumps.h"
-#include "core/numerics/normal_law.h"
-#include "core/numerics/student_quantile.h"
+#include "core/numerics/probability/normal_law.h"
+#include "core/numerics/probability/student_quantile.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"
 
 namespace palpate {

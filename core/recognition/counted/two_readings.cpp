@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/chi_square.h"
-#include "core/numerics/mahalanobis.h"
+#include "core/numerics/probability/chi_square.h"
+#include "core/numerics/probability/mahalanobis.h"
 #include "core/recognition/counted/outliers.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"
 

@@ -10,7 +10,7 @@
 #include "core/curves/algebraic/canonical_conic.h"
 #include "core/curves/algebraic/canonical_cubic.h"
 #include "core/curves/curve.h"
-#include "core/numerics/symmetric_eigen.h"
+#include "core/numerics/matrices/symmetric_eigen.h"
 #include "core/recognition/fit/orthogonal/measured_normal.h"
 
 namespace palpate {

@@ -10,7 +10,7 @@
 
 #include "core/curves/algebraic/polynomial_curve.h"
 #include "core/curves/curve_class.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/orthogonal/implicit_fit.h"
 #include "core/recognition/fit/orthogonal/polynomial_fit.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/orthogonal/measured_normal.h"
 #include "core/recognition/fit/orthogonal/touchable.h"
 

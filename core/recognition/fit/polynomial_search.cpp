@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/orthogonal/touchable.h"
 #include "core/recognition/fit/spline_limits.h"

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/chi_square.h"
-#include "core/numerics/mahalanobis.h"
-#include "core/numerics/negligible.h"
-#include "core/numerics/student_quantile.h"
+#include "core/numerics/probability/chi_square.h"
+#include "core/numerics/probability/mahalanobis.h"
+#include "core/numerics/probability/negligible.h"
+#include "core/numerics/probability/student_quantile.h"
 #include "core/recognition/given/exact_fit.h"
 #include "core/recognition/given/given_choice.h"
 #include "core/recognition/given/given_limit.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/numerics/mahalanobis.h"
+#include "core/numerics/probability/mahalanobis.h"
 #include "core/recognition/given/given_search.h"
 
 namespace palpate {

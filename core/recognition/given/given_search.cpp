@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/starts/few_points.h"
 #include "core/recognition/given/all_starts.h"
 #include "core/recognition/given/foot_weights.h"

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "core/numerics/symmetric_eigen.h"
+#include "core/numerics/matrices/symmetric_eigen.h"
 
 namespace palpate {
 namespace {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/log_add.h"
-#include "core/numerics/negligible.h"
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
+#include "core/numerics/probability/log_add.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/modes/mode_search.h"
 #include "core/recognition/modes/prior_starts.h"
 #include "core/recognition/prior/arc_coordinates.h"

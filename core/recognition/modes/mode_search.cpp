@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/numerics/small_cholesky.h"
-#include "core/numerics/triangular_root.h"
+#include "core/numerics/matrices/small_cholesky.h"
+#include "core/numerics/matrices/triangular_root.h"
 #include "core/recognition/prior/touched_prior.h"
 
 namespace palpate {

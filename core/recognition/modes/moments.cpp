@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/curves/curve.h"
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
 #include "core/recognition/modes/mode_search.h"
 
 namespace palpate {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/negligible.h"
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/modes/mode_search.h"
 
 namespace palpate {

@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "core/curves/curve.h"
-#include "core/numerics/triangular_root.h"
+#include "core/numerics/matrices/triangular_root.h"
 #include "core/recognition/fit/orthogonal/measured_normal.h"
 #include "core/recognition/modes/trial_foot.h"
 #include "core/recognition/prior/touched_prior.h"

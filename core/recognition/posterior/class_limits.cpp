@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
 #include "core/recognition/posterior/prior_modes.h"
 #include "core/recognition/prior/touched_prior.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/numerics/levenberg_marquardt.h"
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/starts/algebraic_fit.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/numerics/log_add.h"
+#include "core/numerics/probability/log_add.h"
 
 namespace palpate {
 

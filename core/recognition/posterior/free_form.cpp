@@ -7,8 +7,8 @@
 #include <numbers>
 #include <optional>
 
-#include "core/numerics/negligible.h"
-#include "core/numerics/triangular_root.h"
+#include "core/numerics/matrices/triangular_root.h"
+#include "core/numerics/probability/negligible.h"
 
 namespace palpate {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/posterior/class_limits.h"
 #include "core/recognition/posterior/prior_modes.h"
 #include "core/recognition/posterior/straight_paths.h"

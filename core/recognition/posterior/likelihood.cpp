@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numerics/log_gamma.h"
+#include "core/numerics/probability/log_gamma.h"
 
 namespace palpate {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/numerics/chi_square.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/chi_square.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/posterior/runs_along.h"
 #include "core/recognition/smooth/residual_correlation.h"
 #include "core/recognition/smooth/stated_form_error.h"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/local/spikes/jumps.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/samples/tips/tip_sides.h"
 

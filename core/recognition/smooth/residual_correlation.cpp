@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numerics/negligible.h"
-#include "core/numerics/normal_law.h"
+#include "core/numerics/probability/negligible.h"
+#include "core/numerics/probability/normal_law.h"
 
 namespace palpate {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/curves/plane_curve.h"
-#include "core/numerics/orthogonal_polynomials.h"
+#include "core/numerics/polynomials/orthogonal_polynomials.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {

@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "core/numerics/chi_square.h"
-#include "core/numerics/negligible.h"
-#include "core/numerics/orthogonal_polynomials.h"
+#include "core/numerics/polynomials/orthogonal_polynomials.h"
+#include "core/numerics/probability/chi_square.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/smooth/patch_sections.h"
 #include "core/recognition/smooth/residual_correlation.h"
 #include "core/recognition/smooth/turning_sections.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/local/noise.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 
 namespace palpate {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/curves/curve.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/starts/farthest_first.h"
 #include "core/recognition/fit/starts/polynomial_seeds.h"

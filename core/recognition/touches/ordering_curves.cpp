@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/smooth/arcs.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/numerics/symmetric_eigen.h"
+#include "core/numerics/matrices/symmetric_eigen.h"
 #include "core/recognition/tree/recognition_tree_tolerance.h"
 
 namespace palpate {

@@ -8,7 +8,7 @@
 
 #include "core/curves/curve.h"
 #include "core/invariants/signature_fit/canonical_models.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 
 namespace palpate {
 namespace {

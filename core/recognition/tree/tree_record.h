@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/recognition/tree/recognition_tree.h"
 
 namespace palpate {

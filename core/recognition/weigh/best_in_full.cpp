@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/negligible.h"
-#include "core/numerics/normal_law.h"
+#include "core/numerics/probability/negligible.h"
+#include "core/numerics/probability/normal_law.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/orthogonal/measured_normal.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"

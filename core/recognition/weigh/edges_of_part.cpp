@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 
 namespace palpate {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/curves/cubic_spline.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/samples/tips/tip_sides.h"

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/numerics/log_add.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/log_add.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/weigh/near_best.h"
 
 namespace palpate {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/log_add.h"
+#include "core/numerics/probability/log_add.h"
 #include "core/recognition/coherent/coherent_gain.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/weigh/near_best.h"

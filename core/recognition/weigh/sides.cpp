@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/out_of_reach.h"
 #include "core/recognition/samples/tips/tip_sides.h"

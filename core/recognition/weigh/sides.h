@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/samples/sample_memory.h"
 #include "core/recognition/weigh/side_choice.h"
 #include "core/recognition/weigh/sided_start.h"

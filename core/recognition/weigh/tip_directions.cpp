@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/curves/curve.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/samples/tips/tip_sides.h"
 
 namespace palpate {

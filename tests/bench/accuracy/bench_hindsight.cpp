@@ -20,8 +20,8 @@
 #include "core/local/jet_estimator.h"
 #include "core/local/legendre_curve.h"
 #include "core/local/stream/sliding_window.h"
-#include "core/numerics/chi_square.h"
-#include "core/numerics/legendre_fit.h"
+#include "core/numerics/polynomials/legendre_fit.h"
+#include "core/numerics/probability/chi_square.h"
 #include "tests/support/stroke.h"
 
 namespace palpate {

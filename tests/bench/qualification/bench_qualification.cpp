@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/qualification/coherent_whitening.h"
 #include "core/qualification/probe_correction.h"
 #include "core/qualification/qualify.h"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/qualification/probe_correction.h"
 #include "core/qualification/qualify.h"
 #include "tests/bench/real/simulated_part.h"

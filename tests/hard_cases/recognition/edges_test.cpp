@@ -11,7 +11,7 @@
 
 #include "core/curves/curve.h"
 #include "core/curves/rounded_corner.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/posterior/edges.h"
 #include "core/recognition/recognizer.h"
 #include "core/recognition/smooth/arcs.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/touched_curve.h"

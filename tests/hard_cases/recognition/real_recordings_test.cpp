@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/recognition/recognizer.h"
 
 namespace palpate {

@@ -13,7 +13,7 @@
 #include "core/invariants/semi_cubical_parabola_invariants.h"
 #include "core/invariants/signature_fit/conic_start.h"
 #include "core/invariants/signature_fit/semi_signature_fit.h"
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "tests/support/canonical_points.h"
 #include "tests/support/test_rng.h"
 

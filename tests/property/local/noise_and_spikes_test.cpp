@@ -6,7 +6,7 @@
 
 #include "core/local/noise.h"
 #include "core/local/spikes/spikes.h"
-#include "core/numerics/normal_law.h"
+#include "core/numerics/probability/normal_law.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/touched_arc.h"
 

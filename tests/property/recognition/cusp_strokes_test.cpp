@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/curves/semi_cubical_parabola.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/recognizer.h"
 #include "tests/support/answered_touches.h"
 #include "tests/support/scene_data.h"

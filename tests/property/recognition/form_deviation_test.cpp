@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/recognition/weigh/weigh.h"
 #include "tests/support/joint_error.h"
 #include "tests/support/scene_data.h"

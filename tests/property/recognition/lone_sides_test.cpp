@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/curves/curve.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/given/given_class.h"
 #include "core/recognition/recognizer.h"
 #include "tests/support/lone_touches.h"

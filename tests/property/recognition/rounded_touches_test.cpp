@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/local/reading_step.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "tests/support/answered_touches.h"
 #include "tests/support/most_of_poisson.h"
 #include "tests/support/test_rng.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/part/segment_belonging.h"
 #include "core/part/segment_match.h"
 #include "tests/support/closed_spline_part.h"

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "tests/support/calibration.h"
 #include "tests/support/expect_calibrated.h"
 #include "tests/support/joint_error.h"

@@ -14,7 +14,7 @@
 #include "core/curves/ellipse.h"
 #include "core/curves/pose2.h"
 #include "core/curves/semi_cubical_parabola.h"
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/recognition/recognizer.h"
 #include "tests/support/joint_error.h"
 #include "tests/support/most_of_poisson.h"

@@ -12,7 +12,7 @@
 
 #include "core/curves/hyperbola.h"
 #include "core/curves/pose2.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/recognizer.h"
 #include "tests/support/most_of_poisson.h"
 #include "tests/support/test_rng.h"

@@ -11,7 +11,7 @@
 
 #include "core/curves/curve.h"
 #include "core/curves/ellipse.h"
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/recognition/recognizer.h"
 #include "tests/support/calibration.h"
 #include "tests/support/test_rng.h"

@@ -9,7 +9,7 @@
 
 #include "core/curves/pose2.h"
 #include "core/curves/semi_cubical_parabola.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/recognizer.h"
 #include "tests/support/most_of_poisson.h"

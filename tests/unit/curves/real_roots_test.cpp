@@ -1,5 +1,5 @@
 // Roots of polynomials made from known roots.
-#include "core/numerics/real_roots.h"
+#include "core/numerics/polynomials/real_roots.h"
 
 #include <gtest/gtest.h>
 

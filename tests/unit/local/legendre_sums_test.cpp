@@ -1,5 +1,5 @@
 // Normal equations from one sum a degree are those of the products themselves.
-#include "core/numerics/legendre_sums.h"
+#include "core/numerics/polynomials/legendre_sums.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/numerics/legendre_fit.h"
+#include "core/numerics/polynomials/legendre_fit.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {

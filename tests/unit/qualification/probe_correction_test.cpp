@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/qualification/qualify.h"
 #include "tests/support/calibration.h"
 #include "tests/support/probe_scene.h"

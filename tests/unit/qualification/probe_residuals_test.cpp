@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {

@@ -1,5 +1,5 @@
 // The chi-square law against 50-digit values (tests/data/reference/make_chi_square.py).
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/curves/curve.h"
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "core/recognition/given/given_class.h"
 #include "core/recognition/given/placed/orthogonal_squares.h"
 #include "tests/support/calibration.h"

@@ -1,4 +1,4 @@
-#include "core/numerics/orthogonal_polynomials.h"
+#include "core/numerics/polynomials/orthogonal_polynomials.h"
 
 #include <gtest/gtest.h>
 

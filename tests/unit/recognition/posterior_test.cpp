@@ -15,7 +15,7 @@
 #include <numeric>
 #include <span>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/unbounded_work.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "tests/support/canonical_points.h"
 #include "tests/support/reference_curves.h"
 #include "tests/support/test_rng.h"

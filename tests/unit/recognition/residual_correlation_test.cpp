@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/numerics/orthogonal_polynomials.h"
+#include "core/numerics/polynomials/orthogonal_polynomials.h"
 #include "tests/support/most_of_poisson.h"
 #include "tests/support/test_rng.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 #include "tests/support/closed_spline_part.h"
 #include "tests/support/test_rng.h"
 

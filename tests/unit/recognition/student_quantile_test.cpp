@@ -1,6 +1,6 @@
 // Student's law against 50-digit values, found by bisection of the regularised incomplete beta
 // function: tan(pi (p - 1/2)) with one degree of freedom.
-#include "core/numerics/student_quantile.h"
+#include "core/numerics/probability/student_quantile.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/posterior/edges.h"
 #include "core/recognition/smooth/arcs.h"
 #include "tests/support/answered_touches.h"

@@ -1,4 +1,4 @@
-#include "core/numerics/triangular_root.h"
+#include "core/numerics/matrices/triangular_root.h"
 
 #include <gtest/gtest.h>
 

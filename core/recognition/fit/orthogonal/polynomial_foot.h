@@ -7,7 +7,7 @@
 
 #include "core/curves/algebraic/polynomial_curve.h"
 #include "core/curves/plane_curve.h"
-#include "core/numerics/real_roots.h"
+#include "core/numerics/polynomials/real_roots.h"
 
 namespace palpate {
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 
 namespace palpate {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "core/numerics/symmetric_eigen.h"
+#include "core/numerics/matrices/symmetric_eigen.h"
 
 namespace palpate {
 

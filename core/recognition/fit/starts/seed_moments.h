@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
 
 namespace palpate {
 

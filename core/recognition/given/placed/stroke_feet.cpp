@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/curves/all_feet.h"
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/given/placed/foot_parameter.h"
 
 namespace palpate {

@@ -4,9 +4,9 @@
 
 #include "core/curves/algebraic/canonical_conic.h"
 #include "core/curves/algebraic/canonical_cubic.h"
-#include "core/numerics/small_cholesky.h"
-#include "core/numerics/small_ldlt.h"
-#include "core/numerics/symmetric_eigen.h"
+#include "core/numerics/matrices/small_cholesky.h"
+#include "core/numerics/matrices/small_ldlt.h"
+#include "core/numerics/matrices/symmetric_eigen.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/orthogonal/implicit_fit.h"
 #include "core/recognition/fit/orthogonal/refine_effort.h"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/numerics/negligible.h"
+#include "core/numerics/probability/negligible.h"
 
 namespace palpate {
 namespace {

@@ -1,11 +1,11 @@
-#include "core/numerics/chi_square.h"
+#include "core/numerics/probability/chi_square.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
 
-#include "core/numerics/log_gamma.h"
+#include "core/numerics/probability/log_gamma.h"
 
 namespace palpate {
 namespace {

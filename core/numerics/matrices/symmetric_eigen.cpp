@@ -1,4 +1,4 @@
-#include "core/numerics/symmetric_eigen.h"
+#include "core/numerics/matrices/symmetric_eigen.h"
 
 #include <Eigen/Eigenvalues>
 

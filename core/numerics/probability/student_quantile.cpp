@@ -1,4 +1,4 @@
-#include "core/numerics/student_quantile.h"
+#include "core/numerics/probability/student_quantile.h"
 
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>

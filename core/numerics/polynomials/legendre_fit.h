@@ -8,8 +8,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/numerics/legendre_sums.h"
-#include "core/numerics/small_cholesky.h"
+#include "core/numerics/matrices/small_cholesky.h"
+#include "core/numerics/polynomials/legendre_sums.h"
 
 namespace palpate {
 
