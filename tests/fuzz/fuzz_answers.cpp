@@ -12,7 +12,7 @@
 
 #include "node/client/result_decoder.h"
 #include "node/process/quiet_protobuf.h"
-#include "node/tool/drawing/svg_plot.h"
+#include "node/tool/drawing/svg/svg_plot.h"
 #include "node/tool/drawing/terminal_plot.h"
 #include "node/tool/text/message_json.h"
 #include "node/tool/text/recognition_text.h"

@@ -14,7 +14,7 @@
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/contact_groups.h"
-#include "node/tool/drawing/lobes_plot.h"
+#include "node/tool/drawing/svg/lobes_plot.h"
 #include "node/tool/qualification_answer.h"
 #include "node/tool/text/message_json.h"
 

@@ -1,5 +1,5 @@
 // The picture of the tree's invariants: what each contact alone says agrees with what all say.
-#include "node/tool/drawing/invariant_plot.h"
+#include "node/tool/drawing/svg/invariant_plot.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

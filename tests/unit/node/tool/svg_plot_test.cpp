@@ -1,4 +1,4 @@
-#include "node/tool/drawing/svg_plot.h"
+#include "node/tool/drawing/svg/svg_plot.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "node/tool/drawing/svg_text.h"
+#include "node/tool/drawing/svg/svg_text.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 #include "tests/unit/node/tool/answered_scene.h"

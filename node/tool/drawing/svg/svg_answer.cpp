@@ -1,4 +1,4 @@
-#include "node/tool/drawing/svg_answer.h"
+#include "node/tool/drawing/svg/svg_answer.h"
 
 #include "node/files/quantity.h"
 #include "node/tool/text/recognition_text.h"

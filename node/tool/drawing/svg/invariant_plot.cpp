@@ -1,4 +1,4 @@
-#include "node/tool/drawing/invariant_plot.h"
+#include "node/tool/drawing/svg/invariant_plot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "node/files/quantity.h"
-#include "node/tool/drawing/colours.h"
 #include "node/tool/drawing/invariant_points.h"
-#include "node/tool/drawing/svg_table.h"
-#include "node/tool/drawing/ticks.h"
+#include "node/tool/drawing/svg/colours.h"
+#include "node/tool/drawing/svg/svg_table.h"
+#include "node/tool/drawing/svg/ticks.h"
 #include "node/tool/text/recognition_text.h"
 #include "node/wire/convert.h"
 

@@ -1,4 +1,4 @@
-#include "node/tool/drawing/svg_text.h"
+#include "node/tool/drawing/svg/svg_text.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,13 +1,13 @@
-#include "node/tool/drawing/lobes_plot.h"
+#include "node/tool/drawing/svg/lobes_plot.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "node/files/quantity.h"
-#include "node/tool/drawing/colours.h"
-#include "node/tool/drawing/svg_table.h"
-#include "node/tool/drawing/ticks.h"
+#include "node/tool/drawing/svg/colours.h"
+#include "node/tool/drawing/svg/svg_table.h"
+#include "node/tool/drawing/svg/ticks.h"
 
 namespace palpate {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include "node/tool/drawing/svg_text.h"
+#include "node/tool/drawing/svg/svg_text.h"
 
 namespace palpate {
 

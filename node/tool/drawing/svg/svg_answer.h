@@ -2,7 +2,7 @@
 #pragma once
 
 #include "node/tool/contact_groups.h"
-#include "node/tool/drawing/svg_table.h"
+#include "node/tool/drawing/svg/svg_table.h"
 #include "node/tool/text/advice.h"
 #include "palpate/v1/recognition.pb.h"
 

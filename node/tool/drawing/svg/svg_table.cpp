@@ -1,4 +1,4 @@
-#include "node/tool/drawing/svg_table.h"
+#include "node/tool/drawing/svg/svg_table.h"
 
 namespace palpate {
 namespace {

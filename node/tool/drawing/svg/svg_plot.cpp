@@ -1,4 +1,4 @@
-#include "node/tool/drawing/svg_plot.h"
+#include "node/tool/drawing/svg/svg_plot.h"
 
 #include <algorithm>
 #include <array>
@@ -9,14 +9,14 @@
 
 #include "node/files/quantity.h"
 #include "node/tool/drawing/band_area.h"
-#include "node/tool/drawing/colours.h"
 #include "node/tool/drawing/drawing.h"
 #include "node/tool/drawing/enlarged_residuals.h"
 #include "node/tool/drawing/pose_ellipse.h"
 #include "node/tool/drawing/shown_extent.h"
-#include "node/tool/drawing/svg_answer.h"
-#include "node/tool/drawing/svg_table.h"
-#include "node/tool/drawing/ticks.h"
+#include "node/tool/drawing/svg/colours.h"
+#include "node/tool/drawing/svg/svg_answer.h"
+#include "node/tool/drawing/svg/svg_table.h"
+#include "node/tool/drawing/svg/ticks.h"
 #include "node/tool/drawing/visible_samples.h"
 #include "node/tool/text/recognition_text.h"
 
