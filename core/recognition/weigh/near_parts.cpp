@@ -33,7 +33,7 @@ bool all_lie_apart(const FitData& data) {
 }
 
 /// The same points with `factor` times their noise. What normals are off by where a place is not
-/// known follows (fit/measured_normal.h).
+/// known follows (fit/orthogonal/measured_normal.h).
 FitData with_noise(FitData data, double factor) {
   for (FitPoint& point : data.points) {
     point.inverse_sigma /= factor;

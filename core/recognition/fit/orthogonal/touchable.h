@@ -29,8 +29,8 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data);
 /// its noise to tell, neighbours must not go to and fro between strands of the curve. Where a curve
 /// crosses itself, and beside a cusp, noise puts feet on either strand: those that may as well be
 /// on that of most of their patch count as there, for this test and the next. The fit of a given
-/// class (given/stroke_feet.h) puts every sample of a stroke on a branch, by the way that the probe
-/// went; here a fitted curve is only kept or excluded, for which that is enough.
+/// class (given/placed/stroke_feet.h) puts every sample of a stroke on a branch, by the way that
+/// the probe went; here a fitted curve is only kept or excluded, for which that is enough.
 bool is_touchable(const PolynomialFit& fit, const FitData& data);
 
 /// Whether between two of its points a patch leaves out more of the curve than it is long itself: a

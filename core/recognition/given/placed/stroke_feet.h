@@ -17,9 +17,10 @@ namespace palpate {
 /// missing and the probe went farther between two of them: by the stated noise, and where none is
 /// stated by that of the residuals.
 ///
-/// Of a curve that is already fitted, is_touchable (fit/touchable.h) asks for one direction between
-/// samples that noise does not put in another order; here each sample is given its foot while the
-/// curve still moves, so that neighbours closer than noise must be told apart by their way alone.
+/// Of a curve that is already fitted, is_touchable (fit/orthogonal/touchable.h) asks for one
+/// direction between samples that noise does not put in another order; here each sample is given
+/// its foot while the curve still moves, so that neighbours closer than noise must be told apart by
+/// their way alone.
 ///
 /// Round tips are left where they are: they go from branch to branch without coming to where these
 /// meet. False if the shape is outside the class.
