@@ -11,6 +11,7 @@
 #include "core/recognition/counted/counted_samples.h"
 #include "core/recognition/counted/fewest_places.h"
 #include "core/recognition/counted/outliers.h"
+#include "core/recognition/counted/way_set_aside.h"
 #include "core/recognition/estimate_stream.h"
 #include "core/recognition/likelihood_answer.h"
 #include "core/recognition/patch_contacts.h"
@@ -243,7 +244,12 @@ class Recognizer::Impl {
     }
     answer.outlier_count = stored - w.data.points.size();
     if (answer.outlier_count > 0) {
-      answer.outliers_m = places_of(samples_set_aside(clean_.moved(), used, weighed.outliers));
+      const std::vector<bool> aside = samples_set_aside(clean_.moved(), used, weighed.outliers);
+      answer.outliers_m = places_of(flagged_samples(clean_.moved(), aside));
+      const auto curve = curve_of(w);
+      if (curve && has_way_set_aside(clean_.moved(), aside, *curve)) {
+        doubt(&answer, Doubt::Misfit);
+      }
     }
     if (sigma_known) {
       unused_ = contacts_with_details(w.data);
@@ -271,7 +277,10 @@ class Recognizer::Impl {
         answer_by_tree(possible_sides(patches, reduced, turns_of(reduced), {}, work).ways,
                        contacts_of, options_.tree, data.scale, options_.determined_fraction);
     answer.outlier_count = outliers;
-    if (outliers > 0) answer.outliers_m = places_of(samples_set_aside(clean_.moved(), patches, {}));
+    if (outliers > 0) {
+      answer.outliers_m = places_of(
+          flagged_samples(clean_.moved(), samples_set_aside(clean_.moved(), patches, {})));
+    }
     return answer;
   }
 

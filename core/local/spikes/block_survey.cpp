@@ -1,6 +1,7 @@
 #include "core/local/spikes/block_survey.h"
 
 #include <cmath>
+#include <limits>
 
 #include "core/local/noise.h"
 #include "core/local/spikes/least_median_parabola.h"
@@ -32,6 +33,8 @@ constexpr double kCuspFactor = 2e-3;
 /// backtrack <= kBacktrackSigmas * sqrt(2) * sigma: the difference of two abscissae has the noise
 /// sqrt(2) sigma. Six standard deviations reject one in 10^9 neighbours by chance.
 constexpr double kBacktrackSigmas = 6.0;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What form leaves of a quartic, counted as noise. [m]
 double noise_floor(const ResidualBlock& block, bool at_cusp) {
@@ -160,6 +163,32 @@ std::vector<Vec2> flagged(std::span<const Vec2> samples, std::span<const std::ui
   return path;
 }
 
+/// Whether a sample off the path is farther from the path's samples before and after it than these
+/// are from one another, by more than `limit_m`: along the curve, where no residual shows it, too.
+bool leaves_path(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
+                 double limit_m) {
+  const auto is_on = [&](std::size_t i) { return on_path.empty() || on_path[i] != 0; };
+  std::size_t before = samples.size();
+  std::size_t after = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (is_on(i)) {
+      before = i;
+      continue;
+    }
+    for (after = std::max(after, i); after < samples.size() && !is_on(after);) {
+      ++after;
+    }
+    const double from = before < i ? (samples[i] - samples[before]).norm() : kInfinity;
+    const double to = after < samples.size() ? (samples[i] - samples[after]).norm() : kInfinity;
+    const double on =
+        before < i && after < samples.size() ? (samples[after] - samples[before]).norm() : 0.0;
+    if (std::min(from, to) > on + limit_m) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// How far the nearer halves of the blocks lie from a parabola, as a standard deviation: the median
 /// over at most eight blocks; 0 if no block has a parabola. [m]
 double parabola_scale_m(std::span<const Vec2> samples, std::size_t length,
@@ -263,9 +292,9 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, std::span<const std::ui
     return survey;
   }
   // Where noise scatters samples along the axis too, their order on it says nothing.
-  const bool is_out_of_order =
-      blocks.end_gap > kLonelyGap ||
-      blocks.backtrack_m > kBacktrackSigmas * std::sqrt(2.0) * survey.sigma_m;
+  const double backtrack_m = kBacktrackSigmas * std::sqrt(2.0) * survey.sigma_m;
+  const bool is_out_of_order = blocks.end_gap > kLonelyGap || blocks.backtrack_m > backtrack_m ||
+                               leaves_path(samples, on_path, backtrack_m);
   const double limit_m = threshold * survey.sigma_m;
   const bool leaves = blocks.bends_to_end && (leaves_at_end(samples.first<4>(), limit_m) ||
                                               leaves_at_end(samples.last<4>(), limit_m));

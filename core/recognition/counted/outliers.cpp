@@ -130,9 +130,9 @@ std::vector<SetAside> flagged_samples(std::span<const StoredPatch> patches,
   return samples;
 }
 
-std::vector<SetAside> samples_set_aside(std::span<const StoredPatch> all,
-                                        std::span<const StoredPatch> used,
-                                        const std::vector<bool>& flagged) {
+std::vector<bool> samples_set_aside(std::span<const StoredPatch> all,
+                                    std::span<const StoredPatch> used,
+                                    const std::vector<bool>& flagged) {
   // Joined touches are the same samples in another order: they are known by their places.
   using Place = std::pair<double, double>;
   std::multiset<Place> kept;
@@ -144,15 +144,12 @@ std::vector<SetAside> samples_set_aside(std::span<const StoredPatch> all,
       if (!is_out) kept.insert({sample.position_m.x(), sample.position_m.y()});
     }
   }
-  std::vector<SetAside> aside;
+  std::vector<bool> aside;
   for (const StoredPatch& patch : all) {
     for (const StoredSample& sample : patch.samples) {
       const auto found = kept.find({sample.position_m.x(), sample.position_m.y()});
-      if (found == kept.end()) {
-        aside.push_back({sample, patch.context.tip_radius_m});
-      } else {
-        kept.erase(found);
-      }
+      aside.push_back(found == kept.end());
+      if (found != kept.end()) kept.erase(found);
     }
   }
   return aside;

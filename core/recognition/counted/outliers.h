@@ -34,11 +34,11 @@ struct SetAside {
 std::vector<SetAside> flagged_samples(std::span<const StoredPatch> patches,
                                       const std::vector<bool>& flagged);
 
-/// The samples of `all` that are not in `used`, or flagged there: one flag per sample, or none at
-/// all.
-std::vector<SetAside> samples_set_aside(std::span<const StoredPatch> all,
-                                        std::span<const StoredPatch> used,
-                                        const std::vector<bool>& flagged);
+/// One flag per sample of `all`: it is not in `used`, or flagged there (one flag per sample, or
+/// none at all).
+std::vector<bool> samples_set_aside(std::span<const StoredPatch> all,
+                                    std::span<const StoredPatch> used,
+                                    const std::vector<bool>& flagged);
 
 /// True if so many of the `stored` samples are set aside that spikes among the `used` ones may have
 /// been missed.

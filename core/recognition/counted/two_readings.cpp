@@ -98,11 +98,12 @@ Weighed more_probable(Weighed one, Weighed other, std::span<const StoredPatch> p
   if (!curve_of_one || !curve_of_other) {
     return one;
   }
-  const double log_of_one =
-      log_density_of(one, *curve_of_one,
-                     samples_set_aside(all, one.patches ? *one.patches : patches, one.outliers));
-  const double log_of_other = log_density_of(
-      other, *curve_of_other, samples_set_aside(all, *other.patches, other.outliers));
+  const auto aside_of = [&](const Weighed& weighed) {
+    const std::span<const StoredPatch> used = weighed.patches ? *weighed.patches : patches;
+    return flagged_samples(all, samples_set_aside(all, used, weighed.outliers));
+  };
+  const double log_of_one = log_density_of(one, *curve_of_one, aside_of(one));
+  const double log_of_other = log_density_of(other, *curve_of_other, aside_of(other));
   const double share = 1.0 / (1.0 + std::exp(std::abs(log_of_one - log_of_other)));
   return log_of_other > log_of_one ? with_share_of(std::move(one), share, std::move(other))
                                    : with_share_of(std::move(other), share, std::move(one));

@@ -6,10 +6,15 @@
 
 namespace palpate {
 
-double distance_m(const ExplainingCurve& from, const StoredSample& sample, double tip_radius_m) {
+double signed_distance_m(const ExplainingCurve& from, const StoredSample& sample,
+                         double tip_radius_m) {
   const Curve curve = *make_curve(from.shape.curve_class, from.shape.values);
   const FootPoint foot = foot_point(curve, from.world_T_curve.to_local(sample.position_m));
-  return std::abs(std::abs(foot.distance) - tip_radius_m);
+  return tip_radius_m > 0.0 ? std::abs(foot.distance) - tip_radius_m : foot.distance;
+}
+
+double distance_m(const ExplainingCurve& from, const StoredSample& sample, double tip_radius_m) {
+  return std::abs(signed_distance_m(from, sample, tip_radius_m));
 }
 
 double noise_m(const ExplainingCurve& about, const StoredSample& sample) {

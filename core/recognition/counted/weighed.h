@@ -28,7 +28,12 @@ struct Weighed {
   std::optional<ExplainingCurve> explains = {};
 };
 
-/// Of a sample from the curve, or of a tip's centre from where it would touch it. [m]
+/// Of a sample from the curve, or of a tip's centre from where it would touch it; the sign tells
+/// the side. [m]
+double signed_distance_m(const ExplainingCurve& from, const StoredSample& sample,
+                         double tip_radius_m);
+
+/// Likewise, without a sign. [m]
 double distance_m(const ExplainingCurve& from, const StoredSample& sample, double tip_radius_m);
 
 /// Noise of a sample: as stated, or else the curve's. [m]

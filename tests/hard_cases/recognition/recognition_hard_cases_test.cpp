@@ -190,11 +190,14 @@ TEST(RecognitionHardCases, ASpikeAcrossTheWayIsNoCusp) {
 }
 
 // Some spikes are near the curve but out of order along the stroke. When they were taken back, they
-// misled every class.
+// misled every class. Four and more in a row, or next to an end, may pass for a way: then the
+// answer doubts.
 TEST(RecognitionHardCases, SpikesAlongTheCurve) {
   std::mt19937_64 rng = test::test_rng();
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  for (int i = 0; i < test::stress_count(50); ++i) {
+  const int scenes = test::stress_count(400);
+  int recognized = 0;
+  for (int i = 0; i < scenes; ++i) {
     std::vector<Patch> patches = {elliptic_arc(0.3, rng), elliptic_arc(2.5, rng)};
     for (Patch& patch : patches) {
       const Vec2 chord = patch.back().position_m - patch.front().position_m;
@@ -206,8 +209,13 @@ TEST(RecognitionHardCases, SpikesAlongTheCurve) {
       }
     }
     const Recognition answer = recognise(patches);
-    EXPECT_EQ(answer.status, RecognitionStatus::Recognized) << name_of(answer.doubt);
-    EXPECT_EQ(answer.shape.curve_class, CurveClass::Ellipse);
+    if (answer.status == RecognitionStatus::Recognized) {
+      ++recognized;
+      EXPECT_EQ(answer.shape.curve_class, CurveClass::Ellipse);
+    }
+  }
+  if (test::counts_tell()) {
+    EXPECT_GE(20 * recognized, 19 * scenes);
   }
 }
 
