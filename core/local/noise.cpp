@@ -1,5 +1,6 @@
 #include "core/local/noise.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -63,13 +64,31 @@ BlockNoise from_blocks(std::span<const Vec2> samples, std::size_t block) {
   return result;
 }
 
+/// The noise by how neighbours go to and fro: a median of second differences. A path leaves as much
+/// only if it turns by a radian from one sample to the next.
+double to_and_fro(std::span<const Vec2> samples) {
+  constexpr double kVariances = 6.0;  // 1 + 4 + 1, of a second difference
+  std::vector<double> sizes;
+  sizes.reserve(2 * samples.size());
+  for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
+    const Vec2 second = samples[i - 1] - 2.0 * samples[i] + samples[i + 1];
+    sizes.push_back(std::abs(second.x()));
+    sizes.push_back(std::abs(second.y()));
+  }
+  return median_of(sizes) / (kMedianOfNormal * std::sqrt(kVariances));
+}
+
 /// Uses blocks of at least `block` samples, or longer ones if these are too short compared with the
-/// noise.
-NoiseEstimate from_resolved_blocks(std::span<const Vec2> samples, std::size_t block) {
+/// noise: the one that they show, or `neighbours` if that is larger. Noise turns the path of blocks
+/// that are too short by more than their fit may turn. The few that are fitted all the same are
+/// those with little noise by chance, beside which they are long.
+NoiseEstimate from_resolved_blocks(std::span<const Vec2> samples, std::size_t block,
+                                   double neighbours) {
   BlockNoise result = from_blocks(samples, block);
   const auto unresolved = [&] {
     return result.noise.status == LocalStatus::Unresolved ||
-           result.mean_extent_m <= ResidualBlock::kMinExtentSigmas * result.noise.sigma_m;
+           result.mean_extent_m <=
+               ResidualBlock::kMinExtentSigmas * std::max(result.noise.sigma_m, neighbours);
   };
   while (unresolved() && 2 * block <= samples.size()) {
     block *= 2;
@@ -116,11 +135,12 @@ NoiseEstimate estimate_noise(std::span<const Vec2> samples) {
                                                                  : LocalStatus::TooFewSamples,
             0.0, 0};
   }
-  const NoiseEstimate fine = from_resolved_blocks(distinct, kShortBlock);
+  const double neighbours = to_and_fro(distinct);
+  const NoiseEstimate fine = from_resolved_blocks(distinct, kShortBlock, neighbours);
   if (distinct.size() < kLongBlock) {
     return fine;
   }
-  const NoiseEstimate coarse = from_resolved_blocks(distinct, kLongBlock);
+  const NoiseEstimate coarse = from_resolved_blocks(distinct, kLongBlock, neighbours);
   if (coarse.status != LocalStatus::Ok || fine.status != LocalStatus::Ok) {
     return coarse.status == LocalStatus::Ok ? coarse : fine;
   }

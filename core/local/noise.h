@@ -20,10 +20,11 @@ struct NoiseEstimate {
 /// distinct samples. O(samples log(samples)) at most.
 ///
 /// For white Gaussian noise sigma_m^2 is unbiased. A tenth of spikes does little harm. Blocks are
-/// longer where 16 samples span less than 20 sigma (dense samples, or a probe at rest), and 8
-/// samples long where longer ones show the bending of the curve. Consecutive equal samples count
-/// once. Noise that is correlated over more than a block (form error, drift) is not included. If
-/// samples are so far apart that 8 of them turn by a right angle, there is no estimate.
+/// longer where 16 samples span less than 20 sigma, as residuals and second differences tell it
+/// (dense samples, or a probe at rest), and 8 samples long where longer ones show the bending of
+/// the curve. Consecutive equal samples count once. Noise that is correlated over more than a block
+/// (form error, drift) is not included. If samples are so far apart that 8 of them turn by a right
+/// angle, there is no estimate.
 NoiseEstimate estimate_noise(std::span<const Vec2> samples);
 
 /// Standard deviation of residuals of equal variance from their absolute values, some of which may

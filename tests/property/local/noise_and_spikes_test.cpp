@@ -6,6 +6,7 @@
 
 #include "core/local/noise.h"
 #include "core/local/spikes/spikes.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/numerics/probability/normal_law.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/touched_arc.h"
@@ -66,6 +67,27 @@ TEST_P(NoiseEstimateOf, IsTheNoiseOfDenseSamplesToo) {
   ASSERT_EQ(noise.status, LocalStatus::Ok);
   // 1,900 degrees of freedom: five standard deviations of sigma are 8 %.
   EXPECT_NEAR(noise.sigma_m / kSigma, 1.0, 0.08 + 0.02);
+}
+
+// Noise turns the path of nearly all blocks of 8 samples too far. The few that are fitted all the
+// same have little noise by chance; taken for all, they made one stroke in 40 wrong by more than 2.
+TEST(NoiseEstimateOfDenseSamples, IsNotThatOfTheFewBlocksThatAreFitted) {
+  constexpr int kCount = 240;
+  constexpr double kStep = 0.6 * kSigma;
+  std::vector<Vec2> exact;
+  for (int i = 0; i < kCount; ++i) {
+    exact.emplace_back(kStep * i, 0.0);
+  }
+  auto rng = test::test_rng();
+  for (int i = 0; i < 4 * kTrials; ++i) {
+    const NoiseEstimate noise = estimate_noise(test::with_noise(exact, kSigma, rng));
+    if (noise.status == LocalStatus::Ok) {
+      // Five standard deviations of its logarithm, and 3 % as above.
+      EXPECT_NEAR(std::log(noise.sigma_m / kSigma), 0.0,
+                  0.03 + kNegligibleDeviations / std::sqrt(2.0 * noise.dof))
+          << i;
+    }
+  }
 }
 
 TEST_P(NoiseEstimateOf, HardlySeesSpikes) {

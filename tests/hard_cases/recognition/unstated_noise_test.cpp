@@ -1,0 +1,89 @@
+// White noise that nobody states, of strokes that are dense or short beside it: it is what all
+// samples tell, not what a few leave by chance.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "core/curves/pose2.h"
+#include "core/numerics/probability/negligible.h"
+#include "core/recognition/recognizer.h"
+#include "tests/support/most_of_poisson.h"
+#include "tests/support/scene_data.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+constexpr double kSigma_m = 1e-5;
+
+/// Strokes of one part, their lengths in standard deviations of the noise.
+struct StrokesOfPart {
+  std::size_t strokes = 1;
+  std::size_t samples = 0;  ///< of a stroke
+  double length = 0.0;
+  double apart = 0.0;   ///< from the beginning of a stroke to that of the next
+  double radius = 0.0;  ///< 0 = a straight edge
+  bool brakes = false;  ///< the probe sets off slowly and comes to rest
+};
+
+test::Scene touched(const StrokesOfPart& part, std::mt19937_64& rng) {
+  std::normal_distribution<double> noise(0.0, kSigma_m);
+  test::Scene scene;
+  for (std::size_t j = 0; j < part.strokes; ++j) {
+    std::vector<Vec2>& stroke = scene.patches.emplace_back();
+    for (std::size_t i = 0; i < part.samples; ++i) {
+      const double u = static_cast<double>(i) / static_cast<double>(part.samples - 1);
+      const double share = part.brakes ? u * u * (3.0 - 2.0 * u) : u;
+      const double s = part.apart * static_cast<double>(j) + part.length * share;
+      const double angle = part.radius > 0.0 ? s / part.radius : 0.0;
+      const Vec2 place = part.radius > 0.0
+                             ? Vec2(part.radius * Vec2(std::sin(angle), std::cos(angle)))
+                             : Vec2(s, 0.0);
+      const double x = noise(rng);
+      stroke.push_back(kSigma_m * place + Vec2(x, noise(rng)));
+    }
+  }
+  return scene;
+}
+
+// Two strokes with steps of about 0.6 deviations. One in a hundred strokes was given the noise that
+// one block of eight samples showed, of thirty: up to fifty times less than the other's.
+TEST(UnstatedNoise, OfDenseStrokesIsThatOfAllSamples) {
+  std::mt19937_64 rng = test::test_rng();
+  int recognized = 0;
+  int wrong = 0;
+  double expected = 0.0;
+  for (int i = 0; i < test::stress_count(150); ++i) {
+    for (const bool brakes : {false, true}) {
+      for (const double radius : {0.0, 200.0}) {
+        for (const auto& [samples, length] : {std::pair(120U, 80.0), std::pair(240U, 150.0)}) {
+          const Recognition answer = test::recognise(
+              touched({2, samples, length, 3.0 * length, radius, brakes}, rng), 0.0);
+          // A degree of freedom a coordinate across the path; what the sections take, and spikes
+          // found by mistake, is less than a quarter. Of its logarithm, five deviations.
+          const double dof = 0.75 * 2.0 * samples;
+          EXPECT_NEAR(std::log(answer.sigma_m / kSigma_m), 0.0,
+                      kNegligibleDeviations / std::sqrt(2.0 * dof))
+              << i << " " << brakes << " " << radius << " " << samples;
+          if (answer.status == RecognitionStatus::Recognized) {
+            const CurveClass truth = radius > 0.0 ? CurveClass::Circle : CurveClass::Line;
+            ++recognized;
+            wrong += answer.shape.curve_class == truth ? 0 : 1;
+            expected += 1.0 - answer.hypotheses.front().probability;
+          }
+        }
+      }
+    }
+  }
+  if (test::counts_tell()) {
+    EXPECT_GE(recognized, 300);  // where they are long enough to tell, half of all
+    EXPECT_LE(wrong, test::most_of_poisson(expected));
+  }
+}
+
+}  // namespace
+}  // namespace palpate
