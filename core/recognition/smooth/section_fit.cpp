@@ -76,15 +76,28 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
   // Where neighbours err together a section may be worth few samples, or less than one: there a
   // coefficient costs what it does by H. Akaike's criterion (1974).
   const double cost = noise.time > 1.0 ? std::max(std::log(count), 2.0) : std::log(count);
+  // Of a known noise, chance takes more than sqrt(cost) deviations by a coefficient as seldom as a
+  // normal law exceeds them. Where the noise is what is left over, it is Student's law, of so many
+  // degrees of freedom, that t of them exceed as seldom, and n log chi2 falls by
+  //   n log(1 + t^2 / left) = n / left ((8 left + 3) / (8 left + 1))^2 cost
+  // (D. L. Wallace, 1959). At the known noise's cost high degrees go through the noise of few
+  // samples.
+  const auto cost_where_profiled = [&](int coefficients) {
+    const double left = count - coefficients;
+    const double wallace = (8.0 * left + 3.0) / (8.0 * left + 1.0);
+    return left > 0.0 ? cost * count / left * wallace * wallace
+                      : std::numeric_limits<double>::infinity();
+  };
   const auto choose = [&](bool noise_known) {
     int degree = 1;
     double best = std::numeric_limits<double>::infinity();
+    double paid = noise_known ? cost : cost_where_profiled(1);
     for (int d = 1; d <= highest; ++d) {
       const double chi2 =
           std::max(fit.polynomials.residual_sum(d), std::numeric_limits<double>::min());
+      paid += noise_known ? cost : cost_where_profiled(d + 1);
       const double criterion =
-          (noise_known ? chi2 / (noise.variance * noise.time) : count * std::log(chi2)) +
-          (d + 1) * cost;
+          (noise_known ? chi2 / (noise.variance * noise.time) : count * std::log(chi2)) + paid;
       if (criterion < best) {
         best = criterion;
         degree = d;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "core/recognition/smooth/patch_sections.h"
 #include "core/recognition/smooth/residual_correlation.h"
 #include "core/recognition/smooth/turning_sections.h"
+#include "core/recognition/smooth/variance_ratio.h"
 
 namespace palpate {
 namespace {
@@ -100,12 +102,25 @@ void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model,
   }
 }
 
+/// The noise that sections are held against.
+struct ReferenceNoise {
+  double variance = 1.0;                                 ///< in units of the stated one
+  double dof = std::numeric_limits<double>::infinity();  ///< it rests on; infinite = stated
+  double time = 1.0;                                     ///< so many neighbours err together
+};
+
 /// True if chi2 is larger than noise of this variance can make it. For white noise chi-square
 /// exceeds dof + 2 sqrt(dof x) + 2 x with probability exp(-x) at most (B. Laurent and P. Massart,
 /// 2000, lemma 1). Where neighbours err together, chi2 / time is that of dof / time samples.
-bool is_no_noise(double chi2, int dof, const SectionNoise& noise) {
+///
+/// A variance that rests on residuals may itself be too low by chance.
+bool is_no_noise(double chi2, int dof, const ReferenceNoise& noise) {
   const double x = noise.time * kNegligibleLogOdds;
-  return dof > 0 && chi2 > noise.variance * (dof + 2.0 * std::sqrt(dof * x) + 2.0 * x);
+  if (dof <= 0 || !(chi2 > noise.variance * (dof + 2.0 * std::sqrt(dof * x) + 2.0 * x))) {
+    return false;
+  }
+  return std::isinf(noise.dof) || is_ratio_beyond_chance(chi2 / (noise.variance * dof),
+                                                         dof / noise.time, noise.dof / noise.time);
 }
 
 /// The quietest sections: those of lowest variance that have a quarter of all degrees of freedom,
@@ -141,7 +156,7 @@ QuietSections quiet_of(const std::vector<Section>& sections, bool sigma_known) {
 
 /// What a section is held against.
 struct Yardstick {
-  SectionNoise noise;
+  ReferenceNoise noise;
   /// The noise is stated, or sections with degrees to spare show it: the others may do without a
   /// polynomial.
   bool shown_elsewhere = true;
@@ -244,15 +259,18 @@ SmoothModel smooth_model_of(FitData* data, SectionNoise noise, StatedNoise state
   QuietSections quiet = quiet_of(sections, noise.known);
   if (noise.known && stated == StatedNoise::Holds) {
     quiet.highest = 1.0;
-  } else if (noise.known && is_no_noise(quiet.chi2, quiet.dof, noise)) {
+  } else if (noise.known && is_no_noise(quiet.chi2, quiet.dof, {.time = noise.time})) {
     // The stated noise is too low everywhere: with it, the fits would follow the noise itself.
     noise.variance = quiet.chi2 / quiet.dof;
     sections = sections_of_patches(*data, noise);
     quiet = quiet_of(sections, noise.known);
   }
-  const double variance = noise.known ? std::max(quiet.highest, 1.0) : quiet.highest;
-  const Yardstick yardstick{{noise.known, variance, noise.time},
-                            noise.known || mostly_with_degrees(sections)};
+  ReferenceNoise shown{.time = noise.time};
+  if (!noise.known || quiet.highest > 1.0) {
+    shown.variance = quiet.highest;
+    shown.dof = quiet.dof;
+  }
+  const Yardstick yardstick{shown, noise.known || mostly_with_degrees(sections)};
   sections = followed(*data, std::move(sections), noise, yardstick);
 
   NeighbourSums neighbours;

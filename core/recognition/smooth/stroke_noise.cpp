@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/local/noise.h"
-#include "core/numerics/probability/negligible.h"
+#include "core/recognition/smooth/variance_ratio.h"
 
 namespace palpate {
 namespace {
@@ -51,11 +51,9 @@ StrokeVariance without(const StrokeVariance& stroke, const StrokeVariance& all) 
   return {std::max(sum, 0.0) / std::max(dof, 1.0), dof};
 }
 
-/// The logarithm of a variance has the variance 2 / dof.
 bool differs(const StrokeVariance& stroke, const StrokeVariance& others) {
   return stroke.dof > 0.0 && others.dof > 0.0 &&
-         std::abs(std::log(stroke.value / others.value)) >
-             kNegligibleDeviations * std::sqrt(2.0 / stroke.dof + 2.0 / others.dof);
+         is_ratio_beyond_chance(stroke.value / others.value, stroke.dof, others.dof);
 }
 
 }  // namespace
