@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -39,6 +41,46 @@ TEST(Touchable, IsANeedleWhoseEndsTellNoSide) {
                                    {0.33, -0.028},  {0.0, -0.030},   {-0.33, -0.028},
                                    {-0.62, -0.023}, {-0.85, -0.015}, {-0.98, 0.004}};
   EXPECT_TRUE(touchable(conic(1.0, 0.03, 1.0), lower, 0.003));
+}
+
+/// Points round the tip of a needle that is many times thicker than the noise, as unevenly spaced
+/// as those of sections are. Chords round the tip run across it or against the way along either
+/// side.
+TEST(Touchable, IsTheNeedleRoundWhoseTipAStrokeLed) {
+  constexpr int kPoints = 18;
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> normal;
+  for (int draw = 0; draw < test::stress_count(300); ++draw) {
+    const double b = test::log_uniform(rng, 0.02, 0.1);
+    const double sigma = b * test::log_uniform(rng, 1e-3, 0.02);
+    std::vector<double> angles;
+    for (int i = 0; i < kPoints; ++i) {
+      angles.push_back(test::uniform(rng, -0.7, 0.7));
+    }
+    std::sort(angles.begin(), angles.end());
+    std::vector<Vec2> places;
+    for (const double angle : angles) {
+      const double x = std::cos(angle) + sigma * normal(rng);
+      places.emplace_back(x, b * std::sin(angle) + sigma * normal(rng));
+    }
+    EXPECT_TRUE(touchable(conic(1.0, b, 1.0), places, sigma)) << draw << ": " << b << ", " << sigma;
+  }
+}
+
+/// The way back is no longer than two points, amid a stroke or at its end.
+TEST(Touchable, IsAConicAlongWhichTheProbeWentBackALittle) {
+  const auto along = [](const std::vector<double>& angles) {
+    std::vector<Vec2> places;
+    for (const double angle : angles) {
+      places.emplace_back(std::cos(angle), 0.5 * std::sin(angle));
+    }
+    return places;
+  };
+  const ConicCoefficients ellipse = conic(1.0, 0.5, 1.0);
+  EXPECT_TRUE(touchable(
+      ellipse, along({0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.42, 0.3, 0.38, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0}),
+      1e-3));
+  EXPECT_TRUE(touchable(ellipse, along({0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.65, 0.6}), 1e-3));
 }
 
 /// A thin ellipse explains noise about a line if neighbours may lie on opposite sides of it,
@@ -97,6 +139,21 @@ TEST(Touchable, IsOneBranchOfAHyperbola) {
   both.back().x() = -both.back().x();
   EXPECT_TRUE(touchable(q, right, 1e-3));
   EXPECT_FALSE(touchable(q, both, 1e-3));
+}
+
+/// Where a hyperbola's a is as small as the noise, this takes points at the vertex beyond its
+/// conjugate axis. But where it takes most of them to either side, these are two branches.
+TEST(Touchable, IsABranchFromWhoseVertexNoiseTakesPoints) {
+  constexpr double kSigma = 0.01;
+  const ConicCoefficients q = conic(0.01, 0.02, -1.0);
+  const std::vector<Vec2> one = {{0.4, -0.8}, {0.2, -0.4}, {0.1, -0.2}, {-0.01, 0.01},
+                                 {0.1, 0.2},  {0.2, 0.4},  {0.4, 0.8}};
+  EXPECT_TRUE(touchable(q, one, kSigma));
+  std::vector<Vec2> of_line;
+  for (int i = 0; i < 15; ++i) {
+    of_line.emplace_back(i % 2 == 0 ? 0.01 : -0.01, -0.7 + 0.1 * i);
+  }
+  EXPECT_FALSE(touchable(conic(0.01, 1.0, -1.0), of_line, kSigma));
 }
 
 }  // namespace

@@ -34,8 +34,22 @@ double quadratic_part(const ConicCoefficients& q, const Vec2& v) {
   return q[0] * v.x() * v.x() + q[1] * v.x() * v.y() + q[2] * v.y() * v.y();
 }
 
+/// On which sides of a line points have been seen.
+struct SidesSeen {
+  bool positive = false;
+  bool negative = false;
+
+  void add(double distance) {
+    positive = positive || distance > 0.0;
+    negative = negative || distance < 0.0;
+  }
+  bool both() const { return positive && negative; }
+};
+
 /// Whether all points lie on one branch of a hyperbola: on one side of its conjugate axis. Tips'
-/// centres may be beyond that, between the branches, where their feet are not.
+/// centres may be beyond that, between the branches, where their feet are not. Noise takes points
+/// at the vertex of a small a beyond the axis too: where most are farther from it than noise goes,
+/// these tell. (Two branches about the noise of a line have most points near the axis.)
 bool on_one_branch(const ImplicitFit& fit, std::span<const FitPoint> points) {
   const ConicCoefficients& q = fit.coefficients;
   const Vec2 centre = centre_of(q);
@@ -46,15 +60,19 @@ bool on_one_branch(const ImplicitFit& fit, std::span<const FitPoint> points) {
   if (quadratic_part(q, axis) * at_centre > 0.0) {
     axis = left_of(axis);
   }
-  bool any_positive = false;
-  bool any_negative = false;
+  SidesSeen of_all;
+  SidesSeen of_far;
+  std::size_t far = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec2& place = points[i].offset > 0.0 ? fit.feet[i] : points[i].position;
     const double along = (place - centre).dot(axis);
-    any_positive = any_positive || along > 0.0;
-    any_negative = any_negative || along < 0.0;
+    of_all.add(along);
+    if (std::abs(along) * points[i].inverse_sigma > kDeviations) {
+      of_far.add(along);
+      ++far;
+    }
   }
-  return !(any_positive && any_negative);
+  return !(2 * far >= points.size() ? of_far : of_all).both();
 }
 
 /// Whether two points are so far apart that noise does not turn the direction from one to the other
@@ -65,19 +83,24 @@ bool tells_direction(const FitPoint& from, const FitPoint& to) {
   return (to.position - from.position).squaredNorm() > kDeviations * kDeviations * (v + w);
 }
 
-/// The direction of travel at point `i` of a patch: between its nearest neighbours on both sides
-/// that are far enough apart to tell it; zero where none are. (A smooth model's tangents will not
-/// do: where a patch is no longer than its noise they turn round.)
-Vec2 travel_at(std::span<const FitPoint> patch, std::size_t i) {
+/// Two points of a patch, by their numbers in it.
+struct Chord {
+  std::size_t from = 0;
+  std::size_t to = 0;
+};
+
+/// The chord that shows the direction of travel at point `i` of a patch: between its nearest
+/// neighbours on both sides that are far enough apart to tell it; nullopt where none are. (A smooth
+/// model's tangents will not do: where a patch is no longer than its noise they turn round.)
+std::optional<Chord> travel_at(std::span<const FitPoint> patch, std::size_t i) {
   const std::size_t last = patch.size() - 1;
   for (std::size_t k = 1; k <= last; k = 2 * k) {
-    const FitPoint& before = patch[i - std::min(i, k)];
-    const FitPoint& after = patch[std::min(i + k, last)];
-    if (tells_direction(before, after)) {
-      return after.position - before.position;
+    const Chord chord{i - std::min(i, k), std::min(i + k, last)};
+    if (tells_direction(patch[chord.from], patch[chord.to])) {
+      return chord;
     }
   }
-  return Vec2::Zero();
+  return std::nullopt;
 }
 
 /// Whether the conic is so thick at a foot that noise does not take the point to its other side.
@@ -86,6 +109,20 @@ bool tells_side(const ConicCoefficients& q, const Vec2& g, const FitPoint& point
   // From the foot along the normal the polynomial is |g| s + a s^2.
   const double g2 = g.squaredNorm();
   return g2 * std::sqrt(g2) * point.inverse_sigma > kDeviations * std::abs(quadratic_part(q, g));
+}
+
+/// A conic at the foot of a point.
+struct AtFoot {
+  Vec2 gradient = Vec2::Zero();
+  bool is_thick = false;  ///< tells_side
+};
+
+/// Whether a chord goes round a bend of the conic: from one end of it to the other the normal turns
+/// by more than a right angle, and not because noise has put an end on the other side. The conic's
+/// tangent between the two may then be more than a right angle from the chord, which says nothing
+/// of the way that the probe went.
+bool goes_round(const AtFoot& from, const AtFoot& to) {
+  return from.is_thick && to.is_thick && from.gradient.dot(to.gradient) < 0.0;
 }
 
 Vec2 place_at(const PolynomialFit& fit, double t) {
@@ -108,21 +145,19 @@ double way_between(const PolynomialFit& fit, double from, double to) {
 }
 
 /// On which side of the travel a conic's polynomial grows, counted. Where the probe has turned back
-/// along the curve, it is that of the way it came: for so many points, fewer go to and fro by noise
-/// or by chance. Joined touches do not turn back: where they go to and fro, their order is wrong.
+/// along the curve, it is that of the way it came. Joined touches do not turn back: where they go
+/// to and fro, their order is wrong.
 class Directions {
  public:
   explicit Directions(bool are_joined) : are_joined_(are_joined) {}
 
   void add(const Vec2& travel, const Vec2& gradient) {
-    if (travel.isZero()) {
-      return;
-    }
     const bool is_left = cross(travel, gradient) >= 0.0;
     if (may_have_turned_ && is_left != way_is_left_) {
       // The point before was the first of the way back.
       --points_of_way_;
       left_of_way_ -= is_left ? 1 : 0;
+      has_turned_ = true;
       end_way();
       count(is_left);
       way_is_left_ = is_left;
@@ -149,11 +184,15 @@ class Directions {
     left_of_way_ += is_left ? 1 : 0;
   }
 
+  /// Between turns a way of few points tells nothing, neither for the conic nor against it: a point
+  /// out of order turns its neighbours round too, and where a probe goes back a little, a section's
+  /// reduced points there are no more than that.
   void end_way() {
-    constexpr std::size_t kFewestOfWay = 3;  // a point out of order turns its neighbours round too
-    was_back_ = points_of_way_ >= kFewestOfWay ? is_back_ : was_back_;
-    points_ += points_of_way_;
-    left_ += was_back_ ? points_of_way_ - left_of_way_ : left_of_way_;
+    constexpr std::size_t kFewestOfWay = 3;
+    if (!has_turned_ || points_of_way_ >= kFewestOfWay) {
+      points_ += points_of_way_;
+      left_ += is_back_ ? points_of_way_ - left_of_way_ : left_of_way_;
+    }
     points_of_way_ = left_of_way_ = 0;
     is_back_ = !is_back_;
   }
@@ -164,7 +203,7 @@ class Directions {
   std::size_t points_of_way_ = 0;  ///< since it last turned back
   std::size_t left_of_way_ = 0;
   bool is_back_ = false;
-  bool was_back_ = false;         ///< on the last way that counts
+  bool has_turned_ = false;       ///< at least once
   bool way_is_left_ = false;      ///< at the last point that may not have turned
   bool may_have_turned_ = false;  ///< at the last point; the next one tells
   Vec2 last_travel_ = Vec2::Zero();
@@ -180,18 +219,25 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
   }
   for (std::size_t p = 0; p < data.patches.size(); ++p) {
     const std::span<const FitPoint> patch = data.patch(p);
-    Directions all(data.patches[p].is_joined);
-    Directions where_thick(data.patches[p].is_joined);
+    std::vector<AtFoot> feet;
+    feet.reserve(patch.size());
     std::size_t thick = 0;
     for (std::size_t i = 0; i < patch.size(); ++i) {
-      const Vec2& foot = fit.feet[data.patches[p].begin + i];
-      const Vec2 gradient = conic_gradient(q, foot);
-      const Vec2 travel = travel_at(patch, i);
-      const bool is_thick = tells_side(q, gradient, patch[i]);
-      thick += is_thick ? 1 : 0;
-      all.add(travel, gradient);
-      if (is_thick) {
-        where_thick.add(travel, gradient);
+      const Vec2 gradient = conic_gradient(q, fit.feet[data.patches[p].begin + i]);
+      feet.push_back({gradient, tells_side(q, gradient, patch[i])});
+      thick += feet.back().is_thick ? 1 : 0;
+    }
+    Directions all(data.patches[p].is_joined);
+    Directions where_thick(data.patches[p].is_joined);
+    for (std::size_t i = 0; i < patch.size(); ++i) {
+      const std::optional<Chord> chord = travel_at(patch, i);
+      if (!chord || goes_round(feet[chord->from], feet[chord->to])) {
+        continue;
+      }
+      const Vec2 travel = patch[chord->to].position - patch[chord->from].position;
+      all.add(travel, feet[i].gradient);
+      if (feet[i].is_thick) {
+        where_thick.add(travel, feet[i].gradient);
       }
     }
     // The ends of a needle tell no side; where most points tell none, it has none.
