@@ -41,6 +41,8 @@ bool is_same_valley(const AxisFit& a, const AxisFit& b) {
          std::abs(std::remainder(a.theta - b.theta, 2.0 * kPi)) <= kSameAngle;
 }
 
+bool is_deeper(const AxisFit& a, const AxisFit& b) { return a.chi2 < b.chi2; }
+
 /// Walks the valleys of all seeds on the reduced points; best first.
 std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& reduced,
                           WorkBudget& work) {
@@ -54,8 +56,7 @@ std::vector<AxisFit> walk(const std::vector<AxisFit>& seeds, const FitData& redu
       walked.push_back(std::move(fit));
     }
   }
-  std::sort(walked.begin(), walked.end(),
-            [](const AxisFit& a, const AxisFit& b) { return a.chi2 < b.chi2; });
+  std::sort(walked.begin(), walked.end(), is_deeper);
   walked.erase(std::unique(walked.begin(), walked.end(), is_same_valley), walked.end());
   return walked;
 }
@@ -116,12 +117,15 @@ void add_relatives(const FitData& reduced, PolynomialSeeds* seeds, WorkBudget& w
 }
 
 /// Walks the valleys of the splines that the search has left. Those that are lower than `chi2`, of
-/// the best that it has found, come right after the first, which is refined.
+/// the best that it has found, take their places among the others after the first, which is
+/// refined: no more than a few are refined, and these must be the deepest of all.
 void walk_more(const FitData& reduced, double chi2, PolynomialSeeds* seeds, WorkBudget& work) {
   std::vector<AxisFit> more = walk(seeds->more_splines, reduced, work);
   seeds->more_splines.clear();
   std::erase_if(more, [&](const AxisFit& fit) { return !(fit.chi2 < chi2); });
-  seeds->cubic_spline.insert(seeds->cubic_spline.begin() + 1, more.begin(), more.end());
+  const auto middle =
+      seeds->cubic_spline.insert(seeds->cubic_spline.end(), more.begin(), more.end());
+  std::inplace_merge(seeds->cubic_spline.begin() + 1, middle, seeds->cubic_spline.end(), is_deeper);
 }
 
 /// The best spline and another optimum: on the other side of c = 0, or of another valley.
