@@ -51,8 +51,8 @@ test::Scene touched(const StrokesOfPart& part, std::mt19937_64& rng) {
   return scene;
 }
 
-// Two strokes with steps of about 0.6 deviations. One in a hundred strokes was given the noise that
-// one block of eight samples showed, of thirty: up to fifty times less than the other's.
+// Two strokes with steps of about 0.6 deviations. Some were given the noise that one block of eight
+// samples showed, of thirty: many times less than the other's.
 TEST(UnstatedNoise, OfDenseStrokesIsThatOfAllSamples) {
   std::mt19937_64 rng = test::test_rng();
   int recognized = 0;

@@ -70,7 +70,7 @@ TEST_P(NoiseEstimateOf, IsTheNoiseOfDenseSamplesToo) {
 }
 
 // Noise turns the path of nearly all blocks of 8 samples too far. The few that are fitted all the
-// same have little noise by chance; taken for all, they made one stroke in 40 wrong by more than 2.
+// same have little noise by chance; taken for all, they tell a noise that is wrong by more than 2.
 TEST(NoiseEstimateOfDenseSamples, IsNotThatOfTheFewBlocksThatAreFitted) {
   constexpr int kCount = 240;
   constexpr double kStep = 0.6 * kSigma;
