@@ -88,37 +88,14 @@ void spare_ways(std::span<const Vec2> samples, std::vector<std::size_t>* indices
   std::erase_if(*indices, [&](std::size_t i) { return is_left_out[i] == 0; });
 }
 
-/// From an end inwards: how many samples, up to kLongestRunOfSpikes, a lonely gap separates from
-/// the next ones (block_survey.h).
-template <typename Sample>
-std::ptrdiff_t lonely_at(const Sample begin, const Sample end) {
-  constexpr std::ptrdiff_t kNext = 16;  // samples: a short block
-  for (std::ptrdiff_t run = 1; run <= static_cast<std::ptrdiff_t>(kLongestRunOfSpikes); ++run) {
-    if (run + kNext < end - begin && (begin[run] - begin[run - 1]).norm() >
-                                         kLonelyGap * (begin[run + kNext] - begin[run]).norm()) {
-      return run;
-    }
-  }
-  return 0;
-}
-
 /// Which samples the steps of the stroke do not tell to be off its path; empty: all of them, or so
 /// few that they are no path.
 std::vector<std::uint8_t> on_path_of(std::span<const Vec2> samples) {
-  Kept path;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    path.samples.push_back(samples[i]);
-    path.numbers.push_back(i);
+  std::vector<std::uint8_t> flags = detours_of(samples);
+  for (std::uint8_t& flag : flags) {
+    flag = flag == 0 ? 1 : 0;
   }
-  std::vector<std::size_t> off;
-  path.drop(detours_of(samples), &off);
-  const std::ptrdiff_t first = lonely_at(path.samples.begin(), path.samples.end());
-  const std::ptrdiff_t last = lonely_at(path.samples.rbegin(), path.samples.rend());
-  std::vector<std::uint8_t> flags(samples.size());
-  std::size_t count = 0;
-  for (std::ptrdiff_t i = first; i + last < std::ssize(path.numbers); ++i, ++count) {
-    flags[path.numbers[static_cast<std::size_t>(i)]] = 1;
-  }
+  const auto count = static_cast<std::size_t>(std::ranges::count(flags, 1));
   return count < samples.size() && count >= kFewestSamples ? flags : std::vector<std::uint8_t>{};
 }
 

@@ -32,8 +32,7 @@ struct Spikes {
 
 /// Tests each sample against a quartic (a cubic if there are many spikes) through the samples of
 /// its block that are not spikes. Samples that one long step leads to and another leads back from
-/// (jumps.h), or that a lonely gap separates at an end, are no part of a fit at its start, and join
-/// like others. Three steps, each only if the
+/// (jumps.h) are no part of a fit at its start, and join like others. Three steps, each only if the
 /// one before finds something unusual:
 /// 1. Least squares in blocks of 16 (longer if 16 samples span less than 20 sigma) that overlap by
 ///    half. If nothing exceeds the threshold, no sample lies behind an earlier one and the noise is

@@ -160,6 +160,8 @@ TEST(SmoothModel, NoSectionLeadsRoundACusp) {
 TEST(SmoothModel, NoiseThatIsStatedTooLowIsNotFollowed) {
   std::mt19937_64 rng = test::test_rng();
   constexpr double kTooLow = 1e-3;
+  std::size_t points_by_honest = 0;
+  std::size_t points_by_bold = 0;
   for (int i = 0; i < 50; ++i) {
     FitData honest = circular_arc(1.5, 400, 1e-4, rng);
     FitData bold = honest;
@@ -168,11 +170,14 @@ TEST(SmoothModel, NoiseThatIsStatedTooLowIsNotFollowed) {
     }
     const SmoothModel by_honest = fit_smooth_model(&honest, true);
     const SmoothModel by_bold = fit_smooth_model(&bold, true);
-    // The quietest sections tell less noise than there is, and the criterion then takes some
-    // degrees more; followed to what is stated it were ten times as many points.
-    EXPECT_LE(by_bold.reduced.points.size(), 2 * by_honest.reduced.points.size());
+    points_by_honest += by_honest.reduced.points.size();
+    points_by_bold += by_bold.reduced.points.size();
     EXPECT_NEAR(by_bold.noise_ratio() * kTooLow, by_honest.noise_ratio(), 0.05);
   }
+  // The quietest sections tell less noise than there is, and the criterion then takes some degrees
+  // more; followed to what is stated it were ten times as many points.
+  std::cout << points_by_bold << " reduced points for " << points_by_honest << '\n';
+  EXPECT_LE(2 * points_by_bold, 3 * points_by_honest);
 }
 
 }  // namespace
