@@ -152,6 +152,7 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> o
   return result;
 }
 
+/// The samples on the path.
 std::vector<Vec2> flagged(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path) {
   std::vector<Vec2> path;
   path.reserve(samples.size());
@@ -175,7 +176,8 @@ bool leaves_path(std::span<const Vec2> samples, std::span<const std::uint8_t> on
       before = i;
       continue;
     }
-    for (after = std::max(after, i); after < samples.size() && !is_on(after);) {
+    after = std::max(after, i);
+    while (after < samples.size() && !is_on(after)) {
       ++after;
     }
     const double from = before < i ? (samples[i] - samples[before]).norm() : kInfinity;
