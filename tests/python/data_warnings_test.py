@@ -76,8 +76,10 @@ class DataWarnings(unittest.TestCase):
         self.assertEqual(result.curve_class, "unclassified")
         self.assertRegex(said, r"straight at an end and meets? the rest at a corner \(patch 0: the first \d samples at \d+ degrees")
         self.assertIn("leave these samples out", said)
+        # Set aside, but as well an edge and a corner.
         result, said = self.warned([with_approach(STROKES[0], n=5, angle=math.radians(90)), STROKES[1]])
-        self.assertEqual((result.curve_class, said), ("ellipse", ""))
+        self.assertEqual((result.curve_class, result.doubt), ("ellipse", "misfit"))
+        self.assertIn("leave these samples out", said)
 
     def test_strokes_without_patch_numbers_are_told_as_they_come(self):
         for numbers, jumps in (((0, 0), True), ((0, 1), False)):

@@ -565,13 +565,17 @@ class Formats(unittest.TestCase):
         self.fit(path.read_text(), "--class", "circle", advised[0], advised[1].split(",")[0])
         self.assertIn(f"{advised[0]} {advised[1]}", self.notes)
 
-    def test_an_approach_that_does_no_harm_is_told_by_check_alone(self):
-        # Six samples are set aside as spikes.
+    def test_a_short_approach_makes_the_answer_doubt_and_is_told(self):
+        # Six samples at either end are set aside; they may as well be an edge and a corner of the part.
         path = self.folder / "approached.csv"
         path.write_text(self.approached(6, seed=1))
         self.assertIn("straight at an end", run(TOOL, "check", path)[1])
         answer = self.fit(path.read_text(), "--sigma", "1e-5")
-        self.assertEqual(answer["curve_class"], "CURVE_CLASS_CIRCLE")
+        self.assertEqual((answer["curve_class"], answer["status"], answer["doubt"]),
+                         ("CURVE_CLASS_CIRCLE", "RECOGNITION_STATUS_AMBIGUOUS", "RECOGNITION_DOUBT_MISFIT"))
+        advised = re.search(r"fit (--leave-out) (\S+)$", self.notes).groups()
+        answer = self.fit(path.read_text(), "--sigma", "1e-5", *advised)
+        self.assertEqual((answer["curve_class"], answer["status"]), ("CURVE_CLASS_CIRCLE", "RECOGNITION_STATUS_RECOGNIZED"))
         self.assertNotIn("straight", self.notes)
 
     def test_the_approaches_of_two_objects_are_told_without_an_option_that_would_not_do(self):
