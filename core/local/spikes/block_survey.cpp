@@ -1,7 +1,6 @@
 #include "core/local/spikes/block_survey.h"
 
 #include <cmath>
-#include <limits>
 
 #include "core/local/noise.h"
 #include "core/local/spikes/least_median_parabola.h"
@@ -33,8 +32,6 @@ constexpr double kCuspFactor = 2e-3;
 /// backtrack <= kBacktrackSigmas * sqrt(2) * sigma: the difference of two abscissae has the noise
 /// sqrt(2) sigma. Six standard deviations reject one in 10^9 neighbours by chance.
 constexpr double kBacktrackSigmas = 6.0;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What form leaves of a quartic, counted as noise. [m]
 double noise_floor(const ResidualBlock& block, bool at_cusp) {
@@ -110,7 +107,13 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> o
   work.spend(WorkKind::SpikeRow, kBlocksOfSample * samples.size());
   Blocks result;
   ResidualBlock block;
-  std::vector<double> sizes, largest, largest_on_path, floors, extents;
+  struct OfBlock {
+    double largest_m = 0.0;
+    double largest_on_path_m = 0.0;
+    double floor_m = 0.0;
+  };
+  std::vector<OfBlock> of_blocks;
+  std::vector<double> sizes, extents;
   sizes.reserve(2 * samples.size());
   for_each_block(samples.size(), length, length / 2, [&](std::size_t start) {
     const std::span<const std::uint8_t> use = flags_of(on_path, start, length);
@@ -120,14 +123,13 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> o
       return;
     }
     result.status = LocalStatus::Ok;
-    double of_used = 0.0;
+    OfBlock of_block{block.largest(), 0.0, 0.0};
     for (std::size_t i = 0; i < length; ++i) {
       if (use.empty() || use[i] != 0) {
         sizes.push_back(std::abs(block.studentised(i)));
-        of_used = std::max(of_used, sizes.back());
+        of_block.largest_on_path_m = std::max(of_block.largest_on_path_m, sizes.back());
       }
     }
-    largest_on_path.push_back(of_used);
     extents.push_back(block.extent_m());
     result.backtrack_m = std::max(result.backtrack_m, block.backtrack_m());
     const bool at_cusp = cusps.touched_by(start, start + length, samples.size());
@@ -137,16 +139,17 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> o
         std::max({result.end_gap, first ? block.first_gap() : 0.0, last ? block.last_gap() : 0.0});
     result.bends_to_end = result.bends_to_end || ((first || last) && !at_cusp &&
                                                   block.steepest() > ResidualBlock::kMaxSlope);
-    largest.push_back(block.largest());
-    floors.push_back(noise_floor(block, at_cusp));
+    of_block.floor_m = noise_floor(block, at_cusp);
+    of_blocks.push_back(of_block);
   });
   if (result.status == LocalStatus::Ok) {
     result.extent_m = quantile(extents, 0.5);
     result.sigma_m = sigma_m > 0.0 ? sigma_m : robust_sigma(sizes);
-    for (std::size_t b = 0; b < floors.size(); ++b) {
-      const double unit_m = std::max(result.sigma_m, floors[b]);
-      result.largest = std::max(result.largest, largest[b] / unit_m);
-      result.largest_on_path = std::max(result.largest_on_path, largest_on_path[b] / unit_m);
+    for (const OfBlock& of_block : of_blocks) {
+      const double unit_m = std::max(result.sigma_m, of_block.floor_m);
+      result.largest = std::max(result.largest, of_block.largest_m / unit_m);
+      result.largest_on_path =
+          std::max(result.largest_on_path, of_block.largest_on_path_m / unit_m);
     }
   }
   return result;
@@ -166,27 +169,22 @@ std::vector<Vec2> flagged(std::span<const Vec2> samples, std::span<const std::ui
 
 /// Whether a sample off the path is farther from the path's samples before and after it than these
 /// are from one another, by more than `limit_m`: along the curve, where no residual shows it, too.
+/// `on_path`: as detours_of leaves it, with the first and the last sample.
 bool leaves_path(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
                  double limit_m) {
-  const auto is_on = [&](std::size_t i) { return on_path.empty() || on_path[i] != 0; };
-  std::size_t before = samples.size();
-  std::size_t after = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (is_on(i)) {
-      before = i;
+  std::size_t before = 0;
+  for (std::size_t after = 1; after < on_path.size(); ++after) {
+    if (on_path[after] == 0) {
       continue;
     }
-    after = std::max(after, i);
-    while (after < samples.size() && !is_on(after)) {
-      ++after;
+    const double most = (samples[after] - samples[before]).norm() + limit_m;
+    for (std::size_t i = before + 1; i < after; ++i) {
+      if (std::min((samples[i] - samples[before]).norm(), (samples[i] - samples[after]).norm()) >
+          most) {
+        return true;
+      }
     }
-    const double from = before < i ? (samples[i] - samples[before]).norm() : kInfinity;
-    const double to = after < samples.size() ? (samples[i] - samples[after]).norm() : kInfinity;
-    const double on =
-        before < i && after < samples.size() ? (samples[after] - samples[before]).norm() : 0.0;
-    if (std::min(from, to) > on + limit_m) {
-      return true;
-    }
+    before = after;
   }
   return false;
 }

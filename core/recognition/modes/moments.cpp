@@ -159,7 +159,9 @@ Eigen::Matrix<double, 6, 6> shape_pose_by_coordinates(const ClassEvidence& evide
 std::optional<ShapePoseCovariance> bend_added(const ShapePoseCovariance& covariance,
                                               const ShapePoseCovariance& linear,
                                               const ShapePoseCovariance& moment) {
-  const ShapePoseCovariance sum = covariance + moment - linear;
+  const ShapePoseCovariance left = covariance + moment - linear;
+  // Where most of it cancels, what is left shows that the two halves were rounded differently.
+  const ShapePoseCovariance sum = 0.5 * (left + left.transpose());
   // In units of the moment's deviations; a free component has none.
   Eigen::Matrix<double, 6, 6> scaled = Eigen::Matrix<double, 6, 6>::Identity();
   for (Eigen::Index i = 0; i < sum.rows(); ++i) {

@@ -77,10 +77,6 @@ BestMoments moments_of_best(const Weighing& w, WorkBudget& work) {
                                      w.stated.form_inflation());
     }
   }
-  if (result.moment) {
-    // Maps of parts of very different size leave an asymmetry of their rounding.
-    result.moment = ShapePoseCovariance(0.5 * (*result.moment + result.moment->transpose()));
-  }
   if (result.moment && !(result.moment->diagonal().array() >= 0.0).all()) {
     // Its parts lie more than a double's digits apart, and rounding leaves less than nothing.
     result.moment = untold_covariance(result.moment->rows());
